@@ -1,0 +1,52 @@
+"""Smooth stand-ins for |x|, sign, max and min, for floats and CasADi expressions alike.
+
+Every one of them has a width: the size of x over which the corner is rounded. Far from the corner the relative
+deviation falls as (width/x)^2, so a width of a thousandth of the nominal value is invisible. Two rules for users:
+
+- under a power below 1 take `smooth_abs`, which is never zero, so value and slope stay finite at x = 0;
+- where a loss must vanish with x and never turn into a source take `x * smooth_sign(x)`, or multiply a magnitude by
+  `smooth_sign(w)`: the power w * smooth_sign(w) is never negative.
+"""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import casadi as ca
+
+#: A float or a CasADi expression.
+Num = Any
+
+#: Width [rad/s] of every rounding in a speed: 0.1 rpm, so 100 rpm is met to 5e-7.
+SPEED_WIDTH = 1e-2
+
+
+def smooth_abs(x: Num, width: float = SPEED_WIDTH) -> Num:
+    r""":math:`\sqrt{x^2 + width^2}`, in the unit of x: never zero, even, exact to (width/x)^2/2 far from zero."""
+    return ca.sqrt(x * x + width * width)
+
+
+def smooth_sign(x: Num, width: float = SPEED_WIDTH) -> Num:
+    """The slope of `smooth_abs`: odd, zero at x = 0, between -1 and 1; x * smooth_sign(x) is never negative."""
+    return x / smooth_abs(x, width)
+
+
+def smooth_positive(x: Num, width: float) -> Num:
+    """The positive part of x, in the unit of x: never negative, width/2 at x = 0."""
+    return 0.5 * (x + smooth_abs(x, width))
+
+
+def smooth_max(a: Num, b: Num, width: float) -> Num:
+    """The larger of two, in their unit: never below either, above it by at most width/2, where they are equal."""
+    return 0.5 * (a + b + smooth_abs(a - b, width))
+
+
+def smooth_min(a: Num, b: Num, width: float) -> Num:
+    """The smaller of two, in their unit: never above either, below it by at most width/2, where they are equal."""
+    return 0.5 * (a + b - smooth_abs(a - b, width))
+
+
+def to_rpm(w: Num) -> Num:
+    """Angular velocity [rad/s] in revolutions per minute."""
+    return w * (30 / math.pi)
