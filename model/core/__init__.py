@@ -1,0 +1,1 @@
+"""The acausal machinery: declarations, connections, flattening. Knows no physics."""

@@ -1,0 +1,167 @@
+"""What a component is made of: typed declarations that carry unit, meaning, size and range once, for everything.
+
+A declaration is a descriptor. On a component instance it reads as the CasADi symbol of that quantity (a `Choice`
+reads as its Python value).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from .flat import Quantity
+
+
+@dataclass(eq=False)
+class Declaration:
+    """Common part: unit, meaning, typical size and range of one scalar."""
+
+    unit: str
+    doc: str
+    nominal: float = 1.0
+    above: float | None = None
+    at_least: float | None = None
+    below: float | None = None
+    at_most: float | None = None
+    name: str = field(default="", init=False)
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, instance: Any, owner: type) -> Any:
+        return self if instance is None else instance.symbols[self.name]
+
+    def quantity(self, path: str, start: float = 0.0) -> Quantity:
+        """This declaration as the quantity of a path."""
+        low = self.at_least if self.above is None else self.above
+        high = self.at_most if self.below is None else self.below
+        return Quantity(
+            path,
+            self.unit,
+            self.doc,
+            self.nominal,
+            start,
+            -np.inf if low is None else low,
+            np.inf if high is None else high,
+            self.above is not None,
+            self.below is not None,
+        )
+
+
+class Potential(Declaration):
+    """The quantity of a port that is equal for all ports of a net."""
+
+
+class Flow(Declaration):
+    """The quantity of a port that sums to zero over a net. Positive into the component that owns the port."""
+
+
+@dataclass(eq=False)
+class Parameter(Declaration):
+    """A number that stays a symbol until a model is run.
+
+    `default` is only for numerics, never for physics; `derived` computes the value from the component's other values
+    where it is not given (a contact ratio from the geometry).
+    """
+
+    default: float | None = None
+    derived: Callable[[Mapping[str, float]], float] | None = None
+
+
+@dataclass(eq=False)
+class Variable(Declaration):
+    """An unknown. With a `guess` it may be the starting point of the Newton steps of an implicit block."""
+
+    guess: float | None = None
+
+
+class Output(Variable):
+    """An unknown that results and FMUs show."""
+
+
+@dataclass(eq=False)
+class State(Declaration):
+    """A quantity with a derivative, `component.der(name)`."""
+
+    start: float = 0.0
+
+
+@dataclass(eq=False)
+class Input(Declaration):
+    """A quantity given from outside at every moment."""
+
+    start: float = 0.0
+
+
+class Given(Input):
+    """An input where the component's choice `given` holds its name, an output elsewhere."""
+
+
+@dataclass(eq=False)
+class Choice:
+    """A structural Python value, fixed before flattening."""
+
+    options: tuple[Any, ...]
+    doc: str
+    default: Any = None
+    name: str = field(default="", init=False)
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, instance: Any, owner: type) -> Any:
+        return self if instance is None else instance.choices[self.name]
+
+
+class Port:
+    """A place where a component meets others: one or more potentials, with or without a flow.
+
+    A port type without a flow carries information only. `power` says which product of its quantities is the power
+    that enters the component, for the energy audit.
+    """
+
+    doc: str = ""
+
+    def __init__(self, doc: str = "") -> None:
+        self.doc = doc
+        self.name = ""
+        self.symbols: dict[str, Any] = {}
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, instance: Any, owner: type) -> Any:
+        return self if instance is None else instance.ports[self.name]
+
+    def bound(self, path: str) -> Port:
+        """This port as one of a component: the same declarations with symbols of their own."""
+        port = type(self)(self.doc)
+        port.name = path
+        port.symbols = {name: ca.SX.sym(f"{path}.{name}") for name in (*self.potentials(), *self.flows())}
+        return port
+
+    @classmethod
+    def potentials(cls) -> dict[str, Potential]:
+        """The potentials of this type of port."""
+        return declared(cls, Potential)
+
+    @classmethod
+    def flows(cls) -> dict[str, Flow]:
+        """The flows of this type of port."""
+        return declared(cls, Flow)
+
+    def power(self) -> Any:
+        """Power that enters the owner through this port [W]; none for ports that carry information."""
+        return 0.0
+
+
+def declared(owner: type, kind: type) -> dict[str, Any]:
+    """All declarations of a kind on a class, base classes first, in the order written."""
+    found: dict[str, Any] = {}
+    for base in reversed(owner.__mro__):
+        found.update({name: d for name, d in vars(base).items() if isinstance(d, kind)})
+    return found

@@ -1,0 +1,209 @@
+"""Symbolic solution of a square system of residuals, block by block.
+
+The block-triangular form sorts the system. A block of one unknown that enters linearly is solved by hand; a larger
+linear block by sparse elimination; a block that stays implicit is torn at the unknowns that carry a guess (losses,
+which start at zero) and solved by a few unrolled Newton steps.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ..errors import StructureError
+
+NEWTON_STEPS = 3
+
+
+@dataclass(frozen=True)
+class Unknown:
+    """One unknown: symbol, name, typical size, and where Newton may start (None: never torn)."""
+
+    symbol: Any
+    name: str
+    nominal: float = 1.0
+    guess: float | None = None
+
+
+@dataclass(frozen=True)
+class Row:
+    """One equation, lhs = rhs, with its name."""
+
+    name: str
+    lhs: Any
+    rhs: Any
+
+    @property
+    def residual(self) -> Any:
+        """lhs - rhs."""
+        return self.lhs - self.rhs
+
+
+@dataclass
+class Solution:
+    """Definitions in the order in which they can be evaluated, and the residuals that implicit blocks leave."""
+
+    symbols: list[Any]
+    definitions: list[Any]
+    residuals: list[tuple[str, Any]]
+
+    def define(self, symbol: Any, definition: Any) -> None:
+        """Append one definition; it may use known symbols and those defined before."""
+        self.symbols.append(symbol)
+        self.definitions.append(definition)
+
+
+def column(items: Sequence[Any]) -> Any:
+    """A CasADi column of scalars, also of none."""
+    return ca.vertcat(*items) if items else ca.SX(0, 1)
+
+
+def incidence(rows: Sequence[Row], unknowns: Sequence[Unknown]) -> Any:
+    """Sparsity of the residuals in the unknowns."""
+    return ca.jacobian_sparsity(column([r.residual for r in rows]), column([u.symbol for u in unknowns]))
+
+
+def solve(model: str, rows: Sequence[Row], unknowns: Sequence[Unknown], solution: Solution) -> None:
+    """Add the definitions of all unknowns to a solution. The system must be structurally sound.
+
+    Raises:
+        StructureError: an implicit block has no unknown with a guess
+    """
+    _, row_order, column_order, row_blocks, column_blocks, _, _ = incidence(rows, unknowns).btf()
+    for first, last, left, right in zip(row_blocks, row_blocks[1:], column_blocks, column_blocks[1:], strict=False):
+        block_rows = [rows[i] for i in row_order[first:last]]
+        block_unknowns = [unknowns[i] for i in column_order[left:right]]
+        _solve_block(model, block_rows, block_unknowns, solution)
+
+
+def _solve_block(model: str, rows: list[Row], unknowns: list[Unknown], solution: Solution) -> None:
+    z = column([u.symbol for u in unknowns])
+    if len(rows) == 1 and (definition := _explicit(rows[0], z)) is not None:
+        solution.define(z, definition)
+        return
+    residual = column([r.residual for r in rows])
+    matrix = ca.jacobian(residual, z)
+    if not ca.depends_on(matrix, z):
+        _eliminate(matrix, ca.substitute(residual, z, ca.SX.zeros(*z.shape)), unknowns, solution)
+    else:
+        _newton(model, rows, unknowns, solution)
+
+
+def _explicit(row: Row, z: Any) -> Any:
+    """The other side where one side is the unknown itself, else None."""
+    for side, other in ((row.lhs, row.rhs), (row.rhs, row.lhs)):
+        if ca.is_equal(ca.SX(side), z, 0) and not ca.depends_on(other, z):
+            return other
+    return None
+
+
+def _eliminate(matrix: Any, constant: Any, unknowns: list[Unknown], solution: Solution) -> None:
+    """Solve matrix z + constant = 0 by Gauss elimination, rows and columns in the order of least fill."""
+    n = len(unknowns)
+    a = {(i, j): matrix[i, j] for i, j in zip(*matrix.sparsity().get_triplet(), strict=True)}
+    b = [-constant[i] for i in range(n)]
+    size = _sizes(matrix)
+    open_rows, open_columns, order = set(range(n)), set(range(n)), []
+    while open_rows:
+        i, j = _pivot(a, size, open_rows, open_columns)
+        open_rows.discard(i)
+        open_columns.discard(j)
+        order.append((i, j))
+        others = [c for c in open_columns if (i, c) in a]
+        for r in sorted(r for r in open_rows if (r, j) in a):
+            factor = a.pop((r, j)) / a[i, j]
+            ratio = size.pop((r, j)) / size[i, j]
+            b[r] = b[r] - factor * b[i]
+            for c in others:
+                a[r, c] = a.get((r, c), 0) - factor * a[i, c]
+                size[r, c] = size.get((r, c), 0.0) - ratio * size[i, c]
+    for i, j in reversed(order):
+        known = sum((a[i, c] * unknowns[c].symbol for r, c in a if r == i and c != j), ca.SX(0))
+        solution.define(unknowns[j].symbol, (b[i] - known) / a[i, j])
+
+
+def _sizes(matrix: Any) -> dict[tuple[int, int], float]:
+    """Numerical values of the entries at an arbitrary generic point: they only steer the choice of pivots."""
+    free = ca.symvar(matrix)
+    point = [1.0 + 0.37 * np.sin(1.0 + 2.4 * k) for k in range(len(free))]
+    values = ca.Function("sizes", free, [matrix])(*point) if free else ca.DM(matrix)
+    return {(i, j): float(values[i, j]) for i, j in zip(*matrix.sparsity().get_triplet(), strict=True)}
+
+
+def _pivot(a: Mapping[Any, Any], size: Mapping[Any, float], rows: set[int], columns: set[int]) -> tuple[int, int]:
+    """Markowitz: least fill among entries that are not small in their row."""
+    entries = [(i, j) for i, j in a if i in rows and j in columns]
+    in_row = {i: [c for r, c in entries if r == i] for i in rows}
+    in_column = {j: [r for r, c in entries if c == j] for j in columns}
+    sound = [(i, j) for i, j in entries if abs(size[i, j]) > 1e-3 * max(abs(size[i, c]) for c in in_row[i])]
+    if not sound:
+        raise StructureError("A linear part of the model is singular: two of its equations say the same.")
+    return min(sound, key=lambda e: ((len(in_row[e[0]]) - 1) * (len(in_column[e[1]]) - 1), e))
+
+
+def _newton(model: str, rows: list[Row], unknowns: list[Unknown], solution: Solution) -> None:
+    """Tear the block at its unknowns with a guess, sort the rest, and iterate on the torn ones."""
+    torn, tests, rest_rows, rest = _tear(model, rows, unknowns)
+    inner = Solution([], [], [])
+    if rest:
+        solve(model, rest_rows, rest, inner)
+    z = column([u.symbol for u in torn])
+    (residual,) = _inline([r.residual for r in tests], inner)
+    outer = column([s for s in ca.symvar(residual) if not ca.depends_on(s, z)])
+    jacobian = ca.jacobian(residual, z)
+    step = ca.Function("step", [z, outer], [residual, jacobian], {"cse": True})
+    value = ca.SX([u.guess for u in torn])
+    for _ in range(NEWTON_STEPS):
+        r, j = step(value, outer)
+        value = value - _linear_solve(j, r, torn)
+    left, _ = step(value, outer)
+    scale = [u.nominal for u in torn]
+    solution.residuals += [(row.name, left[k] / scale[k]) for k, row in enumerate(tests)]
+    for k, unknown in enumerate(torn):
+        solution.define(unknown.symbol, value[k])
+    for symbol, definition in zip(inner.symbols, inner.definitions, strict=True):
+        solution.define(symbol, definition)
+    solution.residuals += inner.residuals
+
+
+def _tear(model: str, rows: list[Row], unknowns: list[Unknown]) -> tuple[list[Unknown], list[Row], list[Row], list[Unknown]]:
+    """Torn unknowns with the equations that define them (lhs is the unknown), and what remains of the block.
+
+    A block of one unknown is torn at it, from its guess or its nominal.
+    """
+    if len(rows) == 1:
+        u = unknowns[0]
+        return [Unknown(u.symbol, u.name, u.nominal, u.nominal if u.guess is None else u.guess)], rows, [], []
+    defining = {r.lhs.element_hash(): r for r in rows if r.lhs.is_symbolic()}
+    torn = [u for u in unknowns if u.guess is not None and u.symbol.element_hash() in defining]
+    if not torn:
+        names = ", ".join(r.name for r in rows[:5])
+        raise StructureError(f"{model}: the equations {names} are implicit and nonlinear. Give one of their unknowns a guess.")
+    tests = [defining[u.symbol.element_hash()] for u in torn]
+    return torn, tests, [r for r in rows if r not in tests], [u for u in unknowns if u not in torn]
+
+
+def _inline(expressions: list[Any], solution: Solution) -> list[Any]:
+    """Expressions with all definitions of a solution put in, as one column in a list."""
+    stacked = column(expressions)
+    if not solution.symbols:
+        return [stacked]
+    _, (result,) = ca.substitute_inplace(solution.symbols, solution.definitions, [stacked], False)
+    return [result]
+
+
+def _linear_solve(matrix: Any, right: Any, unknowns: list[Unknown]) -> Any:
+    """z of matrix z = right, with the same elimination as a linear block."""
+    stand_in = [Unknown(ca.SX.sym(u.name), u.name) for u in unknowns]
+    solution = Solution([], [], [])
+    _eliminate(matrix, -right, stand_in, solution)
+    return _inline([u.symbol for u in stand_in], solution)[0]
+
+
+def inline(expression: Any, solution: Solution) -> Any:
+    """An expression column with all definitions of a solution put in."""
+    return _inline([expression], solution)[0]

@@ -1,0 +1,41 @@
+"""The errors of the project: each carries all problems found, each problem says where, what and what to do."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable
+
+
+class GearheatError(Exception):
+    """Base of every error a user can cause. `problems` holds one text per problem, at most three lines each."""
+
+    def __init__(self, problems: str | Iterable[str]) -> None:
+        self.problems: tuple[str, ...] = (problems,) if isinstance(problems, str) else tuple(problems)
+        super().__init__("\n".join(self.problems))
+
+
+class ScenarioError(GearheatError):
+    """A rig file, a catalogue entry or a value on the command line is wrong."""
+
+
+class StructureError(GearheatError):
+    """The parts and connections do not make a solvable system of equations."""
+
+
+class SolveError(GearheatError):
+    """A run found no solution."""
+
+
+class FmuError(GearheatError):
+    """An FMU cannot be made, read or run."""
+
+
+class DataError(GearheatError):
+    """A measured or scheduled table is wrong."""
+
+
+def suggestion(name: str, known: Iterable[str]) -> str:
+    """' Did you mean "x"?' for a misspelt name, or an empty text."""
+    close = difflib.get_close_matches(name, list(known), n=3, cutoff=0.6)
+    quoted = " or ".join(f'"{c}"' for c in close)
+    return f" Did you mean {quoted}?" if close else ""

@@ -1,0 +1,1 @@
+"""Pure cited functions, one formula of one source each."""

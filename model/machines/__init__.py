@@ -1,0 +1,1 @@
+"""One file a machine: its spec and its assembly."""

@@ -1,0 +1,93 @@
+"""What a machine is before it becomes equations: parts with SI values, and who is connected to whom."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any
+
+from ..core.component import Component
+from ..core.connect import Assembly
+from ..errors import GearheatError, ScenarioError, suggestion
+from ..parts import PARTS
+
+
+@dataclass(frozen=True)
+class PartSpec:
+    """One part: its name, its type (a name in `gearheat.model.parts.PARTS`), its SI values and choices by key."""
+
+    name: str
+    type: str
+    values: Mapping[str, Any] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Spec:
+    """One machine: its parts in the order to show them, and the groups of ports that meet."""
+
+    name: str
+    doc: str
+    parts: tuple[PartSpec, ...]
+    connections: tuple[tuple[str, ...], ...]
+
+    def part(self, name: str) -> PartSpec:
+        """The part of a name. Raises ScenarioError with suggestions for an unknown one."""
+        for part in self.parts:
+            if part.name == name:
+                return part
+        names = [part.name for part in self.parts]
+        raise ScenarioError(f'{self.name}: there is no part "{name}".{suggestion(name, names)}')
+
+    def of_type(self, *types: str) -> tuple[str, ...]:
+        """Names of the parts of the given types."""
+        return tuple(part.name for part in self.parts if part.type in types)
+
+    def with_values(self, values: Mapping[str, Any]) -> Spec:
+        """The spec with values replaced, by path ("oil.nu_40"). Unknown parts are reported all at once."""
+        by_part: dict[str, dict[str, Any]] = {}
+        for path, value in values.items():
+            name, _, key = path.rpartition(".")
+            by_part.setdefault(name, {})[key] = value
+        names = [part.name for part in self.parts]
+        if unknown := [name for name in by_part if name not in names]:
+            raise ScenarioError([f'{self.name}: there is no part "{n}".{suggestion(n, names)}' for n in unknown])
+        return replace(
+            self, parts=tuple(replace(p, values={**p.values, **by_part.get(p.name, {})}) for p in self.parts)
+        )
+
+    def with_parts(self, parts: Iterable[PartSpec], connections: Iterable[tuple[str, ...]]) -> Spec:
+        """The spec with parts and connections added."""
+        return replace(self, parts=(*self.parts, *parts), connections=(*self.connections, *connections))
+
+    def driven(self, given: Mapping[str, Iterable[str]]) -> Spec:
+        """The spec with the quantities ("w", "tau") that are given at each shaft end; none at those not named.
+
+        A shaft whose speed is given nowhere keeps its inertia as a state; otherwise inertias are left out.
+        """
+        choices: dict[str, Any] = {f"{end}.given": tuple(given.get(end, ())) for end in self.of_type("ShaftEnd")}
+        unknown = [end for end in given if f"{end}.given" not in choices]
+        if unknown:
+            raise ScenarioError([f'{self.name}: "{e}" is no shaft end.{suggestion(e, self.of_type("ShaftEnd"))}' for e in unknown])
+        dynamic = not any("w" in quantities for quantities in given.values())
+        return self.with_values(choices | {f"{name}.dynamic": dynamic for name in self.of_type("Inertia")})
+
+
+def assemble(spec: Spec) -> Assembly:
+    """Make the parts of a spec.
+
+    Raises:
+        ScenarioError: all unknown types and all wrong, missing and unknown values of all parts at once
+    """
+    parts: list[Component] = []
+    problems: list[str] = []
+    for part in spec.parts:
+        if part.type not in PARTS:
+            problems.append(f'{part.name}: there is no part type "{part.type}".{suggestion(part.type, PARTS)}')
+            continue
+        try:
+            parts.append(PARTS[part.type](part.name, **part.values))
+        except GearheatError as error:
+            problems += error.problems
+    if problems:
+        raise ScenarioError(problems)
+    return Assembly(spec.name, spec.doc, tuple(parts), spec.connections)

@@ -1,0 +1,1 @@
+"""Components: declarations followed by named equations."""

@@ -1,0 +1,114 @@
+"""Values with units, as users write them, to SI numbers and back. Temperatures and differences are different kinds."""
+
+from __future__ import annotations
+
+import functools
+import math
+import re
+from typing import Any
+
+from .errors import ScenarioError
+
+#: Unit shown to a person for an SI unit of the model, with pint's name for it.
+DISPLAY = {"K": "degC", "rad/s": "rpm"}
+
+
+@functools.cache
+def _registry() -> Any:
+    import pint
+
+    registry = pint.UnitRegistry(autoconvert_offset_to_baseunit=False)
+    return registry
+
+
+def _pint_unit(text: str) -> str:
+    """The model's spelling of a unit in pint's: a dot between letters multiplies, a digit behind one is a power."""
+    text = re.sub(r"(?<!\d)\.|\.(?!\d)", "*", text.replace("·", "*").replace("°C", "degC").replace("^", "**"))
+    return "" if text == "1" else re.sub(r"([a-zA-Z])(\d)", r"\1**\2", text)
+
+
+def split(text: str) -> tuple[float, str]:
+    """'62 mm' -> (62.0, 'mm'). Raises ValueError where there is no number."""
+    stripped = text.strip()
+    head, _, tail = stripped.partition(" ")
+    try:
+        return float(head), tail.strip()
+    except ValueError:
+        for i in range(len(stripped), 0, -1):
+            try:
+                return float(stripped[:i]), stripped[i:].strip()
+            except ValueError:
+                continue
+        raise ValueError(f"{text!r} is no number with a unit") from None
+
+
+def to_si(value: object, unit: str, *, name: str = "value") -> float:
+    """A value with its unit as a number in the SI unit `unit` of the model.
+
+    Args:
+        value: text such as "62 mm" or "60 degC"; a bare number only where `unit` is "1"
+        unit: the model's SI unit: "m", "K", "rad/s", "1", "K (difference)", ...
+        name: what to call it in a message
+
+    Raises:
+        ScenarioError: no number, no unit, or a unit of another kind
+    """
+    difference = unit.endswith("(difference)")
+    target = unit.removesuffix("(difference)").strip()
+    if isinstance(value, bool) or not isinstance(value, int | float | str):
+        raise ScenarioError(f'{name} = {value!r} is not a value. Write a number with its unit, for example "{example(unit)}".')
+    if isinstance(value, int | float):
+        if target != "1":
+            raise ScenarioError(f'{name} = {value} has no unit. Write "{value} {shown(unit)}" (expected a unit like {target}).')
+        return _finite(float(value), name, value)
+    try:
+        number, written = split(value)
+    except ValueError:
+        raise ScenarioError(f'{name} = "{value}" is no number with a unit. Write for example "{example(unit)}".') from None
+    if not written and target != "1":
+        raise ScenarioError(f'{name} = "{value}" has no unit. Write "{value} {shown(unit)}" (expected a unit like {target}).')
+    if written == target:
+        return _finite(number, name, value)
+    import pint
+
+    ureg = _registry()
+    try:
+        source = ureg.Unit(_pint_unit(written))
+        if difference and str(source) in ("degree_Celsius", "degree_Fahrenheit"):
+            source = ureg.Unit("delta_" + str(source))
+        result = ureg.Quantity(number, source).to(_pint_unit(target)).magnitude
+    except (pint.errors.PintError, AttributeError, ValueError, TypeError, AssertionError):
+        raise ScenarioError(f'{name} = "{value}": unit "{written}" does not fit. Expected a unit like {shown(unit)}, for example "{example(unit)}".') from None
+    return _finite(float(result), name, value)
+
+
+def _finite(number: float, name: str, value: object) -> float:
+    if not math.isfinite(number):
+        raise ScenarioError(f"{name} = {value!r} is not finite. Write a finite number.")
+    return number
+
+
+def shown(unit: str) -> str:
+    """The unit in which a quantity of the SI unit `unit` is shown to a person."""
+    return "K" if unit.endswith("(difference)") else DISPLAY.get(unit, unit)
+
+
+def from_si(number: float, unit: str) -> float:
+    """An SI number in the unit it is shown in: K -> degC, rad/s -> rpm, else unchanged."""
+    if unit == "K":
+        return number - 273.15
+    if unit == "rad/s":
+        return number * 30 / math.pi
+    return number
+
+
+def text(number: float, unit: str, digits: int = 6) -> str:
+    """A number with the unit it is shown in."""
+    written = f"{from_si(number, unit):.{digits}g}"
+    return written if unit == "1" else f"{written} {shown(unit)}"
+
+
+def example(unit: str) -> str:
+    """A value a user could write for a unit."""
+    typical = {"K": "60 degC", "rad/s": "1450 rpm", "m": "62 mm", "m2": "0.8 m2", "N.m": "40 N.m", "1": "0.5"}
+    return typical.get(unit, f"1 {shown(unit)}")

@@ -1,0 +1,1 @@
+"""Rig files, catalogues and measured tables, read and checked."""
