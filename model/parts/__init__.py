@@ -1,1 +1,47 @@
-"""Components: declarations followed by named equations."""
+"""Components: declarations followed by named equations. `PARTS` holds every type a rig file can name."""
+
+from ..core.component import Component
+from .bearings import DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
+from .churning import Churning
+from .gears import HelicalGearPair, PlanetarySet, ShaftSupport, TwoGearSupport
+from .lubrication import Grease, OilBath
+from .sealing import LipSeal
+from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, ShaftEnd
+from .thermal import (
+    BoxCooling,
+    CylinderCooling,
+    FinnedBoxCooling,
+    HeatCapacity,
+    Room,
+    SurfaceCooling,
+    ThermalConductor,
+)
+
+PARTS: dict[str, type[Component]] = {
+    part.__name__: part
+    for part in (
+        ShaftEnd,
+        FixedFlange,
+        FanLoad,
+        Inertia,
+        Efficiency,
+        PlanetarySet,
+        HelicalGearPair,
+        ShaftSupport,
+        TwoGearSupport,
+        TaperedRollerBearing,
+        DeepGrooveBallBearing,
+        NeedleBearing,
+        LipSeal,
+        Churning,
+        OilBath,
+        Grease,
+        HeatCapacity,
+        ThermalConductor,
+        SurfaceCooling,
+        BoxCooling,
+        CylinderCooling,
+        FinnedBoxCooling,
+        Room,
+    )
+}

@@ -1,0 +1,124 @@
+"""Rolling bearings: load, speed and lubricant make a friction torque."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from ..core.component import Equation, equation
+from ..core.declare import Choice, Output, Parameter
+from ..laws.rolling import (
+    boundary_share,
+    dgb_rolling_variable,
+    dgb_sliding_variable,
+    needle_torque_load,
+    needle_torque_viscous,
+    rolling_torque,
+    shear_heating,
+    sliding_friction,
+    sliding_torque,
+    starvation,
+    trb_rolling_variable,
+    trb_sliding_variable,
+)
+from ..laws.smooth import Num
+from .friction import Friction
+from .ports import BearingLoad, Lubricant
+
+#: Speed at which `tau_drag_ref` is given [rad/s].
+DRAG_SPEED = 250 * math.pi / 30
+
+
+class RollingBearing(Friction):
+    """Base of the bearings: carries what the port `load` says, on top of loads of its own."""
+
+    load = BearingLoad()
+    lubricant = Lubricant()
+
+    d_m = Parameter("m", "mean diameter, (d + D)/2", nominal=0.1, above=0.0)
+    F_r_0 = Parameter("N", "radial load of its own, e.g. a coupling", nominal=1000.0, at_least=0.0)
+    F_a_0 = Parameter("N", "axial load of its own, e.g. a preload", nominal=1000.0, at_least=0.0)
+
+    def loads(self) -> tuple[Num, Num]:
+        """Radial and axial load [N]."""
+        return self.F_r_0 + self.load.F_r, self.F_a_0 + self.load.F_a
+
+
+class SkfBearing(RollingBearing):
+    """Rolling and sliding moment with shear heating, starvation and mixed friction, and a drag moment."""
+
+    d = Parameter("m", "bore diameter", nominal=0.1, above=0.0)
+    D = Parameter("m", "outside diameter", nominal=0.1, above=0.0)
+    R_1 = Parameter("1", "first rolling constant of the catalogue", nominal=1e-6, above=0.0)
+    R_2 = Parameter("1", "second rolling constant of the catalogue", above=0.0)
+    S_1 = Parameter("1", "first sliding constant of the catalogue", nominal=1e-2, above=0.0)
+    S_2 = Parameter("1", "second sliding constant of the catalogue", above=0.0)
+    K_Z = Parameter("1", "geometry constant of the bearing type", above=0.0)
+    K_rs = Parameter("1", "starvation constant of the lubrication, 0 without starvation", nominal=1e-8, at_least=0.0)
+    mu_bl = Parameter("1", "sliding friction of the boundary film", nominal=0.1, at_least=0.0)
+    mu_EHL = Parameter("1", "sliding friction of the full film", nominal=0.1, at_least=0.0)
+    tau_drag_ref = Parameter("N.m", "drag torque at 250 rpm", at_least=0.0)
+    mixed_friction = Choice((True, False), "whether thin films raise the sliding friction", default=True)
+    tau_rr = Output("N.m", "rolling moment of one bearing")
+    tau_sl = Output("N.m", "sliding moment of one bearing")
+    mu_sl = Output("1", "sliding friction coefficient", nominal=0.1)
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Rolling and sliding variable of the catalogue, from the loads."""
+        raise AttributeError(f"{type(self).__name__} has no geometric variables")
+
+    def torque(self) -> Num:
+        """Sum of the moments of one bearing [N.m]."""
+        return self.tau_rr + self.tau_sl + self.drag()
+
+    def drag(self) -> Num:
+        """Drag moment, with the square of the speed from its value at 250 rpm [N.m]."""
+        return self.tau_drag_ref * (self.shaft.w / DRAG_SPEED) ** 2
+
+    def equations(self) -> Iterator[Equation]:
+        """The moments, then what every friction does."""
+        w, nu = self.shaft.w, self.lubricant.nu
+        G_rr, G_sl = self.geometric_variables()
+        phi = shear_heating(w, nu, self.d_m) * starvation(w, nu, self.d, self.D, self.K_rs, self.K_Z)
+        phi_bl = boundary_share(w, nu, self.d_m) if self.mixed_friction else 0.0
+        yield equation("rolling moment", self.tau_rr, rolling_torque(G_rr, w, nu, phi))
+        yield equation("sliding friction", self.mu_sl, sliding_friction(phi_bl, self.mu_bl, self.mu_EHL))
+        yield equation("sliding moment", self.tau_sl, sliding_torque(G_sl, self.mu_sl))
+        yield from super().equations()
+
+
+class TaperedRollerBearing(SkfBearing):
+    """Tapered roller bearing, single row."""
+
+    Y = Parameter("1", "axial load factor of the catalogue", above=0.0)
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Tapered roller bearing."""
+        F_r, F_a = self.loads()
+        rolling = trb_rolling_variable(F_r, F_a, self.d_m, self.R_1, self.R_2, self.Y)
+        return rolling, trb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.Y)
+
+
+class DeepGrooveBallBearing(SkfBearing):
+    """Deep groove ball bearing, single row."""
+
+    C_0 = Parameter("N", "basic static load rating", nominal=1e4, above=0.0)
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Deep groove ball bearing."""
+        F_r, F_a = self.loads()
+        rolling = dgb_rolling_variable(F_r, F_a, self.d_m, self.R_1, self.R_2, self.C_0)
+        return rolling, dgb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.C_0)
+
+
+class NeedleBearing(RollingBearing):
+    """Needle roller and cage assembly, radial load only."""
+
+    f_0 = Parameter("1", "factor of the viscous moment", above=0.0)
+    f_1 = Parameter("1", "factor of the load moment", nominal=1e-4, above=0.0)
+
+    def torque(self) -> Num:
+        """Viscous and load moment of one bearing [N.m]."""
+        F_r, _ = self.loads()
+        viscous = needle_torque_viscous(self.shaft.w, self.lubricant.nu, self.d_m, self.f_0)
+        return viscous + needle_torque_load(F_r, self.d_m, self.f_1)

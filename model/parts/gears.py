@@ -1,0 +1,292 @@
+"""Gears: a helical pair and a planetary set. What a mesh passes on is what it got less what it lost."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+
+import casadi as ca
+
+from ..core.component import Component, Equation, equation
+from ..core.declare import Choice, Output, Parameter
+from ..laws.film import film_thickness, specific_film_thickness, thermal_film_reduction
+from ..laws.gears import (
+    addendum_contact_ratio,
+    base_diameter,
+    base_helix_angle,
+    contact_length,
+    curvature_radius,
+    reduced_radius,
+    reference_diameter,
+    tip_diameter,
+    transverse_base_pitch,
+    transverse_pressure_angle,
+    working_pressure_angle,
+)
+from ..laws.mesh import friction_schlenk, tooth_loss_factor
+from ..laws.smooth import Num, smooth_abs, smooth_sign
+from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading, ToothForce
+
+#: Force below which the direction of a bearing load is blurred [N].
+FORCE_WIDTH = 1.0
+
+
+@dataclass(frozen=True)
+class Contact:
+    """One tooth contact at its pitch point: what does not depend on speed and load.
+
+    `rho` radius of curvature of the first gear [m], `R` reduced radius normal to the teeth [m], `l` length of the
+    lines of contact [m], `normal` normal over tangential force [1].
+    """
+
+    rho: Num
+    R: Num
+    l: Num  # noqa: E741
+    normal: Num
+
+
+class ToothedPart(Component):
+    """Base of everything with teeth: geometry, roughness and material of its gears, and the friction of a contact."""
+
+    gears = HeatPort()
+    lubricant = Lubricant()
+
+    z_1 = Parameter("1", "number of teeth of the first gear (pinion, sun)", above=0.0)
+    z_2 = Parameter("1", "number of teeth of the second gear (wheel, planet)", above=0.0)
+    m_n = Parameter("m", "normal module", nominal=1e-3, above=0.0)
+    alpha_n = Parameter("rad", "normal pressure angle", above=0.0, below=1.0)
+    beta = Parameter("rad", "helix angle at the reference diameter", at_least=0.0, below=1.2)
+    b = Parameter("m", "face width", nominal=0.05, above=0.0)
+    a_w = Parameter("m", "working centre distance", nominal=0.1, above=0.0)
+    Ra = Parameter("m", "roughness Ra of each flank", nominal=1e-6, above=0.0)
+    k_mu = Parameter("1", "factor on the tooth friction", at_least=0.0)
+    E = Parameter("Pa", "modulus of elasticity of the gears", nominal=1e11, above=0.0)
+    poisson = Parameter("1", "Poisson's ratio of the gears", at_least=0.0, below=0.5)
+    tau_width = Parameter("N.m", "torque below which the direction of load is blurred", default=1e-2, above=0.0)
+
+    def radius(self, z: Num) -> Num:
+        """Reference radius of a gear of z teeth [m]."""
+        return reference_diameter(self.m_n, z, self.beta) / 2
+
+    def contact(self, eps_alpha: Num, z_a: Num, z_b: Num) -> Contact:
+        """The contact of a gear of z_a teeth with one of z_b teeth, negative for an internal gear."""
+        alpha_t, beta_b = transverse_pressure_angle(self.alpha_n, self.beta), base_helix_angle(self.alpha_n, self.beta)
+        alpha_wt = working_pressure_angle(alpha_t, self.radius(self.z_1 + self.z_2), self.a_w)
+        rho_a, rho_b = (curvature_radius(base_diameter(2 * self.radius(z), alpha_t), alpha_wt) for z in (z_a, z_b))
+        R, length = reduced_radius(rho_a, rho_b, beta_b), contact_length(self.b, eps_alpha, beta_b)
+        return Contact(rho_a, R, length, 1 / (ca.cos(alpha_t) * ca.cos(beta_b)))
+
+    def friction(self, contact: Contact, F_t: Num, w: Num) -> tuple[Num, Num]:
+        """Friction coefficient and specific film thickness of a contact.
+
+        Args:
+            contact: the contact
+            F_t: tangential force [N]
+            w: speed of the first gear against the line of centres [rad/s]
+        """
+        oil = self.lubricant
+        F_n_l = F_t * contact.normal / contact.l
+        u_sum = 2 * smooth_abs(w) * contact.rho
+        eta = oil.nu * oil.rho
+        mu = self.k_mu * friction_schlenk(F_n_l, u_sum, contact.R, eta, self.Ra, oil.X_L)
+        E_eff = self.E / (2 * (1 - self.poisson**2))
+        h = film_thickness(eta, u_sum, oil.alpha_p, F_n_l, contact.R, E_eff)
+        reduction = thermal_film_reduction(oil.beta_T, eta, u_sum, oil.k, 0.0)
+        return mu, specific_film_thickness(reduction * h, ca.sqrt(2.0) * self.Ra)
+
+
+def _addendum_ratios(v: Mapping[str, float]) -> list[float]:
+    """Addendum contact ratios of pinion and wheel from the geometry of an external pair."""
+    alpha_t = transverse_pressure_angle(v["alpha_n"], v["beta"])
+    a = reference_diameter(v["m_n"], v["z_1"] + v["z_2"], v["beta"]) / 2
+    alpha_wt = working_pressure_angle(alpha_t, a, v["a_w"])
+    p_et = transverse_base_pitch(v["m_n"], v["beta"], alpha_t)
+    ratios = []
+    for z, x in ((v["z_1"], v["x_1"]), (v["z_2"], v["x_2"])):
+        d = reference_diameter(v["m_n"], z, v["beta"])
+        tip, base = tip_diameter(d, v["m_n"], x), base_diameter(d, alpha_t)
+        ratios.append(float(addendum_contact_ratio(tip, base, alpha_wt, p_et)))
+    return ratios
+
+
+def _loss_factor(v: Mapping[str, float]) -> float:
+    """Tooth loss factor of an external pair from its geometry."""
+    beta_b = base_helix_angle(v["alpha_n"], v["beta"])
+    return float(tooth_loss_factor(v["z_1"], v["z_2"] / v["z_1"], beta_b, *_addendum_ratios(v)))
+
+
+class HelicalGearPair(ToothedPart):
+    """Two external helical gears on parallel shafts."""
+
+    pinion = Flange()
+    wheel = Flange()
+    force = ToothForce()
+
+    x_1 = Parameter("1", "profile shift of the pinion")
+    x_2 = Parameter("1", "profile shift of the wheel")
+    eps_alpha = Parameter("1", "transverse contact ratio", above=0.0, derived=lambda v: sum(_addendum_ratios(v)))
+    H_v = Parameter("1", "tooth loss factor", at_least=0.0, derived=lambda v: _loss_factor(v))
+    tau_loss = Output("N.m", "friction torque of the mesh, on the pinion", nominal=1.0, guess=0.0)
+    P_loss = Output("W", "mesh loss", nominal=100.0)
+    mu = Output("1", "tooth friction coefficient", nominal=0.1)
+    Lambda = Output("1", "specific film thickness")
+
+    def equations(self) -> Iterator[Equation]:
+        """The gear that drives brings the loss; what is left arrives at the other."""
+        w, ratio, r = self.pinion.w, self.z_2 / self.z_1, self.radius(self.z_1)
+        sign = smooth_sign(w)
+        tau_mean = smooth_abs(self.pinion.tau - sign * self.tau_loss / 2, self.tau_width)
+        mu, Lambda = self.friction(self.contact(self.eps_alpha, self.z_1, self.z_2), self.force.F_t, w)
+        alpha_t = transverse_pressure_angle(self.alpha_n, self.beta)
+        yield equation("gears roll on each other", self.wheel.w, -w / ratio)
+        yield equation("torque less loss", self.wheel.tau / ratio, self.pinion.tau - sign * self.tau_loss)
+        yield equation("mesh loss", self.tau_loss, self.mu * self.H_v * (tau_mean + self.tau_loss / 2))
+        yield equation("mesh power", self.P_loss, self.tau_loss * sign * w)
+        yield equation("tooth friction", self.mu, mu)
+        yield equation("film", self.Lambda, Lambda)
+        yield equation("tangential force", self.force.F_t, tau_mean / r)
+        yield equation("radial force", self.force.F_r, self.force.F_t * ca.tan(alpha_t))
+        yield equation("axial force", self.force.F_a, self.force.F_t * ca.tan(self.beta))
+        yield equation("loss heats the gears", self.gears.Q_flow, -self.P_loss)
+
+
+class PlanetarySet(ToothedPart):
+    """Sun, planets, ring and carrier. All tooth speeds are those against the carrier.
+
+    The flange `planet` is the rotation of all planets against the carrier: planet bearings brake there. With
+    `power_flow` "ideal" all forces follow from the torque at the carrier's shaft end, as if nothing were lost on the
+    way; with "successive" each contact carries what arrives at it.
+    """
+
+    carrier = Flange()
+    sun = Flange()
+    ring = Flange()
+    planet = Flange()
+    carrier_load = BearingLoad()
+    sun_load = BearingLoad()
+    planet_load = BearingLoad()
+    reading = ShaftReading()
+
+    power_flow = Choice(("successive", "ideal"), "whether losses reduce what is passed on", default="successive")
+    N = Parameter("1", "number of planets", above=0.0)
+    z_3 = Parameter("1", "number of teeth of the ring", above=0.0)
+    eps_alpha_sp = Parameter("1", "transverse contact ratio sun-planet", above=0.0)
+    eps_alpha_pr = Parameter("1", "transverse contact ratio planet-ring", above=0.0)
+    H_v_sp = Parameter("1", "tooth loss factor sun-planet", nominal=0.1, at_least=0.0)
+    H_v_pr = Parameter("1", "tooth loss factor planet-ring", nominal=0.1, at_least=0.0)
+    n_axial_carrier = Parameter("1", "planets whose axial force loads each carrier bearing", at_least=0.0)
+    n_axial_sun = Parameter("1", "planets whose axial force loads the sun's bearing", at_least=0.0)
+    s_planet = Parameter("m", "distance of the two bearings of a planet", nominal=0.02, above=0.0)
+    tau_loss_sp = Output("N.m", "friction torque of the sun-planet meshes, on the sun", nominal=1.0, guess=0.0)
+    tau_loss_pr = Output("N.m", "friction torque of the planet-ring meshes, on the sun", nominal=1.0, guess=0.0)
+    P_loss_sp = Output("W", "loss of the sun-planet meshes", nominal=100.0)
+    P_loss_pr = Output("W", "loss of the planet-ring meshes", nominal=100.0)
+    F_t_sp = Output("N", "tangential force of a sun-planet mesh", nominal=1000.0)
+    F_t_pr = Output("N", "tangential force of a planet-ring mesh", nominal=1000.0)
+    mu_sp = Output("1", "tooth friction coefficient sun-planet", nominal=0.1)
+    mu_pr = Output("1", "tooth friction coefficient planet-ring", nominal=0.1)
+    Lambda_sp = Output("1", "specific film thickness sun-planet")
+    Lambda_pr = Output("1", "specific film thickness planet-ring")
+
+    def equations(self) -> Iterator[Equation]:
+        """Kinematics, torques, and the two kinds of meshes."""
+        w = self.sun.w - self.carrier.w
+        i_0, sign = self.z_3 / self.z_1, smooth_sign(w)
+        losses = sign * (self.tau_loss_sp + self.tau_loss_pr)
+        yield equation("Willis", self.sun.w + i_0 * self.ring.w, (1 + i_0) * self.carrier.w)
+        yield equation("planets roll on the sun", self.planet.w, -w * self.z_1 / self.z_2)
+        yield equation("torques balance", self.sun.tau + self.ring.tau + self.carrier.tau, 0)
+        passed = self.ring.tau / i_0 + self.planet.tau * self.z_1 / self.z_2
+        yield equation("power against the carrier", self.sun.tau, passed + losses)
+        yield from self._meshes(w, sign)
+        yield from self._loads()
+        yield equation("loss heats the gears", self.gears.Q_flow, -(self.P_loss_sp + self.P_loss_pr))
+
+    def _meshes(self, w: Num, sign: Num) -> Iterator[Equation]:
+        """Forces, friction and loss of both kinds of meshes; torques are those of all planets, on the sun."""
+        r = self.radius(self.z_1)
+        sp, pr = self._transmitted(sign)
+        contact_sp = self.contact(self.eps_alpha_sp, self.z_1, self.z_2)
+        contact_pr = self.contact(self.eps_alpha_pr, self.z_2, -self.z_3)
+        mu_sp, Lambda_sp = self.friction(contact_sp, self.F_t_sp, w)
+        mu_pr, Lambda_pr = self.friction(contact_pr, self.F_t_pr, self.planet.w)
+        yield equation("force sun-planet", self.F_t_sp, sp / (self.N * r))
+        yield equation("force planet-ring", self.F_t_pr, pr / (self.N * r))
+        yield equation("friction sun-planet", self.mu_sp, mu_sp)
+        yield equation("friction planet-ring", self.mu_pr, mu_pr)
+        yield equation("film sun-planet", self.Lambda_sp, Lambda_sp)
+        yield equation("film planet-ring", self.Lambda_pr, Lambda_pr)
+        half = 0.5 if self.power_flow == "successive" else 0.0
+        yield equation("loss sun-planet", self.tau_loss_sp, self.mu_sp * self.H_v_sp * (sp + half * self.tau_loss_sp))
+        yield equation("loss planet-ring", self.tau_loss_pr, self.mu_pr * self.H_v_pr * (pr + half * self.tau_loss_pr))
+        yield equation("power sun-planet", self.P_loss_sp, self.tau_loss_sp * sign * w)
+        yield equation("power planet-ring", self.P_loss_pr, self.tau_loss_pr * sign * w)
+
+    def _transmitted(self, sign: Num) -> tuple[Num, Num]:
+        """Mean of the torques before and behind each kind of mesh, magnitude, on the sun."""
+        if self.power_flow == "ideal":
+            ideal = smooth_abs(self.reading.tau, self.tau_width) * self.z_1 / (self.z_1 + self.z_3)
+            return ideal, ideal
+        from_ring = self.ring.tau * self.z_1 / self.z_3
+        return (
+            smooth_abs(self.sun.tau - sign * self.tau_loss_sp / 2, self.tau_width),
+            smooth_abs(from_ring + sign * self.tau_loss_pr / 2, self.tau_width),
+        )
+
+    def _loads(self) -> Iterator[Equation]:
+        """What the bearings carry."""
+        F_t, r = (self.F_t_sp + self.F_t_pr) / 2, self.radius(self.z_1)
+        tilt = 2 * F_t * ca.tan(self.beta) * r / self.s_planet
+        yield equation("carrier radially", self.carrier_load.F_r, 0)
+        yield equation("carrier axially", self.carrier_load.F_a, self.n_axial_carrier * F_t * ca.tan(self.beta))
+        yield equation("sun radially", self.sun_load.F_r, 0)
+        yield equation("sun axially", self.sun_load.F_a, self.n_axial_sun * self.F_t_sp * ca.tan(self.beta))
+        yield equation("planet radially", self.planet_load.F_r, ca.sqrt(F_t**2 + tilt**2))
+        yield equation("planet axially", self.planet_load.F_a, 0)
+
+
+class ShaftSupport(Component):
+    """Statics of a shaft with one gear on two bearings a and b."""
+
+    mesh = ToothForce()
+    load_a = BearingLoad()
+    load_b = BearingLoad()
+
+    span = Parameter("m", "distance of the bearings", nominal=0.1, above=0.0)
+    x = Parameter("m", "position of the gear, from bearing a", nominal=0.1)
+    r = Parameter("m", "radius at which the axial force of the gear acts", nominal=0.05, at_least=0.0)
+    axial_share_a = Parameter("1", "share of the axial force that bearing a takes", at_least=0.0, at_most=1.0)
+
+    def forces(self) -> tuple[list[tuple[Num, Num, Num, Num]], Num]:
+        """Per gear: force tangential and radial [N], its position [m], its tilting moment [N.m]; and the axial force."""
+        mesh = self.mesh
+        return [(mesh.F_t, -mesh.F_r, self.x, mesh.F_a * self.r)], mesh.F_a
+
+    def equations(self) -> Iterator[Equation]:
+        """Moments about bearing a give b, the rest is a's; each in two planes."""
+        gears, F_a = self.forces()
+        b = [sum(f[0] * f[2] for f in gears) / self.span, sum(f[1] * f[2] + f[3] for f in gears) / self.span]
+        a = [sum(f[k] for f in gears) - b[k] for k in (0, 1)]
+        F_axial = smooth_abs(F_a, FORCE_WIDTH)
+        yield equation("bearing a radially", self.load_a.F_r, ca.sqrt(a[0] ** 2 + a[1] ** 2 + FORCE_WIDTH**2))
+        yield equation("bearing b radially", self.load_b.F_r, ca.sqrt(b[0] ** 2 + b[1] ** 2 + FORCE_WIDTH**2))
+        yield equation("bearing a axially", self.load_a.F_a, self.axial_share_a * F_axial)
+        yield equation("bearing b axially", self.load_b.F_a, (1 - self.axial_share_a) * F_axial)
+
+
+class TwoGearSupport(ShaftSupport):
+    """Statics of an intermediate shaft: a driven wheel (`mesh`) and a driving pinion (`mesh_2`) of the same hand."""
+
+    mesh_2 = ToothForce()
+
+    x_2 = Parameter("m", "position of the second gear, from bearing a", nominal=0.1)
+    r_2 = Parameter("m", "radius at which the axial force of the second gear acts", nominal=0.05, at_least=0.0)
+    phi = Parameter("rad", "angle between the two lines of centres")
+
+    def forces(self) -> tuple[list[tuple[Num, Num, Num, Num]], Num]:
+        """The pinion's forces are turned into the wheel's planes; the axial forces oppose each other."""
+        first, _ = super().forces()
+        other, c, s = self.mesh_2, ca.cos(self.phi), ca.sin(self.phi)
+        tangential, radial = -other.F_t * c - other.F_r * s, other.F_t * s - other.F_r * c
+        second = (tangential, radial, self.x_2, -other.F_a * self.r_2 * c)
+        return [*first, second], self.mesh.F_a - other.F_a

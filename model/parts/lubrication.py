@@ -1,0 +1,80 @@
+"""Oil and grease: their temperature, and what it makes of their properties."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from ..core.component import Component, Equation, equation
+from ..core.declare import Input, Output, Parameter, State
+from ..laws.oil import (
+    conductivity,
+    density,
+    kinematic_viscosity,
+    pressure_viscosity,
+    thermoviscosity,
+    walther_constants,
+)
+from ..laws.smooth import Num
+from .ports import HeatPort, Lubricant
+
+
+class LubricantProperties(Component):
+    """Properties of a lubricant at the temperature of its heat port."""
+
+    heat = HeatPort()
+    lubricant = Lubricant()
+
+    nu_40 = Parameter("m2/s", "kinematic viscosity at 40 degC", nominal=1e-4, above=0.0)
+    nu_100 = Parameter("m2/s", "kinematic viscosity at 100 degC", nominal=1e-5, above=0.0)
+    rho_15 = Parameter("kg/m3", "density at 15 degC", nominal=900.0, above=0.0)
+    alpha_T = Parameter("1/K", "relative change of density with temperature", nominal=1e-3, at_most=0.0)
+    s_p = Parameter("1", "pressure-viscosity coefficient at 1 cSt, in 1/GPa", above=0.0)
+    t_p = Parameter("1", "exponent of viscosity in the pressure-viscosity coefficient")
+    X_L = Parameter("1", "lubricant factor of the tooth friction", above=0.0)
+    nu = Output("m2/s", "kinematic viscosity", nominal=1e-4)
+
+    def properties(self) -> Iterator[Equation]:
+        """What the users of the lubricant read."""
+        T, out = self.heat.T, self.lubricant
+        yield equation("viscosity", self.nu, kinematic_viscosity(T, self.nu_40, self.nu_100))
+        yield equation("temperature read", out.T, T)
+        yield equation("viscosity read", out.nu, self.nu)
+        yield equation("density", out.rho, density(T, self.rho_15, self.alpha_T))
+        yield equation("pressure-viscosity", out.alpha_p, pressure_viscosity(self.nu, self.s_p, self.t_p))
+        _, n = walther_constants(self.nu_40, self.nu_100)
+        yield equation("thermoviscosity", out.beta_T, thermoviscosity(T, self.nu, n))
+        yield equation("conductivity", out.k, conductivity(T, self.rho_15))
+        yield equation("lubricant factor", out.X_L, self.X_L)
+
+
+class OilBath(LubricantProperties):
+    """The oil of a gearbox: a body of one temperature that lubricates."""
+
+    T = State("K", "temperature of the oil", nominal=10.0, above=0.0, start=298.15)
+    V = Parameter("m3", "volume of oil at 15 degC", nominal=1e-3, above=0.0)
+    c_p = Parameter("J/(kg.K)", "specific heat", nominal=2000.0, above=0.0)
+    Q_flow_external = Input("W", "heat flow rate from outside the model, e.g. a cooler (negative)", nominal=100.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """Heat that enters warms the oil."""
+        yield equation("one temperature", self.heat.T, self.T)
+        C = self.V * self.rho_15 * self.c_p
+        yield equation("storage", C * self.der("T"), self.heat.Q_flow + self.Q_flow_external)
+        yield from self.properties()
+
+    def stored_energy(self) -> Num:
+        """Energy above 0 degC [J]."""
+        return self.V * self.rho_15 * self.c_p * (self.T - 273.15)
+
+    def supplied_power(self) -> Iterable[Num]:
+        """The external heat flow."""
+        return (self.Q_flow_external,)
+
+
+class Grease(LubricantProperties):
+    """Grease that takes the temperature of the body it is in; its own heat capacity is neglected."""
+
+    def equations(self) -> Iterator[Equation]:
+        """The body is sensed, not heated."""
+        yield equation("body is sensed, not heated", self.heat.Q_flow, 0.0)
+        yield from self.properties()

@@ -1,0 +1,69 @@
+"""The ports of the parts: two that carry power, and four that carry information only."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from ..core.declare import Flow, Port, Potential
+
+
+class HeatPort(Port):
+    """Where heat crosses a boundary. Positive Q_flow enters the component that owns the port."""
+
+    T = Potential("K", "temperature", nominal=350.0)
+    Q_flow = Flow("W", "heat flow rate", nominal=100.0)
+
+    def power(self) -> Any:
+        """Heat flow rate into the owner [W]."""
+        return self.Q_flow
+
+
+class AirPort(HeatPort):
+    """A heat port to moving air: its temperature and speed are those far from the surface."""
+
+    v = Potential("m/s", "speed of the air", nominal=1.0)
+
+
+class Flange(Port):
+    """End of a shaft. Positive tau acts on the component that owns the flange, in the direction of positive w."""
+
+    w = Potential("rad/s", "angular velocity", nominal=10.0)
+    tau = Flow("N.m", "torque", nominal=100.0)
+
+    def power(self) -> Any:
+        """Mechanical power into the owner [W]."""
+        return self.w * self.tau
+
+
+class BearingLoad(Port):
+    """What a bearing has to carry: information, not power."""
+
+    F_r = Potential("N", "radial load", nominal=1000.0)
+    F_a = Potential("N", "axial load", nominal=1000.0)
+
+
+class ToothForce(Port):
+    """The force between two gears at the pitch point, magnitudes: information, not power."""
+
+    F_t = Potential("N", "tangential force", nominal=1000.0)
+    F_r = Potential("N", "radial force", nominal=1000.0)
+    F_a = Potential("N", "axial force", nominal=1000.0)
+
+
+class Lubricant(Port):
+    """State of a lubricant where it is used: information, not power."""
+
+    T = Potential("K", "temperature", nominal=350.0)
+    nu = Potential("m2/s", "kinematic viscosity", nominal=1e-4)
+    rho = Potential("kg/m3", "density", nominal=900.0)
+    alpha_p = Potential("1/Pa", "pressure-viscosity coefficient", nominal=1e-8)
+    beta_T = Potential("1/K", "temperature coefficient of the viscosity", nominal=0.03)
+    k = Potential("W/(m.K)", "thermal conductivity", nominal=0.13)
+    X_L = Potential("1", "lubricant factor of the tooth friction", nominal=0.8)
+
+
+class ShaftReading(Port):
+    """Speed and torque read at a shaft end: information, not power."""
+
+    w = Potential("rad/s", "angular velocity", nominal=10.0)
+    tau = Potential("N.m", "torque into the gearbox", nominal=100.0)

@@ -1,0 +1,18 @@
+"""Radial lip seals."""
+
+from __future__ import annotations
+
+from ..core.declare import Parameter
+from ..laws.sealing import lip_seal_torque
+from ..laws.smooth import Num
+from .friction import Friction
+
+
+class LipSeal(Friction):
+    """Radial lip seal: a torque that depends on the shaft's diameter alone."""
+
+    d_sh = Parameter("m", "diameter of the shaft under the lip", nominal=0.1, above=0.0)
+
+    def torque(self) -> Num:
+        """Friction torque of one seal [N.m]."""
+        return lip_seal_torque(self.d_sh)

@@ -1,0 +1,110 @@
+"""Shafts: where speed and torque are given or read, inertia, fixed ends and loads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from ..core.component import Component, Equation, equation
+from ..core.declare import Choice, Given, Output, Parameter, State
+from ..laws.smooth import Num, smooth_abs
+from .ports import Flange, ShaftReading
+
+
+class ShaftEnd(Component):
+    """A shaft that leaves the gearbox. What `given` names ("w", "tau") is an input, the rest follows."""
+
+    flange = Flange()
+    reading = ShaftReading()
+
+    given = Choice((), "which of w and tau are given from outside", default=())
+    w = Given("rad/s", "angular velocity", nominal=10.0)
+    tau = Given("N.m", "torque into the gearbox", nominal=100.0)
+    P = Output("W", "power into the gearbox", nominal=1000.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """What enters here enters the flange's net."""
+        yield equation("speed of the shaft", self.flange.w, self.w)
+        yield equation("torque into the gearbox", self.flange.tau, -self.tau)
+        yield equation("power", self.P, self.w * self.tau)
+        yield equation("speed read", self.reading.w, self.w)
+        yield equation("torque read", self.reading.tau, self.tau)
+
+    def supplied_power(self) -> Iterable[Num]:
+        """The shaft's power."""
+        return (self.P,)
+
+
+class FixedFlange(Component):
+    """A shaft or ring held by the housing."""
+
+    flange = Flange()
+
+    def equations(self) -> Iterator[Equation]:
+        """It does not turn, whatever the torque."""
+        yield equation("held", self.flange.w, 0.0)
+
+
+class FanLoad(Component):
+    """A load whose torque grows with the square of the speed; its power leaves the model."""
+
+    flange = Flange()
+
+    k = Parameter("N.m.s2", "torque at 1 rad/s", at_least=0.0)
+    P = Output("W", "power taken", nominal=1000.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """Brakes in both directions."""
+        w = self.flange.w
+        yield equation("load torque", self.flange.tau, self.k * w * smooth_abs(w))
+        yield equation("power", self.P, self.flange.tau * w)
+
+    def supplied_power(self) -> Iterable[Num]:
+        """What the load takes, counted as supply."""
+        return (-self.P,)
+
+
+class Inertia(Component):
+    """Rotating mass, reduced to its shaft; left out (`dynamic` false) where the speed is prescribed."""
+
+    flange = Flange()
+
+    dynamic = Choice((True, False), "whether the speed is a state", default=True)
+    w = State("rad/s", "angular velocity", nominal=10.0)
+    J = Parameter("kg.m2", "moment of inertia", above=0.0)
+
+    def has_state(self, name: str) -> bool:
+        """The speed is a state where the inertia is dynamic."""
+        return bool(self.choices["dynamic"])
+
+    def equations(self) -> Iterator[Equation]:
+        """Torque accelerates, or passes by."""
+        if not self.dynamic:
+            yield equation("no inertia", self.flange.tau, 0.0)
+            return
+        yield equation("one speed", self.flange.w, self.w)
+        yield equation("acceleration", self.J * self.der("w"), self.flange.tau)
+
+    def stored_energy(self) -> Num:
+        """Kinetic energy [J]."""
+        return self.J * self.w**2 / 2 if self.dynamic else 0.0
+
+
+class Efficiency(Component):
+    """Efficiency and loss of the gearbox between two shaft ends, whichever drives."""
+
+    a = ShaftReading()
+    b = ShaftReading()
+
+    ratio = Parameter("1", "speed of b over speed of a")
+    P_width = Parameter("W", "power below which the efficiency is blurred", default=1e-3, above=0.0)
+    P_loss = Output("W", "power in less power out", nominal=100.0)
+    tau_loss = Output("N.m", "loss torque, on the side of a", nominal=10.0)
+    eta = Output("1", "efficiency")
+
+    def equations(self) -> Iterator[Equation]:
+        """The larger of the two powers is the one that drives."""
+        P_a, P_b = self.a.w * self.a.tau, self.b.w * self.b.tau
+        P_in = (smooth_abs(P_a, self.P_width) + smooth_abs(P_b, self.P_width) + self.P_loss) / 2
+        yield equation("loss", self.P_loss, P_a + P_b)
+        yield equation("loss torque", self.tau_loss, self.a.tau + self.ratio * self.b.tau)
+        yield equation("efficiency", self.eta, 1 - self.P_loss / P_in)

@@ -1,0 +1,177 @@
+"""One test over every component class: power in = power out + losses, losses are heat and never negative, heat flows
+from hot to cold. Each part is put between sources on all of its ports and asked at random states."""
+
+import math
+
+import casadi as ca
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from gearheat.model.core.component import Component, equation
+from gearheat.model.core.connect import Assembly
+from gearheat.model.core.declare import Input, Port
+from gearheat.model.core.flatten import flatten
+from gearheat.model.parts import PARTS
+from gearheat.model.parts.ports import Flange, HeatPort
+
+OIL = dict(nu_40=3.2438e-4, nu_100=3.527e-5, rho_15=859.0, alpha_T=-5.6e-4, s_p=7.382, t_p=0.1335, X_L=0.666)
+FRICTION = dict(count=2.0, inner_share=0.4)
+BEARING = FRICTION | dict(d_m=0.14, F_r_0=100.0, F_a_0=50.0)
+SKF = BEARING | dict(d=0.11, D=0.17, K_Z=6.0, K_rs=6e-8, mu_bl=0.1, mu_EHL=0.002, tau_drag_ref=0.0385)
+TEETH = dict(z_1=36.0, z_2=36.0, m_n=0.002, alpha_n=math.radians(20), beta=math.radians(10), b=0.042, a_w=0.073035)
+TEETH |= dict(Ra=6e-7, k_mu=1.044, E=2.06e11, poisson=0.3)
+SURFACE = dict(A=0.8, height=0.3, length=0.3, emissivity=0.9)
+BOX = SURFACE | dict(share_top=0.2, share_bottom=0.2)
+SUPPORT = dict(span=0.1, x=0.04, r=0.05, axial_share_a=1.0)
+
+#: Values of one plausible example of every part.
+EXAMPLES: dict[str, dict] = {
+    "ShaftEnd": dict(given=("w", "tau")),
+    "FixedFlange": {},
+    "FanLoad": dict(k=0.1),
+    "Inertia": dict(J=0.01),
+    "Efficiency": dict(ratio=4.0),
+    "PlanetarySet": TEETH
+    | dict(N=3.0, z_3=108.0, eps_alpha_sp=1.666, eps_alpha_pr=1.883, H_v_sp=0.168, H_v_pr=0.062)
+    | dict(n_axial_carrier=1.0, n_axial_sun=3.0, s_planet=0.021),
+    "HelicalGearPair": TEETH | dict(z_2=72.0, a_w=0.1097, x_1=0.0, x_2=0.0),
+    "ShaftSupport": SUPPORT,
+    "TwoGearSupport": SUPPORT | dict(x_2=0.07, r_2=0.03, phi=2.5),
+    "TaperedRollerBearing": SKF | dict(R_1=2.38e-6, R_2=10.9, S_1=0.014, S_2=2.0, Y=1.4),
+    "DeepGrooveBallBearing": SKF | dict(R_1=3.9e-7, R_2=1.7, S_1=3.23e-3, S_2=36.5, C_0=64e3),
+    "NeedleBearing": BEARING | dict(d_m=0.044, f_0=7.0, f_1=2e-4),
+    "LipSeal": FRICTION | dict(d_sh=0.14),
+    "Churning": FRICTION | dict(c=100.0, a=2.0, b=0.2),
+    "OilBath": OIL | dict(V=1e-3, c_p=2000.0),
+    "Grease": OIL,
+    "HeatCapacity": dict(C=3600.0),
+    "ThermalConductor": dict(G=60.0),
+    "SurfaceCooling": SURFACE,
+    "BoxCooling": BOX,
+    "CylinderCooling": SURFACE | dict(share_ends=0.33),
+    "FinnedBoxCooling": BOX | dict(A_fins=0.5, fin_height=0.03, fin_thickness=0.004, k_fin=50.0),
+    "Room": {},
+}
+#: Ports on which a part gives information instead of reading it.
+GIVES = {"OilBath.lubricant", "Grease.lubricant", "HelicalGearPair.force", "ShaftEnd.reading", "ShaftEnd.flange"}
+GIVES |= {f"PlanetarySet.{k}" for k in ("carrier_load", "sun_load", "planet_load")}
+GIVES |= {f"{s}.{k}" for s in ("ShaftSupport", "TwoGearSupport") for k in ("load_a", "load_b")}
+#: What is given at the flanges of a part with several of them; elsewhere the speed (a storage: the torque).
+GIVEN = {
+    "HelicalGearPair": {"pinion": ("w", "tau"), "wheel": ()},
+    "PlanetarySet": {"carrier": ("w", "tau"), "sun": (), "ring": ("w",), "planet": ("tau",)},
+    "Inertia": {"flange": ("tau",)},
+    "FixedFlange": {"flange": ("tau",)},
+}
+
+
+def source(port: Port, name: str) -> Component:
+    """A part that gives the potentials of a port as inputs, and takes whatever flows."""
+    potentials = type(port).potentials()
+    members: dict = {"port": type(port)(), "__doc__": "Gives the potentials of a port."}
+    members |= {k: Input(d.unit, d.doc, d.nominal, start=d.nominal) for k, d in potentials.items()}
+    members["equations"] = lambda self: (equation(k, getattr(self.port, k), self.symbols[k]) for k in potentials)
+    members["supplied_power"] = lambda self: (-self.port.power(),)
+    return type(f"Fixed{type(port).__name__}", (Component,), members)(name)
+
+
+def between_sources(kind: str, **choices):
+    part = PARTS[kind]("part", **EXAMPLES[kind], **choices)
+    parts, nets = [part], []
+    for key, port in part.ports.items():
+        if f"{kind}.{key}" in GIVES:
+            if kind == "ShaftEnd" and key == "flange":
+                parts.append(source(port, key))  # speed twice: replaced below
+            continue
+        if isinstance(port, Flange):
+            parts.append(PARTS["ShaftEnd"](key, given=GIVEN.get(kind, {}).get(key, ("w",))))
+            nets.append((port.name, f"{key}.flange"))
+        else:
+            parts.append(source(port, key))
+            nets.append((port.name, f"{key}.port"))
+    if kind == "ShaftEnd":
+        parts[1:] = [PARTS["FanLoad"]("load", k=0.1)]
+        parts[0] = PARTS["ShaftEnd"]("part", given=("w",))
+        nets = [("part.flange", "load.flange")]
+    return flatten(Assembly(kind, "", tuple(parts), tuple(nets)))
+
+
+#: Each kind once, gears and bearings under each of their choices.
+CASES = [(kind, {}) for kind in PARTS] + [("PlanetarySet", {"power_flow": "ideal"}), ("Inertia", {"dynamic": False})]
+CASES += [("DeepGrooveBallBearing", {"mixed_friction": False})]
+_flat: dict = {}
+
+
+def flat_of(kind, choices):
+    key = (kind, tuple(choices.items()))
+    if key not in _flat:
+        if choices.get("dynamic") is False:
+            GIVEN["Inertia"] = {"flange": ("w",)}
+        _flat[key] = between_sources(kind, **choices)
+    return _flat[key]
+
+
+def at(flat, rng) -> dict[str, float]:
+    """All quantities of a flat model at a random state, with power supplied, thrown about and stored."""
+
+    def value(q):
+        if q.unit == "K":
+            return rng.uniform(275.0, 390.0)
+        if q.unit in ("rad/s", "N.m"):
+            return rng.choice([0.0, 1.0, -1.0]) * rng.uniform(0.0, 300.0)
+        return q.nominal * rng.uniform(0.2, 2.0)
+
+    x = [value(q) for q in flat.states]
+    u = [value(q) for q in flat.inputs]
+    p = flat.starts("parameter")
+    y, _, supply, throughput, _, _ = flat.output_function(x, u, p)
+    gain = ca.Function("gain", [flat.x, flat.u, flat.p], [ca.jtimes(flat.stored, flat.x, flat.ode)])(x, u, p)
+    names = [q.name for q in (*flat.states, *flat.inputs, *flat.outputs)]
+    values = [*x, *u, *np.array(y).ravel()]
+    audit = {"supply": float(supply), "throughput": float(throughput), "gain": float(gain)}
+    return dict(zip(names, map(float, values), strict=True)) | audit
+
+
+def test_every_part_has_an_example() -> None:
+    assert EXAMPLES.keys() == PARTS.keys()
+
+
+@pytest.mark.parametrize(("kind", "choices"), CASES, ids=str)
+@settings(max_examples=40, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1))
+def test_part_conserves_energy(kind: str, choices: dict, seed: int) -> None:
+    flat = flat_of(kind, choices)
+    values = at(flat, np.random.default_rng(seed))
+    assert all(map(math.isfinite, values.values()))
+    assert abs(values["supply"] - values["gain"]) <= 1e-9 * max(values["throughput"], 1.0)
+    for name, value in values.items():
+        if name.startswith("part.P_loss") and kind != "Efficiency":
+            assert value >= 0.0, f"{name} = {value} W"
+
+
+@pytest.mark.parametrize("kind", [k for k, v in PARTS.items() if any(isinstance(p, Flange) for p in vars(v).values()) or k in ("TaperedRollerBearing", "DeepGrooveBallBearing", "NeedleBearing", "LipSeal", "Churning")])
+def test_mechanical_loss_leaves_as_heat(kind: str) -> None:
+    part = PARTS[kind]("part", **EXAMPLES[kind])
+    heat_ports = [k for k, p in part.ports.items() if isinstance(p, HeatPort)]
+    if not heat_ports:
+        return
+    flat = flat_of(kind, {})
+    rng = np.random.default_rng(7)
+    for _ in range(20):
+        values = at(flat, rng)
+        mechanical = sum(values[f"{k}.w"] * values[f"{k}.tau"] for k, p in part.ports.items() if isinstance(p, Flange))
+        losses = [v for k, v in values.items() if k in ("part.P_loss", "part.P_loss_sp", "part.P_loss_pr")]
+        assert mechanical == pytest.approx(sum(losses), rel=1e-9, abs=1e-9 * max(values["throughput"], 1.0))
+
+
+@pytest.mark.parametrize("kind", ["ThermalConductor", "SurfaceCooling", "BoxCooling", "CylinderCooling", "FinnedBoxCooling"])
+def test_heat_flows_from_hot_to_cold(kind: str) -> None:
+    flat = flat_of(kind, {})
+    rng = np.random.default_rng(3)
+    a, b = ("a", "b") if kind == "ThermalConductor" else ("surface", "air")
+    for _ in range(50):
+        values = at(flat, rng)
+        flow = values.get("part.Q_flow", values.get("part.Q_flow_convection", 0.0) + values.get("part.Q_flow_radiation", 0.0))
+        assert flow * (values[f"{a}.T"] - values[f"{b}.T"]) >= 0.0

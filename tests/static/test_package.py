@@ -1,0 +1,33 @@
+"""The wheel holds every module and data file; the README's commands are the ones that are run."""
+
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+
+ROOT = Path(__file__).parents[2]
+
+
+def tracked(*patterns: str) -> set[str]:
+    """Files of the project below its packages, as paths inside the wheel."""
+    tops = ("model", "fmu", "scenarios", "tools")
+    files = [p for top in tops for pattern in patterns for p in (ROOT / top).rglob(pattern)]
+    return {"gearheat/" + p.relative_to(ROOT).as_posix() for p in files if "__pycache__" not in p.parts}
+
+
+def test_wheel_contents(tmp_path: Path) -> None:
+    command = [sys.executable, "-m", "pip", "wheel", "--no-deps", "-q", "-w", str(tmp_path), str(ROOT)]
+    subprocess.run(command, check=True, capture_output=True)
+    (wheel,) = tmp_path.glob("*.whl")
+    held = set(zipfile.ZipFile(wheel).namelist())
+    wanted = tracked("*.py", "py.typed", "*.toml", "*.csv", "*.c", "*.h") | {
+        "gearheat/" + p.relative_to(ROOT).as_posix() for p in (ROOT / "tools/templates").glob("*")
+    }
+    assert wanted <= held, f"missing in the wheel: {sorted(wanted - held)}"
+    assert not [name for name in held if not name.startswith("gearheat")], "the wheel holds foreign files"
+
+
+def test_readme_names_the_commands_that_are_run() -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    command = (ROOT / ".ci/run").read_text(encoding="utf-8").splitlines()[-1]
+    assert command in readme, "the last line of .ci/run is the README's test command"
