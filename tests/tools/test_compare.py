@@ -1,0 +1,107 @@
+from __future__ import annotations
+
+import math
+
+import pytest
+from gearheat.model.errors import DataError
+from gearheat.tools.compare import compare, noise_floor, repeats
+from gearheat.tools.rivals import rivals
+
+
+def test_errors_are_simulated_minus_measured(rows):
+    found = {(g.by, g.channel): g for g in compare(rows).groups if g.by == "all"}
+    assert found["all", "T_oil_K"].mean == pytest.approx(2.0)
+    assert found["all", "T_wall_K"].mean == pytest.approx(-1.0)
+    assert found["all", "loss_Nm"].rms == pytest.approx(1.0)
+    assert found["all", "T_oil_K"].n == 24
+
+
+def test_rmse_is_given_overall_and_per_grid(rows):
+    rows[0]["T_oil_C"] += 3.0
+    rmse = compare(rows).rmse()
+    assert rmse["overall"]["T_oil_K"] == pytest.approx(math.sqrt((23 * 4 + 25) / 24))
+    assert rmse["B-grid"]["T_oil_K"] == pytest.approx(2.0)
+    assert set(rmse) == {"overall", "A-grid", "B-grid"}
+    assert set(rmse["overall"]) == {"T_oil_K", "T_oil2_K", "T_wall_K", "loss_Nm"}
+
+
+def test_groups_cover_speed_torque_oil_and_direction(rows):
+    groups = compare(rows).groups
+    for by in ("grid", "n_set_rpm", "T_set_Nm", "oil", "direction"):
+        assert sum(g.n for g in groups if g.by == by and g.channel == "loss_Nm") == len(rows)
+    assert [g.value for g in groups if g.by == "n_set_rpm" and g.channel == "loss_Nm"] == [100.0, 200.0, 250.0]
+
+
+def test_noise_floor_is_the_pooled_deviation_of_repeated_points(rows):
+    floor = noise_floor(rows)
+    assert floor["repeated"] == [[1, 12]]
+    assert floor["readings"] == 4
+    assert floor["T_oil_K"] == pytest.approx(0.4 / math.sqrt(2))
+    assert floor["loss_Nm"] == pytest.approx(0.4 / math.sqrt(2))
+
+
+def test_noise_floor_compares_the_rise_over_the_room(rows):
+    for row in rows[-2:]:
+        row["T_amb_C"] += 0.4
+    assert noise_floor(rows)["T_oil_K"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_noise_floor_of_three_readings_pools_their_variance(rows):
+    rows.append({**rows[0], "test": 99, "loss_Nm_meas": rows[0]["loss_Nm_meas"] + 1.0})
+    values = [0.0, 0.4, 1.0]
+    mean = sum(values) / 3
+    expected = math.sqrt((sum((v - mean) ** 2 for v in values) + 0.4**2 / 2) / 3)
+    assert len(repeats(rows)) == 2
+    assert noise_floor(rows)["loss_Nm"] == pytest.approx(expected)
+
+
+def test_without_repeated_points_there_is_no_noise_floor(rows):
+    floor = noise_floor(rows[:10])
+    assert "T_oil_K" not in floor
+    assert floor["repeated"] == []
+
+
+def test_rows_without_a_measured_channel_leave_it_out(rows):
+    for row in rows:
+        del row["T_oil2_C_meas"]
+    assert "T_oil2_K" not in compare(rows).rmse()["overall"]
+
+
+def test_rows_with_nothing_measured_are_refused():
+    with pytest.raises(DataError, match="nothing to compare"):
+        compare([{"test": 1, "T_oil_C": 50.0}])
+
+
+def test_linear_rival_finds_the_plane_it_was_given(rows):
+    linear = {score.name: score for score in rivals(rows[:22])}["linear"]
+    assert linear.coefficients["T_oil_K"] == pytest.approx([5.0, 0.1, 0.005])
+    assert linear.in_sample["T_oil_K"] == pytest.approx(0.0, abs=1e-9)
+    assert linear.leave_one_test_out["loss_Nm"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_leaving_out_costs_more_than_fitting(rows):
+    for score in rivals(rows):
+        for channel, error in score.in_sample.items():
+            assert score.leave_one_test_out[channel] >= error
+
+
+def test_leave_one_test_out_drops_both_directions(rows):
+    rows = rows[:22]
+    for row in rows:
+        if row["test"] == 3:
+            row["loss_Nm_meas"] += 100.0
+    linear = {score.name: score for score in rivals(rows)}["linear"]
+    assert linear.leave_one_test_out["loss_Nm"] > math.sqrt(2 * 100.0**2 / 22)
+    others = [row for row in rows if row["test"] != 3]
+    assert {s.name: s for s in rivals(others)}["linear"].in_sample["loss_Nm"] == pytest.approx(0.0, abs=1e-9)
+
+
+def test_constant_alpha_a_is_power_over_rise(rows):
+    for row in rows:
+        for name in ("T_oil_C_meas", "T_oil2_C_meas", "T_wall_C_meas"):
+            row[name] = row["T_amb_C"] + row["P_loss_W"] / 15.9
+        row["loss_Nm_meas"] = 0.012 * row["T_carrier_Nm"]
+    score = {s.name: s for s in rivals(rows)}["constant_alphaA"]
+    assert 1 / score.coefficients["T_oil_K"][0] == pytest.approx(15.9)
+    assert score.coefficients["loss_Nm"][0] == pytest.approx(0.012)
+    assert score.in_sample["T_wall_K"] == pytest.approx(0.0, abs=1e-9)

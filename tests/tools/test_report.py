@@ -1,0 +1,43 @@
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from gearheat.tools.compare import CHANNELS, compare
+from gearheat.tools.plots import breakdown, parity, residuals, warm_up
+from gearheat.tools.rivals import rivals
+
+TEMPERATURES = ("T_oil_C", "T_wall_C", "T_amb_C")
+
+
+@pytest.fixture
+def curves():
+    time = np.linspace(0.0, 335 * 60.0, 20)
+    return {test: {"time": time, **{name: 20.0 + time / 1000 for name in TEMPERATURES}} for test in (1, 2, 3)}
+
+
+def test_every_figure_is_one_svg_with_the_same_bytes_each_time(rows, curves):
+    makers = {
+        "parity": lambda: parity(rows, CHANNELS[:1]),
+        "residuals": lambda: residuals(rows, CHANNELS[:1], {"T_oil_K": 0.3}),
+        "warm_up": lambda: warm_up(curves, rows),
+        "breakdown": lambda: breakdown(rows, ("P_mesh_W", "P_seal_W")),
+    }
+    for name, make in makers.items():
+        first = make()
+        assert first.startswith("<svg") and first.rstrip().endswith("</svg>"), name
+        assert first == make(), name
+        assert "http" not in re.sub(r'xmlns(:\w+)?="[^"]*"|<rdf:RDF.*?</rdf:RDF>', "", first, flags=re.DOTALL), name
+
+
+def test_noise_band_is_drawn_only_where_there_is_a_noise_floor(rows):
+    assert residuals(rows, CHANNELS[:1], {"T_oil_K": 0.3}) != residuals(rows, CHANNELS[:1], {})
+
+
+def test_rivals_and_noise_floor_stand_in_the_summary(rows):
+    from gearheat.tools.report import _summary
+
+    text = str(_summary(compare(rows), rivals(rows)))
+    for words in ("simulation, all readings", "simulation, A-grid", "noise floor", "linear, left-out tests"):
+        assert words in text

@@ -1,0 +1,161 @@
+"""What every command shares: exit codes, problems on stderr, JSON or tables on stdout, files moved into place.
+
+Imports nothing heavy: `gearheat --help` goes through here.
+"""
+
+from __future__ import annotations
+
+import functools
+import json
+import math
+import os
+import sys
+import tempfile
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, ParamSpec
+
+from ..model.errors import DataError, GearheatError
+
+P = ParamSpec("P")
+
+BAD_INPUT = 2
+INTERRUPTED = 130
+
+
+def guarded(command: Callable[P, None]) -> Callable[P, None]:
+    """A command whose problems end it with exit code 2, one problem after the other on stderr and no traceback."""
+
+    @functools.wraps(command)
+    def run(*args: P.args, **kwargs: P.kwargs) -> None:
+        try:
+            command(*args, **kwargs)
+        except GearheatError as error:
+            for problem in error.problems:
+                note(f"error: {problem}")
+            sys.exit(BAD_INPUT)
+        except KeyboardInterrupt:
+            note("interrupted")
+            sys.exit(INTERRUPTED)
+        except BrokenPipeError:  # the reader of stdout, a pager for example, has gone
+            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+    return run
+
+
+def note(text: str) -> None:
+    """A message or progress on stderr; stdout carries results only."""
+    print(text, file=sys.stderr, flush=True)
+
+
+def plain(value: Any) -> Any:
+    """A value as JSON can hold it: arrays as lists, numbers that are not finite as null."""
+    if isinstance(value, Mapping):
+        return {str(k): plain(v) for k, v in value.items()}
+    if hasattr(value, "tolist"):
+        return plain(value.tolist())
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Iterable) and not isinstance(value, str):
+        return [plain(v) for v in value]
+    return value
+
+
+def as_json(payload: Mapping[str, Any]) -> str:
+    """One JSON object, the same text for the same values."""
+    return json.dumps(plain(payload), indent=1, allow_nan=False, ensure_ascii=False) + "\n"
+
+
+def answer(payload: Mapping[str, Any], to: str | None, human: Callable[[], None]) -> None:
+    """Give a result: JSON to stdout for "-", JSON to a file for a name, else what `human` prints."""
+    if to == "-":
+        sys.stdout.write(as_json(payload))
+        return
+    if to is not None:
+        write(Path(to), as_json(payload))
+    human()
+
+
+def write(path: Path, content: str | bytes) -> None:
+    """Write a file beside its place and move it there, so that a reader never sees half of it.
+
+    Raises:
+        DataError: the folder does not exist or cannot be written
+    """
+    data = content.encode() if isinstance(content, str) else content
+    try:
+        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(data)
+            os.chmod(name, 0o666 & ~_umask())
+            os.replace(name, path)
+        except BaseException:
+            Path(name).unlink(missing_ok=True)
+            raise
+    except OSError as error:
+        raise DataError(_cannot_write(path, error)) from None
+
+
+def writable(*paths: Path | None) -> None:
+    """Check before long work that files can be written to these places.
+
+    Raises:
+        DataError: one problem for each place that cannot be written
+    """
+    problems = []
+    for path in (p for p in paths if p is not None):
+        try:
+            if path.is_dir():
+                raise IsADirectoryError(21, "it is a folder")
+            with tempfile.TemporaryFile(dir=path.parent):
+                continue
+        except OSError as error:
+            problems.append(_cannot_write(path, error))
+    if problems:
+        raise DataError(problems)
+
+
+def folder(path: Path) -> Path:
+    """Make a folder for output, with its parents.
+
+    Raises:
+        DataError: it cannot be made or written
+    """
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=path):
+            return path
+    except OSError as error:
+        raise DataError(_cannot_write(path, error)) from None
+
+
+def _cannot_write(path: Path, error: OSError) -> str:
+    return f"{path}: cannot be written ({error.strerror or error}). Give a folder that exists and may be written."
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]], left: int = 1) -> None:
+    """Print a table: the first `left` columns to the left, the others, numbers, to the right."""
+    from rich import box
+    from rich.console import Console
+    from rich.table import Table
+
+    drawn = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
+    for i, column in enumerate(columns):
+        drawn.add_column(column, justify="left" if i < left else "right", overflow="fold")
+    for row in rows:
+        drawn.add_row(*(cell(value) for value in row))
+    Console(width=None if sys.stdout.isatty() else 160, markup=False, emoji=False).print(drawn)
+
+
+def cell(value: Any) -> str:
+    """A value as a table shows it: numbers with four digits, nothing for a missing one."""
+    if value is None or (isinstance(value, float) and math.isnan(value)):
+        return ""
+    return f"{value:.4g}" if isinstance(value, float) else str(value)

@@ -1,0 +1,144 @@
+"""One self-contained HTML page about a campaign: how close, where wrong, what the model is made of."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from importlib.resources import files
+from typing import Any
+
+import numpy as np
+from jinja2 import Environment
+from markupsafe import Markup, escape
+
+from ..model.run.result import Outside
+from ..model.sources import LawInfo, sources
+from . import plots
+from .compare import CHANNELS, GROUPINGS, Comparison, Rows, present
+from .console import cell
+from .rivals import Score
+
+
+@dataclass(frozen=True)
+class Study:
+    """A campaign that was simulated.
+
+    Attributes:
+        rig, doc: name and description of the rig
+        fmu: file name of the FMU that was played
+        rows: the readings, simulated and measured
+        curves: some tests over time, columns as in `plots.warm_up`
+        loss_columns: columns of `rows` that are the single losses
+        laws, outside: what the model cites, and what it used outside its range
+        parameters: (name, value with unit, source)
+        errata: (source and place, what it says, what it should be, evidence)
+        energy_residual_max: largest violation of the energy balance over the throughput
+    """
+
+    rig: str
+    doc: str
+    fmu: str
+    rows: Rows
+    curves: Mapping[int, Mapping[str, np.ndarray]]
+    loss_columns: tuple[str, ...]
+    laws: tuple[LawInfo, ...]
+    outside: tuple[Outside, ...]
+    parameters: tuple[tuple[str, str, str], ...]
+    errata: tuple[tuple[str, str, str, str], ...]
+    energy_residual_max: float
+
+
+#: Columns of the table of all readings.
+READING = ("point", "test", "direction", "oil", "n_carrier_rpm", "T_carrier_Nm", "T_amb_C")
+
+
+def render(study: Study, comparison: Comparison, scores: Sequence[Score]) -> str:
+    """The page as HTML text, the same bytes for the same study."""
+    channels = present(study.rows)
+    noise = comparison.noise_floor
+    template = files("gearheat.tools").joinpath("templates/report.html").read_text(encoding="utf-8")
+    breakdown = plots.breakdown(study.rows, study.loss_columns) if study.loss_columns else ""
+    page = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(template)
+    return page.render(
+        study=study,
+        scores=scores,
+        noise=noise,
+        tests=len({row["test"] for row in study.rows}),
+        repeated=", ".join("/".join(str(t) for t in tests) for tests in noise["repeated"]) or "none",
+        summary=_summary(comparison, scores),
+        parity=Markup(plots.parity(study.rows, [c for c in channels if c.key != "T_oil2_K"])),
+        residuals=Markup(plots.residuals(study.rows, channels, noise)),
+        groups=_groups(comparison),
+        warm_up=Markup(plots.warm_up(study.curves, study.rows)) if study.curves else "",
+        breakdown=Markup(breakdown),
+        laws=_laws(study.laws),
+        outside=_outside(study.outside),
+        parameters=_table(("parameter", "value", "source"), study.parameters, text=(2,)),
+        errata=_table(("source", "says", "should be", "evidence"), study.errata, text=(1, 2, 3)),
+        rows=_readings(study.rows),
+    )
+
+
+def _table(head: Sequence[str], body: Iterable[Sequence[Any]], text: Sequence[int] = (), ours: int = -1) -> Markup:
+    """An HTML table; columns in `text` are set to the left, row `ours` stands out."""
+
+    def row(tag: str, values: Sequence[Any]) -> str:
+        cells = ((f'<{tag} class="text">' if i in text else f"<{tag}>", cell(v)) for i, v in enumerate(values))
+        return "".join(f"{opening}{escape(value)}</{tag}>" for opening, value in cells)
+
+    lines = [f"<tr>{row('th', head)}</tr>"]
+    for i, values in enumerate(body):
+        lines.append(f"<tr{' class=ours' if i == ours else ''}>{row('td', values)}</tr>")
+    return Markup("<table>\n" + "\n".join(lines) + "\n</table>")
+
+
+def _summary(comparison: Comparison, scores: Sequence[Score]) -> Markup:
+    """Channels across; simulation overall and by grid, noise floor and rivals down."""
+    rmse = comparison.rmse()
+    keys = [c for c in CHANNELS if c.key in rmse["overall"]]
+    body: list[list[Any]] = [["simulation, all readings", *(rmse["overall"][c.key] for c in keys)]]
+    body += [
+        [f"simulation, {grid}", *(found.get(c.key) for c in keys)] for grid, found in rmse.items() if grid != "overall"
+    ]
+    body += [["noise floor", *(comparison.noise_floor.get(c.key) for c in keys)]]
+    for score in scores:
+        body.append([f"{score.name}, in sample", *(score.in_sample.get(c.key) for c in keys)])
+        body.append([f"{score.name}, left-out tests", *(score.leave_one_test_out.get(c.key) for c in keys)])
+    return _table(("", *(f"{c.label} [{c.unit}]" for c in keys)), body, ours=0)
+
+
+def _groups(comparison: Comparison) -> Markup:
+    """Groups down, mean and root mean square of each channel across."""
+    keys = [c for c in CHANNELS if any(g.channel == c.key for g in comparison.groups)]
+    found: dict[tuple[str, Any], dict[str, Any]] = {}
+    for group in comparison.groups:
+        found.setdefault((group.by, group.value), {"n": group.n})[group.channel] = group
+    body = []
+    for (by, value), of in found.items():
+        pairs = [(of[c.key].mean, of[c.key].rms) if c.key in of else (None, None) for c in keys]
+        name = "all" if by == "all" else f"{GROUPINGS[by]} {cell(value)}"
+        body.append([name, of["n"], *(x for pair in pairs for x in pair)])
+    head = ["group", "readings", *(f"{c.label} {what} [{c.unit}]" for c in keys for what in ("mean", "rms"))]
+    return _table(head, body)
+
+
+def _laws(laws: Sequence[LawInfo]) -> Markup:
+    known = sources()
+    body = []
+    for law in laws:
+        source = known.get(law.source)
+        cited = f"{source.author} {source.year}, {source.title}" if source else law.source
+        body.append((law.name, cited, law.where, law.valid, "verified" if law.verified else "unverified"))
+    return _table(("law", "source", "place", "valid", "against print"), body, text=(1, 2, 3, 4))
+
+
+def _outside(outside: Sequence[Outside]) -> Markup:
+    body = [(o.law, o.component, o.argument, o.low, o.high, o.lowest, o.highest) for o in outside]
+    head = ("law", "part", "argument", "valid from", "to", "met from", "to")
+    return _table(head, body, text=(1, 2)) if body else Markup("")
+
+
+def _readings(rows: Rows) -> Markup:
+    columns = [c.column for c in present(rows)]
+    head = [*READING, *(name for column in columns for name in (column, f"{column}_meas"))]
+    return _table(head, [[row.get(name) for name in head] for row in rows], text=(3,))
