@@ -52,14 +52,21 @@ def nets(assembly: Assembly) -> list[list[Port]]:
 
 def _problems(assembly: Assembly, ports: dict[str, Port]) -> Iterable[str]:
     names = [part.name for part in assembly.parts]
-    problems = [f'{assembly.name}: two parts are called "{n}". Rename one.' for n in sorted({n for n in names if names.count(n) > 1})]
+    problems = [
+        f'{assembly.name}: two parts are called "{n}". Rename one.'
+        for n in sorted({n for n in names if names.count(n) > 1})
+    ]
     for connection in assembly.connections:
         written = ", ".join(connection)
         missing = [path for path in connection if path not in ports]
-        problems += [f'{assembly.name}: connect [{written}]: there is no port "{p}".{suggestion(p, ports)}' for p in missing]
+        problems += [
+            f'{assembly.name}: connect [{written}]: there is no port "{p}".{suggestion(p, ports)}' for p in missing
+        ]
         kinds = {type(ports[path]).__name__ for path in connection if path in ports}
         if len(kinds) > 1:
-            problems.append(f"{assembly.name}: connect [{written}] joins ports of different kinds ({', '.join(sorted(kinds))}).")
+            problems.append(
+                f"{assembly.name}: connect [{written}] joins ports of different kinds ({', '.join(sorted(kinds))})."
+            )
         if len(connection) < 2:
             problems.append(f"{assembly.name}: connect [{written}] names one port only. Name at least two.")
     return problems

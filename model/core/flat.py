@@ -90,7 +90,9 @@ class FlatModel:
     def quantity(self, name: str) -> Quantity:
         """The quantity of a path. Raises ScenarioError with suggestions for an unknown one."""
         kind, i = self.locate(name)
-        return {"state": self.states, "input": self.inputs, "parameter": self.parameters, "output": self.outputs}[kind][i]
+        return {"state": self.states, "input": self.inputs, "parameter": self.parameters, "output": self.outputs}[kind][
+            i
+        ]
 
     def locate(self, name: str) -> tuple[str, int]:
         """Kind and position of a path. Raises ScenarioError with suggestions for an unknown one."""

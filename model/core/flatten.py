@@ -32,7 +32,7 @@ def flatten(assembly: Assembly) -> FlatModel:
     aliased = _Alias(alias)
     rows = [Row(r.name, aliased(r.lhs), aliased(r.rhs)) for r in rows]
     check_structure(assembly.name, incidence(rows, unknowns), [r.name for r in rows], [u.name for u in unknowns])
-    solution = Solution([], [], [])
+    solution = Solution(_typical(assembly, unknowns))
     solve(assembly.name, rows, unknowns, solution)
     return _flat_model(assembly, solution, aliased, checks, tuple(laws))
 
@@ -63,10 +63,23 @@ def _nets(assembly: Assembly) -> tuple[list[Row], list[Unknown], list[tuple[Any,
     return rows, unknowns, alias
 
 
+def _typical(assembly: Assembly, unknowns: list[Unknown]) -> dict[int, float]:
+    """A typical value of every symbol by its hash: what is given where something is, else the nominal."""
+    typical = {u.symbol.element_hash(): u.nominal for u in unknowns}
+    for part in assembly.parts:
+        for key, d in part.inputs.items():
+            typical[part.symbols[key].element_hash()] = part.values[key] or d.nominal
+        for key in (*part.parameters, *part.states):
+            typical[part.symbols[key].element_hash()] = part.values[key]
+    return typical
+
+
 def _unknowns(part: Component) -> list[Unknown]:
     found = [Unknown(part.derivatives[k], f"der({part.name}.{k})", d.nominal) for k, d in part.states.items()]
     found += [Unknown(part.symbols[k], f"{part.name}.{k}", d.nominal, d.guess) for k, d in part.variables.items()]
-    found += [Unknown(part.symbols[k], f"{part.name}.{k}", d.nominal) for k, d in part.inputs.items() if not part.is_input(k)]
+    found += [
+        Unknown(part.symbols[k], f"{part.name}.{k}", d.nominal) for k, d in part.inputs.items() if not part.is_input(k)
+    ]
     return found
 
 

@@ -8,7 +8,7 @@ which start at zero) and solved by a few unrolled Newton steps.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import casadi as ca
@@ -19,7 +19,7 @@ from ..errors import StructureError
 NEWTON_STEPS = 3
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Unknown:
     """One unknown: symbol, name, typical size, and where Newton may start (None: never torn)."""
 
@@ -29,7 +29,7 @@ class Unknown:
     guess: float | None = None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Row:
     """One equation, lhs = rhs, with its name."""
 
@@ -45,11 +45,15 @@ class Row:
 
 @dataclass
 class Solution:
-    """Definitions in the order in which they can be evaluated, and the residuals that implicit blocks leave."""
+    """Definitions in the order in which they can be evaluated, and the residuals that implicit blocks leave.
 
-    symbols: list[Any]
-    definitions: list[Any]
-    residuals: list[tuple[str, Any]]
+    `typical` holds a typical value of every symbol by its hash: it only steers the choice of pivots.
+    """
+
+    typical: Mapping[int, float]
+    symbols: list[Any] = field(default_factory=list)
+    definitions: list[Any] = field(default_factory=list)
+    residuals: list[tuple[str, Any]] = field(default_factory=list)
 
     def define(self, symbol: Any, definition: Any) -> None:
         """Append one definition; it may use known symbols and those defined before."""
@@ -88,7 +92,7 @@ def _solve_block(model: str, rows: list[Row], unknowns: list[Unknown], solution:
     residual = column([r.residual for r in rows])
     matrix = ca.jacobian(residual, z)
     if not ca.depends_on(matrix, z):
-        _eliminate(matrix, ca.substitute(residual, z, ca.SX.zeros(*z.shape)), unknowns, solution)
+        _eliminate(model, matrix, ca.substitute(residual, z, ca.SX.zeros(*z.shape)), unknowns, solution)
     else:
         _newton(model, rows, unknowns, solution)
 
@@ -101,15 +105,19 @@ def _explicit(row: Row, z: Any) -> Any:
     return None
 
 
-def _eliminate(matrix: Any, constant: Any, unknowns: list[Unknown], solution: Solution) -> None:
+def _eliminate(model: str, matrix: Any, constant: Any, unknowns: list[Unknown], solution: Solution) -> None:
     """Solve matrix z + constant = 0 by Gauss elimination, rows and columns in the order of least fill."""
     n = len(unknowns)
     a = {(i, j): matrix[i, j] for i, j in zip(*matrix.sparsity().get_triplet(), strict=True)}
     b = [-constant[i] for i in range(n)]
-    size = _sizes(matrix)
+    size = _sizes(matrix, solution.typical)
     open_rows, open_columns, order = set(range(n)), set(range(n)), []
     while open_rows:
-        i, j = _pivot(a, size, open_rows, open_columns)
+        pivot = _pivot(a, size, open_rows, open_columns)
+        if pivot is None:
+            names = ", ".join(unknowns[c].name for c in sorted(open_columns)[:5])
+            raise StructureError(f"{model}: the equations for {names} say the same twice. Give one of these a value.")
+        i, j = pivot
         open_rows.discard(i)
         open_columns.discard(j)
         order.append((i, j))
@@ -126,29 +134,30 @@ def _eliminate(matrix: Any, constant: Any, unknowns: list[Unknown], solution: So
         solution.define(unknowns[j].symbol, (b[i] - known) / a[i, j])
 
 
-def _sizes(matrix: Any) -> dict[tuple[int, int], float]:
-    """Numerical values of the entries at an arbitrary generic point: they only steer the choice of pivots."""
+def _sizes(matrix: Any, typical: Mapping[int, float]) -> dict[tuple[int, int], float]:
+    """Typical values of the entries: they only steer the choice of pivots, so one that cannot be had counts as 1."""
     free = ca.symvar(matrix)
-    point = [1.0 + 0.37 * np.sin(1.0 + 2.4 * k) for k in range(len(free))]
+    point = [typical.get(symbol.element_hash(), 1.0) for symbol in free]
     values = ca.Function("sizes", free, [matrix])(*point) if free else ca.DM(matrix)
-    return {(i, j): float(values[i, j]) for i, j in zip(*matrix.sparsity().get_triplet(), strict=True)}
+    entries = {(i, j): float(values[i, j]) for i, j in zip(*matrix.sparsity().get_triplet(), strict=True)}
+    return {entry: value if np.isfinite(value) else 1.0 for entry, value in entries.items()}
 
 
-def _pivot(a: Mapping[Any, Any], size: Mapping[Any, float], rows: set[int], columns: set[int]) -> tuple[int, int]:
-    """Markowitz: least fill among entries that are not small in their row."""
+def _pivot(
+    a: Mapping[Any, Any], size: Mapping[Any, float], rows: set[int], columns: set[int]
+) -> tuple[int, int] | None:
+    """Markowitz: least fill among entries that are not small in their row; None where a row has nothing left."""
     entries = [(i, j) for i, j in a if i in rows and j in columns]
     in_row = {i: [c for r, c in entries if r == i] for i in rows}
     in_column = {j: [r for r, c in entries if c == j] for j in columns}
-    sound = [(i, j) for i, j in entries if abs(size[i, j]) > 1e-3 * max(abs(size[i, c]) for c in in_row[i])]
-    if not sound:
-        raise StructureError("A linear part of the model is singular: two of its equations say the same.")
-    return min(sound, key=lambda e: ((len(in_row[e[0]]) - 1) * (len(in_column[e[1]]) - 1), e))
+    sound = [(i, j) for i, j in entries if abs(size[i, j]) > max(1e-3 * max(abs(size[i, c]) for c in in_row[i]), 1e-12)]
+    return min(sound, key=lambda e: ((len(in_row[e[0]]) - 1) * (len(in_column[e[1]]) - 1), e), default=None)
 
 
 def _newton(model: str, rows: list[Row], unknowns: list[Unknown], solution: Solution) -> None:
     """Tear the block at its unknowns with a guess, sort the rest, and iterate on the torn ones."""
     torn, tests, rest_rows, rest = _tear(model, rows, unknowns)
-    inner = Solution([], [], [])
+    inner = Solution(solution.typical)
     if rest:
         solve(model, rest_rows, rest, inner)
     z = column([u.symbol for u in torn])
@@ -159,7 +168,7 @@ def _newton(model: str, rows: list[Row], unknowns: list[Unknown], solution: Solu
     value = ca.SX([u.guess for u in torn])
     for _ in range(NEWTON_STEPS):
         r, j = step(value, outer)
-        value = value - _linear_solve(j, r, torn)
+        value = value - _linear_solve(model, j, r, torn, solution.typical)
     left, _ = step(value, outer)
     scale = [u.nominal for u in torn]
     solution.residuals += [(row.name, left[k] / scale[k]) for k, row in enumerate(tests)]
@@ -170,7 +179,9 @@ def _newton(model: str, rows: list[Row], unknowns: list[Unknown], solution: Solu
     solution.residuals += inner.residuals
 
 
-def _tear(model: str, rows: list[Row], unknowns: list[Unknown]) -> tuple[list[Unknown], list[Row], list[Row], list[Unknown]]:
+def _tear(
+    model: str, rows: list[Row], unknowns: list[Unknown]
+) -> tuple[list[Unknown], list[Row], list[Row], list[Unknown]]:
     """Torn unknowns with the equations that define them (lhs is the unknown), and what remains of the block.
 
     A block of one unknown is torn at it, from its guess or its nominal.
@@ -182,7 +193,9 @@ def _tear(model: str, rows: list[Row], unknowns: list[Unknown]) -> tuple[list[Un
     torn = [u for u in unknowns if u.guess is not None and u.symbol.element_hash() in defining]
     if not torn:
         names = ", ".join(r.name for r in rows[:5])
-        raise StructureError(f"{model}: the equations {names} are implicit and nonlinear. Give one of their unknowns a guess.")
+        raise StructureError(
+            f"{model}: the equations {names} are implicit and nonlinear. Give one of their unknowns a guess."
+        )
     tests = [defining[u.symbol.element_hash()] for u in torn]
     return torn, tests, [r for r in rows if r not in tests], [u for u in unknowns if u not in torn]
 
@@ -196,11 +209,13 @@ def _inline(expressions: list[Any], solution: Solution) -> list[Any]:
     return [result]
 
 
-def _linear_solve(matrix: Any, right: Any, unknowns: list[Unknown]) -> Any:
+def _linear_solve(
+    model: str, matrix: Any, right: Any, unknowns: list[Unknown], typical: Mapping[int, float]
+) -> Any:
     """z of matrix z = right, with the same elimination as a linear block."""
     stand_in = [Unknown(ca.SX.sym(u.name), u.name) for u in unknowns]
-    solution = Solution([], [], [])
-    _eliminate(matrix, -right, stand_in, solution)
+    solution = Solution(typical)
+    _eliminate(model, matrix, -right, stand_in, solution)
     return _inline([u.symbol for u in stand_in], solution)[0]
 
 

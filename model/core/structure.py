@@ -54,5 +54,7 @@ def _at_fault(adjacent: csr_matrix, partner: np.ndarray, partner_back: np.ndarra
 
 
 def _some(names: Sequence[str], chosen: Sequence[int]) -> str:
+    """The first few names, those nearest to a user (of parts, not of their ports) first."""
+    sorted_names = sorted((names[i] for i in chosen), key=lambda name: name.count("."))
     more = f" and {len(chosen) - SHOWN} more" if len(chosen) > SHOWN else ""
-    return ", ".join(names[i] for i in chosen[:SHOWN]) + more
+    return ", ".join(sorted_names[:SHOWN]) + more

@@ -54,8 +54,8 @@ EXAMPLES: dict[str, dict] = {
     "FinnedBoxCooling": BOX | dict(A_fins=0.5, fin_height=0.03, fin_thickness=0.004, k_fin=50.0),
     "Room": {},
 }
-#: Ports on which a part gives information instead of reading it.
-GIVES = {"OilBath.lubricant", "Grease.lubricant", "HelicalGearPair.force", "ShaftEnd.reading", "ShaftEnd.flange"}
+#: Ports without a source: on them a part gives information, or a temperature of its own.
+GIVES = {"OilBath.heat", "HeatCapacity.heat", "OilBath.lubricant", "Grease.lubricant", "HelicalGearPair.force"}
 GIVES |= {f"PlanetarySet.{k}" for k in ("carrier_load", "sun_load", "planet_load")}
 GIVES |= {f"{s}.{k}" for s in ("ShaftSupport", "TwoGearSupport") for k in ("load_a", "load_b")}
 #: What is given at the flanges of a part with several of them; elsewhere the speed (a storage: the torque).
@@ -65,6 +65,14 @@ GIVEN = {
     "Inertia": {"flange": ("tau",)},
     "FixedFlange": {"flange": ("tau",)},
 }
+
+
+def heater(port: Port, name: str) -> Component:
+    """A part that pushes a given heat flow into a port."""
+    members: dict = {"port": type(port)(), "P": Input("W", "heat flow rate", 100.0), "__doc__": "Gives a heat flow."}
+    members["equations"] = lambda self: iter([equation("heat", self.port.Q_flow, -self.P)])
+    members["supplied_power"] = lambda self: (self.P,)
+    return type(f"Heater{type(port).__name__}", (Component,), members)(name)
 
 
 def source(port: Port, name: str) -> Component:
@@ -79,22 +87,21 @@ def source(port: Port, name: str) -> Component:
 
 def between_sources(kind: str, **choices):
     part = PARTS[kind]("part", **EXAMPLES[kind], **choices)
+    if kind == "ShaftEnd":
+        load = PARTS["FanLoad"]("load", k=0.1)
+        end = PARTS[kind]("part", given=("w",))
+        return flatten(Assembly(kind, "", (end, load), (("part.flange", "load.flange"),)))
     parts, nets = [part], []
     for key, port in part.ports.items():
         if f"{kind}.{key}" in GIVES:
-            if kind == "ShaftEnd" and key == "flange":
-                parts.append(source(port, key))  # speed twice: replaced below
             continue
         if isinstance(port, Flange):
-            parts.append(PARTS["ShaftEnd"](key, given=GIVEN.get(kind, {}).get(key, ("w",))))
+            given_here = ("w",) if choices.get("dynamic") is False else GIVEN.get(kind, {}).get(key, ("w",))
+            parts.append(PARTS["ShaftEnd"](key, given=given_here))
             nets.append((port.name, f"{key}.flange"))
         else:
-            parts.append(source(port, key))
+            parts.append((heater if kind == "Room" else source)(port, key))
             nets.append((port.name, f"{key}.port"))
-    if kind == "ShaftEnd":
-        parts[1:] = [PARTS["FanLoad"]("load", k=0.1)]
-        parts[0] = PARTS["ShaftEnd"]("part", given=("w",))
-        nets = [("part.flange", "load.flange")]
     return flatten(Assembly(kind, "", tuple(parts), tuple(nets)))
 
 
@@ -107,8 +114,6 @@ _flat: dict = {}
 def flat_of(kind, choices):
     key = (kind, tuple(choices.items()))
     if key not in _flat:
-        if choices.get("dynamic") is False:
-            GIVEN["Inertia"] = {"flange": ("w",)}
         _flat[key] = between_sources(kind, **choices)
     return _flat[key]
 
@@ -151,7 +156,15 @@ def test_part_conserves_energy(kind: str, choices: dict, seed: int) -> None:
             assert value >= 0.0, f"{name} = {value} W"
 
 
-@pytest.mark.parametrize("kind", [k for k, v in PARTS.items() if any(isinstance(p, Flange) for p in vars(v).values()) or k in ("TaperedRollerBearing", "DeepGrooveBallBearing", "NeedleBearing", "LipSeal", "Churning")])
+@pytest.mark.parametrize(
+    "kind",
+    [
+        k
+        for k, v in PARTS.items()
+        if any(isinstance(p, Flange) for p in vars(v).values())
+        or k in ("TaperedRollerBearing", "DeepGrooveBallBearing", "NeedleBearing", "LipSeal", "Churning")
+    ],
+)
 def test_mechanical_loss_leaves_as_heat(kind: str) -> None:
     part = PARTS[kind]("part", **EXAMPLES[kind])
     heat_ports = [k for k, p in part.ports.items() if isinstance(p, HeatPort)]
@@ -166,12 +179,16 @@ def test_mechanical_loss_leaves_as_heat(kind: str) -> None:
         assert mechanical == pytest.approx(sum(losses), rel=1e-9, abs=1e-9 * max(values["throughput"], 1.0))
 
 
-@pytest.mark.parametrize("kind", ["ThermalConductor", "SurfaceCooling", "BoxCooling", "CylinderCooling", "FinnedBoxCooling"])
+@pytest.mark.parametrize(
+    "kind", ["ThermalConductor", "SurfaceCooling", "BoxCooling", "CylinderCooling", "FinnedBoxCooling"]
+)
 def test_heat_flows_from_hot_to_cold(kind: str) -> None:
     flat = flat_of(kind, {})
     rng = np.random.default_rng(3)
     a, b = ("a", "b") if kind == "ThermalConductor" else ("surface", "air")
     for _ in range(50):
         values = at(flat, rng)
-        flow = values.get("part.Q_flow", values.get("part.Q_flow_convection", 0.0) + values.get("part.Q_flow_radiation", 0.0))
+        flow = values.get(
+            "part.Q_flow", values.get("part.Q_flow_convection", 0.0) + values.get("part.Q_flow_radiation", 0.0)
+        )
         assert flow * (values[f"{a}.T"] - values[f"{b}.T"]) >= 0.0

@@ -40,7 +40,11 @@ def imported(path: Path) -> list[str]:
             base = list(package[: len(package) - node.level + 1]) if node.level else []
             stem = ".".join([*base, *(node.module or "").split(".")]).strip(".")
             found += [f"{stem}.{a.name}" for a in node.names]
-    return [m.removeprefix("gearheat.") for m in found if m.removeprefix("gearheat.").split(".")[0] in ("model", "fmu", "scenarios", "tools")]
+    return [
+        m.removeprefix("gearheat.")
+        for m in found
+        if m.removeprefix("gearheat.").split(".")[0] in ("model", "fmu", "scenarios", "tools")
+    ]
 
 
 @pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(ROOT)))
