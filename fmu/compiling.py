@@ -1,0 +1,161 @@
+"""From C source to a shared library by the compiler of the ziglang package: no compiler of the system is needed."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import platform as host
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+
+from gearheat.model.errors import FmuError, suggestion
+
+
+@dataclass(frozen=True)
+class Platform:
+    """A platform of FMI 2.0: folder and file ending of its binary, and the compiler's targets (several are joined)."""
+
+    name: str
+    suffix: str
+    targets: tuple[str, ...]
+
+
+#: An old C library of Linux by name: newer ones would bind exp, log and pow to versions a user may not have.
+PLATFORMS = {
+    p.name: p
+    for p in (
+        Platform("linux64", ".so", ("x86_64-linux-gnu.2.17",)),
+        Platform("win64", ".dll", ("x86_64-windows-gnu",)),
+        Platform("win32", ".dll", ("x86-windows-gnu",)),
+        Platform("darwin64", ".dylib", ("x86_64-macos", "aarch64-macos")),
+    )
+}
+
+#: Any change makes the compiler rebuild its run-time libraries, which takes minutes for some targets.
+FLAGS = ("-g0", "-s", "-shared", "-fPIC", "-fvisibility=hidden", "-fno-sanitize=all", "-ffp-contract=off", "-std=c99")
+
+
+def host_platform() -> Platform:
+    """The platform this program runs on."""
+    name = {"Linux": "linux64", "Windows": "win64", "Darwin": "darwin64"}.get(host.system(), "linux64")
+    return PLATFORMS[name]
+
+
+def platforms(choice: str) -> tuple[Platform, ...]:
+    """The platforms meant by "host", "all", or names separated by commas.
+
+    Raises:
+        FmuError: unknown platform
+    """
+    if choice == "host":
+        return (host_platform(),)
+    if choice == "all":
+        return tuple(PLATFORMS.values())
+    names = [name.strip() for name in choice.split(",")]
+    known = ("host", "all", *PLATFORMS)
+    unknown = [n for n in names if n not in PLATFORMS]
+    if unknown:
+        raise FmuError(f'platform "{n}" is unknown.{suggestion(n, known)} Known: {", ".join(known)}.' for n in unknown)
+    return tuple(PLATFORMS[n] for n in dict.fromkeys(names))
+
+
+def cache_folder() -> Path:
+    """The user's cache folder of this project."""
+    if folder := os.environ.get("XDG_CACHE_HOME"):
+        return Path(folder) / "gearheat"
+    if sys.platform == "win32":
+        return Path(os.environ.get("LOCALAPPDATA", Path.home() / "AppData" / "Local")) / "gearheat" / "cache"
+    if sys.platform == "darwin":
+        return Path.home() / "Library" / "Caches" / "gearheat"
+    return Path.home() / ".cache" / "gearheat"
+
+
+def binary(source: str, platform: Platform, *, optimise: str = "-O2") -> bytes:
+    """The shared library of a C source; the same source is compiled once only.
+
+    Raises:
+        FmuError: the compiler is missing or fails, or the cache cannot be written
+    """
+    key = hashlib.sha256()
+    for part in (source, platform.name, *platform.targets, optimise, *FLAGS, version("ziglang")):
+        key.update(part.encode() + b"\0")
+    stored = cache_folder() / "binaries" / f"{key.hexdigest()}{platform.suffix}"
+    try:
+        return stored.read_bytes()
+    except OSError:
+        pass
+    made = _join([_compile(source, target, optimise) for target in platform.targets])
+    store(stored, made)
+    return made
+
+
+def store(path: Path, content: bytes) -> None:
+    """Write a file so that nobody ever sees half of it.
+
+    Raises:
+        FmuError: the folder or the file cannot be written
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
+        try:
+            with os.fdopen(handle, "wb") as file:
+                file.write(content)
+            os.chmod(name, 0o666 & ~_umask())
+            os.replace(name, path)
+        except BaseException:
+            Path(name).unlink(missing_ok=True)
+            raise
+    except OSError as error:
+        raise FmuError(
+            f"{path}: cannot be written ({error.strerror}). Choose a file in a folder you may write to."
+        ) from error
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
+
+
+def _compile(source: str, target: str, optimise: str) -> bytes:
+    environment = dict(os.environ)
+    for variable, folder in (("ZIG_GLOBAL_CACHE_DIR", "global"), ("ZIG_LOCAL_CACHE_DIR", "local")):
+        environment.setdefault(variable, str(cache_folder() / "zig" / folder))
+    with tempfile.TemporaryDirectory() as folder:
+        made = Path(folder) / "library"
+        Path(folder, "all.c").write_text(source, encoding="utf-8")
+        compiler = [sys.executable, "-m", "ziglang", "cc", "-target", target, optimise, *FLAGS]
+        command = [*compiler, "-o", made.name, "all.c", "-lm"]
+        try:
+            run = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+        except OSError as error:
+            raise FmuError(
+                f"the compiler does not start ({error.strerror}). Install it: pip install ziglang"
+            ) from error
+        if run.returncode != 0 or not made.exists():
+            said = run.stderr.splitlines() or ["no message"]
+            first = next((line for line in said if "error" in line), said[0])
+            hint = " Install it: pip install ziglang" if "No module named" in run.stderr else ""
+            raise FmuError(f"compiling for {target} failed: {first[:300]}.{hint}")
+        return made.read_bytes()
+
+
+def _join(slices: list[bytes]) -> bytes:
+    """One library from those of several processors: a universal binary of macOS, or the only slice as it is."""
+    if len(slices) == 1:
+        return slices[0]
+    alignment = 14  # 2**14 bytes, the page of the newer processor
+    head, body, offset = [(0xCAFEBABE).to_bytes(4, "big"), len(slices).to_bytes(4, "big")], b"", 8 + 20 * len(slices)
+    start = offset
+    for content in slices:
+        position = -(-offset // 2**alignment) * 2**alignment
+        processor = content[4:8][::-1] + content[8:12][::-1]  # the slice's own header, little-endian
+        head.append(processor + b"".join(n.to_bytes(4, "big") for n in (position, len(content), alignment)))
+        body += bytes(position - start - len(body)) + content
+        offset = position + len(content)
+    return b"".join(head) + body

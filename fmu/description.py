@@ -1,0 +1,196 @@
+"""modelDescription.xml of an FMU, from its table of variables and the sparsity of its equations."""
+
+from __future__ import annotations
+
+import math
+import re
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+import casadi as ca
+from gearheat.model.core.flat import FlatModel
+
+from . import units
+from .equations import Equations
+from .variables import Table, Variable
+
+#: Relative tolerance when the importer gives none: an error of one step is at most this times the nominal.
+TOLERANCE = 1e-5
+
+LOG_CATEGORIES = {
+    "logStatusError": "why a call was refused",
+    "logStatusDiscard": "why a step or a value could not be computed",
+    "logStatusWarning": "law arguments outside the range their source gives, once each",
+    "logSolver": "internal steps of each communication step",
+}
+
+_CAPABILITIES = {
+    "needsExecutionTool": "false",
+    "canBeInstantiatedOnlyOncePerProcess": "false",
+    "canNotUseMemoryManagementFunctions": "true",
+    "canGetAndSetFMUstate": "true",
+    "canSerializeFMUstate": "true",
+    "providesDirectionalDerivative": "true",
+}
+
+
+def identifier(name: str) -> str:
+    """A name as a C identifier, for the binary's file name."""
+    cleaned = re.sub(r"\W", "_", name, flags=re.ASCII)
+    return cleaned if re.match(r"[A-Za-z]", cleaned) else f"model_{cleaned}"
+
+
+def tool() -> str:
+    """Name and version of the tool that makes the FMU."""
+    try:
+        return f"gearheat {version('gearheat')}"
+    except PackageNotFoundError:
+        return "gearheat"
+
+
+@dataclass(frozen=True)
+class Dependencies:
+    """For each output, derivative: value references it depends on, among states and inputs, and among all knowns."""
+
+    step: tuple[tuple[int, ...], ...]
+    initial: tuple[tuple[int, ...], ...]
+
+
+def dependencies(model: Equations, table: Table) -> Dependencies:
+    """Exact dependencies of the outputs (behind the states) and then the derivatives, from the sparsity."""
+    unknowns = ca.vertcat(model.y, model.ode)
+    firsts = [table.first("state"), table.first("input"), table.first("parameter")]
+    found: list[list[tuple[int, ...]]] = []
+    for known, first in zip((model.x, model.u, model.p), firsts, strict=True):
+        rows: list[list[int]] = [[] for _ in range(unknowns.shape[0])]
+        for i, j in zip(*ca.jacobian_sparsity(unknowns, known).get_triplet(), strict=True):
+            rows[i].append(first + j)
+        found.append([tuple(sorted(row)) for row in rows])
+    x, u, p = found
+    step = tuple(tuple(sorted(a + b)) for a, b in zip(x, u, strict=True))
+    return Dependencies(step, tuple(tuple(sorted(a + b)) for a, b in zip(step, p, strict=True)))
+
+
+def description(
+    flat: FlatModel, model: Equations, table: Table, guid: str, dependent: Dependencies | None = None
+) -> bytes:
+    """modelDescription.xml.
+
+    Args:
+        flat: the model, for its name and meaning
+        guid: unique identification, "" while it is still to be computed
+        dependent: the result of `dependencies`, computed when not given
+    """
+    dependent = dependent or dependencies(model, table)
+    root = ET.Element(
+        "fmiModelDescription",
+        fmiVersion="2.0",
+        modelName=flat.name,
+        guid=guid,
+        description=flat.doc,
+        generationTool=tool(),
+        license="BSD-3-Clause",
+        variableNamingConvention="structured",
+        numberOfEventIndicators="0",
+    )
+    _interfaces(root, identifier(flat.name))
+    _unit_definitions(root, table)
+    categories = ET.SubElement(root, "LogCategories")
+    for name, text in LOG_CATEGORIES.items():
+        ET.SubElement(categories, "Category", name=name, description=text)
+    ET.SubElement(root, "DefaultExperiment", startTime="0.0", tolerance=repr(TOLERANCE))
+    variables = ET.SubElement(root, "ModelVariables")
+    for variable in table:
+        _scalar_variable(variables, variable)
+    _model_structure(root, table, dependent)
+    ET.indent(root)
+    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="utf-8") + b"\n"
+
+
+def _interfaces(root: ET.Element, name: str) -> None:
+    exchange = ET.SubElement(
+        root, "ModelExchange", modelIdentifier=name, completedIntegratorStepNotNeeded="true", **_CAPABILITIES
+    )
+    simulation = ET.SubElement(
+        root,
+        "CoSimulation",
+        modelIdentifier=name,
+        canHandleVariableCommunicationStepSize="true",
+        canInterpolateInputs="true",
+        maxOutputDerivativeOrder="1",
+        canRunAsynchronuously="false",
+        **_CAPABILITIES,
+    )
+    for interface in (exchange, simulation):
+        ET.SubElement(ET.SubElement(interface, "SourceFiles"), "File", name="all.c")
+
+
+def _unit_definitions(root: ET.Element, table: Table) -> None:
+    definitions = ET.SubElement(root, "UnitDefinitions")
+    for name in sorted({units.fmi_unit(v.quantity.unit) for v in table}):
+        defined = units.unit(name)
+        element = ET.SubElement(definitions, "Unit", name=name)
+        if defined.exponents is not None:
+            base = {b: str(e) for b, e in defined.exponents.items()}
+            if defined.factor != 1:
+                base["factor"] = repr(defined.factor)
+            ET.SubElement(element, "BaseUnit", base)
+        if defined.shown != name:
+            shown = {"name": defined.shown, "factor": repr(defined.shown_factor), "offset": repr(defined.shown_offset)}
+            ET.SubElement(element, "DisplayUnit", shown)
+
+
+def _scalar_variable(variables: ET.Element, variable: Variable) -> None:
+    q = variable.quantity
+    element = ET.SubElement(
+        variables,
+        "ScalarVariable",
+        name=variable.name,
+        valueReference=str(variable.reference),
+        description=q.doc,
+        causality=variable.causality,
+        variability=variable.variability,
+    )
+    if variable.initial:
+        element.set("initial", variable.initial)
+    unit = units.fmi_unit(q.unit)
+    real = ET.SubElement(element, "Real", unit=unit)
+    if units.is_difference(q.unit):
+        real.set("relativeQuantity", "true")
+    elif units.unit(unit).shown != unit:
+        real.set("displayUnit", units.unit(unit).shown)
+    low, high = variable.bounds
+    for key, value in (("min", low), ("max", high)):
+        if math.isfinite(value):
+            real.set(key, repr(value))
+    if math.isfinite(q.nominal) and q.nominal > 0:
+        real.set("nominal", repr(float(q.nominal)))
+    if variable.start is not None:
+        real.set("start", repr(float(variable.start)))
+    if variable.state is not None:
+        real.set("derivative", str(variable.state + 1))
+
+
+def _model_structure(root: ET.Element, table: Table, dependent: Dependencies) -> None:
+    structure = ET.SubElement(root, "ModelStructure")
+    unknown = (*table.of("output"), *table.of("derivative"))
+    outputs = ET.SubElement(structure, "Outputs")
+    for state in table.of("state"):
+        _unknown(outputs, state, [state.reference])
+    by_kind: dict[str, ET.Element] = {"output": outputs, "derivative": ET.SubElement(structure, "Derivatives")}
+    for variable, on in zip(unknown, dependent.step, strict=True):
+        _unknown(by_kind[variable.kind], variable, on)
+    initial = ET.SubElement(structure, "InitialUnknowns")
+    for variable, on in zip(unknown, dependent.initial, strict=True):
+        _unknown(initial, variable, on)
+
+
+def _unknown(parent: ET.Element, variable: Variable, on: Iterable[int]) -> None:
+    attributes: dict[str, Any] = {
+        "index": str(variable.reference + 1),
+        "dependencies": " ".join(str(r + 1) for r in on),
+    }
+    ET.SubElement(parent, "Unknown", attributes)

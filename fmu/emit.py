@@ -1,0 +1,109 @@
+"""A scalar CasADi function as one straight-line C function over plain arrays."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import casadi as ca
+from gearheat.model.errors import FmuError
+
+#: C text of each scalar operation, by the name of CasADi's code.
+_OPERATIONS = {
+    "ASSIGN": "{0}",
+    "ADD": "{0}+{1}",
+    "SUB": "{0}-{1}",
+    "MUL": "{0}*{1}",
+    "DIV": "{0}/{1}",
+    "NEG": "-{0}",
+    "EXP": "exp({0})",
+    "LOG": "log({0})",
+    "POW": "pow({0},{1})",
+    "CONSTPOW": "pow({0},{1})",
+    "SQRT": "sqrt({0})",
+    "SQ": "{0}*{0}",
+    "TWICE": "{0}+{0}",
+    "SIN": "sin({0})",
+    "COS": "cos({0})",
+    "TAN": "tan({0})",
+    "ASIN": "asin({0})",
+    "ACOS": "acos({0})",
+    "ATAN": "atan({0})",
+    "LT": "{0}<{1}",
+    "LE": "{0}<={1}",
+    "EQ": "{0}=={1}",
+    "NE": "{0}!={1}",
+    "NOT": "{0}==0",
+    "AND": "{0}!=0&&{1}!=0",
+    "OR": "{0}!=0||{1}!=0",
+    "FLOOR": "floor({0})",
+    "CEIL": "ceil({0})",
+    "FMOD": "fmod({0},{1})",
+    "FABS": "fabs({0})",
+    "SIGN": "({0}>0)-({0}<0)",
+    "COPYSIGN": "copysign({0},{1})",
+    "IF_ELSE_ZERO": "{0}!=0?{1}:0",
+    "ERF": "erf({0})",
+    "FMIN": "fmin({0},{1})",
+    "FMAX": "fmax({0},{1})",
+    "INV": "1/{0}",
+    "SINH": "sinh({0})",
+    "COSH": "cosh({0})",
+    "TANH": "tanh({0})",
+    "ASINH": "asinh({0})",
+    "ACOSH": "acosh({0})",
+    "ATANH": "atanh({0})",
+    "ATAN2": "atan2({0},{1})",
+    "LOG1P": "log1p({0})",
+    "EXPM1": "expm1({0})",
+    "HYPOT": "hypot({0},{1})",
+    "LIFT": "{0}",
+}
+_BY_CODE = {getattr(ca, f"OP_{name}"): text for name, text in _OPERATIONS.items() if hasattr(ca, f"OP_{name}")}
+
+
+def number(value: float) -> str:
+    """A double as a C literal that reads back as the same double."""
+    if math.isnan(value):
+        return "NAN"
+    if math.isinf(value):
+        return "INFINITY" if value > 0 else "(-INFINITY)"
+    text = repr(float(value))
+    return f"({text})" if text.startswith("-") else text
+
+
+def function(f: Any, prefix: str = "model_") -> str:
+    """The C text of an SX function: static void prefix+name(const double *in..., double *out...).
+
+    Raises:
+        FmuError: an operation has no C text
+    """
+    takes = [f"const double *{f.name_in(i)}" for i in range(f.n_in())]
+    gives = [f"double *{f.name_out(i)}" for i in range(f.n_out())]
+    lines = [_instruction(f, k) for k in range(f.n_instructions())]
+    count = f.sz_w()
+    declared = [
+        "  double " + ", ".join(f"a{i}" for i in range(k, min(k + 20, count))) + ";" for k in range(0, count, 20)
+    ]
+    used = set(range(f.n_in())) - {f.instruction_input(k)[0] for k in range(f.n_instructions()) if _reads(f, k)}
+    unused = [f"  (void){f.name_in(i)};" for i in sorted(used)]
+    unused += [f"  (void){f.name_out(i)};" for i in range(f.n_out()) if f.nnz_out(i) == 0]
+    head = f"static void {prefix}{f.name()}({', '.join(takes + gives)})"
+    return "\n".join([head, "{", *declared, *unused, *lines, "}", ""])
+
+
+def _reads(f: Any, k: int) -> bool:
+    return bool(f.instruction_id(k) == ca.OP_INPUT)
+
+
+def _instruction(f: Any, k: int) -> str:
+    code, inputs, outputs = f.instruction_id(k), f.instruction_input(k), f.instruction_output(k)
+    if code == ca.OP_CONST:
+        return f"  a{outputs[0]}={number(f.instruction_constant(k))};"
+    if code == ca.OP_INPUT:
+        return f"  a{outputs[0]}={f.name_in(inputs[0])}[{inputs[1]}];"
+    if code == ca.OP_OUTPUT:
+        return f"  {f.name_out(outputs[0])}[{outputs[1]}]=a{inputs[0]};"
+    if code not in _BY_CODE:
+        raise FmuError(f"{f.name()}: CasADi operation {code} has no counterpart in C.")
+    return f"  a{outputs[0]}={_BY_CODE[code].format(*(f'a{i}' for i in inputs))};"

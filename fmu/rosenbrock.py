@@ -1,0 +1,119 @@
+"""One step of a Rosenbrock method as one expression: right-hand side, Jacobian, input slopes, elimination, all stages.
+
+A one-step method has no restart cost, which is what co-simulation asks for: inputs change at every communication
+point. The methods are L-stable, so a fast shaft beside slow temperatures costs accuracy, never stability.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from .elimination import SparseLU
+
+
+@dataclass(frozen=True)
+class Tableau:
+    """Coefficients of a Rosenbrock method in the form that needs no product with the Jacobian.
+
+    (I - h gamma J) U_i = h gamma (f(x + sum a_ij U_j, t + alpha_i h) + h d_i df/dt) + gamma sum c_ij U_j,
+    x_new = x + sum m_i U_i, error = sum e_i U_i (Hairer and Wanner 1996, section IV.7).
+
+    Attributes:
+        order: order of the result; that of the error estimate's companion is one less
+        gamma: diagonal coefficient
+        a, c: lower triangles, row i for stage i
+        alpha, d: stage times and factors of df/dt
+        m, e: weights of the result and of the error
+    """
+
+    name: str
+    order: int
+    gamma: float
+    a: tuple[tuple[float, ...], ...]
+    c: tuple[tuple[float, ...], ...]
+    alpha: tuple[float, ...]
+    d: tuple[float, ...]
+    m: tuple[float, ...]
+    e: tuple[float, ...]
+
+
+#: Four stages, three evaluations, order 3(2), stiffly accurate (Sandu et al. 1997).
+RODAS3 = Tableau(
+    name="RODAS3",
+    order=3,
+    gamma=1 / 2,
+    a=((), (0,), (2, 0), (2, 0, 1)),
+    c=((), (4,), (1, -1), (1, -1, -8 / 3)),
+    alpha=(0, 0, 1, 1),
+    d=(1 / 2, 3 / 2, 0, 0),
+    m=(2, 0, 1, 1),
+    e=(0, 0, 0, 1),
+)
+
+_A5 = (1.221224509226641, 6.019134481288629, 12.53708332932087, -0.6878860361058950)
+
+#: Six stages, order 4(3), stiffly accurate (Hairer and Wanner 1996, section IV.7, RODAS).
+RODAS4 = Tableau(
+    name="RODAS4",
+    order=4,
+    gamma=1 / 4,
+    a=(
+        (),
+        (1.544,),
+        (0.9466785280815826, 0.2557011698983284),
+        (3.314825187068521, 2.896124015972201, 0.9986419139977817),
+        _A5,
+        (*_A5, 1.0),
+    ),
+    c=(
+        (),
+        (-5.6688,),
+        (-2.430093356833875, -0.2063599157091915),
+        (-0.1073529058151375, -9.594562251023355, -20.47028614809616),
+        (7.496443313967647, -10.24680431464352, -33.99990352819905, 11.70890893206160),
+        (8.083246795921522, -7.981132988064893, -31.52159432874371, 16.31930543123136, -6.058818238834054),
+    ),
+    alpha=(0.0, 0.386, 0.21, 0.63, 1.0, 1.0),
+    d=(0.25, -0.1043, 0.1035, -0.0362, 0.0, 0.0),
+    m=(*_A5, 1.0, 1.0),
+    e=(0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
+)
+
+
+def _combine(weights: tuple[float, ...], stages: list[Any]) -> Any:
+    """Sum of the stages that have a weight, 0.0 when none has."""
+    total: Any = 0.0
+    for weight, stage in zip(weights, stages, strict=False):
+        if weight:
+            total = total + (stage if weight == 1 else weight * stage)
+    return total
+
+
+def step(ode: Any, x: Any, u: Any, tableau: Tableau = RODAS3) -> tuple[Any, Any, Any, Any]:
+    """One step of size h of dx/dt = ode(x, u) with inputs u + slope t.
+
+    Args:
+        ode: SX column (n); may hold further symbols, which stay constant within the step
+        x: SX symbols of the states (n)
+        u: SX symbols of the inputs at the step's beginning (m)
+
+    Returns:
+        the new states (n), the error estimate (n), and the symbols slope (m) and h (1) it is written in
+    """
+    slope, h = ca.SX.sym("slope", u.shape[0]), ca.SX.sym("h")
+    gamma_h = tableau.gamma * h
+    factors = SparseLU(ca.SX.eye(x.shape[0]) - gamma_h * ca.jacobian(ode, x))
+    ode_t = ca.mtimes(ca.jacobian(ode, u), slope)
+    rates: dict[tuple[tuple[float, ...], float], Any] = {}
+    stages: list[Any] = []
+    for a, c, alpha, d in zip(tableau.a, tableau.c, tableau.alpha, tableau.d, strict=True):
+        key = (a if any(a) else (), alpha)
+        if key not in rates:
+            moved = [x + _combine(a, stages), u + alpha * h * slope]
+            rates[key] = ca.substitute([ode], [x, u], moved)[0] if any(a) or alpha else ode
+        right = gamma_h * (rates[key] + d * h * ode_t) + tableau.gamma * _combine(c, stages)
+        stages.append(factors.solve(right))
+    return x + _combine(tableau.m, stages), ca.densify(ca.SX(_combine(tableau.e, stages))), slope, h

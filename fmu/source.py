@@ -1,0 +1,98 @@
+"""The C source of an FMU as one text: FMI headers, the model's tables and functions, the fixed wrapper."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable
+from importlib.resources import files
+
+from gearheat.model.core.flat import FlatModel
+
+from . import emit
+from .description import TOLERANCE
+from .equations import Equations
+from .rosenbrock import RODAS3
+from .units import fmi_unit
+from .variables import Table
+
+_HEADERS = ("fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h")
+_WRAPPER = (
+    "instance.h",
+    "messages.c",
+    "evaluate.c",
+    "solver.c",
+    "common.c",
+    "states.c",
+    "derivatives.c",
+    "cosimulation.c",
+    "exchange.c",
+)
+
+#: Where the identification goes; it is the hash of everything else.
+GUID_MARK = "@GUID@"
+
+
+def source(flat: FlatModel, model: Equations, table: Table) -> str:
+    """The whole C text, with GUID_MARK in place of the identification."""
+    head = f"/* {flat.name}: FMI 2.0 for model exchange and co-simulation in one file; needs only the C library. */\n"
+    generated = "\n".join([_sizes(flat, model, table), _tables(flat, table), *map(emit.function, model.functions)])
+    return "\n".join([head, _fmi_headers(), generated, *map(_wrapper_file, _WRAPPER)])
+
+
+def _fmi_headers() -> str:
+    """The standard's headers, without their includes of each other."""
+    folder = files("fmpy") / "c-code"
+    texts = [(folder / name).read_text(encoding="utf-8") for name in _HEADERS]
+    return "\n".join(re.sub(r'#include "fmi2\w+\.h"\n', "", text.replace("\r\n", "\n")) for text in texts)
+
+
+def _wrapper_file(name: str) -> str:
+    return (files("gearheat.fmu") / "wrapper" / name).read_text(encoding="utf-8")
+
+
+def _sizes(flat: FlatModel, model: Equations, table: Table) -> str:
+    sizes = {
+        "NX": len(table.of("state")),
+        "NU": len(table.of("input")),
+        "NY": len(table.of("output")),
+        "NP": len(table.of("parameter")),
+        "NC": model.constants.numel_out(0),
+        "NK": len(flat.checks),
+        "ORDER": RODAS3.order,
+        "TOLERANCE": TOLERANCE,
+        "MODEL_NAME": _string(flat.name),
+        "MODEL_GUID": _string(GUID_MARK),
+    }
+    return "#include <math.h>\n\n" + "".join(f"#define {name} {value}\n" for name, value in sizes.items())
+
+
+def _tables(flat: FlatModel, table: Table) -> str:
+    checks = flat.checks
+    strings = {
+        "model_names": [v.name for v in table],
+        "model_units": [fmi_unit(v.quantity.unit) for v in table],
+        "model_checks": [
+            f"{c.component}: {c.argument} of {c.law.name} ({c.law.source}, {c.law.where})" for c in checks
+        ],
+    }
+    numbers = {
+        "model_start": [v.start or 0.0 for v in table],
+        "model_low": [v.bounds[0] for v in table],
+        "model_high": [v.bounds[1] for v in table],
+        "model_nominal": [v.quantity.nominal for v in table],
+        "model_check_low": [c.low for c in checks],
+        "model_check_high": [c.high for c in checks],
+    }
+    texts = [_array("const char *const", name, map(_string, values)) for name, values in strings.items()]
+    texts += [_array("const double", name, map(emit.number, values)) for name, values in numbers.items()]
+    return "\n".join(texts)
+
+
+def _array(kind: str, name: str, values: Iterable[str]) -> str:
+    rows = list(values) or ["0"]
+    return f"static {kind} {name}[] = {{\n" + "".join(f"    {row},\n" for row in rows) + "};\n"
+
+
+def _string(text: str) -> str:
+    escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", " ")
+    return f'"{escaped}"'

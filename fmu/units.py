@@ -1,0 +1,85 @@
+"""Unit definitions of an FMU: base units of SI and the unit shown to a person."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from dataclasses import dataclass
+from types import MappingProxyType
+
+from gearheat.model import units as model_units
+
+#: Exponents of the SI base units, and the factor to them, of each unit the model writes.
+_NAMED: dict[str, tuple[float, dict[str, int]]] = {
+    "1": (1.0, {}),
+    "kg": (1.0, {"kg": 1}),
+    "m": (1.0, {"m": 1}),
+    "s": (1.0, {"s": 1}),
+    "A": (1.0, {"A": 1}),
+    "K": (1.0, {"K": 1}),
+    "mol": (1.0, {"mol": 1}),
+    "cd": (1.0, {"cd": 1}),
+    "rad": (1.0, {"rad": 1}),
+    "Hz": (1.0, {"s": -1}),
+    "N": (1.0, {"kg": 1, "m": 1, "s": -2}),
+    "Pa": (1.0, {"kg": 1, "m": -1, "s": -2}),
+    "J": (1.0, {"kg": 1, "m": 2, "s": -2}),
+    "W": (1.0, {"kg": 1, "m": 2, "s": -3}),
+    "C": (1.0, {"s": 1, "A": 1}),
+    "V": (1.0, {"kg": 1, "m": 2, "s": -3, "A": -1}),
+    "ohm": (1.0, {"kg": 1, "m": 2, "s": -3, "A": -2}),
+    "F": (1.0, {"kg": -1, "m": -2, "s": 4, "A": 2}),
+    "H": (1.0, {"kg": 1, "m": 2, "s": -2, "A": -2}),
+    "mm": (1e-3, {"m": 1}),
+    "min": (60.0, {"s": 1}),
+    "h": (3600.0, {"s": 1}),
+}
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A unit with its base exponents (None when it is not understood) and the unit it is shown in.
+
+    shown value = factor * value + offset
+    """
+
+    name: str
+    factor: float
+    exponents: Mapping[str, int] | None
+    shown: str
+    shown_factor: float
+    shown_offset: float
+
+
+def fmi_unit(unit: str) -> str:
+    """The unit attribute of a variable: the model's unit without the mark of a difference."""
+    return unit.removesuffix("(difference)").strip()
+
+
+def is_difference(unit: str) -> bool:
+    """Whether a quantity in `unit` is a difference, which an offset of the shown unit must not touch."""
+    return unit.endswith("(difference)")
+
+
+def unit(name: str) -> Unit:
+    """Definition of a unit the model writes, like "W/(m2.K)"."""
+    zero = model_units.from_si(0.0, name)
+    slope = model_units.from_si(1.0, name) - zero
+    factor, exponents = _parse(name)
+    return Unit(name, factor, exponents, model_units.shown(name), float(f"{slope:.15g}"), zero)
+
+
+def _parse(name: str) -> tuple[float, Mapping[str, int] | None]:
+    """Factor and base exponents: products by '.', powers as digits behind a symbol, one '/' before the divisor."""
+    factor, total = 1.0, dict[str, int]()
+    for sign, side in zip((1, -1), name.split("/"), strict=False):
+        for term in side.strip("()").split("."):
+            match = re.fullmatch(r"([a-zA-Z]+|1)(-?\d+)?", term)
+            if match is None or match[1] not in _NAMED or name.count("/") > 1:
+                return 1.0, None
+            power = sign * int(match[2] or 1)
+            scale, exponents = _NAMED[match[1]]
+            factor *= scale**power
+            for base, e in exponents.items():
+                total[base] = total.get(base, 0) + e * power
+    return factor, MappingProxyType({b: e for b, e in sorted(total.items()) if e})

@@ -1,0 +1,178 @@
+"""The one table of an FMU's variables: it drives modelDescription.xml, the tables of the C code, and playing."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+from gearheat.model.core.flat import FlatModel, Quantity
+from gearheat.model.errors import FmuError, suggestion
+
+#: Scale of an absolute temperature: steps and errors are a few kelvin, whatever the distance from absolute zero.
+TEMPERATURE_SCALE = 10.0
+
+SUPPLIED, THROUGHPUT, STORED, RESIDUAL = "energy.supplied", "energy.throughput", "energy.stored", "energy.residual"
+VALIDITY, IMPLICIT = "validity.count", "implicit.residual"
+
+
+@dataclass(frozen=True)
+class Variable:
+    """One scalar variable of an FMU; `reference` is its value reference and its position in the description.
+
+    Attributes:
+        kind: "state", "input", "output", "parameter" or "derivative"
+        state: value reference of the state a derivative belongs to
+    """
+
+    reference: int
+    kind: str
+    quantity: Quantity
+    state: int | None = None
+
+    @property
+    def name(self) -> str:
+        """Path of the variable, der(path) for a derivative."""
+        return self.quantity.name
+
+    @property
+    def causality(self) -> str:
+        """Causality in the sense of FMI 2.0."""
+        return {"state": "output", "derivative": "local"}.get(self.kind, self.kind)
+
+    @property
+    def variability(self) -> str:
+        """Variability in the sense of FMI 2.0."""
+        return "tunable" if self.kind == "parameter" else "continuous"
+
+    @property
+    def initial(self) -> str | None:
+        """How the initial value is found; None for an input, where FMI 2.0 forbids to say."""
+        return {"state": "exact", "parameter": "exact", "input": None}.get(self.kind, "calculated")
+
+    @property
+    def start(self) -> float | None:
+        """Start value, None where the FMU calculates it."""
+        return None if self.kind in ("output", "derivative") else self.quantity.start
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """Lowest and highest value allowed; an open end is the next number inside."""
+        q = self.quantity
+        low = math.nextafter(q.low, math.inf) if q.low_open else q.low
+        high = math.nextafter(q.high, -math.inf) if q.high_open else q.high
+        return float(low), float(high)
+
+
+@dataclass(frozen=True)
+class Table:
+    """All variables of an FMU in the order of their value references: states, inputs, outputs, parameters, derivatives.
+
+    The two audit states stand behind the model's own, the audit outputs behind the model's own.
+    """
+
+    variables: tuple[Variable, ...]
+
+    def of(self, kind: str) -> tuple[Variable, ...]:
+        """The variables of one kind, in order."""
+        return tuple(v for v in self.variables if v.kind == kind)
+
+    def __iter__(self) -> Iterator[Variable]:
+        return iter(self.variables)
+
+    @cached_property
+    def by_name(self) -> Mapping[str, Variable]:
+        """Name -> variable."""
+        return {v.name: v for v in self.variables}
+
+    def first(self, kind: str) -> int:
+        """Value reference of the first variable of a kind (of the following one when there is none)."""
+        order = ("state", "input", "output", "parameter", "derivative")
+        return sum(len(self.of(k)) for k in order[: order.index(kind)])
+
+
+def table(flat: FlatModel, start: Mapping[str, float] | None = None) -> Table:
+    """The variables of the FMU of a flat model.
+
+    Args:
+        flat: the model
+        start: start values (SI) that replace those of inputs, parameters and states
+
+    Raises:
+        FmuError: a start value is unknown, not settable, or out of its range; a name appears twice
+    """
+    states, inputs, parameters, problems = _started(flat, dict(start or {}))
+    derivatives = tuple(_derivative(q) for q in states)
+    variables: list[Variable] = []
+    groups = {"state": states, "input": inputs, "output": _outputs(flat), "parameter": parameters}
+    for kind, group in groups.items():
+        variables += [Variable(len(variables) + i, kind, q) for i, q in enumerate(group)]
+    variables += [Variable(len(variables) + i, "derivative", q, state=i) for i, q in enumerate(derivatives)]
+    names = [v.name for v in variables]
+    twice = sorted({n for n in names if names.count(n) > 1})
+    problems += [f'{flat.name}: the name "{n}" appears twice.' for n in twice]
+    if problems:
+        raise FmuError(problems)
+    return Table(tuple(variables))
+
+
+Group = tuple[Quantity, ...]
+
+
+def _started(flat: FlatModel, start: dict[str, float]) -> tuple[Group, Group, Group, list[str]]:
+    """States with the audit states, inputs and parameters with their start values, and what is wrong with them."""
+    states = tuple(replace(q, nominal=error_scale(q)) for q in flat.states)
+    groups = [states, flat.inputs, flat.parameters]
+    settable = {q.name for group in groups for q in group}
+    problems = []
+    for name in sorted(start.keys() - settable):
+        what = "is calculated by the model" if name in flat.index else f"is unknown.{suggestion(name, settable)}"
+        problems.append(f'{flat.name}: start value "{name}" {what}')
+    groups = [tuple(replace(q, start=float(start.get(q.name, q.start))) for q in group) for group in groups]
+    problems += [f"{flat.name}: start value {p}" for group in groups for q in group if (p := q.problem(q.start))]
+    return (*groups[0], *_audit_states(flat)), groups[1], groups[2], problems
+
+
+def error_scale(quantity: Quantity) -> float:
+    """What an error of a state is measured by: its nominal, but never the distance from absolute zero."""
+    return min(quantity.nominal, TEMPERATURE_SCALE) if quantity.unit == "K" else quantity.nominal
+
+
+def _audit_states(flat: FlatModel) -> Group:
+    """The two energies the export integrates beside the model; their scale is the energy of a nominal change."""
+    slope = ca.Function("slope", [flat.x, flat.u, flat.p], [ca.jacobian(flat.stored, flat.x)])
+    values = np.abs(slope(*(flat.starts(kind) for kind in ("state", "input", "parameter"))).full().ravel())
+    scale = float(values @ np.array([error_scale(q) for q in flat.states])) if flat.states else 0.0
+    scale = float(f"{scale:.2g}") if np.isfinite(scale) and scale > 0 else 1.0
+    return (
+        Quantity(SUPPLIED, "J", "energy that crossed the boundary inwards since the start", nominal=scale),
+        Quantity(THROUGHPUT, "J", "sum of the magnitudes of all energies that crossed the boundary", nominal=scale),
+    )
+
+
+def _outputs(flat: FlatModel) -> Group:
+    audit = [
+        Quantity(STORED, "J", "energy stored in the states"),
+        Quantity(RESIDUAL, "W", "power into the model less the rate of its stored energy; zero in a sound model"),
+        Quantity(VALIDITY, "1", "number of law arguments outside the range their source gives", low=0.0),
+    ]
+    if flat.residual_names:
+        audit.append(Quantity(IMPLICIT, "1", "largest scaled residual of the implicit equations", low=0.0))
+    return (*flat.outputs, *audit)
+
+
+def _derivative(q: Quantity) -> Quantity:
+    return Quantity(f"der({q.name})", per_second(q.unit), f"time derivative of {q.name}", nominal=q.nominal)
+
+
+def per_second(unit: str) -> str:
+    """The unit of the time derivative of a quantity in `unit`."""
+    unit = unit.removesuffix("(difference)").strip()
+    if unit in ("J", "1"):
+        return {"J": "W", "1": "1/s"}[unit]
+    if unit.endswith("/s"):
+        return f"{unit}2"
+    return f"{unit}.s-1" if "/" in unit else f"{unit}/s"

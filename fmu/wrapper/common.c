@@ -1,0 +1,224 @@
+/* Functions both interfaces share: life cycle, logging, values. */
+
+#define GETTABLE (INITIALIZATION | EVENT | CONTINUOUS_TIME | STEP_COMPLETE | STEP_FAILED | TERMINATED)
+#define SETTABLE (INSTANTIATED | INITIALIZATION | EVENT | CONTINUOUS_TIME | STEP_COMPLETE | STEP_FAILED)
+
+const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
+
+const char *fmi2GetVersion(void) { return fmi2Version; }
+
+/* The state of a fresh instance. */
+static void start(Instance *m)
+{
+    int type = m->s.type, i;
+    memset(&m->s, 0, sizeof m->s);
+    m->s.type = type;
+    m->s.mode = INSTANTIATED;
+    m->s.tolerance = TOLERANCE;
+    for (i = 0; i < NX; i++) m->s.x[i] = model_start[FIRST_X + i];
+    for (i = 0; i < NU; i++) m->s.u[i] = model_start[FIRST_U + i];
+    for (i = 0; i < NP; i++) m->s.p[i] = model_start[FIRST_P + i];
+    m->constants_known = m->outputs_known = 0;
+    m->log_mask = m->log_mask_at_start;
+    memset(m->warned, 0, sizeof m->warned);
+}
+
+fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
+                              const fmi2CallbackFunctions *callbacks, fmi2Boolean visible, fmi2Boolean logging)
+{
+    Instance *m, untold;
+    size_t length = name ? strlen(name) : 0;
+    (void)resources;
+    (void)visible;
+    if (!callbacks) return NULL;
+    memset(&untold, 0, sizeof untold);
+    untold.callbacks = *callbacks;
+    untold.name = (char *)MODEL_NAME;
+    if (length == 0) return refuse(&untold, "fmi2Instantiate: the instance has no name."), NULL;
+    if (type != fmi2ModelExchange && type != fmi2CoSimulation)
+        return refuse(&untold, "fmi2Instantiate: unknown FMU type %d.", (int)type), NULL;
+    if (!guid || strcmp(guid, MODEL_GUID) != 0)
+        return refuse(&untold, "fmi2Instantiate: wrong GUID %.100s: this binary belongs to %s.",
+                      guid ? guid : "(none)", MODEL_GUID), NULL;
+    m = calloc(1, sizeof *m);
+    if (m) m->name = malloc(length + 1);
+    if (!m || !m->name) {
+        free(m);
+        return refuse(&untold, "fmi2Instantiate: out of memory."), NULL;
+    }
+    memcpy(m->name, name, length + 1);
+    m->callbacks = *callbacks;
+    m->log_mask_at_start = logging ? (1u << N_CATEGORIES) - 1 : 0;
+    m->s.type = type;
+    start(m);
+    return m;
+}
+
+void fmi2FreeInstance(fmi2Component c)
+{
+    Instance *m = c;
+    if (!m) return;
+    free(m->name);
+    free(m);
+}
+
+fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t count, const fmi2String names[])
+{
+    Instance *m = c;
+    unsigned mask = count == 0 ? (1u << N_CATEGORIES) - 1 : 0;
+    size_t i;
+    int k;
+    if (!allowed(m, ANY_MODE, "fmi2SetDebugLogging")) return fmi2Error;
+    if (missing(m, names, count, "fmi2SetDebugLogging")) return fmi2Error;
+    for (i = 0; i < count; i++) {
+        for (k = 0; k < N_CATEGORIES; k++)
+            if (names[i] && strcmp(names[i], category_names[k]) == 0) break;
+        if (k == N_CATEGORIES)
+            return refuse(m, "fmi2SetDebugLogging: unknown category %.100s.", names[i] ? names[i] : "(null)");
+        mask |= 1u << k;
+    }
+    m->log_mask = on ? mask : 0;
+    return fmi2OK;
+}
+
+fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean tolerance_defined, fmi2Real tolerance, fmi2Real from,
+                               fmi2Boolean stop_defined, fmi2Real stop)
+{
+    Instance *m = c;
+    if (!allowed(m, INSTANTIATED, "fmi2SetupExperiment")) return fmi2Error;
+    if (tolerance_defined && !(isfinite(tolerance) && tolerance > 0))
+        return refuse(m, "fmi2SetupExperiment: tolerance %g must be above 0 and finite.", tolerance);
+    if (!isfinite(from)) return refuse(m, "fmi2SetupExperiment: start time %g is not finite.", from);
+    if (stop_defined && !(stop >= from))
+        return refuse(m, "fmi2SetupExperiment: stop time %g s lies before the start time %g s.", stop, from);
+    m->s.tolerance = tolerance_defined ? tolerance : TOLERANCE;
+    m->s.time = from;
+    m->s.stop_defined = stop_defined != fmi2False;
+    m->s.stop = stop_defined ? stop : 0.0;
+    return fmi2OK;
+}
+
+fmi2Status fmi2EnterInitializationMode(fmi2Component c)
+{
+    Instance *m = c;
+    if (!allowed(m, INSTANTIATED, "fmi2EnterInitializationMode")) return fmi2Error;
+    m->s.mode = INITIALIZATION;
+    return fmi2OK;
+}
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component c)
+{
+    Instance *m = c;
+    int i;
+    if (!allowed(m, INITIALIZATION, "fmi2ExitInitializationMode")) return fmi2Error;
+    refresh_outputs(m);
+    for (i = 0; i < NX; i++)
+        if (!isfinite(m->dx[i]))
+            return refuse(m, "fmi2ExitInitializationMode: %s is %g. Check start values, inputs and parameters.",
+                          model_names[FIRST_DX + i], m->dx[i]);
+    m->s.mode = m->s.type == fmi2ModelExchange ? EVENT : STEP_COMPLETE;
+    warn_validity(m);
+    return fmi2OK;
+}
+
+fmi2Status fmi2Terminate(fmi2Component c)
+{
+    Instance *m = c;
+    if (!allowed(m, EVENT | CONTINUOUS_TIME | STEP_COMPLETE | STEP_FAILED, "fmi2Terminate")) return fmi2Error;
+    m->s.mode = TERMINATED;
+    return fmi2OK;
+}
+
+fmi2Status fmi2Reset(fmi2Component c)
+{
+    Instance *m = c;
+    if (!allowed(m, ANY_MODE, "fmi2Reset")) return fmi2Error;
+    start(m);
+    return fmi2OK;
+}
+
+static int known_references(const Instance *m, const fmi2ValueReference r[], size_t n, const char *function)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        if (r[i] >= N_VARIABLES) {
+            refuse(m, "%s: unknown value reference %u.", function, r[i]);
+            return 0;
+        }
+    return 1;
+}
+
+fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Real value[])
+{
+    Instance *m = c;
+    fmi2Status status = fmi2OK;
+    size_t i;
+    if (!allowed(m, GETTABLE, "fmi2GetReal")) return fmi2Error;
+    if (missing(m, r, n, "fmi2GetReal") || missing(m, value, n, "fmi2GetReal")) return fmi2Error;
+    if (!known_references(m, r, n, "fmi2GetReal")) return fmi2Error;
+    for (i = 0; i < n; i++) {
+        value[i] = value_of(m, r[i]);
+        if (!isfinite(value[i]))
+            status = discard(m, "fmi2GetReal: %s is %g at t = %.10g s.", model_names[r[i]], value[i], m->s.time);
+    }
+    return status;
+}
+
+/* Modes in which a variable may be set. */
+static int settable(fmi2ValueReference r)
+{
+    if (r < FIRST_U) return INSTANTIATED | INITIALIZATION;
+    if (r < FIRST_Y) return SETTABLE;
+    if (r >= FIRST_P && r < FIRST_DX) return SETTABLE & ~CONTINUOUS_TIME;
+    return 0;
+}
+
+fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Real value[])
+{
+    Instance *m = c;
+    size_t i;
+    if (!allowed(m, SETTABLE, "fmi2SetReal")) return fmi2Error;
+    if (missing(m, r, n, "fmi2SetReal") || missing(m, value, n, "fmi2SetReal")) return fmi2Error;
+    if (!known_references(m, r, n, "fmi2SetReal")) return fmi2Error;
+    for (i = 0; i < n; i++) {
+        if (settable(r[i]) == 0)
+            return refuse(m, "fmi2SetReal: %s is calculated and cannot be set.", model_names[r[i]]);
+        if (!(settable(r[i]) & m->s.mode))
+            return refuse(m, "fmi2SetReal: %s cannot be set in the mode \"%s\".", model_names[r[i]],
+                          mode_name(m->s.mode));
+        if (!in_range(r[i], value[i])) return refuse_value(m, "fmi2SetReal", r[i], value[i]);
+    }
+    for (i = 0; i < n; i++) {
+        double *place = stored(m, r[i]);
+        if (*place == value[i]) continue;
+        if (fabs(value[i] - *place) > 1e-6 * (fabs(*place) + model_nominal[r[i]]) || r[i] >= FIRST_P)
+            m->s.jumped = m->s.states_touched = 1;
+        if (r[i] >= FIRST_P) m->constants_known = 0;
+        *place = value[i];
+        m->outputs_known = 0;
+    }
+    return fmi2OK;
+}
+
+/* All variables are real numbers. */
+static fmi2Status no_variables(fmi2Component c, size_t n, int modes, const char *function)
+{
+    if (!allowed(c, modes, function)) return fmi2Error;
+    return n == 0 ? fmi2OK : refuse(c, "%s: unknown value reference; all variables are Real.", function);
+}
+
+#define NO_VARIABLES(TYPE) \
+    fmi2Status fmi2Get##TYPE(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2##TYPE value[]) \
+    { \
+        (void)r, (void)value; \
+        return no_variables(c, n, GETTABLE, "fmi2Get" #TYPE); \
+    } \
+    fmi2Status fmi2Set##TYPE(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2##TYPE value[]) \
+    { \
+        (void)r, (void)value; \
+        return no_variables(c, n, SETTABLE & ~CONTINUOUS_TIME, "fmi2Set" #TYPE); \
+    }
+
+NO_VARIABLES(Integer)
+NO_VARIABLES(Boolean)
+NO_VARIABLES(String)

@@ -1,0 +1,62 @@
+/* The model's functions behind dirty flags. */
+
+static void refresh_constants(Instance *m)
+{
+    if (m->constants_known) return;
+    model_constants(m->s.p, m->c);
+    m->constants_known = 1;
+}
+
+static void refresh_outputs(Instance *m)
+{
+    if (m->outputs_known) return;
+    refresh_constants(m);
+    model_outputs(m->s.x, m->s.u, m->s.p, m->c, m->y, m->dx);
+    m->outputs_known = 1;
+}
+
+/* Where a value lies: NULL for a value the model calculates. */
+static double *stored(Instance *m, fmi2ValueReference r)
+{
+    if (r < FIRST_U) return &m->s.x[r - FIRST_X];
+    if (r < FIRST_Y) return &m->s.u[r - FIRST_U];
+    if (r >= FIRST_P && r < FIRST_DX) return &m->s.p[r - FIRST_P];
+    return NULL;
+}
+
+static double value_of(Instance *m, fmi2ValueReference r)
+{
+    const double *value = stored(m, r);
+    if (value) return *value;
+    refresh_outputs(m);
+    return r < FIRST_P ? m->y[r - FIRST_Y] : m->dx[r - FIRST_DX];
+}
+
+static int in_range(fmi2ValueReference r, double value)
+{
+    return isfinite(value) && value >= model_low[r] && value <= model_high[r];
+}
+
+/* What is wrong with a value; a value beyond its range would only show as a strange result far from its cause. */
+static fmi2Status refuse_value(const Instance *m, const char *function, fmi2ValueReference r, double value)
+{
+    if (!isfinite(value)) return refuse(m, "%s: %s = %g is not finite.", function, model_names[r], value);
+    return refuse(m, "%s: %s = %.10g %s is out of range: it must lie between %.10g and %.10g.", function,
+                  model_names[r], value, model_units[r], model_low[r], model_high[r]);
+}
+
+/* Law arguments outside the range of their source are told once each. */
+static void warn_validity(Instance *m)
+{
+    double argument[AT_LEAST_1(NK)];
+    int i;
+    if (NK == 0 || !(m->log_mask & (1u << LOG_WARNING))) return;
+    refresh_constants(m);
+    model_arguments(m->s.x, m->s.u, m->s.p, m->c, argument);
+    for (i = 0; i < NK; i++) {
+        if (m->warned[i] || !(argument[i] < model_check_low[i] || argument[i] > model_check_high[i])) continue;
+        m->warned[i] = 1;
+        note(m, fmi2Warning, LOG_WARNING, "%s = %.6g is outside %.6g .. %.6g at t = %.10g s.", model_checks[i],
+             argument[i], model_check_low[i], model_check_high[i], m->s.time);
+    }
+}

@@ -1,0 +1,72 @@
+/* One instance of the FMU. Everything a saved FMU state holds is in State: plain data without pointers, so saving,
+   restoring and serializing are copies. The model's sizes, tables and functions stand above this text. */
+
+#include <math.h>
+#include <stdarg.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#define AT_LEAST_1(n) ((n) > 0 ? (n) : 1)
+
+/* Value references: states, inputs, outputs, parameters, derivatives. */
+enum {
+    FIRST_X = 0,
+    FIRST_U = FIRST_X + NX,
+    FIRST_Y = FIRST_U + NU,
+    FIRST_P = FIRST_Y + NY,
+    FIRST_DX = FIRST_P + NP,
+    N_VARIABLES = FIRST_DX + NX
+};
+
+/* The last two states are the audit's; the error control looks at all but the last. */
+enum { SUPPLIED = NX - 2, THROUGHPUT = NX - 1, N_CONTROLLED = NX - 1 };
+
+/* The mode of an instance, one bit each, so that a function names the modes it is allowed in by a mask. */
+enum {
+    INSTANTIATED = 1,
+    INITIALIZATION = 2,
+    EVENT = 4,
+    CONTINUOUS_TIME = 8,
+    STEP_COMPLETE = 16,
+    STEP_FAILED = 32,
+    TERMINATED = 64,
+    ANY_MODE = 127
+};
+
+typedef struct {
+    int mode;
+    int type;              /* fmi2ModelExchange or fmi2CoSimulation */
+    int stop_defined;
+    int jumped;            /* an input or a parameter has jumped since the last step */
+    int states_touched;    /* ModelExchange: the integrator has to restart at the end of event mode */
+    int spare;             /* keeps the doubles aligned without hidden bytes */
+    double time;
+    double stop;
+    double tolerance;
+    double h_first;        /* step proposed after the first accepted step of the last communication step */
+    double h_last;         /* step proposed after the last one */
+    double x[AT_LEAST_1(NX)];
+    double u[AT_LEAST_1(NU)];
+    double slope[AT_LEAST_1(NU)];
+    double p[AT_LEAST_1(NP)];
+} State;
+
+typedef struct {
+    State s;
+    int constants_known;   /* c belongs to s.p */
+    int outputs_known;     /* y and dx belong to s */
+    unsigned log_mask;
+    unsigned log_mask_at_start;
+    fmi2CallbackFunctions callbacks;
+    char *name;
+    double c[AT_LEAST_1(NC)];
+    double y[AT_LEAST_1(NY)];
+    double dx[AT_LEAST_1(NX)];
+    unsigned char warned[AT_LEAST_1(NK)];
+} Instance;
+
+/* Log categories, in the order of the model description. */
+enum { LOG_ERROR, LOG_DISCARD, LOG_WARNING, LOG_SOLVER, N_CATEGORIES };
