@@ -4,7 +4,7 @@ Every one of them has a width: the size of x over which the corner is rounded. F
 deviation falls as (width/x)^2, so a width of a thousandth of the nominal value is invisible. Two rules for users:
 
 - under a power below 1 take `smooth_abs`, which is never zero, so value and slope stay finite at x = 0;
-- where a loss must vanish with x and never turn into a source take `x * smooth_sign(x)`, or multiply a magnitude by
+- where a loss must vanish with x take `smooth_magnitude` or `smooth_power`, or multiply a magnitude by
   `smooth_sign(w)`: the power w * smooth_sign(w) is never negative.
 """
 
@@ -30,6 +30,16 @@ def smooth_abs(x: Num, width: float = SPEED_WIDTH) -> Num:
 def smooth_sign(x: Num, width: float = SPEED_WIDTH) -> Num:
     """The slope of `smooth_abs`: odd, zero at x = 0, between -1 and 1; x * smooth_sign(x) is never negative."""
     return x / smooth_abs(x, width)
+
+
+def smooth_magnitude(x: Num, width: float = SPEED_WIDTH) -> Num:
+    """x * smooth_sign(x), in the unit of x: zero at x = 0, even, never above |x|."""
+    return x * smooth_sign(x, width)
+
+
+def smooth_power(x: Num, exponent: Num, width: float = SPEED_WIDTH) -> Num:
+    """|x|^exponent as x^2 (x^2 + width^2)^(exponent/2 - 1): even, zero with zero slope at x = 0; exponent above 0."""
+    return x * x * (x * x + width * width) ** (0.5 * exponent - 1)
 
 
 def smooth_positive(x: Num, width: float) -> Num:

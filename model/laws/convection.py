@@ -1,0 +1,263 @@
+"""Heat transfer from a housing to air: Nusselt numbers, and heat transfer coefficients in air made of them.
+
+The Nusselt laws are the cited ones. The functions that return a heat transfer coefficient choose a law, a length and
+the properties of air at the film temperature. All of them are smooth at zero temperature difference and zero speed.
+"""
+
+from __future__ import annotations
+
+import casadi as ca
+
+from ..sources import law
+from .smooth import Num, smooth_abs, smooth_power, smooth_sign
+
+GRAVITY = 9.80665
+#: Rounding of a temperature difference [K] and of an air speed [m/s].
+DT_WIDTH, V_WIDTH = 1e-2, 1e-3
+
+
+@law(
+    source="White2006",
+    where="Sutherland laws for air, Tables 1-2 and 1-3",
+    valid="air, 170-1900 K, 2 %",
+    ranges={"T_film": (170.0, 1900.0)},
+)
+def air_properties(T_film: Num, *, p: float = 101325.0) -> tuple[Num, Num, Num, Num]:
+    r"""Conductivity k [W/(m.K)], kinematic viscosity nu [m2/s], Prandtl number Pr [1] and expansion beta [1/K] of air.
+
+    .. math:: \eta = 1.716 \cdot 10^{-5} \left(\frac{T}{273}\right)^{3/2} \frac{273 + 111}{T + 111},\quad
+        k = 0.0241 \left(\frac{T}{273}\right)^{3/2} \frac{273 + 194}{T + 194}
+
+    with the density of an ideal gas, a specific heat of 1007 J/(kg.K) and beta = 1/T.
+
+    Args:
+        T_film: mean temperature of surface and air [K]
+        p: pressure [Pa]
+    """
+    growth = (T_film / 273) ** 1.5
+    eta = 1.716e-5 * growth * (273 + 111) / (T_film + 111)
+    k = 0.0241 * growth * (273 + 194) / (T_film + 194)
+    rho = p / (287.05 * T_film)
+    return k, eta / rho, 1007 * eta / k, 1 / T_film
+
+
+@law(source="ChurchillChu1975a", where="equation for all Ra and Pr", valid="vertical plate", ranges={"Ra": (0.0, 1e12)})
+def nusselt_vertical_plate(Ra: Num, Pr: Num) -> Num:
+    r"""Mean Nusselt number of a vertical plate in free convection [1], length its height.
+
+    .. math:: Nu = \left(0.825 + \frac{0.387 Ra^{1/6}}{[1 + (0.492/Pr)^{9/16}]^{8/27}}\right)^2
+
+    Args:
+        Ra: Rayleigh number, above 0 [1]
+        Pr: Prandtl number [1]
+    """
+    return (0.825 + 0.387 * Ra ** (1 / 6) / (1 + (0.492 / Pr) ** (9 / 16)) ** (8 / 27)) ** 2
+
+
+@law(
+    source="ChurchillChu1975b",
+    where="equation for all Ra and Pr",
+    valid="horizontal cylinder",
+    ranges={"Ra": (1e-6, 1e12)},
+)
+def nusselt_horizontal_cylinder(Ra: Num, Pr: Num) -> Num:
+    r"""Mean Nusselt number of a horizontal cylinder in free convection [1], length its diameter.
+
+    .. math:: Nu = \left(0.60 + \frac{0.387 Ra^{1/6}}{[1 + (0.559/Pr)^{9/16}]^{8/27}}\right)^2
+
+    Args:
+        Ra: Rayleigh number, above 0 [1]
+        Pr: Prandtl number [1]
+    """
+    return (0.60 + 0.387 * Ra ** (1 / 6) / (1 + (0.559 / Pr) ** (9 / 16)) ** (8 / 27)) ** 2
+
+
+@law(
+    source="McAdams1954",
+    where="hot plate facing up or cold plate facing down",
+    valid="Ra 1e4-1e11, length area over perimeter",
+    ranges={"Ra": (1e4, 1e11)},
+    verified=False,
+)
+def nusselt_plate_unstable(Ra: Num, *, sharpness: float = 20.0) -> Num:
+    r"""Mean Nusselt number of a horizontal plate whose warm side is under the cold one [1].
+
+    .. math:: Nu = \max(0.54 Ra^{1/4}, 0.15 Ra^{1/3})
+
+    The source switches at Ra = 1e7 with a jump of 6 %; the larger of its two branches has none.
+
+    Args:
+        Ra: Rayleigh number, above 0 [1]
+        sharpness: exponent of the mean that joins the branches; they meet at 3.5 % above both for 20
+    """
+    laminar, turbulent = 0.54 * Ra**0.25, 0.15 * Ra ** (1 / 3)
+    return turbulent * (1 + (laminar / turbulent) ** sharpness) ** (1 / sharpness)
+
+
+@law(
+    source="McAdams1954",
+    where="hot plate facing down or cold plate facing up",
+    valid="Ra 1e5-1e10, length area over perimeter",
+    ranges={"Ra": (1e5, 1e10)},
+    verified=False,
+)
+def nusselt_plate_stable(Ra: Num) -> Num:
+    r"""Mean Nusselt number of a horizontal plate whose warm side is over the cold one [1].
+
+    .. math:: Nu = 0.27 Ra^{1/4}
+
+    Args:
+        Ra: Rayleigh number, above 0 [1]
+    """
+    return 0.27 * Ra**0.25
+
+
+@law(
+    source="Gnielinski1975",
+    where="plate in parallel flow, laminar and turbulent combined",
+    valid="Re 10-1e7, Pr 0.6-2000",
+    ranges={"Re": (10.0, 1e7)},
+    verified=False,
+)
+def nusselt_forced_plate(Re: Num, Pr: Num) -> Num:
+    r"""Mean Nusselt number of a plate in parallel flow with a disturbed inlet [1].
+
+    .. math:: Nu = \sqrt{Nu_l^2 + Nu_t^2},\quad Nu_l = 0.664 Re^{1/2} Pr^{1/3},\quad
+        Nu_t = \frac{0.037 Re^{0.8} Pr}{1 + 2.443 Re^{-0.1} (Pr^{2/3} - 1)}
+
+    Args:
+        Re: Reynolds number, above 0 [1]
+        Pr: Prandtl number [1]
+    """
+    laminar = 0.664 * Re**0.5 * Pr ** (1 / 3)
+    turbulent = 0.037 * Re**0.8 * Pr / (1 + 2.443 * Re**-0.1 * (Pr ** (2 / 3) - 1))
+    return ca.sqrt(laminar**2 + turbulent**2)
+
+
+@law(
+    source="ChurchillBernstein1977",
+    where="equation for all Re and Pr",
+    valid="cylinder in cross flow, Re Pr above 0.2",
+    ranges={"Re": (0.3, 1e7)},
+)
+def nusselt_forced_cylinder(Re: Num, Pr: Num) -> Num:
+    r"""Mean Nusselt number of a cylinder in cross flow [1], length its diameter.
+
+    .. math:: Nu = 0.3 + \frac{0.62 Re^{1/2} Pr^{1/3}}{[1 + (0.4/Pr)^{2/3}]^{1/4}}
+        \left[1 + \left(\frac{Re}{282000}\right)^{5/8}\right]^{4/5}
+
+    Args:
+        Re: Reynolds number, above 0 [1]
+        Pr: Prandtl number [1]
+    """
+    laminar = 0.62 * Re**0.5 * Pr ** (1 / 3) / (1 + (0.4 / Pr) ** (2 / 3)) ** 0.25
+    return 0.3 + laminar * (1 + (Re / 282000) ** (5 / 8)) ** 0.8
+
+
+@law(source="Incropera2007", where="mixed convection, exponent 3", valid="assisting flow", verified=False)
+def mixed(h_natural: Num, h_forced: Num, *, width: float = 1e-3) -> Num:
+    r"""Heat transfer coefficient of free and forced convection together [W/(m2.K)].
+
+    .. math:: h = (h_n^3 + h_f^3)^{1/3}
+
+    Args:
+        h_natural: heat transfer coefficient of free convection [W/(m2.K)]
+        h_forced: heat transfer coefficient of forced convection [W/(m2.K)]
+        width: rounding where both vanish [W/(m2.K)]
+    """
+    return smooth_power(h_natural**3 + h_forced**3, 1 / 3, width**3)
+
+
+def rayleigh(T_s: Num, T_f: Num, L: Num, *, dT_width: float = DT_WIDTH) -> tuple[Num, Num, Num]:
+    """Rayleigh number [1] of a surface in air, and Prandtl number [1] and conductivity [W/(m.K)] at film temperature.
+
+    Args:
+        T_s: temperature of the surface [K]
+        T_f: temperature of the air [K]
+        L: characteristic length [m]
+        dT_width: rounding at equal temperatures [K]
+    """
+    k, nu, Pr, beta = air_properties((T_s + T_f) / 2)
+    return GRAVITY * beta * smooth_abs(T_s - T_f, dT_width) * L**3 * Pr / nu**2, Pr, k
+
+
+def natural_vertical_plate(T_s: Num, T_f: Num, height: Num, *, dT_width: float = DT_WIDTH) -> Num:
+    """Heat transfer coefficient [W/(m2.K)] of a vertical plate in still air.
+
+    Args:
+        T_s: temperature of the plate [K]
+        T_f: temperature of the air [K]
+        height: height of the plate [m]
+        dT_width: rounding at equal temperatures [K]
+    """
+    Ra, Pr, k = rayleigh(T_s, T_f, height, dT_width=dT_width)
+    return nusselt_vertical_plate(Ra, Pr) * k / height
+
+
+def natural_horizontal_cylinder(T_s: Num, T_f: Num, D: Num, *, dT_width: float = DT_WIDTH) -> Num:
+    """Heat transfer coefficient [W/(m2.K)] of a horizontal cylinder in still air.
+
+    Args:
+        T_s: temperature of the cylinder [K]
+        T_f: temperature of the air [K]
+        D: diameter [m]
+        dT_width: rounding at equal temperatures [K]
+    """
+    Ra, Pr, k = rayleigh(T_s, T_f, D, dT_width=dT_width)
+    return nusselt_horizontal_cylinder(Ra, Pr) * k / D
+
+
+def natural_horizontal_up(T_s: Num, T_f: Num, L: Num, *, dT_width: float = DT_WIDTH, sign_width: float = 0.05) -> Num:
+    """Heat transfer coefficient [W/(m2.K)] of a horizontal plate that faces upwards in still air, hot or cold.
+
+    Args:
+        T_s: temperature of the plate [K]
+        T_f: temperature of the air [K]
+        L: area of the plate over its perimeter [m]
+        dT_width: rounding of the Rayleigh number at equal temperatures [K]
+        sign_width: temperature difference over which a hot plate's law turns into a cold one's [K]
+    """
+    Ra, _, k = rayleigh(T_s, T_f, L, dT_width=dT_width)
+    hot = 0.5 * (1 + smooth_sign(T_s - T_f, sign_width))
+    return (hot * nusselt_plate_unstable(Ra) + (1 - hot) * nusselt_plate_stable(Ra)) * k / L
+
+
+def natural_horizontal_down(T_s: Num, T_f: Num, L: Num, *, dT_width: float = DT_WIDTH, sign_width: float = 0.05) -> Num:
+    """Heat transfer coefficient [W/(m2.K)] of a horizontal plate that faces downwards in still air, hot or cold.
+
+    Args:
+        T_s: temperature of the plate [K]
+        T_f: temperature of the air [K]
+        L: area of the plate over its perimeter [m]
+        dT_width: rounding of the Rayleigh number at equal temperatures [K]
+        sign_width: temperature difference over which a cold plate's law turns into a hot one's [K]
+    """
+    Ra, _, k = rayleigh(T_s, T_f, L, dT_width=dT_width)
+    cold = 0.5 * (1 - smooth_sign(T_s - T_f, sign_width))
+    return (cold * nusselt_plate_unstable(Ra) + (1 - cold) * nusselt_plate_stable(Ra)) * k / L
+
+
+def forced_plate(v: Num, T_film: Num, L: Num, *, v_width: float = V_WIDTH) -> Num:
+    """Heat transfer coefficient [W/(m2.K)] of a plate in moving air.
+
+    Args:
+        v: speed of the air along the plate, either direction [m/s]
+        T_film: mean temperature of plate and air [K]
+        L: length of the plate along the flow [m]
+        v_width: rounding in still air [m/s]
+    """
+    k, nu, Pr, _ = air_properties(T_film)
+    return nusselt_forced_plate(smooth_abs(v, v_width) * L / nu, Pr) * k / L
+
+
+def forced_cylinder(v: Num, T_film: Num, D: Num, *, v_width: float = V_WIDTH) -> Num:
+    """Heat transfer coefficient [W/(m2.K)] of a cylinder in moving air.
+
+    Args:
+        v: speed of the air across the cylinder, either direction [m/s]
+        T_film: mean temperature of cylinder and air [K]
+        D: diameter [m]
+        v_width: rounding in still air [m/s]
+    """
+    k, nu, Pr, _ = air_properties(T_film)
+    return nusselt_forced_cylinder(smooth_abs(v, v_width) * D / nu, Pr) * k / D

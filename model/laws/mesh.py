@@ -1,0 +1,117 @@
+"""Load-dependent loss of a gear mesh: friction coefficient, tooth loss factor, power."""
+
+from __future__ import annotations
+
+import math
+
+import casadi as ca
+
+from ..sources import law
+from .smooth import Num, smooth_abs, smooth_magnitude
+
+
+@law(
+    source="Schlenk1994",
+    where="mean friction coefficient of the mesh",
+    valid="boundary and mixed friction, transferable with X_L to other oils",
+)
+def friction_schlenk(
+    F_n_l: Num,
+    v_sum: Num,
+    R: Num,
+    eta_oil: Num,
+    Ra: Num,
+    X_L: Num,
+    *,
+    F_width: float = 10.0,
+    v_width: float = 1e-3,
+) -> Num:
+    r"""Mean friction coefficient of a gear mesh [1].
+
+    .. math:: \mu = 0.048 \left(\frac{F_{bn}/l}{v_\Sigma R}\right)^{0.2} \eta^{-0.05} R_a^{0.25} X_L
+
+    Args:
+        F_n_l: normal load per length of contact line, either sign [N/m]
+        v_sum: sum of the rolling speeds at the pitch point, either sign [m/s]
+        R: reduced radius of curvature at the pitch point [m]
+        eta_oil: dynamic viscosity at the oil's temperature [Pa.s]
+        Ra: mean roughness of the two flanks [m]
+        X_L: lubricant factor [1]
+        F_width: rounding at zero load [N/m]
+        v_width: rounding at zero speed [m/s]; keeps the coefficient finite, at four times its value at 1 m/s
+    """
+    F, v = smooth_abs(F_n_l, F_width), smooth_abs(v_sum, v_width)
+    F_N_mm, R_mm, eta_mPas, Ra_um = 1e-3 * F, 1e3 * R, 1e3 * eta_oil, 1e6 * Ra
+    return 0.048 * (F_N_mm / (v * R_mm)) ** 0.2 * eta_mPas**-0.05 * Ra_um**0.25 * X_L
+
+
+@law(
+    source="Dias2014",
+    where="Table 5.3, last column",
+    valid="load shared equally by the tooth pairs in contact",
+    ranges={"eps_1": (1e-9, 5.0), "eps_2": (1e-9, 5.0)},
+)
+def tooth_loss_factor(z_1: Num, u: Num, beta_b: Num, eps_1: float, eps_2: float, *, printed_a2: bool = False) -> Num:
+    r"""Tooth loss factor for any contact ratio above 1 [1], equal load on all pairs in contact.
+
+    .. math:: H_V = \frac{\pi (u + 1)}{z_1 u \cos\beta_b}
+        \left(a_0 + a_1 \varepsilon_1 + a_2 \varepsilon_2 + a_3 \varepsilon_1^2 + a_4 \varepsilon_2^2\right)
+
+    with l, m, n the next whole numbers above eps_1, eps_2 and their sum, and with N = n(n - 1)
+
+    .. math:: a_0 = \frac{N(2n-1) - l(l-1)(2l-1) - m(m-1)(2m-1)}{3N},\quad a_1 = \frac{2l(l-1)}{N} - 1,\quad
+        a_2 = \frac{2m(m-1)}{N} - 1,\quad a_3 = \frac{2(n-l)}{N},\quad a_4 = \frac{2(n-m)}{N}
+
+    Args:
+        z_1: number of teeth of the first gear [1]
+        u: teeth ratio z_2/z_1, negative for an internal second gear [1]
+        beta_b: helix angle at the base cylinder [rad]
+        eps_1: addendum contact ratio of the first gear, a number: it decides the number of pairs [1]
+        eps_2: addendum contact ratio of the second gear, a number [1]
+        printed_a2: whether to reproduce the misprint of a_2 in the source, which has m in the place of l
+    """
+    l, m, n = math.ceil(eps_1), math.ceil(eps_2), math.ceil(eps_1 + eps_2)  # noqa: E741 the source's letters
+    N = n * (n - 1)
+    a_0 = (N * (2 * n - 1) - l * (l - 1) * (2 * l - 1) - m * (m - 1) * (2 * m - 1)) / (3 * N)
+    a_1, a_2 = 2 * l * (l - 1) / N - 1, 2 * m * (m - 1) / N - 1
+    a_3, a_4 = 2 * (n - l) / N, 2 * (n - m) / N
+    if printed_a2:  # misprint: "- 2(m - 1)n" for "- 2(l - 1)n" in the numerator
+        a_2 += 2 * (l - m) / (n - 1)
+    polynomial = a_0 + a_1 * eps_1 + a_2 * eps_2 + a_3 * eps_1**2 + a_4 * eps_2**2
+    return math.pi * (u + 1) / (z_1 * u * ca.cos(beta_b)) * polynomial
+
+
+@law(
+    source="Ohlendorf1958",
+    where="tooth loss factor",
+    valid="1 <= eps_1 + eps_2 <= 2, both below 1",
+    ranges={"eps_1": (0.0, 1.0), "eps_2": (0.0, 1.0)},
+)
+def tooth_loss_factor_ohlendorf(z_1: Num, u: Num, beta_b: Num, eps_1: Num, eps_2: Num) -> Num:
+    r"""Tooth loss factor for a transverse contact ratio between 1 and 2 [1].
+
+    .. math:: H_V = \frac{\pi (u + 1)}{z_1 u \cos\beta_b} (1 - \varepsilon_\alpha + \varepsilon_1^2 + \varepsilon_2^2)
+
+    Args:
+        z_1: number of teeth of the first gear [1]
+        u: teeth ratio z_2/z_1, negative for an internal second gear [1]
+        beta_b: helix angle at the base cylinder [rad]
+        eps_1: addendum contact ratio of the first gear [1]
+        eps_2: addendum contact ratio of the second gear [1]
+    """
+    return math.pi * (u + 1) / (z_1 * u * ca.cos(beta_b)) * (1 - eps_1 - eps_2 + eps_1**2 + eps_2**2)
+
+
+@law(source="Ohlendorf1958", where="mesh loss power")
+def mesh_loss(P_a: Num, mu: Num, H_v: Num, *, P_width: float = 0.1) -> Num:
+    r"""Friction power of one mesh [W], never negative.
+
+    .. math:: P_{VZP} = |P_a| \mu H_V
+
+    Args:
+        P_a: power through the mesh in the frame of the axles, either direction [W]
+        mu: mean friction coefficient [1]
+        H_v: tooth loss factor [1]
+        P_width: rounding at zero power [W]
+    """
+    return smooth_magnitude(P_a, P_width) * mu * H_v

@@ -1,0 +1,164 @@
+"""Oil and grease: viscosity, density, specific heat, conductivity, and the slopes of viscosity that films need."""
+
+from __future__ import annotations
+
+import math
+
+import casadi as ca
+
+from ..sources import law
+from .smooth import Num
+
+T_40, T_100, T_15, T_0 = 313.15, 373.15, 288.15, 273.15
+
+
+@law(source="ASTMD341", where="two-point constants", valid="mineral oils and base oils from -70 to 370 degC")
+def walther_constants(nu_40: Num, nu_100: Num) -> tuple[Num, Num]:
+    r"""Constants (m, n) of the Walther line through the viscosities at 40 and 100 degC, for decimal logarithms.
+
+    .. math:: n = \frac{W(\nu_{40}) - W(\nu_{100})}{\lg 373.15 - \lg 313.15},\quad m = W(\nu_{40}) + n \lg 313.15,
+        \quad W = \lg\lg(\nu + 0.7)
+
+    Args:
+        nu_40: kinematic viscosity at 40 degC [m2/s]
+        nu_100: kinematic viscosity at 100 degC [m2/s]
+    """
+    nu_40_cSt, nu_100_cSt = 1e6 * nu_40, 1e6 * nu_100
+    W_40, W_100 = ca.log10(ca.log10(nu_40_cSt + 0.7)), ca.log10(ca.log10(nu_100_cSt + 0.7))
+    n = (W_40 - W_100) / math.log10(T_100 / T_40)
+    return W_40 + n * math.log10(T_40), n
+
+
+@law(
+    source="ASTMD341",
+    where="two-point line",
+    valid="mineral oils and base oils; synthetic oils with a few percent between the points",
+    ranges={"T": (233.15, 423.15)},
+)
+def kinematic_viscosity(T: Num, nu_40: Num, nu_100: Num) -> Num:
+    r"""Kinematic viscosity [m2/s] on the Walther line through two points, written with natural logarithms.
+
+    .. math:: \nu = \exp(\exp(W)) - 0.7,\quad
+        W = W_{40} + (W_{100} - W_{40}) \frac{\ln (T/313.15)}{\ln (373.15/313.15)},\quad W = \ln\ln(\nu + 0.7)
+
+    Args:
+        T: temperature [K]
+        nu_40: kinematic viscosity at 40 degC [m2/s]
+        nu_100: kinematic viscosity at 100 degC [m2/s]
+    """
+    nu_40_cSt, nu_100_cSt = 1e6 * nu_40, 1e6 * nu_100
+    W_40, W_100 = ca.log(ca.log(nu_40_cSt + 0.7)), ca.log(ca.log(nu_100_cSt + 0.7))
+    share = ca.log(T / T_40) / math.log(T_100 / T_40)
+    return 1e-6 * (ca.exp(ca.exp(W_40 + (W_100 - W_40) * share)) - 0.7)
+
+
+@law(source="ASTMD341", where="Walther equation", valid="within the points the constants come from")
+def kinematic_viscosity_walther(T: Num, m: Num, n: Num) -> Num:
+    r"""Kinematic viscosity [m2/s] from explicit Walther constants.
+
+    .. math:: \nu = 10^{10^{m - n \lg T}} - 0.7
+
+    Args:
+        T: temperature [K]
+        m: intercept, for decimal logarithms and cSt [1]
+        n: slope [1]
+    """
+    inner = ca.exp(math.log(10) * m - n * ca.log(T))  # 10^(m - n lg T)
+    return 1e-6 * (ca.exp(math.log(10) * inner) - 0.7)
+
+
+@law(source="Dias2014", where="oil properties, density", verified=False)
+def density(T: Num, rho_15: Num, alpha_T: Num) -> Num:
+    r"""Density [kg/m3], linear in the temperature.
+
+    .. math:: \rho = \rho_{15} (1 + \alpha_T (T - 288.15))
+
+    Args:
+        T: temperature [K]
+        rho_15: density at 15 degC [kg/m3]
+        alpha_T: relative change of density with temperature, negative [1/K]
+    """
+    return rho_15 * (1 + alpha_T * (T - T_15))
+
+
+@law(source="ASTMD341", where="definition of kinematic viscosity", verified=False)
+def dynamic_viscosity(nu: Num, rho: Num) -> Num:
+    r"""Dynamic viscosity [Pa.s].
+
+    .. math:: \eta = \nu \rho
+
+    Args:
+        nu: kinematic viscosity [m2/s]
+        rho: density [kg/m3]
+    """
+    return nu * rho
+
+
+@law(source="Gold2001", where="pressure-viscosity coefficient up to 0.2 GPa", valid="base oils of the constants' type")
+def pressure_viscosity(nu: Num, s: Num, t: Num) -> Num:
+    r"""Pressure-viscosity coefficient [1/Pa].
+
+    .. math:: \alpha_p = 10^{-9} s \nu^t
+
+    The constants appear interchanged in some programs, which makes the coefficient about seven times too large.
+
+    Args:
+        nu: kinematic viscosity at ambient pressure [m2/s]
+        s: coefficient at 1 cSt, in 1/GPa [1]
+        t: exponent [1]
+    """
+    nu_cSt = 1e6 * nu
+    return 1e-9 * s * nu_cSt**t
+
+
+@law(source="Dias2014", where="thermoviscosity from the Walther line", verified=False)
+def thermoviscosity(T: Num, nu: Num, n: Num) -> Num:
+    r"""Relative fall of viscosity with temperature [1/K]: minus the logarithmic slope of the Walther line.
+
+    .. math:: \beta_T = \frac{n (\nu + 0.7) \ln(\nu + 0.7)}{\nu T}
+
+    Args:
+        T: temperature [K]
+        nu: kinematic viscosity at that temperature [m2/s]
+        n: slope of the Walther line [1]
+    """
+    nu_cSt = 1e6 * nu
+    return n * (nu_cSt + 0.7) * ca.log(nu_cSt + 0.7) / (nu_cSt * T)
+
+
+@law(
+    source="Cragoe1929",
+    where="thermal conductivity of liquids",
+    valid="petroleum products; low for PAG",
+    verified=False,
+)
+def conductivity(T: Num, rho_15: Num) -> Num:
+    r"""Thermal conductivity [W/(m.K)].
+
+    .. math:: k = \frac{120}{\rho_{15}} \left(1 - \frac{0.0005}{3} (T - 273.15)\right)
+
+    Args:
+        T: temperature [K]
+        rho_15: density at 15 degC [kg/m3]
+    """
+    T_C = T - T_0
+    return 120 * (1 - 0.0005 / 3 * T_C) / rho_15
+
+
+@law(
+    source="Cragoe1929",
+    where="specific heat of liquids",
+    valid="petroleum products; PAG: take a measured value",
+    verified=False,
+)
+def specific_heat(T: Num, rho_15: Num) -> Num:
+    r"""Specific heat [J/(kg.K)].
+
+    .. math:: c_p = \frac{1685 + 3.4 (T - 273.15)}{\sqrt{\rho_{15}/999}}
+
+    Args:
+        T: temperature [K]
+        rho_15: density at 15 degC [kg/m3]
+    """
+    T_C = T - T_0
+    return (1685 + 3.4 * T_C) / ca.sqrt(rho_15 / 999)

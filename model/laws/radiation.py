@@ -1,0 +1,26 @@
+"""Heat radiation between a housing and the room."""
+
+from __future__ import annotations
+
+from ..sources import law
+from .smooth import Num
+
+#: Stefan-Boltzmann constant [W/(m2.K4)].
+SIGMA = 5.670374419e-8
+
+
+@law(
+    source="Incropera2007", where="radiation between a surface and large surroundings", valid="grey surface, large room"
+)
+def radiated(T_1: Num, T_2: Num, A: Num, emissivity: Num) -> Num:
+    r"""Net heat flow rate [W] from a surface to the room around it.
+
+    .. math:: \dot Q = \sigma \varepsilon A (T_1^4 - T_2^4)
+
+    Args:
+        T_1: temperature of the surface [K]
+        T_2: temperature of the room's walls [K]
+        A: area of the surface [m2]
+        emissivity: emissivity of the surface [1]
+    """
+    return SIGMA * emissivity * A * (T_1**4 - T_2**4)

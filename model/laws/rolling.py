@@ -1,0 +1,372 @@
+"""Friction torques of rolling bearings. Torques are magnitudes, never negative: the component gives them their sign.
+
+The geometric variables G_rr and G_sl are catalogue variables: numbers for millimetres and newtons that make torques in
+N.mm. They stay in those units; the laws that make torques of them return N.m.
+"""
+
+from __future__ import annotations
+
+import math
+
+import casadi as ca
+
+from ..sources import law
+from .smooth import SPEED_WIDTH, Num, smooth_abs, smooth_magnitude, smooth_max, smooth_min, smooth_power, to_rpm
+
+
+@law(source="SKF2018", where="friction, inlet shear heating reduction factor")
+def shear_heating(w: Num, nu: Num, d_m: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+    r"""Reduction of the rolling torque by heating of the oil in the inlet [1].
+
+    .. math:: \phi_{ish} = \frac{1}{1 + 1.84 \cdot 10^{-9} (n d_m)^{1.28} \nu^{0.64}}
+
+    Args:
+        w: speed of one ring against the other, either direction [rad/s]
+        nu: kinematic viscosity at the lubricant's temperature [m2/s]
+        d_m: mean diameter, (d + D)/2 [m]
+        w_width: rounding at standstill [rad/s]
+    """
+    n, nu_cSt, d_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d_m
+    return 1 / (1 + 1.84e-9 * (n * d_mm) ** 1.28 * nu_cSt**0.64)
+
+
+@law(source="SKF2018", where="friction, kinematic replenishment/starvation reduction factor")
+def starvation(w: Num, nu: Num, d: Num, D: Num, K_rs: Num, K_Z: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+    r"""Reduction of the rolling torque by lack of oil in the track [1].
+
+    .. math:: \phi_{rs} = \exp\left(-K_{rs} \nu n (d + D) \sqrt{\frac{K_Z}{2 (D - d)}}\right)
+
+    Args:
+        w: speed of one ring against the other, either direction [rad/s]
+        nu: kinematic viscosity at the lubricant's temperature [m2/s]
+        d: bore diameter [m]
+        D: outside diameter [m]
+        K_rs: starvation constant: 0 for a bath to the lowest roller or more, 3e-8 for less, 6e-8 for grease [1]
+        K_Z: geometry constant of the bearing type [1]
+        w_width: rounding at standstill [rad/s]
+    """
+    n, nu_cSt, d_mm, D_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d, 1e3 * D
+    # Dias2014 prints the exponent without the speed n, which its text lists
+    return ca.exp(-K_rs * nu_cSt * n * (d_mm + D_mm) * ca.sqrt(K_Z / (2 * (D_mm - d_mm))))
+
+
+@law(source="SKF2018", where="friction, rolling frictional moment")
+def rolling_torque(G_rr: Num, w: Num, nu: Num, phi: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+    r"""Rolling friction torque [N.m].
+
+    .. math:: M_{rr} = \phi G_{rr} (\nu n)^{0.6}
+
+    Args:
+        G_rr: rolling variable of the catalogue, in its units
+        w: speed of one ring against the other, either direction [rad/s]
+        nu: kinematic viscosity at the lubricant's temperature [m2/s]
+        phi: product of the shear heating and the starvation factor [1]
+        w_width: rounding at standstill [rad/s]
+    """
+    n, nu_cSt, N_m = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e-3
+    return N_m * phi * G_rr * (nu_cSt * n) ** 0.6
+
+
+def _contact_sine(F_a: Num, C_0: Num, F_width: float) -> Num:
+    """Sine of the contact angle under axial load; Dias2014 prints it without the factor 24.6 deg."""
+    return ca.sin(math.radians(24.6) * (smooth_abs(F_a, F_width) / C_0) ** 0.24)
+
+
+@law(source="SKF2018", where="friction, Table 1a, deep groove ball bearings")
+def dgb_rolling_variable(F_r: Num, F_a: Num, d_m: Num, R_1: Num, R_2: Num, C_0: Num, *, F_width: float = 1.0) -> Num:
+    r"""Rolling variable of a deep groove ball bearing, in the catalogue's units.
+
+    .. math:: G_{rr} = R_1 d_m^{1.96} \left(F_r + \frac{R_2 F_a}{\sin\alpha_F}\right)^{0.54},\quad
+        \alpha_F = 24.6^\circ (F_a/C_0)^{0.24}
+
+    Args:
+        F_r: radial load [N]
+        F_a: axial load, either direction [N]
+        d_m: mean diameter, (d + D)/2 [m]
+        R_1: first rolling constant of the catalogue [1]
+        R_2: second rolling constant of the catalogue [1]
+        C_0: basic static load rating [N]
+        F_width: rounding at zero load [N]
+    """
+    d_mm = 1e3 * d_m
+    axial = R_2 * smooth_magnitude(F_a, F_width) / _contact_sine(F_a, C_0, F_width)
+    return R_1 * d_mm**1.96 * smooth_power(smooth_magnitude(F_r, F_width) + axial, 0.54, F_width)
+
+
+@law(source="SKF2018", where="friction, Table 1a, deep groove ball bearings", valid="axial load; see the radial law")
+def dgb_sliding_variable(F_r: Num, F_a: Num, d_m: Num, S_1: Num, S_2: Num, C_0: Num, *, F_width: float = 1.0) -> Num:
+    r"""Sliding variable of a deep groove ball bearing that carries an axial load, in the catalogue's units.
+
+    .. math:: G_{sl} = S_1 d_m^{-0.145} \left(F_r^5 + \frac{S_2 d_m^{1.5} F_a^4}{\sin\alpha_F}\right)^{1/3}
+
+    At F_a = 0 the catalogue jumps to another formula, `dgb_sliding_variable_radial`.
+
+    Args:
+        F_r: radial load [N]
+        F_a: axial load, either direction [N]
+        d_m: mean diameter, (d + D)/2 [m]
+        S_1: first sliding constant of the catalogue [1]
+        S_2: second sliding constant of the catalogue [1]
+        C_0: basic static load rating [N]
+        F_width: rounding at zero load [N]
+    """
+    d_mm = 1e3 * d_m
+    axial = S_2 * d_mm**1.5 * F_a**4 / _contact_sine(F_a, C_0, F_width)
+    return S_1 * d_mm**-0.145 * smooth_power(smooth_power(F_r, 5, F_width) + axial, 1 / 3, F_width**5)
+
+
+@law(
+    source="SKF2018",
+    where="friction, Table 1a, deep groove ball bearings",
+    valid="no axial load at all",
+    verified=False,
+)
+def dgb_sliding_variable_radial(F_r: Num, d_m: Num, S_1: Num, *, F_width: float = 1.0) -> Num:
+    r"""Sliding variable of a deep groove ball bearing without axial load, in the catalogue's units.
+
+    .. math:: G_{sl} = S_1 d_m^{-0.26} F_r^{5/3}
+
+    Args:
+        F_r: radial load [N]
+        d_m: mean diameter, (d + D)/2 [m]
+        S_1: first sliding constant of the catalogue [1]
+        F_width: rounding at zero load [N]
+    """
+    d_mm = 1e3 * d_m
+    return S_1 * d_mm**-0.26 * smooth_power(F_r, 5 / 3, F_width)
+
+
+@law(source="SKF2018", where="friction, Table 1a, tapered roller bearings")
+def trb_rolling_variable(F_r: Num, F_a: Num, d_m: Num, R_1: Num, R_2: Num, Y: Num, *, F_width: float = 1.0) -> Num:
+    r"""Rolling variable of a tapered roller bearing, in the catalogue's units.
+
+    .. math:: G_{rr} = R_1 d_m^{2.38} (F_r + R_2 Y F_a)^{0.31}
+
+    Args:
+        F_r: radial load [N]
+        F_a: axial load [N]
+        d_m: mean diameter, (d + D)/2 [m]
+        R_1: first rolling constant of the catalogue [1]
+        R_2: second rolling constant of the catalogue [1]
+        Y: axial load factor of the catalogue [1]
+        F_width: rounding at zero load [N]
+    """
+    d_mm = 1e3 * d_m
+    load = smooth_magnitude(F_r, F_width) + R_2 * Y * smooth_magnitude(F_a, F_width)
+    return R_1 * d_mm**2.38 * smooth_power(load, 0.31, F_width)
+
+
+@law(source="SKF2018", where="friction, Table 1a, tapered roller bearings")
+def trb_sliding_variable(F_r: Num, F_a: Num, d_m: Num, S_1: Num, S_2: Num, Y: Num, *, F_width: float = 1.0) -> Num:
+    r"""Sliding variable of a tapered roller bearing, in the catalogue's units.
+
+    .. math:: G_{sl} = S_1 d_m^{0.82} (F_r + S_2 Y F_a)
+
+    Args:
+        F_r: radial load [N]
+        F_a: axial load [N]
+        d_m: mean diameter, (d + D)/2 [m]
+        S_1: first sliding constant of the catalogue [1]
+        S_2: second sliding constant of the catalogue [1]
+        Y: axial load factor of the catalogue [1]
+        F_width: rounding at zero load [N]
+    """
+    d_mm = 1e3 * d_m
+    return S_1 * d_mm**0.82 * (smooth_magnitude(F_r, F_width) + S_2 * Y * smooth_magnitude(F_a, F_width))
+
+
+@law(source="SKF2018", where="friction, weighting factor for the sliding friction coefficient")
+def boundary_share(w: Num, nu: Num, d_m: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+    r"""Share of boundary friction in the sliding friction [1].
+
+    .. math:: \phi_{bl} = \exp(-2.6 \cdot 10^{-8} (n \nu)^{1.4} d_m)
+
+    Args:
+        w: speed of one ring against the other, either direction [rad/s]
+        nu: kinematic viscosity at the lubricant's temperature [m2/s]
+        d_m: mean diameter, (d + D)/2 [m]
+        w_width: rounding at standstill [rad/s]
+    """
+    n, nu_cSt, d_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d_m
+    return ca.exp(-2.6e-8 * (n * nu_cSt) ** 1.4 * d_mm)
+
+
+@law(source="SKF2018", where="friction, sliding friction coefficient")
+def sliding_friction(phi_bl: Num, mu_bl: Num, mu_EHL: Num) -> Num:
+    r"""Sliding friction coefficient between the boundary and the full film [1].
+
+    .. math:: \mu_{sl} = \phi_{bl} \mu_{bl} + (1 - \phi_{bl}) \mu_{EHL}
+
+    Args:
+        phi_bl: share of boundary friction [1]
+        mu_bl: sliding friction of the boundary film [1]
+        mu_EHL: sliding friction of the full film [1]
+    """
+    return phi_bl * mu_bl + (1 - phi_bl) * mu_EHL
+
+
+@law(source="SKF2018", where="friction, sliding frictional moment")
+def sliding_torque(G_sl: Num, mu_sl: Num) -> Num:
+    r"""Sliding friction torque [N.m].
+
+    .. math:: M_{sl} = G_{sl} \mu_{sl}
+
+    Args:
+        G_sl: sliding variable of the catalogue, in its units
+        mu_sl: sliding friction coefficient [1]
+    """
+    return 1e-3 * G_sl * mu_sl
+
+
+@law(source="SKF2018", where="friction, drag losses, diagram of V_M", valid="read off a diagram, 25 %", verified=False)
+def drag_loss_factor(level: Num, *, roller: bool = False) -> Num:
+    r"""Drag loss factor of an oil level [1], a smooth curve through the diagram.
+
+    .. math:: V_M = s \frac{x^3}{x^2 + x_0^2},\quad x = H/d_m
+
+    Args:
+        level: oil level above the lowest point of the outer raceway over mean diameter, up to 1.2 [1]
+        roller: whether the bearing has rollers, not balls
+    """
+    s, x_0 = (1.35e-3, 0.065) if roller else (1.1e-3, 0.08)
+    return s * level**3 / (level**2 + x_0**2)
+
+
+def _splash(n: Num, nu_cSt: Num, d_mm: Num, D_mm: Num, H_mm: Num, K_Z: Num, rounding: float) -> Num:
+    """Part of the drag moment [N.mm] that depends on the viscosity, common to ball and roller bearings."""
+    d_m = 0.5 * (d_mm + D_mm)
+    cosine = smooth_min(smooth_max(1 - H_mm / (0.6 * d_m), -1.0, rounding), 1.0, rounding)  # of half the wetted angle
+    t = 2 * ca.acos(cosine)
+    f_t = ca.sqrt(1 - smooth_max(cosine, 0.0, rounding) ** 2)  # sin(t/2) below half, 1 above
+    R_s = 0.36 * d_m**2 * (t - ca.sin(t)) * 0.05 * K_Z * (D_mm + d_mm) / (D_mm - d_mm)
+    return 1.093e-7 * n**2 * d_m**3 * (n * d_m**2 * f_t / nu_cSt) ** -1.379 * R_s
+
+
+@law(
+    source="SKF2018",
+    where="friction, drag losses, ball bearings",
+    valid="oil bath, horizontal shaft, inner ring turns",
+    verified=False,
+)
+def drag_torque_ball(
+    w: Num,
+    nu: Num,
+    d: Num,
+    D: Num,
+    H: Num,
+    V_M: Num,
+    K_Z: Num,
+    *,
+    w_width: float = SPEED_WIDTH,
+    rounding: float = 1e-3,
+) -> Num:
+    r"""Drag torque of a ball bearing in an oil bath [N.m].
+
+    .. math:: M_{drag} = 0.4 V_M K_{ball} d_m^5 n^2
+        + 1.093 \cdot 10^{-7} n^2 d_m^3 \left(\frac{n d_m^2 f_t}{\nu}\right)^{-1.379} R_s,\quad
+        K_{ball} = 10^{-12} K_Z \frac{d + D}{D - d}
+
+    Args:
+        w: speed of the inner ring, either direction [rad/s]
+        nu: kinematic viscosity at the oil's temperature [m2/s]
+        d: bore diameter [m]
+        D: outside diameter [m]
+        H: oil level above the lowest point of the outer raceway [m]
+        V_M: drag loss factor of that level, see `drag_loss_factor` [1]
+        K_Z: geometry constant of the bearing type [1]
+        w_width: rounding at standstill [rad/s]
+        rounding: rounding of the level where the bearing is dry, half and fully submerged [1]
+    """
+    n, nu_cSt, d_mm, D_mm, H_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d, 1e3 * D, 1e3 * H
+    d_m = 0.5 * (d_mm + D_mm)
+    K_ball = 1e-12 * K_Z * (d_mm + D_mm) / (D_mm - d_mm)
+    displaced = 0.4 * V_M * K_ball * d_m**5 * n**2
+    return 1e-3 * (displaced + _splash(n, nu_cSt, d_mm, D_mm, H_mm, K_Z, rounding))
+
+
+@law(
+    source="SKF2018",
+    where="friction, drag losses, roller bearings",
+    valid="oil bath, horizontal shaft, inner ring turns",
+    verified=False,
+)
+def drag_torque_roller(
+    w: Num,
+    nu: Num,
+    d: Num,
+    D: Num,
+    B: Num,
+    H: Num,
+    V_M: Num,
+    K_Z: Num,
+    K_L: Num,
+    *,
+    w_width: float = SPEED_WIDTH,
+    rounding: float = 1e-3,
+) -> Num:
+    r"""Drag torque of a roller bearing in an oil bath [N.m].
+
+    .. math:: M_{drag} = 4 V_M K_{roll} C_W B d_m^4 n^2
+        + 1.093 \cdot 10^{-7} n^2 d_m^3 \left(\frac{n d_m^2 f_t}{\nu}\right)^{-1.379} R_s,\quad
+        K_{roll} = 10^{-12} K_L K_Z \frac{d + D}{D - d}
+
+    .. math:: C_W = 2.789 \cdot 10^{-10} l_D^3 - 2.786 \cdot 10^{-4} l_D^2 + 0.0195 l_D + 0.6439,\quad
+        l_D = 5 K_L B / d_m
+
+    Args:
+        w: speed of the inner ring, either direction [rad/s]
+        nu: kinematic viscosity at the oil's temperature [m2/s]
+        d: bore diameter [m]
+        D: outside diameter [m]
+        B: width of the bearing, of a tapered one over both rings [m]
+        H: oil level above the lowest point of the outer raceway [m]
+        V_M: drag loss factor of that level, see `drag_loss_factor` [1]
+        K_Z: geometry constant of the bearing type [1]
+        K_L: geometry constant of the roller bearing type [1]
+        w_width: rounding at standstill [rad/s]
+        rounding: rounding of the level where the bearing is dry, half and fully submerged [1]
+    """
+    n, nu_cSt, d_mm, D_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d, 1e3 * D
+    B_mm, H_mm, d_m = 1e3 * B, 1e3 * H, 0.5 * (d_mm + D_mm)
+    l_D = 5 * K_L * B_mm / d_m
+    C_W = 2.789e-10 * l_D**3 - 2.786e-4 * l_D**2 + 0.0195 * l_D + 0.6439
+    K_roll = 1e-12 * K_L * K_Z * (d_mm + D_mm) / (D_mm - d_mm)
+    displaced = 4 * V_M * K_roll * C_W * B_mm * d_m**4 * n**2
+    return 1e-3 * (displaced + _splash(n, nu_cSt, d_mm, D_mm, H_mm, K_Z, rounding))
+
+
+@law(source="Palmgren1959", where="load-independent moment", valid="oil bath or grease")
+def needle_torque_viscous(
+    w: Num, nu: Num, d_m: Num, f_0: Num, *, w_width: float = SPEED_WIDTH, width: float = 0.5
+) -> Num:
+    r"""Load-independent friction torque of a needle bearing [N.m].
+
+    .. math:: T_0 = 10^{-10} f_0 d_m^3 \max\left(160, (\nu n)^{2/3}\right)
+
+    The source switches at nu n = 2000 with a jump of 0.8 %; the larger of its two branches has none.
+
+    Args:
+        w: speed of one ring against the other, either direction [rad/s]
+        nu: kinematic viscosity at the lubricant's temperature [m2/s]
+        d_m: mean diameter [m]
+        f_0: factor of bearing type and lubrication [1]
+        w_width: rounding at standstill [rad/s]
+        width: rounding where the two branches meet, of 160 [1]
+    """
+    n, nu_cSt, d_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d_m
+    return 1e-10 * f_0 * d_mm**3 * smooth_max(160.0, (nu_cSt * n) ** (2 / 3), width)
+
+
+@law(source="Palmgren1959", where="load-dependent moment")
+def needle_torque_load(P_1: Num, d_m: Num, f_1: Num, *, F_width: float = 1.0) -> Num:
+    r"""Load-dependent friction torque of a needle bearing [N.m].
+
+    .. math:: T_1 = f_1 P_1 d_m
+
+    Args:
+        P_1: radial load [N]
+        d_m: mean diameter [m]
+        f_1: factor of bearing type, 0.0002 for needle roller and cage assemblies [1]
+        F_width: rounding at zero load [N]
+    """
+    return f_1 * smooth_magnitude(P_1, F_width) * d_m
