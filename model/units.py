@@ -17,8 +17,7 @@ DISPLAY = {"K": "degC", "rad/s": "rpm"}
 def _registry() -> Any:
     import pint
 
-    registry = pint.UnitRegistry(autoconvert_offset_to_baseunit=False)
-    return registry
+    return pint.UnitRegistry()
 
 
 def _pint_unit(text: str) -> str:
@@ -56,17 +55,23 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
     difference = unit.endswith("(difference)")
     target = unit.removesuffix("(difference)").strip()
     if isinstance(value, bool) or not isinstance(value, int | float | str):
-        raise ScenarioError(f'{name} = {value!r} is not a value. Write a number with its unit, for example "{example(unit)}".')
+        raise ScenarioError(f'{name} = {value!r} is no value. Write a number with its unit, like "{example(unit)}".')
     if isinstance(value, int | float):
         if target != "1":
-            raise ScenarioError(f'{name} = {value} has no unit. Write "{value} {shown(unit)}" (expected a unit like {target}).')
+            raise ScenarioError(
+                f'{name} = {value} has no unit. Write "{value} {shown(unit)}" (expected a unit like {target}).'
+            )
         return _finite(float(value), name, value)
     try:
         number, written = split(value)
     except ValueError:
-        raise ScenarioError(f'{name} = "{value}" is no number with a unit. Write for example "{example(unit)}".') from None
+        raise ScenarioError(
+            f'{name} = "{value}" is no number with a unit. Write for example "{example(unit)}".'
+        ) from None
     if not written and target != "1":
-        raise ScenarioError(f'{name} = "{value}" has no unit. Write "{value} {shown(unit)}" (expected a unit like {target}).')
+        raise ScenarioError(
+            f'{name} = "{value}" has no unit. Write "{value} {shown(unit)}" (expected a unit like {target}).'
+        )
     if written == target:
         return _finite(number, name, value)
     import pint
@@ -78,7 +83,9 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
             source = ureg.Unit("delta_" + str(source))
         result = ureg.Quantity(number, source).to(_pint_unit(target)).magnitude
     except (pint.errors.PintError, AttributeError, ValueError, TypeError, AssertionError):
-        raise ScenarioError(f'{name} = "{value}": unit "{written}" does not fit. Expected a unit like {shown(unit)}, for example "{example(unit)}".') from None
+        raise ScenarioError(
+            f'{name} = "{value}": unit "{written}" does not fit. Expected one like {shown(unit)}, as in "{example(unit)}".'
+        ) from None
     return _finite(float(result), name, value)
 
 

@@ -51,7 +51,7 @@ class Component:
         self.symbols = {k: ca.SX.sym(f"{name}.{k}") for k in names}
         self.derivatives = {k: ca.SX.sym(f"der({name}.{k})") for k in self.states}
         self.values: dict[str, float] = {k: d.default for k, d in self.parameters.items() if d.default is not None}
-        self.values |= {k: d.start for k, d in (*self.states.items(), *self.inputs.items())}
+        self.values |= {k: d.start for k, d in self.states.items()} | {k: d.start for k, d in self.inputs.items()}
         self.values |= {k: v for k, v in values.items() if k in self.values or k in self.parameters}
         self._derive()
         if problems := self._problems(values):

@@ -56,8 +56,8 @@ def _nets(assembly: Assembly) -> tuple[list[Row], list[Unknown], list[tuple[Any,
         for name, d in type(first).potentials().items():
             unknowns.append(Unknown(first.symbols[name], f"{first.name}.{name}", d.nominal))
             alias += [(port.symbols[name], first.symbols[name]) for port in net[1:]]
-        for name, d in type(first).flows().items():
-            unknowns += [Unknown(port.symbols[name], f"{port.name}.{name}", d.nominal) for port in net]
+        for name, flow in type(first).flows().items():
+            unknowns += [Unknown(port.symbols[name], f"{port.name}.{name}", flow.nominal) for port in net]
             total = sum((port.symbols[name] for port in net), ca.SX(0))
             rows.append(Row(f"sum of {name} at {first.name}", total, ca.SX(0)))
     return rows, unknowns, alias

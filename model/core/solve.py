@@ -209,9 +209,7 @@ def _inline(expressions: list[Any], solution: Solution) -> list[Any]:
     return [result]
 
 
-def _linear_solve(
-    model: str, matrix: Any, right: Any, unknowns: list[Unknown], typical: Mapping[int, float]
-) -> Any:
+def _linear_solve(model: str, matrix: Any, right: Any, unknowns: list[Unknown], typical: Mapping[int, float]) -> Any:
     """z of matrix z = right, with the same elimination as a linear block."""
     stand_in = [Unknown(ca.SX.sym(u.name), u.name) for u in unknowns]
     solution = Solution(typical)

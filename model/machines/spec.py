@@ -67,7 +67,9 @@ class Spec:
         choices: dict[str, Any] = {f"{end}.given": tuple(given.get(end, ())) for end in self.of_type("ShaftEnd")}
         unknown = [end for end in given if f"{end}.given" not in choices]
         if unknown:
-            raise ScenarioError([f'{self.name}: "{e}" is no shaft end.{suggestion(e, self.of_type("ShaftEnd"))}' for e in unknown])
+            raise ScenarioError(
+                [f'{self.name}: "{e}" is no shaft end.{suggestion(e, self.of_type("ShaftEnd"))}' for e in unknown]
+            )
         dynamic = not any("w" in quantities for quantities in given.values())
         return self.with_values(choices | {f"{name}.dynamic": dynamic for name in self.of_type("Inertia")})
 

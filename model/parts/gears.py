@@ -125,7 +125,7 @@ class HelicalGearPair(ToothedPart):
     x_1 = Parameter("1", "profile shift of the pinion")
     x_2 = Parameter("1", "profile shift of the wheel")
     eps_alpha = Parameter("1", "transverse contact ratio", above=0.0, derived=lambda v: sum(_addendum_ratios(v)))
-    H_v = Parameter("1", "tooth loss factor", at_least=0.0, derived=lambda v: _loss_factor(v))
+    H_v = Parameter("1", "tooth loss factor", at_least=0.0, derived=_loss_factor)
     tau_loss = Output("N.m", "friction torque of the mesh, on the pinion", nominal=1.0, guess=0.0)
     P_loss = Output("W", "mesh loss", nominal=100.0)
     mu = Output("1", "tooth friction coefficient", nominal=0.1)
@@ -258,7 +258,7 @@ class ShaftSupport(Component):
     axial_share_a = Parameter("1", "share of the axial force that bearing a takes", at_least=0.0, at_most=1.0)
 
     def forces(self) -> tuple[list[tuple[Num, Num, Num, Num]], Num]:
-        """Per gear: force tangential and radial [N], its position [m], its tilting moment [N.m]; and the axial force."""
+        """Per gear: tangential and radial force [N], position [m], tilting moment [N.m]; and the axial force [N]."""
         mesh = self.mesh
         return [(mesh.F_t, -mesh.F_r, self.x, mesh.F_a * self.r)], mesh.F_a
 

@@ -104,7 +104,7 @@ class Efficiency(Component):
     def equations(self) -> Iterator[Equation]:
         """The larger of the two powers is the one that drives."""
         P_a, P_b = self.a.w * self.a.tau, self.b.w * self.b.tau
-        P_in = (smooth_abs(P_a, self.P_width) + smooth_abs(P_b, self.P_width) + self.P_loss) / 2
+        P_in = sum(smooth_abs(P, self.P_width) for P in (P_a, P_b, self.P_loss)) / 2
         yield equation("loss", self.P_loss, P_a + P_b)
         yield equation("loss torque", self.tau_loss, self.a.tau + self.ratio * self.b.tau)
         yield equation("efficiency", self.eta, 1 - self.P_loss / P_in)

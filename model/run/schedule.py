@@ -53,6 +53,13 @@ class Schedule:
                 pieces.append((float(self.time[i]), float(self.time[i + 1]), ends))
         return pieces
 
+    def stretches(self) -> list[slice]:
+        """The points between jumps: per stretch the slice of points over which all inputs are continuous."""
+        jumps = np.flatnonzero(np.diff(self.time) == 0)
+        edges = [0, *(jumps + 1), len(self.time)]
+        pairs = [(a, b) for a, b in zip(edges, edges[1:], strict=False) if self.time[b - 1] > self.time[a]]
+        return [slice(int(a), int(b)) for a, b in pairs]
+
 
 def stepped(phases: Iterable[tuple[float, Mapping[str, float | tuple[float, float]]]]) -> Schedule:
     """A schedule from phases (duration [s], input -> constant value or (begin, end)).
@@ -61,7 +68,7 @@ def stepped(phases: Iterable[tuple[float, Mapping[str, float | tuple[float, floa
     """
     time: list[float] = []
     columns: dict[str, list[float]] = {}
-    now, last = 0.0, {}
+    now, last = 0.0, dict[str, float]()
     for duration, values in phases:
         ends = {name: v if isinstance(v, tuple) else (v, v) for name, v in values.items()}
         ends = {name: (v, v) for name, v in last.items()} | ends

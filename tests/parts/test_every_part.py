@@ -6,15 +6,14 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
-
 from gearheat.model.core.component import Component, equation
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.declare import Input, Port
 from gearheat.model.core.flatten import flatten
 from gearheat.model.parts import PARTS
 from gearheat.model.parts.ports import Flange, HeatPort
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 OIL = dict(nu_40=3.2438e-4, nu_100=3.527e-5, rho_15=859.0, alpha_T=-5.6e-4, s_p=7.382, t_p=0.1335, X_L=0.666)
 FRICTION = dict(count=2.0, inner_share=0.4)
