@@ -84,7 +84,7 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
         result = ureg.Quantity(number, source).to(_pint_unit(target)).magnitude
     except (pint.errors.PintError, AttributeError, ValueError, TypeError, AssertionError):
         raise ScenarioError(
-            f'{name} = "{value}": unit "{written}" does not fit. Expected one like {shown(unit)}, as in "{example(unit)}".'
+            f'{name} = "{value}": unit "{written}" does not fit {shown(unit)}. Write for example "{example(unit)}".'
         ) from None
     return _finite(float(result), name, value)
 

@@ -10,7 +10,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ..errors import ScenarioError
+from ..errors import ScenarioError, suggestion
 from ..sources import LawInfo
 
 
@@ -32,13 +32,13 @@ class Quantity:
         """What is wrong with a value, or None."""
         if not np.isfinite(value):
             return f"{self.name} = {value} is not finite"
-        below = value <= self.low if self.low_open else value < self.low
-        above = value >= self.high if self.high_open else value > self.high
-        if below:
-            return f"{self.name} = {value:g} {self.unit} is out of range. It must be {'above' if self.low_open else 'at least'} {self.low:g} {self.unit}."
-        if above:
-            return f"{self.name} = {value:g} {self.unit} is out of range. It must be {'below' if self.high_open else 'at most'} {self.high:g} {self.unit}."
-        return None
+        if value <= self.low if self.low_open else value < self.low:
+            bound = f"{'above' if self.low_open else 'at least'} {self.low:g}"
+        elif value >= self.high if self.high_open else value > self.high:
+            bound = f"{'below' if self.high_open else 'at most'} {self.high:g}"
+        else:
+            return None
+        return f"{self.name} = {value:g} {self.unit} is out of range. It must be {bound} {self.unit}."
 
 
 @dataclass(frozen=True)
@@ -99,8 +99,6 @@ class FlatModel:
         try:
             return self.index[name]
         except KeyError:
-            from ..errors import suggestion
-
             raise ScenarioError(f'{self.name}: unknown name "{name}".{suggestion(name, self.index)}') from None
 
     @cached_property

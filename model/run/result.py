@@ -9,6 +9,9 @@ import numpy as np
 
 from ..errors import ScenarioError, suggestion
 
+#: A gearbox that is all but at rest is compared with this [J, W] instead of its throughput.
+SMALLEST_THROUGHPUT = 1e-3
+
 
 @dataclass(frozen=True)
 class Outside:
@@ -27,24 +30,28 @@ class Outside:
 class Audit:
     """Energy over a run [J]: what came in, what the states gained, and the throughput to compare with.
 
-    `residual` is |supplied - gained| / throughput; for steady points it is the power balance at the solution.
+    For steady points the same in watts: the power balance at the solution, where nothing is gained. `held` is the
+    largest energy the states held; a thousandth of it stands in for the throughput of a model that is all but closed.
     """
 
     supplied: float
     gained: float
     throughput: float
+    held: float = 0.0
 
     @property
     def residual(self) -> float:
-        """Relative violation of the energy balance."""
-        return abs(self.supplied - self.gained) / max(self.throughput, 1e-9)
+        """Violation of the energy balance relative to the throughput."""
+        return abs(self.supplied - self.gained) / max(self.throughput, 1e-3 * self.held, SMALLEST_THROUGHPUT)
 
 
 @dataclass(frozen=True)
 class Result:
     """A transient, a table of steady points, or an FMU's run: one row per time or point, SI.
 
-    `index` is the time [s] of a transient or the number of a point; `units` holds the SI unit of each column.
+    `index` is the time [s] of a transient, where a time given twice is a jump, or the number of a point; `units` holds
+    the SI unit of each column. `laws` names the laws at work with source and place. `implicit` holds the largest
+    residual that each implicit equation left, relative to its typical size.
     """
 
     model: str
@@ -54,7 +61,8 @@ class Result:
     units: Mapping[str, str]
     audit: Audit
     outside: tuple[Outside, ...] = ()
-    laws: tuple[str, ...] = field(default=())
+    laws: tuple[str, ...] = ()
+    implicit: Mapping[str, float] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> np.ndarray:
         """A column by path. Raises ScenarioError with suggestions for an unknown one."""
