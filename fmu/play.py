@@ -1,0 +1,263 @@
+"""Playing an FMU for co-simulation: inputs over time in, named columns out."""
+
+from __future__ import annotations
+
+import ctypes
+import shutil
+import tempfile
+import zipfile
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import TracebackType
+from typing import Any, Self
+
+import fmpy
+import numpy as np
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
+
+from gearheat.model.errors import FmuError, suggestion
+
+from .grid import Grid, Inputs, grid
+
+
+@dataclass(frozen=True)
+class Played:
+    """A run of an FMU: `values[i, k]` is the variable `names[k]` at `time[i]`; a time given twice is a jump."""
+
+    time: np.ndarray
+    names: tuple[str, ...]
+    values: np.ndarray
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """The column of a variable. Raises FmuError with suggestions for one that was not recorded."""
+        if name not in self.names:
+            raise FmuError(f'"{name}" was not recorded.{suggestion(name, self.names)}')
+        return self.values[:, self.names.index(name)]
+
+
+def play(
+    path: Path | str,
+    inputs: Inputs,
+    stop: float,
+    step: float,
+    *,
+    begin: float = 0.0,
+    start: Mapping[str, float] | None = None,
+    record: Sequence[str] | None = None,
+    output_times: Sequence[float] | np.ndarray | None = None,
+    tolerance: float | None = None,
+) -> Played:
+    """Load an FMU and run it once; see Player.run."""
+    with Player(path) as player:
+        return player.run(
+            inputs,
+            stop,
+            step,
+            begin=begin,
+            start=start,
+            record=record,
+            output_times=output_times,
+            tolerance=tolerance,
+        )
+
+
+class Player:
+    """An FMU loaded once for any number of runs, each as from a fresh instance. A context manager."""
+
+    def __init__(self, path: Path | str) -> None:
+        """Load the FMU.
+
+        Raises:
+            FmuError: the file is no FMU for FMI 2.0 co-simulation, or holds no binary for this machine
+        """
+        self._path = Path(path)
+        self._messages: list[str] = []
+        self._description = _described(self._path)
+        self._variables = {v.name: v for v in self._description.modelVariables}
+        self._folder = tempfile.mkdtemp(prefix="gearheat-")
+        try:
+            with zipfile.ZipFile(self._path) as file:
+                file.extractall(self._folder)
+            self._slave = self._instance()
+        except BaseException:
+            shutil.rmtree(self._folder, ignore_errors=True)
+            raise
+
+    def __enter__(self) -> Self:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, at: TracebackType | None) -> None:
+        self.close()
+
+    def close(self) -> None:
+        """Free the instance and forget the extracted files."""
+        if self._slave is not None:
+            self._slave.freeInstance()
+            self._slave = None
+            shutil.rmtree(self._folder, ignore_errors=True)
+
+    def run(
+        self,
+        inputs: Inputs,
+        stop: float,
+        step: float,
+        *,
+        begin: float = 0.0,
+        start: Mapping[str, float] | None = None,
+        record: Sequence[str] | None = None,
+        output_times: Sequence[float] | np.ndarray | None = None,
+        tolerance: float | None = None,
+    ) -> Played:
+        """Run from `begin` to `stop` [s] with communication points every `step` and on every point of the inputs.
+
+        Args:
+            inputs: name -> (times, values), linear between the points, a time given twice is a jump; beyond its points
+                an input keeps its first or last value, and inputs not named keep their start value
+            step: communication step [s]
+            start: start values of inputs, parameters and states (SI)
+            record: variables to record; all outputs and inputs when not given
+            output_times: times of the rows, not decreasing; a row at a jump shows the inputs behind it, a time given
+                twice both sides. When not given: every communication step, and both sides of every jump
+            tolerance: of the FMU's solver; its own when not given
+
+        Raises:
+            FmuError: unknown names, times that make no sense, or a call the FMU refuses, with its own message
+        """
+        columns = self._recorded(record)
+        self._check(inputs, dict(start or {}))
+        points = grid(inputs, begin, stop, step, output_times)
+        self._initialise(dict(start or {}), points, tolerance)
+        values = self._walk(points, [self._variables[name].valueReference for name in columns])
+        return Played(points.row_time, tuple(columns), values)
+
+    def _instance(self) -> Any:
+        simulation = self._description.coSimulation
+        self._callbacks = fmi2CallbackFunctions()
+        self._callbacks.logger = fmi2CallbackLoggerTYPE(self._heard)
+        self._callbacks.allocateMemory = fmpy.fmi2.defaultCallbacks.allocateMemory
+        self._callbacks.freeMemory = fmpy.fmi2.defaultCallbacks.freeMemory
+        try:
+            slave = FMU2Slave(
+                guid=self._description.guid,
+                unzipDirectory=self._folder,
+                modelIdentifier=simulation.modelIdentifier,
+                instanceName=self._description.modelName,
+            )
+            slave.instantiate(callbacks=self._callbacks)
+        except Exception as error:  # FMPy raises bare Exception
+            raise FmuError(f"{self._path.name} cannot be loaded: {self._said() or error}") from error
+        return slave
+
+    def _heard(self, _: object, __: bytes, status: int, ___: bytes, message: bytes) -> None:
+        if status > 1:
+            self._messages.append(message.decode("utf-8", "replace"))
+
+    def _said(self) -> str:
+        said = " ".join(self._messages[-2:])
+        self._messages.clear()
+        return said
+
+    def _recorded(self, record: Sequence[str] | None) -> list[str]:
+        if record is None:
+            return [v.name for v in self._description.modelVariables if v.causality in ("output", "input")]
+        unknown = [n for n in record if n not in self._variables]
+        if unknown:
+            known = self._variables
+            raise FmuError(f'{self._path.name}: unknown variable "{n}".{suggestion(n, known)}' for n in unknown)
+        return list(record)
+
+    def _check(self, inputs: Inputs, start: Mapping[str, float]) -> None:
+        """All names of inputs and start values at once."""
+        known = {n: v for n, v in self._variables.items() if v.causality == "input"}
+        settable = {n: v for n, v in self._variables.items() if v.causality == "input" or v.initial == "exact"}
+        problems = []
+        for what, given, possible in (("input", inputs, known), ("start value", start, settable)):
+            for name in sorted(set(given) - set(possible)):
+                why = "is calculated" if name in self._variables else f"is unknown.{suggestion(name, possible)}"
+                problems.append(f'{self._path.name}: {what} "{name}" {why}')
+        if problems:
+            raise FmuError(problems)
+
+    def _function(self, name: str, *types: Any) -> Any:
+        """A function of the library that takes addresses, so a step makes no Python objects, and raises when refused."""
+        raw = self._slave.dll[name]
+        raw.argtypes, raw.restype = [ctypes.c_void_p, *types], ctypes.c_int
+        component = self._slave.component
+
+        def call(*arguments: Any) -> None:
+            if raw(component, *arguments) > 1:
+                raise FmuError(f"{self._path.name}: {self._said() or name + ' failed.'}")
+
+        return call
+
+    def _initialise(self, start: Mapping[str, float], points: Grid, tolerance: float | None) -> None:
+        self._messages.clear()
+        self._function("fmi2Reset")()
+        references = [self._variables[n].valueReference for n in start]
+        self._set_real = self._function("fmi2SetReal", ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+        self._set(references, np.array(list(start.values()), dtype=float))
+        setup = self._function("fmi2SetupExperiment", *_SETUP)
+        setup(tolerance is not None, tolerance or 0.0, points.time[0], 1, points.time[-1])
+        self._function("fmi2EnterInitializationMode")()
+        self._set([self._variables[n].valueReference for n in points.names], points.value[0])
+        self._function("fmi2ExitInitializationMode")()
+
+    def _set(self, references: list[int], values: np.ndarray) -> None:
+        if references:
+            self._set_real(np.array(references, dtype=np.uint32).ctypes.data, len(references), values.ctypes.data)
+
+    def _walk(self, points: Grid, recorded: list[int]) -> np.ndarray:
+        """Step from communication point to communication point, and read the rows."""
+        do_step = self._function("fmi2DoStep", ctypes.c_double, ctypes.c_double, ctypes.c_int)
+        get = self._function("fmi2GetReal", ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+        set_slope = self._function("fmi2SetRealInputDerivatives", *[ctypes.c_void_p, ctypes.c_size_t], *_TWO)
+        known = np.array([self._variables[n].valueReference for n in points.names], dtype=np.uint32)
+        wanted, order = np.array(recorded, dtype=np.uint32), np.ones(len(known), dtype=np.int32)
+        rows = np.empty((len(points.row_time), len(recorded)))
+        inputs, outputs, n, m = known.ctypes.data, wanted.ctypes.data, len(known), len(recorded)
+        value, slope, row = points.value.ctypes.data, points.slope.ctypes.data, rows.ctypes.data
+        sloped = bool(self._description.coSimulation.canInterpolateInputs) and n > 0
+        turns = np.append(True, (np.diff(points.slope, axis=0) != 0).any(axis=1)).tolist() if sloped else []
+        time, steps = points.time.tolist(), np.diff(points.time).tolist()
+        before, after = points.rows_before.tolist(), points.rows_after.tolist()
+        last = len(steps)
+        for k in range(last + 1):
+            for _ in range(before[k]):
+                get(outputs, m, row)
+                row += 8 * m
+            if k == last:
+                break
+            if n:
+                self._set_real(inputs, n, value + 8 * n * k)
+                if sloped and turns[k]:
+                    set_slope(inputs, n, order.ctypes.data, slope + 8 * n * k)
+            for _ in range(after[k]):
+                get(outputs, m, row)
+                row += 8 * m
+            do_step(time[k], steps[k], 1)
+        return rows
+
+
+_SETUP = [ctypes.c_int, ctypes.c_double, ctypes.c_double, ctypes.c_int, ctypes.c_double]
+_TWO = [ctypes.c_void_p, ctypes.c_void_p]
+
+
+def _described(path: Path) -> Any:
+    """The model description of an FMU that this machine can play."""
+    try:
+        description = fmpy.read_model_description(str(path), validate=False)
+        held = fmpy.supported_platforms(str(path))
+    except FileNotFoundError:
+        raise FmuError(f"{path}: there is no such file.") from None
+    except Exception as error:  # zip, XML and FMPy errors alike: the file is no FMU
+        raise FmuError(f"{path}: this file is no FMU ({error}).") from error
+    if description.fmiVersion != "2.0" or description.coSimulation is None:
+        raise FmuError(f"{path}: this FMU is not for FMI 2.0 co-simulation, which is what can be played.")
+    if fmpy.platform not in held:
+        binaries = ", ".join(p for p in held if p != "c-code") or "no platform"
+        raise FmuError(
+            f"{path}: this FMU holds binaries for {binaries}, none for this machine ({fmpy.platform}).\n"
+            f"Export it with --platform {fmpy.platform}."
+        )
+    return description
