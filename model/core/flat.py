@@ -118,6 +118,11 @@ class FlatModel:
             {"cse": True},
         )
 
+    @cached_property
+    def prepared(self) -> dict[str, Any]:
+        """What runs have compiled of this model, by name, so that it is compiled once."""
+        return {}
+
     def starts(self, kind: str) -> np.ndarray:
         """Default values of all states, inputs or parameters, in order."""
         group = {"state": self.states, "input": self.inputs, "parameter": self.parameters}[kind]
