@@ -41,8 +41,9 @@ FLAGS = ("-g0", "-s", "-shared", "-fPIC", "-fvisibility=hidden", "-fno-sanitize=
 
 def host_platform() -> Platform:
     """The platform this program runs on."""
-    name = {"Linux": "linux64", "Windows": "win64", "Darwin": "darwin64"}.get(host.system(), "linux64")
-    return PLATFORMS[name]
+    if host.system() == "Linux" and host.machine() == "aarch64":
+        return Platform("linux64", ".so", ("aarch64-linux-gnu.2.17",))
+    return PLATFORMS[{"Windows": "win64", "Darwin": "darwin64"}.get(host.system(), "linux64")]
 
 
 def platforms(choice: str) -> tuple[Platform, ...]:

@@ -6,7 +6,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-
 from gearheat.model.errors import FmuError
 
 #: Input name -> (times, values), linear between the points; a time given twice is a jump.
@@ -92,10 +91,7 @@ def _merged(groups: list[np.ndarray], apart: float) -> np.ndarray:
 
 def _limit(time: np.ndarray, values: np.ndarray, at: np.ndarray, side: str) -> np.ndarray:
     """The piecewise linear function at `at`, behind ("right") or before ("left") a jump there."""
-    if side == "right":
-        upper = np.searchsorted(time, at, side="right")
-    else:
-        upper = np.searchsorted(time, at, side="left")
+    upper = np.searchsorted(time, at, side="right") if side == "right" else np.searchsorted(time, at, side="left")
     a, b = np.clip(upper - 1, 0, len(time) - 1), np.clip(upper, 0, len(time) - 1)
     width = time[b] - time[a]
     part = np.divide(at - time[a], width, out=np.zeros_like(at), where=width > 0)

@@ -15,7 +15,6 @@ from typing import Any, Self
 import fmpy
 import numpy as np
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
-
 from gearheat.model.errors import FmuError, suggestion
 
 from .grid import Grid, Inputs, grid
@@ -172,15 +171,16 @@ class Player:
         known = {n: v for n, v in self._variables.items() if v.causality == "input"}
         settable = {n: v for n, v in self._variables.items() if v.causality == "input" or v.initial == "exact"}
         problems = []
-        for what, given, possible in (("input", inputs, known), ("start value", start, settable)):
+        reasons = (("input", inputs, known, "is no input."), ("start value", start, settable, "is calculated."))
+        for what, given, possible, reason in reasons:
             for name in sorted(set(given) - set(possible)):
-                why = "is calculated" if name in self._variables else f"is unknown.{suggestion(name, possible)}"
+                why = reason if name in self._variables else f"is unknown.{suggestion(name, possible)}"
                 problems.append(f'{self._path.name}: {what} "{name}" {why}')
         if problems:
             raise FmuError(problems)
 
     def _function(self, name: str, *types: Any) -> Any:
-        """A function of the library that takes addresses, so a step makes no Python objects, and raises when refused."""
+        """A function of the library that takes addresses, so a step makes no Python objects; raises when refused."""
         raw = self._slave.dll[name]
         raw.argtypes, raw.restype = [ctypes.c_void_p, *types], ctypes.c_int
         component = self._slave.component

@@ -71,6 +71,7 @@ def _tables(flat: FlatModel, table: Table) -> str:
     strings = {
         "model_names": [v.name for v in table],
         "model_units": [fmi_unit(v.quantity.unit) for v in table],
+        "model_ranges": [v.range_text for v in table],
         "model_checks": [
             f"{c.component}: {c.argument} of {c.law.name} ({c.law.source}, {c.law.where})" for c in checks
         ],

@@ -12,9 +12,6 @@ import numpy as np
 from gearheat.model.core.flat import FlatModel, Quantity
 from gearheat.model.errors import FmuError, suggestion
 
-#: Scale of an absolute temperature: steps and errors are a few kelvin, whatever the distance from absolute zero.
-TEMPERATURE_SCALE = 10.0
-
 SUPPLIED, THROUGHPUT, STORED, RESIDUAL = "energy.supplied", "energy.throughput", "energy.stored", "energy.residual"
 VALIDITY, IMPLICIT = "validity.count", "implicit.residual"
 
@@ -65,6 +62,16 @@ class Variable:
         low = math.nextafter(q.low, math.inf) if q.low_open else q.low
         high = math.nextafter(q.high, -math.inf) if q.high_open else q.high
         return float(low), float(high)
+
+    @property
+    def range_text(self) -> str:
+        """The values allowed, in words."""
+        q, ends = self.quantity, []
+        if math.isfinite(q.low):
+            ends.append(f"{'above' if q.low_open else 'at least'} {q.low:g}")
+        if math.isfinite(q.high):
+            ends.append(f"{'below' if q.high_open else 'at most'} {q.high:g}")
+        return " and ".join(ends) or "finite"
 
 
 @dataclass(frozen=True)
@@ -124,8 +131,7 @@ Group = tuple[Quantity, ...]
 
 def _started(flat: FlatModel, start: dict[str, float]) -> tuple[Group, Group, Group, list[str]]:
     """States with the audit states, inputs and parameters with their start values, and what is wrong with them."""
-    states = tuple(replace(q, nominal=error_scale(q)) for q in flat.states)
-    groups = [states, flat.inputs, flat.parameters]
+    groups = [flat.states, flat.inputs, flat.parameters]
     settable = {q.name for group in groups for q in group}
     problems = []
     for name in sorted(start.keys() - settable):
@@ -136,16 +142,11 @@ def _started(flat: FlatModel, start: dict[str, float]) -> tuple[Group, Group, Gr
     return (*groups[0], *_audit_states(flat)), groups[1], groups[2], problems
 
 
-def error_scale(quantity: Quantity) -> float:
-    """What an error of a state is measured by: its nominal, but never the distance from absolute zero."""
-    return min(quantity.nominal, TEMPERATURE_SCALE) if quantity.unit == "K" else quantity.nominal
-
-
 def _audit_states(flat: FlatModel) -> Group:
     """The two energies the export integrates beside the model; their scale is the energy of a nominal change."""
     slope = ca.Function("slope", [flat.x, flat.u, flat.p], [ca.jacobian(flat.stored, flat.x)])
     values = np.abs(slope(*(flat.starts(kind) for kind in ("state", "input", "parameter"))).full().ravel())
-    scale = float(values @ np.array([error_scale(q) for q in flat.states])) if flat.states else 0.0
+    scale = float(values @ np.array([q.nominal for q in flat.states])) if flat.states else 0.0
     scale = float(f"{scale:.2g}") if np.isfinite(scale) and scale > 0 else 1.0
     return (
         Quantity(SUPPLIED, "J", "energy that crossed the boundary inwards since the start", nominal=scale),

@@ -16,7 +16,8 @@ typedef struct {
    without it a step may pass over a fast layer whose states end up right but whose energy is lost from the audit. */
 static double scale(const double *x, int i)
 {
-    return i == SUPPLIED ? x[THROUGHPUT] + 1e-4 * model_nominal[FIRST_X + i] : model_nominal[FIRST_X + i];
+    double nominal = model_nominal[FIRST_X + i];
+    return i == SUPPLIED ? 0.1 * (x[THROUGHPUT] + 1e-3 * nominal) : nominal;
 }
 
 /* One trial step; its error in units of the tolerance, INFINITY when the result cannot be used. */

@@ -69,10 +69,10 @@ def shaft_and_heat() -> FlatModel:
         doc="a shaft with friction that heats a small network",
         states=(
             *(
-                Quantity(n, "K", f"temperature of {n}", nominal=350.0, start=293.15, low=0.0, low_open=True)
+                Quantity(n, "K", f"temperature of {n}", nominal=10.0, start=293.15, low=0.0, low_open=True)
                 for n in temperatures
             ),
-            Quantity("shaft.w", "rad/s", "speed of the shaft", nominal=100.0, start=150.0),
+            Quantity("shaft.w", "rad/s", "speed of the shaft", nominal=10.0, start=150.0),
         ),
         inputs=(
             Quantity("governor.w", "rad/s", "wanted speed", nominal=100.0, start=150.0),

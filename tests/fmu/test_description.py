@@ -1,0 +1,120 @@
+"""The model description: valid, with units, exact dependencies and the right start values."""
+
+import xml.etree.ElementTree as ET
+import zipfile
+from pathlib import Path
+from types import SimpleNamespace
+
+import fmpy
+import pytest
+from fmpy.validation import validate_fmu
+from gearheat.fmu import units
+from gearheat.fmu.description import identifier
+from gearheat.fmu.export import export
+from gearheat.fmu.variables import per_second, table
+from gearheat.model.errors import FmuError
+
+
+@pytest.fixture(scope="module")
+def described(heat_fmu: Path) -> SimpleNamespace:
+    description = fmpy.read_model_description(str(heat_fmu))
+    return SimpleNamespace(root=description, by_name={v.name: v for v in description.modelVariables})
+
+
+def test_fmpy_finds_no_problem(rc_fmu: Path, heat_fmu: Path) -> None:
+    assert validate_fmu(str(rc_fmu)) == []
+    assert validate_fmu(str(heat_fmu)) == []
+
+
+def test_states_are_outputs_with_settable_start(described: SimpleNamespace) -> None:
+    oil = described.by_name["oil.T"]
+    assert (oil.causality, oil.variability, oil.initial, float(oil.start)) == ("output", "continuous", "exact", 293.15)
+    rate = described.by_name["der(oil.T)"]
+    assert (rate.causality, rate.derivative.name) == ("local", "oil.T")
+    assert described.by_name["oil.C"].variability == "tunable"
+    assert described.by_name["room.T"].causality == "input"
+
+
+def test_units_and_what_is_shown(described: SimpleNamespace) -> None:
+    by_name, defined = described.by_name, {u.name: u for u in described.root.unitDefinitions}
+    assert (by_name["oil.T"].unit, by_name["oil.T"].displayUnit) == ("K", "degC")
+    assert (by_name["shaft.w"].unit, by_name["shaft.w"].displayUnit) == ("rad/s", "rpm")
+    assert (by_name["oil.dT"].unit, by_name["oil.dT"].displayUnit) == ("K", None)
+    shown = {d.name: (d.factor, d.offset) for u in defined.values() for d in u.displayUnits}
+    assert shown["degC"] == (1.0, -273.15)
+    assert shown["rpm"][0] == pytest.approx(9.549296585513721, rel=1e-14)
+    base = defined["N.m.s/rad"].baseUnit
+    assert (base.kg, base.m, base.s, base.rad, base.factor) == (1, 2, -1, -1, 1.0)
+
+
+def test_a_difference_is_marked_so_no_offset_touches_it(heat_fmu: Path) -> None:
+    root = ET.fromstring(zipfile.ZipFile(heat_fmu).read("modelDescription.xml"))
+    (real,) = root.findall("ModelVariables/ScalarVariable[@name='oil.dT']/Real")
+    assert real.get("relativeQuantity") == "true"
+
+
+@pytest.mark.parametrize(
+    ("name", "exponents"),
+    [
+        ("W/(m2.K)", {"K": -1, "kg": 1, "s": -3}),
+        ("Pa.s", {"kg": 1, "m": -1, "s": -1}),
+        ("1", {}),
+        ("1/K", {"K": -1}),
+        ("rad/s2", {"rad": 1, "s": -2}),
+    ],
+)
+def test_base_units(name: str, exponents: dict[str, int]) -> None:
+    assert units.unit(name).exponents == exponents
+
+
+def test_a_unit_nobody_knows_has_no_base() -> None:
+    assert units.unit("furlong/s").exponents is None
+
+
+def test_units_of_derivatives() -> None:
+    assert [per_second(u) for u in ("K", "rad/s", "J", "1", "J/K")] == ["K/s", "rad/s2", "W", "1/s", "J/K.s-1"]
+
+
+def test_dependencies_are_exact(described: SimpleNamespace) -> None:
+    def on(group: list, name: str) -> set[str]:
+        (unknown,) = [u for u in group if u.variable.name == name]
+        return {v.name for v in unknown.dependencies}
+
+    root = described.root
+    assert on(root.outputs, "oil.T") == {"oil.T"}
+    assert on(root.outputs, "oil.dT") == {"oil.T", "room.T"}
+    assert on(root.outputs, "gears.P_loss") == {"oil.T", "shaft.w", "load.tau"}
+    assert on(root.derivatives, "der(cover.T)") == {"oil.T", "cover.T", "housing.T"}
+    assert on(root.initialUnknowns, "gears.P_loss") == {"oil.T", "shaft.w", "load.tau", "oil.b_0"}
+    assert "energy.supplied" not in on(root.derivatives, "der(energy.supplied)")
+
+
+def test_start_values_can_be_replaced(models: SimpleNamespace) -> None:
+    by_name = table(models.rc, {"source.v": 2.5, "capacitor.v": 0.5, "resistor.R": 7.0}).by_name
+    assert [by_name[n].start for n in ("source.v", "capacitor.v", "resistor.R", "capacitor.C")] == [2.5, 0.5, 7.0, 3.0]
+
+
+def test_all_wrong_start_values_are_told_at_once(models: SimpleNamespace, tmp_path: Path) -> None:
+    start = {"resistor.r": 1.0, "resistor.i": 1.0, "capacitor.C": -1.0, "source.v": float("nan")}
+    with pytest.raises(FmuError) as caught:
+        export(models.rc, tmp_path / "rc.fmu", start=start)
+    told = "\n".join(caught.value.problems)
+    assert len(caught.value.problems) == 4
+    for text in ('Did you mean "resistor.R"', '"resistor.i" is calculated', "capacitor.C = -1", "source.v = nan"):
+        assert text in told
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"), [("rc", "rc"), ("shaft and heat", "shaft_and_heat"), ("2nd", "model_2nd"), ("Öl", "model__l")]
+)
+def test_identifier(name: str, expected: str) -> None:
+    assert identifier(name) == expected
+
+
+def test_same_model_same_bytes(models: SimpleNamespace, rc_fmu: Path, tmp_path: Path) -> None:
+    again = export(models.rc, tmp_path / "again.fmu")
+    assert again.read_bytes() == rc_fmu.read_bytes()
+    other = export(models.rc, tmp_path / "other.fmu", start={"source.v": 4.0})
+    guids = {fmpy.read_model_description(str(p)).guid for p in (rc_fmu, again, other)}
+    assert len(guids) == 2
+    assert {i.date_time[0] for i in zipfile.ZipFile(again).infolist()} == {1980}

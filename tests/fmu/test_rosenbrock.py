@@ -1,0 +1,74 @@
+"""The solver's step as an expression: order, error estimate, damping, and the elimination inside."""
+
+from collections.abc import Callable
+
+import casadi as ca
+import numpy as np
+import pytest
+from gearheat.fmu.elimination import SparseLU, min_fill_order
+from gearheat.fmu.rosenbrock import RODAS3, RODAS4, Tableau, step
+from scipy.integrate import solve_ivp
+
+Step = Callable[..., tuple[np.ndarray, np.ndarray]]
+
+
+def compiled(ode: ca.SX, x: ca.SX, u: ca.SX, tableau: Tableau) -> Step:
+    x_new, error, slope, h = step(ode, x, u, tableau)
+    function = ca.Function("step", [x, u, slope, h], [x_new, error])
+    return lambda *arguments: tuple(np.array(v).ravel() for v in function(*arguments))
+
+
+@pytest.mark.parametrize("tableau", [RODAS3, RODAS4], ids=lambda t: t.name)
+def test_order_of_result_and_error_with_a_sloped_input(tableau: Tableau) -> None:
+    x, u = ca.SX.sym("x", 2), ca.SX.sym("u")
+    ode = ca.vertcat(-(x[0] ** 2) + ca.sin(u), x[0] * x[1] - x[1] ** 3 + u**2)
+    run = compiled(ode, x, u, tableau)
+
+    def rate(t: float, z: np.ndarray) -> list[float]:
+        w = 0.3 + 0.7 * t
+        return [-(z[0] ** 2) + np.sin(w), z[0] * z[1] - z[1] ** 3 + w**2]
+
+    exact = solve_ivp(rate, (0, 1), [1, 0.5], method="DOP853", rtol=1e-13, atol=1e-13).y[:, -1]
+    errors, estimates = [], []
+    for count in (20, 40):
+        z, estimate = np.array([1, 0.5]), 0.0
+        for k in range(count):
+            z, e = run(z, 0.3 + 0.7 * k / count, 0.7, 1 / count)
+            estimate = max(estimate, np.abs(e).max())
+        errors.append(np.abs(z - exact).max())
+        estimates.append(estimate)
+    assert np.log2(errors[0] / errors[1]) > tableau.order - 0.15
+    assert np.log2(estimates[0] / estimates[1]) > tableau.order - 0.3
+
+
+@pytest.mark.parametrize("tableau", [RODAS3, RODAS4], ids=lambda t: t.name)
+def test_a_step_much_longer_than_the_time_constant_lands_on_the_steady_state(tableau: Tableau) -> None:
+    x, u = ca.SX.sym("x", 2), ca.SX.sym("u")
+    run = compiled(ca.vertcat(-1e3 * (x[0] - u), x[0] - x[1]), x, u, tableau)
+    far = [np.abs(run([7.0, -3.0], 2.0, 0.0, h)[0] - 2.0).max() for h in (1e6, 1e8)]
+    assert far[1] < far[0] / 50  # what is left falls as 1/h
+    assert far[1] < 1e-6
+
+
+def test_a_step_of_no_length_changes_nothing() -> None:
+    x, u = ca.SX.sym("x"), ca.SX.sym("u")
+    z, error = compiled(u - x**3, x, u, RODAS3)(0.7, 2.0, 1.0, 0.0)
+    assert z.tolist() == [0.7]
+    assert error.tolist() == [0.0]
+
+
+def test_elimination_solves_sparse_systems() -> None:
+    rng = np.random.default_rng(1)
+    for n in (1, 2, 7, 12):
+        dense = np.where(rng.random((n, n)) < 0.3, rng.normal(size=(n, n)), 0) + 5 * np.eye(n)
+        matrix, right = ca.SX.sym("a", ca.DM(dense).sparsity() + ca.Sparsity.diag(n)), ca.SX.sym("b", n)
+        solve = ca.Function("solve", [matrix, right], [SparseLU(matrix).solve(right)])
+        b = rng.normal(size=n)
+        assert np.array(solve(dense, b)).ravel() == pytest.approx(np.linalg.solve(dense, b), rel=1e-12, abs=1e-14)
+
+
+def test_min_fill_takes_the_hub_of_a_star_last() -> None:
+    star = [{0, 1, 2, 3, 4}, {0, 1}, {0, 2}, {0, 3}, {0, 4}]
+    order = min_fill_order(star)
+    assert order.index(0) >= 3
+    assert sorted(order) == [0, 1, 2, 3, 4]
