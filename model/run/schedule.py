@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -57,7 +58,7 @@ class Schedule:
         """The points between jumps: per stretch the slice of points over which all inputs are continuous."""
         jumps = np.flatnonzero(np.diff(self.time) == 0)
         edges = [0, *(jumps + 1), len(self.time)]
-        pairs = [(a, b) for a, b in zip(edges, edges[1:], strict=False) if self.time[b - 1] > self.time[a]]
+        pairs = [(a, b) for a, b in pairwise(edges) if self.time[b - 1] > self.time[a]]
         return [slice(int(a), int(b)) for a, b in pairs]
 
 

@@ -1,0 +1,77 @@
+"""Where a flat model is evaluated: values by path become vectors, with every problem reported at once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..core.flat import FlatModel
+from ..errors import ScenarioError, suggestion
+
+#: What each kind of quantity is called in a message.
+WORDS = {"state": "a state", "input": "an input", "parameter": "a parameter", "output": "an output"}
+
+
+@dataclass(frozen=True)
+class Point:
+    """States, inputs and parameters of a flat model, in the order of its quantities, SI."""
+
+    x: np.ndarray
+    u: np.ndarray
+    p: np.ndarray
+
+
+def point(
+    flat: FlatModel,
+    values: Mapping[str, float] | None = None,
+    states: Mapping[str, float] | None = None,
+    *,
+    who: str,
+    taken: Iterable[str] = (),
+) -> Point:
+    """Vectors from values by path; what is not named keeps the model's own value.
+
+    Args:
+        flat: the model
+        values: parameters and constant inputs by path
+        states: states by path
+        who: the run that asks, for messages
+        taken: inputs that are given elsewhere
+
+    Raises:
+        ScenarioError: all unknown names, names of the wrong kind, doubled and out-of-range values at once
+    """
+    vectors = {kind: flat.starts(kind) for kind in ("state", "input", "parameter")}
+    taken = set(taken)
+    problems = []
+    for group, allowed in ((values or {}, ("parameter", "input")), (states or {}, ("state",))):
+        for name, value in group.items():
+            if (problem := problem_of(flat, name, allowed, who, value)) is not None:
+                problems.append(problem)
+            elif name in taken:
+                problems.append(f"{who}: {name} is given twice: by the duty and as a value. Take one away.")
+            else:
+                kind, i = flat.index[name]
+                vectors[kind][i] = value
+    if problems:
+        raise ScenarioError(problems)
+    return Point(vectors["state"], vectors["input"], vectors["parameter"])
+
+
+def problem_of(
+    flat: FlatModel, name: str, allowed: tuple[str, ...], who: str, value: float | None = None
+) -> str | None:
+    """What is wrong with a name where certain kinds are allowed, or with its value; None if nothing is."""
+    if name not in flat.index:
+        known = [n for n, (kind, _) in flat.index.items() if kind in allowed]
+        return f'{who}: unknown name "{name}".{suggestion(name, known)}'
+    kind, _ = flat.index[name]
+    if kind not in allowed:
+        expected = " or ".join(WORDS[k] for k in allowed)
+        return f"{who}: {name} is {WORDS[kind]} of {flat.name}. Expected {expected}."
+    if value is None:
+        return None
+    problem = flat.quantity(name).problem(value)
+    return problem and f"{who}: {problem}"

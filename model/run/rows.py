@@ -1,0 +1,83 @@
+"""From solved states to a result: outputs, laws outside their range, laws at work."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+
+from ..core.flat import FlatModel
+from ..sources import LawInfo
+from .result import Audit, Outside, Result
+
+#: Round-off allowed at the ends of a law's range, relative.
+SLACK = 1e-9
+
+
+def evaluate(flat: FlatModel, x: np.ndarray, u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
+    """All output expressions, a column per row of the result.
+
+    Args:
+        flat: the model
+        x: states, n_x by rows
+        u: inputs, n_u by rows
+        p: parameters, n_p, or n_p by rows
+
+    Returns:
+        "y", "residual", "supply", "throughput", "stored", "checked", each with one column per row
+    """
+    function = flat.output_function
+    rows = x.shape[1]
+    p = p if p.ndim == 2 else np.tile(p[:, None], (1, rows))
+    values = function(x, u, p) if rows > 1 else function(x[:, 0], u[:, 0], p[:, 0])
+    return {name: np.array(value) for name, value in zip(function.name_out(), values, strict=True)}
+
+
+def result(
+    flat: FlatModel,
+    kind: str,
+    index: np.ndarray,
+    x: np.ndarray,
+    u: np.ndarray,
+    evaluated: dict[str, np.ndarray],
+    audit: Audit,
+) -> Result:
+    """One result from states, inputs and what `evaluate` made of them."""
+    groups = ((flat.states, x), (flat.inputs, u), (flat.outputs, evaluated["y"]))
+    columns = {q.name: row for quantities, values in groups for q, row in zip(quantities, values, strict=True)}
+    return Result(
+        model=flat.name,
+        kind=kind,
+        index=index,
+        columns=columns,
+        units={name: flat.quantity(name).unit for name in columns},
+        audit=audit,
+        outside=outside(flat, evaluated["checked"]),
+        laws=cited(flat.laws),
+        implicit=left(flat, evaluated["residual"]),
+    )
+
+
+def outside(flat: FlatModel, checked: np.ndarray) -> tuple[Outside, ...]:
+    """The arguments of laws that left their range over the rows, uses of one law in one part taken together."""
+    found: dict[tuple[str, str, str], Outside] = {}
+    for check, values in zip(flat.checks, checked, strict=True):
+        lowest, highest = float(np.min(values)), float(np.max(values))
+        slack = SLACK * max(abs(lowest), abs(highest))
+        if lowest >= check.low - slack and highest <= check.high + slack:
+            continue
+        key = (check.component, check.law.name, check.argument)
+        if (other := found.get(key)) is not None:
+            lowest, highest = min(lowest, other.lowest), max(highest, other.highest)
+        found[key] = Outside(*key, check.low, check.high, lowest, highest)
+    return tuple(found.values())
+
+
+def left(flat: FlatModel, residual: np.ndarray) -> dict[str, float]:
+    """Largest residual of each implicit equation over the rows."""
+    return {name: float(np.max(np.abs(row))) for name, row in zip(flat.residual_names, residual, strict=True)}
+
+
+def cited(laws: Iterable[LawInfo]) -> tuple[str, ...]:
+    """The laws at work with the place they come from, each once, in the order of use."""
+    return tuple(dict.fromkeys(f"{law.name} ({law.source}, {law.where})" for law in laws))

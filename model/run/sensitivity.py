@@ -1,0 +1,60 @@
+"""How steady outputs answer to parameters and inputs, exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import cast
+
+import casadi as ca
+import numpy as np
+
+from ..core.flat import FlatModel
+from ..errors import ScenarioError
+from .fast import Fast
+from .point import point, problem_of
+from .steady import balance
+
+
+def sensitivities(
+    flat: FlatModel,
+    outputs: Sequence[str],
+    names: Sequence[str],
+    values: Mapping[str, float],
+    *,
+    guess: Mapping[str, float] | None = None,
+) -> np.ndarray:
+    """d(output)/d(name) at a steady state, by the implicit function theorem.
+
+    Args:
+        flat: the model
+        outputs: outputs and states, one row each
+        names: parameters and inputs, one column each
+        values: parameters and inputs by path (SI)
+        guess: states to start from
+
+    Raises:
+        ScenarioError: unknown names, names of the wrong kind, values out of range
+        SolveError: no steady state
+    """
+    problems = [problem_of(flat, name, ("output", "state"), "sensitivities") for name in outputs]
+    problems += [problem_of(flat, name, ("parameter", "input"), "sensitivities") for name in names]
+    if found := [problem for problem in problems if problem]:
+        raise ScenarioError(found)
+    here = point(flat, values, guess, who="sensitivities")
+    x = balance(flat, here, None, tuple(values), "sensitivities")
+    n, m = len(flat.states), len(outputs)
+    jacobian = _compiled(flat, tuple(outputs), tuple(names))(x, here.u, here.p)[0].reshape(n + m, n + len(names))
+    answer = np.linalg.solve(jacobian[:n, :n], -jacobian[:n, n:])
+    return cast(np.ndarray, jacobian[n:, n:] + jacobian[n:, :n] @ answer)
+
+
+def _compiled(flat: FlatModel, outputs: tuple[str, ...], names: tuple[str, ...]) -> Fast:
+    """(x, u, p) -> Jacobian of derivatives and outputs in the states and the names."""
+    key = f"sensitivities {outputs} {names}"
+    if key not in flat.prepared:
+        vectors = {"state": flat.x, "output": flat.y, "input": flat.u, "parameter": flat.p}
+        rows = [vectors[kind][i] for kind, i in map(flat.locate, outputs)]
+        columns = [vectors[kind][i] for kind, i in map(flat.locate, names)]
+        jacobian = ca.jacobian(ca.vertcat(flat.ode, *rows), ca.vertcat(flat.x, *columns))
+        flat.prepared[key] = Fast("sensitivities", [flat.x, flat.u, flat.p], [jacobian])
+    return cast(Fast, flat.prepared[key])

@@ -1,0 +1,198 @@
+"""A transient: the flat model driven by a schedule, restarted at jumps only, with its energy integrated alongside."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..core.flat import FlatModel
+from ..errors import ScenarioError, SolveError, suggestion
+from ..units import text
+from .integrate import Failure, Stretch, Transient
+from .point import Point, point, problem_of
+from .result import Audit, Result
+from .rows import evaluate, result
+from .schedule import Schedule
+
+#: Rows of a result where nothing else is asked for [s].
+OUTPUT_STEP = 60.0
+
+#: Methods by name.
+METHODS = ("cvodes", "lsoda")
+
+
+def simulate(
+    flat: FlatModel,
+    schedule: Schedule,
+    *,
+    start: Mapping[str, float] | None = None,
+    values: Mapping[str, float] | None = None,
+    times: Sequence[float] | np.ndarray | None = None,
+    tolerance: float = 1e-8,
+    method: str = "cvodes",
+) -> Result:
+    """Run a model through a duty.
+
+    Args:
+        flat: the model
+        schedule: inputs over time; inputs it does not name keep their value in `values` or their own
+        start: states at the beginning, by path (SI)
+        values: parameters and constant inputs, by path (SI)
+        times: output times [s], not decreasing; a row at a jump shows the inputs after it, a time given twice both
+            sides. Without it: every 60 s, and both sides of every jump
+        tolerance: of the local error, relative to each state's nominal and its distance from the start
+        method: "cvodes" (SUNDIALS BDF through CasADi) or "lsoda" (SciPy, one Python call per right-hand side)
+
+    Returns:
+        all states, inputs and outputs, with the energy audit from integrated powers
+
+    Raises:
+        ScenarioError: unknown names, values out of range, times outside the duty
+        SolveError: the integration cannot go on; the text names the time reached and the state at fault
+    """
+    asked = _problems(flat, schedule, times, method)
+    if asked:
+        raise ScenarioError(asked)
+    begin = point(flat, values, start, who="simulate", taken=schedule.values)
+    stretches = _stretches(flat, schedule, begin.u)
+    rows = _rows(schedule, stretches) if times is None else _asked(np.asarray(times, dtype=float), stretches)
+    transient = Transient(flat, begin.x, begin.p, tolerance)
+    run: Callable[..., tuple[np.ndarray, np.ndarray]] = getattr(transient, method)
+    x = np.empty((len(flat.states), len(rows.time)))
+    u = np.empty((len(flat.inputs), len(rows.time)))
+    now, energy = begin.x, np.zeros(2)
+    for k, stretch in enumerate(stretches):
+        here = np.flatnonzero(rows.stretch == k)
+        grid = _merged(stretch.time, rows.time[here])
+        try:
+            path, gained = run(stretch, grid, now)
+        except Failure as failure:
+            raise SolveError(_message(flat, failure, begin)) from None
+        _check_ranges(flat, grid, path)
+        x[:, here] = path[:, _nearest(grid, rows.time[here])]
+        u[:, here] = stretch.inputs(rows.time[here])
+        now, energy = path[:, -1], energy + gained
+    return _result(flat, rows.time, x, u, begin, now, energy)
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """Times of the rows and the stretch each belongs to."""
+
+    time: np.ndarray
+    stretch: np.ndarray
+
+
+def _problems(
+    flat: FlatModel, schedule: Schedule, times: Sequence[float] | np.ndarray | None, method: str
+) -> list[str]:
+    found = [problem for name in schedule.values if (problem := problem_of(flat, name, ("input",), "simulate"))]
+    for name in schedule.values.keys() & flat.index.keys():
+        column = schedule.values[name]
+        extremes = dict.fromkeys((float(column.min()), float(column.max())))
+        found += [f"simulate: duty: {p}" for value in extremes if (p := flat.quantity(name).problem(value))]
+    if method not in METHODS:
+        choice = " or ".join(METHODS)
+        found.append(f'simulate: unknown method "{method}".{suggestion(method, METHODS)} Choose {choice}.')
+    if times is None:
+        return found
+    moments = np.asarray(times, dtype=float)
+    wrong = moments[~((moments >= schedule.start) & (moments <= schedule.stop))]
+    if wrong.size:
+        found.append(
+            f"simulate: output time {wrong[0]:g} s lies outside the duty ({schedule.start:g} ... {schedule.stop:g} s)."
+        )
+    elif not moments.size or (np.diff(moments) < 0).any():
+        found.append("simulate: output times must be given in order, at least one.")
+    return found
+
+
+def _stretches(flat: FlatModel, schedule: Schedule, u: np.ndarray) -> list[Stretch]:
+    """The duty between jumps, with constant inputs filled in."""
+    columns = [schedule.values.get(q.name, np.full(len(schedule.time), u[i])) for i, q in enumerate(flat.inputs)]
+    table = np.array(columns).reshape(len(flat.inputs), len(schedule.time))
+    found = []
+    for part in schedule.stretches():
+        time, first = np.unique(schedule.time[part], return_index=True)
+        found.append(Stretch(time, table[:, part][:, first]))
+    if not found:
+        raise ScenarioError(f"simulate: the duty lasts no time (it stays at {schedule.start:g} s). Give it a duration.")
+    return found
+
+
+def _rows(schedule: Schedule, stretches: Sequence[Stretch]) -> _Rows:
+    """A row every output step, and one at both ends of every stretch."""
+    every = np.arange(schedule.start, schedule.stop, OUTPUT_STEP)
+    times = []
+    for s in stretches:
+        inside = every[(every > s.begin) & (every < s.end)]
+        times.append(_merged(np.array([s.begin, s.end]), inside))
+    owners = [np.full(len(t), k) for k, t in enumerate(times)]
+    return _Rows(np.concatenate(times), np.concatenate(owners))
+
+
+def _asked(times: np.ndarray, stretches: Sequence[Stretch]) -> _Rows:
+    """The rows asked for: at a jump the side after it, where a time comes twice the first of them before it."""
+    begins = np.array([s.begin for s in stretches])
+    stretch = np.maximum(np.searchsorted(begins, times, side="right") - 1, 0)
+    first_of_two = np.append(times[1:] == times[:-1], False)
+    at_jump = first_of_two & (stretch > 0) & (times == begins[stretch])
+    return _Rows(times, stretch - at_jump)
+
+
+def _merged(edges: np.ndarray, times: np.ndarray) -> np.ndarray:
+    """Edges and times in order; times that round-off alone keeps from an edge or each other are one."""
+    every = np.unique(np.concatenate([edges, times]))
+    apart = 1e-9 * (1.0 + edges[-1] - edges[0])
+    keep = np.append(True, np.diff(every) > apart)
+    merged: np.ndarray = every[keep]
+    merged[-1] = edges[-1]
+    return merged
+
+
+def _nearest(grid: np.ndarray, times: np.ndarray) -> np.ndarray:
+    after = np.clip(np.searchsorted(grid, times), 1, len(grid) - 1)
+    return np.where(times - grid[after - 1] < grid[after] - times, after - 1, after)
+
+
+def _result(
+    flat: FlatModel, time: np.ndarray, x: np.ndarray, u: np.ndarray, begin: Point, last: np.ndarray, energy: np.ndarray
+) -> Result:
+    evaluated = evaluate(flat, x, u, begin.p)
+    ends = evaluate(flat, np.column_stack([begin.x, last]), u[:, [0, -1]], begin.p)["stored"][0]
+    gained = float(ends[1] - ends[0])
+    held = float(max(np.abs(evaluated["stored"]).max(), np.abs(ends).max()))
+    audit = Audit(float(energy[0]), gained, float(energy[1]), held)
+    return result(flat, "transient", time, x, u, evaluated, audit)
+
+
+def _check_ranges(flat: FlatModel, grid: np.ndarray, path: np.ndarray) -> None:
+    """Raise SolveError where a state leaves its range by more than round-off."""
+    for q, row in zip(flat.states, path, strict=True):
+        slack = 1e-6 * q.nominal
+        wrong = np.flatnonzero((row < q.low - slack) | (row > q.high + slack))
+        if wrong.size:
+            i = int(wrong[0])
+            raise SolveError(
+                f"simulate: {q.name} leaves its range ({q.low:g} ... {q.high:g} {q.unit}) at {grid[i]:.6g} s: "
+                f"it has reached {text(row[i], q.unit)}.\n"
+                f"Check what drives {q.name.rpartition('.')[0]} before that time."
+            )
+
+
+def _message(flat: FlatModel, failure: Failure, begin: Point) -> str:
+    """Where the integration stopped and the state that moved furthest for its size."""
+    if not flat.states:
+        return f"simulate: {flat.name} cannot be evaluated at {failure.time:g} s."
+    nominal = np.array([q.nominal for q in flat.states])
+    speed = np.abs(np.where(np.isfinite(failure.rate), failure.rate, np.inf)) / (nominal + np.abs(failure.x))
+    worst = flat.states[int(np.argmax(speed))]
+    i = flat.index[worst.name][1]
+    return (
+        f"simulate: the run stops at {failure.time:.6g} s: {worst.name} has reached {text(failure.x[i], worst.unit)} "
+        f"and changes by {failure.rate[i]:.3g} {worst.unit}/s.\n"
+        f"It started at {text(begin.x[i], worst.unit)}. Check what drives {worst.name.rpartition('.')[0]} "
+        f"at that time, and its parameters."
+    )
