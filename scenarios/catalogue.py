@@ -1,0 +1,74 @@
+"""Catalogues: named oils, bearings, seals, materials and air, with a source for every value."""
+
+from __future__ import annotations
+
+import functools
+from collections.abc import Mapping
+from dataclasses import dataclass
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from ..model.errors import ScenarioError, suggestion
+from .document import ABOUT, read_toml, sources_of
+
+#: Kind of entry, as it is called in a part's table -> its file.
+FILES: Mapping[str, str] = {
+    "oil": "oils.toml",
+    "bearing": "bearings.toml",
+    "seal": "seals.toml",
+    "material": "materials.toml",
+    "air": "air.toml",
+}
+
+FOLDER = Path(str(files("gearheat.scenarios").joinpath("catalogue")))
+
+
+@dataclass(frozen=True)
+class Entry:
+    """One entry: its values as written (text with units), and the source of each."""
+
+    kind: str
+    name: str
+    doc: str
+    values: Mapping[str, Any]
+    sources: Mapping[str, str]
+
+
+@functools.cache
+def catalogue(kind: str) -> Mapping[str, Entry]:
+    """All entries of a kind ("oil", "bearing", ...) by name.
+
+    Raises:
+        ScenarioError: unknown kind, or all problems of the file at once
+    """
+    if kind not in FILES:
+        raise ScenarioError(f'there is no catalogue "{kind}".{suggestion(kind, FILES)} Catalogues: {", ".join(FILES)}.')
+    return read_catalogue(kind, FOLDER / FILES[kind])
+
+
+def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
+    """The entries in a catalogue file, a table each. Raises ScenarioError with all problems at once."""
+    entries: dict[str, Entry] = {}
+    problems: list[str] = []
+    for name, table in read_toml(path).items():
+        where = f"{path.name} [{name}]"
+        if not isinstance(table, Mapping):
+            problems.append(f"{where}: is no table. Write the values of the entry below [{name}].")
+            continue
+        sources, wrong = sources_of(where, table)
+        problems += wrong
+        values = {key: value for key, value in table.items() if key not in ABOUT}
+        entries[name] = Entry(kind, name, str(table.get("doc", "")), values, sources)
+    if problems:
+        raise ScenarioError(problems)
+    return entries
+
+
+def entry(kind: str, name: str) -> Entry:
+    """One entry. Raises ScenarioError with suggestions for an unknown name."""
+    known = catalogue(kind)
+    if name not in known:
+        close = suggestion(name, known) or f" Known: {', '.join(known)}."
+        raise ScenarioError(f'unknown {kind} "{name}".{close}')
+    return known[name]

@@ -1,0 +1,175 @@
+"""Strict reading of CSV tables: every wrong cell is found in one pass and named by file, line and column."""
+
+from __future__ import annotations
+
+import csv
+import math
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal
+
+from ..model.errors import DataError, suggestion
+
+#: Most problems that one message lists; the rest are counted.
+SHOWN = 30
+
+_NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+
+
+@dataclass(frozen=True)
+class Column:
+    """What a table expects of one column: "number", "count" (a whole number) or "text", and its range."""
+
+    name: str
+    doc: str
+    kind: Literal["number", "count", "text"] = "number"
+    required: bool = True
+    at_least: float = -math.inf
+    above: float = -math.inf
+    options: tuple[Any, ...] = ()
+
+
+@dataclass(frozen=True)
+class Table:
+    """A table as read: per column one value per row (None where the cell is wrong), and the line of each row."""
+
+    name: str
+    columns: Mapping[str, tuple[Any, ...]]
+    lines: tuple[int, ...]
+    warnings: tuple[str, ...] = ()
+
+    def place(self, row: int) -> str:
+        """File and line of a row, for a message."""
+        return f"{self.name} line {self.lines[row]}"
+
+
+def raise_all(problems: Sequence[str], name: str) -> None:
+    """Raise DataError if there are problems; beyond a page of them the rest are counted."""
+    if len(problems) > SHOWN:
+        rest = len(problems) - SHOWN
+        problems = [
+            *problems[:SHOWN],
+            f"{name}: {rest} more problems. Mend the first ones and read it again.",
+        ]
+    if problems:
+        raise DataError(problems)
+
+
+def read_cells(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """Header and rows (line number, cells) of a CSV file; blank lines are left out.
+
+    Raises:
+        DataError: no such file, not text, empty, no row under the header, another separator, or rows of other lengths
+    """
+    name = path.name
+    lines = _lines(path)
+    if not lines:
+        raise DataError(f"{name}: the file is empty. It needs a line of column names and at least one row.")
+    (_, header), *rows = lines
+    if len(header) == 1 and re.search(r"[;\t]", header[0]):
+        raise DataError(
+            f"{name} line 1: the columns are not separated by commas. Write commas, and a point in decimals."
+        )
+    problems = [
+        f'{name} line 1: column "{h}" is there twice. Keep one.'
+        for h in sorted({h for h in header if header.count(h) > 1})
+    ]
+    problems += [f"{name} line 1: column {i} has no name. Give it one." for i, h in enumerate(header, 1) if not h]
+    problems += [
+        f"{name} line {line}: {len(cells)} cells under {len(header)} column names. Write one cell per column, decimals with a point."
+        for line, cells in rows
+        if len(cells) != len(header)
+    ]
+    if not rows:
+        problems.append(f"{name}: there is no row under the column names. Add at least one.")
+    raise_all(problems, name)
+    return header, rows
+
+
+def _lines(path: Path) -> list[tuple[int, list[str]]]:
+    try:
+        text = path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise DataError(f"{path}: there is no such file. Check the path.") from None
+    except UnicodeDecodeError:
+        raise DataError(f"{path.name}: is no text in UTF-8. Export the table as CSV.") from None
+    except OSError as error:
+        raise DataError(f"{path}: cannot be read ({error.strerror}). Give a CSV file.") from None
+    reader = csv.reader(text.replace("\x00", "\ufffd").splitlines())
+    try:
+        cells = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
+    except csv.Error as error:
+        raise DataError(f"{path.name} line {reader.line_num}: is no CSV ({error}).") from None
+    return [(line, row) for line, row in cells if any(row)]
+
+
+def number(cell: str) -> float:
+    """The finite number in a cell. Raises ValueError saying what is wrong with it."""
+    if not cell:
+        raise ValueError("is empty. Write a number")
+    if cell.lower().lstrip("+-") in ("nan", "inf", "infinity"):
+        raise ValueError("is not finite. Write a number or leave out the row")
+    if not _NUMBER.fullmatch(cell):
+        raise ValueError("is no number. Write a number with a decimal point and no unit")
+    if not math.isfinite(value := float(cell)):
+        raise ValueError("is not finite. Write a number or leave out the row")
+    return value
+
+
+def parse(path: Path, columns: Iterable[Column]) -> tuple[Table, list[str]]:
+    """The table in a file and all that is wrong with its columns and cells; unknown columns only warn.
+
+    Raises:
+        DataError: what `read_cells` finds, since nothing can be read beyond it
+    """
+    header, rows = read_cells(path)
+    known = {c.name: c for c in columns}
+    problems = _missing(path.name, header, known)
+    warnings = tuple(
+        f'{path.name}: column "{h}" is not used.{suggestion(h, known.keys() - set(header))}'
+        for h in header
+        if h not in known
+    )
+    read: dict[str, list[Any]] = {h: [] for h in header if h in known}
+    for line, cells in rows:
+        for name, cell in zip(header, cells, strict=True):
+            if name in known:
+                try:
+                    read[name].append(_value(cell, known[name]))
+                except ValueError as error:
+                    read[name].append(None)
+                    problems.append(f'{path.name} line {line}: {name} = "{cell}" {error}.')
+    return Table(path.name, {n: tuple(v) for n, v in read.items()}, tuple(line for line, _ in rows), warnings), problems
+
+
+def _missing(name: str, header: Sequence[str], known: Mapping[str, Column]) -> list[str]:
+    spare = [h for h in header if h not in known]
+    problems = []
+    for column in known.values():
+        if column.required and column.name not in header:
+            close = suggestion(column.name, spare).replace("Did you mean", "Is it called").strip()
+            remedy = f"{close} Rename it." if close else "Add it."
+            problems.append(f'{name} line 1: column "{column.name}" ({column.doc}) is missing. {remedy}')
+    return problems
+
+
+def _value(cell: str, column: Column) -> Any:
+    if column.kind == "text":
+        if column.required and not cell:
+            raise ValueError(f"is empty. Write the {column.doc}")
+        return cell
+    if not column.required and not cell:
+        return math.nan
+    value = number(cell)
+    if column.kind == "count":
+        if value != int(value):
+            raise ValueError("is no whole number")
+        value = int(value)
+    if column.options and value not in column.options:
+        raise ValueError(f"is not known. Write one of: {', '.join(str(o) for o in column.options)}")
+    if value < column.at_least or value <= column.above:
+        limit = f"above {column.above:g}" if column.above > -math.inf else f"at least {column.at_least:g}"
+        raise ValueError(f"is out of range. The {column.doc} must be {limit}")
+    return value

@@ -1,0 +1,135 @@
+"""Duty cycles: what is given from outside over time, as a CSV table.
+
+The header names the time and the inputs, each with its unit in brackets; between two rows everything runs in a
+straight line, and a time written twice is a jump:
+
+    time [min],carrier.w [rpm],carrier.tau [N.m],room.T [degC]
+    0,100,1500,25
+    240,100,1500,26
+    240,0,0,26
+    245,0,0,26
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from ..model.core.flat import FlatModel, Quantity
+from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
+from ..model.run.schedule import Schedule
+from ..model.units import shown, to_si
+from .csv_table import number, raise_all, read_cells
+
+TIME = Quantity("time", "s", "time")
+
+#: A step large enough to tell the slope of a unit's conversion from its offset without rounding.
+_LARGE = 1e6
+
+
+@dataclass(frozen=True)
+class DutyColumn:
+    """A column of the table: what it gives, and how its numbers become SI."""
+
+    quantity: Quantity
+    offset: float
+    slope: float
+
+    def si(self, cell: str) -> float:
+        """A cell in SI. Raises ValueError saying what is wrong with it."""
+        value = self.offset + self.slope * number(cell)
+        if (problem := self.quantity.problem(value)) is not None:
+            raise ValueError(f"is out of range. {problem.partition('out of range. ')[2].rstrip('.')}")
+        return value
+
+
+def duty_names(path: str | Path) -> tuple[str, ...]:
+    """The inputs named in the header of a duty table, to tell which quantities it drives."""
+    header, _ = read_cells(Path(path))
+    return tuple(_split(cell)[0] for cell in header[1:])
+
+
+def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> Schedule:
+    """The schedule in a duty table.
+
+    Args:
+        path: a CSV file as described above
+        inputs: the model that is driven, or the inputs that may be given (`Scenario.inputs()`)
+
+    Raises:
+        DataError: everything wrong with the table at once: names, units, cells, ranges, time that goes back
+    """
+    path = Path(path)
+    known = {q.name: q for q in inputs.inputs} if isinstance(inputs, FlatModel) else inputs
+    header, rows = read_cells(path)
+    problems: list[str] = []
+    values: dict[str, np.ndarray] = {}
+    for i, cell in enumerate(header):
+        try:
+            column = _column(cell, known if i else {TIME.name: TIME})
+        except GearheatError as error:
+            problems += [f"{path.name} line 1: {problem}" for problem in error.problems]
+            continue
+        values[column.quantity.name] = _cells(path.name, rows, i, column, problems)
+    if len(header) == 1:
+        problems.append(f"{path.name} line 1: no input beside the time. Add a column, one of: {', '.join(known)}.")
+    if TIME.name in values:
+        problems += _time_problems(path.name, rows, values[TIME.name])
+    raise_all(problems, path.name)
+    return Schedule(values.pop(TIME.name), values)
+
+
+def _split(cell: str) -> tuple[str, str]:
+    """Name and unit of a header cell."""
+    match = re.fullmatch(r"(.*?)\s*\[(.*)\]", cell)
+    return (match[1], match[2].strip()) if match else (cell, "")
+
+
+def _column(cell: str, known: Mapping[str, Quantity]) -> DutyColumn:
+    """What a header cell says. Raises DataError for an unknown name, a missing or a wrong unit."""
+    name, unit = _split(cell)
+    if TIME.name in known and name != TIME.name:
+        raise DataError(f'the first column is "{cell}". It must be the time with its unit, for example "time [min]".')
+    if name not in known:
+        close = suggestion(name, known) or f" Inputs: {', '.join(known)}."
+        raise DataError(f'there is no input "{name}".{close}')
+    quantity = known[name]
+    remedy = f'Write it in brackets: "{name} [{shown(quantity.unit)}]".'
+    if not unit and quantity.unit != "1":
+        raise DataError(f'column "{cell}" has no unit. {remedy}')
+    try:
+        offset = to_si(f"0 {unit}", quantity.unit)
+        return DutyColumn(quantity, offset, (to_si(f"{_LARGE} {unit}", quantity.unit) - offset) / _LARGE)
+    except ScenarioError:
+        raise DataError(f'column "{cell}": the unit does not fit {quantity.doc}. {remedy}') from None
+
+
+def _cells(
+    name: str, rows: Sequence[tuple[int, list[str]]], i: int, column: DutyColumn, problems: list[str]
+) -> np.ndarray:
+    """One column in SI; NaN where a cell is wrong, which is then among the problems."""
+    values = np.full(len(rows), np.nan)
+    for k, (line, cells) in enumerate(rows):
+        try:
+            values[k] = column.si(cells[i])
+        except ValueError as error:
+            problems.append(f'{name} line {line}: {column.quantity.name} = "{cells[i]}" {error}.')
+    return values
+
+
+def _time_problems(name: str, rows: Sequence[tuple[int, list[str]]], time: np.ndarray) -> list[str]:
+    """Rows where time goes back, and a table that lasts no time at all."""
+    readable = np.flatnonzero(np.isfinite(time))
+    problems = [
+        f"{name} line {rows[b][0]}: time goes back ({rows[b][1][0]} after {rows[a][1][0]}). Sort the rows by time."
+        for a, b in pairwise(readable)
+        if time[b] < time[a]
+    ]
+    if readable.size and np.ptp(time[readable]) == 0:
+        problems.append(f"{name}: the table lasts no time. A duty needs at least two different times.")
+    return problems

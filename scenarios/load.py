@@ -1,0 +1,245 @@
+"""Rig files: one TOML file says everything about a rig, with a source for every value.
+
+    kind = "planetary"                    # a machine of gearheat.model.machines, or "network"
+    doc = "..."
+
+    [drive]                               # what is given at the shaft ends
+    carrier = ["w", "tau"]
+
+    [operating_point]                     # values of inputs, when nothing else is asked
+    source = "Dias2014, section 3.2"
+    carrier.w = "250 rpm"
+
+    [part.oil]                            # a table per part of the machine
+    oil = "PAOR"                          # a catalogue entry; a value beside it overrides it
+    V = "1 l"
+    source = "Dias2014, section 4.2"      # of every value of the table ...
+    sources = { V = "assumed: one litre" }  # ... that has none of its own
+
+    [part.cooler]                         # a part of one's own has a type; a "network" has no others
+    type = "ThermalConductor"
+
+    [connect]                             # nets of one's own: name = ports that meet
+    cooler_in = ["oil.heat", "cooler.a"]
+
+    [sensors]                             # column of a measured table = path in the model
+    T_oil_C = "oil.T"
+
+    [losses]                              # column of the losses table = outputs that are summed
+    P_seal_W = ["carrier_seal.P_loss", "sun_seal.P_loss"]
+
+    [campaign]                            # measured data; see `tables.CampaignTable`
+    [[errata]]                            # where the source is wrong; see `tables.ErratumTable`
+
+A source is a citation ("Dias2014, table 5.7") or one of "assumed: ...", "inferred: ...", "calibrated: ...".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from ..model.core.component import Component
+from ..model.core.connect import nets
+from ..model.core.declare import Port, declared
+from ..model.core.flat import Quantity
+from ..model.errors import GearheatError, ScenarioError, suggestion
+from ..model.machines import planetary
+from ..model.machines.spec import PartSpec, Spec, assemble
+from ..model.parts import PARTS
+from ..model.units import to_si
+from .document import ABOUT, paths, read_toml, sources_of
+from .measured import Campaign, Driven, Protocol, read_measured
+from .scenario import Erratum, Scenario
+from .tables import CampaignTable, RigTable, validate
+from .values import PartValues, in_range, part_values, readable, settable
+
+#: Kind of rig -> its fixed parts (name -> type) and connections.
+LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
+    "planetary": (planetary.PARTS, planetary.CONNECTIONS),
+    "network": ({}, ()),
+}
+
+RIGS = Path(str(files("gearheat.scenarios").joinpath("rigs")))
+
+
+def list_rigs() -> dict[str, str]:
+    """The shipped rigs: name -> what they are."""
+    found = sorted(RIGS.glob("*/rig.toml"))
+    return {path.parent.name: str(read_toml(path).get("doc", "")) for path in found}
+
+
+def load(name_or_path: str | Path) -> Scenario:
+    """The scenario of a shipped rig, or of a rig file.
+
+    Args:
+        name_or_path: a name of `list_rigs`, a TOML file, or a folder with a `rig.toml`
+
+    Raises:
+        ScenarioError: everything wrong with the file at once
+    """
+    path = _find(name_or_path)
+    return _Loader(path, read_toml(path)).scenario()
+
+
+def _find(name_or_path: str | Path) -> Path:
+    path = Path(name_or_path)
+    if path.is_dir() and (path / "rig.toml").is_file():
+        return path / "rig.toml"
+    if path.is_file() or path.suffix == ".toml":
+        return path
+    shipped = RIGS / str(name_or_path) / "rig.toml"
+    if len(path.parts) == 1 and shipped.is_file():
+        return shipped
+    names = [p.parent.name for p in sorted(RIGS.glob("*/rig.toml"))]
+    close = suggestion(str(name_or_path), names)
+    raise ScenarioError(f'there is no rig "{name_or_path}" and no such file.{close} Shipped rigs: {", ".join(names)}.')
+
+
+class _Loader:
+    """Reads one file, collecting problems all the way; nothing of it outlives the reading."""
+
+    def __init__(self, path: Path, raw: Mapping[str, Any]) -> None:
+        self.path = path
+        self.file = path.name
+        self.name = path.parent.name if path.name == "rig.toml" else path.stem
+        self.table: RigTable
+        self.table, self.problems = validate(self.file, raw)
+        if self.table.kind and self.table.kind not in LAYOUTS:
+            close = suggestion(self.table.kind, LAYOUTS) or f" Kinds: {', '.join(LAYOUTS)}."
+            self.problems.append(f'{self.file}: unknown kind "{self.table.kind}".{close}')
+        if self.table.kind not in LAYOUTS or not self.table.part:  # without them nothing else can be judged
+            raise ScenarioError(self.problems)
+        self.layout, self.connections = LAYOUTS[self.table.kind]
+        self.types = self._types()
+        self.value_sources: dict[str, str] = {}
+
+    def _types(self) -> dict[str, type[Component]]:
+        """Part -> its class, for the parts whose type is known."""
+        types = {name: PARTS[kind] for name, kind in self.layout.items()}
+        for name, table in self.table.part.items():
+            where = f"{self.file} [part.{name}]"
+            kind = table.get("type", self.layout.get(name))
+            if kind is None and self.layout:
+                close = suggestion(name, self.layout)
+                self.problems.append(
+                    f'{where}: the machine has no part "{name}".{close} A part of your own needs a type.'
+                )
+            elif kind is None:
+                self.problems.append(f'{where}: "type" is missing. Give one of: {", ".join(PARTS)}.')
+            elif kind not in PARTS:
+                close = suggestion(str(kind), PARTS) or f" Types: {', '.join(PARTS)}."
+                self.problems.append(f'{where}: there is no part type "{kind}".{close}')
+            else:
+                types[name] = PARTS[kind]
+        return types
+
+    def scenario(self) -> Scenario:
+        """All of the file, or all of its problems."""
+        parts = self._parts()
+        point = self._operating_point()
+        given = self._drive()
+        spec = self._spec(parts)
+        self._check_paths()
+        campaign = self._campaign()
+        if self.problems:
+            raise ScenarioError(self.problems)
+        nets(assemble(spec))  # ports of different kinds that meet
+        return Scenario(
+            name=self.name,
+            doc=self.table.doc,
+            kind=self.table.kind,
+            path=self.path,
+            spec=spec.with_values(point).driven(given),
+            given=given,
+            operating_point=point,
+            sensors=dict(self.table.sensors),
+            losses={column: tuple(summed) for column, summed in self.table.losses.items()},
+            value_sources=self.value_sources,
+            overrides=tuple(o for part in parts.values() for o in part.overrides),
+            entries={name: part.entries for name, part in parts.items() if part.entries},
+            errata=tuple(Erratum(e.place, e.says, e.should_be, e.evidence) for e in self.table.errata),
+            campaign=campaign,
+        )
+
+    def _parts(self) -> dict[str, PartValues]:
+        parts: dict[str, PartValues] = {}
+        for name, cls in self.types.items():
+            table = {k: v for k, v in self.table.part.get(name, {}).items() if k != "type"}
+            parts[name] = part_values(f"{self.file} [part.{name}]", name, cls, table)
+            self.problems += parts[name].problems
+            self.value_sources |= {f"{name}.{key}": source for key, source in parts[name].sources.items()}
+        return parts
+
+    def _operating_point(self) -> dict[str, float]:
+        where = f"{self.file} [operating_point]"
+        sources, problems = sources_of(where, self.table.operating_point)
+        self.problems += problems
+        self.value_sources |= sources
+        known = self._quantities(settable)
+        point: dict[str, float] = {}
+        for path, raw in paths({k: v for k, v in self.table.operating_point.items() if k not in ABOUT}):
+            if path not in known:
+                self.problems.append(f'{where}: there is no input "{path}".{suggestion(path, known)}')
+                continue
+            try:
+                point[path] = in_range(f"{where}: ", raw, known[path])
+            except GearheatError as error:
+                self.problems += error.problems
+        return point
+
+    def _drive(self) -> dict[str, tuple[str, ...]]:
+        ends = [name for name, cls in self.types.items() if cls.__name__ == "ShaftEnd"]
+        for end in self.table.drive:
+            if end not in ends:
+                close = suggestion(end, ends) or f" Shaft ends: {', '.join(ends) or 'none'}."
+                self.problems.append(f'{self.file} [drive]: "{end}" is no shaft end.{close}')
+        return {end: tuple(quantities) for end, quantities in self.table.drive.items()}
+
+    def _spec(self, parts: Mapping[str, PartValues]) -> Spec:
+        ports = [f"{name}.{port}" for name, cls in self.types.items() for port in declared(cls, Port)]
+        for net, members in self.table.connect.items():
+            where = f"{self.file} [connect] {net}"
+            self.problems += [
+                f'{where}: there is no port "{p}".{suggestion(p, ports)}' for p in members if p not in ports
+            ]
+            if len(members) < 2:
+                self.problems.append(f"{where}: names {len(members)} port. Name at least two that meet.")
+        specs = tuple(PartSpec(name, cls.__name__, parts[name].values) for name, cls in self.types.items())
+        own = tuple(tuple(members) for members in self.table.connect.values())
+        return Spec(self.name, self.table.doc, specs, (*self.connections, *own))
+
+    def _check_paths(self) -> None:
+        """Sensors and losses name what the model shows."""
+        known = self._quantities(readable)
+        named = [("sensors", column, path) for column, path in self.table.sensors.items()]
+        named += [("losses", column, path) for column, summed in self.table.losses.items() for path in summed]
+        for table, column, path in named:
+            if path not in known:
+                self.problems.append(f'{self.file} [{table}] {column}: there is no "{path}".{suggestion(path, known)}')
+
+    def _quantities(self, kind: Any) -> dict[str, Quantity]:
+        return {f"{n}.{k}": d.quantity(f"{n}.{k}") for n, cls in self.types.items() for k, d in kind(cls).items()}
+
+    def _campaign(self) -> Campaign | None:
+        table = self.table.campaign
+        if table is None:
+            return None
+        try:
+            return read_measured(self.path.parent / table.data, self._protocol(table))
+        except GearheatError as error:
+            self.problems += error.problems
+            return None
+
+    def _protocol(self, table: CampaignTable) -> Protocol:
+        where = f"{self.file} [campaign]"
+        known = self._quantities(settable)
+        for path in (table.room, *table.inputs):
+            if path not in known:
+                self.problems.append(f'{where}: there is no input "{path}".{suggestion(path, known)}')
+        if table.oil not in self.types:
+            self.problems.append(f'{where}: there is no part "{table.oil}".{suggestion(table.oil, self.types)}')
+        inputs = {path: Driven(t.column, (t.sign[0], t.sign[1])) for path, t in table.inputs.items()}
+        return Protocol(inputs, table.room, table.oil, to_si(table.stop, "s", name=f"{where}: stop"))

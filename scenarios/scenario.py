@@ -1,0 +1,138 @@
+"""What a rig file says, checked and in SI: the machine, how it is driven, and what is known about it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+
+from ..model.core.declare import Input, declared
+from ..model.core.flat import FlatModel, Quantity
+from ..model.errors import GearheatError, ScenarioError, suggestion
+from ..model.machines.spec import Spec
+from ..model.parts import PARTS
+from .catalogue import FILES, catalogue
+from .measured import Campaign
+from .values import Override, entry_values, in_range, settable
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """One place where the source of a rig is wrong, and how we know."""
+
+    place: str
+    says: str
+    should_be: str
+    evidence: str
+
+
+@dataclass(frozen=True)
+class Scenario:
+    """A rig: what it is (`spec`, driven as in `given`, inputs at the operating point) and what goes with it.
+
+    Args:
+        given: shaft end -> which of w and tau are given there
+        operating_point: path of an input -> value in SI
+        sensors: column of a measured table -> path in the model
+        losses: column of the losses table -> outputs that are summed
+        value_sources: path -> where its value is from
+        overrides: values that stand in the place of their catalogue's
+        entries: part -> kind of catalogue -> name of the entry it was filled from
+    """
+
+    name: str
+    doc: str
+    kind: str
+    path: Path
+    spec: Spec
+    given: Mapping[str, tuple[str, ...]]
+    operating_point: Mapping[str, float]
+    sensors: Mapping[str, str] = field(default_factory=dict)
+    losses: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    value_sources: Mapping[str, str] = field(default_factory=dict)
+    overrides: tuple[Override, ...] = ()
+    entries: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
+    errata: tuple[Erratum, ...] = ()
+    campaign: Campaign | None = None
+
+    def settable(self) -> dict[str, Quantity]:
+        """All that may be given a value, by path: parameters, start values of states, inputs."""
+        return {
+            f"{part.name}.{key}": d.quantity(f"{part.name}.{key}")
+            for part in self.spec.parts
+            for key, d in settable(PARTS[part.type]).items()
+        }
+
+    def inputs(self) -> dict[str, Quantity]:
+        """All that may be given over time, by path, whatever is driven."""
+        known = self.settable()
+        return {
+            path: known[path]
+            for part in self.spec.parts
+            for path in (f"{part.name}.{key}" for key in declared(PARTS[part.type], Input))
+        }
+
+    def with_values(self, values: Mapping[str, float], source: str = "given by the user") -> Scenario:
+        """The scenario with values replaced, by path, in SI. Raises ScenarioError for parts that do not exist."""
+        moved = {path: value for path, value in values.items() if path in self.inputs()}
+        return replace(
+            self,
+            spec=self.spec.with_values(values),
+            operating_point={**self.operating_point, **moved},
+            value_sources={**self.value_sources, **dict.fromkeys(values, source)},
+        )
+
+    def driven(self, given: Mapping[str, Iterable[str]]) -> Scenario:
+        """The scenario with other quantities given at its shaft ends."""
+        fixed = {end: tuple(quantities) for end, quantities in given.items()}
+        return replace(self, spec=self.spec.driven(fixed), given=fixed)
+
+    def entry_values(self, part: str, name: str) -> dict[str, float]:
+        """Values by path that a catalogue entry gives a part ("oil", "MINR"). Raises ScenarioError with suggestions."""
+        declarations = settable(PARTS[self.spec.part(part).type])
+        kinds = self.entries.get(part) or FILES
+        known = {n: e for kind in kinds for n, e in catalogue(kind).items() if entry_values(e, declarations)}
+        if name not in known:
+            close = suggestion(name, known) or f" Known: {', '.join(known) or 'none'}."
+            raise ScenarioError(f'{part} = {name}: unknown {" or ".join(kinds)} "{name}".{close}')
+        return {f"{part}.{key}": value for key, value in entry_values(known[name], declarations).items()}
+
+
+def parse_assignments(target: Scenario | FlatModel, texts: Iterable[str]) -> dict[str, float]:
+    """Values in SI from texts such as "carrier.w=250 rpm", or "oil=PAOR" for all that a catalogue entry gives a part.
+
+    Args:
+        target: a scenario, for what may be set; or a flat model, for any of its quantities, outputs included
+        texts: one assignment each
+
+    Raises:
+        ScenarioError: all wrong assignments at once
+    """
+    if isinstance(target, Scenario):
+        known = target.settable()
+    else:
+        known = {path: target.quantity(path) for path in target.index}
+    values: dict[str, float] = {}
+    problems: list[str] = []
+    for text in texts:
+        try:
+            values |= _assigned(target, known, text)
+        except GearheatError as error:
+            problems += error.problems
+    if problems:
+        raise ScenarioError(problems)
+    return values
+
+
+def _assigned(target: Scenario | FlatModel, known: Mapping[str, Quantity], text: str) -> dict[str, float]:
+    path, equals, raw = (part.strip() for part in text.partition("="))
+    if not (path and equals and raw):
+        raise ScenarioError(f'"{text}" is no assignment. Write name=value with its unit, for example "room.T=20 degC".')
+    if path in known:
+        return {path: in_range("", raw, known[path])}
+    parts = [part.name for part in target.spec.parts] if isinstance(target, Scenario) else []
+    if isinstance(target, Scenario) and path in parts:
+        return target.entry_values(path, raw)
+    names = [*known, *parts]
+    close = suggestion(path, names) or f" Names: {', '.join(names[:8])}, ..."
+    raise ScenarioError(f'{target.name}: unknown name "{path}".{close}')

@@ -1,0 +1,109 @@
+"""The fixed tables of a rig file, as pydantic models, and their problems in the project's words."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any, Literal, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from ..model.errors import suggestion
+
+
+class Strict(BaseModel):
+    """Base: no unknown keys, no silent conversion."""
+
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+
+
+class DrivenTable(Strict):
+    """One input of the model while a point is held."""
+
+    column: str = Field(description="name of the column that gives it")
+    sign: list[float] = Field([1.0, 1.0], min_length=2, max_length=2, description="two signs, for direction 1 and 2")
+
+
+class CampaignTable(Strict):
+    """Measured data of the rig and how they were taken."""
+
+    data: str = Field(description="name of the CSV file beside the rig file")
+    stop: str = Field(description='time between the halves of a test, for example "5 min"')
+    room: str = Field(description='input of the room temperature, for example "room.T"')
+    oil: str = Field(description='part that holds the oil, for example "oil"')
+    inputs: dict[str, DrivenTable] = Field(description="input of the model -> column and signs")
+    source: str = Field(description="where the protocol is from")
+
+
+class ErratumTable(Strict):
+    """One place where the source is wrong."""
+
+    place: str = Field(description="where in the source")
+    says: str = Field(description="what it says")
+    should_be: str = Field(description="what it should say")
+    evidence: str = Field(description="how we know")
+
+
+class RigTable(Strict):
+    """A rig file. Values are checked later, against the parts."""
+
+    kind: str = Field(description='"planetary", or "network" for parts and connections of its own')
+    doc: str = Field(description="what the rig is, in a sentence")
+    drive: dict[str, list[Literal["w", "tau"]]] = Field(
+        description='what is given at the shaft ends, e.g. carrier = ["w", "tau"]'
+    )
+    operating_point: dict[str, Any] = Field(description="input -> value with its unit, and a source")
+    part: dict[str, dict[str, Any]] = Field(description="a table [part.NAME] for each part")
+    connect: dict[str, list[str]] = Field({}, description="name of a net -> list of the ports that meet")
+    sensors: dict[str, str] = Field({}, description="column of a measured table -> path in the model")
+    losses: dict[str, list[str]] = Field({}, description="column of the losses table -> outputs that are summed")
+    campaign: CampaignTable | None = Field(None, description="measured data and how they were taken")
+    errata: list[ErratumTable] = Field([], description="places where the source is wrong")
+
+
+#: What stands in for a required key that is missing or wrong, so that the rest of the file is still checked.
+_STANDING_IN: Mapping[str, Any] = {"kind": "", "doc": "", "drive": {}, "operating_point": {}, "part": {}}
+
+
+def validate(name: str, raw: Mapping[str, Any]) -> tuple[RigTable, list[str]]:
+    """The fixed tables of a file and all that is wrong with them; what is wrong is left out of the tables.
+
+    Args:
+        name: name of the file, for messages
+        raw: what TOML makes of it
+    """
+    try:
+        return RigTable.model_validate(raw), []
+    except ValidationError as error:
+        wrong = {str(e["loc"][0]) for e in error.errors()}
+        kept = {key: value for key, value in raw.items() if key not in wrong}
+        return RigTable.model_validate({**_STANDING_IN, **kept}), [_problem(name, dict(e)) for e in error.errors()]
+
+
+def _problem(name: str, error: Mapping[str, Any]) -> str:
+    """One finding of pydantic: place, what was found, what is expected."""
+    steps = error["loc"]
+    model, expected = _expected(steps)
+    *tables, key = steps if isinstance(steps[-1], str) else steps[:-1]
+    place = "".join(f" {t + 1}" if isinstance(t, int) else f".{t}" for t in tables).lstrip(".")
+    where = f"{name} [{place}]" if place else name
+    if error["type"] == "extra_forbidden" and model:
+        close = suggestion(str(key), model.model_fields) or f" Known: {', '.join(model.model_fields)}."
+        return f'{where}: unknown key "{key}".{close}'
+    if error["type"] == "missing":
+        return f'{where}: "{key}" is missing. Expected: {expected}.'
+    return f"{where}: {key} = {error['input']!r} does not fit. Expected: {expected}."
+
+
+def _expected(steps: Iterable[str | int]) -> tuple[type[Strict] | None, str]:
+    """The innermost model on the way to a place, and what the last known key on it means."""
+    model: type[Strict] | None = RigTable
+    meaning = ""
+    for step in steps:
+        if model and (field := model.model_fields.get(str(step))):
+            meaning = field.description or ""
+            model = next((m for m in (field.annotation, *get_args(field.annotation)) if _is_model(m)), None)
+    return model, meaning
+
+
+def _is_model(candidate: Any) -> bool:
+    return isinstance(candidate, type) and issubclass(candidate, Strict)

@@ -1,0 +1,169 @@
+"""Values as users write them, checked against the declarations of a part and turned into SI numbers."""
+
+from __future__ import annotations
+
+import difflib
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+from ..model.core.component import Component
+from ..model.core.declare import Choice, Declaration, Input, Output, Parameter, State, declared
+from ..model.core.flat import Quantity
+from ..model.errors import GearheatError, ScenarioError
+from ..model.units import to_si
+from .catalogue import FILES, Entry, entry
+from .document import ABOUT, sources_of
+
+
+@dataclass(frozen=True)
+class Override:
+    """A value of the rig that stands in the place of its catalogue's."""
+
+    path: str
+    value: float
+    catalogue_value: float
+    entry: str
+
+
+@dataclass(frozen=True)
+class PartValues:
+    """What the table of one part gives: SI values and choices, where each is from, and all that is wrong."""
+
+    values: dict[str, Any] = field(default_factory=dict)
+    sources: dict[str, str] = field(default_factory=dict)
+    entries: dict[str, str] = field(default_factory=dict)
+    overrides: list[Override] = field(default_factory=list)
+    problems: list[str] = field(default_factory=list)
+
+
+def settable(cls: type[Component]) -> dict[str, Declaration]:
+    """What may be given a value: parameters, start values of states, inputs."""
+    return {k: d for kind in (Parameter, State, Input) for k, d in declared(cls, kind).items()}
+
+
+def readable(cls: type[Component]) -> dict[str, Declaration]:
+    """What a result can show: outputs, states and inputs."""
+    return {k: d for kind in (Output, State, Input) for k, d in declared(cls, kind).items()}
+
+
+def in_range(where: str, raw: object, quantity: Quantity) -> float:
+    """A value as a number in the quantity's SI unit. Raises ScenarioError if it is none, or out of range."""
+    name = f"{where}{quantity.name}"
+    value = to_si(raw, quantity.unit, name=name)
+    if (problem := quantity.problem(value)) is not None:
+        written = f'"{raw}"' if isinstance(raw, str) else raw
+        bound = problem.partition("out of range. ")[2].replace(" 1.", ".")  # no unit to show
+        raise ScenarioError(f"{name} = {written} is out of range. {bound}")
+    return value
+
+
+def meant(key: str, known: Mapping[str, str]) -> str | None:
+    """The declared name that a misspelt key probably stands for, by its spelling or by its meaning.
+
+    Args:
+        key: the key as written
+        known: declared name -> meaning
+    """
+    if near := difflib.get_close_matches(key, known, n=1):
+        return near[0]
+    meanings = {doc.partition(",")[0]: name for name, doc in known.items()}
+    described = difflib.get_close_matches(key.replace("_", " "), meanings, n=1)
+    return meanings[described[0]] if described else None
+
+
+def entry_values(found: Entry, declarations: Mapping[str, Declaration]) -> dict[str, float]:
+    """The values of a catalogue entry that a part declares, in SI; the others describe the thing to a reader."""
+    where = f"{FILES[found.kind]} [{found.name}] "
+    known = {key: raw for key, raw in found.values.items() if key in declarations}
+    return {key: in_range(where, raw, declarations[key].quantity(key)) for key, raw in known.items()}
+
+
+def part_values(where: str, name: str, cls: type[Component], table: Mapping[str, Any]) -> PartValues:
+    """The values of one part from its table.
+
+    Args:
+        where: place of the table, for messages
+        name: name of the part
+        cls: its type
+        table: keys as written: declared names, choices, catalogue names, `source` and `sources`
+    """
+    reader = _PartReader(where, name, cls)
+    reader.read(table)
+    return reader.result
+
+
+class _PartReader:
+    """Reads the table of one part: catalogue entries first, then the values beside them."""
+
+    def __init__(self, where: str, name: str, cls: type[Component]) -> None:
+        self.where, self.name, self.cls = where, name, cls
+        self.declarations = settable(cls)
+        self.choices: dict[str, Choice] = declared(cls, Choice)
+        self.meanings = {key: d.doc for key, d in (*self.declarations.items(), *self.choices.items())}
+        self.result = PartValues()
+
+    def read(self, table: Mapping[str, Any]) -> None:
+        kinds = [key for key in table if key in FILES and key not in self.declarations]
+        own = {key: raw for key, raw in table.items() if key not in (*ABOUT, *kinds)}
+        sourced = {key: raw for key, raw in table.items() if key not in kinds}
+        sources, problems = sources_of(self.where, sourced, self.meanings)
+        self.result.problems.extend(problems)
+        complete = all([self._take_entry(kind, table[kind]) for kind in kinds])
+        taken = [key for key, raw in own.items() if self._take(key, raw)]
+        self.result.sources.update({key: sources[key] for key in taken})
+        self._check_component(complete, {*own} - {*taken})
+
+    def _take_entry(self, kind: str, name: object) -> bool:
+        """Fill in what a catalogue says; False where it has no such entry."""
+        try:
+            found = entry(kind, str(name))
+            values = entry_values(found, self.declarations)
+        except GearheatError as error:
+            self.result.problems.extend(f"{self.where}: {problem}" for problem in error.problems)
+            return False
+        if not values:
+            self.result.problems.append(
+                f'{self.where}: {kind} = "{name}" has none of the values of a {self.cls.__name__}. Take it out.'
+            )
+            return False
+        self.result.values.update(values)
+        self.result.sources.update({key: found.sources[key] for key in values})
+        self.result.entries[kind] = found.name
+        return True
+
+    def _take(self, key: str, raw: object) -> bool:
+        """Take one key of the table; False if it is wrong."""
+        values = self.result.values
+        if key in self.choices:
+            values[key] = tuple(raw) if isinstance(raw, list) else raw
+            return True
+        if key not in self.declarations:
+            self.result.problems.append(self._unknown(key))
+            return False
+        try:
+            value = in_range(f"{self.where}: ", raw, self.declarations[key].quantity(key))
+        except GearheatError as error:
+            self.result.problems.extend(error.problems)
+            return False
+        if key in values:
+            entries = ", ".join(self.result.entries.values())
+            self.result.overrides.append(Override(f"{self.name}.{key}", value, values[key], entries))
+        values[key] = value
+        return True
+
+    def _unknown(self, key: str) -> str:
+        if (name := meant(key, self.meanings)) is None:
+            return f'{self.where}: unknown key "{key}". Known: {", ".join(self.meanings) or "none"}.'
+        return f'{self.where}: unknown key "{key}". Did you mean "{name}" ({self.meanings[name].partition(",")[0]})?'
+
+    def _check_component(self, complete: bool, failed: Iterable[str]) -> None:
+        """What the part itself finds: missing values, unknown choices; without what follows from other problems."""
+        try:
+            self.cls(self.name, **self.result.values)
+        except GearheatError as error:
+            excused = tuple(f"{key} is missing" for key in (*failed, *(meant(key, self.meanings) for key in failed)))
+            for problem in error.problems:
+                own = problem.removeprefix(f"{self.cls.__name__} {self.name}: ")
+                if not own.startswith(excused) and (complete or " is missing (" not in own):
+                    self.result.problems.append(f"{self.where}: {own}")
