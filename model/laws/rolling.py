@@ -30,7 +30,7 @@ def shear_heating(w: Num, nu: Num, d_m: Num, *, w_width: float = SPEED_WIDTH) ->
     return 1 / (1 + 1.84e-9 * (n * d_mm) ** 1.28 * nu_cSt**0.64)
 
 
-@law(source="SKF2018", where="friction, kinematic replenishment/starvation reduction factor")
+@law(source="SKF2018", where="friction, kinematic replenishment/starvation reduction factor", verified=False)
 def starvation(w: Num, nu: Num, d: Num, D: Num, K_rs: Num, K_Z: Num, *, w_width: float = SPEED_WIDTH) -> Num:
     r"""Reduction of the rolling torque by lack of oil in the track [1].
 

@@ -1,0 +1,210 @@
+"""What holds for every law: same number for floats and symbols, finite values and slopes at rest, right derivatives.
+
+`NOMINAL` has a value for every argument name; `OWN` overrides it where a name means another thing in one law. An
+argument in `ZERO` may vanish and change sign; its rounding is the keyword argument named there.
+"""
+
+import ast
+import importlib
+import inspect
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import casadi as ca
+import numpy as np
+import pytest
+from gearheat.model.laws import convection
+from gearheat.model.sources import sources
+
+NOMINAL = {
+    **{"T": 330.0, "nu_40": 320e-6, "nu_100": 30e-6, "nu": 60e-6, "rho": 860.0, "rho_15": 880.0, "alpha_T": -6e-4},
+    **{"m": 7.2, "n": 2.73, "s": 8.0, "t": 0.14},
+    **{"alpha_n": 0.35, "beta": 0.17, "alpha_t": 0.354, "alpha_wt": 0.3512, "beta_b": 0.164},
+    **{"a": 0.0731, "a_w": 0.073, "m_n": 0.002, "z": 36.0, "d": 0.085, "D": 0.15, "x": 0.1},
+    **{"d_a": 0.077, "d_b": 0.0686, "p_et": 0.006, "b": 0.042, "eps_alpha": 1.6, "rho_1": 0.0126, "rho_2": 0.02},
+    **{"z_1": 36.0, "u": 2.0, "eps_1": 0.8, "eps_2": 0.9},
+    **{"F_n_l": 8e4, "v_sum": 2.0, "u_sum": 2.0, "R": 0.0064, "eta_oil": 0.05, "eta_0": 0.05, "Ra": 0.6e-6, "X_L": 0.7},
+    **{"P_a": 16e3, "mu": 0.035, "H_v": 0.17, "alpha_p": 15e-9, "E_star_eff": 113e9},
+    **{"beta_T": 0.03, "k": 0.13, "slide_roll": 0.3, "h": 5e-7, "sigma": 8e-7},
+    **{"w": 26.0, "d_m": 0.1175, "K_rs": 3e-8, "K_Z": 3.1, "K_L": 0.7, "G_rr": 1.05, "phi": 0.97, "G_sl": 4300.0},
+    **{"F_r": 2000.0, "F_a": 1500.0, "R_1": 3.9e-7, "R_2": 1.7, "C_0": 64e3, "S_1": 3.2e-3, "S_2": 36.5, "Y": 1.4},
+    **{"phi_bl": 0.3, "mu_bl": 0.1, "mu_EHL": 0.02, "mu_sl": 0.05, "B": 0.028, "H": 0.03, "V_M": 3e-4, "level": 0.4},
+    **{"f_0": 7.0, "f_1": 2e-4, "P_1": 5000.0, "d_sh": 0.085, "c_sh": 73.4, "c": 50.0},
+    **{"T_film": 310.0, "Pr": 0.7, "Re": 5e4, "h_natural": 5.0, "h_forced": 7.0, "A": 0.6},
+    **{"T_s": 340.0, "T_f": 300.0, "L": 0.3, "height": 0.3, "v": 1.5, "T_1": 340.0, "T_2": 300.0, "emissivity": 0.9},
+    **{"r_i": 0.1, "r_o": 0.11, "thickness": 0.004, "length": 0.03},
+}
+OWN = {
+    "churning.churning_loss": {"a": 2.5, "b": 0.3},
+    "churning.churning_torque": {"a": 2.5, "b": 0.3},
+    "conduction.fin_efficiency": {"h": 10.0, "k": 100.0},
+    "conduction.plane_wall": {"k": 50.0, "d": 0.01},
+    "conduction.cylinder_wall": {"k": 50.0},
+    "convection.nusselt_vertical_plate": {"Ra": 1e8},
+    "convection.nusselt_horizontal_cylinder": {"Ra": 1e8},
+    "convection.nusselt_plate_unstable": {"Ra": 4e6},
+    "convection.nusselt_plate_stable": {"Ra": 1e7},
+}
+ZERO = {
+    **{"w": "w_width", "v_sum": "v_width", "u_sum": "u_width", "slide_roll": "slide_width", "v": "v_width"},
+    **{"F_n_l": "F_width", "F_r": "F_width", "F_a": "F_width", "P_1": "F_width", "P_a": "P_width"},
+}
+#: Arguments that may be zero but not negative.
+NOT_NEGATIVE = {"h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c"}
+#: Torques and losses: magnitudes, never negative.
+MAGNITUDES = ("rolling.", "sealing.", "churning.", "mesh.", "film.")
+
+
+def every_function() -> dict[str, Callable[..., Any]]:
+    """Every decorated law, and the heat transfer coefficients made of them."""
+    folder = Path(inspect.getfile(convection)).parent
+    found = {}
+    for path in sorted(folder.glob("[a-z]*.py")):
+        module = importlib.import_module(f"gearheat.model.laws.{path.stem}")
+        for name, value in vars(module).items():
+            made_here = getattr(value, "__module__", "") == module.__name__ and inspect.isfunction(value)
+            if made_here and (hasattr(value, "law") or name.startswith(("natural_", "forced_"))):
+                found[f"{path.stem}.{name}"] = value
+    return {name: f for name, f in found.items() if set(arguments(f)) <= NOMINAL.keys()}
+
+
+def arguments(function: Callable[..., Any]) -> list[str]:
+    """The positional arguments: physics; keyword arguments are numerics and choices."""
+    parameters = inspect.signature(function).parameters.values()
+    return [p.name for p in parameters if p.kind == p.POSITIONAL_OR_KEYWORD]
+
+
+FUNCTIONS = every_function()
+
+
+def nominal(name: str) -> dict[str, float]:
+    return {a: OWN.get(name, {}).get(a, NOMINAL[a]) for a in arguments(FUNCTIONS[name])}
+
+
+def structural(name: str) -> set[str]:
+    """Arguments that are numbers of the structure, never symbols."""
+    annotations = inspect.get_annotations(inspect.unwrap(FUNCTIONS[name]))
+    return {a for a in arguments(FUNCTIONS[name]) if annotations[a] == "float"}
+
+
+def symbolic(name: str) -> tuple[ca.Function, list[str]]:
+    """The law as a CasADi function of its symbols, with its Jacobian."""
+    fixed = {a: v for a, v in nominal(name).items() if a in structural(name)}
+    free = [a for a in nominal(name) if a not in fixed]
+    x = ca.SX.sym("x", len(free))
+    result = FUNCTIONS[name](**fixed, **{a: x[i] for i, a in enumerate(free)})
+    value = ca.vertcat(*result) if isinstance(result, tuple) else ca.SX(result)
+    return ca.Function("law", [x], [value, ca.jacobian(value, x)]), free
+
+
+def vector(name: str, values: dict[str, float], free: list[str]) -> np.ndarray:
+    return np.array([values[a] for a in free])
+
+
+@pytest.fixture(params=FUNCTIONS)
+def name(request: pytest.FixtureRequest) -> str:
+    return request.param
+
+
+def test_all_laws_of_the_source_folder_are_covered() -> None:
+    """A law left out here must be of a module with tests of its own."""
+    folder = Path(inspect.getfile(convection)).parent
+    modules = {
+        "oil",
+        "gears",
+        "mesh",
+        "film",
+        "rolling",
+        "sealing",
+        "churning",
+        "convection",
+        "radiation",
+        "conduction",
+    }
+    for path in sorted(folder.glob("[a-z]*.py")):
+        if path.stem not in modules:
+            continue
+        tree = ast.parse(path.read_text("utf-8"))
+        decorated = {n.name for n in tree.body if isinstance(n, ast.FunctionDef) and n.decorator_list}
+        assert {f"{path.stem}.{n}" for n in decorated} <= FUNCTIONS.keys()
+
+
+def test_source_exists(name: str) -> None:
+    info = getattr(FUNCTIONS[name], "law", None)
+    if info:
+        assert info.source in sources()
+        assert info.where
+
+
+def test_symbols_give_the_same_number(name: str) -> None:
+    function, free = symbolic(name)
+    result = FUNCTIONS[name](**nominal(name))
+    expected = np.atleast_1d(np.array(result, dtype=float))
+    assert function(vector(name, nominal(name), free))[0].full().ravel() == pytest.approx(expected, rel=1e-12)
+
+
+def extremes(name: str) -> list[dict[str, float]]:
+    """Every vanishing argument at zero, alone and all together, and reversed; equal temperatures."""
+    base = nominal(name)
+    zero = [a for a in base if a in ZERO or a in NOT_NEGATIVE or name + "." + a == "conduction.fin_efficiency.h"]
+    points = [base | {a: 0.0} for a in zero] + [base | dict.fromkeys(zero, 0.0)]
+    points += [base | {a: -base[a]} for a in base if a in ZERO]
+    points += [base | {b: base[a]} for a, b in (("T_s", "T_f"), ("T_1", "T_2")) if a in base]
+    return points
+
+
+def test_finite_at_rest_and_reversed(name: str) -> None:
+    function, free = symbolic(name)
+    for point in extremes(name):
+        value, slope = function(vector(name, point, free))
+        assert np.isfinite(value.full()).all(), point
+        assert np.isfinite(slope.full()).all(), point
+        if name.startswith(MAGNITUDES):
+            assert (value.full() >= 0).all(), point
+
+
+def test_reversal_changes_nothing(name: str) -> None:
+    base = nominal(name)
+    for argument in [a for a in base if a in ZERO]:
+        here, there = FUNCTIONS[name](**base), FUNCTIONS[name](**base | {argument: -base[argument]})
+        assert there == pytest.approx(here, rel=1e-12), argument
+
+
+def blend_points(name: str) -> list[tuple[dict[str, float], str, float]]:
+    """Point, argument and step: nominal in every argument, and across every rounding."""
+    base = nominal(name)
+    keywords = inspect.signature(FUNCTIONS[name]).parameters
+    points = [(base, a, 1e-5 * abs(base[a])) for a in base if a not in structural(name)]
+    for argument, keyword in ZERO.items():
+        if argument in base and keyword in keywords:
+            width = keywords[keyword].default
+            points += [(base | {argument: f * width}, argument, 1e-4 * width) for f in (-5, -1, -0.3, 0, 0.3, 1, 5)]
+    if "T_s" in base:
+        points += [(base | {"T_s": base["T_f"] + dT}, "T_s", 1e-5) for dT in (-1, -0.05, -0.01, 0, 0.003, 0.05, 1)]
+    if name == "rolling.needle_torque_viscous":  # where the two branches meet
+        points += [(base | {"w": nu_n / 60 * np.pi / 30}, "w", 1e-4) for nu_n in (1900, 2000, 2024, 2050, 2200)]
+    if name == "convection.nusselt_plate_unstable":
+        points += [({"Ra": Ra}, "Ra", 1e-5 * Ra) for Ra in (1e5, 3e6, 4.74e6, 1e7, 1e9)]
+    if name.startswith("rolling.drag_torque"):  # dry, half and fully submerged
+        d_m = 0.5 * (base["d"] + base["D"])
+        points += [
+            (base | {"H": H * d_m}, "H", 1e-5 * d_m) for H in (0.0, 0.001, 0.3, 0.599, 0.6, 0.601, 1.199, 1.2, 1.3)
+        ]
+    return points
+
+
+def test_derivative_is_the_difference_quotient(name: str) -> None:
+    function, free = symbolic(name)
+    for point, argument, step in blend_points(name):
+        i = free.index(argument)
+        x = vector(name, point, free)
+        dx = np.eye(len(x))[i] * step
+        slope = function(x)[1].full()[:, i]
+        low, here, high = (function(x + s * dx)[0].full().ravel() for s in (-1, 0, 1))
+        noise = 1e-13 * np.abs(here) / step
+        scale = np.abs(slope) + np.abs(high - 2 * here + low) / step  # curvature within the step
+        assert (np.abs((high - low) / (2 * step) - slope) <= 1e-4 * scale + 10 * noise + 1e-300).all(), (
+            point,
+            argument,
+        )
