@@ -94,7 +94,8 @@ def present(rows: Rows) -> tuple[Channel, ...]:
 
 def errors(rows: Rows, channel: Channel) -> np.ndarray:
     """Simulated minus measured, one value per row, NaN where either is missing."""
-    return numbers(rows, channel.column) - numbers(rows, channel.measured)
+    simulated, measured = numbers(rows, channel.column), numbers(rows, channel.measured)
+    return np.asarray(simulated - measured)
 
 
 def rms(values: np.ndarray) -> float:

@@ -76,6 +76,11 @@ def answer(payload: Mapping[str, Any], to: str | None, human: Callable[[], None]
     human()
 
 
+def file_of(json: str | None) -> Path | None:
+    """The file that `--json` names, if it names one."""
+    return None if json is None or json == "-" else Path(json)
+
+
 def write(path: Path, content: str | bytes) -> None:
     """Write a file beside its place and move it there, so that a reader never sees half of it.
 

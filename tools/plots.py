@@ -30,7 +30,7 @@ LOSSES = {
     "P_churn_W": "churning",
 }
 UNITS = {"n_set_rpm": "rpm", "T_set_Nm": "N.m"}
-STYLE = {
+STYLE: Any = {
     "svg.hashsalt": "gearheat",
     "svg.fonttype": "path",
     "font.size": 10,

@@ -14,9 +14,10 @@ from markupsafe import Markup, escape
 from ..model.run.result import Outside
 from ..model.sources import LawInfo, sources
 from . import plots
-from .compare import CHANNELS, GROUPINGS, Comparison, Rows, present
+from .compare import CHANNELS, Comparison, Rows, present
 from .console import cell
 from .rivals import Score
+from .summary import error_lines, group_lines
 
 
 @dataclass(frozen=True)
@@ -52,31 +53,38 @@ class Study:
 READING = ("point", "test", "direction", "oil", "n_carrier_rpm", "T_carrier_Nm", "T_amb_C")
 
 
-def render(study: Study, comparison: Comparison, scores: Sequence[Score]) -> str:
-    """The page as HTML text, the same bytes for the same study."""
-    channels = present(study.rows)
-    noise = comparison.noise_floor
+def render(study: Study, comparison: Comparison | None, scores: Sequence[Score]) -> str:
+    """The page as HTML text, the same bytes for the same study. Without a comparison it shows the simulation alone."""
     template = files("gearheat.tools").joinpath("templates/report.html").read_text(encoding="utf-8")
-    breakdown = plots.breakdown(study.rows, study.loss_columns) if study.loss_columns else ""
     page = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(template)
     return page.render(
         study=study,
-        scores=scores,
-        noise=noise,
+        compared=None if comparison is None else _compared(study.rows, comparison, scores),
         tests=len({row["test"] for row in study.rows}),
-        repeated=", ".join("/".join(str(t) for t in tests) for tests in noise["repeated"]) or "none",
-        summary=_summary(comparison, scores),
-        parity=Markup(plots.parity(study.rows, [c for c in channels if c.key != "T_oil2_K"])),
-        residuals=Markup(plots.residuals(study.rows, channels, noise)),
-        groups=_groups(comparison),
         warm_up=Markup(plots.warm_up(study.curves, study.rows)) if study.curves else "",
-        breakdown=Markup(breakdown),
+        breakdown=Markup(plots.breakdown(study.rows, study.loss_columns)) if study.loss_columns else "",
         laws=_laws(study.laws),
         outside=_outside(study.outside),
         parameters=_table(("parameter", "value", "source"), study.parameters, text=(2,)),
-        errata=_table(("source", "says", "should be", "evidence"), study.errata, text=(1, 2, 3)),
+        errata=_table(("place", "says", "should be", "evidence"), study.errata, text=(1, 2, 3)),
         rows=_readings(study.rows),
     )
+
+
+def _compared(rows: Rows, comparison: Comparison, scores: Sequence[Score]) -> dict[str, Any]:
+    """What the page says about measured values."""
+    channels = present(rows)
+    noise = comparison.noise_floor
+    drawn = [c for c in channels if c.key != "T_oil2_K"]  # the simulation has one oil temperature for both sensors
+    return {
+        "scores": scores,
+        "noise": noise,
+        "repeated": ", ".join("/".join(str(t) for t in tests) for tests in noise["repeated"]) or "none",
+        "summary": _table(*error_lines(comparison, scores), ours=0),
+        "parity": Markup(plots.parity(rows, drawn)),
+        "residuals": Markup(plots.residuals(rows, channels, noise)),
+        "groups": _table(*group_lines(comparison)),
+    }
 
 
 def _table(head: Sequence[str], body: Iterable[Sequence[Any]], text: Sequence[int] = (), ours: int = -1) -> Markup:
@@ -90,36 +98,6 @@ def _table(head: Sequence[str], body: Iterable[Sequence[Any]], text: Sequence[in
     for i, values in enumerate(body):
         lines.append(f"<tr{' class=ours' if i == ours else ''}>{row('td', values)}</tr>")
     return Markup("<table>\n" + "\n".join(lines) + "\n</table>")
-
-
-def _summary(comparison: Comparison, scores: Sequence[Score]) -> Markup:
-    """Channels across; simulation overall and by grid, noise floor and rivals down."""
-    rmse = comparison.rmse()
-    keys = [c for c in CHANNELS if c.key in rmse["overall"]]
-    body: list[list[Any]] = [["simulation, all readings", *(rmse["overall"][c.key] for c in keys)]]
-    body += [
-        [f"simulation, {grid}", *(found.get(c.key) for c in keys)] for grid, found in rmse.items() if grid != "overall"
-    ]
-    body += [["noise floor", *(comparison.noise_floor.get(c.key) for c in keys)]]
-    for score in scores:
-        body.append([f"{score.name}, in sample", *(score.in_sample.get(c.key) for c in keys)])
-        body.append([f"{score.name}, left-out tests", *(score.leave_one_test_out.get(c.key) for c in keys)])
-    return _table(("", *(f"{c.label} [{c.unit}]" for c in keys)), body, ours=0)
-
-
-def _groups(comparison: Comparison) -> Markup:
-    """Groups down, mean and root mean square of each channel across."""
-    keys = [c for c in CHANNELS if any(g.channel == c.key for g in comparison.groups)]
-    found: dict[tuple[str, Any], dict[str, Any]] = {}
-    for group in comparison.groups:
-        found.setdefault((group.by, group.value), {"n": group.n})[group.channel] = group
-    body = []
-    for (by, value), of in found.items():
-        pairs = [(of[c.key].mean, of[c.key].rms) if c.key in of else (None, None) for c in keys]
-        name = "all" if by == "all" else f"{GROUPINGS[by]} {cell(value)}"
-        body.append([name, of["n"], *(x for pair in pairs for x in pair)])
-    head = ["group", "readings", *(f"{c.label} {what} [{c.unit}]" for c in keys for what in ("mean", "rms"))]
-    return _table(head, body)
 
 
 def _laws(laws: Sequence[LawInfo]) -> Markup:
@@ -139,6 +117,7 @@ def _outside(outside: Sequence[Outside]) -> Markup:
 
 
 def _readings(rows: Rows) -> Markup:
-    columns = [c.column for c in present(rows)]
+    columns = [c.column for c in CHANNELS if any(c.column in row for row in rows)]
     head = [*READING, *(name for column in columns for name in (column, f"{column}_meas"))]
+    head = [name for name in head if any(name in row for row in rows)]
     return _table(head, [[row.get(name) for name in head] for row in rows], text=(3,))

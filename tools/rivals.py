@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from .compare import CHANNELS, Channel, Rows, numbers, rms
+from .compare import CHANNELS, Channel, Rows, distinct, numbers, rms
 
 Design = Callable[[Rows, Channel], np.ndarray]
 
@@ -52,7 +52,7 @@ def _linear_groups(rows: Rows, channel: Channel) -> np.ndarray:
     offsets = [
         [float(row.get(by) == value) for row in rows]
         for by in ("direction", "oil")
-        for value in sorted({row.get(by) for row in rows if row.get(by) is not None})[1:]
+        for value in distinct(row.get(by) for row in rows)[1:]
     ]
     return np.column_stack([_linear(rows, channel), *offsets])
 

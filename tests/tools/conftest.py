@@ -6,7 +6,7 @@ import pytest
 
 
 def _row(point: int, test: int, direction: int, oil: str, n: float, tau: float, shift: float) -> dict[str, object]:
-    """A reading whose measured values are linear in speed and torque but for `shift`; the simulation is 2 K too warm."""
+    """A reading that is linear in speed and torque but for `shift`; the simulated oil is 2 K too warm."""
     rise = 5.0 + 0.1 * n + 0.005 * tau + shift
     loss = 10.0 + 0.01 * tau + shift
     power = loss * n * math.pi / 30

@@ -1,0 +1,60 @@
+"""All checks of the project in one command: `python -m gearheat.tools.check` in a checkout."""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+from .console import note
+
+ROOT = Path(__file__).resolve().parents[1]
+PACKAGES = ("model", "fmu", "scenarios", "tools")
+
+
+def links(root: Path = ROOT) -> Path:
+    """A folder that holds the packages under their importable names; mypy does not follow an editable install."""
+    place = root / "build" / "mypy"
+    (place / "gearheat").mkdir(parents=True, exist_ok=True)
+    for package in PACKAGES:
+        link = place / "gearheat" / package
+        if not link.exists():
+            link.unlink(missing_ok=True)
+            link.symlink_to(root / package, target_is_directory=True)
+    return place
+
+
+def steps() -> Iterator[tuple[str, Sequence[str]]]:
+    """Name and command of every check; the tests hold those of floors, sizes and wheel contents."""
+    python = sys.executable
+    yield "lint", (python, "-m", "ruff", "check", ".")
+    yield "format", (python, "-m", "ruff", "format", "--check", ".")
+    yield "types", (python, "-m", "mypy", *(word for p in PACKAGES for word in ("-p", f"gearheat.{p}")))
+    parallel = ("-n", "auto") if importlib.util.find_spec("xdist") else ()
+    yield "tests", (python, "-m", "pytest", *parallel)
+
+
+def main() -> int:
+    """Run all checks, also after one has failed. Returns 1 if any failed, 2 outside a checkout."""
+    if not (ROOT / "pyproject.toml").exists():
+        note("error: the checks need a checkout of the project with `pip install -e .[test]`.")
+        return 2
+    environment = {**os.environ, "MYPYPATH": str(links())}
+    failed = []
+    for name, command in steps():
+        note(f"== {name}: {' '.join(command[1:])}")
+        began = time.perf_counter()
+        code = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
+        note(f"== {name}: {'passed' if code == 0 else 'FAILED'} in {time.perf_counter() - began:.1f} s")
+        if code:
+            failed.append(name)
+    note(f"== {'failed: ' + ', '.join(failed) if failed else 'all checks passed'}")
+    return 1 if failed else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,223 @@
+"""The command line `gearheat`. Commands only read their options; the work is imported when a command runs."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from . import console
+
+app = typer.Typer(
+    name="gearheat",
+    help="Losses and temperatures of gearboxes: simulate, design, export as FMU, compare with measurements.",
+    no_args_is_help=True,
+    add_completion=False,
+    pretty_exceptions_enable=False,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
+
+Rig = Annotated[str, typer.Argument(help="Name of a shipped rig (see `gearheat list`), or path of a rig file.")]
+Set = Annotated[
+    list[str] | None,
+    typer.Option("--set", help='NAME=VALUE with a unit, for example "carrier.w=250 rpm". Repeatable.'),
+]
+Json = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
+Workers = Annotated[int, typer.Option(min=0, help="Processes to use; 0 for one per core.")]
+Tests = Annotated[str | None, typer.Option(help="Only these tests, for example 1,13,22-26.")]
+
+
+@app.command()
+@console.guarded
+def run(
+    rig: Rig = "planetary",
+    out: Annotated[
+        Path, typer.Option(help="Folder for results; a run that was interrupted goes on from there.")
+    ] = Path("out"),
+    tests: Tests = None,
+    step: Annotated[str, typer.Option(help="Communication step of the FMU.")] = "60 s",
+    set_: Set = None,
+    workers: Workers = 0,
+    json: Json = None,
+) -> None:
+    """The main job: export the FMU, play all measured tests, compare, report."""
+    from . import run
+
+    run.command(rig, out, tests, step, set_ or [], workers, json)
+
+
+@app.command()
+@console.guarded
+def losses(
+    rig: Rig = "planetary",
+    data: Annotated[Path | None, typer.Option(help="Measured table; the rig's own if left out.")] = None,
+    temperature: Annotated[
+        Literal["measured", "model"],
+        typer.Option(help="At the measured oil temperature, or the one the model reaches."),
+    ] = "measured",
+    power_flow: Annotated[
+        Literal["ideal", "successive"] | None, typer.Option(help="Whether losses reduce what is passed on.")
+    ] = None,
+    set_: Set = None,
+    json: Json = None,
+) -> None:
+    """Every loss at every measured reading."""
+    from . import losses
+
+    losses.command(rig, data, temperature, power_flow, set_ or [], json)
+
+
+@app.command()
+@console.guarded
+def steady(rig: Rig, set_: Set = None, json: Json = None) -> None:
+    """Steady temperatures and losses at one operating point."""
+    from . import points
+
+    points.steady_command(rig, set_ or [], json)
+
+
+@app.command()
+@console.guarded
+def design(
+    rig: Rig,
+    target: Annotated[list[str], typer.Option(help="NAME=VALUE that shall be reached. Repeatable.")],
+    free: Annotated[
+        list[str] | None, typer.Option(help="Parameter or input that is sought, one for each target. Repeatable.")
+    ] = None,
+    among: Annotated[
+        list[str] | None, typer.Option(help="Alternatives from a catalogue, for example oil=PAOR,MINR; each is solved.")
+    ] = None,
+    set_: Set = None,
+    json: Json = None,
+) -> None:
+    """Find parameters or inputs for which outputs reach their targets."""
+    from . import points
+
+    points.design_command(rig, free or [], target, set_ or [], among or [], json)
+
+
+@app.command()
+@console.guarded
+def simulate(
+    rig: Rig,
+    duty: Annotated[Path, typer.Option(help="CSV with time and inputs, units in the header.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write, units in the header.")],
+    set_: Set = None,
+    json: Json = None,
+) -> None:
+    """A transient over a duty cycle."""
+    from . import transients
+
+    transients.simulate_command(rig, duty, out, set_ or [], json)
+
+
+@app.command()
+@console.guarded
+def export(
+    rig: Rig,
+    out: Annotated[Path, typer.Option("-o", "--out", help="FMU to write.")],
+    set_: Set = None,
+    drive: Annotated[str | None, typer.Option(help="Shaft end that drives, for example carrier or sun.")] = None,
+    given: Annotated[
+        Literal["speed", "torque"],
+        typer.Option(
+            help="speed: speed and torque of the driving shaft are inputs; torque: the torques of all shaft ends are."
+        ),
+    ] = "speed",
+    platform: Annotated[str, typer.Option(help='"host", "all" or names such as linux64,win64.')] = "host",
+    json: Json = None,
+) -> None:
+    """Write the rig as an FMU for FMI 2.0."""
+    from . import transients
+
+    transients.export_command(rig, out, set_ or [], drive, given, platform, json)
+
+
+@app.command()
+@console.guarded
+def play(
+    fmu: Annotated[Path, typer.Argument(help="FMU to play.")],
+    duty: Annotated[Path, typer.Option(help="CSV with time and inputs, units in the header.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write, units in the header.")],
+    step: Annotated[str, typer.Option(help="Communication step.")] = "60 s",
+    set_: Set = None,
+    json: Json = None,
+) -> None:
+    """Play an FMU over a duty cycle."""
+    from . import transients
+
+    transients.play_command(fmu, duty, out, step, set_ or [], json)
+
+
+@app.command()
+@console.guarded
+def compare(
+    result: Annotated[Path, typer.Argument(help="Simulated readings: CSV with test and direction, or point.")],
+    data: Annotated[Path, typer.Argument(help="Measured readings: CSV.")],
+    json: Json = None,
+) -> None:
+    """Errors of simulated readings by grid, speed, torque, oil and direction, noise floor and rivals."""
+    from . import readings
+
+    readings.command(result, data, json)
+
+
+@app.command()
+@console.guarded
+def calibrate(
+    rig: Rig,
+    grid: Annotated[str, typer.Option(help="Grid whose readings are used.")],
+    free: Annotated[list[str], typer.Option(help="Parameter that is fitted. Repeatable.")],
+    set_: Set = None,
+    workers: Workers = 0,
+    json: Json = None,
+) -> None:
+    """Fit parameters to the measured oil temperatures of one grid."""
+    from . import calibrate
+
+    calibrate.command(rig, grid, free, set_ or [], workers, json)
+
+
+@app.command("list")
+@console.guarded
+def list_(json: Json = None) -> None:
+    """The shipped rigs and catalogues."""
+    from . import describe
+
+    describe.list_command(json)
+
+
+@app.command()
+@console.guarded
+def show(
+    rig: Rig,
+    errata: Annotated[bool, typer.Option("--errata", help="Show where the rig's sources are wrong.")] = False,
+    json: Json = None,
+) -> None:
+    """Parts, parameters with units and sources, inputs, states and outputs of a rig."""
+    from . import describe
+
+    describe.show_command(rig, errata, json)
+
+
+@app.command()
+@console.guarded
+def bench(
+    rig: Rig = "planetary",
+    tests: Tests = None,
+    json: Json = None,
+) -> None:
+    """Time and memory of the main job, beside SciPy's LSODA on the same equations in the same run."""
+    from . import bench
+
+    bench.command(rig, tests, json)
+
+
+def main() -> None:
+    """Entry point of the program."""
+    app()
+
+
+if __name__ == "__main__":
+    main()

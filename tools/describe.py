@@ -1,0 +1,132 @@
+"""What is shipped, and what a rig consists of: the commands `list` and `show`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+from ..model.core.declare import Choice, declared
+from ..model.core.flat import FlatModel, Quantity
+from ..model.parts import PARTS
+from ..model.sources import sources
+from ..model.units import from_si, shown, text
+from ..scenarios.catalogue import FILES, catalogue
+from ..scenarios.load import list_rigs, load
+from ..scenarios.scenario import Scenario
+from .console import answer, table
+from .settings import flat_of
+
+
+def list_command(json: str | None) -> None:
+    """Rigs and catalogue entries that can be named."""
+    entries = {kind: {name: entry.doc for name, entry in catalogue(kind).items()} for kind in FILES}
+    found = {"schema": "gearheat.list/1", "rigs": list_rigs(), "catalogues": entries}
+
+    def human() -> None:
+        table("Rigs", ("name", "what it is"), found["rigs"].items(), left=2)
+        for kind, docs in entries.items():
+            table(f"Catalogue: {kind}", ("name", "what it is"), docs.items(), left=2)
+
+    answer(found, json, human)
+
+
+def show_command(rig: str, errata: bool, json: str | None) -> None:
+    """Everything a rig file says, in SI where unit and value stand apart and as shown to a person otherwise."""
+    scenario = load(rig)
+    flat = flat_of(scenario)
+    found = {
+        "schema": "gearheat.show/1",
+        "rig": scenario.name,
+        "doc": scenario.doc,
+        "kind": scenario.kind,
+        "parts": [{"name": p.name, "type": p.type, "doc": _doc(PARTS[p.type])} for p in scenario.spec.parts],
+        "parameters": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.parameters],
+        "choices": choices(scenario),
+        "inputs": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.inputs],
+        "states": [_line(q) for q in flat.states],
+        "outputs": [{"name": q.name, "unit": shown(q.unit), "doc": q.doc} for q in flat.outputs],
+        "sensors": dict(scenario.sensors),
+        "laws": laws(flat),
+        "errata": errata_of(scenario),
+    }
+    answer(found, json, lambda: _print_errata(found) if errata else _print(found))
+
+
+def source_of(scenario: Scenario, path: str) -> str:
+    """Where the value of a path is from; values that no file gives follow from others or are numerical defaults."""
+    return scenario.value_sources.get(path, "follows from the other values, or a numerical default")
+
+
+def parameters(scenario: Scenario, flat: FlatModel) -> tuple[tuple[str, str, str], ...]:
+    """Name, value with unit and source of every parameter."""
+    return tuple((q.name, text(q.start, q.unit), source_of(scenario, q.name)) for q in flat.parameters)
+
+
+def choices(scenario: Scenario) -> list[dict[str, Any]]:
+    """The structural choices of all parts, with what is chosen."""
+    found = []
+    for part in scenario.spec.parts:
+        for key, choice in declared(PARTS[part.type], Choice).items():
+            value = part.values.get(key, choice.default)
+            found.append({"name": f"{part.name}.{key}", "value": value, "options": choice.options, "doc": choice.doc})
+    return found
+
+
+def laws(flat: FlatModel) -> list[dict[str, Any]]:
+    """The laws a model uses, each once, with what is cited and whether a golden row from print verifies it."""
+    known = sources()
+    once = {(law.name, law.source, law.where): law for law in flat.laws}
+    return [
+        {
+            "law": law.name,
+            "source": f"{known[law.source].author} {known[law.source].year}, {known[law.source].title}",
+            "where": law.where,
+            "valid": law.valid,
+            "verified": law.verified,
+        }
+        for law in once.values()
+    ]
+
+
+def errata_of(scenario: Scenario) -> list[dict[str, str]]:
+    """The places where the rig's sources are wrong."""
+    return [
+        {"place": e.place, "says": e.says, "should_be": e.should_be, "evidence": e.evidence} for e in scenario.errata
+    ]
+
+
+def _line(q: Quantity) -> dict[str, Any]:
+    return {"name": q.name, "value": from_si(q.start, q.unit), "unit": shown(q.unit), "doc": q.doc}
+
+
+def _doc(cls: type) -> str:
+    return (cls.__doc__ or "").strip().splitlines()[0]
+
+
+def _print(found: dict[str, Any]) -> None:
+    print(f"{found['rig']}: {found['doc']}\n")
+    valued = ("name", "value", "unit", "doc")
+    table("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")), left=3)
+    table("Parameters", (*valued, "source"), _rows(found["parameters"], (*valued, "source")))
+    table("Choices", ("name", "value", "doc"), _rows(found["choices"], ("name", "value", "doc")), left=3)
+    table("Inputs", (*valued, "source"), _rows(found["inputs"], (*valued, "source")))
+    table("States (with start value)", valued, _rows(found["states"], valued))
+    table("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")), left=3)
+    keys = ("law", "where", "valid", "verified", "source")
+    table("Laws", keys, _rows(found["laws"], keys), left=5)
+    if found["errata"]:
+        print(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
+
+
+def _print_errata(found: dict[str, Any]) -> None:
+    keys = ("place", "says", "should_be", "evidence")
+    table(
+        f"{found['rig']}: corrections to the sources",
+        ("place", "says", "should be", "evidence"),
+        _rows(found["errata"], keys),
+        left=4,
+    )
+
+
+def _rows(lines: Iterable[dict[str, Any]], keys: tuple[str, ...]) -> list[list[Any]]:
+    return [[line[key] for key in keys] for line in lines]

@@ -1,0 +1,118 @@
+"""The command `losses`: every loss at every measured reading, without running the rig through its tests."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..model.core.flat import FlatModel
+from ..model.errors import DataError, ScenarioError
+from ..model.run.point import point
+from ..model.run.rows import evaluate
+from ..model.run.steady import steady, steady_table
+from ..scenarios.load import load
+from ..scenarios.measured import Campaign, Protocol, Reading, read_measured
+from ..scenarios.scenario import Scenario
+from .console import answer, table
+from .points import conditions
+from .settings import SET, adjusted, choice_paths, driven_by, flat_of
+
+
+def command(
+    rig: str,
+    data: Path | None,
+    temperature: str,
+    power_flow: str | None,
+    assignments: Sequence[str],
+    json: str | None,
+) -> None:
+    """Losses at all readings of a rig, or at the operating point of a rig without measured data."""
+    scenario = load(rig)
+    flows = [f"{path}={power_flow}" for path in choice_paths(scenario.spec) if path.endswith(".power_flow")]
+    if power_flow is not None and not flows:
+        raise ScenarioError(f"{scenario.name}: no part has a choice of power flow. Leave out --power-flow.")
+    scenario = adjusted(scenario, [*assignments, *(flows if power_flow is not None else [])])
+    if not scenario.losses:
+        raise ScenarioError(f"{scenario.path.name}: there is no table [losses]. Say which outputs each column sums.")
+    campaign = scenario.campaign
+    if data is not None:
+        campaign = read_measured(data, campaign.protocol if campaign else None)
+    rows = at_readings(scenario, campaign, temperature) if campaign else [at_operating_point(scenario)]
+    found = {
+        "schema": "gearheat.losses/1",
+        "rig": scenario.name,
+        "temperature": temperature if campaign else "model",
+        "choices": {
+            p: scenario.spec.part(p.rpartition(".")[0]).values.get(p.rpartition(".")[2]) for p in _flow_paths(scenario)
+        },
+        "rows": rows,
+    }
+    columns = list(rows[0])
+    answer(found, json, lambda: table(f"{scenario.name}: losses", columns, [[r[c] for c in columns] for r in rows]))
+
+
+def at_readings(scenario: Scenario, campaign: Campaign, temperature: str) -> list[dict[str, Any]]:
+    """One row of losses per reading.
+
+    Args:
+        scenario: the rig
+        campaign: readings with the protocol that says what drives the model
+        temperature: "measured": all temperatures are the measured oil temperature; "model": the model's steady ones
+
+    Raises:
+        DataError: how the campaign was run is not known
+    """
+    if (protocol := campaign.protocol) is None:
+        raise DataError(f"{campaign.name}: how it was run is not known. Give the rig file a table [campaign].")
+    flat = flat_of(driven_by(scenario, protocol.inputs))
+    values = [given(scenario, protocol, reading) for reading in campaign.readings]
+    if temperature == "model":
+        result = steady_table(flat, values)
+        columns: dict[str, np.ndarray] = dict(result.columns)
+    else:
+        columns = _at(flat, values, [reading.si("T_oil_C") for reading in campaign.readings])
+    rows = []
+    for i, reading in enumerate(campaign.readings):
+        name = {"point": reading.point, "test": reading.test, "direction": reading.direction, "oil": reading.oil}
+        found = {c: float(sum(columns[p][i] for p in paths)) for c, paths in scenario.losses.items()}
+        T_oil = reading.si("T_oil_C") if temperature == "measured" else float(columns[scenario.sensors["T_oil_C"]][i])
+        total = float(columns["efficiency.P_loss"][i])
+        rows.append({**name, **found, "alphaA_W_K": total / (T_oil - reading.si("T_amb_C"))})
+    return rows
+
+
+def given(scenario: Scenario, protocol: Protocol, reading: Reading) -> dict[str, float]:
+    """Inputs and oil of one reading, in SI by path; what the user set stays."""
+    driven = {path: d.sign[reading.direction - 1] * reading.si(d.column) for path, d in protocol.inputs.items()}
+    return driven | {protocol.room: reading.si("T_amb_C")} | oil_values(scenario, protocol, reading.oil)
+
+
+def oil_values(scenario: Scenario, protocol: Protocol, oil: str) -> dict[str, float]:
+    """What the catalogue says of the oil of a test, but for values that the user set."""
+    values = scenario.entry_values(protocol.oil, oil)
+    return {path: value for path, value in values.items() if scenario.value_sources.get(path) != SET}
+
+
+def _at(flat: FlatModel, values: Sequence[dict[str, float]], temperatures: Sequence[float]) -> dict[str, np.ndarray]:
+    """All outputs with every temperature of the model at a given value, per point."""
+    hot = [q.name for q in flat.states if q.unit == "K"]
+    points = [
+        point(flat, row, dict.fromkeys(hot, T), who="losses") for row, T in zip(values, temperatures, strict=True)
+    ]
+    x, u, p = (np.array([getattr(here, kind) for here in points]).T for kind in "xup")
+    y = evaluate(flat, x.reshape(len(flat.states), -1), u, p)["y"]
+    return {q.name: line for q, line in zip(flat.outputs, y, strict=True)}
+
+
+def at_operating_point(scenario: Scenario) -> dict[str, Any]:
+    """The losses at the rig's operating point and the steady temperatures there."""
+    flat = flat_of(scenario)
+    result = steady(flat, conditions(scenario, flat))
+    return {c: float(sum(result[path][0] for path in paths)) for c, paths in scenario.losses.items()}
+
+
+def _flow_paths(scenario: Scenario) -> list[str]:
+    return [path for path in choice_paths(scenario.spec) if path.endswith(".power_flow")]

@@ -1,0 +1,155 @@
+"""The command `run`: export the FMU, play all tests, compare with the readings, write a report."""
+
+from __future__ import annotations
+
+import hashlib
+import time
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..fmu.export import export
+from ..model.core.flat import FlatModel
+from ..model.units import shown, to_si
+from ..scenarios.load import load
+from ..scenarios.scenario import Scenario
+from . import campaign, describe, summary
+from .compare import Comparison, Rows, compare, present
+from .console import answer, as_json, file_of, folder, note, table, writable, write
+from .readings import sources
+from .report import Study, render
+from .rivals import Score, rivals
+from .settings import adjusted, driven_by, flat_of
+
+#: First columns of a row, the rest follow in the order they arise.
+ROW = ("point", "test", "direction", "oil", "T_oil_C", "T_wall_C", "T_amb_C", "loss_Nm", "P_loss_W", "efficiency")
+
+
+def command(
+    rig: str, out: Path, tests: str | None, step: str, assignments: Sequence[str], workers: int, json: str | None
+) -> None:
+    """Everything from the rig file to the report; finished tests in the folder are used again."""
+    began = time.perf_counter()
+    writable(file_of(json))
+    dt = to_si(step, "s", name="--step")
+    kept = folder(folder(out) / "tests")
+    with campaign.crew(workers) as pool:
+        scenario = adjusted(load(rig), assignments)
+        protocol = scenario.campaign.protocol if scenario.campaign else None
+        scenario = driven_by(scenario, protocol.inputs) if protocol else scenario
+        flat = flat_of(scenario)
+        found = campaign.courses(scenario, flat, tests)
+        fmu = export(flat, out / f"{scenario.name}.fmu")
+        note(f"exported {fmu}")
+        digest = hashlib.sha256(fmu.read_bytes()).hexdigest()
+        record = campaign.recorded(scenario, flat)
+        todo = campaign.jobs(found, fmu, digest, dt, record, kept)
+        played = campaign.play_all(todo, pool)
+    rows = [_ordered(row) for row in campaign.rows(scenario, found, played)]
+    comparison, scores = (compare(rows), rivals(rows)) if present(rows) else (None, ())
+    result = _result(scenario, fmu, digest, rows, comparison, scores)
+    study = _study(scenario, flat, found, played, rows, result, kept)
+    write(out / "rows.csv", _csv(rows))
+    write(out / "result.json", as_json(result))
+    write(out / "report.html", render(study, comparison, scores))
+    note(f"{out / 'report.html'} after {time.perf_counter() - began:.1f} s")
+    answer(result, json, lambda: _print(rows, comparison, scores, result))
+
+
+def _ordered(row: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: row[name] for name in ROW if name in row} | dict(row)
+
+
+def _result(
+    scenario: Scenario,
+    fmu: Path,
+    digest: str,
+    rows: Rows,
+    comparison: Comparison | None,
+    scores: Sequence[Score],
+) -> dict[str, Any]:
+    """The object of `--json`."""
+    nothing: dict[str, Any] = {"rmse": {}, "noise_floor": {}, "rivals": {}, "groups": []}
+    return {
+        "schema": "gearheat.run/1",
+        "rig": scenario.name,
+        "fmu": fmu.name,
+        "fmu_sha256": digest,
+        "rows": rows,
+        **(nothing if comparison is None else summary.as_dict(comparison, scores)),
+        "energy_residual_max": max(row["energy_residual"] for row in rows),
+    }
+
+
+def _study(
+    scenario: Scenario,
+    flat: FlatModel,
+    found: Sequence[campaign.Course],
+    played: Mapping[int, list[dict[str, float]]],
+    rows: Rows,
+    result: Mapping[str, Any],
+    kept: Path,
+) -> Study:
+    """What the report shows."""
+    columns = {**sources(scenario), "T_amb_C": _room(scenario)}
+    curves = {test: _curve(kept / f"test-{test:02d}.csv", columns, flat) for test in _telling(rows)}
+    single = [c for c in scenario.losses if c.startswith("P_") and c != "P_total_W"]
+    return Study(
+        rig=scenario.name,
+        doc=scenario.doc,
+        fmu=result["fmu"],
+        rows=rows,
+        curves=curves,
+        loss_columns=tuple(single),
+        laws=flat.laws,
+        outside=campaign.outside_of(flat, found, played),
+        parameters=describe.parameters(scenario, flat),
+        errata=tuple((e.place, e.says, e.should_be, e.evidence) for e in scenario.errata),
+        energy_residual_max=result["energy_residual_max"],
+    )
+
+
+def _room(scenario: Scenario) -> str:
+    rooms = scenario.spec.of_type("Room")
+    return scenario.sensors.get("T_amb_C", f"{rooms[0]}.T" if rooms else "")
+
+
+def _telling(rows: Rows) -> list[int]:
+    """Tests whose course is drawn: the lightest and the heaviest of each of the first three oils."""
+    chosen: list[int] = []
+    for oil in list(dict.fromkeys(row["oil"] for row in rows))[:3]:
+        mine = sorted((row for row in rows if row["oil"] == oil), key=lambda row: row["P_loss_W"])
+        chosen += [mine[0]["test"], mine[-1]["test"]]
+    return list(dict.fromkeys(chosen))
+
+
+def _curve(path: Path, columns: Mapping[str, str], flat: FlatModel) -> dict[str, np.ndarray]:
+    """Time [s] and temperatures of one played test, read back from its file."""
+    with path.open(encoding="utf-8") as file:
+        head = file.readline().strip().split(",")
+        values = np.loadtxt(file, delimiter=",", ndmin=2)
+    names = {
+        c: f"{p} [{shown(flat.quantity(p).unit)}]" for c, p in columns.items() if c.endswith("_C") and p in flat.index
+    }
+    return {"time": values[:, 0]} | {c: values[:, head.index(name)] for c, name in names.items() if name in head}
+
+
+def _csv(rows: Rows) -> str:
+    """Rows as CSV; numbers with nine digits, nothing where a value is missing."""
+    head = list(dict.fromkeys(name for row in rows for name in row))
+
+    def cell(value: Any) -> str:
+        return "" if value is None else f"{value:.9g}" if isinstance(value, float) else str(value)
+
+    return "\n".join([",".join(head), *(",".join(cell(row.get(name)) for name in head) for row in rows)]) + "\n"
+
+
+def _print(rows: Rows, comparison: Comparison | None, scores: Sequence[Score], result: Mapping[str, Any]) -> None:
+    if comparison is None:
+        columns = list(rows[0])
+        table(f"{result['rig']}: operating point", ("name", "value"), [[c, rows[0][c]] for c in columns])
+    else:
+        summary.show(comparison, scores)
+    print(f"{len(rows)} readings; energy balance closed within {result['energy_residual_max']:.1e} of the throughput")

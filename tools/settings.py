@@ -1,0 +1,140 @@
+"""What a user sets and frees on the command line, turned into a scenario that is driven accordingly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+from ..model.core.declare import Choice, Given, declared
+from ..model.core.flat import FlatModel
+from ..model.core.flatten import flatten
+from ..model.errors import GearheatError, ScenarioError, suggestion
+from ..model.machines.spec import Spec, assemble
+from ..model.parts import PARTS
+from ..scenarios.scenario import Scenario, parse_assignments
+
+Drive = Mapping[str, tuple[str, ...]]
+
+#: Source of the values that the user sets; they hold for every test, whatever oil it ran with.
+SET = "set on the command line"
+
+
+def adjusted(
+    scenario: Scenario,
+    assignments: Sequence[str] = (),
+    *,
+    named: Iterable[str] = (),
+    drive: Drive | None = None,
+) -> Scenario:
+    """The scenario with values set by the user, driven at the shaft ends as the names say.
+
+    A shaft speed that is set or named takes the place of the rig's given speed, a torque that of its given torque.
+
+    Args:
+        scenario: the rig
+        assignments: texts "NAME=VALUE": parameters, inputs, start values of states, choices
+            ("gear_set.power_flow=ideal"), and parts filled from a catalogue ("oil=MINR")
+        named: further inputs that come from outside: sought by a design, or given by a duty
+        drive: quantities given per shaft end, where that is known
+
+    Raises:
+        ScenarioError: all problems of all assignments at once
+    """
+    choices, problems = _choices(scenario.spec, assignments)
+    problems += _doubled(assignments)
+    values: dict[str, float] = {}
+    try:
+        values = parse_assignments(scenario, (a for a in assignments if _name(a) not in choice_paths(scenario.spec)))
+    except GearheatError as error:
+        problems += error.problems
+    if problems:
+        raise ScenarioError(problems)
+    shafts = given_paths(scenario.spec)
+    ends = [name for name in dict.fromkeys((*values, *named)) if name in shafts]
+    driven = deduced(scenario.given, ends) if drive is None else drive
+    if idle := [name for name in ends if name.rpartition(".")[2] not in driven.get(name.rpartition(".")[0], ())]:
+        raise ScenarioError([f"{name} is set, but it follows from what drives the rig. Take it out." for name in idle])
+    set_up = scenario.with_values(values, SET).driven(driven)
+    return replace(set_up, spec=set_up.spec.with_values(choices))
+
+
+def flat_of(scenario: Scenario) -> FlatModel:
+    """The flat model of a scenario."""
+    return flatten(assemble(scenario.spec))
+
+
+def driven_by(scenario: Scenario, names: Iterable[str]) -> Scenario:
+    """The scenario driven by those of the named inputs that are shaft quantities, the rest as the rig says."""
+    shafts = given_paths(scenario.spec)
+    return scenario.driven(deduced(scenario.given, [name for name in names if name in shafts]))
+
+
+def deduced(given: Drive, names: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    """The drive that follows from the shaft quantities named ("sun.w"), each kind in place of that of `given`."""
+    named = [tuple(name.rsplit(".", 1)) for name in names]
+    kinds = {quantity for _, quantity in named}
+    kept = [(end, quantity) for end, quantities in given.items() for quantity in quantities if quantity not in kinds]
+    drive: dict[str, tuple[str, ...]] = {}
+    for end, quantity in (*kept, *named):
+        drive[end] = tuple(dict.fromkeys((*drive.get(end, ()), quantity)))
+    return drive
+
+
+def driven_at(scenario: Scenario, shaft: str | None, given: str) -> dict[str, tuple[str, ...]]:
+    """The drive of an FMU.
+
+    Args:
+        scenario: the rig
+        shaft: the shaft end that drives; the rig's own if None
+        given: "speed": speed and torque of that shaft; "torque": the torques of all shaft ends
+
+    Raises:
+        ScenarioError: the rig has no such shaft end
+    """
+    ends = scenario.spec.of_type("ShaftEnd")
+    if shaft is not None and shaft not in ends:
+        raise ScenarioError(
+            f'{scenario.name}: "{shaft}" is no shaft end.{suggestion(shaft, ends)} Shaft ends: {", ".join(ends)}.'
+        )
+    if given == "torque":
+        return {end: ("tau",) for end in ends}
+    return dict(scenario.given) if shaft is None else {shaft: ("w", "tau")}
+
+
+def given_paths(spec: Spec) -> set[str]:
+    """Paths of the quantities that may be given at the shaft ends."""
+    return {f"{part.name}.{key}" for part in spec.parts for key in declared(PARTS[part.type], Given)}
+
+
+def choice_paths(spec: Spec) -> dict[str, Choice]:
+    """Choices of all parts by path; those without options follow from the drive."""
+    found = {f"{p.name}.{key}": c for p in spec.parts for key, c in declared(PARTS[p.type], Choice).items()}
+    return {path: choice for path, choice in found.items() if choice.options}
+
+
+def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], list[str]]:
+    """The choices among the assignments, and what is wrong with them."""
+    known = choice_paths(spec)
+    values: dict[str, Any] = {}
+    problems: list[str] = []
+    for text in assignments:
+        if (path := _name(text)) not in known:
+            continue
+        options = {str(option).lower(): option for option in known[path].options}
+        written = text.partition("=")[2].strip()
+        if written.lower() in options:
+            values[path] = options[written.lower()]
+        else:
+            close = suggestion(written.lower(), options)
+            problems.append(f'{path} = "{written}" is not known.{close} Choose one of: {", ".join(options)}.')
+    return values, problems
+
+
+def _doubled(assignments: Iterable[str]) -> list[str]:
+    names = [_name(text) for text in assignments]
+    return [f'"{name}" is set twice. Set it once.' for name in dict.fromkeys(names) if name and names.count(name) > 1]
+
+
+def _name(assignment: str) -> str:
+    return assignment.partition("=")[0].strip()

@@ -1,0 +1,154 @@
+"""The commands `simulate`, `export` and `play`: courses over time, from the model itself or from its FMU."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..model.core.flat import FlatModel, Quantity
+from ..model.errors import ScenarioError
+from ..model.run.schedule import Schedule
+from ..model.run.simulate import simulate
+from ..model.units import from_si, shown, to_si
+from ..scenarios.duty import duty_names, read_duty
+from ..scenarios.load import load
+from ..scenarios.scenario import Scenario
+from .console import answer, file_of, writable, write
+from .playing import series
+from .points import outside_of
+from .settings import Drive, adjusted, driven_at, flat_of
+
+
+def simulate_command(rig: str, duty: Path, out: Path, assignments: Sequence[str], json: str | None) -> None:
+    """Run a rig through a duty; temperatures that are not set start at the room's."""
+    writable(out, file_of(json))
+    scenario = adjusted(load(rig), assignments, named=duty_names(duty))
+    flat = flat_of(scenario)
+    schedule = read_duty(duty, flat)
+    result = simulate(flat, schedule, start=first_temperatures(scenario, flat, schedule))
+    write(out, series(result.index, result.columns, result.units))
+    found = {
+        "schema": "gearheat.simulate/1",
+        "rig": scenario.name,
+        "out": str(out),
+        **_course(result.index, result.columns, result.units),
+        "energy_residual": result.audit.residual,
+        "outside": outside_of(result),
+        "laws": list(result.laws),
+    }
+    answer(found, json, lambda: print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s"))
+
+
+def first_temperatures(scenario: Scenario, flat: FlatModel, schedule: Schedule | None) -> dict[str, float]:
+    """Start temperatures: as set, else that of the room at the beginning of the schedule, or at the operating point."""
+    rooms = scenario.spec.of_type("Room")
+    if not rooms:
+        return {}
+    room = f"{rooms[0]}.T"
+    given = schedule is not None and room in schedule.values
+    T = float(schedule.values[room][0]) if schedule is not None and given else flat.quantity(room).start
+    own = {f"{part.name}.{key}" for part in scenario.spec.parts for key in part.values}
+    return {q.name: T for q in flat.states if q.unit == "K" and q.name not in own}
+
+
+def export_command(
+    rig: str,
+    out: Path,
+    assignments: Sequence[str],
+    shaft: str | None,
+    given: str,
+    platform: str,
+    json: str | None,
+) -> None:
+    """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
+    from ..fmu.export import export
+
+    writable(out, file_of(json))
+    scenario = load(rig)
+    drive: Drive | None = driven_at(scenario, shaft, given) if shaft is not None or given == "torque" else None
+    setting = adjusted(scenario, assignments, drive=drive)
+    flat = flat_of(setting)
+    export(flat, out, platform=platform, start=first_temperatures(setting, flat, None))
+    found = {
+        "schema": "gearheat.export/1",
+        "rig": scenario.name,
+        "fmu": str(out),
+        "sha256": hashlib.sha256(out.read_bytes()).hexdigest(),
+        "inputs": [q.name for q in flat.inputs],
+        "outputs": [q.name for q in (*flat.states, *flat.outputs)],
+        "parameters": [q.name for q in flat.parameters],
+    }
+    words = f"{len(flat.inputs)} inputs, {len(flat.outputs)} outputs, {len(flat.parameters)} parameters"
+    answer(found, json, lambda: print(f"{out}: {words}"))
+
+
+def play_command(fmu: Path, duty: Path, out: Path, step: str, assignments: Sequence[str], json: str | None) -> None:
+    """Play an FMU over a duty."""
+    from ..fmu.play import Player
+
+    writable(out, file_of(json))
+    dt = to_si(step, "s", name="--step")
+    with Player(fmu) as player:
+        quantities = _quantities(fmu)
+        schedule = read_duty(duty, {q.name: q for kind, q in quantities if kind == "input"})
+        start = _start(
+            {q.name: q for kind, q in quantities if kind in ("input", "parameter", "state")}, assignments, fmu
+        )
+        inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
+        played = player.run(inputs, schedule.stop, dt, begin=schedule.start, start=start)
+    units = {q.name: q.unit for _, q in quantities}
+    columns = {name: played.values[:, k] for k, name in enumerate(played.names)}
+    write(out, series(played.time, columns, units))
+    found = {
+        "schema": "gearheat.play/1",
+        "fmu": str(fmu),
+        "out": str(out),
+        **_course(played.time, columns, units),
+    }
+    answer(found, json, lambda: print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s"))
+
+
+def _quantities(fmu: Path) -> list[tuple[str, Quantity]]:
+    """Kind and quantity of every variable of an FMU."""
+    import fmpy
+
+    found = []
+    for v in fmpy.read_model_description(str(fmu), validate=False).modelVariables:
+        kind = "state" if v.causality == "output" and v.initial == "exact" else v.causality
+        low, high = (default if text is None else float(text) for text, default in ((v.min, -np.inf), (v.max, np.inf)))
+        found.append((kind, Quantity(v.name, v.unit or "1", v.description or "", low=low, high=high)))
+    return found
+
+
+def _start(known: dict[str, Quantity], assignments: Sequence[str], fmu: Path) -> dict[str, float]:
+    """Start values from texts NAME=VALUE, in SI. Raises ScenarioError with all problems at once."""
+    from ..model.errors import GearheatError, suggestion
+
+    values: dict[str, float] = {}
+    problems: list[str] = []
+    for text in assignments:
+        name, _, written = (part.strip() for part in text.partition("="))
+        if name not in known:
+            problems.append(f'{fmu.name}: "{name}" cannot be set.{suggestion(name, known)}')
+            continue
+        try:
+            values[name] = to_si(written, known[name].unit, name=name)
+        except GearheatError as error:
+            problems += error.problems
+    if problems:
+        raise ScenarioError(problems)
+    return values
+
+
+def _course(time: np.ndarray, columns: Any, units: Any) -> dict[str, Any]:
+    """How long a course is, and where it ends, in the units shown to a person."""
+    return {
+        "rows": len(time),
+        "stop_s": float(time[-1]),
+        "final": {name: from_si(float(column[-1]), units[name]) for name, column in columns.items()},
+        "units": {name: shown(units[name]) for name in columns},
+    }
