@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator
 from pathlib import Path
 from types import SimpleNamespace
 
 import casadi as ca
+import fmpy
 import pytest
+from fmpy.fmi1 import FMICallException
+from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from gearheat.fmu.export import export
 from gearheat.model.core.flat import Check, FlatModel, Quantity
 from gearheat.model.sources import LawInfo
@@ -126,3 +130,60 @@ def rc_fmu(models: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory) ->
 @pytest.fixture(scope="session")
 def heat_fmu(models: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return export(models.heat, tmp_path_factory.mktemp("fmu") / "heat.fmu")
+
+
+class Opened:
+    """One instance of an FMU through FMPy, with the messages it sent as (status, category, text)."""
+
+    def __init__(self, path: Path, folder: Path, kind: type = FMU2Slave, logging: bool = False, **changed: str) -> None:
+        self.description = fmpy.read_model_description(str(path))
+        self.refs = {v.name: v.valueReference for v in self.description.modelVariables}
+        self.messages: list[tuple[int, str, str]] = []
+        fmpy.extract(str(path), str(folder))
+        interface = self.description.coSimulation
+        arguments = dict(guid=self.description.guid, instanceName="one") | changed
+        self.fmu = kind(unzipDirectory=str(folder), modelIdentifier=interface.modelIdentifier, **arguments)
+        self.callbacks = fmi2CallbackFunctions()
+        self.callbacks.logger = fmi2CallbackLoggerTYPE(
+            lambda _, __, status, category, text: self.messages.append((status, category.decode(), text.decode()))
+        )
+        self.fmu.instantiate(callbacks=self.callbacks, loggingOn=logging)
+
+    def start(self, tolerance: float | None = None, stop: float | None = None, **values: float) -> Opened:
+        """To step complete or event mode, with values set by name (a dot is written __)."""
+        self.set(**values)
+        self.fmu.setupExperiment(tolerance=tolerance, startTime=0.0, stopTime=stop)
+        self.fmu.enterInitializationMode()
+        self.fmu.exitInitializationMode()
+        return self
+
+    def set(self, **values: float) -> None:
+        if values:
+            self.fmu.setReal([self.refs[n.replace("__", ".")] for n in values], list(values.values()))
+
+    def get(self, *names: str) -> list[float]:
+        return list(self.fmu.getReal([self.refs[n] for n in names]))
+
+    def everything(self) -> list[float]:
+        return self.get(*self.refs)
+
+    def refused(self, call: Callable[[], object]) -> tuple[int, str]:
+        """Status and last message of a call that must not succeed."""
+        self.messages.clear()
+        with pytest.raises(FMICallException) as caught:
+            call()
+        return caught.value.status, self.messages[-1][2]
+
+
+@pytest.fixture
+def opened(tmp_path: Path) -> Iterator[Callable[..., Opened]]:
+    """Opens any number of instances, and frees them at the end of the test."""
+    made: list[Opened] = []
+
+    def make(path: Path, kind: type = FMU2Slave, logging: bool = False, **changed: str) -> Opened:
+        made.append(Opened(path, tmp_path / str(len(made)), kind, logging, **changed))
+        return made[-1]
+
+    yield make
+    for one in made:
+        one.fmu.freeInstance()
