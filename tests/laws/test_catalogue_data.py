@@ -1,0 +1,126 @@
+"""The catalogue files: every value has a source and a unit that fits, and agrees with the others of its entry."""
+
+import math
+import tomllib
+from pathlib import Path
+from typing import Any
+
+import pytest
+from gearheat.model.laws.oil import specific_heat
+from gearheat.model.parts import PARTS
+from gearheat.model.sources import sources
+from gearheat.model.units import to_si
+
+FOLDER = Path(__file__).parents[2] / "scenarios" / "catalogue"
+ABOUT = {"doc", "source", "sources"}
+UNITS = {
+    **dict.fromkeys(("nu", "nu_40", "nu_100"), "m2/s"),
+    **dict.fromkeys(("rho", "rho_15"), "kg/m3"),
+    **dict.fromkeys(("k", "k_fin"), "W/(m.K)"),
+    **dict.fromkeys(("d", "D", "d_m", "B", "d_sh"), "m"),
+    **dict.fromkeys(("X_L", "s_p", "t_p", "R_1", "R_2", "S_1", "S_2", "Y", "K_Z", "K_L", "emissivity", "Pr"), "1"),
+    **{"alpha_T": "1/K", "c_p": "J/(kg.K)", "C_0": "N", "c_sh": "N.m/m2"},
+}
+LUBRICANT = {"nu_40", "nu_100", "rho_15", "alpha_T", "X_L", "s_p", "t_p"}
+BEARING = {"d", "D", "d_m", "R_1", "R_2", "S_1", "S_2", "K_Z"}
+
+
+def entries(file: str) -> dict[str, dict[str, Any]]:
+    return tomllib.loads((FOLDER / file).read_text("utf-8"))
+
+
+def si(entry: dict[str, Any]) -> dict[str, float]:
+    return {key: to_si(value, UNITS[key], name=key) for key, value in entry.items() if key not in ABOUT}
+
+
+EVERY = [(path.name, name) for path in sorted(FOLDER.glob("*.toml")) for name in entries(path.name)]
+
+
+@pytest.mark.parametrize(("file", "name"), EVERY)
+def test_entry(file: str, name: str) -> None:
+    entry = entries(file)[name]
+    values = si(entry)
+    assert values
+    assert all(math.isfinite(v) and (v > 0 or key == "alpha_T") for key, v in values.items())
+    assert set(entry.get("sources", {})) <= set(values)
+    for text in (entry["source"], *entry.get("sources", {}).values()):
+        kind, colon, reason = text.partition(":")
+        known = kind.partition(",")[0] in sources() or (
+            kind in ("assumed", "inferred", "calibrated") and colon and reason
+        )
+        assert known, text
+
+
+def viscosity_index(U: float, Y: float) -> float:
+    """ASTM D2270 for viscosities of 2 to 100 mm2/s at 100 degC: Y in one of the segments of L and H."""
+    segments = [
+        (2.0, (1.14673, 1.7576, -0.109), (0.84155, 1.5521, -0.077)),
+        (3.8, (3.38095, -15.4952, 33.196), (0.78571, 1.7929, -0.183)),
+        (4.4, (2.5, -7.2143, 13.812), (0.82143, 1.5679, 0.119)),
+        (5.0, (0.101, 16.635, -45.469), (0.04985, 9.1613, -18.557)),
+        (6.4, (3.35714, -23.5643, 78.466), (0.22619, 7.7369, -16.656)),
+        (7.0, (0.01191, 21.475, -72.87), (0.79762, -0.7321, 14.61)),
+        (7.7, (0.41858, 16.1558, -56.04), (0.05794, 10.5156, -28.24)),
+        (9.0, (0.88779, 7.5527, -16.6), (0.26665, 6.7015, -10.81)),
+        (12.0, (0.7672, 10.7972, -38.18), (0.20073, 8.4658, -22.49)),
+        (15.0, (0.97305, 5.3135, -2.2), (0.28889, 5.9741, -4.93)),
+        (18.0, (0.97256, 5.25, -0.98), (0.24504, 7.416, -16.73)),
+        (22.0, (0.91413, 7.4759, -21.82), (0.20323, 9.1267, -34.23)),
+        (28.0, (0.87031, 9.7157, -50.77), (0.18411, 10.1015, -46.75)),
+        (40.0, (0.84703, 12.6752, -133.31), (0.17029, 11.4866, -80.62)),
+        (55.0, (0.85921, 11.1009, -83.19), (0.1713, 11.368, -76.94)),
+        (70.0, (0.83531, 14.6731, -216.246), (0.16841, 11.8493, -96.947)),
+    ]
+    _, low, high = max(s for s in segments if s[0] <= Y)
+    L, H = (a * Y * Y + b * Y + c for a, b, c in (low, high))
+    if U >= H:
+        return 100 * (L - U) / (L - H)
+    return (10 ** (math.log10(H / U) / math.log10(Y)) - 1) / 0.00715 + 100
+
+
+@pytest.mark.parametrize(("U", "Y", "printed"), [(73.30, 8.86, 92), (22.83, 5.05, 156)])
+def test_viscosity_index_of_the_standards_examples(U: float, Y: float, printed: float) -> None:
+    assert viscosity_index(U, Y) == pytest.approx(printed, abs=0.5)
+
+
+@pytest.mark.parametrize("name", [n for n in entries("oils.toml") if n.startswith("ISO VG")])
+def test_grade(name: str) -> None:
+    """The grade is the viscosity at 40 degC; the one at 100 degC has the viscosity index of the text."""
+    entry = entries("oils.toml")[name]
+    values = si(entry)
+    grade = float(name.split()[2])
+    assert 1e6 * values["nu_40"] == pytest.approx(grade)
+    stated = float(entry["doc"].rpartition(" ")[2])
+    assert viscosity_index(1e6 * values["nu_40"], 1e6 * values["nu_100"]) == pytest.approx(stated, abs=0.5)
+
+
+@pytest.mark.parametrize("name", entries("oils.toml"))
+def test_oil(name: str) -> None:
+    """Everything an oil bath needs but its volume; where Cragoe is cited, his specific heat."""
+    entry = entries("oils.toml")[name]
+    values = si(entry)
+    assert values.keys() >= LUBRICANT
+    assert name == "bearing grease" or "c_p" in values
+    if entry.get("sources", {}).get("c_p", "").startswith("Cragoe1929"):
+        assert values["c_p"] == pytest.approx(specific_heat(333.15, values["rho_15"]), abs=0.5)
+
+
+@pytest.mark.parametrize("name", entries("bearings.toml"))
+def test_bearing(name: str) -> None:
+    values = si(entries("bearings.toml")[name])
+    assert values["d_m"] == pytest.approx((values["d"] + values["D"]) / 2)
+    if name.startswith("SKF"):
+        kind = "TaperedRollerBearing" if "Y" in values else "DeepGrooveBallBearing"
+        assert kind in PARTS
+        assert BEARING | ({"Y", "K_L"} if "Y" in values else {"C_0"}) <= values.keys()
+
+
+def test_bearings_of_a_series_share_their_constants() -> None:
+    by_series: dict[str, set[tuple[float, ...]]] = {}
+    for name, entry in entries("bearings.toml").items():
+        if name.startswith("SKF"):
+            number = name.split()[1]
+            series = number[:2] if len(number.partition("-")[0]) == 4 else number[:3]
+            by_series.setdefault(series, set()).add(tuple(entry[k] for k in ("R_1", "R_2", "S_1", "S_2", "K_Z")))
+    assert set(by_series) == {"62", "63", "302", "320", "322"}
+    assert all(len(constants) == 1 for constants in by_series.values())
