@@ -173,7 +173,7 @@ def test_printed_friction_ranking() -> None:
     for name, expected in (("SP", (0.0326, 0.0387, 0.0429, 0.0508)), ("PR", (0.0255, 0.0303, 0.0336, 0.0398))):
         found = [1.044 * friction(points[o], name) for o in ("PAGD", "PAOR", "MINE", "MINR")]
         assert found == sorted(found)
-        assert found == pytest.approx(expected, abs=0.0005)
+        assert found == pytest.approx(expected, abs=0.00005)
     assert all(friction(p, "PR") < friction(p, "SP") for p in points.values())
 
 
