@@ -43,8 +43,8 @@ class Component:
         cls = type(self)
         self.choices = {k: values.pop(k, d.default) for k, d in declared(cls, Choice).items()}
         self.ports = {k: d.bound(f"{name}.{k}") for k, d in declared(cls, Port).items()}
-        self.parameters: dict[str, Parameter] = declared(cls, Parameter)
-        self.states: dict[str, State] = {k: d for k, d in declared(cls, State).items() if self.has_state(k)}
+        self.parameters: dict[str, Parameter] = {k: d for k, d in declared(cls, Parameter).items() if self.has(k)}
+        self.states: dict[str, State] = {k: d for k, d in declared(cls, State).items() if self.has(k)}
         self.variables: dict[str, Variable] = declared(cls, Variable)
         self.inputs: dict[str, Input] = declared(cls, Input)
         names = (*self.parameters, *self.states, *self.variables, *self.inputs)
@@ -58,7 +58,8 @@ class Component:
             raise ScenarioError(problems)
 
     def _problems(self, values: dict[str, Any]) -> list[str]:
-        settable: dict[str, Declaration] = {**self.parameters, **declared(type(self), State), **self.inputs}
+        cls = type(self)
+        settable: dict[str, Declaration] = {**declared(cls, Parameter), **declared(cls, State), **self.inputs}
         where = f"{type(self).__name__} {self.name}"
         found = []
         for key in values.keys() - settable.keys():
@@ -82,8 +83,8 @@ class Component:
                 with suppress(KeyError):  # a missing value it needs is reported under its own name
                     self.values[key] = float(d.derived(self.values))
 
-    def has_state(self, name: str) -> bool:
-        """Whether a declared state exists under the component's choices."""
+    def has(self, name: str) -> bool:
+        """Whether a declared state or parameter exists under the component's choices."""
         return True
 
     def der(self, state: str) -> Any:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 from ..core.component import Equation, equation
@@ -11,6 +10,10 @@ from ..laws.rolling import (
     boundary_share,
     dgb_rolling_variable,
     dgb_sliding_variable,
+    dgb_sliding_variable_radial,
+    drag_loss_factor,
+    drag_torque_ball,
+    drag_torque_roller,
     needle_torque_load,
     needle_torque_viscous,
     rolling_torque,
@@ -24,9 +27,6 @@ from ..laws.rolling import (
 from ..laws.smooth import Num
 from .friction import Friction
 from .ports import BearingLoad, Lubricant
-
-#: Speed at which `tau_drag_ref` is given [rad/s].
-DRAG_SPEED = 250 * math.pi / 30
 
 
 class RollingBearing(Friction):
@@ -57,8 +57,9 @@ class SkfBearing(RollingBearing):
     K_rs = Parameter("1", "starvation constant of the lubrication, 0 without starvation", nominal=1e-8, at_least=0.0)
     mu_bl = Parameter("1", "sliding friction of the boundary film", nominal=0.1, at_least=0.0)
     mu_EHL = Parameter("1", "sliding friction of the full film", nominal=0.1, at_least=0.0)
-    tau_drag_ref = Parameter("N.m", "drag torque at 250 rpm", at_least=0.0)
+    H = Parameter("m", "oil level above the lowest point of the outer raceway", nominal=0.01, at_least=0.0)
     mixed_friction = Choice((True, False), "whether thin films raise the sliding friction", default=True)
+    oil_bath = Choice((True, False), "whether the bearing stands in oil, and so drags", default=True)
     tau_rr = Output("N.m", "rolling moment of one bearing")
     tau_sl = Output("N.m", "sliding moment of one bearing")
     mu_sl = Output("1", "sliding friction coefficient", nominal=0.1)
@@ -67,22 +68,28 @@ class SkfBearing(RollingBearing):
         """Rolling and sliding variable of the catalogue, from the loads."""
         raise AttributeError(f"{type(self).__name__} has no geometric variables")
 
+    def has(self, name: str) -> bool:
+        """The oil level counts in an oil bath, boundary friction where films may be thin."""
+        return {"H": self.oil_bath, "V_M": self.oil_bath, "mu_bl": self.mixed_friction}.get(name, True)
+
     def torque(self) -> Num:
         """Sum of the moments of one bearing [N.m]."""
-        return self.tau_rr + self.tau_sl + self.drag()
+        return self.tau_rr + self.tau_sl + (self.drag() if self.oil_bath else 0.0)
 
     def drag(self) -> Num:
-        """Drag moment, with the square of the speed from its value at 250 rpm [N.m]."""
-        return self.tau_drag_ref * (self.shaft.w / DRAG_SPEED) ** 2
+        """Drag moment in an oil bath [N.m]."""
+        raise AttributeError(f"{type(self).__name__} has no drag moment")
 
     def equations(self) -> Iterator[Equation]:
         """The moments, then what every friction does."""
         w, nu = self.shaft.w, self.lubricant.nu
         G_rr, G_sl = self.geometric_variables()
         phi = shear_heating(w, nu, self.d_m) * starvation(w, nu, self.d, self.D, self.K_rs, self.K_Z)
-        phi_bl = boundary_share(w, nu, self.d_m) if self.mixed_friction else 0.0
+        mu_sl = self.mu_EHL
+        if self.mixed_friction:
+            mu_sl = sliding_friction(boundary_share(w, nu, self.d_m), self.mu_bl, self.mu_EHL)
         yield equation("rolling moment", self.tau_rr, rolling_torque(G_rr, w, nu, phi))
-        yield equation("sliding friction", self.mu_sl, sliding_friction(phi_bl, self.mu_bl, self.mu_EHL))
+        yield equation("sliding friction", self.mu_sl, mu_sl)
         yield equation("sliding moment", self.tau_sl, sliding_torque(G_sl, self.mu_sl))
         yield from super().equations()
 
@@ -90,7 +97,25 @@ class SkfBearing(RollingBearing):
 class TaperedRollerBearing(SkfBearing):
     """Tapered roller bearing, single row."""
 
+    B = Parameter("m", "width over both rings", nominal=0.03, above=0.0)
     Y = Parameter("1", "axial load factor of the catalogue", above=0.0)
+    K_L = Parameter("1", "geometry constant of the roller bearing type", above=0.0)
+    V_M = Parameter(
+        "1",
+        "drag loss factor of the oil level",
+        nominal=1e-4,
+        at_least=0.0,
+        derived=lambda v: float(drag_loss_factor(v["H"] / v["d_m"], roller=True)),
+    )
+
+    def has(self, name: str) -> bool:
+        """Width and roller constant count in an oil bath only."""
+        return super().has(name) and (self.oil_bath or name not in ("B", "K_L"))
+
+    def drag(self) -> Num:
+        """Drag of rollers."""
+        w, nu = self.shaft.w, self.lubricant.nu
+        return drag_torque_roller(w, nu, self.d, self.D, self.B, self.H, self.V_M, self.K_Z, self.K_L)
 
     def geometric_variables(self) -> tuple[Num, Num]:
         """Tapered roller bearing."""
@@ -103,11 +128,25 @@ class DeepGrooveBallBearing(SkfBearing):
     """Deep groove ball bearing, single row."""
 
     C_0 = Parameter("N", "basic static load rating", nominal=1e4, above=0.0)
+    V_M = Parameter(
+        "1",
+        "drag loss factor of the oil level",
+        nominal=1e-4,
+        at_least=0.0,
+        derived=lambda v: float(drag_loss_factor(v["H"] / v["d_m"])),
+    )
+    axially_loaded = Choice((True, False), "which of the catalogue's two sliding formulas holds", default=True)
+
+    def drag(self) -> Num:
+        """Drag of balls."""
+        return drag_torque_ball(self.shaft.w, self.lubricant.nu, self.d, self.D, self.H, self.V_M, self.K_Z)
 
     def geometric_variables(self) -> tuple[Num, Num]:
         """Deep groove ball bearing."""
         F_r, F_a = self.loads()
         rolling = dgb_rolling_variable(F_r, F_a, self.d_m, self.R_1, self.R_2, self.C_0)
+        if not self.axially_loaded:
+            return rolling, dgb_sliding_variable_radial(F_r, self.d_m, self.S_1)
         return rolling, dgb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.C_0)
 
 

@@ -12,7 +12,8 @@ class LipSeal(Friction):
     """Radial lip seal: a torque that depends on the shaft's diameter alone."""
 
     d_sh = Parameter("m", "diameter of the shaft under the lip", nominal=0.1, above=0.0)
+    c_sh = Parameter("N/m", "friction torque per square of the diameter", nominal=50.0, at_least=0.0)
 
     def torque(self) -> Num:
         """Friction torque of one seal [N.m]."""
-        return lip_seal_torque(self.d_sh)
+        return lip_seal_torque(self.d_sh, self.c_sh)

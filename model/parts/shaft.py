@@ -72,8 +72,8 @@ class Inertia(Component):
     w = State("rad/s", "angular velocity", nominal=10.0)
     J = Parameter("kg.m2", "moment of inertia", above=0.0)
 
-    def has_state(self, name: str) -> bool:
-        """The speed is a state where the inertia is dynamic."""
+    def has(self, name: str) -> bool:
+        """Speed and inertia count where the inertia is dynamic."""
         return bool(self.choices["dynamic"])
 
     def equations(self) -> Iterator[Equation]:

@@ -18,7 +18,7 @@ from hypothesis import strategies as st
 OIL = dict(nu_40=3.2438e-4, nu_100=3.527e-5, rho_15=859.0, alpha_T=-5.6e-4, s_p=7.382, t_p=0.1335, X_L=0.666)
 FRICTION = dict(count=2.0, inner_share=0.4)
 BEARING = FRICTION | dict(d_m=0.14, F_r_0=100.0, F_a_0=50.0)
-SKF = BEARING | dict(d=0.11, D=0.17, K_Z=6.0, K_rs=6e-8, mu_bl=0.1, mu_EHL=0.002, tau_drag_ref=0.0385)
+SKF = BEARING | dict(d=0.11, D=0.17, K_Z=6.0, K_rs=6e-8, mu_bl=0.1, mu_EHL=0.002, H=0.03)
 TEETH = dict(z_1=36.0, z_2=36.0, m_n=0.002, alpha_n=math.radians(20), beta=math.radians(10), b=0.042, a_w=0.073035)
 TEETH |= dict(Ra=6e-7, k_mu=1.044, E=2.06e11, poisson=0.3)
 SURFACE = dict(A=0.8, height=0.3, length=0.3, emissivity=0.9)
@@ -38,10 +38,10 @@ EXAMPLES: dict[str, dict] = {
     "HelicalGearPair": TEETH | dict(z_2=72.0, a_w=0.1097, x_1=0.0, x_2=0.0),
     "ShaftSupport": SUPPORT,
     "TwoGearSupport": SUPPORT | dict(x_2=0.07, r_2=0.03, phi=2.5),
-    "TaperedRollerBearing": SKF | dict(R_1=2.38e-6, R_2=10.9, S_1=0.014, S_2=2.0, Y=1.4),
+    "TaperedRollerBearing": SKF | dict(R_1=2.38e-6, R_2=10.9, S_1=0.014, S_2=2.0, Y=1.4, B=0.038, K_L=0.7),
     "DeepGrooveBallBearing": SKF | dict(R_1=3.9e-7, R_2=1.7, S_1=3.23e-3, S_2=36.5, C_0=64e3),
     "NeedleBearing": BEARING | dict(d_m=0.044, f_0=7.0, f_1=2e-4),
-    "LipSeal": FRICTION | dict(d_sh=0.14),
+    "LipSeal": FRICTION | dict(d_sh=0.14, c_sh=73.4),
     "Churning": FRICTION | dict(c=100.0, a=2.0, b=0.2),
     "OilBath": OIL | dict(V=1e-3, c_p=2000.0),
     "Grease": OIL,
@@ -106,7 +106,8 @@ def between_sources(kind: str, **choices):
 
 #: Each kind once, gears and bearings under each of their choices.
 CASES = [(kind, {}) for kind in PARTS] + [("PlanetarySet", {"power_flow": "ideal"}), ("Inertia", {"dynamic": False})]
-CASES += [("DeepGrooveBallBearing", {"mixed_friction": False})]
+CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath", "axially_loaded")]
+CASES += [("TaperedRollerBearing", {"oil_bath": False})]
 _flat: dict = {}
 
 
