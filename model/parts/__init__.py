@@ -10,10 +10,11 @@ from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, ShaftEnd
 from .thermal import (
     BoxCooling,
     CylinderCooling,
+    CylinderWall,
     FinnedBoxCooling,
     HeatCapacity,
+    PlaneWall,
     Room,
-    SurfaceCooling,
     ThermalConductor,
 )
 
@@ -38,7 +39,8 @@ PARTS: dict[str, type[Component]] = {
         Grease,
         HeatCapacity,
         ThermalConductor,
-        SurfaceCooling,
+        PlaneWall,
+        CylinderWall,
         BoxCooling,
         CylinderCooling,
         FinnedBoxCooling,

@@ -6,8 +6,9 @@ from collections.abc import Iterable, Iterator
 
 from ..core.component import Component, Equation, equation
 from ..core.declare import Input, Output, Parameter, State
-from ..laws.conduction import fin_efficiency
+from ..laws.conduction import cylinder_wall, fin_efficiency, plane_wall
 from ..laws.convection import (
+    forced_cylinder,
     forced_plate,
     mixed,
     natural_horizontal_cylinder,
@@ -43,20 +44,58 @@ class HeatCapacity(Component):
         return (self.Q_flow_external,)
 
 
-class ThermalConductor(Component):
-    """Heat flow proportional to a temperature difference."""
+class Conductor(Component):
+    """Base of all that conducts: a heat flow proportional to a temperature difference."""
 
     a = HeatPort()
     b = HeatPort()
 
-    G = Parameter("W/K", "thermal conductance", at_least=0.0)
     Q_flow = Output("W", "heat flow rate from a to b", nominal=100.0)
+
+    def conductance(self) -> Num:
+        """Thermal conductance [W/K]."""
+        raise AttributeError(f"{type(self).__name__} has no conductance")
 
     def equations(self) -> Iterator[Equation]:
         """What enters at a leaves at b."""
-        yield equation("conduction", self.Q_flow, self.G * (self.a.T - self.b.T))
+        yield equation("conduction", self.Q_flow, self.conductance() * (self.a.T - self.b.T))
         yield equation("enters at a", self.a.Q_flow, self.Q_flow)
         yield equation("leaves at b", self.b.Q_flow, -self.Q_flow)
+
+
+class ThermalConductor(Conductor):
+    """A conductance that is known as a whole."""
+
+    G = Parameter("W/K", "thermal conductance", at_least=0.0)
+
+    def conductance(self) -> Num:
+        """The given one."""
+        return self.G
+
+
+class PlaneWall(Conductor):
+    """A plane wall."""
+
+    k = Parameter("W/(m.K)", "thermal conductivity", above=0.0)
+    A = Parameter("m2", "area", above=0.0)
+    d = Parameter("m", "thickness", nominal=0.01, above=0.0)
+
+    def conductance(self) -> Num:
+        """Of a plane wall."""
+        return plane_wall(self.k, self.A, self.d)
+
+
+class CylinderWall(Conductor):
+    """A cylindrical wall, from inside (a) to outside (b)."""
+
+    k = Parameter("W/(m.K)", "thermal conductivity", above=0.0)
+    L = Parameter("m", "length of the cylinder", above=0.0)
+    r_i = Parameter("m", "inner radius", nominal=0.1, above=0.0)
+    r_o = Parameter("m", "outer radius", nominal=0.1, above=0.0)
+
+    def conductance(self) -> Num:
+        """Of a cylindrical wall."""
+        return cylinder_wall(self.k, self.L, self.r_i, self.r_o)
 
 
 class Room(Component):
@@ -82,14 +121,12 @@ class Room(Component):
 
 
 class SurfaceCooling(Component):
-    """A warm surface in a room: free and forced convection and radiation, over one effective area."""
+    """Base of warm surfaces in a room: free and forced convection and radiation, over one effective area."""
 
     surface = HeatPort()
     air = AirPort()
 
     A = Parameter("m2", "effective outer area", above=0.0)
-    height = Parameter("m", "height of the vertical faces", above=0.0)
-    length = Parameter("m", "length of the surface along the flow of the air", above=0.0)
     emissivity = Parameter("1", "emissivity of the surface", at_least=0.0, at_most=1.0)
     h = Output("W/(m2.K)", "convective heat transfer coefficient", nominal=10.0)
     Q_flow_convection = Output("W", "heat flow rate by convection", nominal=100.0)
@@ -97,7 +134,11 @@ class SurfaceCooling(Component):
 
     def natural(self) -> Num:
         """Heat transfer coefficient of free convection, mean over the faces [W/(m2.K)]."""
-        return natural_vertical_plate(self.surface.T, self.air.T, self.height)
+        raise AttributeError(f"{type(self).__name__} has no faces")
+
+    def forced(self, T_film: Num) -> Num:
+        """Heat transfer coefficient of forced convection, mean over the faces [W/(m2.K)]."""
+        raise AttributeError(f"{type(self).__name__} has no faces")
 
     def convecting_area(self) -> Num:
         """Area that convects [m2]; what radiates is `A`."""
@@ -105,50 +146,61 @@ class SurfaceCooling(Component):
 
     def equations(self) -> Iterator[Equation]:
         """Convection and radiation side by side."""
-        T_film = (self.surface.T + self.air.T) / 2
-        forced = forced_plate(self.air.v, T_film, self.length)
-        dT = self.surface.T - self.air.T
-        yield equation("heat transfer coefficient", self.h, mixed(self.natural(), forced))
-        yield equation("convection", self.Q_flow_convection, self.h * self.convecting_area() * dT)
-        radiation = radiated(self.surface.T, self.air.T, self.A, self.emissivity)
-        yield equation("radiation", self.Q_flow_radiation, radiation)
+        T, T_air = self.surface.T, self.air.T
+        yield equation("heat transfer coefficient", self.h, mixed(self.natural(), self.forced((T + T_air) / 2)))
+        yield equation("convection", self.Q_flow_convection, self.h * self.convecting_area() * (T - T_air))
+        yield equation("radiation", self.Q_flow_radiation, radiated(T, T_air, self.A, self.emissivity))
         yield equation("leaves the surface", self.surface.Q_flow, self.Q_flow_convection + self.Q_flow_radiation)
         yield equation("enters the room", self.air.Q_flow, -self.surface.Q_flow)
 
 
 class BoxCooling(SurfaceCooling):
-    """A box: vertical faces, a top and a bottom."""
+    """A box: vertical faces, a top and a bottom; the air flows along its length."""
 
+    height = Parameter("m", "height of the box", above=0.0)
+    length = Parameter("m", "length of the box", above=0.0)
+    width = Parameter("m", "width of the box", above=0.0)
     share_top = Parameter("1", "share of the area that faces upwards", at_least=0.0, at_most=1.0)
     share_bottom = Parameter("1", "share of the area that faces downwards", at_least=0.0, at_most=1.0)
 
     def natural(self) -> Num:
         """Mean of vertical, upward and downward faces by area."""
-        T, T_air, L = self.surface.T, self.air.T, self.length
+        T, T_air = self.surface.T, self.air.T
+        L = self.length * self.width / (2 * (self.length + self.width))  # area over perimeter
         upward = self.share_top * natural_horizontal_up(T, T_air, L)
         downward = self.share_bottom * natural_horizontal_down(T, T_air, L)
         vertical = (1 - self.share_top - self.share_bottom) * natural_vertical_plate(T, T_air, self.height)
         return vertical + upward + downward
 
+    def forced(self, T_film: Num) -> Num:
+        """Plates along the air."""
+        return forced_plate(self.air.v, T_film, self.length)
+
 
 class CylinderCooling(SurfaceCooling):
-    """A lying cylinder with two vertical end faces; `height` is its diameter."""
+    """A lying cylinder with two vertical end faces; the air flows across it."""
 
+    D = Parameter("m", "diameter", above=0.0)
     share_ends = Parameter("1", "share of the area that belongs to the end faces", at_least=0.0, at_most=1.0)
 
     def natural(self) -> Num:
         """Mean of shell and end faces by area."""
         T, T_air = self.surface.T, self.air.T
-        shell = natural_horizontal_cylinder(T, T_air, self.height)
-        return (1 - self.share_ends) * shell + self.share_ends * natural_vertical_plate(T, T_air, self.height)
+        shell, ends = natural_horizontal_cylinder(T, T_air, self.D), natural_vertical_plate(T, T_air, self.D)
+        return (1 - self.share_ends) * shell + self.share_ends * ends
+
+    def forced(self, T_film: Num) -> Num:
+        """Cylinder across the air, end faces along it."""
+        shell, ends = forced_cylinder(self.air.v, T_film, self.D), forced_plate(self.air.v, T_film, self.D)
+        return (1 - self.share_ends) * shell + self.share_ends * ends
 
 
 class FinnedBoxCooling(BoxCooling):
     """A box with straight fins: they add convecting area, not radiating area."""
 
     A_fins = Parameter("m2", "surface of the fins, both sides", at_least=0.0)
-    fin_height = Parameter("m", "height of a fin", above=0.0)
-    fin_thickness = Parameter("m", "thickness of a fin", above=0.0)
+    fin_height = Parameter("m", "height of a fin", nominal=0.01, above=0.0)
+    fin_thickness = Parameter("m", "thickness of a fin", nominal=0.01, above=0.0)
     k_fin = Parameter("W/(m.K)", "thermal conductivity of the fins", above=0.0)
 
     def convecting_area(self) -> Num:

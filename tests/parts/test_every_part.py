@@ -21,8 +21,8 @@ BEARING = FRICTION | dict(d_m=0.14, F_r_0=100.0, F_a_0=50.0)
 SKF = BEARING | dict(d=0.11, D=0.17, K_Z=6.0, K_rs=6e-8, mu_bl=0.1, mu_EHL=0.002, H=0.03)
 TEETH = dict(z_1=36.0, z_2=36.0, m_n=0.002, alpha_n=math.radians(20), beta=math.radians(10), b=0.042, a_w=0.073035)
 TEETH |= dict(Ra=6e-7, k_mu=1.044, E=2.06e11, poisson=0.3)
-SURFACE = dict(A=0.8, height=0.3, length=0.3, emissivity=0.9)
-BOX = SURFACE | dict(share_top=0.2, share_bottom=0.2)
+SURFACE = dict(A=0.8, emissivity=0.9)
+BOX = SURFACE | dict(height=0.3, length=0.4, width=0.2, share_top=0.2, share_bottom=0.2)
 SUPPORT = dict(span=0.1, x=0.04, r=0.05, axial_share_a=1.0)
 
 #: Values of one plausible example of every part.
@@ -47,9 +47,10 @@ EXAMPLES: dict[str, dict] = {
     "Grease": OIL,
     "HeatCapacity": dict(C=3600.0),
     "ThermalConductor": dict(G=60.0),
-    "SurfaceCooling": SURFACE,
+    "PlaneWall": dict(k=50.0, A=0.4, d=0.01),
+    "CylinderWall": dict(k=50.0, L=0.3, r_i=0.14, r_o=0.15),
     "BoxCooling": BOX,
-    "CylinderCooling": SURFACE | dict(share_ends=0.33),
+    "CylinderCooling": SURFACE | dict(D=0.3, share_ends=0.33),
     "FinnedBoxCooling": BOX | dict(A_fins=0.5, fin_height=0.03, fin_thickness=0.004, k_fin=50.0),
     "Room": {},
 }
@@ -185,7 +186,7 @@ def test_mechanical_loss_leaves_as_heat(kind: str) -> None:
 def test_heat_flows_from_hot_to_cold(kind: str) -> None:
     flat = flat_of(kind, {})
     rng = np.random.default_rng(3)
-    a, b = ("a", "b") if kind == "ThermalConductor" else ("surface", "air")
+    a, b = ("surface", "air") if kind.endswith("Cooling") else ("a", "b")
     for _ in range(50):
         values = at(flat, rng)
         flow = values.get(
