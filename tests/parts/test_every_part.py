@@ -180,9 +180,7 @@ def test_mechanical_loss_leaves_as_heat(kind: str) -> None:
         assert mechanical == pytest.approx(sum(losses), rel=1e-9, abs=1e-9 * max(values["throughput"], 1.0))
 
 
-@pytest.mark.parametrize(
-    "kind", ["ThermalConductor", "SurfaceCooling", "BoxCooling", "CylinderCooling", "FinnedBoxCooling"]
-)
+@pytest.mark.parametrize("kind", [k for k in PARTS if k.endswith(("Conductor", "Wall", "Cooling"))])
 def test_heat_flows_from_hot_to_cold(kind: str) -> None:
     flat = flat_of(kind, {})
     rng = np.random.default_rng(3)
