@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
 from typing import Any
 
 import casadi as ca
@@ -80,30 +81,48 @@ def function(f: Any, prefix: str = "model_") -> str:
     """
     takes = [f"const double *{f.name_in(i)}" for i in range(f.n_in())]
     gives = [f"double *{f.name_out(i)}" for i in range(f.n_out())]
-    lines = [_instruction(f, k) for k in range(f.n_instructions())]
-    count = f.sz_w()
-    declared = [
-        "  double " + ", ".join(f"a{i}" for i in range(k, min(k + 20, count))) + ";" for k in range(0, count, 20)
-    ]
-    used = set(range(f.n_in())) - {f.instruction_input(k)[0] for k in range(f.n_instructions()) if _reads(f, k)}
-    unused = [f"  (void){f.name_in(i)};" for i in sorted(used)]
+    shared = _shared_divisors(f)
+    lines = [line for k in range(f.n_instructions()) for line in _instruction(f, k, shared)]
+    names = [f"a{i}" for i in range(f.sz_w())] + [name for name, first in shared.values() if first]
+    declared = ["  double " + ", ".join(names[k : k + 20]) + ";" for k in range(0, len(names), 20)]
+    read = {f.instruction_input(k)[0] for k in range(f.n_instructions()) if f.instruction_id(k) == ca.OP_INPUT}
+    unused = [f"  (void){f.name_in(i)};" for i in range(f.n_in()) if i not in read]
     unused += [f"  (void){f.name_out(i)};" for i in range(f.n_out()) if f.nnz_out(i) == 0]
     head = f"static void {prefix}{f.name()}({', '.join(takes + gives)})"
     return "\n".join([head, "{", *declared, *unused, *lines, "}", ""])
 
 
-def _reads(f: Any, k: int) -> bool:
-    return bool(f.instruction_id(k) == ca.OP_INPUT)
+def _shared_divisors(f: Any) -> dict[int, tuple[str, bool]]:
+    """Division -> name of the reciprocal it multiplies by, and whether it is the first to use it.
+
+    Only where several divide by the same value: derivatives repeat their function's divisors, and a division costs as
+    much as several products.
+    """
+    version: dict[int, int] = {}  # a work variable holds one value after another
+    users: dict[tuple[int, int], list[int]] = {}
+    for k in range(f.n_instructions()):
+        code = f.instruction_id(k)
+        if code == ca.OP_DIV:
+            divisor = f.instruction_input(k)[1]
+            users.setdefault((divisor, version[divisor]), []).append(k)
+        if code != ca.OP_OUTPUT:
+            version[f.instruction_output(k)[0]] = k
+    groups = [group for group in users.values() if len(group) > 1]
+    return {k: (f"r{i}", k == group[0]) for i, group in enumerate(groups) for k in group}
 
 
-def _instruction(f: Any, k: int) -> str:
+def _instruction(f: Any, k: int, shared: Mapping[int, tuple[str, bool]]) -> list[str]:
     code, inputs, outputs = f.instruction_id(k), f.instruction_input(k), f.instruction_output(k)
     if code == ca.OP_CONST:
-        return f"  a{outputs[0]}={number(f.instruction_constant(k))};"
+        return [f"  a{outputs[0]}={number(f.instruction_constant(k))};"]
     if code == ca.OP_INPUT:
-        return f"  a{outputs[0]}={f.name_in(inputs[0])}[{inputs[1]}];"
+        return [f"  a{outputs[0]}={f.name_in(inputs[0])}[{inputs[1]}];"]
     if code == ca.OP_OUTPUT:
-        return f"  {f.name_out(outputs[0])}[{outputs[1]}]=a{inputs[0]};"
+        return [f"  {f.name_out(outputs[0])}[{outputs[1]}]=a{inputs[0]};"]
     if code not in _BY_CODE:
         raise FmuError(f"{f.name()}: CasADi operation {code} has no counterpart in C.")
-    return f"  a{outputs[0]}={_BY_CODE[code].format(*(f'a{i}' for i in inputs))};"
+    if k in shared:
+        name, first = shared[k]
+        reciprocal = [f"  {name}=1/a{inputs[1]};"] if first else []
+        return [*reciprocal, f"  a{outputs[0]}=a{inputs[0]}*{name};"]
+    return [f"  a{outputs[0]}={_BY_CODE[code].format(*(f'a{i}' for i in inputs))};"]

@@ -13,7 +13,9 @@ from gearheat.model.core.flat import FlatModel
 
 from .compiling import binary, platforms, store
 from .description import dependencies, description, identifier
+from .documentation import documentation
 from .equations import equations
+from .icon import icon
 from .source import GUID_MARK, source
 from .variables import table
 
@@ -45,6 +47,8 @@ def export(
     code = code.replace(GUID_MARK, guid)
     content = {
         "modelDescription.xml": unnamed.replace(GUID_MARK.encode(), guid.encode()),
+        "model.png": icon(),
+        "documentation/index.html": documentation(flat, variables).encode(),
         "sources/all.c": code.encode(),
     }
     for p in chosen:

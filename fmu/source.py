@@ -28,13 +28,15 @@ _WRAPPER = (
     "exchange.c",
 )
 
+_NOTICE = "Copyright (c) 2026, the gearheat developers. SPDX-License-Identifier: BSD-3-Clause"
+
 #: Where the identification goes; it is the hash of everything else.
 GUID_MARK = "@GUID@"
 
 
 def source(flat: FlatModel, model: Equations, table: Table) -> str:
     """The whole C text, with GUID_MARK in place of the identification."""
-    head = f"/* {flat.name}: FMI 2.0 for model exchange and co-simulation in one file; needs only the C library. */\n"
+    head = f"/* {_comment(flat.name)}: FMI 2.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
     generated = "\n".join([_sizes(flat, model, table), _tables(flat, table), *map(emit.function, model.functions)])
     return "\n".join([head, _fmi_headers(), generated, *map(_wrapper_file, _WRAPPER)])
 
@@ -92,6 +94,10 @@ def _tables(flat: FlatModel, table: Table) -> str:
 def _array(kind: str, name: str, values: Iterable[str]) -> str:
     rows = list(values) or ["0"]
     return f"static {kind} {name}[] = {{\n" + "".join(f"    {row},\n" for row in rows) + "};\n"
+
+
+def _comment(text: str) -> str:
+    return text.replace("*/", "* /").replace("\n", " ")
 
 
 def _string(text: str) -> str:

@@ -34,6 +34,15 @@ def test_every_operation_gives_the_same_number(tmp_path: Path) -> None:
     assert out == pytest.approx(np.array(function(values)).ravel(), rel=1e-15, abs=0)
 
 
+def test_divisions_by_one_value_share_its_reciprocal() -> None:
+    x = ca.SX.sym("x", 4)
+    y = ca.vertcat(x[0] / x[1], x[2] / x[1], x[3] / x[2], ca.exp(x[0]) / x[1], x[1] / ca.exp(x[0]))
+    text = emit.function(ca.Function("f", [x], [y], ["x"], ["y"]))
+    assert text.count("=1/") == 1
+    assert text.count("*r0;") == 3
+    assert text.count("/") == 3
+
+
 def test_an_operation_without_a_counterpart_is_named() -> None:
     x = ca.SX.sym("x")
     with pytest.raises(FmuError, match="CasADi operation"):

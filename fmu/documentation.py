@@ -1,0 +1,100 @@
+"""documentation/index.html of an FMU: what it is, how to use it, what it computes and from which sources."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from html import escape
+
+from gearheat.model.core.flat import FlatModel
+from gearheat.model.sources import sources
+from gearheat.model.units import text
+
+from .description import TOLERANCE, tool
+from .variables import IMPLICIT, RESIDUAL, STORED, SUPPLIED, THROUGHPUT, VALIDITY, Table, Variable
+
+_STYLE = (
+    "body{font:15px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}"
+    "table{border-collapse:collapse;margin:1em 0}td,th{text-align:left;padding:.2em .8em .2em 0;"
+    "border-bottom:1px solid #ddd;vertical-align:top}code{background:#f3f3f3}"
+)
+
+_USE = f"""
+<p>The FMU serves FMI 2.0 co-simulation and model exchange on every platform whose binary it holds.
+<code>sources/all.c</code> compiles with any C99 compiler and the C library alone.</p>
+<ul>
+<li>Set inputs, parameters and states in any order before initialization ends. Inputs and parameters may change later.
+A value that is not finite or out of its range is refused, and the message names the variable.</li>
+<li>Any communication step is allowed; the error is controlled inside: one internal step may be wrong by the tolerance
+times the nominal of a state. The tolerance is {TOLERANCE:g} unless <code>fmi2SetupExperiment</code> gives one.</li>
+<li>An input moves with the slope last given by <code>fmi2SetRealInputDerivatives</code> until another is given; without
+one it is held. Slopes pay: the error of long steps falls by orders of magnitude.</li>
+<li>A step that cannot be computed is refused and changes nothing: <code>fmi2Discard</code> if a shorter one would do,
+<code>fmi2Error</code> if none would.</li>
+<li>States can be saved, restored and serialized; directional derivatives of outputs and derivatives are exact.</li>
+</ul>
+"""
+
+_AUDIT = f"""
+<p>The energy of each run can be audited: <code>{SUPPLIED}</code> is the integral of the power across the boundary,
+<code>{STORED}</code> the energy of the states, and both grow by the same amount; judge a difference by
+<code>{THROUGHPUT}</code>. <code>{RESIDUAL}</code> is the violation of the balance by the equations themselves, and is
+zero but for round-off. <code>{VALIDITY}</code> counts the law arguments outside the range of their source; which they
+are is told once each in the log category <code>logStatusWarning</code>.</p>
+"""
+
+
+def documentation(flat: FlatModel, table: Table) -> str:
+    """The page of an FMU."""
+    implicit = f"<p><code>{IMPLICIT}</code> is what the implicit equations leave, in units of their typical size.</p>"
+    parts = [
+        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(flat.name)}</title>',
+        f"<style>{_STYLE}</style></head><body>\n<h1>{escape(flat.name)}</h1>\n<p>{escape(flat.doc)}</p>",
+        f"<p>Made by {escape(tool())}.</p>\n<h2>Use</h2>{_USE}\n<h2>Energy and validity</h2>{_AUDIT}",
+        implicit if flat.residual_names else "",
+        *(_variables(title, table.of(kind)) for title, kind in _GROUPS),
+        _laws(flat),
+        _ranges(flat),
+        "</body></html>\n",
+    ]
+    return "\n".join(part for part in parts if part)
+
+
+_GROUPS = (("Inputs", "input"), ("Outputs", "output"), ("States", "state"), ("Parameters", "parameter"))
+
+
+def _variables(title: str, variables: Iterable[Variable]) -> str:
+    rows = [
+        (
+            f"<code>{escape(v.name)}</code>",
+            escape(v.quantity.unit),
+            "" if v.start is None else escape(text(v.start, v.quantity.unit)),
+            escape(v.range_text if v.range_text != "finite" else ""),
+            escape(v.quantity.doc),
+        )
+        for v in variables
+    ]
+    return _table(title, ("name", "unit", "start", "range in that unit", "meaning"), rows)
+
+
+def _laws(flat: FlatModel) -> str:
+    known, rows = sources(), []
+    for law in flat.laws:
+        source = known.get(law.source)
+        cited = f"{source.author}: {source.title} ({source.year})" if source else law.source
+        checked = "" if law.verified else "not compared with a printed number"
+        rows.append(tuple(escape(cell) for cell in (law.name, cited, law.where, law.valid, checked)))
+    return _table("Laws and their sources", ("law", "source", "place", "valid for", ""), rows)
+
+
+def _ranges(flat: FlatModel) -> str:
+    rows = [
+        (escape(c.component), escape(c.law.name), escape(c.argument), f"{c.low:g} .. {c.high:g}") for c in flat.checks
+    ]
+    return _table("Ranges that are watched", ("component", "law", "argument", "range (SI)"), rows)
+
+
+def _table(title: str, head: tuple[str, ...], rows: list[tuple[str, ...]]) -> str:
+    if not rows:
+        return ""
+    cells = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>\n" for row in rows)
+    return f"<h2>{title}</h2>\n<table><tr>{''.join(f'<th>{h}</th>' for h in head)}</tr>\n{cells}</table>"
