@@ -62,7 +62,7 @@ class ToothedPart(Component):
     k_mu = Parameter("1", "factor on the tooth friction", at_least=0.0)
     E = Parameter("Pa", "modulus of elasticity of the gears", nominal=1e11, above=0.0)
     poisson = Parameter("1", "Poisson's ratio of the gears", at_least=0.0, below=0.5)
-    tau_width = Parameter("N.m", "torque below which the direction of load is blurred", default=1e-2, above=0.0)
+    tau_width = Parameter("N.m", "torque below which the direction of load is blurred", default=0.1, above=0.0)
 
     def radius(self, z: Num) -> Num:
         """Reference radius of a gear of z teeth [m]."""
