@@ -19,6 +19,9 @@ ROUND_OFF = 1e-7
 #: Least damping factor before Newton gives up.
 LEAST_STEP = 1e-5
 
+#: Longest step of the relaxation: as a share of the time in which a deviation grows by e, and in scales.
+CAUTION, FAR = 0.3, 5.0
+
 #: Relaxation ends where steps this long [s] change nothing, and gives up below the shortest.
 LONGEST, SHORTEST = 1e9, 1e-12
 
@@ -103,27 +106,36 @@ def relax(system: System, z: np.ndarray, box: Box, most: int = 300) -> Root:
     """Follow dz/dt = residual to rest by implicit Euler with steps that grow as long as they are easy.
 
     It goes where the machine would go, also where Newton's method finds no way: shafts that come to rest, the stable
-    one of several balances.
+    one of several balances. Steps are short where the machine runs away from itself and never far.
     """
-    residual, _ = system(z)
+    residual, jacobian = system(z)
     if not np.isfinite(residual).all():
         return Root(z, False, 0)
     step = float(np.clip(1 / max(box.size(residual), 1e-12), 1e-6, 1e3))
     taken = 0
-    while taken < most:
+    while taken < most and step > SHORTEST:
+        step = min(step, CAUTION / max(growth(jacobian), 1e-300))
         inner = newton(_euler(system, z, step), z, box, most=8)
         taken += max(inner.steps, 1)
-        if not inner.found:
+        if not inner.found or box.size((inner.z - z) / (1 + np.abs(z) / (10 * box.scale))) > FAR:
             step /= 4
-            if step < SHORTEST:
-                return Root(z, False, taken)
             continue
         moved, z = box.size(inner.z - z), inner.z
+        _, jacobian = system(z)
         if step >= LONGEST and moved < 1.0:
             last = newton(system, z, box)
             return Root(last.z, last.found, taken + last.steps)
         step = min(step * (5 if inner.steps <= 4 else 2), 10 * LONGEST)
     return Root(z, False, taken)
+
+
+def growth(jacobian: np.ndarray) -> float:
+    """Rate [1/s] at which a small deviation grows fastest; none below round-off."""
+    if not jacobian.size or not np.isfinite(jacobian).all():
+        return 0.0
+    values = np.linalg.eigvals(jacobian)
+    rate = float(values.real.max())
+    return rate if rate > 1e-10 * float(np.abs(values).max()) else 0.0
 
 
 def _euler(system: System, before: np.ndarray, step: float) -> System:

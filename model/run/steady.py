@@ -12,10 +12,13 @@ from ..core.flat import FlatModel
 from ..errors import SolveError
 from ..units import text
 from .fast import Fast
-from .newton import Box, Root, System, newton, relax
+from .newton import Box, Root, System, growth, newton, relax
 from .point import Point, point
 from .result import Audit, Result
 from .rows import evaluate, result
+
+#: Places on the way from a start to a balance that are looked at.
+WAY = (0.0, 0.25, 0.5, 0.75)
 
 #: Inputs named in a message.
 SHOWN = 6
@@ -30,8 +33,9 @@ REMEDIES = {
 def steady(flat: FlatModel, values: Mapping[str, float], *, guess: Mapping[str, float] | None = None) -> Result:
     """The steady state at given inputs and parameters.
 
-    Newton's method from the guess; where that fails, or ends where the machine would not stay, the machine is followed
-    to rest; where that fails too, the inputs are led from the model's own to the given ones.
+    Newton's method from the guess; where that fails, ends where the machine would not stay or takes a way on which the
+    machine would run away, the machine is followed to rest; where that fails too, the inputs are led from the model's
+    own to the given ones.
 
     Args:
         flat: the model
@@ -115,8 +119,12 @@ def balance(
     search = _Search(flat, here)
     starts = [here.x] if warm is None else [warm, here.x]
     for start in starts:
-        if search.accepts(newton(search.system, start, search.box)):
-            return search.last
+        root = newton(search.system, start, search.box)
+        if not search.accepts(root):
+            continue
+        if search.calm(start, root.z) or not search.accepts(relax(search.system, start, search.box)):
+            return root.z
+        return search.last
     if search.accepts(relax(search.system, here.x, search.box)) or (lead and search.accepts(search.led())):
         return search.last
     raise SolveError(f"{who}: {search.problem(tuple(named))}")
@@ -139,10 +147,7 @@ def state_box(flat: FlatModel) -> Box:
 
 def stable(jacobian: np.ndarray) -> bool:
     """Whether a machine stays at a balance of this Jacobian."""
-    if not jacobian.size:
-        return True
-    values = np.linalg.eigvals(jacobian)
-    return bool(values.real.max() <= 1e-10 * np.abs(values).max())
+    return bool(np.isfinite(jacobian).all()) and growth(jacobian) == 0.0
 
 
 class _Search:
@@ -176,6 +181,10 @@ class _Search:
             self.unstable = root.z
             return False
         return root.found
+
+    def calm(self, start: np.ndarray, end: np.ndarray) -> bool:
+        """Whether nothing on the way would run away: else the machine decides by itself where it comes to rest."""
+        return all(stable(self.system(start + s * (end - start))[1]) for s in WAY)
 
     def led(self) -> Root:
         """Lead the inputs from the model's own to those given, in steps that adapt."""

@@ -40,11 +40,11 @@ def test_rlc_rings_as_in_closed_form() -> None:
     parts = (Battery("e"), Resistor("r", R=R), Inductor("l", L=L), Capacitor("c", C=C), Ground("g"))
     flat = model(*parts, nets=[("e.a", "r.a"), ("r.b", "l.a"), ("l.b", "c.a"), ("c.b", "e.b", "g.pin")])
     t = np.linspace(0.0, 2.0, 41)
-    run = simulate(flat, stepped([(2.0, {"e.V": V})]), times=t)
+    run = simulate(flat, stepped([(2.0, {"e.V": V})]), times=t, tolerance=1e-10)
     a = R / (2 * L)
     w = np.sqrt(1 / (L * C) - a**2)
     expected = V * (1 - np.exp(-a * t) * (np.cos(w * t) + a / w * np.sin(w * t)))
-    assert run["c.u"] == pytest.approx(expected, abs=2e-6)
+    assert run["c.u"] == pytest.approx(expected, abs=1e-6)
 
 
 def test_parallel_resistors_share_the_current() -> None:
