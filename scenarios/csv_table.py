@@ -7,6 +7,7 @@ import math
 import re
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
+from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Literal
 
@@ -78,7 +79,8 @@ def read_cells(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     ]
     problems += [f"{name} line 1: column {i} has no name. Give it one." for i, h in enumerate(header, 1) if not h]
     problems += [
-        f"{name} line {line}: {len(cells)} cells under {len(header)} column names. Write one cell per column, decimals with a point."
+        f"{name} line {line}: {len(cells)} cells under {len(header)} column names."
+        " Write one cell per column, decimals with a point."
         for line, cells in rows
         if len(cells) != len(header)
     ]
@@ -145,14 +147,14 @@ def parse(path: Path, columns: Iterable[Column]) -> tuple[Table, list[str]]:
 
 
 def _missing(name: str, header: Sequence[str], known: Mapping[str, Column]) -> list[str]:
-    spare = [h for h in header if h not in known]
-    problems = []
-    for column in known.values():
-        if column.required and column.name not in header:
-            close = suggestion(column.name, spare).replace("Did you mean", "Is it called").strip()
-            remedy = f"{close} Rename it." if close else "Add it."
-            problems.append(f'{name} line 1: column "{column.name}" ({column.doc}) is missing. {remedy}')
-    return problems
+    """Required columns that are not there, with the unknown column that may be meant."""
+    missing = [column for column in known.values() if column.required and column.name not in header]
+    names = [column.name for column in missing]
+    meant = {match[0]: h for h in header if h not in known and (match := get_close_matches(h, names, n=1))}
+    remedies = {m: f'Is it "{h}"? Rename it.' for m, h in meant.items()}
+    return [
+        f'{name} line 1: column "{c.name}" ({c.doc}) is missing. {remedies.get(c.name, "Add it.")}' for c in missing
+    ]
 
 
 def _value(cell: str, column: Column) -> Any:

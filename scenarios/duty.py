@@ -124,12 +124,12 @@ def _cells(
 
 def _time_problems(name: str, rows: Sequence[tuple[int, list[str]]], time: np.ndarray) -> list[str]:
     """Rows where time goes back, and a table that lasts no time at all."""
-    readable = np.flatnonzero(np.isfinite(time))
+    readable = np.flatnonzero(np.isfinite(time)).tolist()
     problems = [
         f"{name} line {rows[b][0]}: time goes back ({rows[b][1][0]} after {rows[a][1][0]}). Sort the rows by time."
         for a, b in pairwise(readable)
         if time[b] < time[a]
     ]
-    if readable.size and np.ptp(time[readable]) == 0:
+    if readable and np.ptp(time[readable]) == 0:
         problems.append(f"{name}: the table lasts no time. A duty needs at least two different times.")
     return problems

@@ -53,7 +53,7 @@ from ..model.units import to_si
 from .document import ABOUT, paths, read_toml, sources_of
 from .measured import Campaign, Driven, Protocol, read_measured
 from .scenario import Erratum, Scenario
-from .tables import CampaignTable, RigTable, validate
+from .tables import RigTable, validate
 from .values import PartValues, in_range, part_values, readable, settable
 
 #: Kind of rig -> its fixed parts (name -> type) and connections.
@@ -132,6 +132,8 @@ class _Loader:
             elif kind not in PARTS:
                 close = suggestion(str(kind), PARTS) or f" Types: {', '.join(PARTS)}."
                 self.problems.append(f'{where}: there is no part type "{kind}".{close}')
+            elif not name.isidentifier():
+                self.problems.append(f"{where}: the name of a part is one word of letters, digits and _. Rename it.")
             else:
                 types[name] = PARTS[kind]
         return types
@@ -143,7 +145,8 @@ class _Loader:
         given = self._drive()
         spec = self._spec(parts)
         self._check_paths()
-        campaign = self._campaign()
+        protocol = self._protocol()
+        campaign = self._campaign(protocol)
         if self.problems:
             raise ScenarioError(self.problems)
         nets(assemble(spec))  # ports of different kinds that meet
@@ -161,6 +164,7 @@ class _Loader:
             overrides=tuple(o for part in parts.values() for o in part.overrides),
             entries={name: part.entries for name, part in parts.items() if part.entries},
             errata=tuple(Erratum(e.place, e.says, e.should_be, e.evidence) for e in self.table.errata),
+            protocol=protocol,
             campaign=campaign,
         )
 
@@ -223,17 +227,10 @@ class _Loader:
     def _quantities(self, kind: Any) -> dict[str, Quantity]:
         return {f"{n}.{k}": d.quantity(f"{n}.{k}") for n, cls in self.types.items() for k, d in kind(cls).items()}
 
-    def _campaign(self) -> Campaign | None:
+    def _protocol(self) -> Protocol | None:
         table = self.table.campaign
         if table is None:
             return None
-        try:
-            return read_measured(self.path.parent / table.data, self._protocol(table))
-        except GearheatError as error:
-            self.problems += error.problems
-            return None
-
-    def _protocol(self, table: CampaignTable) -> Protocol:
         where = f"{self.file} [campaign]"
         known = self._quantities(settable)
         for path in (table.room, *table.inputs):
@@ -242,4 +239,18 @@ class _Loader:
         if table.oil not in self.types:
             self.problems.append(f'{where}: there is no part "{table.oil}".{suggestion(table.oil, self.types)}')
         inputs = {path: Driven(t.column, (t.sign[0], t.sign[1])) for path, t in table.inputs.items()}
-        return Protocol(inputs, table.room, table.oil, to_si(table.stop, "s", name=f"{where}: stop"))
+        try:
+            return Protocol(inputs, table.room, table.oil, to_si(table.stop, "s", name=f"{where}: stop"))
+        except GearheatError as error:
+            self.problems += error.problems
+            return None
+
+    def _campaign(self, protocol: Protocol | None) -> Campaign | None:
+        table = self.table.campaign
+        if table is None or not table.data:
+            return None
+        try:
+            return read_measured(self.path.parent / table.data, protocol)
+        except GearheatError as error:
+            self.problems += error.problems
+            return None

@@ -12,8 +12,8 @@ from ..model.core.flat import FlatModel
 from ..model.errors import DataError, suggestion
 from ..model.run.schedule import Schedule, stepped
 from ..model.units import to_si
-from .catalogue import catalogue
 from .csv_table import Column, Table, parse, raise_all
+from .entries import catalogue
 
 #: What the ending of a column's name says about its unit, with the SI unit it becomes.
 SUFFIXES: Mapping[str, tuple[str, str]] = {
@@ -168,7 +168,7 @@ def column_si(name: str, value: float) -> float:
     """A value of a column whose name ends in its unit ("T_oil_C"), in SI; unchanged without such an ending."""
     for suffix, (unit, si) in SUFFIXES.items():
         if name.endswith(suffix):
-            return to_si(f"{value!r} {unit}", si, name=name)
+            return to_si(f"{float(value)!r} {unit}", si, name=name)
     return value
 
 
@@ -183,7 +183,7 @@ def read_measured(
 
     Args:
         path: CSV file
-        protocol: how the campaign was run (`Scenario.campaign.protocol`); needed for `schedule_of`
+        protocol: how the campaign was run (`Scenario.protocol`); needed for `schedule_of`
         columns: `READINGS`, or `POINTS` for conditions without readings
         oils: names that may stand in the column `oil`; those of the catalogue if left out
 
@@ -248,14 +248,18 @@ def _order_warnings(table: Table) -> list[str]:
 
 
 def _readings(table: Table) -> tuple[Reading, ...]:
-    fixed = ("point", "test", "order", "direction", "oil")
-    numbers = [n for n, values in table.columns.items() if n not in fixed and isinstance(values[0], float | int)]
-    texts = [n for n in table.columns if n not in (*fixed, *numbers)]
     columns = table.columns
+    rest = [name for name in columns if name not in ("point", "test", "order", "direction", "oil")]
+    numbers = [name for name in rest if not isinstance(columns[name][0], str)]
+    texts = [name for name in rest if name not in numbers]
     return tuple(
         Reading(
-            line,
-            *(columns[name][row] for name in fixed),
+            line=line,
+            point=columns["point"][row],
+            test=columns["test"][row],
+            order=columns["order"][row],
+            direction=columns["direction"][row],
+            oil=columns["oil"][row],
             values={name: columns[name][row] for name in numbers},
             texts={name: columns[name][row] for name in texts},
         )

@@ -11,8 +11,8 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.machines.spec import Spec
 from ..model.parts import PARTS
-from .catalogue import FILES, catalogue
-from .measured import Campaign
+from .entries import FILES, catalogue
+from .measured import Campaign, Protocol
 from .values import Override, entry_values, in_range, settable
 
 
@@ -38,6 +38,7 @@ class Scenario:
         value_sources: path -> where its value is from
         overrides: values that stand in the place of their catalogue's
         entries: part -> kind of catalogue -> name of the entry it was filled from
+        protocol: how measured tables of this rig were taken; `campaign` is the one it comes with
     """
 
     name: str
@@ -53,6 +54,7 @@ class Scenario:
     overrides: tuple[Override, ...] = ()
     entries: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     errata: tuple[Erratum, ...] = ()
+    protocol: Protocol | None = None
     campaign: Campaign | None = None
 
     def settable(self) -> dict[str, Quantity]:

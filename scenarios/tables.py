@@ -26,7 +26,7 @@ class DrivenTable(Strict):
 class CampaignTable(Strict):
     """Measured data of the rig and how they were taken."""
 
-    data: str = Field(description="name of the CSV file beside the rig file")
+    data: str = Field("", description="name of the CSV file beside the rig file")
     stop: str = Field(description='time between the halves of a test, for example "5 min"')
     room: str = Field(description='input of the room temperature, for example "room.T"')
     oil: str = Field(description='part that holds the oil, for example "oil"')

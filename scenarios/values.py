@@ -11,9 +11,10 @@ from ..model.core.component import Component
 from ..model.core.declare import Choice, Declaration, Input, Output, Parameter, State, declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, ScenarioError
+from ..model.parts import PARTS
 from ..model.units import to_si
-from .catalogue import FILES, Entry, entry
 from .document import ABOUT, sources_of
+from .entries import FILES, Entry, entry
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,8 @@ class _PartReader:
         self.where, self.name, self.cls = where, name, cls
         self.declarations = settable(cls)
         self.choices: dict[str, Choice] = declared(cls, Choice)
-        self.meanings = {key: d.doc for key, d in (*self.declarations.items(), *self.choices.items())}
+        self.meanings = {key: d.doc for key, d in self.declarations.items()}
+        self.meanings |= {key: choice.doc for key, choice in self.choices.items()}
         self.result = PartValues()
 
     def read(self, table: Mapping[str, Any]) -> None:
@@ -167,3 +169,8 @@ class _PartReader:
                 own = problem.removeprefix(f"{self.cls.__name__} {self.name}: ")
                 if not own.startswith(excused) and (complete or " is missing (" not in own):
                     self.result.problems.append(f"{self.where}: {own}")
+
+
+def oil_values(name: str) -> dict[str, float]:
+    """What an oil of the catalogue gives an oil bath, by key, in SI. Raises ScenarioError for an unknown oil."""
+    return entry_values(entry("oil", name), settable(PARTS["OilBath"]))

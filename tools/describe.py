@@ -10,7 +10,7 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.parts import PARTS
 from ..model.sources import sources
 from ..model.units import from_si, shown, text
-from ..scenarios.catalogue import FILES, catalogue
+from ..scenarios.entries import FILES, catalogue
 from ..scenarios.load import list_rigs, load
 from ..scenarios.scenario import Scenario
 from .console import answer, table

@@ -9,7 +9,10 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from ..model.errors import ScenarioError, suggestion
+from ..model.core.declare import Parameter, declared
+from ..model.errors import GearheatError, ScenarioError, suggestion
+from ..model.parts import PARTS
+from ..model.units import to_si
 from .document import ABOUT, read_toml, sources_of
 
 #: Kind of entry, as it is called in a part's table -> its file.
@@ -22,6 +25,12 @@ FILES: Mapping[str, str] = {
 }
 
 FOLDER = Path(str(files("gearheat.scenarios").joinpath("catalogue")))
+
+#: Keys that describe an entry to a reader, and that no part takes, with their SI unit.
+DESCRIPTIVE: Mapping[str, Mapping[str, str]] = {
+    "material": {"rho": "kg/m3", "k": "W/(m.K)"},
+    "air": {"k": "W/(m.K)", "nu": "m2/s", "Pr": "1"},
+}
 
 
 @dataclass(frozen=True)
@@ -49,6 +58,7 @@ def catalogue(kind: str) -> Mapping[str, Entry]:
 
 def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
     """The entries in a catalogue file, a table each. Raises ScenarioError with all problems at once."""
+    units = {**_taken_by_parts(), **DESCRIPTIVE.get(kind, {})}
     entries: dict[str, Entry] = {}
     problems: list[str] = []
     for name, table in read_toml(path).items():
@@ -59,10 +69,23 @@ def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
         sources, wrong = sources_of(where, table)
         problems += wrong
         values = {key: value for key, value in table.items() if key not in ABOUT}
+        for key, value in values.items():
+            if key not in units:
+                problems.append(f'{where}: no part takes "{key}".{suggestion(key, units)}')
+                continue
+            try:
+                to_si(value, units[key], name=f"{where}: {key}")
+            except GearheatError as error:
+                problems += error.problems
         entries[name] = Entry(kind, name, str(table.get("doc", "")), values, sources)
     if problems:
         raise ScenarioError(problems)
     return entries
+
+
+def _taken_by_parts() -> dict[str, str]:
+    """Parameter -> its unit, over all types of parts."""
+    return {key: d.unit for cls in PARTS.values() for key, d in declared(cls, Parameter).items()}
 
 
 def entry(kind: str, name: str) -> Entry:

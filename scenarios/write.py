@@ -1,0 +1,80 @@
+"""A scenario as a rig file that every command reads: what an extension changed, written down part by part."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator, Mapping
+from typing import Any
+
+from ..model.core.declare import Choice, declared
+from ..model.machines.spec import PartSpec
+from ..model.parts import PARTS
+from .scenario import Scenario
+from .values import settable
+
+#: Choices that follow from [drive].
+_DRIVEN = ("given", "dynamic")
+
+#: Source of a value that an extension set without saying more.
+_EXTENSION = "assumed: set by an extension of the rig"
+
+
+def rig_text(scenario: Scenario) -> str:
+    """The text of a rig file of kind "network" that loads as the same machine; measured data are left out."""
+    return "\n".join(_lines(scenario)) + "\n"
+
+
+def _lines(scenario: Scenario) -> Iterator[str]:
+    yield 'kind = "network"'
+    yield f"doc = {_toml(scenario.doc)}"
+    yield from _table("drive", scenario.given)
+    known = scenario.settable()
+    point = {path: _value(value, known[path].unit) for path, value in scenario.operating_point.items()}
+    yield from _table("operating_point", point, sources={path: _source(scenario, path) for path in point})
+    for part in scenario.spec.parts:
+        values = _part_values(part)
+        sources = {key: _source(scenario, f"{part.name}.{key}") for key in values}
+        yield from _table(f"part.{part.name}", {"type": part.type} | values, sources=sources)
+    yield from _table("connect", {f"net_{i}": ports for i, ports in enumerate(scenario.spec.connections, 1)})
+    yield from _table("sensors", scenario.sensors)
+    yield from _table("losses", scenario.losses)
+    if (protocol := scenario.protocol) is not None:
+        about = {"stop": f"{protocol.stop!r} s", "room": protocol.room, "oil": protocol.oil}
+        yield from _table("campaign", about | {"source": f"assumed: as in the rig {scenario.name}"})
+        for path, driven in protocol.inputs.items():
+            yield from _table(f"campaign.inputs.{_toml(path)}", vars(driven))
+    for erratum in scenario.errata:
+        yield from _table("[errata]", vars(erratum))
+
+
+def _part_values(part: PartSpec) -> dict[str, Any]:
+    """Values with units and choices of a part."""
+    declarations, choices = settable(PARTS[part.type]), declared(PARTS[part.type], Choice)
+    values = {k: _value(v, declarations[k].unit) for k, v in part.values.items() if k in declarations}
+    return values | {k: v for k, v in part.values.items() if k in choices and k not in _DRIVEN}
+
+
+def _value(value: float, unit: str) -> Any:
+    return value if unit == "1" else f"{float(value)!r} {unit}"
+
+
+def _source(scenario: Scenario, path: str) -> str:
+    return scenario.value_sources.get(path, _EXTENSION)
+
+
+def _table(name: str, entries: Mapping[str, Any], *, sources: Mapping[str, str] | None = None) -> Iterable[str]:
+    """A table, with the sources of its values as an inline table; nothing for an empty one."""
+    if not entries:
+        return []
+    lines = ["", f"[{name}]", *(f"{_key(key)} = {_toml(value)}" for key, value in entries.items())]
+    said = ", ".join(f"{_key(key)} = {_toml(source)}" for key, source in (sources or {}).items())
+    return [*lines, f"sources = {{ {said} }}"] if said else lines
+
+
+def _key(key: str) -> str:
+    return key if key.isascii() and key.isidentifier() else _toml(key)
+
+
+def _toml(value: Any) -> str:
+    """A value as TOML: what JSON writes for text, lists, numbers and truth is TOML as well."""
+    return json.dumps(value, ensure_ascii=False)

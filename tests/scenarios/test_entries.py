@@ -1,0 +1,113 @@
+"""Catalogues: every entry is valid and fits the parts it is for, and every way a file can be wrong."""
+
+from pathlib import Path
+
+import pytest
+from gearheat.model.errors import ScenarioError
+from gearheat.model.parts import PARTS
+from gearheat.model.sources import sources
+from gearheat.scenarios.document import SOURCE_KINDS
+from gearheat.scenarios.entries import FILES, Entry, catalogue, entry, read_catalogue
+from gearheat.scenarios.values import entry_values, oil_values, settable
+
+ENTRIES = [found for kind in FILES for found in catalogue(kind).values()]
+
+#: What an entry has to give a part of a type, by the kind of entry and a word of its description.
+NEEDED = {
+    "TaperedRollerBearing": {"d", "D", "d_m", "R_1", "R_2", "S_1", "S_2", "Y", "K_Z"},
+    "DeepGrooveBallBearing": {"d", "D", "d_m", "R_1", "R_2", "S_1", "S_2", "C_0", "K_Z"},
+    "NeedleBearing": {"d_m"},
+}
+WORDS = {"tapered": "TaperedRollerBearing", "deep groove": "DeepGrooveBallBearing", "needle": "NeedleBearing"}
+
+
+def problems(tmp_path: Path, text: str, kind: str = "bearing") -> tuple[str, ...]:
+    (path := tmp_path / "own.toml").write_text(text)
+    with pytest.raises(ScenarioError) as raised:
+        read_catalogue(kind, path)
+    return raised.value.problems
+
+
+@pytest.mark.parametrize("found", ENTRIES, ids=lambda e: f"{e.kind} {e.name}")
+def test_every_value_of_an_entry_has_a_source_that_exists(found: Entry) -> None:
+    assert set(found.values) == set(found.sources)
+    for text in found.sources.values():
+        assert text.split(",")[0] in sources() or text.split(":")[0] in SOURCE_KINDS, text
+
+
+@pytest.mark.parametrize("found", catalogue("oil").values(), ids=lambda e: e.name)
+def test_an_oil_gives_all_that_a_lubricant_needs(found: Entry) -> None:
+    given = set(entry_values(found, settable(PARTS["OilBath"])))
+    needed = {"nu_40", "nu_100", "rho_15", "alpha_T", "s_p", "t_p", "X_L"}
+    assert given == (needed if "grease" in found.name else needed | {"c_p"})
+    values = entry_values(found, settable(PARTS["OilBath"]))
+    assert values["nu_40"] > values["nu_100"]
+    assert 800 < values["rho_15"] < 1100
+
+
+@pytest.mark.parametrize("found", catalogue("bearing").values(), ids=lambda e: e.name)
+def test_a_bearing_gives_its_type_all_the_catalogue_knows(found: Entry) -> None:
+    (part,) = [part for word, part in WORDS.items() if word in found.doc]
+    values = entry_values(found, settable(PARTS[part]))
+    assert NEEDED[part] <= set(values) | {"d", "D"}
+    sizes = entry_values(found, settable(PARTS["DeepGrooveBallBearing"]))
+    assert values["d_m"] == pytest.approx((sizes["d"] + sizes["D"]) / 2, rel=1e-12)
+
+
+@pytest.mark.parametrize("found", catalogue("seal").values(), ids=lambda e: e.name)
+def test_a_seal_gives_its_shaft_and_its_friction(found: Entry) -> None:
+    values = entry_values(found, settable(PARTS["LipSeal"]))
+    assert set(values) == {"d_sh", "c_sh"}
+    assert found.name.startswith(f"{1e3 * values['d_sh']:g}x")
+
+
+@pytest.mark.parametrize("found", catalogue("material").values(), ids=lambda e: e.name)
+def test_a_material_gives_a_fin_or_a_surface(found: Entry) -> None:
+    values = entry_values(found, settable(PARTS["FinnedBoxCooling"]))
+    assert set(values) in ({"k_fin"}, {"emissivity"})
+
+
+def test_the_four_oils_of_the_campaign_are_the_printed_ones() -> None:
+    """Dias2014, chapter 4."""
+    assert oil_values("MINR")["nu_40"] == pytest.approx(319.25e-6)
+    assert oil_values("PAGD")["rho_15"] == 1059
+    assert oil_values("MINE")["alpha_T"] == -6.7e-4
+    assert oil_values("PAOR")["s_p"] == 7.382
+
+
+class TestNames:
+    def test_a_misspelt_oil(self) -> None:
+        with pytest.raises(ScenarioError, match=r'^unknown oil "MINNR"\. Did you mean "MINR"'):
+            entry("oil", "MINNR")
+
+    def test_a_name_like_no_other(self) -> None:
+        with pytest.raises(ScenarioError, match=r'^unknown seal "x"\. Known: 30x47x7, '):
+            entry("seal", "x")
+
+    def test_a_misspelt_kind(self) -> None:
+        with pytest.raises(ScenarioError, match=r'^there is no catalogue "oils"\. Did you mean "oil"'):
+            catalogue("oils")
+
+
+class TestBadFiles:
+    def test_all_mistakes_at_once(self, tmp_path: Path) -> None:
+        text = (
+            '["A 1"]\nd_m = 62\nR1 = 3\nsource = "SKF2018"\n'
+            '["A 2"]\nd_m = "62 kg"\nD = "80 mm"\nsources = { d_m = "SKF2018" }\n'
+        )
+        assert problems(tmp_path, "stray = 3\n" + text) == (
+            "own.toml [stray]: is no table. Write the values of the entry below [stray].",
+            'own.toml [A 1]: d_m = 62 has no unit. Write "62 m" (expected a unit like m).',
+            'own.toml [A 1]: no part takes "R1". Did you mean "R_1"?',
+            "own.toml [A 2]: no source is given for D."
+            ' Add source = "..." (a citation, or "assumed: reason") to the table.',
+            'own.toml [A 2]: d_m = "62 kg": unit "kg" does not fit m. Write for example "62 mm".',
+        )
+
+    def test_the_same_name_twice(self, tmp_path: Path) -> None:
+        (problem,) = problems(tmp_path, "[A]\n[A]\n")
+        assert problem.startswith("own.toml line 2: TOML syntax, cannot declare ('A',) twice")
+
+    def test_no_file(self, tmp_path: Path) -> None:
+        with pytest.raises(ScenarioError, match="there is no such file"):
+            read_catalogue("oil", tmp_path / "no.toml")

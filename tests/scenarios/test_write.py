@@ -1,0 +1,30 @@
+"""A scenario written as a rig file loads as the same machine."""
+
+import dataclasses
+from pathlib import Path
+
+import pytest
+from gearheat.model.machines.spec import PartSpec
+from gearheat.scenarios.load import list_rigs, load
+from gearheat.scenarios.write import rig_text
+
+
+@pytest.mark.parametrize("name", list_rigs())
+def test_what_is_written_loads_as_the_same_machine(name: str, tmp_path: Path) -> None:
+    scenario = load(name)
+    (path := tmp_path / f"{name}.toml").write_text(rig_text(scenario), encoding="utf-8")
+    again = load(path)
+    assert again.spec == scenario.spec
+    for same in ("doc", "given", "operating_point", "sensors", "losses", "value_sources", "errata", "protocol"):
+        assert getattr(again, same) == getattr(scenario, same), same
+    assert rig_text(again).splitlines()[1:] == rig_text(scenario).splitlines()[1:]
+
+
+def test_an_extension_is_written_with_what_it_added(tmp_path: Path) -> None:
+    scenario = load("planetary")
+    cooler = PartSpec("cooler", "ThermalConductor", {"G": 3.0})
+    spec = scenario.spec.with_parts([cooler], [("oil.heat", "cooler.a"), ("cooler.b", "room.floor")])
+    (path := tmp_path / "extended.toml").write_text(rig_text(dataclasses.replace(scenario, spec=spec)))
+    again = load(path)
+    assert again.spec.part("cooler") == cooler
+    assert again.value_sources["cooler.G"] == "assumed: set by an extension of the rig"
