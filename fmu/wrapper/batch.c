@@ -3,6 +3,8 @@
    by hand (Deuflhard 2004, section 3.3). Every row stands for itself: it knows nothing of the rows before it, so rows
    may be cut into blocks, shared among threads and computed again in any order with the same bits. */
 
+#include <complex.h>
+
 #if defined _WIN32
 #define BATCH_EXPORT __declspec(dllexport)
 #else
@@ -21,16 +23,19 @@ enum { ROW_OK, ROW_NO_BALANCE, ROW_UNSTABLE, ROW_NOT_FINITE, ROW_STOPPED };
 #define CHORD 1e-3             /* corrections below this keep the Jacobian ... */
 #define CHORD_GAIN 0.1         /* ... as long as the next one is shorter by this */
 #define LEAST_DAMPING 1e-5
+#define CAUTION 0.3            /* a relaxation step is at most this share of the time in which a deviation grows by e */
+#define FAR 5.0                /* and this many nominals long */
 #define LONGEST 1e9            /* relaxation ends where steps this long [s] change nothing */
 #define SHORTEST 1e-12
 #define LEAST_STRIDE 1e-3      /* of the inputs' way */
-enum { MOST_NEWTON = 50, MOST_EULER = 8, MOST_RELAX = 300, MOST_LED = 15, MOST_DOUBLINGS = 45 };
+enum { MOST_NEWTON = 50, MOST_EULER = 8, MOST_RELAX = 300, MOST_LED = 15, MOST_ROTATIONS = 60 };
 
 typedef struct {
     const double *u, *p, *home;
     double k[AT_LEAST_1(NK_REST)], c[AT_LEAST_1(NC_REST)];
     double r[N1], r_new[N1], d[N1], d_new[N1], trial[N1], before[N1];
-    double J[N1 * N1], J_new[N1 * N1], lu[N1 * N1], square[N1 * N1];
+    double J[N1 * N1], J_new[N1 * N1], lu[N1 * N1];
+    double complex h[N1 * N1];
     double led[AT_LEAST_1(NU)];
     int pivot[N1];
     double euler;              /* length of an implicit Euler step [s], 0 for the steady equations */
@@ -144,12 +149,11 @@ static int chord(Row *w, double *z)
     }
 }
 
-/* Newton's method from z; 1 at a root. */
-static int newton(Row *w, double *z, int most)
+/* Newton's method from z, where w->r and w->J are known; 1 at a root. */
+static int newton_from_here(Row *w, double *z, int most)
 {
     double damping = 1.0;
     int step, i;
-    evaluate(w, z, w->r, w->J);
     for (step = 0; step < most; step++) {
         double length;
         if (!finite(w->r, N) || !factor_matrix(w) || !correction(w, w->r, w->d)) return 0;
@@ -185,15 +189,21 @@ static int newton(Row *w, double *z, int most)
     return 0;
 }
 
-/* Whether a machine stays at a balance with the Jacobian w->J, which is used up. A Jacobian without negative terms off
-   its diagonal is stable if and only if its negative has positive pivots; heat alone makes such a one. */
-static int heat_holds(Row *w)
+static int newton(Row *w, double *z, int most)
+{
+    evaluate(w, z, w->r, w->J);
+    return newton_from_here(w, z, most);
+}
+
+/* A matrix without negative terms off its diagonal is stable if and only if its negative has positive pivots; heat that
+   flows through conductors makes such a one. 1 where this shows that J is stable. */
+static int heat_holds(Row *w, const double *J)
 {
     double *a = w->lu;
     int i, j, k;
     for (i = 0; i < N * N; i++) {
-        if (i % (N1 + 1) != 0 && w->J[i] < 0.0) return 0;
-        a[i] = -w->J[i];
+        if (i % (N1 + 1) != 0 && J[i] < 0.0) return 0;
+        a[i] = -J[i];
     }
     for (k = 0; k < N; k++) {
         if (!(a[k + k * N] > 0.0)) return 0;
@@ -203,70 +213,142 @@ static int heat_holds(Row *w)
     return 1;
 }
 
-/* The general case: powers of (I - hJ)^-1 (I + hJ) fade away if J is stable and grow without bound if it is not. */
-static int holds(Row *w)
+/* J with the states in nominals as a Hessenberg matrix, by elimination with row exchanges. */
+static void hessenberg(const double *J, double complex *h)
 {
-    double norm = 0.0, *b = w->J_new;
-    int i, j, k, n;
-    if (heat_holds(w)) return 1;
-    for (i = 0; i < N; i++) {
-        double sum = 0.0;
-        for (j = 0; j < N; j++) {
-            w->J[i + j * N] *= model_nominal[FIRST_X + j] / model_nominal[FIRST_X + i];
-            sum += fabs(w->J[i + j * N]);
+    int i, j, k;
+    for (j = 0; j < N; j++)
+        for (i = 0; i < N; i++)
+            h[i + j * N] = J[i + j * N] * (model_nominal[FIRST_X + j] / model_nominal[FIRST_X + i]);
+    for (k = 1; k < N - 1; k++) {
+        int best = k;
+        for (i = k + 1; i < N; i++)
+            if (cabs(h[i + (k - 1) * N]) > cabs(h[best + (k - 1) * N])) best = i;
+        if (h[best + (k - 1) * N] == 0.0) continue;
+        if (best != k) {
+            double complex swap;
+            for (j = 0; j < N; j++) swap = h[k + j * N], h[k + j * N] = h[best + j * N], h[best + j * N] = swap;
+            for (i = 0; i < N; i++) swap = h[i + k * N], h[i + k * N] = h[i + best * N], h[i + best * N] = swap;
         }
-        norm = fmax(norm, sum);
+        for (i = k + 1; i < N; i++) {
+            double complex f = h[i + (k - 1) * N] / h[k + (k - 1) * N];
+            if (f == 0.0) continue;
+            for (j = 0; j < N; j++) h[i + j * N] -= f * h[k + j * N];
+            for (j = 0; j < N; j++) h[j + k * N] += f * h[j + i * N];
+        }
     }
-    for (i = 0; i < N * N; i++) {
-        double unit = i % (N1 + 1) == 0 ? 1.0 : 0.0;
-        b[i] = -(unit + w->J[i] / norm);
-        w->J[i] = unit - w->J[i] / norm;
-    }
-    if (!factor_matrix(w)) return 0;
-    for (j = 0; j < N; j++) {
-        if (!correction(w, b + j * N, w->d)) return 0;
-        memcpy(b + j * N, w->d, sizeof w->d);
-    }
-    for (n = 0; n < MOST_DOUBLINGS; n++) {
-        double largest = 0.0;
-        memset(w->square, 0, sizeof w->square);
-        for (j = 0; j < N; j++)
-            for (k = 0; k < N; k++)
-                for (i = 0; i < N; i++) w->square[i + j * N] += b[i + k * N] * b[k + j * N];
-        memcpy(b, w->square, sizeof w->square);
-        for (i = 0; i < N * N; i++) largest = fmax(largest, fabs(b[i]));
-        if (largest < 1e-3 / N1) return 1;
-        if (!(largest < 1e30)) return 0;
-    }
-    return 1;
 }
 
-/* Follow the machine to rest by implicit Euler steps that grow as long as they are easy; 1 at a root. */
+/* One QR step with a shift on rows and columns low .. high of a Hessenberg matrix. */
+static void rotate(double complex *h, int low, int high, double complex shift)
+{
+    double complex c = 1.0, s = 0.0, c_old = 1.0, s_old = 0.0;
+    int i, j, k;
+    for (i = low; i <= high; i++) h[i + i * N] -= shift;
+    for (k = low; k <= high; k++) {
+        c_old = c, s_old = s;
+        if (k < high) {
+            double complex a = h[k + k * N], b = h[k + 1 + k * N];
+            double length = hypot(cabs(a), cabs(b));
+            c = length > 0.0 ? a / length : 1.0, s = length > 0.0 ? b / length : 0.0;
+            for (j = k; j <= high; j++) {
+                double complex x = h[k + j * N], y = h[k + 1 + j * N];
+                h[k + j * N] = conj(c) * x + conj(s) * y;
+                h[k + 1 + j * N] = c * y - s * x;
+            }
+        }
+        if (k > low)  /* the rotation before, from the right: its rows are complete now */
+            for (i = low; i <= k; i++) {
+                double complex x = h[i + (k - 1) * N], y = h[i + k * N];
+                h[i + (k - 1) * N] = x * c_old + y * s_old;
+                h[i + k * N] = y * conj(c_old) - x * conj(s_old);
+            }
+    }
+    for (i = low; i <= high; i++) h[i + i * N] += shift;
+}
+
+/* The eigenvalue of the last two rows that is nearer to the last element. */
+static double complex shift_of(const double complex *h, int high)
+{
+    double complex a = h[high - 1 + (high - 1) * N], b = h[high - 1 + high * N];
+    double complex c = h[high + (high - 1) * N], d = h[high + high * N];
+    double complex half = (a - d) / 2, root = csqrt(half * half + b * c);
+    double complex far = cabs(half + root) > cabs(half - root) ? half + root : half - root;
+    return far == 0.0 ? d : d - b * c / far;
+}
+
+/* Rate [1/s] at which a small deviation grows fastest for a Jacobian J; 0 below round-off. */
+static double growth(Row *w, const double *J)
+{
+    double complex *h = w->h;
+    double fastest = -INFINITY, largest = 0.0;
+    int high = N - 1, tried = 0, i;
+    if (N == 0 || !finite(J, N * N) || heat_holds(w, J)) return 0.0;
+    hessenberg(J, h);
+    while (high > 0) {
+        int low = high;
+        while (low > 0 && cabs(h[low + (low - 1) * N]) > 1e-16 * (cabs(h[low + low * N]) + cabs(h[low - 1 + (low - 1) * N])))
+            low--;
+        if (low == high || tried >= MOST_ROTATIONS) {
+            high--;
+            tried = 0;
+            continue;
+        }
+        tried++;
+        rotate(h, low, high, tried % 11 == 10 ? cabs(h[high + (high - 1) * N]) + h[high + high * N] : shift_of(h, high));
+    }
+    for (i = 0; i < N; i++) {
+        fastest = fmax(fastest, creal(h[i + i * N]));
+        largest = fmax(largest, cabs(h[i + i * N]));
+    }
+    return fastest > 1e-10 * largest ? fastest : 0.0;
+}
+
+/* Whether a machine stays at a balance with a Jacobian. */
+static int stable(Row *w, const double *J)
+{
+    return finite(J, N * N) && growth(w, J) == 0.0;
+}
+
+/* Whether an Euler step went far: more than some nominals, or some tenths of the value where that is more. */
+static int went_far(const Row *w, const double *z)
+{
+    int i;
+    for (i = 0; i < N; i++) {
+        double nominal = model_nominal[FIRST_X + i], from = w->before[i];
+        if (fabs(z[i] - from) / (1 + fabs(from) / (10 * nominal)) > FAR * nominal) return 1;
+    }
+    return 0;
+}
+
+/* Follow the machine to rest from z by implicit Euler steps that grow as long as they are easy, short where the machine
+   runs away from itself; 1 at a root. */
 static int relax(Row *w, double *z)
 {
-    double speed, step, moved;
+    double step, runs, moved;
     int taken = 0;
-    w->euler = 0.0;
-    evaluate(w, z, w->r, NULL);
+    evaluate(w, z, w->r, w->J);
     if (!finite(w->r, N)) return 0;
-    speed = fmax(size(w->r), 1e-12);
-    step = fmin(fmax(1 / speed, 1e-6), 1e3);
-    while (taken < MOST_RELAX) {
+    step = fmin(fmax(1 / fmax(size(w->r), 1e-12), 1e-6), 1e3);
+    runs = growth(w, w->J);
+    while (taken < MOST_RELAX && step > SHORTEST) {
         int began = w->steps, found, i;
         memcpy(w->before, z, sizeof w->before);
+        step = fmin(step, CAUTION / fmax(runs, 1e-300));
         w->euler = step;
         found = newton(w, z, MOST_EULER);
         w->euler = 0.0;
         taken += w->steps > began ? w->steps - began : 1;
-        if (!found) {
+        if (!found || went_far(w, z)) {
             memcpy(z, w->before, sizeof w->before);
             step /= 4;
-            if (step < SHORTEST) return 0;
             continue;
         }
         for (i = 0; i < N; i++) w->d[i] = z[i] - w->before[i];
         moved = size(w->d);
         if (step >= LONGEST && moved < 1.0) return newton(w, z, MOST_NEWTON);
+        evaluate(w, z, w->r, w->J);
+        runs = growth(w, w->J);
         step = fmin(step * (w->steps - began <= 4 ? 5 : 2), 10 * LONGEST);
     }
     return 0;
@@ -302,22 +384,51 @@ static int led(Row *w, double *z)
     return found && way >= 1.0;
 }
 
-/* The state a row ends in, at z. */
+/* Whether nothing on the way from a start, where it is calm, to a balance would run away: else the machine decides by
+   itself where it comes to rest. */
+static int calm(Row *w, const double *start, const double *z)
+{
+    int quarter, i;
+    for (quarter = 1; quarter < 4; quarter++) {
+        for (i = 0; i < N; i++) w->trial[i] = start[i] + 0.25 * quarter * (z[i] - start[i]);
+        evaluate(w, w->trial, w->r_new, w->J_new);
+        if (!stable(w, w->J_new)) return 0;
+    }
+    return 1;
+}
+
+/* The balance a row comes to rest in, to z. */
 static int settle(Row *w, const double *start, double *z)
 {
-    int (*const ways[])(Row *, double *) = {NULL, relax, led};
-    int way, unstable = 0;
+    int quiet, finite_start, unstable = 0;
     w->steps = 0;
     w->euler = 0.0;
-    for (way = 0; way < 3; way++) {
-        memcpy(z, start, N * sizeof *z);
-        if (!(way == 0 ? newton(w, z, MOST_NEWTON) : ways[way](w, z))) continue;
-        if (holds(w)) return ROW_OK;
+    memcpy(z, start, N * sizeof *z);
+    evaluate(w, z, w->r, w->J);
+    finite_start = finite(w->r, N);
+    quiet = stable(w, w->J);
+    if (newton_from_here(w, z, MOST_NEWTON)) {
+        if (stable(w, w->J)) {
+            double found[N1];
+            if (quiet && calm(w, start, z)) return ROW_OK;
+            memcpy(found, z, N * sizeof *z);
+            memcpy(z, start, N * sizeof *z);
+            if (!relax(w, z) || !stable(w, w->J)) memcpy(z, found, N * sizeof *z);
+            return ROW_OK;
+        }
         unstable = 1;
     }
-    if (unstable) return ROW_UNSTABLE;
-    evaluate(w, start, w->r, NULL);
-    return finite(w->r, N) ? ROW_NO_BALANCE : ROW_NOT_FINITE;
+    memcpy(z, start, N * sizeof *z);
+    if (relax(w, z)) {
+        if (stable(w, w->J)) return ROW_OK;
+        unstable = 1;
+    }
+    memcpy(z, start, N * sizeof *z);
+    if (led(w, z)) {
+        if (stable(w, w->J)) return ROW_OK;
+        unstable = 1;
+    }
+    return unstable ? ROW_UNSTABLE : finite_start ? ROW_NO_BALANCE : ROW_NOT_FINITE;
 }
 
 static void nothing(double *v, int64_t n)
