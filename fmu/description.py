@@ -35,6 +35,12 @@ _CAPABILITIES = {
     "canSerializeFMUstate": "true",
     "providesDirectionalDerivative": "true",
 }
+_CO_SIMULATION = {
+    "canHandleVariableCommunicationStepSize": "true",
+    "canInterpolateInputs": "true",
+    "maxOutputDerivativeOrder": "1",
+    "canRunAsynchronuously": "false",
+}
 
 
 def identifier(name: str) -> str:
@@ -107,23 +113,14 @@ def description(
         _scalar_variable(variables, variable)
     _model_structure(root, table, dependent)
     ET.indent(root)
-    return b'<?xml version="1.0" encoding="UTF-8"?>\n' + ET.tostring(root, encoding="utf-8") + b"\n"
+    text = ET.tostring(root, encoding="unicode")
+    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
 
 
 def _interfaces(root: ET.Element, name: str) -> None:
-    exchange = ET.SubElement(
-        root, "ModelExchange", modelIdentifier=name, completedIntegratorStepNotNeeded="true", **_CAPABILITIES
-    )
-    simulation = ET.SubElement(
-        root,
-        "CoSimulation",
-        modelIdentifier=name,
-        canHandleVariableCommunicationStepSize="true",
-        canInterpolateInputs="true",
-        maxOutputDerivativeOrder="1",
-        canRunAsynchronuously="false",
-        **_CAPABILITIES,
-    )
+    own = {"modelIdentifier": name, **_CAPABILITIES}
+    exchange = ET.SubElement(root, "ModelExchange", {**own, "completedIntegratorStepNotNeeded": "true"})
+    simulation = ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
     for interface in (exchange, simulation):
         ET.SubElement(ET.SubElement(interface, "SourceFiles"), "File", name="all.c")
 
