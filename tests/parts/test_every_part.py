@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from gearheat.model.core.component import Component, equation
 from gearheat.model.core.connect import Assembly
-from gearheat.model.core.declare import Input, Port
+from gearheat.model.core.declare import Input, Port, declared
 from gearheat.model.core.flatten import flatten
 from gearheat.model.parts import PARTS
 from gearheat.model.parts.ports import Flange, HeatPort
@@ -53,6 +53,11 @@ EXAMPLES: dict[str, dict] = {
     "CylinderCooling": SURFACE | dict(D=0.3, share_ends=0.33),
     "FinnedBoxCooling": BOX | dict(A_fins=0.5, fin_height=0.03, fin_thickness=0.004, k_fin=50.0),
     "Room": {},
+    "ExtraLoss": dict(
+        P_ref=50.0, w_ref=20.0, nu_ref=7e-5, tau_ref=2000.0, a=2.0, b=0.2, c=0.5, forward=1.0, backward=0.5
+    )
+    | dict(w_on=10.0, w_side=1.0, tau_on=-1e4, tau_side=1.0, T_on=340.0, T_side=-1.0, oil_share=0.8),
+    "ExtraConductor": dict(G_ref=2.0, dT_ref=35.0, e=0.3),
 }
 #: Ports without a source: on them a part gives information, or a temperature of its own.
 GIVES = {"OilBath.heat", "HeatCapacity.heat", "OilBath.lubricant", "Grease.lubricant", "HelicalGearPair.force"}
@@ -105,10 +110,13 @@ def between_sources(kind: str, **choices):
     return flatten(Assembly(kind, "", tuple(parts), tuple(nets)))
 
 
+#: Outputs that are the mechanical power a part turns into heat.
+LOSSES = ("part.P_loss", "part.P_loss_sp", "part.P_loss_pr", "part.P")
+
 #: Each kind once, gears and bearings under each of their choices.
 CASES = [(kind, {}) for kind in PARTS] + [("PlanetarySet", {"power_flow": "ideal"}), ("Inertia", {"dynamic": False})]
 CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath", "axially_loaded")]
-CASES += [("TaperedRollerBearing", {"oil_bath": False})]
+CASES += [("TaperedRollerBearing", {"oil_bath": False}), ("ExtraLoss", {"braking": False})]
 _flat: dict = {}
 
 
@@ -157,26 +165,15 @@ def test_part_conserves_energy(kind: str, choices: dict, seed: int) -> None:
             assert value >= 0.0, f"{name} = {value} W"
 
 
-@pytest.mark.parametrize(
-    "kind",
-    [
-        k
-        for k, v in PARTS.items()
-        if any(isinstance(p, Flange) for p in vars(v).values())
-        or k in ("TaperedRollerBearing", "DeepGrooveBallBearing", "NeedleBearing", "LipSeal", "Churning")
-    ],
-)
+@pytest.mark.parametrize("kind", [k for k, v in PARTS.items() if declared(v, Flange) and declared(v, HeatPort)])
 def test_mechanical_loss_leaves_as_heat(kind: str) -> None:
     part = PARTS[kind]("part", **EXAMPLES[kind])
-    heat_ports = [k for k, p in part.ports.items() if isinstance(p, HeatPort)]
-    if not heat_ports:
-        return
     flat = flat_of(kind, {})
     rng = np.random.default_rng(7)
     for _ in range(20):
         values = at(flat, rng)
         mechanical = sum(values[f"{k}.w"] * values[f"{k}.tau"] for k, p in part.ports.items() if isinstance(p, Flange))
-        losses = [v for k, v in values.items() if k in ("part.P_loss", "part.P_loss_sp", "part.P_loss_pr")]
+        losses = [v for k, v in values.items() if k in LOSSES]
         assert mechanical == pytest.approx(sum(losses), rel=1e-9, abs=1e-9 * max(values["throughput"], 1.0))
 
 
