@@ -61,8 +61,12 @@ def sources_of(where: str, table: Mapping[str, Any], known: Container[str] = ())
         known: keys that may have a source although the table has no value for them
     """
     keys = [key for key, _ in paths({k: v for k, v in table.items() if k not in ABOUT})]
-    default, single = table.get("source"), table.get("sources", {})
-    single = dict(paths(single)) if isinstance(single, Mapping) else {"": single}
+    default, given = table.get("source"), table.get("sources", {})
+    if not isinstance(given, Mapping):
+        return {}, [
+            f'{where}: sources = {given!r} is no table. Write sources = {{ {keys[0] if keys else "key"} = "..." }}.'
+        ]
+    single = dict(paths(given))
     problems = [
         f'{where}: sources names "{key}", which has no value here.{suggestion(key, keys)}'
         for key in single

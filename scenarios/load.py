@@ -86,13 +86,13 @@ def load(name_or_path: str | Path) -> Scenario:
 
 def _find(name_or_path: str | Path) -> Path:
     path = Path(name_or_path)
+    shipped = RIGS / path / "rig.toml"
+    if len(path.parts) == 1 and shipped.is_file():
+        return shipped
     if path.is_dir() and (path / "rig.toml").is_file():
         return path / "rig.toml"
     if path.is_file() or path.suffix == ".toml":
         return path
-    shipped = RIGS / str(name_or_path) / "rig.toml"
-    if len(path.parts) == 1 and shipped.is_file():
-        return shipped
     names = [p.parent.name for p in sorted(RIGS.glob("*/rig.toml"))]
     close = suggestion(str(name_or_path), names)
     raise ScenarioError(f'there is no rig "{name_or_path}" and no such file.{close} Shipped rigs: {", ".join(names)}.')
@@ -107,9 +107,11 @@ class _Loader:
         self.name = path.parent.name if path.name == "rig.toml" else path.stem
         self.table: RigTable
         self.table, self.problems = validate(self.file, raw)
-        if self.table.kind and self.table.kind not in LAYOUTS:
+        if self.table.kind not in LAYOUTS and (self.table.kind or not self.problems):
             close = suggestion(self.table.kind, LAYOUTS) or f" Kinds: {', '.join(LAYOUTS)}."
             self.problems.append(f'{self.file}: unknown kind "{self.table.kind}".{close}')
+        if not (self.table.part or self.problems):
+            self.problems.append(f"{self.file} [part]: is empty. Give a table [part.NAME] for each part.")
         if self.table.kind not in LAYOUTS or not self.table.part:  # without them nothing else can be judged
             raise ScenarioError(self.problems)
         self.layout, self.connections = LAYOUTS[self.table.kind]
@@ -121,16 +123,16 @@ class _Loader:
         types = {name: PARTS[kind] for name, kind in self.layout.items()}
         for name, table in self.table.part.items():
             where = f"{self.file} [part.{name}]"
-            kind = table.get("type", self.layout.get(name))
-            if kind is None and self.layout:
+            kind = str(table.get("type", self.layout.get(name, "")))
+            if not kind and self.layout:
                 close = suggestion(name, self.layout)
                 self.problems.append(
                     f'{where}: the machine has no part "{name}".{close} A part of your own needs a type.'
                 )
-            elif kind is None:
+            elif not kind:
                 self.problems.append(f'{where}: "type" is missing. Give one of: {", ".join(PARTS)}.')
             elif kind not in PARTS:
-                close = suggestion(str(kind), PARTS) or f" Types: {', '.join(PARTS)}."
+                close = suggestion(kind, PARTS) or f" Types: {', '.join(PARTS)}."
                 self.problems.append(f'{where}: there is no part type "{kind}".{close}')
             elif not name.isidentifier():
                 self.problems.append(f"{where}: the name of a part is one word of letters, digits and _. Rename it.")

@@ -76,7 +76,7 @@ class Scenario:
 
     def with_values(self, values: Mapping[str, float], source: str = "given by the user") -> Scenario:
         """The scenario with values replaced, by path, in SI. Raises ScenarioError for parts that do not exist."""
-        moved = {path: value for path, value in values.items() if path in self.inputs()}
+        moved = {path: values[path] for path in self.inputs() if path in values}
         return replace(
             self,
             spec=self.spec.with_values(values),

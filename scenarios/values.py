@@ -113,7 +113,7 @@ class _PartReader:
         self.result.problems.extend(problems)
         complete = all([self._take_entry(kind, table[kind]) for kind in kinds])
         taken = [key for key, raw in own.items() if self._take(key, raw)]
-        self.result.sources.update({key: sources[key] for key in taken})
+        self.result.sources.update({key: sources[key] for key in taken if key in sources})
         self._check_component(complete, {*own} - {*taken})
 
     def _take_entry(self, kind: str, name: object) -> bool:

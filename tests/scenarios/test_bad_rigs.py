@@ -1,11 +1,14 @@
 """Every way a rig file can be wrong: the exact message, and all of them at once."""
 
+import tempfile
 from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 from gearheat.model.errors import GearheatError, ScenarioError, StructureError
-from gearheat.scenarios.load import load
+from gearheat.scenarios.load import RIGS, load
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 Problems = Callable[..., tuple[str, ...]]
 
@@ -98,7 +101,7 @@ FACE = 'b = "42 mm"'
         (
             "[part.rotor]",
             '[part.x]\ntype = "ThermalConducter"\n[part.rotor]',
-            'rig.toml [part.x]: there is no part type "ThermalConducter". Did you mean "ThermalConductor"?',
+            'rig.toml [part.x]: there is no part type "ThermalConducter". Did you mean "ThermalConductor"',
         ),
         (
             "[part.rotor]",
@@ -132,6 +135,11 @@ FACE = 'b = "42 mm"'
             "sources = { A = ",
             "sources = { AA = ",
             'rig.toml [part.cooling]: sources names "AA", which has no value here. Did you mean "A"?',
+        ),
+        (
+            'source = "Dias2014, table 5.2"',
+            'sources = "Dias2014"',
+            "rig.toml [part.efficiency]: sources = 'Dias2014' is no table. Write sources = { ratio = \"...\" }.",
         ),
         # the campaign
         ('stop = "5 min"', "stop = 5", "rig.toml [campaign]: stop = 5 does not fit. Expected: time between the halves"),
@@ -225,6 +233,39 @@ def test_a_broken_part_table_stops_the_reading_there(problems: Problems) -> None
     old = '[part.oil]\noil = "PAOR"\nV = "1 l"\nsource = "Dias2014, chapter 4"\n'
     expected = "rig.toml [part]: oil = 3 does not fit. Expected: a table [part.NAME] for each part."
     assert problems((old, "[part]\noil = 3\n")) == (expected,)
+
+
+@pytest.mark.parametrize("text", ["", "[part]\n", 'kind = "network"\n', "kind = 3\npart = 4\ndrive = 5\n"])
+def test_a_file_with_next_to_nothing_says_what_is_missing(tmp_path: Path, text: str) -> None:
+    (path := tmp_path / "rig.toml").write_text(text)
+    with pytest.raises(ScenarioError) as raised:
+        load(path)
+    assert raised.value.problems
+    assert all(problem.startswith("rig.toml") for problem in raised.value.problems)
+
+
+@given(st.data())
+@settings(max_examples=60, deadline=None)
+def test_whatever_stands_in_a_rig_file_is_accepted_or_explained(data: st.DataObject) -> None:
+    """One random value of the shipped rig is replaced by another kind of value, or left out."""
+    lines = (RIGS / "planetary" / "rig.toml").read_text(encoding="utf-8").splitlines()
+    lines[lines.index('data = "measured.csv"')] = ""
+    places = [i for i, line in enumerate(lines) if " = " in line]
+    place = data.draw(st.sampled_from(places))
+    key = lines[place].split(" = ")[0]
+    value = data.draw(
+        st.sampled_from(
+            ['""', "0", "-1e300", "true", "[]", "[1, 2]", '["w", {}]', "{}", "{ a = 1 }", '"1 m"', "1979-05-27", "nan"]
+        )
+    )
+    lines[place] = data.draw(st.sampled_from([f"{key} = {value}", f"{key}x = {value}", ""]))
+    with tempfile.TemporaryDirectory() as folder:
+        (path := Path(folder) / "rig.toml").write_text("\n".join(lines), encoding="utf-8")
+        try:
+            load(path)
+        except GearheatError as error:
+            assert error.problems
+            assert all(problem.strip() for problem in error.problems)
 
 
 @pytest.mark.parametrize(
