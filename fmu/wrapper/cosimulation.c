@@ -6,7 +6,8 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
     static const char f[] = "fmi2SetRealInputDerivatives";
     Instance *m = c;
     size_t i;
-    if (!allowed(m, INSTANTIATED | INITIALIZATION | STEP_COMPLETE | STEP_FAILED, f)) return fmi2Error;
+    if (!allowed_for(m, fmi2CoSimulation, INSTANTIATED | INITIALIZATION | STEP_COMPLETE | STEP_FAILED, f))
+        return fmi2Error;
     if (missing(m, r, n, f) || missing(m, order, n, f) || missing(m, value, n, f)) return fmi2Error;
     if (!known_references(m, r, n, f)) return fmi2Error;
     for (i = 0; i < n; i++) {
@@ -27,7 +28,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     Walk w;
     double round_off;
     (void)no_return;
-    if (!allowed(m, STEP_COMPLETE | STEP_FAILED, "fmi2DoStep")) return fmi2Error;
+    if (!allowed_for(m, fmi2CoSimulation, STEP_COMPLETE | STEP_FAILED, "fmi2DoStep")) return fmi2Error;
     if (!isfinite(time) || !isfinite(step) || step < 0)
         return refuse(m, "fmi2DoStep: step of %g s from %.10g s: both must be finite, the step not negative.", step,
                       time);
@@ -58,7 +59,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
 
 fmi2Status fmi2CancelStep(fmi2Component c)
 {
-    if (!allowed(c, 0, "fmi2CancelStep")) return fmi2Error;
+    if (!allowed_for(c, fmi2CoSimulation, 0, "fmi2CancelStep")) return fmi2Error;
     return fmi2OK;
 }
 
@@ -66,7 +67,7 @@ fmi2Status fmi2CancelStep(fmi2Component c)
 
 static fmi2Status no_status(fmi2Component c, const char *function)
 {
-    if (!allowed(c, STATUS_MODES, function)) return fmi2Error;
+    if (!allowed_for(c, fmi2CoSimulation, STATUS_MODES, function)) return fmi2Error;
     return discard(c, "%s: steps are never pending.", function);
 }
 
@@ -79,7 +80,7 @@ fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status 
 fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value)
 {
     Instance *m = c;
-    if (!allowed(m, STATUS_MODES, "fmi2GetRealStatus")) return fmi2Error;
+    if (!allowed_for(m, fmi2CoSimulation, STATUS_MODES, "fmi2GetRealStatus")) return fmi2Error;
     if (missing(m, value, 1, "fmi2GetRealStatus")) return fmi2Error;
     if (kind != fmi2LastSuccessfulTime) return no_status(c, "fmi2GetRealStatus");
     *value = m->s.time;
@@ -95,7 +96,7 @@ fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2
 fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value)
 {
     Instance *m = c;
-    if (!allowed(m, STATUS_MODES, "fmi2GetBooleanStatus")) return fmi2Error;
+    if (!allowed_for(m, fmi2CoSimulation, STATUS_MODES, "fmi2GetBooleanStatus")) return fmi2Error;
     if (missing(m, value, 1, "fmi2GetBooleanStatus")) return fmi2Error;
     if (kind != fmi2Terminated) return no_status(c, "fmi2GetBooleanStatus");
     *value = fmi2False; /* the model never ends a simulation */

@@ -71,7 +71,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     Direction d;
     Slopes s;
     size_t i;
-    if (!allowed(m, STEP_COMPLETE | STEP_FAILED | TERMINATED, f)) return fmi2Error;
+    if (!allowed_for(m, fmi2CoSimulation, STEP_COMPLETE | STEP_FAILED | TERMINATED, f)) return fmi2Error;
     if (missing(m, r, n, f) || missing(m, order, n, f) || missing(m, value, n, f)) return fmi2Error;
     if (!known_references(m, r, n, f)) return fmi2Error;
     for (i = 0; i < n; i++) {

@@ -3,7 +3,7 @@
 fmi2Status fmi2EnterEventMode(fmi2Component c)
 {
     Instance *m = c;
-    if (!allowed(m, EVENT | CONTINUOUS_TIME, "fmi2EnterEventMode")) return fmi2Error;
+    if (!allowed_for(m, fmi2ModelExchange, EVENT | CONTINUOUS_TIME, "fmi2EnterEventMode")) return fmi2Error;
     if (m->s.mode == CONTINUOUS_TIME) m->s.states_touched = 0;
     m->s.mode = EVENT;
     return fmi2OK;
@@ -12,7 +12,7 @@ fmi2Status fmi2EnterEventMode(fmi2Component c)
 fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info)
 {
     Instance *m = c;
-    if (!allowed(m, EVENT, "fmi2NewDiscreteStates")) return fmi2Error;
+    if (!allowed_for(m, fmi2ModelExchange, EVENT, "fmi2NewDiscreteStates")) return fmi2Error;
     if (missing(m, info, 1, "fmi2NewDiscreteStates")) return fmi2Error;
     memset(info, 0, sizeof *info);
     /* The values have not changed, but importers restart their integrator only when told so, and a jump of an input
@@ -25,7 +25,7 @@ fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info)
 fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)
 {
     Instance *m = c;
-    if (!allowed(m, EVENT, "fmi2EnterContinuousTimeMode")) return fmi2Error;
+    if (!allowed_for(m, fmi2ModelExchange, EVENT, "fmi2EnterContinuousTimeMode")) return fmi2Error;
     m->s.mode = CONTINUOUS_TIME;
     return fmi2OK;
 }
@@ -36,7 +36,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_return, f
     static const char f[] = "fmi2CompletedIntegratorStep";
     Instance *m = c;
     (void)no_return;
-    if (!allowed(m, CONTINUOUS_TIME, f)) return fmi2Error;
+    if (!allowed_for(m, fmi2ModelExchange, CONTINUOUS_TIME, f)) return fmi2Error;
     if (missing(m, enter_event_mode, 1, f) || missing(m, terminate, 1, f)) return fmi2Error;
     *enter_event_mode = fmi2False;
     *terminate = fmi2False;
@@ -47,7 +47,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_return, f
 fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time)
 {
     Instance *m = c;
-    if (!allowed(m, EVENT | CONTINUOUS_TIME, "fmi2SetTime")) return fmi2Error;
+    if (!allowed_for(m, fmi2ModelExchange, EVENT | CONTINUOUS_TIME, "fmi2SetTime")) return fmi2Error;
     if (!isfinite(time)) return refuse(m, "fmi2SetTime: %g is not finite.", time);
     m->s.time = time;
     return fmi2OK;
@@ -65,7 +65,7 @@ fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n
 {
     Instance *m = c;
     int i;
-    if (!allowed(m, CONTINUOUS_TIME, "fmi2SetContinuousStates")) return fmi2Error;
+    if (!allowed_for(m, fmi2ModelExchange, CONTINUOUS_TIME, "fmi2SetContinuousStates")) return fmi2Error;
     if (wrong_size(m, x, n, NX, "fmi2SetContinuousStates")) return fmi2Error;
     for (i = 0; i < NX; i++)
         if (!in_range(FIRST_X + i, x[i])) /* the integrator tried too far and may step back */
@@ -78,7 +78,7 @@ fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n
 fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n)
 {
     Instance *m = c;
-    if (!allowed(m, GETTABLE, "fmi2GetContinuousStates")) return fmi2Error;
+    if (!allowed_for(m, fmi2ModelExchange, GETTABLE, "fmi2GetContinuousStates")) return fmi2Error;
     if (wrong_size(m, x, n, NX, "fmi2GetContinuousStates")) return fmi2Error;
     memcpy(x, m->s.x, sizeof m->s.x);
     return fmi2OK;
@@ -88,7 +88,7 @@ fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real dx[], size_t n)
 {
     Instance *m = c;
     int i;
-    if (!allowed(m, GETTABLE, "fmi2GetDerivatives")) return fmi2Error;
+    if (!allowed_for(m, fmi2ModelExchange, GETTABLE, "fmi2GetDerivatives")) return fmi2Error;
     if (wrong_size(m, dx, n, NX, "fmi2GetDerivatives")) return fmi2Error;
     refresh_constants(m);
     if (m->outputs_known) memcpy(dx, m->dx, sizeof m->dx);
@@ -103,14 +103,14 @@ fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real dx[], size_t n)
 fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real z[], size_t n)
 {
     Instance *m = c;
-    if (!allowed(m, GETTABLE, "fmi2GetEventIndicators")) return fmi2Error;
+    if (!allowed_for(m, fmi2ModelExchange, GETTABLE, "fmi2GetEventIndicators")) return fmi2Error;
     return wrong_size(m, z, n, 0, "fmi2GetEventIndicators") ? fmi2Error : fmi2OK;
 }
 
 fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real nominal[], size_t n)
 {
     Instance *m = c;
-    if (!allowed(m, ANY_MODE, "fmi2GetNominalsOfContinuousStates")) return fmi2Error;
+    if (!allowed_for(m, fmi2ModelExchange, ANY_MODE, "fmi2GetNominalsOfContinuousStates")) return fmi2Error;
     if (wrong_size(m, nominal, n, NX, "fmi2GetNominalsOfContinuousStates")) return fmi2Error;
     memcpy(nominal, model_nominal + FIRST_X, sizeof m->s.x);
     return fmi2OK;

@@ -66,6 +66,18 @@ static int allowed(const Instance *m, int modes, const char *function)
     return 0;
 }
 
+/* The same for a function of one interface only. */
+static int allowed_for(const Instance *m, fmi2Type type, int modes, const char *function)
+{
+    if (m && m->s.type != (int)type) {
+        refuse(m, "%s belongs to %s, the instance to %s.", function,
+               type == fmi2ModelExchange ? "model exchange" : "co-simulation",
+               type == fmi2ModelExchange ? "co-simulation" : "model exchange");
+        return 0;
+    }
+    return allowed(m, modes, function);
+}
+
 static int missing(const Instance *m, const void *pointer, size_t count, const char *function)
 {
     if (pointer || count == 0) return 0;
