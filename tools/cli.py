@@ -169,14 +169,16 @@ def calibrate(
     rig: Rig,
     grid: Annotated[str, typer.Option(help="Grid whose readings are used.")],
     free: Annotated[list[str], typer.Option(help="Parameter that is fitted. Repeatable.")],
+    bounds: Annotated[
+        list[str] | None, typer.Option(help='Range of a free parameter, "cooling.A=0.4 m2..1.2 m2". Repeatable.')
+    ] = None,
     set_: Set = None,
-    workers: Workers = 0,
     json: Json = None,
 ) -> None:
     """Fit parameters to the measured oil temperatures of one grid."""
     from . import calibrate
 
-    calibrate.command(rig, grid, free, set_ or [], workers, json)
+    calibrate.command(rig, grid, free, bounds or [], set_ or [], json)
 
 
 @app.command("list")

@@ -27,6 +27,7 @@ class Channel:
     key: str
     column: str
     label: str
+    short: str
     unit: str
     relative_to: str | None = None
 
@@ -37,10 +38,10 @@ class Channel:
 
 
 CHANNELS = (
-    Channel("T_oil_K", "T_oil_C", "oil temperature (M5)", "K", "T_amb_C"),
-    Channel("T_oil2_K", "T_oil2_C", "oil temperature (M12)", "K", "T_amb_C"),
-    Channel("T_wall_K", "T_wall_C", "wall temperature", "K", "T_amb_C"),
-    Channel("loss_Nm", "loss_Nm", "loss torque", "N.m"),
+    Channel("T_oil_K", "T_oil_C", "oil temperature (M5)", "oil M5", "K", "T_amb_C"),
+    Channel("T_oil2_K", "T_oil2_C", "oil temperature (M12)", "oil M12", "K", "T_amb_C"),
+    Channel("T_wall_K", "T_wall_C", "wall temperature", "wall", "K", "T_amb_C"),
+    Channel("loss_Nm", "loss_Nm", "loss torque", "loss", "N.m"),
 )
 
 #: What readings are grouped by, with the words for it.

@@ -153,14 +153,16 @@ def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]], lef
 
     drawn = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
     for i, column in enumerate(columns):
-        drawn.add_column(column, justify="left" if i < left else "right", overflow="fold")
+        drawn.add_column(column, justify="left" if i < left else "right", overflow="fold", no_wrap=i < min(left, 1))
     for row in rows:
         drawn.add_row(*(cell(value) for value in row))
     Console(width=None if sys.stdout.isatty() else 160, markup=False, emoji=False).print(drawn)
 
 
 def cell(value: Any) -> str:
-    """A value as a table shows it: numbers with four digits, nothing for a missing one."""
+    """A value as a table shows it: numbers with four digits or all before the point, nothing for a missing one."""
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
-    return f"{value:.4g}" if isinstance(value, float) else str(value)
+    if not isinstance(value, float):
+        return str(value)
+    return f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"

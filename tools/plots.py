@@ -140,7 +140,7 @@ def _legend(figure: Figure, panel: Axes) -> None:
     """One legend under all panels."""
     handles, labels = panel.get_legend_handles_labels()
     with mpl.rc_context(STYLE):
-        figure.legend(handles, labels, loc="outside lower center", ncols=4, fontsize=9)
+        figure.legend(handles, labels, loc="outside lower center", ncols=4 if len(labels) > 5 else 5, fontsize=9)
 
 
 def warm_up(curves: Mapping[int, Mapping[str, np.ndarray]], rows: Rows) -> str:
@@ -178,7 +178,8 @@ def _test_title(rows: Rows, test: int) -> str:
     if not rows:
         return f"test {test}"
     first = rows[0]
-    return f"test {test}: {first['oil']}, {first['n_set_rpm']:g} rpm, {first['T_set_Nm']:g} N.m"
+    point = [f"{first[name]:g} {unit}" for name, unit in UNITS.items() if name in first]
+    return f"test {test}: {', '.join([first['oil'], *point])}"
 
 
 def breakdown(rows: Rows, columns: Sequence[str]) -> str:

@@ -159,10 +159,8 @@ def _print(title: str, flat: FlatModel, found: Mapping[str, Any]) -> None:
     table(title, HEAD, body)
     print(f"power balance closed within {found['energy_residual']:.1e} of the throughput")
     for o in found["outside"]:
-        low, high = o["range"]
-        print(
-            f"outside its range: {o['part']}: {o['law']}, {o['argument']} = {o['met'][0]:.4g} (valid {low:g} to {high:g})"
-        )
+        met, (low, high) = o["met"][0], o["range"]
+        print(f"outside its range: {o['part']}: {o['law']}, {o['argument']} = {met:.4g} (valid {low:g} to {high:g})")
 
 
 def _print_design(flat: FlatModel, found: Mapping[str, Any]) -> None:

@@ -71,10 +71,15 @@ def driven_by(scenario: Scenario, names: Iterable[str]) -> Scenario:
 
 
 def deduced(given: Drive, names: Iterable[str]) -> dict[str, tuple[str, ...]]:
-    """The drive that follows from the shaft quantities named ("sun.w"), each kind in place of that of `given`."""
+    """The drive that follows from the shaft quantities named ("sun.w"), each kind in place of that of `given`.
+
+    As many quantities as before are given: with two torques named, the speed follows.
+    """
     named = [tuple(name.rsplit(".", 1)) for name in names]
     kinds = {quantity for _, quantity in named}
-    kept = [(end, quantity) for end, quantities in given.items() for quantity in quantities if quantity not in kinds]
+    before = [(end, quantity) for end, quantities in given.items() for quantity in quantities]
+    spare = [(end, quantity) for end, quantity in before if quantity not in kinds]
+    kept = spare[: max(0, len(before) - len(named))]
     drive: dict[str, tuple[str, ...]] = {}
     for end, quantity in (*kept, *named):
         drive[end] = tuple(dict.fromkeys((*drive.get(end, ()), quantity)))

@@ -21,13 +21,18 @@ def as_dict(comparison: Comparison, scores: Sequence[Score]) -> dict[str, Any]:
     }
 
 
+def hundredths(value: float | None) -> str:
+    """An error as a table shows it."""
+    return "" if value is None else f"{value:.2f}"
+
+
 def error_lines(comparison: Comparison, scores: Sequence[Score]) -> tuple[list[str], list[list[Any]]]:
     """Head and body: channels across; simulation overall and by grid, noise floor and rivals down."""
     rmse = comparison.rmse()
     channels = [c for c in CHANNELS if c.key in rmse["overall"]]
 
     def line(name: str, values: Any) -> list[Any]:
-        return [name, *(values.get(c.key) for c in channels)]
+        return [name, *(hundredths(values.get(c.key)) for c in channels)]
 
     body = [line("simulation, all readings", rmse["overall"])]
     body += [line(f"simulation, {grid}", found) for grid, found in rmse.items() if grid != "overall"]
@@ -54,8 +59,8 @@ def group_lines(comparison: Comparison) -> tuple[list[str], list[list[Any]]]:
             if isinstance(value, float)
             else f"{GROUPINGS[by]} {value}"
         )
-        body.append([name, of["n"], *(x for pair in pairs for x in pair)])
-    return ["group", "readings", *(f"{c.label} {what} [{c.unit}]" for c in channels for what in ("mean", "rms"))], body
+        body.append([name, of["n"], *(hundredths(x) for pair in pairs for x in pair)])
+    return ["group", "readings", *(f"{c.short} {what} [{c.unit}]" for c in channels for what in ("mean", "rms"))], body
 
 
 def show(comparison: Comparison, scores: Sequence[Score]) -> None:

@@ -1,8 +1,16 @@
 from __future__ import annotations
 
+import json
 import math
+import re
+import shutil
+from dataclasses import dataclass
+from typing import Any
 
 import pytest
+from gearheat.scenarios.load import RIGS
+from gearheat.tools.cli import app
+from typer.testing import CliRunner
 
 
 def _row(point: int, test: int, direction: int, oil: str, n: float, tau: float, shift: float) -> dict[str, object]:
@@ -30,3 +38,53 @@ def rows() -> list[dict[str, object]]:
         for direction in (1, 2):
             found.append(_row(len(found) + 1, test, direction, oil, n, tau, shift))
     return found
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What a command left: exit code, standard output, standard error."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def json(self) -> dict[str, Any]:
+        return json.loads(self.out)
+
+    def problems(self) -> list[str]:
+        return self.err.split("error: ")[1:]
+
+
+@pytest.fixture
+def gearheat():
+    """Run a command of the program in this process."""
+
+    def run(*arguments: object) -> Answer:
+        result = CliRunner().invoke(app, [str(a) for a in arguments])
+        if result.exception is not None and not isinstance(result.exception, SystemExit):
+            raise result.exception
+        return Answer(result.exit_code, result.stdout, result.stderr)
+
+    return run
+
+
+@pytest.fixture
+def rig(tmp_path):
+    """Copy of the planetary rig, for a test to change: line(table, key, new) puts a line in the place of a key's."""
+
+    class Copy:
+        folder = tmp_path / "planetary_copy"
+
+        def __str__(self) -> str:
+            return str(self.folder)
+
+        def line(self, table: str, key: str, new: str) -> None:
+            path = self.folder / "rig.toml"
+            before, header, after = path.read_text(encoding="utf-8").partition(f"[{table}]\n")
+            changed, count = re.subn(rf"^{re.escape(key)} = .*\n", new + "\n", after, count=1, flags=re.MULTILINE)
+            assert count == 1, f"[{table}] has no {key}"
+            path.write_text(before + header + changed, encoding="utf-8")
+
+    shutil.copytree(RIGS / "planetary", Copy.folder)
+    return Copy()

@@ -1,0 +1,125 @@
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import pytest
+
+COMMANDS = ("run", "losses", "steady", "design", "simulate", "export", "play", "compare", "calibrate", "list", "show")
+
+
+def test_help_loads_nothing_heavy():
+    code = (
+        "import sys; from gearheat.tools.cli import app\n"
+        "try:\n    app(['--help'])\nexcept SystemExit: pass\n"
+        "heavy = {'casadi', 'numpy', 'scipy', 'matplotlib', 'pint', 'pydantic', 'fmpy'} & set(sys.modules)\n"
+        "print(sorted(heavy), file=sys.stderr)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stderr.strip() == "[]"
+    for command in COMMANDS:
+        assert command in done.stdout
+
+
+def test_every_command_explains_itself(gearheat):
+    for command in COMMANDS:
+        answer = gearheat(command, "--help")
+        assert answer.code == 0
+        assert "--json" in answer.out
+
+
+def test_json_on_stdout_is_one_object_and_nothing_else(gearheat):
+    for arguments in (("list",), ("show", "planetary"), ("steady", "planetary")):
+        answer = gearheat(*arguments, "--json", "-")
+        assert answer.code == 0
+        assert answer.json["schema"] == f"gearheat.{arguments[0]}/1"
+
+
+def test_json_in_a_file_comes_beside_the_table(gearheat, tmp_path):
+    answer = gearheat("steady", "planetary", "--json", tmp_path / "steady.json")
+    assert "oil.T" in answer.out
+    assert (tmp_path / "steady.json").read_text() == gearheat("steady", "planetary", "--json", "-").out
+
+
+def test_list_names_rigs_and_oils(gearheat):
+    found = gearheat("list", "--json", "-").json
+    assert "planetary" in found["rigs"]
+    assert {"PAOR", "MINR", "MINE", "PAGD"} <= found["catalogues"]["oil"].keys()
+
+
+def test_show_gives_every_parameter_a_value_a_unit_and_a_source(gearheat):
+    found = gearheat("show", "planetary", "--json", "-").json
+    parameters = {p["name"]: p for p in found["parameters"]}
+    assert parameters["cooling.A"]["unit"] == "m2"
+    assert parameters["oil.nu_40"]["source"]
+    assert parameters["carrier_seal.d_sh"]["value"] == pytest.approx(0.14)
+    assert [s["name"] for s in found["states"]] == ["oil.T", "gears.T", "carrier_body.T", "wall.T", "surface.T"]
+    assert all(law["source"] for law in found["laws"])
+
+
+def test_show_errata_prints_what_the_source_should_say(gearheat):
+    assert "PAGD" in gearheat("show", "planetary", "--errata").out
+
+
+def test_steady_takes_values_with_units_and_closes_the_power_balance(gearheat):
+    answer = gearheat(
+        "steady", "planetary", "--json", "-",
+        "--set", "carrier.w=100 rpm", "--set", "carrier.tau=1549.5 N.m", "--set", "room.T=298.33 K",
+    )  # fmt: skip
+    found = answer.json
+    assert found["values"]["sun.w"] == pytest.approx(400.0)
+    assert found["units"]["sun.w"] == "rpm"
+    assert found["values"]["room.T"] == pytest.approx(25.18)
+    assert found["energy_residual"] < 1e-6
+    assert found["values"]["oil.T"] > found["values"]["room.T"]
+
+
+def test_a_speed_set_at_the_other_shaft_takes_the_place_of_the_given_one(gearheat):
+    ours = gearheat("steady", "planetary", "--json", "-", "--set", "sun.w=1000 rpm").json
+    theirs = gearheat("steady", "planetary", "--json", "-", "--set", "carrier.w=250 rpm").json
+    assert "sun.w" in ours["inputs"] and "carrier.w" not in ours["inputs"]
+    assert ours["values"]["carrier.w"] == pytest.approx(250.0)
+    assert ours["values"]["oil.T"] == pytest.approx(theirs["values"]["oil.T"], abs=1e-6)
+
+
+def test_catalogue_names_and_choices_can_be_set(gearheat):
+    base = gearheat("steady", "planetary", "--json", "-").json["values"]["gear_set.mu_sp"]
+    mineral = gearheat("steady", "planetary", "--json", "-", "--set", "oil=MINR").json["values"]["gear_set.mu_sp"]
+    assert mineral > base
+    flows = {
+        flow: gearheat("steady", "planetary", "--json", "-", "--set", f"gear_set.power_flow={flow}").json["values"]
+        for flow in ("ideal", "successive")
+    }
+    assert flows["ideal"]["efficiency.P_loss"] != flows["successive"]["efficiency.P_loss"]
+
+
+def test_design_meets_its_target_and_steady_confirms_it(gearheat):
+    found = gearheat("design", "planetary", "--json", "-", "--free", "cooling.A", "--target", "oil.T=70 degC").json
+    assert found["targets"]["oil.T"] == pytest.approx(70.0, abs=1e-6)
+    area = found["free"]["cooling.A"]
+    check = gearheat("steady", "planetary", "--json", "-", "--set", f"cooling.A={area!r} m2").json
+    assert check["values"]["oil.T"] == pytest.approx(70.0, abs=1e-5)
+    step = gearheat("design", "planetary", "--json", "-", "--free", "cooling.A", "--target", "oil.T=70.01 degC").json
+    slope = (step["free"]["cooling.A"] - area) / 0.01
+    assert found["sensitivity"]["cooling.A"]["oil.T"] == pytest.approx(slope, rel=1e-2)
+
+
+def test_design_frees_a_torque_as_an_input(gearheat):
+    found = gearheat("design", "planetary", "--json", "-", "--free", "carrier.tau", "--target", "oil.T=60 degC").json
+    assert 0 < found["free"]["carrier.tau"] < 2500
+    assert found["units"]["carrier.tau"] == "N.m"
+
+
+def test_design_among_oils_solves_each(gearheat):
+    found = gearheat(
+        "design", "planetary", "--json", "-",
+        "--free", "cooling.A", "--target", "oil.T=70 degC", "--among", "oil=PAOR,MINR",
+    ).json  # fmt: skip
+    areas = {a["oil"]: a["free"]["cooling.A"] for a in found["alternatives"]}
+    assert areas["MINR"] > areas["PAOR"]
+
+
+def test_design_without_solution_says_so_and_ends_with_two(gearheat):
+    answer = gearheat("design", "planetary", "--free", "cooling.A", "--target", "oil.T=5 degC")
+    assert answer.code == 2
+    assert "design" in answer.err and "Traceback" not in answer.err

@@ -1,0 +1,92 @@
+from __future__ import annotations
+
+import csv
+
+import pytest
+
+DUTY = """time [min],carrier.w [rpm],carrier.tau [N.m],room.T [degC]
+0,150,2000,20
+60,150,2000,22
+60,0,0,22
+65,0,0,22
+65,150,-2000,22
+95,150,-2000,24
+"""
+
+
+def columns(path):
+    with path.open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    return {name: [float(row[name]) for row in rows] for name in rows[0]}
+
+
+@pytest.fixture(scope="module")
+def duty(tmp_path_factory):
+    path = tmp_path_factory.mktemp("duty") / "duty.csv"
+    path.write_text(DUTY)
+    return path
+
+
+def test_simulate_starts_at_the_room_and_shows_both_sides_of_a_jump(gearheat, duty, tmp_path):
+    out = tmp_path / "out.csv"
+    found = gearheat("simulate", "planetary", "--duty", duty, "-o", out, "--set", "wall.T=30 degC", "--json", "-").json
+    table = columns(out)
+    assert table["oil.T [degC]"][0] == pytest.approx(20.0)
+    assert table["wall.T [degC]"][0] == pytest.approx(30.0)
+    assert table["time [s]"].count(3600.0) == 2
+    jump = table["time [s]"].index(3600.0)
+    assert table["carrier.w [rpm]"][jump : jump + 2] == pytest.approx([150.0, 0.0])
+    assert table["oil.T [degC]"][-1] == pytest.approx(found["final"]["oil.T"], rel=1e-8)
+    assert found["energy_residual"] < 1e-6
+    assert found["rows"] == len(table["time [s]"])
+
+
+def test_the_fmu_gives_what_the_model_gives(gearheat, duty, tmp_path):
+    fmu, simulated, played = (tmp_path / name for name in ("rig.fmu", "simulated.csv", "played.csv"))
+    settings = ("--set", "cooling.A=0.7 m2", "--set", "room.T=20 degC")
+    assert gearheat("export", "planetary", "-o", fmu, *settings).code == 0
+    assert gearheat("simulate", "planetary", "--duty", duty, "-o", simulated, *settings).code == 0
+    assert gearheat("play", fmu, "--duty", duty, "-o", played).code == 0
+    ours, theirs = columns(simulated), columns(played)
+    assert ours["time [s]"] == theirs["time [s]"]
+    for name in ("oil.T [degC]", "wall.T [degC]", "surface.T [degC]"):
+        assert theirs[name] == pytest.approx(ours[name], abs=1e-3)
+    assert theirs["efficiency.P_loss [W]"] == pytest.approx(ours["efficiency.P_loss [W]"], abs=1e-2)
+
+
+def test_parameters_and_states_of_an_fmu_can_be_set(gearheat, duty, tmp_path):
+    fmu, out = tmp_path / "rig.fmu", tmp_path / "played.csv"
+    assert gearheat("export", "planetary", "-o", fmu).code == 0
+    small = gearheat("play", fmu, "--duty", duty, "-o", out, "--json", "-", "--set", "cooling.A=0.3 m2").json
+    large = gearheat("play", fmu, "--duty", duty, "-o", out, "--json", "-", "--set", "oil.T=20 degC").json
+    assert small["final"]["oil.T"] > large["final"]["oil.T"] + 1
+    assert columns(out)["oil.T [degC]"][0] == pytest.approx(20.0)
+    answer = gearheat("play", fmu, "--duty", duty, "-o", out, "--set", "cooling.AA=1 m2", "--set", "foot.G=1 m2")
+    assert answer.code == 2
+    assert "cooling.A" in answer.err and "foot.G" in answer.err
+
+
+@pytest.mark.parametrize(
+    ("options", "inputs"),
+    [
+        ((), {"carrier.w", "carrier.tau"}),
+        (("--drive", "sun"), {"sun.w", "sun.tau"}),
+        (("--drive", "sun", "--given", "torque"), {"sun.tau", "carrier.tau"}),
+        (("--set", "sun.w=1000 rpm"), {"sun.w", "carrier.tau"}),
+    ],
+)
+def test_inputs_of_an_fmu_follow_from_what_is_given(gearheat, tmp_path, options, inputs):
+    found = gearheat("export", "planetary", "-o", tmp_path / "rig.fmu", *options, "--json", "-").json
+    assert {name for name in found["inputs"] if name.endswith((".w", ".tau"))} == inputs
+    assert {"room.T", "room.air_speed", "oil.Q_flow_external"} <= set(found["inputs"])
+
+
+def test_a_duty_says_how_the_rig_is_driven(gearheat, duty, tmp_path):
+    text = duty.read_text().replace("carrier.w", "sun.w").replace("150,", "600,")
+    (tmp_path / "sun.csv").write_text(text)
+    ours = gearheat("simulate", "planetary", "--duty", duty, "-o", tmp_path / "a.csv", "--json", "-").json
+    theirs = gearheat(
+        "simulate", "planetary", "--duty", tmp_path / "sun.csv", "-o", tmp_path / "b.csv", "--json", "-"
+    ).json
+    assert theirs["final"]["carrier.w"] == pytest.approx(150.0)
+    assert theirs["final"]["oil.T"] == pytest.approx(ours["final"]["oil.T"], abs=1e-4)

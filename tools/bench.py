@@ -1,0 +1,223 @@
+"""The command `bench`: time and memory of the main job, beside SciPy's LSODA on the same equations in the same run."""
+
+from __future__ import annotations
+
+import os
+import platform
+import resource
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..fmu.export import export
+from ..fmu.play import Player
+from ..model.core.flat import FlatModel
+from ..model.run.simulate import simulate
+from ..scenarios.load import load
+from . import campaign
+from .console import answer, note, table
+from .settings import driven_by, flat_of
+
+#: Tolerances at which LSODA runs; the cheapest one that is as accurate as the FMU is what the FMU is compared with.
+TOLERANCES = (1e-6, 1e-8, 1e-9)
+
+#: Tolerance of the run that errors are measured against.
+REFERENCE = 1e-10
+
+#: Communication step of the FMU [s].
+STEP = 60.0
+
+#: How often the memory of the whole job is looked at [s].
+EVERY = 0.02
+
+
+def command(rig: str, tests: str | None, json: str | None) -> None:
+    """Measure and print."""
+    note("gearheat --help")
+    helped = min(_timed(lambda: _gearheat("--help"))[0] for _ in range(3))
+    note(f"gearheat run {rig}, warm cache")
+    job = _main_job(rig, tests)
+    found = {
+        "schema": "gearheat.bench/1",
+        "machine": {"cores": os.cpu_count(), "python": platform.python_version(), "system": platform.system()},
+        "help_s": helped,
+        "help_imports_casadi": _imports("casadi"),
+        "run_s": job[0],
+        "run_peak_memory_MB": job[1],
+        **_integration(rig, tests),
+    }
+    answer(found, json, lambda: _print(found))
+
+
+def _timed(work: Callable[[], Any]) -> tuple[float, Any]:
+    began = time.perf_counter()
+    result = work()
+    return time.perf_counter() - began, result
+
+
+def _gearheat(*arguments: str) -> None:
+    command = [sys.executable, "-m", "gearheat.tools.cli", *arguments]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def _imports(module: str) -> bool:
+    """Whether the program as started for its help loads a module."""
+    code = f"import sys, gearheat.tools.cli; sys.exit({module!r} in sys.modules)"
+    return bool(subprocess.run([sys.executable, "-c", code], check=False).returncode)
+
+
+def _main_job(rig: str, tests: str | None) -> tuple[float, float]:
+    """Wall time [s] and peak memory [MB] of the whole main job, the compiler's cache warm."""
+    chosen = [] if tests is None else ["--tests", tests]
+    with tempfile.TemporaryDirectory() as folder:
+        _gearheat("run", rig, "--out", f"{folder}/cold", *chosen)
+        command = [sys.executable, "-m", "gearheat.tools.cli", "run", rig, "--out", f"{folder}/warm", *chosen]
+        began = time.perf_counter()
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        peak = _Peak(process.pid)
+        process.wait()
+        return time.perf_counter() - began, peak.stop()
+
+
+class _Peak:
+    """Largest memory of a process and its children together while it runs.
+
+    Where the system does not tell, the largest single process so far, from the operating system's account.
+    """
+
+    def __init__(self, pid: int) -> None:
+        self._pid, self._peak, self._running = pid, 0.0, True
+        self._thread = threading.Thread(target=self._watch, daemon=True)
+        self._thread.start()
+
+    def _watch(self) -> None:
+        while self._running:
+            self._peak = max(self._peak, sum(_resident(pid) for pid in _family(self._pid)))
+            time.sleep(EVERY)
+
+    def stop(self) -> float:
+        """Peak in MB."""
+        self._running = False
+        self._thread.join()
+        return self._peak or resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+
+
+def _family(pid: int) -> list[int]:
+    """A process and all its descendants."""
+    found = [pid]
+    for child in found:
+        try:
+            tasks = list(Path(f"/proc/{child}/task").iterdir())
+            found += [int(c) for task in tasks for c in (task / "children").read_text().split()]
+        except (OSError, ValueError):
+            continue
+    return found
+
+
+def _resident(pid: int) -> float:
+    """Resident memory of a process [MB]; pages shared by several are counted in each."""
+    try:
+        pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+    except (OSError, IndexError, ValueError):
+        return 0.0
+    return pages * resource.getpagesize() / 1e6
+
+
+def _integration(rig: str, tests: str | None) -> dict[str, Any]:
+    """Time of the integration alone: all tests through the FMU, and through LSODA, one core, same communication."""
+    scenario = load(rig)
+    protocol = scenario.campaign.protocol if scenario.campaign else None
+    scenario = driven_by(scenario, protocol.inputs) if protocol else scenario
+    flat = flat_of(scenario)
+    courses = campaign.courses(scenario, flat, tests)
+    states = [q.name for q in flat.states]
+    note(f"{len(courses)} tests: reference")
+    exact = _simulated(flat, courses, "cvodes", REFERENCE)
+    fmu_s: list[float] = []
+    lsoda: list[dict[str, float]] = []
+    with tempfile.TemporaryDirectory() as folder, Player(export(flat, Path(folder) / "rig.fmu")) as player:
+        values = _played(player, courses, states)
+        fmu_error = _apart(values, exact)
+        for tolerance in TOLERANCES:  # both by turns, so that a busy moment of the machine meets both
+            note(f"FMU, then LSODA with tolerance {tolerance:g}")
+            fmu_s += [_timed(lambda: _played(player, courses, states))[0] for _ in range(3)]
+            began = time.perf_counter()
+            error = _apart(_simulated(flat, courses, "lsoda", tolerance), exact)
+            lsoda.append({"tolerance": tolerance, "s": time.perf_counter() - began, "error_K": error})
+    equal = [run for run in lsoda if run["error_K"] <= fmu_error] or lsoda[-1:]
+    best = min(equal, key=lambda run: run["s"])
+    middle = float(np.median(fmu_s))
+    return {
+        "tests": len(courses),
+        "fmu_s": middle,
+        "fmu_error_K": fmu_error,
+        "lsoda": lsoda,
+        "lsoda_s": best["s"],
+        "lsoda_error_K": best["error_K"],
+        "ratio": best["s"] / middle,
+    }
+
+
+def _simulated(flat: FlatModel, courses: Sequence[campaign.Course], method: str, tolerance: float) -> np.ndarray:
+    """States at all readings."""
+    names = {q.name for q in flat.states}
+    found = []
+    for course in courses:
+        result = simulate(
+            flat,
+            course.schedule,
+            start={n: v for n, v in course.start.items() if n in names},
+            values={n: v for n, v in course.start.items() if n not in names},
+            times=[
+                course.schedule.start,
+                *(m for m in course.moments for _ in range(2 if m < course.schedule.stop else 1)),
+            ],
+            tolerance=tolerance,
+            method=method,
+        )
+        rows = [int(np.flatnonzero(result.index == moment)[0]) for moment in course.moments]
+        found.append([[result[name][row] for name in sorted(names)] for row in rows])
+    return np.concatenate(found)
+
+
+def _played(player: Player, courses: Sequence[campaign.Course], states: Sequence[str]) -> np.ndarray:
+    """States at all readings."""
+    found = []
+    for course in courses:
+        inputs = {name: (course.schedule.time, values) for name, values in course.schedule.values.items()}
+        times, stop = _both_sides(course), course.schedule.stop
+        played = player.run(inputs, stop, STEP, start=course.start, record=sorted(states), output_times=times)
+        rows = [int(np.flatnonzero(played.time == moment)[0]) for moment in course.moments]
+        found.append(played.values[rows])
+    return np.concatenate(found)
+
+
+def _both_sides(course: campaign.Course) -> list[float]:
+    """Times of the readings; twice where a jump follows, so that the first row shows the state before it."""
+    return [m for m in course.moments for _ in range(2 if m < course.schedule.stop else 1)]
+
+
+def _apart(values: np.ndarray, exact: np.ndarray) -> float:
+    return float(np.max(np.abs(values - exact)))
+
+
+def _print(found: dict[str, Any]) -> None:
+    rows = [
+        ["gearheat --help [s]", found["help_s"]],
+        ["main job, warm cache [s]", found["run_s"]],
+        ["main job, peak memory of all processes [MB]", found["run_peak_memory_MB"]],
+        [f"{found['tests']} tests through the FMU, one core [s]", found["fmu_s"]],
+        ["largest error of a state at a reading, FMU", found["fmu_error_K"]],
+    ]
+    for run in found["lsoda"]:
+        rows.append([f"same through LSODA, tolerance {run['tolerance']:g} [s]", run["s"]])
+        rows.append(["largest error of a state at a reading", run["error_K"]])
+    rows.append(["LSODA over FMU, at no larger error", found["ratio"]])
+    table("Benchmark", ("what", "value"), rows)

@@ -1,0 +1,210 @@
+"""The command `calibrate`: fit parameters to the measured oil temperatures of one grid by playing the FMU."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from ..fmu.export import export
+from ..fmu.play import Player
+from ..model.core.flat import FlatModel, Quantity
+from ..model.errors import DataError, GearheatError, ScenarioError, SolveError
+from ..model.units import from_si, shown, to_si
+from ..scenarios.load import load
+from ..scenarios.scenario import Scenario
+from . import campaign
+from .console import answer, note, table
+from .settings import adjusted, driven_by, flat_of
+
+#: Relative step of the difference quotients; well above what the FMU's own tolerance leaves.
+STEP = 1e-3
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Fitted values in SI with their standard errors and correlations, and the errors before and after [K].
+
+    A value that ended at its bound has neither standard error nor correlation (NaN): the readings ask for more than the
+    bound allows.
+    """
+
+    names: tuple[str, ...]
+    start: np.ndarray
+    values: np.ndarray
+    standard_errors: np.ndarray
+    correlation: np.ndarray
+    readings: int
+    rmse_before: float
+    rmse_after: float
+
+
+def command(
+    rig: str, grid: str, free: Sequence[str], bounds: Sequence[str], assignments: Sequence[str], json: str | None
+) -> None:
+    """Print the fitted values."""
+    scenario = adjusted(load(rig), assignments)
+    protocol = scenario.campaign.protocol if scenario.campaign else None
+    if protocol is None:
+        raise DataError(f"{scenario.name}: there are no measured data to fit to. Give the rig file a table [campaign].")
+    scenario = driven_by(scenario, protocol.inputs)
+    flat = flat_of(scenario)
+    quantities = _bounded(_checked(flat, free), bounds)
+    chosen = _of_grid(campaign.courses(scenario, flat), grid)
+    fit = fitted(scenario, flat, quantities, chosen)
+    found = {
+        "schema": "gearheat.calibrate/1",
+        "rig": scenario.name,
+        "grid": grid,
+        "readings": fit.readings,
+        "free": {
+            q.name: {
+                "value": from_si(float(fit.values[i]), q.unit),
+                "standard_error": float(fit.standard_errors[i]) * (from_si(1.0, q.unit) - from_si(0.0, q.unit)),
+                "start": from_si(float(fit.start[i]), q.unit),
+                "unit": shown(q.unit),
+                "at_bound": bool(np.isnan(fit.standard_errors[i])),
+            }
+            for i, q in enumerate(quantities)
+        },
+        "correlation": {
+            a: dict(zip(fit.names, line.tolist(), strict=True))
+            for a, line in zip(fit.names, fit.correlation, strict=True)
+        },
+        "rmse_before_K": fit.rmse_before,
+        "rmse_after_K": fit.rmse_after,
+    }
+    answer(found, json, lambda: _print(found))
+
+
+def _checked(flat: FlatModel, free: Sequence[str]) -> list[Quantity]:
+    problems: list[str] = []
+    for name in free:
+        try:
+            if flat.locate(name)[0] != "parameter":
+                problems.append(f"{name} is no parameter and cannot be fitted. `gearheat show` lists the parameters.")
+        except GearheatError as error:
+            problems += error.problems
+    if len(set(free)) < len(free):
+        problems.append("A parameter is free twice. Name each once.")
+    if problems:
+        raise ScenarioError(problems)
+    return [flat.quantity(name) for name in free]
+
+
+def _bounded(quantities: Sequence[Quantity], bounds: Sequence[str]) -> list[Quantity]:
+    """The quantities with the ranges of texts such as "cooling.A=0.4 m2..1.2 m2"."""
+    found = {q.name: q for q in quantities}
+    problems: list[str] = []
+    for text in bounds:
+        name, _, ends = (part.strip() for part in text.partition("="))
+        low, dots, high = ends.partition("..")
+        if name not in found or not dots:
+            problems.append(f'--bounds "{text}": write a free parameter and its range, like cooling.A=0.4 m2..1.2 m2.')
+            continue
+        try:
+            unit = found[name].unit
+            values = [to_si(end, unit, name=f"--bounds {name}") for end in (low, high)]
+        except GearheatError as error:
+            problems += error.problems
+            continue
+        if not values[0] < values[1]:
+            problems.append(f'--bounds "{text}": the first end must lie below the second.')
+        found[name] = replace(found[name], low=values[0], high=values[1])
+    if problems:
+        raise ScenarioError(problems)
+    return list(found.values())
+
+
+def _of_grid(courses: Sequence[campaign.Course], grid: str) -> list[campaign.Course]:
+    grids = list(dict.fromkeys(r.texts.get("grid", "") for c in courses for r in c.readings))
+    found = [c for c in courses if c.readings[0].texts.get("grid") == grid]
+    if not found:
+        raise DataError(f'There is no grid "{grid}". Grids: {", ".join(grids)}.')
+    return found
+
+
+def fitted(
+    scenario: Scenario, flat: FlatModel, quantities: Sequence[Quantity], courses: Sequence[campaign.Course]
+) -> Fit:
+    """Least squares on T_oil_C over the readings of the courses.
+
+    Raises:
+        SolveError: the readings do not determine the parameters
+    """
+    start = np.array([q.start for q in quantities])
+    scale = np.where(start != 0, np.abs(start), [q.nominal for q in quantities])
+    measured = np.array([r.si("T_oil_C") for c in courses for r in c.readings])
+    if len(measured) <= len(start):
+        raise SolveError(f"{len(measured)} readings cannot determine {len(start)} parameters. Free fewer.")
+    with tempfile.TemporaryDirectory() as folder, Player(export(flat, Path(folder) / "rig.fmu")) as player:
+        simulated = _simulated(player, courses, scenario.sensors["T_oil_C"])
+
+        def errors(z: np.ndarray) -> np.ndarray:
+            values = {q.name: float(v) for q, v in zip(quantities, z * scale, strict=True)}
+            return np.asarray(simulated(values) - measured)
+
+        low, high = (np.array([getattr(q, side) for q in quantities]) / scale for side in ("low", "high"))
+        first = errors(start / scale)
+        begin = np.clip(start / scale, low + 1e-6 * (1 + np.abs(low)), high)
+        found = least_squares(errors, begin, bounds=(low, high), diff_step=STEP, xtol=1e-6, ftol=1e-9)
+    note(f"{found.nfev} evaluations of {len(courses)} tests: {found.message}")
+    inside = found.active_mask == 0
+    _, sizes, _ = np.linalg.svd(found.jac[:, inside])
+    if sizes.size and sizes[-1] < 1e-8 * sizes[0]:
+        raise SolveError("The readings do not tell the free parameters apart. Free fewer.")
+    variance = (found.fun @ found.fun) / (len(measured) - inside.sum())
+    covariance = np.full((len(start), len(start)), np.nan)
+    covariance[np.ix_(inside, inside)] = np.linalg.inv(found.jac[:, inside].T @ found.jac[:, inside]) * variance
+    deviation = np.sqrt(np.diag(covariance))
+    return Fit(
+        names=tuple(q.name for q in quantities),
+        start=start,
+        values=found.x * scale,
+        standard_errors=deviation * scale,
+        correlation=covariance / np.outer(deviation, deviation),
+        readings=len(measured),
+        rmse_before=float(np.sqrt(np.mean(first**2))),
+        rmse_after=float(np.sqrt(np.mean(found.fun**2))),
+    )
+
+
+def _simulated(
+    player: Player, courses: Sequence[campaign.Course], path: str
+) -> Callable[[Mapping[str, float]], np.ndarray]:
+    """Parameter values -> the oil temperature at every reading [K]."""
+
+    def readings(values: Mapping[str, float]) -> np.ndarray:
+        found: list[float] = []
+        for course in courses:
+            inputs = {n: (course.schedule.time, v) for n, v in course.schedule.values.items()}
+            played = player.run(
+                inputs,
+                course.schedule.stop,
+                60.0,
+                start={**course.start, **values},
+                record=[path],
+                output_times=list(course.moments),
+            )
+            found += played.values[:, 0].tolist()
+        return np.array(found)
+
+    return readings
+
+
+def _print(found: Mapping[str, Any]) -> None:
+    body = [[n, f["value"], f["standard_error"], f["unit"], f["start"]] for n, f in found["free"].items()]
+    table(
+        f"{found['rig']}: fitted to {found['readings']} oil temperatures of {found['grid']}",
+        ("name", "value", "standard error", "unit", "before"),
+        body,
+    )
+    table("Correlation", ("", *found["free"]), [[n, *line.values()] for n, line in found["correlation"].items()])
+    for name in (n for n, f in found["free"].items() if f["at_bound"]):
+        print(f"{name} ended at its bound: the readings ask for more than it allows.")
+    print(f"root mean square: {found['rmse_before_K']:.3f} K before, {found['rmse_after_K']:.3f} K after")
