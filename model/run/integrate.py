@@ -20,11 +20,14 @@ MOST_TRIAL_STEPS, BLOWN_UP = 20_000, 1e9
 
 
 class Failure(Exception):
-    """An integration that cannot go on: time reached [s], states there and their derivatives."""
+    """An integration that cannot go on: time reached [s], states there and their derivatives.
 
-    def __init__(self, time: float, x: np.ndarray, rate: np.ndarray) -> None:
+    `passable` where only the method failed: small steps get through.
+    """
+
+    def __init__(self, time: float, x: np.ndarray, rate: np.ndarray, passable: bool) -> None:
         super().__init__(f"stopped at {time} s")
-        self.time, self.x, self.rate = time, x, rate
+        self.time, self.x, self.rate, self.passable = time, x, rate, passable
 
 
 @dataclass(frozen=True)
@@ -76,11 +79,9 @@ class Transient:
         z, line, time = ca.SX.sym("z", max(len(x), 1)), ca.SX.sym("line", 2 * n + 1), ca.SX.sym("time")
         states = ca.DM(self.origin) + ca.DM(self.nominal) * z if len(x) else ca.SX(0, 1)
         inputs = line[:n] + line[n : 2 * n] * (time - line[2 * n])
-        power = ca.Function("power", [flat.x, flat.u, flat.p], [flat.supply, flat.throughput], {"cse": True})
-        p_fixed = ca.SX(ca.DM(p))
-        rate = flat.ode_function(states, inputs, p_fixed) / ca.DM(self.nominal) if len(x) else ca.SX(1, 1)
-        quad = ca.vertcat(*power(states, inputs, p_fixed))
-        self._dae = {"x": z, "u": line, "t": time, "ode": ca.densify(rate), "quad": ca.densify(quad)}
+        rate, *power = _rates(flat)(states, inputs, ca.SX(ca.DM(p)))
+        rate = rate / ca.DM(self.nominal) if len(x) else ca.SX(1, 1)
+        self._dae = {"x": z, "u": line, "t": time, "ode": ca.densify(rate), "quad": ca.densify(ca.vertcat(*power))}
         self._made: dict[bytes, Any] = {}
 
     def cvodes(self, stretch: Stretch, grid: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -129,6 +130,7 @@ class Transient:
                 "abstol": self.tolerance,
                 "max_num_steps": MOST_STEPS,
                 "quad_err_con": True,
+                "linear_solver": "csparse",  # pivots; the default squares entries and loses those that underflow
                 "disable_internal_warnings": True,
                 "show_eval_warnings": False,
             }
@@ -159,7 +161,7 @@ class Transient:
         """How far a stretch can be followed, step by step."""
         from scipy.integrate import LSODA
 
-        state, now = np.concatenate([self._scaled(x), [0.0, 0.0]]), stretch.begin
+        state, now, passable = np.concatenate([self._scaled(x), [0.0, 0.0]]), stretch.begin, True
         rates = self._rates(stretch, now)
         for begin, end in pairwise(stretch.time):
             rates = self._rates(stretch, begin)
@@ -171,6 +173,16 @@ class Transient:
                 if not np.isfinite(solver.y).all() or np.abs(solver.y[:-2]).max() > BLOWN_UP:
                     break
                 state, now = solver.y.copy(), float(solver.t)
-            if solver.status != "finished":
+            passable = solver.status == "finished"
+            if not passable:
                 break
-        return Failure(now, self._states(state[:-2, None])[:, 0], rates(now, state)[:-2][: len(x)] * self.nominal)
+        last, rate = self._states(state[:-2, None])[:, 0], rates(now, state)[:-2][: len(x)] * self.nominal
+        return Failure(now, last, rate, passable)
+
+
+def _rates(flat: FlatModel) -> Any:
+    """CasADi function (x, u, p) -> derivatives, supply and throughput."""
+    if "powers" not in flat.prepared:
+        results = [flat.ode, flat.supply, flat.throughput]
+        flat.prepared["powers"] = ca.Function("powers", [flat.x, flat.u, flat.p], results, {"cse": True})
+    return flat.prepared["powers"]

@@ -69,7 +69,7 @@ def simulate(
         try:
             path, gained = run(stretch, grid, now)
         except Failure as failure:
-            raise SolveError(_message(flat, failure, begin)) from None
+            raise SolveError(_message(flat, failure, begin, stretch, method)) from None
         _check_ranges(flat, grid, path)
         x[:, here] = path[:, _nearest(grid, rows.time[here])]
         u[:, here] = stretch.inputs(rows.time[here])
@@ -182,8 +182,14 @@ def _check_ranges(flat: FlatModel, grid: np.ndarray, path: np.ndarray) -> None:
             )
 
 
-def _message(flat: FlatModel, failure: Failure, begin: Point) -> str:
+def _message(flat: FlatModel, failure: Failure, begin: Point, stretch: Stretch, method: str) -> str:
     """Where the integration stopped and the state that moved furthest for its size."""
+    if failure.passable:
+        other = next(m for m in METHODS if m != method)
+        return (
+            f"simulate: {method} gives up between {stretch.begin:g} and {stretch.end:g} s, though small steps get "
+            f'through. Use the method "{other}" or a looser tolerance.'
+        )
     if not flat.states:
         return f"simulate: {flat.name} cannot be evaluated at {failure.time:g} s."
     nominal = np.array([q.nominal for q in flat.states])

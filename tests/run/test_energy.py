@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass
 
+import pytest
 from gearheat.model.core.component import Component
 from gearheat.model.core.flat import FlatModel
+from gearheat.model.errors import SolveError
 from gearheat.model.run.schedule import Schedule, stepped
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
@@ -57,7 +59,9 @@ def log_floats(low: float, high: float) -> st.SearchStrategy[float]:
 @st.composite
 def machines(draw: st.DrawFn) -> Machine:
     n = draw(st.integers(1, 4))
-    friction = st.tuples(st.integers(0, 3), st.floats(0.5, 3.0), st.floats(0.05, 0.3), st.floats(0.0, 0.01))
+    friction = st.tuples(
+        st.integers(0, 3), st.floats(0.5, 3.0), st.floats(0.05, 0.3), st.sampled_from([0.0, 0.002, 0.01])
+    )
     return Machine(
         tuple(draw(st.lists(log_floats(50.0, 1e5), min_size=n, max_size=n))),
         tuple(draw(st.lists(log_floats(5.0, 500.0), min_size=n - 1, max_size=n - 1))),
@@ -94,15 +98,22 @@ def test_every_run_keeps_its_energy(data: st.DataObject) -> None:
 @settings(max_examples=20, deadline=None, derandomize=True)
 @given(st.data())
 def test_steady_is_where_a_run_ends(data: st.DataObject) -> None:
+    """And where a run ends nowhere, friction that thins under a constant torque, there is no steady state either."""
     machine = data.draw(machines())
     flat = machine.flat()
     values = {"room.T": 290.0}
-    values["drive.w" if machine.speed_given else "drive.tau"] = data.draw(st.floats(1.0, 8.0)) * (
-        15.0 if machine.speed_given else 1.0
-    )
+    if machine.speed_given:
+        values["drive.w"] = data.draw(st.floats(15.0, 120.0))
+    else:
+        values["drive.tau"] = data.draw(st.floats(1.0, 8.0))
     if machine.geared:
         values["load.tau"] = data.draw(st.floats(-2.0, 2.0))
-    end = simulate(flat, stepped([(1e8, values)]), times=[1e8])
+    try:
+        end = simulate(flat, stepped([(1e8, values)]), times=[1e8])
+    except SolveError:
+        with pytest.raises(SolveError):
+            steady(flat, values)
+        return
     point = steady(flat, values)
     for q in flat.states:
         assert abs(point[q.name][0] - end[q.name][0]) < 1e-5 * q.nominal + 1e-6 * abs(end[q.name][0])

@@ -194,3 +194,14 @@ def test_a_blow_up_names_time_and_state(method: str) -> None:
     assert "It started at 26.85 degC" in text
     assert "CVode" not in text
     assert len(text.splitlines()) <= 3
+
+
+def test_a_method_that_gives_up_alone_names_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("gearheat.model.run.integrate.MOST_STEPS", 3)
+    with pytest.raises(SolveError, match=r"cvodes gives up between 0 and 0\.1 s.*Use the method \"lsoda\""):
+        simulate(rc(), DUTY, times=[0.4])
+
+
+def test_a_coupling_so_weak_that_its_square_underflows() -> None:
+    run = simulate(motor(thinning=1e-147), stepped([(1e4, {"drive.tau": 1.0})]), times=[1e4])
+    assert run.audit.residual < 1e-6
