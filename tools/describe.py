@@ -8,7 +8,7 @@ from typing import Any
 from ..model.core.declare import Choice, declared
 from ..model.core.flat import FlatModel, Quantity
 from ..model.parts import PARTS
-from ..model.sources import sources
+from ..model.sources import LawInfo, sources
 from ..model.units import from_si, shown, text
 from ..scenarios.entries import FILES, catalogue
 from ..scenarios.load import list_rigs, load
@@ -20,7 +20,7 @@ from .settings import flat_of
 def list_command(json: str | None) -> None:
     """Rigs and catalogue entries that can be named."""
     entries = {kind: {name: entry.doc for name, entry in catalogue(kind).items()} for kind in FILES}
-    found = {"schema": "gearheat.list/1", "rigs": list_rigs(), "catalogues": entries}
+    found: dict[str, Any] = {"schema": "gearheat.list/1", "rigs": list_rigs(), "catalogues": entries}
 
     def human() -> None:
         table("Rigs", ("name", "what it is"), found["rigs"].items(), left=2)
@@ -72,10 +72,14 @@ def choices(scenario: Scenario) -> list[dict[str, Any]]:
     return found
 
 
+def cited(flat: FlatModel) -> tuple[LawInfo, ...]:
+    """The laws a model uses, each once."""
+    return tuple({(law.name, law.source, law.where): law for law in flat.laws}.values())
+
+
 def laws(flat: FlatModel) -> list[dict[str, Any]]:
-    """The laws a model uses, each once, with what is cited and whether a golden row from print verifies it."""
+    """The laws a model uses with what they cite, and whether a golden row from print verifies them."""
     known = sources()
-    once = {(law.name, law.source, law.where): law for law in flat.laws}
     return [
         {
             "law": law.name,
@@ -84,7 +88,7 @@ def laws(flat: FlatModel) -> list[dict[str, Any]]:
             "valid": law.valid,
             "verified": law.verified,
         }
-        for law in once.values()
+        for law in cited(flat)
     ]
 
 

@@ -11,6 +11,7 @@ import signal
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from multiprocessing.util import Finalize
 from pathlib import Path
 from typing import Any, cast
 
@@ -118,7 +119,9 @@ def imbalance(before: Mapping[str, float], after: Mapping[str, float], audit: tu
 @lru_cache(maxsize=2)
 def _player(fmu: Path, digest: str) -> Player:
     """The FMU, loaded once per process for all tests; `digest` tells files of the same name apart."""
-    return Player(fmu)
+    player = Player(fmu)
+    Finalize(None, player.close, exitpriority=1)  # worker processes run these at their end, and not `atexit`
+    return player
 
 
 def series(time: np.ndarray, columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> str:

@@ -13,7 +13,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .compare import GROUPINGS, Channel, Rows, distinct, errors, numbers
+from .compare import GROUPINGS, Channel, Row, Rows, distinct, errors, numbers
 
 #: Colours that stay apart for colour-blind readers (Okabe and Ito 2008), and shapes for the two directions.
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -160,9 +160,8 @@ def warm_up(curves: Mapping[int, Mapping[str, np.ndarray]], rows: Rows) -> str:
         mine = [row for row in rows if row["test"] == test]
         for name, (label, colour) in lines.items():
             panel.plot(columns["time"] / 60, columns[name], color=colour, label=f"{label}, simulated")
-            if name != "T_amb_C":
-                measured = numbers(mine, f"{name}_meas")
-                times = numbers(mine, "time_s") / 60
+            measured, times = numbers(mine, f"{name}_meas"), numbers(mine, "time_s") / 60
+            if name != "T_amb_C" and np.isfinite(measured).any():
                 panel.plot(times, measured, "o", color=colour, markerfacecolor="white", label=f"{label}, measured")
         panel.set_title(_test_title(mine, test))
         panel.set_ylabel("temperature [°C]")
@@ -179,7 +178,21 @@ def _test_title(rows: Rows, test: int) -> str:
         return f"test {test}"
     first = rows[0]
     point = [f"{first[name]:g} {unit}" for name, unit in UNITS.items() if name in first]
-    return f"test {test}: {', '.join([first['oil'], *point])}"
+    return f"test {test}: {', '.join([first['oil'], *point])}" if point else str(first["oil"])
+
+
+def shares(row: Row, columns: Sequence[str]) -> str:
+    """Bars of the single losses at one operating point."""
+    figure, panels = _figure(12.0, 0.45 * len(columns) + 1.0, 1, 1)
+    values = [float(row[column]) for column in columns]
+    names = [LOSSES.get(column, column) for column in columns]
+    bars = panels[0].barh(names, values, color=COLOURS[0], height=0.6)
+    panels[0].bar_label(bars, [f"{value:.3g} W" for value in values], padding=4)
+    panels[0].invert_yaxis()
+    panels[0].set_xlim(0, 1.12 * max(values) or 1.0)
+    panels[0].set_xlabel("loss power [W]")
+    panels[0].grid(False, axis="y")
+    return svg(figure)
 
 
 def breakdown(rows: Rows, columns: Sequence[str]) -> str:

@@ -62,13 +62,23 @@ def render(study: Study, comparison: Comparison | None, scores: Sequence[Score])
         compared=None if comparison is None else _compared(study.rows, comparison, scores),
         tests=len({row["test"] for row in study.rows}),
         warm_up=Markup(plots.warm_up(study.curves, study.rows)) if study.curves else "",
-        breakdown=Markup(plots.breakdown(study.rows, study.loss_columns)) if study.loss_columns else "",
+        breakdown=_breakdown(study),
         laws=_laws(study.laws),
+        unverified=[law.name for law in study.laws if not law.verified],
         outside=_outside(study.outside),
         parameters=_table(("parameter", "value", "source"), study.parameters, text=(2,)),
         errata=_table(("place", "says", "should be", "evidence"), study.errata, text=(1, 2, 3)),
         rows=_readings(study.rows),
     )
+
+
+def _breakdown(study: Study) -> Markup:
+    """Losses of every test, or of the one point there is."""
+    if not study.loss_columns:
+        return Markup("")
+    if len(study.rows) == 1:
+        return Markup(plots.shares(study.rows[0], study.loss_columns))
+    return Markup(plots.breakdown(study.rows, study.loss_columns))
 
 
 def _compared(rows: Rows, comparison: Comparison, scores: Sequence[Score]) -> dict[str, Any]:

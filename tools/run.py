@@ -103,7 +103,7 @@ def _study(
         rows=rows,
         curves=curves,
         loss_columns=tuple(single),
-        laws=flat.laws,
+        laws=describe.cited(flat),
         outside=campaign.outside_of(flat, found, played),
         parameters=describe.parameters(scenario, flat),
         errata=tuple((e.place, e.says, e.should_be, e.evidence) for e in scenario.errata),

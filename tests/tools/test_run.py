@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import json
+import os
 import shutil
 import signal
 import subprocess
@@ -20,8 +21,12 @@ MEASURED = {"T_oil_C_meas", "T_oil2_C_meas", "T_wall_C_meas", "loss_Nm_meas", "P
 @pytest.fixture(scope="module")
 def ran(tmp_path_factory):
     out = tmp_path_factory.mktemp("run") / "out"
+    scratch = tmp_path_factory.mktemp("scratch")
     command = [sys.executable, "-m", "gearheat.tools.cli", "run", "planetary", "--out", str(out), "--tests", TESTS]
-    done = subprocess.run([*command, "--workers", "2", "--json", "-"], capture_output=True, text=True, check=True)
+    command += ["--workers", "2", "--json", "-"]
+    environment = {**os.environ, "TMPDIR": str(scratch)}
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
+    assert not list(scratch.iterdir()), "a temporary file was left"
     return out, json.loads(done.stdout), done.stderr
 
 
