@@ -1,4 +1,7 @@
-"""All checks of the project in one command: `python -m gearheat.tools.check` in a checkout."""
+"""All checks of the project in one command: `python -m gearheat.tools.check` in a checkout.
+
+Names behind it choose: `python -m gearheat.tools.check lint types`.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,8 @@ import time
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 
-from .console import note
+from ..model.errors import suggestion
+from .console import BAD_INPUT, note
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGES = ("model", "fmu", "scenarios", "tools")
@@ -38,23 +42,31 @@ def steps() -> Iterator[tuple[str, Sequence[str]]]:
     yield "tests", (python, "-m", "pytest", *parallel)
 
 
-def main() -> int:
-    """Run all checks, also after one has failed. Returns 1 if any failed, 2 outside a checkout."""
+def main(chosen: Sequence[str] = ()) -> int:
+    """Run the chosen checks or all, also after one has failed. Returns 1 if any failed, 2 outside a checkout."""
     if not (ROOT / "pyproject.toml").exists():
         note("error: the checks need a checkout of the project with `pip install -e .[test]`.")
-        return 2
+        return BAD_INPUT
+    known = dict(steps())
+    if unknown := [name for name in chosen if name not in known]:
+        note(
+            "\n".join(
+                f'error: there is no check "{n}".{suggestion(n, known)} Checks: {", ".join(known)}.' for n in unknown
+            )
+        )
+        return BAD_INPUT
     environment = {**os.environ, "MYPYPATH": str(links())}
     failed = []
-    for name, command in steps():
-        note(f"== {name}: {' '.join(command[1:])}")
+    for name in chosen or known:
+        note(f"== {name}: {' '.join(known[name][1:])}")
         began = time.perf_counter()
-        code = subprocess.run(command, cwd=ROOT, env=environment, check=False).returncode
+        code = subprocess.run(known[name], cwd=ROOT, env=environment, check=False).returncode
         note(f"== {name}: {'passed' if code == 0 else 'FAILED'} in {time.perf_counter() - began:.1f} s")
         if code:
             failed.append(name)
-    note(f"== {'failed: ' + ', '.join(failed) if failed else 'all checks passed'}")
+    note(f"== {'failed: ' + ', '.join(failed) if failed else 'all passed'}")
     return 1 if failed else 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(main(sys.argv[1:]))
