@@ -1,8 +1,8 @@
-"""The C source of a batch: the FMU's own, the functions of the steady state, and the driver over rows."""
+"""The C sources of a batch: the model's functions, staged for many rows, and the fixed drivers over rows."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from importlib.resources import files
 from itertools import pairwise
 from typing import Any
@@ -10,91 +10,105 @@ from typing import Any
 import casadi as ca
 from gearheat.model.core.flat import FlatModel
 
-from . import emit
+from . import emit, rosenbrock
 from .equations import equations
-from .source import source
-from .variables import table
+from .variables import Table, table
 
 #: What a steady row holds behind the model's outputs: supply [W], throughput [W], law arguments outside their range,
 #: largest residual of the implicit equations.
 EXTRA = 4
 
+#: Warm-ups choose their steps freely, which suits a method of higher order than that of an FMU with its short steps.
+METHOD = rosenbrock.RODAS4
 
-@dataclass(frozen=True)
-class _Steady:
-    """The steady equations in three stages, each computed only when what it depends on changes.
 
-    Attributes:
-        x, u, p: SX symbols
-        k: symbols of what depends on parameters alone, with `k_values` (p)
-        c: symbols of what depends on inputs and parameters alone, with `c_values` (u, p, k)
-        ode, jacobian, y: SX columns in x, u, p and c; the Jacobian by columns
+def steady_source(flat: FlatModel) -> str:
+    """The C text for steady states.
+
+    The equations come in three stages, each computed when what it depends on changes: `fixed` (p) -> k, `given`
+    (u, p, k) -> c, and `rates`, `balance` and `outputs` of (x, u, p, k, c).
+
+    Raises:
+        FmuError: an operation has no C text
     """
+    outside = sum((ca.logic_or(flat.checked[i] < c.low, flat.checked[i] > c.high) for i, c in enumerate(flat.checks)))
+    implicit = ca.mmax(ca.fabs(ca.SX(flat.residual))) if flat.residual_names else 0
+    jacobian = ca.vec(ca.densify(ca.jacobian(flat.ode, flat.x)))
+    parts = [flat.ode, jacobian, ca.vertcat(flat.y, flat.supply, flat.throughput, outside, implicit)]
+    (ode, jacobian, y), c, c_values = _hoisted(parts, ca.vertcat(flat.u, flat.p))
+    (c_values,), k, k_values = _hoisted([c_values], flat.p)
+    place, names = [flat.x, flat.u, flat.p, k, c], list("xupkc")
+    functions = [
+        _function("fixed", [flat.p], ["p"], [k_values], ["k"]),
+        _function("given", place[1:4], names[1:4], [c_values], ["c"]),
+        _function("rates", place, names, [ode], ["dx"]),
+        _function("balance", place, names, [ode, jacobian], ["dx", "jacobian"]),
+        _function("outputs", place, names, [y], ["y"]),
+    ]
+    sizes = {**_sizes(flat), "NYR": y.numel(), "NK": k.numel(), "NC": c.numel()}
+    return _text(flat, sizes, functions, ("batch.h", "batch_steady.c"))
 
-    x: Any
-    u: Any
-    p: Any
-    k: Any
-    k_values: Any
-    c: Any
-    c_values: Any
-    ode: Any
-    jacobian: Any
-    y: Any
 
-    def functions(self) -> tuple[Any, ...]:
-        """The CasADi functions fixed, given, rates, balance and outputs."""
-        place, names = [self.x, self.u, self.p, self.k, self.c], list("xupkc")
-        return (
-            _function("fixed", [self.p], ["p"], [self.k_values], ["k"]),
-            _function("given", place[1:4], names[1:4], [self.c_values], ["c"]),
-            _function("rates", place, names, [self.ode], ["dx"]),
-            _function("balance", place, names, [self.ode, self.jacobian], ["dx", "jacobian"]),
-            _function("outputs", place, names, [self.y], ["y"]),
-        )
+def warmup_source(flat: FlatModel) -> str:
+    """The C text for warm-ups: the equations of the FMU with its audit, and its solver.
+
+    Raises:
+        FmuError: an operation has no C text, or the stored energy depends on an input
+    """
+    model = equations(flat)
+    x_new, error, slope, h = rosenbrock.step(model.ode, model.x, model.u, METHOD)
+    (x_new, error, y, ode), c, c_values = _hoisted([x_new, error[:-1], model.y, model.ode], model.p)
+    place = [model.x, model.u, slope, model.p, c, h]
+    functions = [
+        _function("constants", [model.p], ["p"], [c_values], ["c"]),
+        _function("step", place, ["x", "u", "slope", "p", "c", "h"], [x_new, error], ["x_new", "error"]),
+        _function("outputs", [model.x, model.u, model.p, c], ["x", "u", "p", "c"], [y, ode], ["y", "dx"]),
+    ]
+    sizes = {**_sizes(flat), "NX": ode.numel(), "NY": y.numel(), "NC": c.numel(), "ORDER": METHOD.order}
+    return _text(flat, sizes, functions, ("batch.h", "batch_instance.h", "solver.c", "batch_warmup.c"))
+
+
+def _hoisted(parts: Sequence[Any], given: Any) -> tuple[list[Any], Any, Any]:
+    """Columns without what depends on the symbols `given` alone; new symbols for that; and that."""
+    columns = [ca.densify(ca.SX(part)) for part in parts]
+    ends = [0]
+    for column in columns:
+        ends.append(ends[-1] + column.numel())
+    rest, symbols, values = ca.extract_parametric(ca.cse(ca.vertcat(*columns)), given)
+    rest = ca.cse(rest)
+    cut = [rest[a:b] for a, b in pairwise(ends)]
+    return cut, ca.vertcat(ca.SX(0, 1), *symbols), ca.vertcat(ca.SX(0, 1), *values)
 
 
 def _function(name: str, inputs: list[Any], names_in: list[str], outputs: list[Any], names_out: list[str]) -> Any:
     return ca.Function(name, inputs, [ca.densify(o) for o in outputs], names_in, names_out, {"cse": True})
 
 
-def _steady(flat: FlatModel) -> _Steady:
-    """The steady equations of a model, with all that does not depend on the states taken out of them."""
-    outside = ca.SX(0)
-    for i, check in enumerate(flat.checks):
-        outside += ca.logic_or(flat.checked[i] < check.low, flat.checked[i] > check.high)
-    implicit = ca.mmax(ca.fabs(ca.SX(flat.residual))) if flat.residual_names else ca.SX(0)
-    jacobian = ca.vec(ca.densify(ca.jacobian(flat.ode, flat.x)))
-    parts = [ca.densify(flat.ode), jacobian, ca.vertcat(flat.y, flat.supply, flat.throughput, outside, implicit)]
-    ends = [0]
-    for part in parts:
-        ends.append(ends[-1] + part.numel())
-    whole, c, c_values = _hoisted(ca.vertcat(*parts), ca.vertcat(flat.u, flat.p))
-    c_values, k, k_values = _hoisted(c_values, flat.p)
-    ode, jacobian, y = (whole[a:b] for a, b in pairwise(ends))
-    return _Steady(flat.x, flat.u, flat.p, k, k_values, c, c_values, ode, jacobian, y)
-
-
-def _hoisted(expression: Any, given: Any) -> tuple[Any, Any, Any]:
-    """An expression without what depends on the symbols `given` alone; new symbols for that; and that."""
-    rest, symbols, values = ca.extract_parametric(ca.cse(ca.densify(expression)), given)
-    return ca.cse(rest), ca.vertcat(ca.SX(0, 1), *symbols), ca.vertcat(ca.SX(0, 1), *values)
-
-
-def batch_source(flat: FlatModel) -> str:
-    """The whole C text: the model's functions and solver as in its FMU, then those of the batch.
-
-    Raises:
-        FmuError: an operation has no C text
-    """
-    steady = _steady(flat)
-    sizes = {
+def _sizes(flat: FlatModel) -> dict[str, int]:
+    return {
+        "N": len(flat.states),
+        "NU": len(flat.inputs),
+        "NP": len(flat.parameters),
         "N_OUTPUTS": len(flat.outputs),
-        "NYR": len(flat.outputs) + EXTRA,
-        "NK_REST": steady.k.numel(),
-        "NC_REST": steady.c.numel(),
     }
+
+
+def _text(flat: FlatModel, sizes: Mapping[str, int], functions: Sequence[Any], drivers: Sequence[str]) -> str:
     defined = "".join(f"#define {name} {value}\n" for name, value in sizes.items())
-    functions = [emit.function(f, prefix="rest_") for f in steady.functions()]
-    driver = (files("gearheat.fmu") / "wrapper" / "batch.c").read_text(encoding="utf-8")
-    return "\n".join([source(flat, equations(flat), table(flat)), defined, *functions, driver])
+    folder = files("gearheat.fmu") / "wrapper"
+    first, *others = [(folder / name).read_text(encoding="utf-8") for name in drivers]
+    return "\n".join([defined, first, _tables(table(flat)), *map(emit.function, functions), *others])
+
+
+def _tables(variables: Table) -> str:
+    """Nominals and ranges of the states, those of the audit included, and of the inputs."""
+    rows = [*variables.of("state"), *variables.of("input")]
+    columns = {
+        "nominal": [v.quantity.nominal for v in rows],
+        "low": [v.bounds[0] for v in rows],
+        "high": [v.bounds[1] for v in rows],
+    }
+    return "".join(
+        f"static const double model_{name}[] = {{{', '.join(map(emit.number, column))}}};\n"
+        for name, column in columns.items()
+    )

@@ -1,0 +1,280 @@
+"""Many runs of one model in one call: steady states and warm-ups of arrays of rows, through the C code of its FMU.
+
+    batch = Batch(flat)
+    rows = batch.steady(*batch.vectors({"carrier.tau": np.linspace(500.0, 2700.0, 100_000)}))
+    rows["oil.T"], rows.status
+
+Every row stands for itself: its result has the same bits whatever rows stand beside it and however many threads share
+the work. A `Batch` can be pickled; where it is unpickled its C code is compiled, or found in the user's cache.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+from gearheat.model.core.flat import FlatModel, Quantity
+from gearheat.model.errors import ScenarioError, suggestion
+from gearheat.model.run.schedule import Schedule
+
+from .batch_library import Course, address, driver, rows_from, shared
+from .batch_source import EXTRA, steady_source, warmup_source
+from .grid import grid
+
+#: Of the local error of a warm-up, in nominals of the states.
+TOLERANCE = 1e-4
+
+#: Rows that a thread takes at a time. The results do not depend on it.
+STEADY_BLOCK, WARMUP_BLOCK = 1024, 8
+
+
+class Status(IntEnum):
+    """What became of a row; its numbers are NaN unless it is OK."""
+
+    OK = 0
+    NO_BALANCE = 1  #: no steady state was found
+    UNSTABLE = 2  #: the only balance found is one the machine leaves by itself
+    NOT_FINITE = 3  #: the model cannot be evaluated at the start
+    STOPPED = 4  #: a warm-up cannot go on: a state leaves its range or changes without bound
+    OUT_OF_RANGE = 5  #: an input, a parameter or a start value is not finite or out of its range
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Results of n rows; of a warm-up with m times every row of `x` and `y` holds m times.
+
+    Attributes:
+        columns: name of each state and output -> kind and position
+        x: states (n, states) or (n, m, states)
+        y: outputs (n, outputs) or (n, m, outputs)
+        status: of each row (n)
+        iterations: steps of Newton's method, or of the solver (n)
+        supplied, gained, throughput: energy that came in, that the states gained, and the sum of all that crossed the
+            boundary [J]; for steady states the powers [W], where nothing is gained (n)
+        outside: law arguments outside the range of their source, at the worst time (n)
+        time: times of a warm-up [s] (m); None for steady states
+    """
+
+    columns: Mapping[str, tuple[str, int]]
+    x: np.ndarray
+    y: np.ndarray
+    status: np.ndarray
+    iterations: np.ndarray
+    supplied: np.ndarray
+    gained: np.ndarray
+    throughput: np.ndarray
+    outside: np.ndarray
+    time: np.ndarray | None = None
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A state or an output by path. Raises ScenarioError with suggestions for an unknown one."""
+        if name not in self.columns:
+            raise ScenarioError(f'the rows have no "{name}".{suggestion(name, self.columns)}')
+        kind, i = self.columns[name]
+        return (self.x if kind == "state" else self.y)[..., i]
+
+    @property
+    def residual(self) -> np.ndarray:
+        """Violation of the energy balance of each row, relative to its throughput (n)."""
+        residual: np.ndarray = np.abs(self.supplied - self.gained) / np.maximum(self.throughput, 1e-3)
+        return residual
+
+
+class Batch:
+    """A flat model, compiled for runs of many rows.
+
+    Args:
+        flat: the model
+
+    Raises:
+        FmuError: the model has no C code, or the compiler fails
+    """
+
+    def __init__(self, flat: FlatModel) -> None:
+        self.name = flat.name
+        self.states, self.inputs, self.parameters = flat.states, flat.inputs, flat.parameters
+        self.outputs = flat.outputs
+        self.steady_source, self.warmup_source = steady_source(flat), warmup_source(flat)
+
+    @property
+    def columns(self) -> dict[str, tuple[str, int]]:
+        """What a row holds: path -> ("state" or "output", position)."""
+        groups = {"state": self.states, "output": self.outputs}
+        return {q.name: (kind, i) for kind, group in groups.items() for i, q in enumerate(group)}
+
+    def vectors(self, values: Mapping[str, Any]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Inputs, parameters and start states for `steady` and `warmup` from values by path (SI).
+
+        Args:
+            values: path of an input, a parameter or a state -> a number for all rows, or an array of one per row;
+                what is not named keeps the model's own value
+
+        Returns:
+            u, p, start; each a vector where no array was given for any of its quantities
+
+        Raises:
+            ScenarioError: unknown names, arrays of different lengths
+        """
+        groups = (self.inputs, self.parameters, self.states)
+        known = {q.name for group in groups for q in group}
+        problems = [f'{self.name}: "{n}" is no value to set.{suggestion(n, known)}' for n in values if n not in known]
+        given = {name: np.asarray(value, dtype=float) for name, value in values.items()}
+        lengths = {value.shape for value in given.values() if value.ndim}
+        if len(lengths) > 1:
+            problems.append(f"{self.name}: arrays of different lengths: {sorted(s[0] for s in lengths)}. Give one.")
+        if problems:
+            raise ScenarioError(problems)
+        u, p, start = (_stacked(group, given) for group in groups)
+        return u, p, start
+
+    def steady(
+        self,
+        u: np.ndarray | None = None,
+        p: np.ndarray | None = None,
+        start: np.ndarray | None = None,
+        *,
+        threads: int = 0,
+    ) -> Rows:
+        """The steady state of each row, found as `gearheat.model.run.steady` finds it.
+
+        Args:
+            u, p: inputs (n, inputs) and parameters (n, parameters), or a vector for all rows; the model's own if None
+            start: states to start from (n, states), or a vector for all rows; the model's own if None
+            threads: threads that share the rows, 0 for one per core
+
+        Raises:
+            ScenarioError: arrays of the wrong shape
+        """
+        n, vectors, sound = self._checked(u, p, start)
+        home = np.array([q.start for q in self.inputs])
+        x, y = np.empty((n, len(self.states))), np.empty((n, len(self.outputs) + EXTRA))
+        status, iterations = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
+        run = driver("batch_steady", self.steady_source)
+
+        def block(a: int, b: int) -> int:
+            results = [address(array[a:]) for array in (x, y, status, iterations)]
+            return int(run(b - a, *rows_from(vectors, a), address(home), *results))
+
+        shared(block, n, STEADY_BLOCK, threads)
+        k = len(self.outputs)
+        supply, throughput, outside = y[:, k], y[:, k + 1], y[:, k + 2]
+        return _marked(
+            Rows(self.columns, x, y[:, :k], status, iterations, supply, np.zeros(n), throughput, outside), sound
+        )
+
+    def warmup(
+        self,
+        schedule: Schedule,
+        u: np.ndarray | None = None,
+        p: np.ndarray | None = None,
+        start: np.ndarray | None = None,
+        *,
+        times: Sequence[float] | np.ndarray | None = None,
+        tolerance: float = TOLERANCE,
+        threads: int = 0,
+    ) -> Rows:
+        """Each row's course through a duty, by the solver of the FMU.
+
+        Args:
+            schedule: inputs over time, the same for all rows; inputs it does not name keep the row's value
+            u, p: inputs (n, inputs) and parameters (n, parameters), or a vector for all rows; the model's own if None
+            start: states at the beginning (n, states), or a vector for all rows; the model's own if None
+            times: output times [s], not decreasing; a row at a jump shows the inputs behind it, a time given twice
+                both sides; the end of the schedule if None
+            tolerance: of the local error, relative to each state's nominal
+            threads: threads that share the rows, 0 for one per core
+
+        Raises:
+            ScenarioError: arrays of the wrong shape, names or values of the schedule that do not fit the model
+            FmuError: times outside the schedule
+        """
+        n, vectors, sound = self._checked(u, p, start)
+        if problems := self._schedule_problems(schedule, tolerance):
+            raise ScenarioError(problems)
+        inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
+        length = schedule.stop - schedule.start
+        points = grid(inputs, schedule.start, schedule.stop, length, [schedule.stop] if times is None else times)
+        course, m = Course(points, self.inputs, tolerance), len(points.row_time)
+        x, y, energy = np.empty((n, m, len(self.states))), np.empty((n, m, len(self.outputs))), np.empty((n, 4))
+        status, steps = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
+        run = driver("batch_warmup", self.warmup_source)
+
+        def block(a: int, b: int) -> int:
+            results = [address(array[a:]) for array in (x, y, energy, status, steps)]
+            return int(run(b - a, ctypes.byref(course), *rows_from(vectors, a), m, *results))
+
+        shared(block, n, WARMUP_BLOCK, threads)
+        supplied, gained, throughput, outside = energy.T
+        rows = Rows(self.columns, x, y, status, steps, supplied, gained, throughput, outside, points.row_time)
+        return _marked(rows, sound)
+
+    def _checked(
+        self, u: np.ndarray | None, p: np.ndarray | None, start: np.ndarray | None
+    ) -> tuple[int, tuple[np.ndarray, ...], np.ndarray]:
+        """Number of rows, their arrays as C takes them, and which rows have all values in range."""
+        named = (("inputs", self.inputs, u), ("parameters", self.parameters, p), ("states", self.states, start))
+        vectors, problems, counts = [], [], set()
+        for word, group, given in named:
+            own = np.array([q.start for q in group])
+            vector = np.ascontiguousarray(own if given is None else given, dtype=float)
+            if vector.ndim not in (1, 2) or vector.shape[-1] != len(group):
+                problems.append(f"{self.name}: {word} of shape {vector.shape}. Expected ({len(group)},) or a row each.")
+            elif vector.ndim == 2:
+                counts.add(len(vector))
+            vectors.append(vector)
+        if len(counts) > 1:
+            problems.append(f"{self.name}: arrays of {' and '.join(map(str, sorted(counts)))} rows. Give one number.")
+        if problems:
+            raise ScenarioError(problems)
+        n = counts.pop() if counts else 1
+        sound = np.ones(n, dtype=bool)
+        for (_, group, _), vector in zip(named, vectors, strict=True):
+            sound &= _in_range(group, vector)
+        return n, tuple(vectors), sound
+
+    def _schedule_problems(self, schedule: Schedule, tolerance: float) -> list[str]:
+        known = {q.name: q for q in self.inputs}
+        problems = [
+            f'{self.name}: the duty gives "{n}", which is no input.{suggestion(n, known)}'
+            for n in schedule.values
+            if n not in known
+        ]
+        for name in schedule.values.keys() & known.keys():
+            column = schedule.values[name]
+            extremes = dict.fromkeys((float(column.min()), float(column.max())))
+            problems += [f"{self.name}: duty: {p}" for value in extremes if (p := known[name].problem(value))]
+        if not schedule.stop > schedule.start:
+            problems.append(f"{self.name}: the duty lasts no time. Give it a duration.")
+        if not 0 < tolerance < 1:
+            problems.append(f"{self.name}: tolerance {tolerance:g} makes no sense. Give one between 0 and 1.")
+        return problems
+
+
+def _stacked(group: Sequence[Quantity], given: Mapping[str, np.ndarray]) -> np.ndarray:
+    """Values of a group in order: a vector, or a row per entry of the arrays given."""
+    columns = [given.get(q.name, np.array(q.start)) for q in group]
+    if not columns:
+        return np.empty(0)
+    return np.ascontiguousarray(np.stack(np.broadcast_arrays(*columns), axis=-1))
+
+
+def _in_range(group: Sequence[Quantity], vector: np.ndarray) -> Any:
+    """Which rows have all their values in range: one answer for a vector that all rows share."""
+    sound = np.isfinite(vector)
+    for i, q in enumerate(group):
+        column = vector[..., i]
+        sound[..., i] &= (column > q.low) if q.low_open else (column >= q.low)
+        sound[..., i] &= (column < q.high) if q.high_open else (column <= q.high)
+    return sound.all(axis=-1)
+
+
+def _marked(rows: Rows, sound: np.ndarray) -> Rows:
+    """The rows, without those that were given values out of range."""
+    rows.status[~sound] = Status.OUT_OF_RANGE
+    for array in (rows.x, rows.y, rows.supplied, rows.gained, rows.throughput, rows.outside):
+        array[rows.status != Status.OK] = np.nan
+    return rows

@@ -1,0 +1,113 @@
+"""The compiled drivers of a batch: loading them, and calling them block by block on some threads."""
+
+from __future__ import annotations
+
+import contextlib
+import ctypes
+import os
+import tempfile
+import threading
+from collections.abc import Callable, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from gearheat.model.core.flat import Quantity
+from gearheat.model.errors import FmuError
+
+from .compiling import binary, host_platform
+from .grid import Grid
+
+_POINTER, _COUNT = ctypes.c_void_p, ctypes.c_int64
+_SIGNATURES = {
+    "batch_steady": [_COUNT, *[_POINTER, _COUNT] * 3, *[_POINTER] * 5],
+    "batch_warmup": [_COUNT, _POINTER, *[_POINTER, _COUNT] * 3, _COUNT, *[_POINTER] * 5],
+}
+_LOADED: dict[tuple[str, str], Any] = {}
+_LOCK = threading.Lock()
+
+
+def driver(name: str, source: str) -> Any:
+    """The C function of a source, compiled and loaded once in a process.
+
+    Raises:
+        FmuError: the compiler fails, or what it made does not load
+    """
+    with _LOCK:
+        if (name, source) not in _LOADED:
+            function = getattr(_load(source), name)
+            function.argtypes, function.restype = _SIGNATURES[name], ctypes.c_int
+            _LOADED[name, source] = function
+        return _LOADED[name, source]
+
+
+def _load(source: str) -> ctypes.CDLL:
+    platform = host_platform()
+    handle, name = tempfile.mkstemp(suffix=platform.suffix)
+    with os.fdopen(handle, "wb") as file:
+        file.write(binary(source, platform))
+    try:
+        return ctypes.CDLL(name)
+    except OSError as error:
+        raise FmuError(f"the compiled code does not load: {error}") from error
+    finally:
+        with contextlib.suppress(OSError):  # Windows keeps a library that is in use
+            Path(name).unlink()
+
+
+class Course(ctypes.Structure):
+    """The course of a warm-up as C knows it; holds its arrays alive."""
+
+    _fields_ = [
+        ("m", _COUNT),
+        *((name, _POINTER) for name in ("length", "value", "slope", "scheduled", "before", "after")),
+        ("tolerance", ctypes.c_double),
+    ]
+
+    def __init__(self, points: Grid, inputs: Sequence[Quantity], tolerance: float) -> None:
+        place = {q.name: i for i, q in enumerate(inputs)}
+        order = [place[name] for name in points.names]
+        pieces = len(points.time) - 1
+        value, slope = np.zeros((pieces, len(inputs))), np.zeros((pieces, len(inputs)))
+        scheduled = np.zeros(len(inputs), dtype=np.int32)
+        value[:, order], slope[:, order], scheduled[order] = points.value, points.slope, 1
+        kept = [points.rows_before.astype(np.int32), points.rows_after.astype(np.int32)]
+        self.arrays = [np.diff(points.time), value, slope, scheduled, *kept]
+        super().__init__(pieces, *map(address, self.arrays), tolerance)
+
+
+def address(array: np.ndarray) -> int:
+    """Where the numbers of an array begin."""
+    return int(array.ctypes.data)
+
+
+def rows_from(vectors: Sequence[np.ndarray], first: int) -> list[int]:
+    """Address and stride of each array from a row on; a vector serves all rows."""
+    pairs = [(v[first:] if v.ndim == 2 else v, v.shape[1] if v.ndim == 2 else 0) for v in vectors]
+    return [number for array, stride in pairs for number in (address(array), stride)]
+
+
+def shared(block: Callable[[int, int], int], n: int, size: int, threads: int) -> None:
+    """Do n rows in blocks on some threads; ctypes lets go of the interpreter while C runs.
+
+    Args:
+        block: does the rows from the first to before the second number; 0 where memory runs out
+        n: number of rows
+        size: rows of a block
+        threads: 0 for one per core
+    """
+    blocks = [(a, min(a + size, n)) for a in range(0, n, size)]
+    workers = min(threads or cores(), max(len(blocks), 1))
+    if workers == 1:
+        done = [block(a, b) for a, b in blocks]
+    else:
+        with ThreadPoolExecutor(workers) as pool:
+            done = list(pool.map(lambda ends: block(*ends), blocks))
+    if not all(done):
+        raise FmuError("there is not enough memory for the rows. Give fewer at a time.")
+
+
+def cores() -> int:
+    """Cores this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
