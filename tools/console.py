@@ -145,18 +145,28 @@ def _umask() -> int:
     return mask
 
 
-def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]], left: int = 1) -> None:
-    """Print a table: the first `left` columns to the left, the others, numbers, to the right."""
+def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
+    """Print a table: columns of numbers to the right, columns of words to the left."""
     from rich import box
     from rich.console import Console
     from rich.table import Table
 
+    body = [[cell(value) for value in row] for row in rows]
     drawn = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
     for i, column in enumerate(columns):
-        drawn.add_column(column, justify="left" if i < left else "right", overflow="fold", no_wrap=i < min(left, 1))
-    for row in rows:
-        drawn.add_row(*(cell(value) for value in row))
+        words = any(not _is_number(row[i]) for row in body)
+        drawn.add_column(column, justify="left" if words else "right", overflow="fold", no_wrap=i == 0)
+    for row in body:
+        drawn.add_row(*row)
     Console(width=None if sys.stdout.isatty() else 160, markup=False, emoji=False).print(drawn)
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text or 0)
+    except ValueError:
+        return False
+    return True
 
 
 def cell(value: Any) -> str:

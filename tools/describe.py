@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
-from ..model.core.declare import Choice, declared
+from ..model.core.declare import Choice, Parameter, declared
 from ..model.core.flat import FlatModel, Quantity
 from ..model.parts import PARTS
 from ..model.sources import LawInfo, sources
@@ -23,9 +23,9 @@ def list_command(json: str | None) -> None:
     found: dict[str, Any] = {"schema": "gearheat.list/1", "rigs": list_rigs(), "catalogues": entries}
 
     def human() -> None:
-        table("Rigs", ("name", "what it is"), found["rigs"].items(), left=2)
+        table("Rigs", ("name", "what it is"), found["rigs"].items())
         for kind, docs in entries.items():
-            table(f"Catalogue: {kind}", ("name", "what it is"), docs.items(), left=2)
+            table(f"Catalogue: {kind}", ("name", "what it is"), docs.items())
 
     answer(found, json, human)
 
@@ -53,8 +53,12 @@ def show_command(rig: str, errata: bool, json: str | None) -> None:
 
 
 def source_of(scenario: Scenario, path: str) -> str:
-    """Where the value of a path is from; values that no file gives follow from others or are numerical defaults."""
-    return scenario.value_sources.get(path, "follows from the other values, or a numerical default")
+    """Where the value of a path is from: a source, or what the part itself says where no file gives it."""
+    if path in scenario.value_sources:
+        return scenario.value_sources[path]
+    part, _, key = path.rpartition(".")
+    parameter = declared(PARTS[scenario.spec.part(part).type], Parameter).get(key)
+    return "follows from the other values" if parameter is not None and parameter.derived else "default"
 
 
 def parameters(scenario: Scenario, flat: FlatModel) -> tuple[tuple[str, str, str], ...]:
@@ -110,14 +114,14 @@ def _doc(cls: type) -> str:
 def _print(found: dict[str, Any]) -> None:
     print(f"{found['rig']}: {found['doc']}\n")
     valued = ("name", "value", "unit", "doc")
-    table("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")), left=3)
+    table("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")))
     table("Parameters", (*valued, "source"), _rows(found["parameters"], (*valued, "source")))
-    table("Choices", ("name", "value", "doc"), _rows(found["choices"], ("name", "value", "doc")), left=3)
+    table("Choices", ("name", "value", "doc"), _rows(found["choices"], ("name", "value", "doc")))
     table("Inputs", (*valued, "source"), _rows(found["inputs"], (*valued, "source")))
     table("States (with start value)", valued, _rows(found["states"], valued))
-    table("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")), left=3)
+    table("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")))
     keys = ("law", "where", "valid", "verified", "source")
-    table("Laws", keys, _rows(found["laws"], keys), left=5)
+    table("Laws", keys, _rows(found["laws"], keys))
     if found["errata"]:
         print(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
 
@@ -128,7 +132,6 @@ def _print_errata(found: dict[str, Any]) -> None:
         f"{found['rig']}: corrections to the sources",
         ("place", "says", "should be", "evidence"),
         _rows(found["errata"], keys),
-        left=4,
     )
 
 

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from gearheat.model.errors import DataError, SolveError
-from gearheat.tools.console import as_json, cell, folder, guarded, writable, write
+from gearheat.tools.console import as_json, cell, folder, guarded, table, writable, write
 
 
 def test_json_holds_no_value_that_is_no_json():
@@ -66,3 +66,12 @@ def test_what_is_not_foreseen_is_not_hidden():
 )
 def test_cells(value, text):
     assert cell(value) == text
+
+
+def test_numbers_stand_right_and_words_left(capsys):
+    table("T", ("name", "value", "unit"), [["a", 1.0, "K"], ["long name", 22.5, "N.m"], ["b", None, "W"]])
+    lines = [line for line in capsys.readouterr().out.splitlines() if "N.m" in line or " K" in line]
+    short, long = lines
+    assert short.index("a") == long.index("long")
+    assert short.index("1") + 1 == long.index("22.5") + 4
+    assert short.index("K") == long.index("N.m")
