@@ -29,9 +29,9 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     double round_off;
     (void)no_return;
     if (!allowed_for(m, fmi2CoSimulation, STEP_COMPLETE | STEP_FAILED, "fmi2DoStep")) return fmi2Error;
-    if (!isfinite(time) || !isfinite(step) || step < 0)
-        return refuse(m, "fmi2DoStep: step of %g s from %.10g s: both must be finite, the step not negative.", step,
-                      time);
+    if (!isfinite(time + step) || step < 0)
+        return refuse(m, "fmi2DoStep: step of %g s from %.10g s: both must be finite, as must be their sum, and the "
+                      "step not negative.", step, time);
     /* The master adds up its steps: its clock is right, ours follows as long as the difference is round-off. */
     round_off = 1e-9 * (1 + fabs(m->s.time)) + 1e-6 * step;
     if (fabs(time - m->s.time) > round_off)

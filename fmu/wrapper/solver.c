@@ -1,6 +1,8 @@
 /* Adaptive steps of the Rosenbrock method from one communication point to the next. */
 
+#ifndef MAX_STEPS
 #define MAX_STEPS 10000000L    /* within one communication step */
+#endif
 #define MAX_REJECTIONS 80      /* in a row */
 #define SAFETY 0.9
 #define MAX_GROWTH 5.0
