@@ -1,0 +1,51 @@
+"""One flat model that holds every hypothesis: the rig with all causes at size zero, and inputs as they are read."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import casadi as ca
+
+from ...model.core.flat import FlatModel, Quantity
+from ...model.machines.spec import Spec
+from ..effects.library import CAUSES
+
+#: What stands between an input's reading and its truth; the truth is (reading - bias) / (1 + gain).
+READ = (
+    Quantity("read.room_bias", "K (difference)", "room probe: reading less truth"),
+    Quantity("read.speed_gain", "1", "speed reading: relative error"),
+    Quantity("read.torque_bias", "N.m", "carrier's torque: reading less truth"),
+)
+
+
+def superset(spec: Spec) -> Spec:
+    """The machine with every cause added, neutral."""
+    for cause in CAUSES.values():
+        spec = cause.added_to(spec)
+    return spec
+
+
+def as_read(flat: FlatModel) -> FlatModel:
+    """A flat model whose inputs are readings: parameters stand between them and the truth."""
+    p = ca.vertcat(*[ca.SX.sym(q.name) for q in READ])
+    u = {q.name: flat.u[i] for i, q in enumerate(flat.inputs)}
+    truth = {
+        "room.T": u["room.T"] - p[0],
+        "carrier.w": u["carrier.w"] / (1 + p[1]),
+        "carrier.tau": u["carrier.tau"] - p[2] * ca.sign(u["carrier.tau"]),
+    }
+    new = ca.vertcat(*[truth.get(q.name, u[q.name]) for q in flat.inputs])
+    expressions = [flat.ode, flat.y, flat.residual, flat.supply, flat.throughput, flat.stored, flat.checked]
+    ode, y, residual, supply, throughput, stored, checked = (ca.substitute(e, flat.u, new) for e in expressions)
+    return replace(
+        flat,
+        parameters=(*flat.parameters, *READ),
+        p=ca.vertcat(flat.p, p),
+        ode=ode,
+        y=y,
+        residual=residual,
+        supply=supply,
+        throughput=throughput,
+        stored=stored,
+        checked=checked,
+    )

@@ -1,0 +1,144 @@
+"""A cause: a typed change of the model or of an instrument, with a family of forms and priors for its parameters."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.stats import truncnorm
+
+from ...model.machines.spec import PartSpec, Spec
+
+
+@dataclass(frozen=True)
+class Size:
+    """How much of a cause there is: zero is none. Signed if `low` is negative; `sd` is the prior's half width."""
+
+    name: str
+    unit: str
+    doc: str
+    sd: float
+    low: float
+    high: float
+
+
+@dataclass(frozen=True)
+class Shape:
+    """One parameter of a cause's form: a normal prior cut at its bounds, or an even one where `sd` is None."""
+
+    name: str
+    unit: str
+    doc: str
+    low: float
+    high: float
+    mean: float = 0.0
+    sd: float | None = None
+
+    def quantile(self, share: np.ndarray) -> np.ndarray:
+        """Values of the prior at shares between 0 and 1."""
+        if self.sd is None:
+            return self.low + share * (self.high - self.low)
+        a, b = (self.low - self.mean) / self.sd, (self.high - self.mean) / self.sd
+        return np.asarray(truncnorm.ppf(share, a, b, loc=self.mean, scale=self.sd))
+
+
+@dataclass(frozen=True)
+class Rows:
+    """The readings of a campaign as arrays over its n rows, n_tests tests: what an instrument's fault may depend on.
+
+    `test` is the index of each row's test, `order` its running order from 0 (first) to 1 (last), `direction` +1 for a
+    multiplier, -1 for a reducer; `w` [rad/s], `tau` [N.m] magnitude, `T_room` [K], `humidity` or None.
+    """
+
+    test: np.ndarray
+    order: np.ndarray
+    direction: np.ndarray
+    w: np.ndarray
+    tau: np.ndarray
+    T_room: np.ndarray
+    humidity: np.ndarray | None = None
+
+    @property
+    def n_tests(self) -> int:
+        """Number of tests."""
+        return int(self.test.max()) + 1
+
+    def per_test(self, values: np.ndarray) -> np.ndarray:
+        """The first value of each test."""
+        return np.array([values[self.test == k][0] for k in range(self.n_tests)])
+
+
+#: Parameter values of a cause by name: the size and the shapes.
+Theta = Mapping[str, float]
+#: Channel -> readings (n); channels are T_oil, T_oil2, T_wall [K], loss [N.m].
+Readings = Mapping[str, np.ndarray]
+
+
+def _no_values(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mapping[str, Any]:
+    return {}
+
+
+def _no_change(theta: Theta, rows: Rows, readings: Readings) -> Readings:
+    return readings
+
+
+@dataclass(frozen=True)
+class Cause:
+    """One entry of the taxonomy.
+
+    Args:
+        id: stable identifier
+        doc: where it acts and what it does
+        size: how much of it there is
+        shapes: its family of forms
+        exposes: the experiment that would show it
+        like: name of the class of causes that count as one answer, and why
+        parts, connections: what is added to the machine, neutral at size zero
+        values: (values of the machine by path, parameters, rows) -> changed values by path, a number or one per test;
+            rows are None where no campaign is at hand
+        readings: (parameters, rows, true readings) -> what the instruments show
+    """
+
+    id: str
+    doc: str
+    size: Size
+    shapes: tuple[Shape, ...] = ()
+    exposes: str = ""
+    like: str = ""
+    parts: tuple[PartSpec, ...] = ()
+    connections: tuple[tuple[str, ...], ...] = ()
+    values: Callable[[Mapping[str, float], Theta, Rows | None], Mapping[str, Any]] = _no_values
+    readings: Callable[[Theta, Rows, Readings], Readings] = _no_change
+
+    @property
+    def physical(self) -> bool:
+        """Whether it changes what happens, not only what is shown."""
+        return self.values is not _no_values
+
+    def added_to(self, spec: Spec, theta: Theta | None = None) -> Spec:
+        """The machine with the cause in it; neutral where no parameters are given."""
+        extended = spec.with_parts(self.parts, self.connections)
+        if theta is None:
+            return extended
+        base = {f"{p.name}.{k}": v for p in extended.parts for k, v in p.values.items()}
+        return extended.with_values(self.values(base, theta, None))
+
+    def forms(self, n: int) -> list[dict[str, float]]:
+        """n members of the family, spread evenly over the prior of the shapes; the first is its middle."""
+        if not self.shapes:
+            return [{}]
+        share = _spread(n, len(self.shapes))
+        columns = [shape.quantile(share[:, k]) for k, shape in enumerate(self.shapes)]
+        return [{s.name: float(c[i]) for s, c in zip(self.shapes, columns, strict=True)} for i in range(n)]
+
+
+def _spread(n: int, d: int) -> np.ndarray:
+    """n points of the unit cube, evenly spread (Kronecker sequence of the generalised golden ratio), the middle first."""
+    ratio = 2.0
+    for _ in range(60):
+        ratio = (1 + ratio) ** (1 / (d + 1))
+    steps = ratio ** -np.arange(1.0, d + 1)
+    points: np.ndarray = (0.5 + np.arange(n)[:, None] * steps[None, :]) % 1.0
+    return np.clip(points, 1e-3, 1 - 1e-3)

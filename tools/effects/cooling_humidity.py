@@ -1,0 +1,31 @@
+"""Cooling that follows the humidity of the room."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ...model.machines.spec import PartSpec
+from .cause import Cause, Rows, Size, Theta
+
+
+def conductance(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mapping[str, Any]:
+    """Extra conductance per test in proportion to the humidity above its mean; none where it is not measured."""
+    if rows is None or rows.humidity is None:
+        return {}
+    humidity = rows.per_test(rows.humidity)
+    return {"extra_humidity.G_ref": theta["G_ref"] * (humidity - np.mean(humidity)) / max(np.std(humidity), 1e-9)}
+
+
+CAUSE = Cause(
+    id="cooling.humidity",
+    doc="Cooling that changes from day to day with the humidity of the room.",
+    size=Size("G_ref", "W/K", "change of the conductance for one standard deviation of the humidity", 0.5, -4.0, 4.0),
+    exposes="humidity logged in every test, two days with the same point",
+    like="day to day: humidity and other scatter of the days are one answer unless humidity is measured",
+    parts=(PartSpec("extra_humidity", "ExtraConductor", {"G_ref": 0.0, "dT_ref": 35.0, "e": 0.0}),),
+    connections=(("extra_humidity.a", "surface.heat"), ("extra_humidity.b", "room.floor")),
+    values=conductance,
+)

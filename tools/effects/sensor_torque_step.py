@@ -1,0 +1,15 @@
+"""A torque transducer whose zero jumps once."""
+
+from .cause import Cause, Shape, Size
+from .instruments import after, changed
+
+CAUSE = Cause(
+    id="sensor.torque.step",
+    doc="Zero of a torque transducer that jumps at one moment of the campaign.",
+    size=Size("step", "N.m", "zero after the jump less zero before", 8.0, -80, 80),
+    shapes=(Shape("place", "1", "where in the running order", 0.1, 0.9),),
+    exposes="the first point repeated; a tare before each test",
+    readings=lambda theta, rows, r: changed(
+        r, loss=r["loss"] + theta["step"] * (after(rows, theta["place"]) - 0.5) * rows.direction
+    ),
+)
