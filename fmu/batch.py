@@ -14,6 +14,7 @@ import ctypes
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -85,20 +86,32 @@ class Rows:
 
 
 class Batch:
-    """A flat model, compiled for runs of many rows.
+    """A flat model for runs of many rows, compiled when the first of a kind is run.
 
     Args:
         flat: the model
-
-    Raises:
-        FmuError: the model has no C code, or the compiler fails
     """
 
     def __init__(self, flat: FlatModel) -> None:
         self.name = flat.name
         self.states, self.inputs, self.parameters = flat.states, flat.inputs, flat.parameters
         self.outputs = flat.outputs
-        self.steady_source, self.warmup_source = steady_source(flat), warmup_source(flat)
+        self._flat = flat
+
+    @cached_property
+    def steady_source(self) -> str:
+        """The C text for steady states."""
+        return steady_source(self._flat)
+
+    @cached_property
+    def warmup_source(self) -> str:
+        """The C text for warm-ups."""
+        return warmup_source(self._flat)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All but the symbols, which cannot be pickled and are in the C text."""
+        texts = {"steady_source": self.steady_source, "warmup_source": self.warmup_source}
+        return {name: value for name, value in self.__dict__.items() if name != "_flat"} | texts
 
     @property
     def columns(self) -> dict[str, tuple[str, int]]:
@@ -148,6 +161,7 @@ class Batch:
 
         Raises:
             ScenarioError: arrays of the wrong shape
+            FmuError: the model has no C code, or the compiler fails
         """
         n, vectors, sound = self._checked(u, p, start)
         home = np.array([q.start for q in self.inputs])
@@ -190,7 +204,7 @@ class Batch:
 
         Raises:
             ScenarioError: arrays of the wrong shape, names or values of the schedule that do not fit the model
-            FmuError: times outside the schedule
+            FmuError: times outside the schedule, the model has no C code, or the compiler fails
         """
         n, vectors, sound = self._checked(u, p, start)
         if problems := self._schedule_problems(schedule, tolerance):

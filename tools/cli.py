@@ -205,6 +205,46 @@ def show(
 
 @app.command()
 @console.guarded
+def sweep(
+    rig: Rig,
+    vary: Annotated[
+        list[str],
+        typer.Option(
+            help='NAME=LOW..HIGH, for example "carrier.tau=500..2700 N.m", or NAME~normal(MEAN, DEVIATION). Repeatable.'
+        ),
+    ],
+    out: Annotated[Path, typer.Option("-o", "--out", help="CSV or Parquet file to write.")],
+    sample: Annotated[int | None, typer.Option(help="Number of rows, spread at random.")] = None,
+    grid: Annotated[str | None, typer.Option(help="Rows of a grid, one number for each --vary, such as 20x10.")] = None,
+    method: Annotated[
+        Literal["lhs", "monte-carlo"], typer.Option(help="How a sample is spread; lhs is a Latin hypercube.")
+    ] = "lhs",
+    seed: Annotated[int, typer.Option(help="The same seed gives the same sample.")] = 0,
+    set_: Set = None,
+    output: Annotated[
+        list[str] | None, typer.Option(help="Outputs to keep, for example oil.T,efficiency.eta; all if left out.")
+    ] = None,
+    kind: Annotated[Literal["steady", "warmup"], typer.Option(help="Steady states, or courses over time.")] = "steady",
+    duty: Annotated[Path | None, typer.Option(help="Warm-up: CSV with time and inputs, the same for all rows.")] = None,
+    duration: Annotated[
+        str | None, typer.Option(help='Warm-up at constant inputs: how long, such as "330 min".')
+    ] = None,
+    every: Annotated[str | None, typer.Option(help="Warm-up: time between rows; only the end if left out.")] = None,
+    threads: Annotated[int, typer.Option(min=0, help="Threads to use; 0 for one per core.")] = 0,
+    scheduler: Annotated[
+        str | None, typer.Option(metavar="ADDRESS", help="Dask scheduler that spreads the rows over its workers.")
+    ] = None,
+    json: Json = None,
+) -> None:
+    """Many steady states or warm-ups at once: a grid, a Latin hypercube or chance; an interrupted sweep goes on."""
+    from . import sweep
+
+    options = (sample, grid, method, seed, set_ or [], output or [], kind, duty, duration, every)
+    sweep.command(sweep.Request(rig, vary, out, *options, threads, scheduler, json))
+
+
+@app.command()
+@console.guarded
 def bench(
     rig: Rig = "planetary",
     tests: Tests = None,
