@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections import Counter
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
 from html import escape
 
 from gearheat.model.core.flat import FlatModel
@@ -10,12 +12,32 @@ from gearheat.model.sources import sources
 from gearheat.model.units import text
 
 from .description import TOLERANCE, tool
+from .parameter_set import kind_of
+from .related import PARAMETERS
 from .variables import IMPLICIT, RESIDUAL, STORED, SUPPLIED, THROUGHPUT, VALIDITY, Table, Variable
+
+
+@dataclass(frozen=True)
+class About:
+    """What is known of a model beside its equations.
+
+    Args:
+        sources: parameter -> where its value is from
+        uncertainties: parameter -> standard uncertainty of its value, in the unit of the value
+        picture: the model drawn, as SVG
+        idle: parameters of the model that the FMU lacks because they have no effect
+    """
+
+    sources: Mapping[str, str] = field(default_factory=dict)
+    uncertainties: Mapping[str, float] = field(default_factory=dict)
+    picture: str = ""
+    idle: tuple[str, ...] = ()
+
 
 _STYLE = (
     "body{font:15px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;margin:1em 0}td,th{text-align:left;padding:.2em .8em .2em 0;"
-    "border-bottom:1px solid #ddd;vertical-align:top}code{background:#f3f3f3}"
+    "border-bottom:1px solid #ddd;vertical-align:top}code{background:#f3f3f3}svg{max-width:100%;height:auto}"
 )
 
 _USE = f"""
@@ -43,37 +65,92 @@ are is told once each in the log category <code>logStatusWarning</code>.</p>
 """
 
 
-def documentation(flat: FlatModel, table: Table) -> str:
-    """The page of an FMU."""
+_VERIFIED = """
+<p>The programs of the project check every release: the laws against numbers printed in their sources, every part for
+conservation of energy, the runs against closed forms and other integrators, the FMU against the rules of the standard,
+with FMPy and with an importer in C, in all call orders, with saved states, and against the model it was made from.</p>
+"""
+
+
+def documentation(
+    flat: FlatModel, table: Table, about: About | None = None, checks: Sequence[tuple[str, str]] = ()
+) -> str:
+    """The page of an FMU.
+
+    Args:
+        flat: the model
+        table: its variables
+        about: what else is known of it
+        checks: what was checked with this very FMU, and the result
+    """
+    about = about or About()
     implicit = f"<p><code>{IMPLICIT}</code> is what the implicit equations leave, in units of their typical size.</p>"
     parts = [
         f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(flat.name)}</title>',
         f"<style>{_STYLE}</style></head><body>\n<h1>{escape(flat.name)}</h1>\n<p>{escape(flat.doc)}</p>",
-        f"<p>Made by {escape(tool())}.</p>\n<h2>Use</h2>{_USE}\n<h2>Energy and validity</h2>{_AUDIT}",
+        f"<p>Made by {escape(tool())}.</p>",
+        f"<h2>Network</h2>\n{about.picture}" if about.picture else "",
+        f"<h2>Use</h2>{_USE}\n<h2>Energy and validity</h2>{_AUDIT}",
         implicit if flat.residual_names else "",
         *(_variables(title, table.of(kind)) for title, kind in _GROUPS),
+        _parameters(table.of("parameter"), about),
         _laws(flat),
         _ranges(flat),
+        _verification(flat, checks),
         "</body></html>\n",
     ]
     return "\n".join(part for part in parts if part)
 
 
-_GROUPS = (("Inputs", "input"), ("Outputs", "output"), ("States", "state"), ("Parameters", "parameter"))
+_GROUPS = (("Inputs", "input"), ("Outputs", "output"), ("States", "state"))
+
+
+def _cells(v: Variable) -> tuple[str, ...]:
+    return (
+        f"<code>{escape(v.name)}</code>",
+        escape(v.quantity.unit),
+        "" if v.start is None else escape(text(v.start, v.quantity.unit)),
+        escape(v.range_text if v.range_text != "finite" else ""),
+        escape(v.quantity.doc),
+    )
+
+
+_HEAD = ("name", "unit", "start", "range in that unit", "meaning")
 
 
 def _variables(title: str, variables: Iterable[Variable]) -> str:
-    rows = [
-        (
-            f"<code>{escape(v.name)}</code>",
-            escape(v.quantity.unit),
-            "" if v.start is None else escape(text(v.start, v.quantity.unit)),
-            escape(v.range_text if v.range_text != "finite" else ""),
-            escape(v.quantity.doc),
-        )
-        for v in variables
-    ]
-    return _table(title, ("name", "unit", "start", "range in that unit", "meaning"), rows)
+    return _table(title, _HEAD, [_cells(v) for v in variables])
+
+
+def _parameters(variables: Sequence[Variable], about: About) -> str:
+    """Parameters with what is known of their values, and those that are left out."""
+    if not about.sources and not about.uncertainties:
+        shown = _variables("Parameters", variables)
+    else:
+        rows = [
+            (*_cells(v), _uncertainty(v, about.uncertainties), escape(about.sources.get(v.name, ""))) for v in variables
+        ]
+        shown = _table("Parameters", (*_HEAD, "standard uncertainty", "source"), rows)
+        count = Counter(kind_of(about.sources[v.name]) for v in variables if v.name in about.sources)
+        count["without a source"] = len(variables) - count.total()
+        told = ", ".join(f"{number} {kind}" for kind, number in sorted(count.items()) if number)
+        shown += f"\n<p>Values by kind of source: {told}. <code>{PARAMETERS}</code> says the same for programs.</p>"
+    if about.idle:
+        names = ", ".join(f"<code>{escape(name)}</code>" for name in about.idle)
+        shown += f"\n<p>Without effect on anything this FMU shows, and therefore no parameters of it: {names}.</p>"
+    return shown
+
+
+def _uncertainty(v: Variable, known: Mapping[str, float]) -> str:
+    unit = v.quantity.unit.removesuffix("(difference)").strip()
+    return escape(f"{known[v.name]:.3g} {unit}".removesuffix(" 1")) if v.name in known else ""
+
+
+def _verification(flat: FlatModel, checks: Sequence[tuple[str, str]]) -> str:
+    compared = sum(law.verified for law in flat.laws)
+    own = [("laws that reproduce numbers printed in their source", f"{compared} of {len(flat.laws)}")]
+    rows = [(escape(what), escape(found)) for what, found in (*(own if flat.laws else ()), *checks)]
+    return _table("Verification", ("what was checked", "result"), rows, before=_VERIFIED)
 
 
 def _laws(flat: FlatModel) -> str:
@@ -93,8 +170,9 @@ def _ranges(flat: FlatModel) -> str:
     return _table("Ranges that are watched", ("component", "law", "argument", "range (SI)"), rows)
 
 
-def _table(title: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]]) -> str:
-    if not rows:
+def _table(title: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]], before: str = "") -> str:
+    if not rows and not before:
         return ""
     cells = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>\n" for row in rows)
-    return f"<h2>{title}</h2>\n<table><tr>{''.join(f'<th>{h}</th>' for h in head)}</tr>\n{cells}</table>"
+    table = f"<table><tr>{''.join(f'<th>{h}</th>' for h in head)}</tr>\n{cells}</table>" if rows else ""
+    return f"<h2>{title}</h2>{before}\n{table}"

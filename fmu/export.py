@@ -1,4 +1,27 @@
-"""Export of a flat model as an FMU for FMI 2.0 ModelExchange and CoSimulation."""
+"""Export of a flat model as an FMU for FMI 2.0 ModelExchange and CoSimulation.
+
+Any flat model will do: of a rig, of parts and nets, or written by hand like this capacitor behind a resistor, where
+`Quantity` names, explains and bounds each number of the model:
+
+    >>> import casadi as ca
+    >>> from gearheat.fmu.export import export
+    >>> from gearheat.model.core.flat import FlatModel, Quantity
+    >>> v, u, R, C = (ca.SX.sym(name) for name in "vuRC")
+    >>> i, none = (u - v) / R, ca.SX(0, 1)
+    >>> rc = FlatModel(
+    ...     name="rc",
+    ...     doc="a capacitor charged through a resistor",
+    ...     states=(Quantity("capacitor.v", "V", "voltage of the capacitor"),),
+    ...     inputs=(Quantity("source.v", "V", "voltage of the source", start=5.0),),
+    ...     parameters=(Quantity("R", "ohm", "resistance", start=2.0), Quantity("C", "F", "capacity", start=3.0)),
+    ...     outputs=(Quantity("i", "A", "current"),),
+    ...     x=v, u=u, p=ca.vertcat(R, C), ode=i / C, y=i,
+    ...     supply=u * i - R * i**2, throughput=ca.fabs(u * i) + R * i**2, stored=C * v**2 / 2,
+    ...     residual=none, residual_names=(), checks=(), checked=none, laws=(),
+    ... )
+    >>> export(rc, "rc.fmu", sources={"R": "data sheet of its maker, page 2"}).name
+    'rc.fmu'
+"""
 
 from __future__ import annotations
 
@@ -6,30 +29,54 @@ import hashlib
 import io
 import uuid
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 from gearheat.model.core.flat import FlatModel
 
 from .compiling import binary, platforms, store
 from .description import dependencies, description, identifier
-from .documentation import documentation
+from .documentation import About, documentation
+from .effective import effective
 from .equations import equations
 from .icon import icon
+from .parameter_set import parameter_set
+from .related import related
 from .source import GUID_MARK, source
-from .variables import table
+from .variables import Table, table
+
+#: A check that was made and its result.
+Check = tuple[str, str]
+
+_PAGE = "documentation/index.html"
 
 
 def export(
-    flat: FlatModel, path: Path | str, *, platform: str = "host", start: Mapping[str, float] | None = None
+    flat: FlatModel,
+    path: Path | str,
+    *,
+    platform: str = "host",
+    start: Mapping[str, float] | None = None,
+    sources: Mapping[str, str] | None = None,
+    uncertainties: Mapping[str, float] | None = None,
+    picture: str = "",
+    verify: Callable[[Path], Sequence[Check]] | None = None,
 ) -> Path:
-    """Write the FMU of a model. The same model gives the same bytes.
+    """Write a model as an FMU that serves co-simulation and model exchange. The same model gives the same bytes.
+
+    The FMU has the model's inputs, outputs and states under their paths, those of its parameters that have an effect
+    (see `effective`), the derivatives of the states, and an audit of the energy. Its solver is inside, and it needs no
+    file and no library but that of C.
 
     Args:
         flat: the model
-        path: file to write, usually ending in .fmu
+        path: file to write, usually ending in .fmu; its folder is made if need be
         platform: "host", "all", or names such as "linux64,win64" whose binaries the FMU shall hold
         start: start values (SI) of inputs, parameters and states that replace those of the model
+        sources: parameter -> where its value is from: a citation, or "assumed: ...", "inferred: ...", "calibrated: ..."
+        uncertainties: parameter -> standard uncertainty of its value, in the unit of the value
+        picture: the model drawn as SVG, for the documentation
+        verify: called with the finished file; the checks and results it gives are written into the documentation
 
     Returns:
         the path
@@ -37,25 +84,51 @@ def export(
     Raises:
         FmuError: a start value is wrong, the compiler fails, or the file cannot be written
     """
-    chosen = platforms(platform)
-    variables = table(flat, start)
+    path, chosen = Path(path), platforms(platform)
+    kept, variables = _exported(flat, dict(start or {}))
+    held = {q.name for q in kept.parameters}
+    idle = tuple(q.name for q in flat.parameters if q.name not in held)
+    about = About(sources or {}, uncertainties or {}, picture, idle)
+    code, told = _code(kept, variables)
+    content = {
+        "modelDescription.xml": told,
+        "model.png": icon(),
+        _PAGE: documentation(kept, variables, about).encode(),
+        "sources/all.c": code.encode(),
+        **_extra(kept, variables, about),
+        **{f"binaries/{p.name}/{identifier(flat.name)}{p.suffix}": binary(code, p) for p in chosen},
+    }
+    store(path, archive(content))
+    if verify is not None:
+        checked = documentation(kept, variables, about, verify(path))
+        store(path, archive({**content, _PAGE: checked.encode()}))
+    return path
+
+
+def _exported(flat: FlatModel, start: Mapping[str, float]) -> tuple[FlatModel, Table]:
+    """The model without idle parameters, and its variables with their start values."""
+    table(flat, start)  # tells all that is wrong, also with parameters that are idle
+    kept = effective(flat, start)
+    known = {q.name for q in (*kept.states, *kept.inputs, *kept.parameters)}
+    return kept, table(kept, {name: value for name, value in start.items() if name in known})
+
+
+def _code(flat: FlatModel, variables: Table) -> tuple[str, bytes]:
+    """The C source and the description, with the identification that follows from both."""
     model = equations(flat)
     code = source(flat, model, variables)
-    dependent = dependencies(model, variables)
-    unnamed = description(flat, model, variables, GUID_MARK, dependent)
+    unnamed = description(flat, model, variables, GUID_MARK, dependencies(model, variables))
     guid = _guid(code.encode() + unnamed)
-    code = code.replace(GUID_MARK, guid)
-    content = {
-        "modelDescription.xml": unnamed.replace(GUID_MARK.encode(), guid.encode()),
-        "model.png": icon(),
-        "documentation/index.html": documentation(flat, variables).encode(),
-        "sources/all.c": code.encode(),
-    }
-    for p in chosen:
-        content[f"binaries/{p.name}/{identifier(flat.name)}{p.suffix}"] = binary(code, p)
-    path = Path(path)
-    store(path, archive(content))
-    return path
+    return code.replace(GUID_MARK, guid), unnamed.replace(GUID_MARK.encode(), guid.encode())
+
+
+def _extra(flat: FlatModel, variables: Table, about: About) -> dict[str, bytes]:
+    """What a receiver needs to judge the values."""
+    parameters = [v.quantity for v in variables.of("parameter")]
+    doc = f"start values of {flat.name}"
+    return related(
+        parameter_set(flat.name, parameters, doc=doc, sources=about.sources, uncertainties=about.uncertainties)
+    )
 
 
 def _guid(content: bytes) -> str:
