@@ -15,6 +15,7 @@
     V = "1 l"
     source = "Dias2014, section 4.2"      # of every value of the table ...
     sources = { V = "assumed: one litre" }  # ... that has none of its own
+    uncertainties = { V = "0.1 l" }       # one standard deviation, where it is known
 
     [part.cooler]                         # a part of one's own has a type; a "network" has no others
     type = "ThermalConductor"
@@ -163,6 +164,7 @@ class _Loader:
             sensors=dict(self.table.sensors),
             losses={column: tuple(summed) for column, summed in self.table.losses.items()},
             value_sources=self.value_sources,
+            uncertainties={f"{name}.{key}": u for name, part in parts.items() for key, u in part.uncertainties.items()},
             overrides=tuple(o for part in parts.values() for o in part.overrides),
             entries={name: part.entries for name, part in parts.items() if part.entries},
             errata=tuple(Erratum(e.place, e.says, e.should_be, e.evidence) for e in self.table.errata),

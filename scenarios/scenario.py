@@ -36,6 +36,7 @@ class Scenario:
         sensors: column of a measured table -> path in the model
         losses: column of the losses table -> outputs that are summed
         value_sources: path -> where its value is from
+        uncertainties: path -> standard uncertainty of its value in SI, where the rig states one
         overrides: values that stand in the place of their catalogue's
         entries: part -> kind of catalogue -> name of the entry it was filled from
         protocol: how measured tables of this rig were taken; `campaign` is the one it comes with
@@ -51,6 +52,7 @@ class Scenario:
     sensors: Mapping[str, str] = field(default_factory=dict)
     losses: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     value_sources: Mapping[str, str] = field(default_factory=dict)
+    uncertainties: Mapping[str, float] = field(default_factory=dict)
     overrides: tuple[Override, ...] = ()
     entries: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     errata: tuple[Erratum, ...] = ()
@@ -82,6 +84,7 @@ class Scenario:
             spec=self.spec.with_values(values),
             operating_point={**self.operating_point, **moved},
             value_sources={**self.value_sources, **dict.fromkeys(values, source)},
+            uncertainties={path: value for path, value in self.uncertainties.items() if path not in values},
         )
 
     def driven(self, given: Mapping[str, Iterable[str]]) -> Scenario:

@@ -10,11 +10,14 @@ from typing import Any
 from ..model.core.component import Component
 from ..model.core.declare import Choice, Declaration, Input, Output, Parameter, State, declared
 from ..model.core.flat import Quantity
-from ..model.errors import GearheatError, ScenarioError
+from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.parts import PARTS
 from ..model.units import to_si
 from .document import ABOUT, sources_of
 from .entries import FILES, Entry, entry
+
+#: Key of the table of standard uncertainties of a part.
+UNCERTAINTIES = "uncertainties"
 
 
 @dataclass(frozen=True)
@@ -29,10 +32,14 @@ class Override:
 
 @dataclass(frozen=True)
 class PartValues:
-    """What the table of one part gives: SI values and choices, where each is from, and all that is wrong."""
+    """What the table of one part gives: SI values and choices, where each is from, and all that is wrong.
+
+    `uncertainties` holds the standard uncertainty of the values that state one, in the unit of the value.
+    """
 
     values: dict[str, Any] = field(default_factory=dict)
     sources: dict[str, str] = field(default_factory=dict)
+    uncertainties: dict[str, float] = field(default_factory=dict)
     entries: dict[str, str] = field(default_factory=dict)
     overrides: list[Override] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
@@ -87,7 +94,7 @@ def part_values(where: str, name: str, cls: type[Component], table: Mapping[str,
         where: place of the table, for messages
         name: name of the part
         cls: its type
-        table: keys as written: declared names, choices, catalogue names, `source` and `sources`
+        table: keys as written: declared names, choices, catalogue names, `source`, `sources` and `uncertainties`
     """
     reader = _PartReader(where, name, cls)
     reader.read(table)
@@ -107,13 +114,14 @@ class _PartReader:
 
     def read(self, table: Mapping[str, Any]) -> None:
         kinds = [key for key in table if key in FILES and key not in self.declarations]
-        own = {key: raw for key, raw in table.items() if key not in (*ABOUT, *kinds)}
-        sourced = {key: raw for key, raw in table.items() if key not in kinds}
+        own = {key: raw for key, raw in table.items() if key not in (*ABOUT, UNCERTAINTIES, *kinds)}
+        sourced = {key: raw for key, raw in table.items() if key not in (UNCERTAINTIES, *kinds)}
         sources, problems = sources_of(self.where, sourced, self.meanings)
         self.result.problems.extend(problems)
         complete = all([self._take_entry(kind, table[kind]) for kind in kinds])
         taken = [key for key, raw in own.items() if self._take(key, raw)]
         self.result.sources.update({key: sources[key] for key in taken if key in sources})
+        self._take_uncertainties(table.get(UNCERTAINTIES, {}))
         self._check_component(complete, {*own} - {*taken})
 
     def _take_entry(self, kind: str, name: object) -> bool:
@@ -153,6 +161,30 @@ class _PartReader:
             self.result.overrides.append(Override(f"{self.name}.{key}", value, values[key], entries))
         values[key] = value
         return True
+
+    def _take_uncertainties(self, table: object) -> None:
+        """Take the standard uncertainties of values of this part; that of a temperature is a difference."""
+        problems = self.result.problems
+        if not isinstance(table, Mapping):
+            problems.append(f'{self.where}: {UNCERTAINTIES} = {table!r} is no table. Write {{ key = "0.2 W/K" }}.')
+            return
+        known = [key for key in self.declarations if key in self.result.values]
+        for key, raw in table.items():
+            name = f"{self.where}: uncertainty of {key}"
+            if key not in known:
+                close = suggestion(key, known) or f" Values: {', '.join(known)}."
+                problems.append(f"{name}: the part has no such value.{close}")
+                continue
+            unit = self.declarations[key].unit
+            try:
+                value = to_si(raw, f"{unit} (difference)" if unit == "K" else unit, name=name)
+            except GearheatError as error:
+                problems.extend(error.problems)
+                continue
+            if value >= 0:
+                self.result.uncertainties[key] = value
+            else:
+                problems.append(f"{name} = {raw!r} is below zero. Give one standard deviation.")
 
     def _unknown(self, key: str) -> str:
         if (name := meant(key, self.meanings)) is None:

@@ -10,7 +10,7 @@ from ..model.core.declare import Choice, declared
 from ..model.machines.spec import PartSpec
 from ..model.parts import PARTS
 from .scenario import Scenario
-from .values import settable
+from .values import UNCERTAINTIES, settable
 
 #: Choices that follow from [drive].
 _DRIVEN = ("given", "dynamic")
@@ -34,7 +34,8 @@ def _lines(scenario: Scenario) -> Iterator[str]:
     for part in scenario.spec.parts:
         values = _part_values(part)
         sources = {key: _source(scenario, f"{part.name}.{key}") for key in values}
-        yield from _table(f"part.{part.name}", {"type": part.type} | values, sources=sources)
+        uncertainties = _uncertainties(scenario, part)
+        yield from _table(f"part.{part.name}", {"type": part.type} | values, sources=sources, more=uncertainties)
     yield from _table("connect", {f"net_{i}": ports for i, ports in enumerate(scenario.spec.connections, 1)})
     yield from _table("sensors", scenario.sensors)
     yield from _table("losses", scenario.losses)
@@ -54,6 +55,14 @@ def _part_values(part: PartSpec) -> dict[str, Any]:
     return values | {k: v for k, v in part.values.items() if k in choices and k not in _DRIVEN}
 
 
+def _uncertainties(scenario: Scenario, part: PartSpec) -> dict[str, Any]:
+    """Standard uncertainties of a part with units, as an inline table of the rig file."""
+    declarations = settable(PARTS[part.type])
+    known = {key: scenario.uncertainties.get(f"{part.name}.{key}") for key in part.values if key in declarations}
+    found = {key: _value(u, declarations[key].unit) for key, u in known.items() if u is not None}
+    return {UNCERTAINTIES: found} if found else {}
+
+
 def _value(value: float, unit: str) -> Any:
     return value if unit == "1" else f"{float(value)!r} {unit}"
 
@@ -62,13 +71,20 @@ def _source(scenario: Scenario, path: str) -> str:
     return scenario.value_sources.get(path, _EXTENSION)
 
 
-def _table(name: str, entries: Mapping[str, Any], *, sources: Mapping[str, str] | None = None) -> Iterable[str]:
-    """A table, with the sources of its values as an inline table; nothing for an empty one."""
+def _table(
+    name: str,
+    entries: Mapping[str, Any],
+    *,
+    sources: Mapping[str, str] | None = None,
+    more: Mapping[str, Mapping[str, Any]] | None = None,
+) -> Iterable[str]:
+    """A table, with the sources of its values and whatever else is known of them as inline tables; none if empty."""
     if not entries:
         return []
     lines = ["", f"[{name}]", *(f"{_key(key)} = {_toml(value)}" for key, value in entries.items())]
-    said = ", ".join(f"{_key(key)} = {_toml(source)}" for key, source in (sources or {}).items())
-    return [*lines, f"sources = {{ {said} }}"] if said else lines
+    inline = {"sources": sources or {}, **(more or {})}
+    said = {n: ", ".join(f"{_key(key)} = {_toml(value)}" for key, value in t.items()) for n, t in inline.items()}
+    return [*lines, *(f"{n} = {{ {text} }}" for n, text in said.items() if text)]
 
 
 def _key(key: str) -> str:

@@ -15,7 +15,17 @@ def test_what_is_written_loads_as_the_same_machine(name: str, tmp_path: Path) ->
     (path := tmp_path / f"{name}.toml").write_text(rig_text(scenario), encoding="utf-8")
     again = load(path)
     assert again.spec == scenario.spec
-    for same in ("doc", "given", "operating_point", "sensors", "losses", "value_sources", "errata", "protocol"):
+    for same in (
+        "doc",
+        "given",
+        "operating_point",
+        "sensors",
+        "losses",
+        "value_sources",
+        "uncertainties",
+        "errata",
+        "protocol",
+    ):
         assert getattr(again, same) == getattr(scenario, same), same
     assert rig_text(again).splitlines()[1:] == rig_text(scenario).splitlines()[1:]
 
