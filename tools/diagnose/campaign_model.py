@@ -17,6 +17,8 @@ from .superset import as_read, superset
 
 #: Share of the dwell before its end at which a second sample is taken, for readings that were not stationary.
 EARLY = 0.15
+#: Of the solver's local error: 1e-4 of 10 K, far below any probe.
+TOLERANCE = 1e-4
 #: Channel -> what the model says of it.
 OUTPUTS = {"T_oil": "oil.T", "T_wall": "wall.T", "loss": "efficiency.tau_loss"}
 
@@ -81,7 +83,7 @@ class CampaignModel:
         ends = zip(run.moments, dwell, strict=True)
         times = [t for end, length in ends for t in (end - EARLY * length, end, end)]  # twice: both sides of a jump
         start = np.full(self.rig.n_states, run.T_start)
-        rows = self.rig.batch.warmup(run.schedule, self.rig.inputs, p, start, times=times)
+        rows = self.rig.batch.warmup(run.schedule, self.rig.inputs, p, start, times=times, tolerance=TOLERANCE)
         if rows.status.any():
             bad = int(np.flatnonzero(rows.status)[0])
             raise SolveError(f"test {self.tests[k].number}: the model cannot be run with {variants[bad]}.")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -153,22 +153,34 @@ class Problem:
             found.append(c.channels.stack(shown))
         return np.stack(found, axis=1)
 
+    def nuisances(self, linear: Linear, residual: np.ndarray) -> np.ndarray:
+        """The most likely nuisances for a residual, by a linearisation."""
+        J = linear.jacobian
+        weighted = cho_solve(cho_factor(linear.noise), J)
+        return np.asarray(np.linalg.solve(J.T @ weighted + np.eye(J.shape[1]), weighted.T @ residual))
+
     def settled(
-        self, z: np.ndarray | None = None, theta: Mapping[str, Theta] | None = None, causes: Sequence[Cause] = ()
+        self,
+        z: np.ndarray | None = None,
+        theta: Mapping[str, Theta] | None = None,
+        causes: Sequence[Cause] = (),
+        steps: int = MOST_STEPS,
     ) -> Linear:
-        """Gauss-Newton on the nuisances to convergence, causes held."""
+        """Gauss-Newton on the nuisances, causes held: to convergence, or so many steps."""
         linear = self.linearised(np.zeros(len(self.parameters.names)) if z is None else z, theta, causes)
-        for _ in range(MOST_STEPS):
-            factor = cho_factor(linear.noise)
-            J = linear.jacobian
-            weighted = cho_solve(factor, J)
-            new = np.linalg.solve(J.T @ weighted + np.eye(J.shape[1]), weighted.T @ linear.residual)
+        for _ in range(steps - 1):
+            new = self.nuisances(linear, linear.residual)
             new = linear.z + np.clip(new - linear.z, -1.5, 1.5)
             moved = float(np.abs(new - linear.z).max())
             linear = self.linearised(new, theta, causes)
             if moved < SETTLED:
                 break
         return linear
+
+    def without(self, linear: Linear) -> Linear:
+        """A linearisation made with causes acting, with their effect put back into the residual."""
+        healthy = self.shown([linear.values])[:, 0]
+        return replace(linear, residual=linear.residual + linear.nominal - healthy)
 
     def signatures(self, linear: Linear, wanted: Sequence[tuple[Cause, Theta, float]]) -> np.ndarray:
         """Change of all readings per unit of size, for causes of given form, as a secant to a given size (m, k)."""

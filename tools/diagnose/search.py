@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from itertools import combinations
 
 import numpy as np
@@ -12,34 +12,36 @@ from scipy.stats import chi2
 
 from ..effects.cause import Cause, Theta
 from ..effects.library import CAUSES
-from .evidence import White, log_bayes_factors, log_bayes_factors_pair, score
+from .evidence import WIDTHS, White, log_bayes_factors, log_bayes_factors_pair, score
 from .problem import Linear, Problem
 
-#: Forms of each family in the first look and for leaders.
-FORMS, FORMS_LEADER, FORMS_PAIR = 10, 32, 14
-#: Leading singles searched for pairs, and hypotheses looked at again.
-PAIR_LEADERS, AGAIN = 8, 5
-#: Prior odds of one pair of causes against one single cause; and of something outside the library.
-PAIR_ODDS, UNKNOWN_ODDS = 0.02, 1.0
+#: Forms of each family in the first look, for leaders, and for each side of a leading pair.
+FORMS, FORMS_LEADER, FORMS_PAIR = 10, 40, 16
+#: Leading singles searched for pairs; leading hypotheses looked at again.
+PAIR_LEADERS, AGAIN = 8, 6
+#: Prior probabilities: nothing wrong, one cause, two causes, something outside the library.
+NONE, ONE, TWO, OUTSIDE = 0.5, 0.4, 0.06, 0.04
 DRAWS = 4000
+#: Sizes of an unnamed smooth discrepancy, in multiples of its unit: 1 K, 2 N.m.
+UNNAMED = (0.7, 1.5, 3.0)
 
 
 @dataclass(frozen=True)
 class Family:
-    """All forms of one cause as signatures at one linearisation."""
+    """All forms of one cause as signatures at one linearisation; `white` are they in units of the scatter."""
 
     cause: Cause
     forms: Sequence[Theta]
     signatures: np.ndarray
+    white: np.ndarray
     s: np.ndarray
     q: np.ndarray
-    white: np.ndarray
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Bounds of the size, one per form."""
-        size = self.cause.size
-        return np.full(len(self.forms), size.low), np.full(len(self.forms), size.high)
+        n = len(self.forms)
+        return np.full(n, self.cause.size.low), np.full(n, self.cause.size.high)
 
     @property
     def sd(self) -> np.ndarray:
@@ -47,27 +49,40 @@ class Family:
         return np.full(len(self.forms), self.cause.size.sd)
 
     def log_bf(self) -> np.ndarray:
-        """Log Bayes factor of each form."""
+        """Log Bayes factor of each form against no cause."""
         return log_bayes_factors(self.s, self.q, self.sd, *self.bounds)
 
     def evidence(self) -> float:
         """Log Bayes factor of the family."""
         return float(logsumexp(self.log_bf()) - np.log(len(self.forms)))
 
-    def best(self) -> tuple[Theta, float]:
-        """Form of most evidence and its size."""
-        k = int(np.argmax(self.log_bf()))
-        return self.forms[k], float(np.clip(self.s[k] / max(self.q[k], 1e-300), *(b[k] for b in self.bounds)))
+    def weights(self) -> np.ndarray:
+        """Posterior weight of each form."""
+        log_bf = self.log_bf()
+        return np.asarray(np.exp(log_bf - logsumexp(log_bf)))
+
+    def sizes(self) -> tuple[np.ndarray, np.ndarray]:
+        """Posterior mean and standard deviation of the size, per form, under a wide prior."""
+        variance = 1 / (self.q + 1 / (WIDTHS[-1] * self.sd) ** 2)
+        return np.clip(variance * self.s, *self.bounds), np.sqrt(variance)
+
+    def best(self) -> int:
+        """The form of most evidence."""
+        return int(np.argmax(self.log_bf()))
+
+    def theta(self, k: int, size: float) -> Theta:
+        """Parameters of a form with a size."""
+        return {**self.forms[k], self.cause.size.name: size}
 
 
 @dataclass(frozen=True)
 class Hypothesis:
-    """A set of causes with its log evidence and, per cause, its fitted parameters."""
+    """A set of causes: log evidence with its prior, fitted parameters, and the families at their linearisation."""
 
     causes: tuple[str, ...]
-    log_evidence: float
+    log_posterior: float
     theta: Mapping[str, Theta] = field(default_factory=dict)
-    sd: Mapping[str, float] = field(default_factory=dict)
+    families: tuple[Family, ...] = ()
     linear: Linear | None = None
 
 
@@ -77,150 +92,169 @@ def log_gauss(white: White) -> float:
 
 
 def families(
-    problem: Problem, linear: Linear, white: White, causes: Sequence[Cause], n: int, sizes: Mapping[str, float]
+    problem: Problem, linear: Linear, white: White, causes: Iterable[Cause], n: int, sizes: Mapping[str, float]
 ) -> dict[str, Family]:
     """Signatures of n forms of each cause, as secants to the given sizes (the prior's half width where none is)."""
-    wanted: list[tuple[Cause, Theta, float]] = []
-    for cause in causes:
-        size = sizes.get(cause.id, cause.size.sd)
-        wanted += [(cause, form, size) for form in cause.forms(n if cause.shapes else 1)]
+    forms = {cause.id: (cause, cause.forms(n if cause.shapes else 1)) for cause in causes}
+    wanted = [(cause, form, sizes.get(cause.id, cause.size.sd)) for cause, own in forms.values() for form in own]
     G = problem.signatures(linear, wanted)
     whitened = white.columns(G)
     found, begin = {}, 0
-    for cause in causes:
-        forms = [form for c, form, _ in wanted if c is cause]
-        part = slice(begin, begin + len(forms))
+    for cause, own in forms.values():
+        part = slice(begin, begin + len(own))
         g = whitened[:, part]
-        found[cause.id] = Family(cause, forms, G[:, part], g.T @ white.e, (g**2).sum(axis=0), g)
-        begin += len(forms)
+        found[cause.id] = Family(cause, own, G[:, part], g, g.T @ white.e, (g**2).sum(axis=0))
+        begin += len(own)
     return found
-
-
-def p_any(found: Mapping[str, Family], white: White, seed: int) -> float:
-    """Family-wise p of the largest directed score, by drawing residuals without any cause."""
-    observed = max(float(score(f.s, f.q, *f.bounds).max()) for f in found.values())
-    draws = np.random.default_rng(seed).standard_normal((DRAWS, len(white.e)))
-    largest = np.zeros(DRAWS)
-    for f in found.values():
-        low, high = f.bounds
-        largest = np.maximum(largest, score(draws @ f.white, f.q, low, high).max(axis=1))
-    return float((1 + (largest >= observed).sum()) / (DRAWS + 1))
 
 
 def pair_evidence(a: Family, b: Family) -> tuple[float, tuple[int, int]]:
     """Log Bayes factor of two families together, and the forms of most evidence."""
     log_bf = log_bayes_factors_pair((a.s, b.s), (a.q, b.q), a.white.T @ b.white, (a.sd, b.sd), (a.bounds, b.bounds))
-    k, l = np.unravel_index(int(np.argmax(log_bf)), log_bf.shape)  # noqa: E741
-    return float(logsumexp(log_bf) - np.log(log_bf.size)), (int(k), int(l))
+    k, m = np.unravel_index(int(np.argmax(log_bf)), log_bf.shape)
+    return float(logsumexp(log_bf) - np.log(log_bf.size)), (int(k), int(m))
 
 
-def pair_sizes(a: Family, b: Family, k: int, l: int) -> tuple[float, float]:  # noqa: E741
-    """Most likely sizes of two forms together, with their priors."""
-    A = np.array([[a.q[k], a.white[:, k] @ b.white[:, l]], [0.0, b.q[l]]])
-    A[1, 0] = A[0, 1]
-    A += np.diag([1 / (2 * a.cause.size.sd) ** 2, 1 / (2 * b.cause.size.sd) ** 2])
-    x, y = np.linalg.solve(A, [a.s[k], b.s[l]])
-    return float(np.clip(x, a.cause.size.low, a.cause.size.high)), float(
-        np.clip(y, b.cause.size.low, b.cause.size.high)
-    )
+def pair_theta(a: Family, b: Family, k: int, m: int) -> dict[str, Theta]:
+    """Two forms with their most likely sizes together."""
+    cross = a.white[:, k] @ b.white[:, m]
+    prior = [1 / (WIDTHS[-1] * f.cause.size.sd) ** 2 for f in (a, b)]
+    x, y = np.linalg.solve([[a.q[k] + prior[0], cross], [cross, b.q[m] + prior[1]]], [a.s[k], b.s[m]])
+    found = {}
+    for f, form, size in ((a, k, x), (b, m, y)):
+        found[f.cause.id] = f.theta(form, float(np.clip(size, f.cause.size.low, f.cause.size.high)))
+    return found
 
 
-@dataclass
 class Search:
-    """The whole search on one problem."""
+    """The search on one problem; `run` fills null, families, p values and hypotheses."""
 
-    problem: Problem
-    seed: int = 0
-    causes: Sequence[Cause] = field(default_factory=lambda: list(CAUSES.values()))
+    def __init__(self, problem: Problem, seed: int = 0, progress: Callable[[str, float], None] | None = None) -> None:
+        self.problem, self.seed = problem, seed
+        self.causes = [c for c in CAUSES.values() if visible(c, problem)]
+        self.progress = progress or (lambda stage, share: None)
 
     def run(self) -> None:
-        """Fill the results."""
+        """Everything."""
+        self.progress("calibrating without a cause", 0.0)
         self.null = self.problem.settled()
         self.white = White.of(self.null.residual, self.null.covariance)
-        self.base = log_gauss(self.white)
+        self.progress("effects of all causes", 0.15)
         self.found = families(self.problem, self.null, self.white, self.causes, FORMS, {})
-        self.p_any = p_any(self.found, self.white, self.seed)
+        self.p_any, self.critical = self._alarm()
         self.p_omnibus = float(chi2.sf(self.white.e @ self.white.e, len(self.white.e)))
         first = self._first_look()
-        self.hypotheses = sorted(self._again(first), key=lambda h: -h.log_evidence)
+        self.hypotheses = sorted(self._again(first), key=lambda h: -h.log_posterior)
+        self.progress("hypotheses weighed", 0.8)
+
+    def probabilities(self) -> np.ndarray:
+        """Of each hypothesis, in order; what is missing to 1 lies outside the library."""
+        logs = np.array([h.log_posterior for h in self.hypotheses])
+        return np.asarray(np.exp(logs - np.logaddexp(logsumexp(logs), self.outside)))
+
+    def _alarm(self) -> tuple[float, float]:
+        """Family-wise p of the largest directed score, by drawing residuals without any cause; and its 95 % point."""
+        observed = max(float(score(f.s, f.q, *f.bounds).max()) for f in self.found.values())
+        draws = np.random.default_rng(self.seed).standard_normal((DRAWS, len(self.white.e)))
+        largest = np.zeros(DRAWS)
+        for f in self.found.values():
+            largest = np.maximum(largest, score(draws @ f.white, f.q, *f.bounds).max(axis=1))
+        return float((1 + (largest >= observed).sum()) / (DRAWS + 1)), float(np.quantile(largest, 0.95))
 
     def _first_look(self) -> list[Hypothesis]:
+        base = log_gauss(self.white)
+        self.outside = self._unnamed() + np.log(OUTSIDE)
+        prior = np.log(ONE / len(self.causes))
         singles = []
         for f in self.found.values():
-            form, size = f.best()
-            singles.append(
-                Hypothesis((f.cause.id,), self.base + f.evidence(), {f.cause.id: {**form, f.cause.size.name: size}})
-            )
-        singles.sort(key=lambda h: -h.log_evidence)
-        pairs = []
+            k = f.best()
+            theta = {f.cause.id: f.theta(k, float(f.sizes()[0][k]))}
+            singles.append(Hypothesis((f.cause.id,), base + f.evidence() + prior, theta, (f,), self.null))
+        singles.sort(key=lambda h: -h.log_posterior)
+        return [Hypothesis((), base + np.log(NONE), linear=self.null), *singles, *self._pairs(singles, base)]
+
+    def _pairs(self, singles: Sequence[Hypothesis], base: float) -> list[Hypothesis]:
+        n = len(self.causes)
+        prior, found = np.log(TWO / (n * (n - 1) / 2)), []
         for x, y in combinations([h.causes[0] for h in singles[:PAIR_LEADERS]], 2):
             a, b = self.found[x], self.found[y]
             if a.cause.like and a.cause.like == b.cause.like:
                 continue
-            value, (k, l) = pair_evidence(a, b)  # noqa: E741
-            sizes = pair_sizes(a, b, k, l)
-            theta = {x: {**a.forms[k], a.cause.size.name: sizes[0]}, y: {**b.forms[l], b.cause.size.name: sizes[1]}}
-            pairs.append(Hypothesis((x, y), self.base + value + np.log(PAIR_ODDS), theta))
-        pairs.sort(key=lambda h: -h.log_evidence)
-        return [Hypothesis((), self.base), *singles, *pairs]
+            value, (k, m) = pair_evidence(a, b)
+            found.append(Hypothesis((x, y), base + value + prior, pair_theta(a, b, k, m), (a, b), self.null))
+        return found
+
+    def _unnamed(self) -> float:
+        """Log evidence of a smooth discrepancy in the acting campaign that no cause of the library makes."""
+        c, part = self.problem.data, self.problem.place(self.problem.data)
+        rows = c.model.rows
+        features = np.stack(
+            [(rows.w - 18.0) / 5.0, (rows.tau - 2100.0) / 450.0, rows.direction, 2 * rows.order], axis=1
+        )
+        kernel = np.exp(-0.5 * ((features[:, None, :] - features[None, :, :]) ** 2).sum(axis=2))
+        logs = []
+        for T in UNNAMED:
+            for loss in UNNAMED:
+                extra = np.zeros_like(self.null.covariance)
+                for name in c.channels.names:
+                    place = c.channels.part(name)
+                    block = slice(part.start + place.start, part.start + place.stop)
+                    extra[block, block] = kernel * ((2 * loss) ** 2 if name == "loss" else T**2)
+                logs.append(log_gauss(White.of(self.null.residual, self.null.covariance + extra)))
+        return float(logsumexp(logs) - np.log(len(logs)))
 
     def _again(self, first: Sequence[Hypothesis]) -> list[Hypothesis]:
-        """Leaders with nuisances settled where the cause acts, and more forms of its family."""
-        ranked = sorted((h for h in first if h.causes), key=lambda h: -h.log_evidence)
-        leaders = ranked[:AGAIN]
-        rest = [h for h in first if h not in leaders]
-        return [*rest, *(self._refined(h) for h in leaders if h.causes)]
+        """Leaders again, with nuisances where the cause acts and more forms of its family."""
+        ranked = sorted((h for h in first if h.causes), key=lambda h: -h.log_posterior)
+        best = max(h.log_posterior for h in first)
+        leaders = [
+            h for h in ranked[:AGAIN] if h.log_posterior > best - 6.0 and h.log_posterior > first[0].log_posterior - 1.0
+        ]
+        kept = [h for h in first if h not in leaders]
+        for k, h in enumerate(leaders):
+            self.progress(f"looking again at {' and '.join(h.causes)}", 0.4 + 0.4 * k / len(leaders))
+            kept.append(self._refined(h))
+        return kept
 
     def _refined(self, h: Hypothesis) -> Hypothesis:
         causes = [CAUSES[c] for c in h.causes]
-        theta = dict(h.theta)
-        for _ in range(2):
-            linear = self.problem.settled(self.null.z, theta, causes)
-            white, found, value, theta, sd = self._at(linear, causes, theta)
-        return Hypothesis(h.causes, value, theta, sd, linear)
-
-    def _at(self, linear: Linear, causes: Sequence[Cause], theta: Mapping[str, Theta]):
-        """Evidence at a linearisation that holds the causes: their effect is put back, then explained by all forms."""
-        n = FORMS_LEADER if len(causes) == 1 else FORMS_PAIR
-        sizes = {c.id: _safe(theta[c.id][c.size.name], c) for c in causes}
-        held = linear.nominal - self._healthy(linear)
-        back = Linear(
-            linear.z,
-            linear.values,
-            linear.nominal,
-            linear.residual + held,
-            linear.covariance,
-            linear.jacobian,
-            linear.noise,
-        )
+        linear = self.problem.settled(self._shifted(h), h.theta, causes, steps=1)
+        back = self.problem.without(linear)
         white = White.of(back.residual, back.covariance)
+        n = FORMS_LEADER if len(causes) == 1 else FORMS_PAIR
+        sizes = {c.id: sound(h.theta[c.id][c.size.name], c) for c in causes}
         found = families(self.problem, back, white, causes, n, sizes)
+        base = log_gauss(white)
         if len(causes) == 1:
             f = found[causes[0].id]
-            form, size = f.best()
-            value = log_gauss(white) + f.evidence()
-            k = int(np.argmax(f.log_bf()))
-            return (
-                white,
-                found,
-                value,
-                {causes[0].id: {**form, causes[0].size.name: size}},
-                {causes[0].id: float(f.q[k] ** -0.5)},
-            )
-        a, b = (found[c.id] for c in causes)
-        gain, (k, l) = pair_evidence(a, b)  # noqa: E741
-        x, y = pair_sizes(a, b, k, l)
-        new = {a.cause.id: {**a.forms[k], a.cause.size.name: x}, b.cause.id: {**b.forms[l], b.cause.size.name: y}}
-        sd = {a.cause.id: float(a.q[k] ** -0.5), b.cause.id: float(b.q[l] ** -0.5)}
-        return white, found, log_gauss(white) + gain + np.log(PAIR_ODDS), new, sd
+            k = f.best()
+            theta: dict[str, Theta] = {f.cause.id: f.theta(k, float(f.sizes()[0][k]))}
+            value = base + f.evidence() + np.log(ONE / len(self.causes))
+        else:
+            a, b = (found[c.id] for c in causes)
+            gain, (k, m) = pair_evidence(a, b)
+            theta, n_all = pair_theta(a, b, k, m), len(self.causes)
+            value = base + gain + np.log(TWO / (n_all * (n_all - 1) / 2))
+        return replace(h, log_posterior=float(value), theta=theta, families=tuple(found.values()), linear=linear)
 
-    def _healthy(self, linear: Linear) -> np.ndarray:
-        return self.problem.shown([linear.values])[:, 0]
+    def _shifted(self, h: Hypothesis) -> np.ndarray:
+        """Nuisances under a hypothesis, by the null's linearisation."""
+        residual = self.null.residual.copy()
+        for f in h.families:
+            theta = h.theta[f.cause.id]
+            k = next(i for i, form in enumerate(f.forms) if all(theta[n] == v for n, v in form.items()))
+            residual -= f.signatures[:, k] * theta[f.cause.size.name]
+        return self.problem.nuisances(self.null, residual)
 
 
-def _safe(size: float, cause: Cause) -> float:
-    """A size for a secant: not zero, inside the bounds."""
+def visible(cause: Cause, problem: Problem) -> bool:
+    """Whether the data hold what the cause needs."""
+    return cause.id != "cooling.humidity" or problem.data.model.rows.humidity is not None
+
+
+def sound(size: float, cause: Cause) -> float:
+    """A size for a secant: not near zero, inside the bounds."""
     least = 0.2 * cause.size.sd
     if abs(size) >= least:
         return size
-    return least if cause.size.high >= least and size >= 0 else -least if cause.size.low <= -least else least
+    return -least if size < 0 and cause.size.low <= -least else min(least, cause.size.high)

@@ -1,0 +1,149 @@
+"""From weighed hypotheses to answers: classes as one, estimates with intervals, adequacy, detectable sizes, look-alikes."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+from scipy.stats import chi2, norm
+
+from ..effects.cause import Theta
+from ..effects.forms import regime_of
+from ..effects.library import CAUSES
+from .evidence import White
+from .findings import Estimate, Joint, Named
+from .search import Family, Hypothesis, Search
+
+#: Power of the detectable size; distance below which two causes are the same to a design; probability that is shown.
+POWER, NEAR, SHOWN = 0.8, 2.5, 0.005
+
+
+def joints(search: Search) -> tuple[list[Joint], list[Hypothesis]]:
+    """Hypotheses with those that differ within a class added up under their best member, most probable first."""
+    groups: dict[tuple[str, ...], list[tuple[Hypothesis, float]]] = {}
+    for h, p in zip(search.hypotheses, search.probabilities(), strict=True):
+        groups.setdefault(tuple(sorted(family_of(c) for c in h.causes)), []).append((h, float(p)))
+    merged = []
+    for members in groups.values():
+        best = max(members, key=lambda member: member[1])[0]
+        merged.append((Joint(best.causes, sum(p for _, p in members), best.theta), best))
+    merged.sort(key=lambda item: -item[0].probability)
+    return [j for j, _ in merged], [h for _, h in merged]
+
+
+def family_of(cause: str) -> str:
+    """The class a cause belongs to, itself where it has none."""
+    return CAUSES[cause].like or cause
+
+
+def p_adequacy(search: Search, h: Hypothesis) -> float:
+    """Omnibus p of what a hypothesis leaves; each fitted parameter takes a degree of freedom."""
+    linear = h.linear or search.null
+    if h.causes and linear is not search.null:
+        linear = search.problem.without(linear)
+    white = White.of(linear.residual, linear.covariance)
+    left = white.e.copy()
+    for f in h.families:
+        k = form_of(f, h.theta[f.cause.id])
+        left -= white.columns(f.signatures[:, [k]])[:, 0] * h.theta[f.cause.id][f.cause.size.name]
+    used = sum(1 + len(CAUSES[c].shapes) // 2 for c in h.causes)
+    return float(chi2.sf(left @ left, len(left) - used))
+
+
+def form_of(f: Family, theta: Theta) -> int:
+    """Which form of a family given parameters are."""
+    return next(k for k, form in enumerate(f.forms) if all(theta[name] == value for name, value in form.items()))
+
+
+def named(search: Search, found: Sequence[Joint], leading: Sequence[Hypothesis]) -> list[Named]:
+    """Marginal probabilities of all causes, with estimates for those of the leading hypotheses."""
+    total = {c.id: 0.0 for c in search.causes}
+    for joint in found:
+        for c in joint.causes:
+            total[c] += joint.probability
+    estimated: dict[str, tuple[tuple[Estimate, ...], Mapping[str, tuple[float | None, float | None]]]] = {}
+    for h in leading:
+        for f in h.families:
+            if f.cause.id not in estimated and total[f.cause.id] > SHOWN:
+                estimated[f.cause.id] = estimates(f, h.theta[f.cause.id], alone=len(h.causes) == 1)
+    named_causes = []
+    for c in search.causes:
+        parameters, regime = estimated.get(c.id, ((), {}))
+        detectable = detectable_size(search, search.found[c.id])
+        named_causes.append(Named(c.id, total[c.id], detectable, parameters, regime))
+    return sorted(named_causes, key=lambda n: (-n.probability, n.id))
+
+
+def estimates(
+    f: Family, theta: Theta, *, alone: bool
+) -> tuple[tuple[Estimate, ...], Mapping[str, tuple[float | None, float | None]]]:
+    """Size and shapes with 95 % intervals from the posterior over forms; the regime in the columns of the data."""
+    w = f.weights()
+    mean, sd = f.sizes()
+    if not alone:
+        w = np.eye(len(w))[form_of(f, theta)]
+        mean = np.full(len(w), theta[f.cause.size.name])
+    centre = float(w @ mean)
+    spread = float(np.sqrt(w @ (sd**2 + (mean - centre) ** 2)))
+    size = f.cause.size
+    low, high = (float(np.clip(centre + s * 1.96 * spread, size.low, size.high)) for s in (-1, 1))
+    found = [Estimate(size.name, centre, low, high, size.unit)]
+    for shape in f.cause.shapes:
+        if shape.name in ("regime", "threshold"):
+            continue
+        values = np.array([form[shape.name] for form in f.forms])
+        order = np.argsort(values)
+        share = np.cumsum(w[order])
+        low, high = (float(values[order][min(np.searchsorted(share, s), len(w) - 1)]) for s in (0.025, 0.975))
+        found.append(Estimate(shape.name, float(w @ values), low, high, shape.unit))
+    return tuple(found), regime_in_columns(theta)
+
+
+def regime_in_columns(theta: Theta) -> Mapping[str, tuple[float | None, float | None]]:
+    """Where a form acts, as ranges of the data's columns; empty where it acts everywhere."""
+    regime = regime_of(theta) if "regime" in theta else None
+    if regime is None:
+        return {}
+    name, value = regime
+    column, shown = {
+        "w": ("n_carrier_rpm", value * 30 / np.pi),
+        "tau": ("T_carrier_Nm", value),
+        "T": ("T_oil_C", value - 273.15),
+    }[name[:-1]]
+    return {column: (float(shown), None) if name.endswith("+") else (None, float(shown))}
+
+
+def detectable_size(search: Search, f: Family) -> float:
+    """The smallest size that these data would reveal with 80 % power, in the middle form of a family."""
+    needed = np.sqrt(search.critical) + norm.ppf(POWER)
+    return float(needed / np.sqrt(max(f.q[0], 1e-300)))
+
+
+def distance(a: Family, k: int, size: float, b: Family) -> float:
+    """Standard deviations between a form of given size and the best rescaled form of another family."""
+    g = a.white[:, k]
+    cosine = (g @ b.white) / np.sqrt(np.maximum(a.q[k] * b.q, 1e-300))
+    low, high = b.bounds
+    legal = np.where(
+        (low < 0) & (high > 0), np.abs(cosine), np.maximum(np.sign(size) * np.sign(high + low) * cosine, 0)
+    )
+    return float(abs(size) * np.sqrt(a.q[k]) * np.sqrt(max(1 - float(legal.max()) ** 2, 0.0)))
+
+
+def confusable(search: Search, leading: Sequence[Named]) -> list[tuple[str, ...]]:
+    """For each leading cause the set that the design cannot tell from it, declared classes included.
+
+    It is judged at its prior size, or at the size found where that is larger.
+    """
+    sets = []
+    for name in leading:
+        c, f = name.id, search.found[name.id]
+        size = max([CAUSES[c].size.sd, *(abs(e.value) for e in name.parameters[:1])])
+        near = [
+            other
+            for other, g in search.found.items()
+            if other != c and (family_of(other) == family_of(c) or distance(f, f.best(), size, g) < NEAR)
+        ]
+        if near:
+            sets.append((c, *sorted(near)))
+    return sets
