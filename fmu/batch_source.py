@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from importlib.resources import files
 from itertools import pairwise
 from typing import Any
@@ -26,27 +26,32 @@ def steady_source(flat: FlatModel) -> str:
     """The C text for steady states.
 
     The equations come in three stages, each computed when what it depends on changes: `fixed` (p) -> k, `given`
-    (u, p, k) -> c, and `rates`, `balance` and `outputs` of (x, u, p, k, c).
+    (u, p, k) -> c, and `rates`, `balance` (with the Jacobian's entries that are not zero) and `outputs` of
+    (x, u, p, k, c).
 
     Raises:
         FmuError: an operation has no C text
     """
     outside = sum((ca.logic_or(flat.checked[i] < c.low, flat.checked[i] > c.high) for i, c in enumerate(flat.checks)))
     implicit = ca.mmax(ca.fabs(ca.SX(flat.residual))) if flat.residual_names else 0
-    jacobian = ca.vec(ca.densify(ca.jacobian(flat.ode, flat.x)))
-    parts = [flat.ode, jacobian, ca.vertcat(flat.y, flat.supply, flat.throughput, outside, implicit)]
-    (ode, jacobian, y), c, c_values = _hoisted(parts, ca.vertcat(flat.u, flat.p))
+    jacobian = ca.jacobian(flat.ode, flat.x)
+    places = jacobian.sparsity().get_triplet()
+    parts = [flat.ode, jacobian.nz[:], ca.vertcat(flat.y, flat.supply, flat.throughput, outside, implicit)]
+    (ode, entries, y), c, c_values = _hoisted(parts, ca.vertcat(flat.u, flat.p))
     (c_values,), k, k_values = _hoisted([c_values], flat.p)
     place, names = [flat.x, flat.u, flat.p, k, c], list("xupkc")
     functions = [
         _function("fixed", [flat.p], ["p"], [k_values], ["k"]),
         _function("given", place[1:4], names[1:4], [c_values], ["c"]),
         _function("rates", place, names, [ode], ["dx"]),
-        _function("balance", place, names, [ode, jacobian], ["dx", "jacobian"]),
+        _function("balance", place, names, [ode, entries], ["dx", "entries"]),
         _function("outputs", place, names, [y], ["y"]),
     ]
-    sizes = {**_sizes(flat), "NYR": y.numel(), "NK": k.numel(), "NC": c.numel()}
-    return _text(flat, sizes, functions, ("batch.h", "batch_steady.c"))
+    sizes = {**_sizes(flat), "NYR": y.numel(), "NK": k.numel(), "NC": c.numel(), "NJ": entries.numel()}
+    pattern = [
+        _array("int", f"model_{name}", map(str, place)) for name, place in zip(("row", "column"), places, strict=True)
+    ]
+    return _text(flat, sizes, pattern, functions, ("batch.h", "batch_steady.c"))
 
 
 def warmup_source(flat: FlatModel) -> str:
@@ -65,7 +70,7 @@ def warmup_source(flat: FlatModel) -> str:
         _function("outputs", [model.x, model.u, model.p, c], ["x", "u", "p", "c"], [y, ode], ["y", "dx"]),
     ]
     sizes = {**_sizes(flat), "NX": ode.numel(), "NY": y.numel(), "NC": c.numel(), "ORDER": METHOD.order}
-    return _text(flat, sizes, functions, ("batch.h", "batch_instance.h", "solver.c", "batch_warmup.c"))
+    return _text(flat, sizes, [], functions, ("batch.h", "batch_instance.h", "solver.c", "batch_warmup.c"))
 
 
 def _hoisted(parts: Sequence[Any], given: Any) -> tuple[list[Any], Any, Any]:
@@ -93,14 +98,16 @@ def _sizes(flat: FlatModel) -> dict[str, int]:
     }
 
 
-def _text(flat: FlatModel, sizes: Mapping[str, int], functions: Sequence[Any], drivers: Sequence[str]) -> str:
+def _text(
+    flat: FlatModel, sizes: Mapping[str, int], tables: Sequence[str], functions: Sequence[Any], drivers: Sequence[str]
+) -> str:
     defined = "".join(f"#define {name} {value}\n" for name, value in sizes.items())
     folder = files("gearheat.fmu") / "wrapper"
     first, *others = [(folder / name).read_text(encoding="utf-8") for name in drivers]
-    return "\n".join([defined, first, _tables(table(flat)), *map(emit.function, functions), *others])
+    return "\n".join([defined, first, *_ranges(table(flat)), *tables, *map(emit.function, functions), *others])
 
 
-def _tables(variables: Table) -> str:
+def _ranges(variables: Table) -> list[str]:
     """Nominals and ranges of the states, those of the audit included, and of the inputs."""
     rows = [*variables.of("state"), *variables.of("input")]
     columns = {
@@ -108,7 +115,8 @@ def _tables(variables: Table) -> str:
         "low": [v.bounds[0] for v in rows],
         "high": [v.bounds[1] for v in rows],
     }
-    return "".join(
-        f"static const double model_{name}[] = {{{', '.join(map(emit.number, column))}}};\n"
-        for name, column in columns.items()
-    )
+    return [_array("double", f"model_{name}", map(emit.number, column)) for name, column in columns.items()]
+
+
+def _array(kind: str, name: str, values: Iterable[str]) -> str:
+    return f"static const {kind} {name}[] = {{{', '.join([*values, '0'])}}};  /* 0: never empty */"

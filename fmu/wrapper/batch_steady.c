@@ -21,7 +21,7 @@ typedef struct {
     const double *u, *p, *home;
     double k[AT_LEAST_1(NK)], c[AT_LEAST_1(NC)];
     double r[N1], r_new[N1], d[N1], d_new[N1], trial[N1], before[N1];
-    double J[N1 * N1], J_new[N1 * N1], lu[N1 * N1];
+    double entries[AT_LEAST_1(NJ)], J[N1 * N1], J_new[N1 * N1], lu[N1 * N1];
     double taken[MOST_CHORDS][N1];
     double complex h[N1 * N1];
     double led[AT_LEAST_1(NU)];
@@ -56,8 +56,13 @@ static double share(const double *z, const double *d)
 static void evaluate(Row *w, const double *z, double *r, double *J)
 {
     int i;
-    if (J) model_balance(z, w->u, w->p, w->k, w->c, r, J);
-    else model_rates(z, w->u, w->p, w->k, w->c, r);
+    if (J) {
+        model_balance(z, w->u, w->p, w->k, w->c, r, w->entries);
+        memset(J, 0, sizeof w->J);
+        for (i = 0; i < NJ; i++) J[model_row[i] + model_column[i] * N] = w->entries[i];
+    } else {
+        model_rates(z, w->u, w->p, w->k, w->c, r);
+    }
     if (w->euler == 0.0) return;
     for (i = 0; i < N; i++) r[i] = (z[i] - w->before[i]) / w->euler - r[i];
     if (!J) return;
