@@ -70,7 +70,7 @@ class SkfBearing(RollingBearing):
 
     def has(self, name: str) -> bool:
         """The oil level counts in an oil bath, boundary friction where films may be thin."""
-        return {"H": self.oil_bath, "V_M": self.oil_bath, "mu_bl": self.mixed_friction}.get(name, True)
+        return bool({"H": self.oil_bath, "V_M": self.oil_bath, "mu_bl": self.mixed_friction}.get(name, True))
 
     def torque(self) -> Num:
         """Sum of the moments of one bearing [N.m]."""

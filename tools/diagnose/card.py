@@ -40,7 +40,7 @@ class Protocol(BaseModel):
     model_config = ConfigDict(extra="ignore")
 
     dwell_min: list[float] = [240.0, 90.0]
-    stop_min: float = Field(5.0, ge=0)
+    stop_min: float = Field(default=5.0, ge=0)
     T_start_minus_amb_K: float = 0.0
     ambient: str = "linear between the readings"
     ambient_start_minus_reading_K: float = 0.0
@@ -54,7 +54,7 @@ class Oil(BaseModel):
 
     nu40: float = Field(gt=0)
     nu100: float = Field(gt=0)
-    rho15: float | None = Field(None, gt=0)
+    rho15: float | None = Field(default=None, gt=0)
     alpha_T: float | None = None
 
 
@@ -63,10 +63,10 @@ class Card(BaseModel):
 
     model_config = ConfigDict(extra="ignore", populate_by_name=True)
 
-    schema_: Literal["gearheat.card/1"] = Field("gearheat.card/1", alias="schema")
+    schema_: Literal["gearheat.card/1"] = Field(default="gearheat.card/1", alias="schema")
     units: dict[str, str] = {}
     channels: dict[str, Channel] = {}
-    day_cooling_sd: float = Field(0.015, ge=0)
+    day_cooling_sd: float = Field(default=0.015, ge=0)
     prior_sd: dict[str, float] = {}
     protocol: Protocol | str = Protocol()
     lubrication: dict[str, str] = {}

@@ -1,7 +1,7 @@
-"""Evidence of hypotheses about a residual r ~ N(sum of sizes times signatures, V), by Gaussian algebra.
+"""Evidence of hypotheses about a residual r ~ N(sizes times signatures, V), by Gaussian algebra.
 
-All is whitened: e = L^-1 r with V = L L', and G = L^-1 [signatures]. A size has a normal prior, a mixture over widths so
-that neither small nor large effects are cut off; a one-sided size keeps half of it.
+All is whitened: e = L^-1 r with V = L L', and G = L^-1 [signatures]. A size has a normal prior, a mixture over widths,
+so that neither small nor large effects are cut off; a one-sided size keeps half of it.
 """
 
 from __future__ import annotations
@@ -91,6 +91,6 @@ def log_bayes_factors_pair(
 
 
 def score(s: np.ndarray, q: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    """Directed likelihood-ratio statistic of each signature: twice the gain in log likelihood at the best legal size."""
+    """Directed likelihood ratio of each signature: twice the gain in log likelihood at the best legal size."""
     size = np.clip(s / np.maximum(q, 1e-300), low, high)
     return np.asarray(2 * size * s - size**2 * q)

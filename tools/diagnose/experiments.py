@@ -59,14 +59,15 @@ def ranked(problem: Problem, z: np.ndarray, weights: Mapping[str, float]) -> lis
     if not pairs:
         return []
     enlarged, added = _enlarged(problem)
+    there = np.asarray(~added.any(axis=0))
     linear = enlarged.linearised(z)
     causes = [CAUSES[c] for c in sorted(weights)]
     G = families(enlarged, linear, White.of(linear.residual, linear.covariance), causes, FORMS, {})
-    before = _distances(linear, linear.covariance, G, ~added.any(axis=0), pairs)
+    before = _distances(linear, linear.covariance, G, there, pairs)
     found = []
     for candidate, own in zip(CANDIDATES, added, strict=True):
         noise = _with(enlarged, candidate).instrument - enlarged.instrument
-        after = _distances(linear, linear.covariance + noise, G, own | ~added.any(axis=0), pairs)
+        after = _distances(linear, linear.covariance + noise, G, own | there, pairs)
         gains = {p: weights[p[0]] * weights[p[1]] * max(min(after[p], 6.0) - min(before[p], 6.0), 0.0) for p in pairs}
         best = max(pairs, key=lambda p: gains[p])
         found.append((sum(gains.values()), Experiment(candidate.id, candidate.what, best, before[best], after[best])))

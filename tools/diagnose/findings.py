@@ -55,7 +55,7 @@ class Gain:
 
 @dataclass(frozen=True)
 class Experiment:
-    """A proposed measurement, the causes it separates, and their distance before and after in standard deviations."""
+    """A proposed measurement, the causes it separates, their distance before and after in standard deviations."""
 
     id: str
     what: str
@@ -66,7 +66,7 @@ class Experiment:
 
 @dataclass(frozen=True)
 class Findings:
-    """The whole result. `nominal` and `extended` hold the values by path of the calibrated models without and with it."""
+    """The whole result. `nominal` and `extended` hold values by path of the calibrated models without and with it."""
 
     verdict: str
     alpha: float
@@ -83,5 +83,5 @@ class Findings:
     warnings: tuple[str, ...]
     nominal: Mapping[str, float]
     extended: Mapping[str, float]
-    #: channel -> measured, nominal (calibrated without a cause), extended (with the top hypothesis): arrays over the rows
+    #: channel -> measured, nominal (calibrated without a cause), extended (with the top hypothesis), over the rows
     rows: Mapping[str, tuple[Any, Any, Any]] = field(default_factory=dict)

@@ -1,4 +1,4 @@
-"""From weighed hypotheses to answers: classes as one, estimates with intervals, adequacy, detectable sizes, look-alikes."""
+"""From weighed hypotheses to answers: classes as one, intervals, adequacy, detectable sizes, look-alikes."""
 
 from __future__ import annotations
 
@@ -67,10 +67,10 @@ def named(search: Search, found: Sequence[Joint], leading: Sequence[Hypothesis])
             if f.cause.id not in estimated and total[f.cause.id] > SHOWN:
                 estimated[f.cause.id] = estimates(f, h.theta[f.cause.id], alone=len(h.causes) == 1)
     named_causes = []
-    for c in search.causes:
-        parameters, regime = estimated.get(c.id, ((), {}))
-        detectable = detectable_size(search, search.found[c.id])
-        named_causes.append(Named(c.id, total[c.id], detectable, parameters, regime))
+    for cause in search.causes:
+        parameters, regime = estimated.get(cause.id, ((), {}))
+        detectable = detectable_size(search, search.found[cause.id])
+        named_causes.append(Named(cause.id, total[cause.id], detectable, parameters, regime))
     return sorted(named_causes, key=lambda n: (-n.probability, n.id))
 
 
@@ -94,7 +94,7 @@ def estimates(
         values = np.array([form[shape.name] for form in f.forms])
         order = np.argsort(values)
         share = np.cumsum(w[order])
-        low, high = (float(values[order][min(np.searchsorted(share, s), len(w) - 1)]) for s in (0.025, 0.975))
+        low, high = (float(values[order][min(int(np.searchsorted(share, s)), len(w) - 1)]) for s in (0.025, 0.975))
         found.append(Estimate(shape.name, float(w @ values), low, high, shape.unit))
     return tuple(found), regime_in_columns(theta)
 

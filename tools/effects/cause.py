@@ -135,10 +135,10 @@ class Cause:
 
 
 def _spread(n: int, d: int) -> np.ndarray:
-    """n points of the unit cube, evenly spread (Kronecker sequence of the generalised golden ratio), the middle first."""
+    """n points of the unit cube, evenly spread (additive sequence of the golden ratio), the middle first."""
     ratio = 2.0
     for _ in range(60):
         ratio = (1 + ratio) ** (1 / (d + 1))
     steps = ratio ** -np.arange(1.0, d + 1)
     points: np.ndarray = (0.5 + np.arange(n)[:, None] * steps[None, :]) % 1.0
-    return np.clip(points, 1e-3, 1 - 1e-3)
+    return np.asarray(np.clip(points, 1e-3, 1 - 1e-3))

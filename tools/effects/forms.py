@@ -51,7 +51,7 @@ def extra_part(
 
 
 def extra_values(name: str, theta: Theta, **fixed: float) -> Mapping[str, float]:
-    """Values of an extra part from the parameters of a form; `fixed` stands for exponents that the form leaves alone."""
+    """Values of an extra part from the parameters of a form; `fixed` holds exponents that the form leaves alone."""
     keys = ("P_ref", "a", "b", "c", "forward", "backward", "oil_share")
     values = {k: v for k, v in {**fixed, **theta}.items() if k in keys} | OPEN
     if (regime := regime_of(theta)) is not None:
