@@ -35,7 +35,7 @@ class About:
 
 
 _STYLE = (
-    "body{font:15px/1.5 sans-serif;max-width:60em;margin:2em auto;padding:0 1em;color:#222}"
+    "body{font:15px/1.5 sans-serif;max-width:80em;margin:2em auto;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;margin:1em 0}td,th{text-align:left;padding:.2em .8em .2em 0;"
     "border-bottom:1px solid #ddd;vertical-align:top}code{background:#f3f3f3}svg{max-width:100%;height:auto}"
 )
@@ -96,6 +96,7 @@ def documentation(
         _parameters(table.of("parameter"), about),
         _laws(flat),
         _ranges(flat),
+        _cited(flat, about),
         _verification(flat, checks),
         "</body></html>\n",
     ]
@@ -154,13 +155,19 @@ def _verification(flat: FlatModel, checks: Sequence[tuple[str, str]]) -> str:
 
 
 def _laws(flat: FlatModel) -> str:
-    known, rows = sources(), []
+    rows = []
     for law in flat.laws:
-        source = known.get(law.source)
-        cited = f"{source.author}: {source.title} ({source.year})" if source else law.source
         checked = "" if law.verified else "not compared with a printed number"
-        rows.append(tuple(escape(cell) for cell in (law.name, cited, law.where, law.valid, checked)))
-    return _table("Laws and their sources", ("law", "source", "place", "valid for", ""), rows)
+        rows.append(tuple(escape(cell) for cell in (law.name, law.source, law.where, law.valid, checked)))
+    return _table("Laws", ("law", "source", "place", "valid for", ""), rows)
+
+
+def _cited(flat: FlatModel, about: About) -> str:
+    """What the keys stand for that laws and values cite."""
+    keys = {law.source for law in flat.laws} | {text.partition(",")[0].strip() for text in about.sources.values()}
+    found = [source for key, source in sorted(sources().items()) if key in keys]
+    rows = [tuple(map(escape, (s.key, s.author, str(s.year), s.title, s.where))) for s in found]
+    return _table("Sources", ("key", "author", "year", "title", "published in"), rows)
 
 
 def _ranges(flat: FlatModel) -> str:

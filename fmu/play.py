@@ -17,6 +17,7 @@ import numpy as np
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from gearheat.model.errors import FmuError, suggestion
 
+from .described import described, settable
 from .grid import Grid, Inputs, grid
 
 
@@ -72,13 +73,14 @@ class Player:
         """
         self._path = Path(path)
         self._messages: list[str] = []
-        self._description = _described(self._path)
-        self._variables = {v.name: v for v in self._description.modelVariables}
+        self.described = described(self._path)
+        self._description = self.described.description
+        self._variables = self.described.variables
         self._folder = tempfile.mkdtemp(prefix="gearheat-")
         try:
             with zipfile.ZipFile(self._path) as file:
                 file.extractall(self._folder)
-            self._slave = self._instance()
+            self._slave, self._fresh = self._instance(), True
         except BaseException:
             shutil.rmtree(self._folder, ignore_errors=True)
             raise
@@ -126,6 +128,7 @@ class Player:
         columns = self._recorded(record)
         self._check(inputs, dict(start or {}))
         points = grid(inputs, begin, stop, step, output_times)
+        self._check_steps(points, step)
         self._initialise(dict(start or {}), points, tolerance)
         values = self._walk(points, [self._variables[name].valueReference for name in columns])
         return Played(points.row_time, tuple(columns), values)
@@ -148,8 +151,8 @@ class Player:
             raise FmuError(f"{self._path.name} cannot be loaded: {self._said() or error}") from error
         return slave
 
-    def _heard(self, _: object, __: bytes, status: int, ___: bytes, message: bytes) -> None:
-        if status > 1:
+    def _heard(self, _: object, __: bytes, status: int, ___: bytes, message: bytes | None) -> None:
+        if status > 1 and message:
             self._messages.append(message.decode("utf-8", "replace"))
 
     def _said(self) -> str:
@@ -158,26 +161,42 @@ class Player:
         return said
 
     def _recorded(self, record: Sequence[str] | None) -> list[str]:
+        known = self._variables
         if record is None:
-            return [v.name for v in self._description.modelVariables if v.causality in ("output", "input")]
-        unknown = [n for n in record if n not in self._variables]
-        if unknown:
-            known = self._variables
-            raise FmuError(f'{self._path.name}: unknown variable "{n}".{suggestion(n, known)}' for n in unknown)
+            return [n for n, v in known.items() if v.causality in ("output", "input") and v.type == "Real"]
+        problems = [f'unknown variable "{n}".{suggestion(n, known)}' for n in record if n not in known]
+        others = [known[n] for n in record if n in known and known[n].type != "Real"]
+        problems += [f'"{v.name}" is of type {v.type}. Only variables of type Real are recorded.' for v in others]
+        if problems:
+            raise FmuError(f"{self._path.name}: {problem}" for problem in problems)
         return list(record)
 
     def _check(self, inputs: Inputs, start: Mapping[str, float]) -> None:
         """All names of inputs and start values at once."""
-        known = {n: v for n, v in self._variables.items() if v.causality == "input"}
-        settable = {n: v for n, v in self._variables.items() if v.causality == "input" or v.initial == "exact"}
+        real = {n: v for n, v in self._variables.items() if v.type == "Real"}
+        known = {n for n, v in real.items() if v.causality == "input"}
+        possible_start = {n for n, v in real.items() if settable(v)}
         problems = []
-        reasons = (("input", inputs, known, "is no input."), ("start value", start, settable, "is calculated."))
+        reasons = (("input", inputs, known, "is no input."), ("start value", start, possible_start, "is calculated."))
         for what, given, possible, reason in reasons:
-            for name in sorted(set(given) - set(possible)):
+            for name in sorted(set(given) - possible):
                 why = reason if name in self._variables else f"is unknown.{suggestion(name, possible)}"
+                if name in self._variables and name not in real:
+                    why = f"is of type {self._variables[name].type}. Only variables of type Real can be given."
                 problems.append(f'{self._path.name}: {what} "{name}" {why}')
         if problems:
             raise FmuError(problems)
+
+    def _check_steps(self, points: Grid, step: float) -> None:
+        """Some FMUs take communication steps of one length only."""
+        steps = np.diff(points.time)
+        if self._description.coSimulation.canHandleVariableCommunicationStepSize or np.ptp(steps) <= 1e-6 * step:
+            return
+        odd = points.time[1:][np.abs(steps - step) > 1e-6 * step][0]
+        raise FmuError(
+            f"{self._path.name}: this FMU takes communication steps of one length only, and the one to {odd:g} s is "
+            f"not {step:g} s long. Choose a step of which all times of the duty are multiples."
+        )
 
     def _function(self, name: str, *types: Any) -> Any:
         """A function of the library that takes addresses, so a step makes no Python objects; raises when refused."""
@@ -193,7 +212,7 @@ class Player:
 
     def _initialise(self, start: Mapping[str, float], points: Grid, tolerance: float | None) -> None:
         self._messages.clear()
-        self._function("fmi2Reset")()
+        self._renew()
         references = [self._variables[n].valueReference for n in start]
         self._set_real = self._function("fmi2SetReal", ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
         self._set(references, np.array(list(start.values()), dtype=float))
@@ -203,6 +222,16 @@ class Player:
         self._set([self._variables[n].valueReference for n in points.names], points.value[0])
         self._function("fmi2ExitInitializationMode")()
 
+    def _renew(self) -> None:
+        """An instance as new: reset, or where an FMU cannot do that, another one."""
+        if not self._fresh:
+            try:
+                self._function("fmi2Reset")()
+            except FmuError:
+                self._slave.freeInstance()
+                self._slave = self._instance()
+        self._fresh = False
+
     def _set(self, references: list[int], values: np.ndarray) -> None:
         if references:
             self._set_real(np.array(references, dtype=np.uint32).ctypes.data, len(references), values.ctypes.data)
@@ -211,13 +240,14 @@ class Player:
         """Step from communication point to communication point, and read the rows."""
         do_step = self._function("fmi2DoStep", ctypes.c_double, ctypes.c_double, ctypes.c_int)
         get = self._function("fmi2GetReal", ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
-        set_slope = self._function("fmi2SetRealInputDerivatives", *[ctypes.c_void_p, ctypes.c_size_t], *_TWO)
         known = np.array([self._variables[n].valueReference for n in points.names], dtype=np.uint32)
         wanted, order = np.array(recorded, dtype=np.uint32), np.ones(len(known), dtype=np.int32)
         rows = np.empty((len(points.row_time), len(recorded)))
         inputs, outputs, n, m = known.ctypes.data, wanted.ctypes.data, len(known), len(recorded)
         value, slope, row = points.value.ctypes.data, points.slope.ctypes.data, rows.ctypes.data
         sloped = bool(self._description.coSimulation.canInterpolateInputs) and n > 0
+        if sloped:
+            set_slope = self._function("fmi2SetRealInputDerivatives", *[ctypes.c_void_p, ctypes.c_size_t], *_TWO)
         turns = np.append(True, (np.diff(points.slope, axis=0) != 0).any(axis=1)).tolist() if sloped else []
         time, steps = points.time.tolist(), np.diff(points.time).tolist()
         before, after = points.rows_before.tolist(), points.rows_after.tolist()
@@ -241,23 +271,3 @@ class Player:
 
 _SETUP = [ctypes.c_int, ctypes.c_double, ctypes.c_double, ctypes.c_int, ctypes.c_double]
 _TWO = [ctypes.c_void_p, ctypes.c_void_p]
-
-
-def _described(path: Path) -> Any:
-    """The model description of an FMU that this machine can play."""
-    try:
-        description = fmpy.read_model_description(str(path), validate=False)
-        held = fmpy.supported_platforms(str(path))
-    except FileNotFoundError:
-        raise FmuError(f"{path}: there is no such file.") from None
-    except Exception as error:  # zip, XML and FMPy errors alike: the file is no FMU
-        raise FmuError(f"{path}: this file is no FMU ({error}).") from error
-    if description.fmiVersion != "2.0" or description.coSimulation is None:
-        raise FmuError(f"{path}: this FMU is not for FMI 2.0 co-simulation, which is what can be played.")
-    if fmpy.platform not in held:
-        binaries = ", ".join(p for p in held if p != "c-code") or "no platform"
-        raise FmuError(
-            f"{path}: this FMU holds binaries for {binaries}, none for this machine ({fmpy.platform}).\n"
-            f"Export it with --platform {fmpy.platform}."
-        )
-    return description

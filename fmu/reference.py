@@ -16,7 +16,13 @@ TOLERANCE = 1e-8
 
 
 def write_reference(
-    fmu: Path | str, inputs: Inputs, stop: float, step: float, *, record: Sequence[str] | None = None
+    fmu: Path | str,
+    inputs: Inputs,
+    stop: float,
+    step: float,
+    *,
+    record: Sequence[str] | None = None,
+    folder: Path | None = None,
 ) -> tuple[Path, Path, Path]:
     """Play an FMU at a tight tolerance and write inputs, result and options beside it, for whoever imports it.
 
@@ -25,6 +31,7 @@ def write_reference(
         stop: end [s]; the run begins at 0
         step: time between the rows of the result [s]
         record: variables of the result; all outputs and inputs when not given
+        folder: where to write; beside the FMU when not given
 
     Returns:
         the three files
@@ -47,7 +54,7 @@ def write_reference(
         "_ref.csv": _csv(played.names, played.time, played.values),
         "_ref.opt": "".join(f"{name}, {value!r}\n" for name, value in options.items()),
     }
-    files = {ending: fmu.with_name(fmu.stem + ending) for ending in texts}
+    files = {ending: (folder or fmu.parent) / f"{fmu.stem}{ending}" for ending in texts}
     for ending, text in texts.items():
         store(files[ending], text.encode())
     return files["_in.csv"], files["_ref.csv"], files["_ref.opt"]

@@ -126,12 +126,15 @@ def export(
         ),
     ] = "speed",
     platform: Annotated[str, typer.Option(help='"host", "all" or names such as linux64,win64.')] = "host",
+    extras: Annotated[
+        Path | None, typer.Option(metavar="FOLDER", help="Write parameter sets (.ssv) and a reference result there.")
+    ] = None,
     json: Json = None,
 ) -> None:
     """Write the rig as an FMU for FMI 2.0."""
-    from . import transients
+    from . import exporting
 
-    transients.export_command(rig, out, set_ or [], drive, given, platform, json)
+    exporting.export_command(rig, out, set_ or [], drive, given, platform, extras, json)
 
 
 @app.command()
@@ -179,6 +182,32 @@ def calibrate(
     from . import calibrate
 
     calibrate.command(rig, grid, free, bounds or [], set_ or [], json)
+
+
+@app.command()
+@console.guarded
+def diagnose(
+    data: Annotated[Path, typer.Argument(help="Measured readings: CSV, one row per steady reading.")],
+    rig: Annotated[str, typer.Option(help="Name of a shipped rig, or path of a rig file.")] = "planetary",
+    card: Annotated[Path | None, typer.Option(help="JSON: accuracies, priors and protocol of the campaign.")] = None,
+    series: Annotated[Path | None, typer.Option(help="Logged samples of the tests: CSV.")] = None,
+    reference: Annotated[
+        Path | None, typer.Option(help="Readings of a healthy campaign of the same rig: CSV as DATA.")
+    ] = None,
+    reference_series: Annotated[Path | None, typer.Option(help="Logged samples of the reference's tests: CSV.")] = None,
+    predict: Annotated[Path | None, typer.Option(help="Points whose oil temperature is predicted: CSV.")] = None,
+    predictions: Annotated[Path | None, typer.Option(help="CSV to write with the predictions.")] = None,
+    alpha: Annotated[float, typer.Option(help="Accepted rate of false alarms.")] = 0.05,
+    seed: Annotated[int, typer.Option(help="The same seed gives the same result.")] = 0,
+    json: Json = None,
+    report: Annotated[Path | None, typer.Option(help="HTML page to write.")] = None,
+    extended: Annotated[Path | None, typer.Option(help="Rig file to write: the rig with what was found.")] = None,
+) -> None:
+    """What the model gets wrong in measured data: the causes by name, how big, how sure, and what to measure next."""
+    from .diagnose import command, inputs
+
+    request = inputs.Request(data, rig, card, series, reference, reference_series, predict)
+    command.command(request, command.Outputs(predictions, json, report, extended), alpha, seed)
 
 
 @app.command("list")

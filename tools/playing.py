@@ -134,4 +134,5 @@ def table_text(head: Sequence[str], columns: Sequence[Any]) -> str:
     """CSV text of columns of numbers."""
     line = ",".join(["%.9g"] * len(columns))
     rows = np.column_stack(columns).tolist()
-    return "\n".join([",".join(head), *(line % tuple(row) for row in rows)]) + "\n"
+    titles = (f'"{title}"' if "," in title else title for title in head)  # an element of an array: x[1,2]
+    return "\n".join([",".join(titles), *(line % tuple(row) for row in rows)]) + "\n"

@@ -1,8 +1,7 @@
-"""The commands `simulate`, `export` and `play`: courses over time, from the model itself or from its FMU."""
+"""The commands `simulate` and `play`: courses over time, from the model itself or from its FMU."""
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -20,7 +19,7 @@ from ..scenarios.scenario import Scenario
 from .console import answer, file_of, writable, write
 from .playing import series
 from .points import outside_of
-from .settings import Drive, adjusted, driven_at, flat_of
+from .settings import adjusted, flat_of
 
 
 def simulate_command(rig: str, duty: Path, out: Path, assignments: Sequence[str], json: str | None) -> None:
@@ -55,37 +54,6 @@ def first_temperatures(scenario: Scenario, flat: FlatModel, schedule: Schedule |
     return {q.name: T for q in flat.states if q.unit == "K" and q.name not in own}
 
 
-def export_command(
-    rig: str,
-    out: Path,
-    assignments: Sequence[str],
-    shaft: str | None,
-    given: str,
-    platform: str,
-    json: str | None,
-) -> None:
-    """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
-    from ..fmu.export import export
-
-    writable(out, file_of(json))
-    scenario = load(rig)
-    drive: Drive | None = driven_at(scenario, shaft, given) if shaft is not None or given == "torque" else None
-    setting = adjusted(scenario, assignments, drive=drive)
-    flat = flat_of(setting)
-    export(flat, out, platform=platform, start=first_temperatures(setting, flat, None))
-    found = {
-        "schema": "gearheat.export/1",
-        "rig": scenario.name,
-        "fmu": str(out),
-        "sha256": hashlib.sha256(out.read_bytes()).hexdigest(),
-        "inputs": [q.name for q in flat.inputs],
-        "outputs": [q.name for q in (*flat.states, *flat.outputs)],
-        "parameters": [q.name for q in flat.parameters],
-    }
-    words = f"{len(flat.inputs)} inputs, {len(flat.outputs)} outputs, {len(flat.parameters)} parameters"
-    answer(found, json, lambda: print(f"{out}: {words}"))
-
-
 def play_command(fmu: Path, duty: Path, out: Path, step: str, assignments: Sequence[str], json: str | None) -> None:
     """Play an FMU over a duty."""
     from ..fmu.play import Player
@@ -93,14 +61,12 @@ def play_command(fmu: Path, duty: Path, out: Path, step: str, assignments: Seque
     writable(out, file_of(json))
     dt = to_si(step, "s", name="--step")
     with Player(fmu) as player:
-        quantities = _quantities(fmu)
-        schedule = read_duty(duty, {q.name: q for kind, q in quantities if kind == "input"})
-        start = _start(
-            {q.name: q for kind, q in quantities if kind in ("input", "parameter", "state")}, assignments, fmu
-        )
+        told = player.described
+        schedule = read_duty(duty, told.quantities("input"))
+        start = _start(told.quantities("start"), assignments, fmu)
         inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
         played = player.run(inputs, schedule.stop, dt, begin=schedule.start, start=start)
-    units = {q.name: q.unit for _, q in quantities}
+    units = {name: q.unit for name, q in told.quantities("input", "output").items()}
     columns = {name: played.values[:, k] for k, name in enumerate(played.names)}
     write(out, series(played.time, columns, units))
     found = {
@@ -110,18 +76,6 @@ def play_command(fmu: Path, duty: Path, out: Path, step: str, assignments: Seque
         **_course(played.time, columns, units),
     }
     answer(found, json, lambda: print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s"))
-
-
-def _quantities(fmu: Path) -> list[tuple[str, Quantity]]:
-    """Kind and quantity of every variable of an FMU."""
-    import fmpy
-
-    found = []
-    for v in fmpy.read_model_description(str(fmu), validate=False).modelVariables:
-        kind = "state" if v.causality == "output" and v.initial == "exact" else v.causality
-        low, high = (default if text is None else float(text) for text, default in ((v.min, -np.inf), (v.max, np.inf)))
-        found.append((kind, Quantity(v.name, v.unit or "1", v.description or "", low=low, high=high)))
-    return found
 
 
 def _start(known: dict[str, Quantity], assignments: Sequence[str], fmu: Path) -> dict[str, float]:

@@ -1,0 +1,113 @@
+"""The description of an FMU that shall be played, also of one that another tool has made."""
+
+from __future__ import annotations
+
+import math
+import xml.etree.ElementTree as ET
+import zipfile
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import fmpy
+from gearheat.model.core.flat import Quantity
+from gearheat.model.errors import FmuError
+
+
+@dataclass(frozen=True)
+class Described:
+    """What an FMU says of itself.
+
+    Attributes:
+        path: the file
+        description: FMPy's reading of modelDescription.xml
+        variables: the variables by name
+        differences: names of the variables that are differences, which no offset of a unit must touch
+    """
+
+    path: Path
+    description: Any
+    variables: Mapping[str, Any]
+    differences: frozenset[str]
+
+    def quantities(self, *kinds: str) -> dict[str, Quantity]:
+        """Variables that are real numbers, by name: "input", "start" (what may be set before the run), "output"."""
+        found = {}
+        for name, v in self.variables.items():
+            own = {v.causality, "start"} if settable(v) else {v.causality}
+            if v.type == "Real" and own & set(kinds):
+                found[name] = self._quantity(v)
+        return found
+
+    def _quantity(self, v: Any) -> Quantity:
+        declared = v.declaredType
+        unit = v.unit or (declared.unit if declared is not None else None) or "1"
+        low, high = (_bound(v, declared, key, end) for key, end in (("min", -math.inf), ("max", math.inf)))
+        mark = " (difference)" if unit == "K" and v.name in self.differences else ""
+        return Quantity(v.name, f"{unit}{mark}", v.description or "", low=low, high=high)
+
+
+def settable(v: Any) -> bool:
+    """Whether a variable takes a start value."""
+    return v.variability != "constant" and (v.causality == "input" or v.initial in ("exact", "approx"))
+
+
+def described(path: Path) -> Described:
+    """The description of an FMU that this machine can play.
+
+    Raises:
+        FmuError: the file is no FMU for FMI 2.0 co-simulation, or holds no binary for this machine
+    """
+    try:
+        description = fmpy.read_model_description(str(path), validate=False)
+        held = fmpy.supported_platforms(str(path))
+        differences = _differences(path)
+    except FileNotFoundError:
+        raise FmuError(f"{path}: there is no such file.") from None
+    except Exception as error:  # zip, XML and FMPy errors alike: the file is no FMU
+        raise FmuError(f"{path}: this file is no FMU ({error}).") from error
+    if problem := _unplayable(description, held):
+        raise FmuError(f"{path}: {problem}")
+    return Described(path, description, {v.name: v for v in description.modelVariables}, differences)
+
+
+def _unplayable(description: Any, held: list[str]) -> str:
+    """Why an FMU cannot be played; "" if it can."""
+    if description.fmiVersion != "2.0":
+        return f"this FMU is for FMI {description.fmiVersion}. Only FMI 2.0 for co-simulation can be played."
+    simulation = description.coSimulation
+    if simulation is None:
+        return "this FMU is for model exchange alone. Only FMI 2.0 for co-simulation can be played."
+    if simulation.needsExecutionTool:
+        tool = description.generationTool or "the tool that made it"
+        return f"this FMU runs only beside {tool}. Export it as one that stands alone."
+    if fmpy.platform not in held:
+        binaries = ", ".join(p for p in held if p != "c-code") or "no platform"
+        own = (description.generationTool or "").startswith("gearheat")
+        remedy = f"Export it with --platform {fmpy.platform}." if own else "Ask its maker for one."
+        return f"this FMU holds binaries for {binaries}, none for this machine ({fmpy.platform}).\n{remedy}"
+    return ""
+
+
+def _differences(path: Path) -> frozenset[str]:
+    """Names of the variables that are marked as relative quantities, or whose type is; FMPy passes the mark over."""
+    with zipfile.ZipFile(path) as file:
+        root = ET.fromstring(file.read("modelDescription.xml"))
+    types = {t.get("name") for t in root.iterfind("TypeDefinitions/SimpleType") if _is_relative(t)}
+    return frozenset(
+        str(v.get("name"))
+        for v in root.iterfind("ModelVariables/ScalarVariable")
+        if _is_relative(v) or ((real := v.find("Real")) is not None and real.get("declaredType") in types)
+    )
+
+
+def _is_relative(element: ET.Element) -> bool:
+    real = element.find("Real")
+    return real is not None and real.get("relativeQuantity") in ("true", "1")
+
+
+def _bound(v: Any, declared: Any, key: str, otherwise: float) -> float:
+    """Lowest or highest value, of the variable or of its type."""
+    texts = (getattr(v, key, None), getattr(declared, key, None))
+    return float(next((text for text in texts if text is not None), otherwise))

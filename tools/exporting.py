@@ -1,0 +1,143 @@
+"""The command `export`: a rig as an FMU that starts at its operating point, and what goes beside it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ..fmu.compiling import platforms
+from ..fmu.effective import effective
+from ..fmu.export import export
+from ..model.core.flat import FlatModel
+from ..model.machines.spec import assemble
+from ..model.run.point import point
+from ..scenarios.load import load
+from ..scenarios.scenario import Scenario
+from .console import answer, file_of, folder, writable
+from .extras import checked, reference_duty, write_extras
+from .network import network_svg
+from .settings import Drive, adjusted, driven_at, flat_of, given_paths
+from .transients import first_temperatures
+
+#: Source of what no file gives.
+_DEFAULT = "inferred: follows from the other values, or a numerical default"
+
+
+def export_command(
+    rig: str,
+    out: Path,
+    assignments: Sequence[str],
+    shaft: str | None,
+    given: str,
+    platform: str,
+    extras: Path | None,
+    json: str | None,
+) -> None:
+    """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
+    writable(out, file_of(json))
+    chosen = platforms(platform)
+    scenario = load(rig)
+    drive: Drive | None = driven_at(scenario, shaft, given) if shaft is not None or given == "torque" else None
+    setting = adjusted(scenario, assignments, drive=drive)
+    flat = flat_of(setting)
+    start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, assignments)
+    beside = folder(extras) if extras is not None else None
+    duty = reference_duty(flat, start, given_paths(setting.spec))
+    write_fmu(setting, flat, out, platform=platform, start=start, verify=lambda fmu: checked(fmu, flat, duty, start))
+    kept = effective(flat, start)
+    named = {q.name for q in kept.parameters}
+    written = [] if beside is None else write_extras(out, beside, setting, kept, duty, start, sources_of(setting, kept))
+    found = {
+        "schema": "gearheat.export/1",
+        "rig": scenario.name,
+        "fmu": str(out),
+        "sha256": hashlib.sha256(out.read_bytes()).hexdigest(),
+        "platforms": [p.name for p in chosen],
+        "inputs": [q.name for q in flat.inputs],
+        "outputs": [q.name for q in (*flat.states, *flat.outputs)],
+        "parameters": [q.name for q in kept.parameters],
+        "without_effect": [q.name for q in flat.parameters if q.name not in named],
+        "extras": [str(path) for path in written],
+    }
+    answer(found, json, lambda: _print(found))
+
+
+def _print(found: Mapping[str, Any]) -> None:
+    words = ", ".join(f"{len(found[kind])} {kind}" for kind in ("inputs", "outputs", "parameters"))
+    print(f"{found['fmu']}: {words}, for {', '.join(found['platforms'])}")
+    if found["extras"]:
+        print(f"{len(found['extras'])} files beside it, from {found['extras'][0]}")
+
+
+def write_fmu(scenario: Scenario, flat: FlatModel, out: Path, **options: Any) -> Path:
+    """Write the FMU of a rig with all that is known of it: sources, uncertainties, a picture of the network.
+
+    Args:
+        scenario: the rig as set and driven
+        flat: its model
+        out: file to write
+        options: of `gearheat.fmu.export.export`
+    """
+    return export(
+        flat,
+        out,
+        sources=sources_of(scenario, flat),
+        uncertainties=scenario.uncertainties,
+        picture=network_svg(assemble(scenario.spec)),
+        **options,
+    )
+
+
+def sources_of(scenario: Scenario, flat: FlatModel) -> dict[str, str]:
+    """Where the value of every parameter is from."""
+    return {q.name: scenario.value_sources.get(q.name, _DEFAULT) for q in flat.parameters}
+
+
+def operating_start(
+    scenario: Scenario, setting: Scenario, flat: FlatModel, assignments: Sequence[str]
+) -> dict[str, float]:
+    """Shaft quantities and speeds at the operating point, for a model that is driven otherwise than its rig.
+
+    What follows at the operating point (the torque that balances, the speed of the other shaft) is what the inputs and
+    the rotating masses of the other drive start with, so that it starts at the same point.
+
+    Args:
+        scenario: the rig as it is
+        setting: the rig as set and driven by the user
+        flat: its model
+        assignments: what the user has set, which stays
+    """
+    own = flat_of(setting.driven(scenario.given))
+    names = given_paths(setting.spec)
+    fixed = {text.partition("=")[0].strip() for text in assignments}
+    if {q.name for q in own.inputs} & names == {q.name for q in flat.inputs} & names:
+        return {}
+    at = _evaluated(own, first_temperatures(setting, own, None))
+    shafts = {name: at[name] for name in sorted(names) if name in at}
+    start = {q.name: shafts[q.name] for q in flat.inputs if q.name in shafts and q.name not in fixed}
+    return start | _speeds(flat, shafts, {q.name for q in flat.states} & fixed)
+
+
+def _evaluated(flat: FlatModel, states: Mapping[str, float]) -> dict[str, float]:
+    """Inputs and outputs of a model at its start values."""
+    here = point(flat, None, states, who="export")
+    y = np.array(flat.output_function(here.x, here.u, here.p)[0]).ravel()
+    return {q.name: float(v) for q, v in (*zip(flat.inputs, here.u, strict=True), *zip(flat.outputs, y, strict=True))}
+
+
+def _speeds(flat: FlatModel, shafts: Mapping[str, float], fixed: set[str]) -> dict[str, float]:
+    """Speeds of the rotating masses at which the shaft ends have their speeds; these are linear in those."""
+    masses = [q.name for q in flat.states if q.unit == "rad/s" and q.name not in fixed]
+    ends = [q.name for q in flat.outputs if q.name in shafts and q.unit == "rad/s"]
+    if not masses or not ends:
+        return {}
+    rest = _evaluated(flat, dict.fromkeys(masses, 0.0))
+    columns = [_evaluated(flat, {name: float(name == one) for name in masses}) for one in masses]
+    slope = np.array([[column[end] - rest[end] for column in columns] for end in ends])
+    wanted = np.array([shafts[end] - rest[end] for end in ends])
+    speeds = np.linalg.lstsq(slope, wanted, rcond=None)[0]
+    return {name: float(w) for name, w in zip(masses, speeds, strict=True)}

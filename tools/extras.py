@@ -1,0 +1,154 @@
+"""What goes beside an FMU: parameter sets of the rig and of every oil, and a reference result; and its own check."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Container, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ..fmu.compiling import store
+from ..fmu.export import export
+from ..fmu.parameter_set import parameter_set
+from ..fmu.play import Player
+from ..fmu.reference import write_reference
+from ..fmu.variables import STORED, SUPPLIED, THROUGHPUT
+from ..model.core.flat import FlatModel
+from ..model.errors import GearheatError
+from ..model.run.schedule import Schedule, stepped
+from ..model.run.simulate import simulate
+from ..scenarios.entries import catalogue
+from ..scenarios.scenario import Scenario
+from ..scenarios.values import oil_values
+
+#: Communication step and rows of the reference result of a model driven by speed, and of one driven by torques [s].
+STEP, SHORT_STEP = 60.0, 0.5
+
+#: What is below this is round-off, which differs between machines.
+_ROUND_OFF = 5e-13
+
+
+def reference_duty(flat: FlatModel, start: Mapping[str, float], shafts: Container[str]) -> Schedule:
+    """The duty of the reference result, with every input in it.
+
+    With a given speed: two hours at the operating point, ten minutes down to half of speed and torque, the rest of four
+    hours there. With torques alone: a minute at the operating point, the middle third with 0.5 % more of one torque.
+    """
+    values = {q.name: float(start.get(q.name, q.start)) for q in flat.inputs}
+    driven = [q for q in flat.inputs if q.name in shafts]
+    if any(q.unit == "rad/s" for q in driven) or not driven:
+        ramp = {q.name: (values[q.name], values[q.name] / 2) for q in driven}
+        return stepped([(7200.0, values), (600.0, ramp), (6600.0, {})])
+    first = driven[0].name
+    return stepped([(20.0, values), (20.0, {first: 1.005 * values[first]}), (20.0, {first: values[first]})])
+
+
+def step_of(duty: Schedule) -> float:
+    """Time between the rows of the reference result [s]."""
+    return STEP if duty.stop > 3600 else SHORT_STEP
+
+
+def checked(fmu: Path, flat: FlatModel, duty: Schedule, start: Mapping[str, float]) -> tuple[tuple[str, str], ...]:
+    """What was checked with this FMU, and the result: it is played over the reference duty and the model is integrated.
+
+    Results are bounds, the next power of ten above what was found, so that the same model gives the same text.
+    """
+    if not _plays_here(fmu):
+        return ()
+    states = {q.name: start[q.name] for q in flat.states if q.name in start}
+    times = np.unique(np.append(np.arange(duty.start, duty.stop, step_of(duty)), duty.stop))
+    try:
+        own = simulate(flat, duty, start=states, times=times)
+        with Player(fmu) as player:
+            inputs = {name: (duty.time, column) for name, column in duty.values.items()}
+            names = [*(q.name for q in flat.states), SUPPLIED, STORED, THROUGHPUT]
+            played = player.run(inputs, duty.stop, step_of(duty), record=names, output_times=times)
+    except GearheatError as error:
+        return (("reference run of this FMU against the model, integrated by another method", f"failed: {error}"),)
+    rows = []
+    what = f"largest difference over the reference run of {duty.stop:g} s, this FMU against CVODES at 1e-8"
+    for unit, word in (("K", "temperature"), ("rad/s", "speed")):
+        apart = [np.abs(played[q.name] - own[q.name]).max() for q in flat.states if q.unit == unit]
+        if apart:
+            rows.append((f"{word}: {what}", f"below {_bound(max(apart))} {unit}"))
+    gained = played[STORED] - played[STORED][0]
+    residual = np.abs(played[SUPPLIED] - gained).max() / played[THROUGHPUT][-1]
+    return (
+        *rows,
+        ("energy in less energy stored over that run, relative to the throughput", f"below {_bound(residual)}"),
+    )
+
+
+def _plays_here(fmu: Path) -> bool:
+    import fmpy
+
+    return fmpy.platform in fmpy.supported_platforms(str(fmu))
+
+
+def _bound(value: float) -> str:
+    """The next power of ten above a value."""
+    return f"1e{math.floor(math.log10(max(value, _ROUND_OFF))) + 1}"
+
+
+def write_extras(
+    fmu: Path,
+    folder: Path,
+    scenario: Scenario,
+    flat: FlatModel,
+    duty: Schedule,
+    start: Mapping[str, float],
+    sources: Mapping[str, str],
+) -> list[Path]:
+    """Write what goes beside an FMU.
+
+    Args:
+        fmu: the FMU; the files have its name
+        folder: where to write
+        scenario: the rig as exported
+        flat: its model, with the parameters of the FMU
+        duty: of the reference result
+        start: start values of the FMU that are not those of the model
+        sources: parameter -> where its value is from
+
+    Returns:
+        NAME.ssv, oils/OIL.ssv for every oil that gives all the rig's oil has, NAME_in.csv, NAME_ref.csv, NAME_ref.opt
+    """
+    files = {folder / f"{fmu.stem}.ssv": _set_of_rig(scenario, flat, sources)}
+    for oil, content in _sets_of_oils(scenario, flat).items():
+        files[folder / "oils" / f"{oil.replace(' ', '_')}.ssv"] = content
+    for path, content in files.items():
+        store(path, content)
+    inputs = {name: (duty.time, column) for name, column in duty.values.items()}
+    with tempfile.TemporaryDirectory() as place:
+        played = fmu if _plays_here(fmu) else export(flat, Path(place) / fmu.name, start=start)
+        reference = write_reference(played, inputs, duty.stop, step_of(duty), folder=folder)
+    return [*files, *reference]
+
+
+def _set_of_rig(scenario: Scenario, flat: FlatModel, sources: Mapping[str, str]) -> bytes:
+    return parameter_set(
+        scenario.name,
+        flat.parameters,
+        doc=scenario.doc,
+        sources=sources,
+        uncertainties=scenario.uncertainties,
+    )
+
+
+def _sets_of_oils(scenario: Scenario, flat: FlatModel) -> dict[str, bytes]:
+    """A set for every oil of the catalogue that gives the oil baths all that their own oil gives this model."""
+    baths = [bath for bath in scenario.spec.of_type("OilBath") if "oil" in scenario.entries.get(bath, {})]
+    present = {bath: oil_values(scenario.entries[bath]["oil"]) for bath in baths}
+    filled = [q for q in flat.parameters if q.name.rpartition(".")[2] in present.get(q.name.rpartition(".")[0], {})]
+    keys = {q.name: q.name.rpartition(".")[2] for q in filled}
+    sets: dict[str, bytes] = {}
+    for name, entry in catalogue("oil").items() if filled else ():
+        values = oil_values(name)
+        if all(key in values for key in keys.values()):
+            chosen = [replace(q, start=values[keys[q.name]]) for q in filled]
+            sources = {path: entry.sources[key] for path, key in keys.items()}
+            sets[name] = parameter_set(name, chosen, doc=f"{entry.doc}, for {scenario.name}", sources=sources)
+    return sets
