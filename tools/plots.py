@@ -52,7 +52,7 @@ def svg(figure: Figure) -> str:
     return re.sub(r"^.*?(?=<svg)", "", text.getvalue(), flags=re.DOTALL)
 
 
-def _figure(width: float, height: float, rows: int, columns: int, **kwargs: Any) -> tuple[Figure, list[Axes]]:
+def empty(width: float, height: float, rows: int, columns: int, **kwargs: Any) -> tuple[Figure, list[Axes]]:
     """An empty figure of so many inches, and its panels row by row."""
     with mpl.rc_context(STYLE):
         figure = Figure(figsize=(width, height), layout="constrained")
@@ -67,7 +67,7 @@ def shown_unit(channel: Channel) -> str:
 
 def parity(rows: Rows, channels: Sequence[Channel]) -> str:
     """Measured against simulated, one panel a channel, coloured by oil, shaped by direction."""
-    figure, panels = _figure(4.0 * len(channels), 4.9, 1, len(channels))
+    figure, panels = empty(4.0 * len(channels), 4.9, 1, len(channels))
     for panel, channel in zip(panels, channels, strict=True):
         x, y = numbers(rows, channel.column), numbers(rows, channel.measured)
         low, high = float(np.nanmin([x, y])), float(np.nanmax([x, y]))
@@ -78,7 +78,7 @@ def parity(rows: Rows, channels: Sequence[Channel]) -> str:
         panel.set(xlim=ends, ylim=ends, box_aspect=1, title=channel.label)
         panel.set_xlabel(f"simulated [{shown_unit(channel)}]")
         panel.set_ylabel(f"measured [{shown_unit(channel)}]")
-    _legend(figure, panels[0])
+    legend(figure, panels[0])
     return svg(figure)
 
 
@@ -88,14 +88,14 @@ def residuals(rows: Rows, channels: Sequence[Channel], noise: Mapping[str, Any])
     A band, where the channel has a noise floor, is two of them wide to either side.
     """
     groupings = ("n_set_rpm", "T_set_Nm", "oil", "direction")
-    figure, panels = _figure(12.0, 2.7 * len(channels) + 0.8, len(channels), len(groupings), sharex="col", sharey="row")
+    figure, panels = empty(12.0, 2.7 * len(channels) + 0.8, len(channels), len(groupings), sharex="col", sharey="row")
     for i, channel in enumerate(channels):
         line = panels[i * len(groupings) : (i + 1) * len(groupings)]
         for panel, by in zip(line, groupings, strict=True):
             _residual(panel, rows, channel, by, noise.get(channel.key))
             panel.label_outer()
         line[0].set_ylabel(f"{channel.label}\nsimulated - measured [{channel.unit}]")
-    _legend(figure, panels[0])
+    legend(figure, panels[0])
     return svg(figure)
 
 
@@ -136,7 +136,7 @@ def _scatter(panel: Axes, rows: Rows, x: np.ndarray, y: np.ndarray) -> None:
                 panel.plot(x[mine], y[mine], shape, color=colour, markerfacecolor=face, markersize=5, label=label)
 
 
-def _legend(figure: Figure, panel: Axes) -> None:
+def legend(figure: Figure, panel: Axes) -> None:
     """One legend under all panels."""
     handles, labels = panel.get_legend_handles_labels()
     with mpl.rc_context(STYLE):
@@ -152,9 +152,7 @@ def warm_up(curves: Mapping[int, Mapping[str, np.ndarray]], rows: Rows) -> str:
     """
     count = len(curves)
     across = min(count, 2)
-    figure, panels = _figure(
-        12.0, 3.3 * -(-count // across) + 0.4, -(-count // across), across, sharex=True, sharey=True
-    )
+    figure, panels = empty(12.0, 3.3 * -(-count // across) + 0.4, -(-count // across), across, sharex=True, sharey=True)
     lines = {"T_oil_C": ("oil", COLOURS[0]), "T_wall_C": ("wall", COLOURS[1]), "T_amb_C": ("room", "#777777")}
     for panel, (test, columns) in zip(panels, curves.items(), strict=False):
         mine = [row for row in rows if row["test"] == test]
@@ -169,7 +167,7 @@ def warm_up(curves: Mapping[int, Mapping[str, np.ndarray]], rows: Rows) -> str:
         panel.label_outer()
     for panel in panels[count:]:
         panel.set_visible(False)
-    _legend(figure, panels[0])
+    legend(figure, panels[0])
     return svg(figure)
 
 
@@ -183,7 +181,7 @@ def _test_title(rows: Rows, test: int) -> str:
 
 def shares(row: Row, columns: Sequence[str]) -> str:
     """Bars of the single losses at one operating point."""
-    figure, panels = _figure(12.0, 0.45 * len(columns) + 1.0, 1, 1)
+    figure, panels = empty(12.0, 0.45 * len(columns) + 1.0, 1, 1)
     values = [float(row[column]) for column in columns]
     names = [LOSSES.get(column, column) for column in columns]
     bars = panels[0].barh(names, values, color=COLOURS[0], height=0.6)
@@ -198,7 +196,7 @@ def shares(row: Row, columns: Sequence[str]) -> str:
 def breakdown(rows: Rows, columns: Sequence[str]) -> str:
     """Stacked bars of the computed losses of every test, one panel a direction, with the measured loss as a mark."""
     directions = [d for d in DIRECTIONS if any(row.get("direction") == d for row in rows)]
-    figure, panels = _figure(12.0, 3.2 * len(directions) + 0.4, len(directions), 1, sharex=True, sharey=True)
+    figure, panels = empty(12.0, 3.2 * len(directions) + 0.4, len(directions), 1, sharex=True, sharey=True)
     for panel, direction in zip(panels, directions, strict=True):
         mine = [row for row in rows if row.get("direction") == direction]
         x, foot = np.arange(len(mine)), np.zeros(len(mine))
@@ -213,5 +211,5 @@ def breakdown(rows: Rows, columns: Sequence[str]) -> str:
         panel.set(title=f"direction {DIRECTIONS[direction]}", ylabel="loss power [W]", xlabel="test")
         panel.grid(False, axis="x")
         panel.label_outer()
-    _legend(figure, panels[0])
+    legend(figure, panels[0])
     return svg(figure)

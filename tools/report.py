@@ -66,8 +66,8 @@ def render(study: Study, comparison: Comparison | None, scores: Sequence[Score])
         laws=_laws(study.laws),
         unverified=[law.name for law in study.laws if not law.verified],
         outside=_outside(study.outside),
-        parameters=_table(("parameter", "value", "source"), study.parameters, text=(2,)),
-        errata=_table(("place", "says", "should be", "evidence"), study.errata, text=(1, 2, 3)),
+        parameters=html_table(("parameter", "value", "source"), study.parameters, text=(2,)),
+        errata=html_table(("place", "says", "should be", "evidence"), study.errata, text=(1, 2, 3)),
         rows=_readings(study.rows),
     )
 
@@ -90,14 +90,14 @@ def _compared(rows: Rows, comparison: Comparison, scores: Sequence[Score]) -> di
         "scores": scores,
         "noise": noise,
         "repeated": ", ".join("/".join(str(t) for t in tests) for tests in noise["repeated"]) or "none",
-        "summary": _table(*error_lines(comparison, scores), ours=0),
+        "summary": html_table(*error_lines(comparison, scores), ours=0),
         "parity": Markup(plots.parity(rows, drawn)),
         "residuals": Markup(plots.residuals(rows, channels, noise)),
-        "groups": _table(*group_lines(comparison)),
+        "groups": html_table(*group_lines(comparison)),
     }
 
 
-def _table(head: Sequence[str], body: Iterable[Sequence[Any]], text: Sequence[int] = (), ours: int = -1) -> Markup:
+def html_table(head: Sequence[str], body: Iterable[Sequence[Any]], text: Sequence[int] = (), ours: int = -1) -> Markup:
     """An HTML table; columns in `text` are set to the left, row `ours` stands out."""
 
     def row(tag: str, values: Sequence[Any]) -> str:
@@ -117,17 +117,17 @@ def _laws(laws: Sequence[LawInfo]) -> Markup:
         source = known.get(law.source)
         cited = f"{source.author} {source.year}, {source.title}" if source else law.source
         body.append((law.name, cited, law.where, law.valid, "verified" if law.verified else "unverified"))
-    return _table(("law", "source", "place", "valid", "against print"), body, text=(1, 2, 3, 4))
+    return html_table(("law", "source", "place", "valid", "against print"), body, text=(1, 2, 3, 4))
 
 
 def _outside(outside: Sequence[Outside]) -> Markup:
     body = [(o.law, o.component, o.argument, o.low, o.high, o.lowest, o.highest) for o in outside]
     head = ("law", "part", "argument", "valid from", "to", "met from", "to")
-    return _table(head, body, text=(1, 2)) if body else Markup("")
+    return html_table(head, body, text=(1, 2)) if body else Markup("")
 
 
 def _readings(rows: Rows) -> Markup:
     columns = [c.column for c in CHANNELS if any(c.column in row for row in rows)]
     head = [*READING, *(name for column in columns for name in (column, f"{column}_meas"))]
     head = [name for name in head if any(name in row for row in rows)]
-    return _table(head, [[row.get(name) for name in head] for row in rows], text=(3,))
+    return html_table(head, [[row.get(name) for name in head] for row in rows], text=(3,))

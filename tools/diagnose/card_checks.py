@@ -6,13 +6,12 @@ import json
 from collections.abc import Mapping
 from pathlib import Path
 
-from ...model.errors import DataError, suggestion
-from .card import DEFAULTS, PRIOR, Card, Oil, Protocol, read_card
+from ...model.errors import suggestion
+from .card import DEFAULTS, PRIOR, Card, Oil, Protocol
 
 
-def checked_card(path: Path | None) -> Card:
-    """The card in a file, or the defaults. Raises DataError with all problems at once."""
-    card = read_card(path)
+def card_problems(path: Path | None, card: Card) -> list[str]:
+    """Values that cannot be."""
     name = path.name if path else ""
     problems = [f"{name} prior_sd.{k} = {v:g} is not above 0." for k, v in card.prior_sd.items() if not v > 0]
     problems += [f"{name} protocol.dwell_min: {d:g} is not above 0." for d in card.run.dwell_min if not d > 0]
@@ -20,9 +19,7 @@ def checked_card(path: Path | None) -> Card:
         problems.append(f"{name} oil: nu100 is not below nu40. An oil gets thinner as it warms up.")
     if isinstance(card.oil, Oil) and card.oil.nu40 < 1.0:
         problems.append(f"{name} oil: nu40 = {card.oil.nu40:g} is too small. Give viscosities in mm2/s.")
-    if problems:
-        raise DataError(problems)
-    return card
+    return problems
 
 
 def card_warnings(path: Path | None, card: Card) -> list[str]:

@@ -74,10 +74,8 @@ def _one_value(data: Campaign, column: str) -> bool:
 
 
 def small_reference(reference: Campaign | None) -> list[str]:
-    """A warning where the model is calibrated on little or nothing."""
-    if reference is None:
-        return ["no reference campaign: where the rig differs from its model by itself, that is taken for a cause."]
-    if too_small(reference):
+    """A warning where the model is calibrated on little."""
+    if reference is not None and too_small(reference):
         return [f"{reference.name}: so few readings calibrate the model poorly."]
     return []
 

@@ -17,10 +17,11 @@ from ...scenarios.scenario import Scenario
 from ..effects.library import CAUSES
 from ..settings import driven_by
 from . import card as cards
-from .card import Card
-from .card_checks import card_warnings, checked_card
+from .card import Card, read_card
+from .card_checks import card_problems, card_warnings
 from .data_checks import implausible, invisible_causes, outlying, small_reference, too_small
 from .lubrication import known_oils, lubricated, oil_values, oil_warnings
+from .memory import Memory
 from .series import Series, read_series
 
 T = TypeVar("T")
@@ -59,6 +60,7 @@ class Inputs:
         invisible: cause -> why these data cannot show it, or cannot tell it from another
         warnings: what the user should know of the files
         digest: hash of the rig and of all that was read
+        memory: what an earlier, interrupted diagnosis of the same computed
     """
 
     scenario: Scenario
@@ -72,6 +74,7 @@ class Inputs:
     invisible: Mapping[str, str] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     digest: str = ""
+    memory: Memory = field(default_factory=Memory)
 
     @property
     def spec(self) -> Spec:
@@ -94,7 +97,8 @@ class _Reader:
     def __init__(self, request: Request) -> None:
         self.request = request
         self.problems: list[str] = []
-        self.card = self.tried(lambda: checked_card(request.card))
+        self.card = self.tried(lambda: read_card(request.card))
+        self.problems += [] if self.card is None else card_problems(request.card, self.card)
         self.scenario = self.tried(lambda: _rig(request.rig, self.card))
         tables = [path for path in (request.data, request.reference, request.predict) if path is not None]
         self.known, wrong = known_oils(tables, self.card)
