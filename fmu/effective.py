@@ -28,10 +28,9 @@ def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> Flat
     """
     parts = [flat.ode, flat.y, flat.residual, flat.supply, flat.throughput, flat.stored, flat.checked]
     column = ca.vertcat(ca.SX(0, 1), *(ca.SX(part) for part in parts))
-    held = _columns(ca.jacobian_sparsity(column, flat.p))
-    moving = _columns(ca.sparsify(ca.jacobian(ca.cse(column), flat.p)).sparsity())
-    moving |= _switching(column, flat.p) if held - moving else set()
-    kept = [i for i in range(len(flat.parameters)) if i in moving]
+    if "effective" not in flat.prepared:
+        flat.prepared["effective"] = _moving(column, flat.p)
+    kept = [i for i in range(len(flat.parameters)) if i in flat.prepared["effective"]]
     if len(kept) == len(flat.parameters):
         return flat
     values = {q.name: q.start for q in flat.parameters} | dict(start or {})
@@ -50,6 +49,13 @@ def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> Flat
         **{"ode": ode, "y": y, "residual": residual, "supply": supply},
         **{"throughput": throughput, "stored": stored, "checked": checked},
     )
+
+
+def _moving(column: Any, p: Any) -> set[int]:
+    """Positions of the parameters with an effect."""
+    held = _columns(ca.jacobian_sparsity(column, p))
+    moving = _columns(ca.sparsify(ca.jacobian(ca.cse(column), p)).sparsity())
+    return moving | _switching(column, p) if held - moving else moving
 
 
 def _columns(sparsity: Any) -> set[int]:

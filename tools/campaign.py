@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from ..fmu.effective import effective
 from ..fmu.variables import STORED, SUPPLIED, THROUGHPUT
 from ..model.core.flat import FlatModel
 from ..model.errors import ScenarioError
@@ -61,13 +62,15 @@ def courses(scenario: Scenario, flat: FlatModel, tests: str | None = None) -> tu
     if (campaign := scenario.campaign) is None:
         return (_held(scenario, flat),)
     wanted = _wanted(tests, campaign)
-    return tuple(_course(scenario, flat, campaign, test) for test in campaign.tests() if test.number in wanted)
+    played = effective(flat)  # the FMU lacks what has no effect
+    return tuple(_course(scenario, played, campaign, test) for test in campaign.tests() if test.number in wanted)
 
 
 def _course(scenario: Scenario, flat: FlatModel, campaign: Campaign, test: Any) -> Course:
     run = schedule_of(campaign, test)
     assert campaign.protocol is not None  # schedule_of has refused it
-    start = run.start(flat) | oil_values(scenario, campaign.protocol, test.oil)
+    oil = oil_values(scenario, campaign.protocol, test.oil)
+    start = run.start(flat) | {name: value for name, value in oil.items() if name in flat.index}
     return Course(test.number, test.oil, run.schedule, start, run.moments, test.halves)
 
 

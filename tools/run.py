@@ -10,7 +10,6 @@ from typing import Any
 
 import numpy as np
 
-from ..fmu.export import export
 from ..model.core.flat import FlatModel
 from ..model.units import shown, to_si
 from ..scenarios.load import load
@@ -18,6 +17,7 @@ from ..scenarios.scenario import Scenario
 from . import campaign, describe, summary
 from .compare import Comparison, Rows, compare, present
 from .console import answer, as_json, file_of, folder, note, table, writable, write
+from .exporting import write_fmu
 from .readings import sources
 from .report import Study, render
 from .rivals import Score, rivals
@@ -41,7 +41,7 @@ def command(
         scenario = driven_by(scenario, protocol.inputs) if protocol else scenario
         flat = flat_of(scenario)
         found = campaign.courses(scenario, flat, tests)
-        fmu = export(flat, out / f"{scenario.name}.fmu")
+        fmu = write_fmu(scenario, flat, out / f"{scenario.name}.fmu")
         note(f"exported {fmu}")
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()
         record = campaign.recorded(scenario, flat)
