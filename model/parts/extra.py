@@ -82,20 +82,30 @@ class ExtraLoss(Component):
 
 
 class ExtraConductor(Component):
-    """A conductance beside another: its heat flow follows a power of the temperature difference."""
+    """A conductance beside another: it follows powers of the temperature difference and of a shaft's speed.
+
+    A threshold of the temperature at a has a side: +1 acts above it, -1 below.
+    """
 
     a = HeatPort()
     b = HeatPort()
+    reading = ShaftReading()
 
     G_ref = Parameter("W/K", "conductance at the reference difference")
     dT_ref = Parameter("K (difference)", "reference difference", nominal=10.0, above=0.0)
     e = Parameter("1", "exponent of the difference in the conductance", above=-1.0)
+    w_ref = Parameter("rad/s", "reference speed", nominal=10.0, above=0.0)
+    c = Parameter("1", "exponent of the speed")
+    T_on = Parameter("K", "threshold of the temperature at a", nominal=10.0)
+    T_side = Parameter("1", "side of the temperature threshold")
     Q_flow = Output("W", "heat flow rate from a to b", nominal=10.0)
 
     def equations(self) -> Iterator[Equation]:
         """What enters at a leaves at b."""
         dT = self.a.T - self.b.T
-        flow = self.G_ref * dT * (smooth_abs(dT, 0.1) / self.dT_ref) ** self.e
+        form = (smooth_abs(dT, 0.1) / self.dT_ref) ** self.e
+        speed = (smooth_abs(self.reading.w, W_STEP) / self.w_ref) ** self.c
+        flow = self.G_ref * dT * form * speed * _step(self.T_side * (self.a.T - self.T_on) / T_STEP)
         yield equation("conduction", self.Q_flow, flow)
         yield equation("enters at a", self.a.Q_flow, self.Q_flow)
         yield equation("leaves at b", self.b.Q_flow, -self.Q_flow)

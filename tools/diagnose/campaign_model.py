@@ -11,7 +11,7 @@ from ...fmu.batch import Batch
 from ...model.core.flatten import flatten
 from ...model.errors import SolveError
 from ...model.machines.spec import Spec, assemble
-from ...scenarios.measured import Campaign, TestRun, schedule_of
+from ...scenarios.measured import Campaign, Reading, TestRun, schedule_of
 from ..effects.cause import Readings, Rows
 from .superset import as_read, superset
 
@@ -95,6 +95,13 @@ class CampaignModel:
         return found
 
 
+def _rise(reading: Reading) -> float:
+    """Oil over room as measured [K]; at points to predict a typical value for their power."""
+    if reading.given("T_oil_C"):
+        return reading.values["T_oil_C"] - reading.values["T_amb_C"]
+    return 40.0 * reading.values["n_carrier_rpm"] / 200 * (reading.values["T_carrier_Nm"] / 2000) ** 0.5
+
+
 def rows_of(readings: Sequence[Any], halves: Sequence[int]) -> Rows:
     """What instruments' faults depend on, from the readings of the tests in running order."""
     test = np.repeat(np.arange(len(halves)), halves)
@@ -108,5 +115,6 @@ def rows_of(readings: Sequence[Any], halves: Sequence[int]) -> Rows:
         w=np.array([reading.si("n_carrier_rpm") for reading in readings]),
         tau=np.array([reading.values["T_carrier_Nm"] for reading in readings]),
         T_room=np.array([reading.si("T_amb_C") for reading in readings]),
+        rise=np.array([_rise(reading) for reading in readings]),
         humidity=humidity if np.isfinite(humidity).all() else None,
     )

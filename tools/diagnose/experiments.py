@@ -13,7 +13,7 @@ from .campaign_model import CampaignModel
 from .evidence import White
 from .findings import Experiment
 from .problem import Campaigned, Linear, Problem
-from .search import Family, families
+from .search import Family, Sample, families
 from .weigh import distance
 
 #: Forms of each cause by which an experiment is judged.
@@ -62,7 +62,8 @@ def ranked(problem: Problem, z: np.ndarray, weights: Mapping[str, float]) -> lis
     there = np.asarray(~added.any(axis=0))
     linear = enlarged.linearised(z)
     causes = [CAUSES[c] for c in sorted(weights)]
-    G = families(enlarged, linear, White.of(linear.residual, linear.covariance), causes, FORMS, {})
+    samples = [Sample.of_prior(c, FORMS) for c in causes]
+    G = families(enlarged, linear, White.of(linear.residual, linear.covariance), samples)
     before = _distances(linear, linear.covariance, G, there, pairs)
     found = []
     for candidate, own in zip(CANDIDATES, added, strict=True):

@@ -47,14 +47,14 @@ def candidates(
     for h in leading:
         if len(h.causes) == 1:
             f = h.families[0]
-            pool += [((f,), (k,), prior - float(np.log(len(f.forms)))) for k in range(len(f.forms))]
+            pool += [((f,), (k,), prior + float(f.log_w[k] - np.log(len(f.forms)))) for k in range(len(f.forms))]
             seen.add(h.causes[0])
         elif h.families:
             best = tuple(_index(f, h) for f in h.families)
             pool.append((h.families, best, prior - 3.0))
     for f in search.found.values():
         if f.cause.id not in seen:
-            pool += [((f,), (k,), prior - float(np.log(len(f.forms)))) for k in range(len(f.forms))]
+            pool += [((f,), (k,), prior + float(f.log_w[k] - np.log(len(f.forms)))) for k in range(len(f.forms))]
     return pool
 
 

@@ -8,15 +8,17 @@ from itertools import combinations
 
 import numpy as np
 from scipy.special import logsumexp
-from scipy.stats import chi2
+from scipy.stats import chi2, norm
 
-from ..effects.cause import Cause, Theta
+from ..effects.cause import Cause, Theta, spread
 from ..effects.library import CAUSES
 from .evidence import WIDTHS, White, log_bayes_factors, log_bayes_factors_pair, score
 from .problem import Linear, Problem
 
-#: Forms of each family in the first look, for leaders, and for each side of a leading pair.
-FORMS, FORMS_LEADER, FORMS_PAIR = 10, 40, 16
+#: Forms of each family in the first look; more of the prior and around the best ones for leaders.
+FORMS, MORE, NEAR = 10, 14, 36
+#: Forms around which more are drawn, and how far, in shares of the prior.
+CENTRES, REACH = 6, 0.13
 #: Leading singles searched for pairs; leading hypotheses looked at again.
 PAIR_LEADERS, AGAIN = 8, 6
 #: Prior probabilities: nothing wrong, one cause, two causes, something outside the library.
@@ -36,6 +38,8 @@ class Family:
     white: np.ndarray
     s: np.ndarray
     q: np.ndarray
+    shares: np.ndarray
+    log_w: np.ndarray
 
     @property
     def bounds(self) -> tuple[np.ndarray, np.ndarray]:
@@ -54,12 +58,12 @@ class Family:
 
     def evidence(self) -> float:
         """Log Bayes factor of the family."""
-        return float(logsumexp(self.log_bf()) - np.log(len(self.forms)))
+        return float(logsumexp(self.log_bf() + self.log_w) - np.log(len(self.forms)))
 
     def weights(self) -> np.ndarray:
         """Posterior weight of each form."""
-        log_bf = self.log_bf()
-        return np.asarray(np.exp(log_bf - logsumexp(log_bf)))
+        logs = self.log_bf() + self.log_w
+        return np.asarray(np.exp(logs - logsumexp(logs)))
 
     def sizes(self) -> tuple[np.ndarray, np.ndarray]:
         """Posterior mean and standard deviation of the size, per form, under a wide prior."""
@@ -91,28 +95,73 @@ def log_gauss(white: White) -> float:
     return float(-0.5 * white.e @ white.e - np.log(np.diag(white.L)).sum())
 
 
-def families(
-    problem: Problem, linear: Linear, white: White, causes: Iterable[Cause], n: int, sizes: Mapping[str, float]
-) -> dict[str, Family]:
-    """Signatures of n forms of each cause, as secants to the given sizes (the prior's half width where none is)."""
-    forms = {cause.id: (cause, cause.forms(n if cause.shapes else 1)) for cause in causes}
-    wanted = [(cause, form, sizes.get(cause.id, cause.size.sd)) for cause, own in forms.values() for form in own]
+@dataclass(frozen=True)
+class Sample:
+    """Forms of one cause: shares (n, shapes) of the prior, log weights against it, and the size of the secants."""
+
+    cause: Cause
+    shares: np.ndarray
+    log_w: np.ndarray
+    size: float
+
+    @staticmethod
+    def of_prior(cause: Cause, n: int, size: float | None = None) -> Sample:
+        """n forms spread over the prior, the middle first."""
+        d = len(cause.shapes)
+        shares = spread(n, d) if d else np.zeros((1, 0))
+        return Sample(cause, shares, np.zeros(len(shares)), cause.size.sd if size is None else size)
+
+
+def families(problem: Problem, linear: Linear, white: White, samples: Iterable[Sample]) -> dict[str, Family]:
+    """Signatures of all forms of all samples."""
+    samples = list(samples)
+    forms = {s.cause.id: (s, s.cause.forms(s.shares) if s.cause.shapes else [{}]) for s in samples}
+    wanted = [(s.cause, form, s.size) for s, own in forms.values() for form in own]
     G = problem.signatures(linear, wanted)
     whitened = white.columns(G)
     found, begin = {}, 0
-    for cause, own in forms.values():
+    for s, own in forms.values():
         part = slice(begin, begin + len(own))
         g = whitened[:, part]
-        found[cause.id] = Family(cause, own, G[:, part], g, g.T @ white.e, (g**2).sum(axis=0))
+        found[s.cause.id] = Family(s.cause, own, G[:, part], g, g.T @ white.e, (g**2).sum(axis=0), s.shares, s.log_w)
         begin += len(own)
     return found
+
+
+def nearer(f: Family, size: float, seed: int) -> Sample:
+    """More forms of a family around its best ones and over its prior, weighted so that the prior stays what it was."""
+    d = f.shares.shape[1]
+    if d == 0:
+        return Sample(f.cause, f.shares, f.log_w, size)
+    best = f.shares[np.argsort(-f.weights())[:CENTRES]]
+    rng = np.random.default_rng(seed)
+    drawn = best[np.arange(NEAR) % len(best)] + REACH * rng.standard_normal((NEAR, d))
+    drawn = np.abs(drawn)  # reflected at both ends of the prior
+    drawn = np.clip(1 - np.abs(1 - drawn), 1e-3, 1 - 1e-3)
+    shares = np.concatenate([best[:1], spread(MORE, d), drawn])
+    log_w = -np.log((MORE + NEAR * _density(shares, best)) / (MORE + NEAR))
+    log_w[0] = -50.0  # the best form of before is looked at, but counts through those drawn around it
+    return Sample(f.cause, shares, log_w, size)
+
+
+def _density(shares: np.ndarray, centres: np.ndarray) -> np.ndarray:
+    """Density of the draws around centres, with what is reflected at the ends of the prior."""
+    total = np.zeros(len(shares))
+    for centre in centres:
+        own = np.ones(len(shares))
+        for k in range(shares.shape[1]):
+            x = shares[:, k]
+            own *= sum(norm.pdf(x, c, REACH) for c in (centre[k], -centre[k], 2 - centre[k]))
+        total += own / len(centres)
+    return total
 
 
 def pair_evidence(a: Family, b: Family) -> tuple[float, tuple[int, int]]:
     """Log Bayes factor of two families together, and the forms of most evidence."""
     log_bf = log_bayes_factors_pair((a.s, b.s), (a.q, b.q), a.white.T @ b.white, (a.sd, b.sd), (a.bounds, b.bounds))
     k, m = np.unravel_index(int(np.argmax(log_bf)), log_bf.shape)
-    return float(logsumexp(log_bf) - np.log(log_bf.size)), (int(k), int(m))
+    weighted = log_bf + a.log_w[:, None] + b.log_w[None, :]
+    return float(logsumexp(weighted) - np.log(log_bf.size)), (int(k), int(m))
 
 
 def pair_theta(a: Family, b: Family, k: int, m: int) -> dict[str, Theta]:
@@ -140,7 +189,7 @@ class Search:
         self.null = self.problem.settled()
         self.white = White.of(self.null.residual, self.null.covariance)
         self.progress("effects of all causes", 0.15)
-        self.found = families(self.problem, self.null, self.white, self.causes, FORMS, {})
+        self.found = families(self.problem, self.null, self.white, (Sample.of_prior(c, FORMS) for c in self.causes))
         self.p_any, self.critical = self._alarm()
         self.p_omnibus = float(chi2.sf(self.white.e @ self.white.e, len(self.white.e)))
         first = self._first_look()
@@ -221,9 +270,10 @@ class Search:
         linear = self.problem.settled(self._shifted(h), h.theta, causes, steps=1)
         back = self.problem.without(linear)
         white = White.of(back.residual, back.covariance)
-        n = FORMS_LEADER if len(causes) == 1 else FORMS_PAIR
-        sizes = {c.id: sound(h.theta[c.id][c.size.name], c) for c in causes}
-        found = families(self.problem, back, white, causes, n, sizes)
+        samples = []
+        for k, (c, f) in enumerate(zip(causes, h.families, strict=True)):
+            samples.append(nearer(f, sound(h.theta[c.id][c.size.name], c), self.seed + k))
+        found = families(self.problem, back, white, samples)
         base = log_gauss(white)
         if len(causes) == 1:
             f = found[causes[0].id]

@@ -7,8 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 from scipy.stats import chi2, norm
 
-from ..effects.cause import Theta
-from ..effects.forms import regime_of
+from ..effects.cause import Cause, Theta
 from ..effects.library import CAUSES
 from .evidence import White
 from .findings import Estimate, Joint, Named
@@ -96,12 +95,12 @@ def estimates(
         share = np.cumsum(w[order])
         low, high = (float(values[order][min(int(np.searchsorted(share, s)), len(w) - 1)]) for s in (0.025, 0.975))
         found.append(Estimate(shape.name, float(w @ values), low, high, shape.unit))
-    return tuple(found), regime_in_columns(theta)
+    return tuple(found), regime_in_columns(f.cause, theta)
 
 
-def regime_in_columns(theta: Theta) -> Mapping[str, tuple[float | None, float | None]]:
+def regime_in_columns(cause: Cause, theta: Theta) -> Mapping[str, tuple[float | None, float | None]]:
     """Where a form acts, as ranges of the data's columns; empty where it acts everywhere."""
-    regime = regime_of(theta) if "regime" in theta else None
+    regime = cause.acts(theta)
     if regime is None:
         return {}
     name, value = regime

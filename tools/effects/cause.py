@@ -49,7 +49,8 @@ class Rows:
     """The readings of a campaign as arrays over its n rows, n_tests tests: what an instrument's fault may depend on.
 
     `test` is the index of each row's test, `order` its running order from 0 (first) to 1 (last), `direction` +1 for a
-    multiplier, -1 for a reducer; `w` [rad/s], `tau` [N.m] magnitude, `T_room` [K], `humidity` or None.
+    multiplier, -1 for a reducer; `w` [rad/s], `tau` [N.m] magnitude, `T_room` [K], `rise` of the oil over the room [K]
+    as measured (0 where it is not), `humidity` or None.
     """
 
     test: np.ndarray
@@ -58,6 +59,7 @@ class Rows:
     w: np.ndarray
     tau: np.ndarray
     T_room: np.ndarray
+    rise: np.ndarray
     humidity: np.ndarray | None = None
 
     @property
@@ -80,6 +82,10 @@ def _no_values(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Ma
     return {}
 
 
+def _everywhere(theta: Theta) -> tuple[str, float] | None:
+    return None
+
+
 def _no_change(theta: Theta, rows: Rows, readings: Readings) -> Readings:
     return readings
 
@@ -99,6 +105,7 @@ class Cause:
         values: (values of the machine by path, parameters, rows) -> changed values by path, a number or one per test;
             rows are None where no campaign is at hand
         readings: (parameters, rows, true readings) -> what the instruments show
+        acts: parameters -> where it acts: quantity with its side ("w+", "tau-", "T+") and threshold in SI, or None
     """
 
     id: str
@@ -111,6 +118,7 @@ class Cause:
     connections: tuple[tuple[str, ...], ...] = ()
     values: Callable[[Mapping[str, float], Theta, Rows | None], Mapping[str, Any]] = _no_values
     readings: Callable[[Theta, Rows, Readings], Readings] = _no_change
+    acts: Callable[[Theta], tuple[str, float] | None] = _everywhere
 
     @property
     def physical(self) -> bool:
@@ -125,16 +133,13 @@ class Cause:
         base = {f"{p.name}.{k}": v for p in extended.parts for k, v in p.values.items()}
         return extended.with_values(self.values(base, theta, None))
 
-    def forms(self, n: int) -> list[dict[str, float]]:
-        """n members of the family, spread evenly over the prior of the shapes; the first is its middle."""
-        if not self.shapes:
-            return [{}]
-        share = _spread(n, len(self.shapes))
-        columns = [shape.quantile(share[:, k]) for k, shape in enumerate(self.shapes)]
-        return [{s.name: float(c[i]) for s, c in zip(self.shapes, columns, strict=True)} for i in range(n)]
+    def forms(self, shares: np.ndarray) -> list[dict[str, float]]:
+        """Members of the family: shares (n, shapes) of the prior of each shape -> n forms."""
+        columns = [shape.quantile(shares[:, k]) for k, shape in enumerate(self.shapes)]
+        return [{s.name: float(c[i]) for s, c in zip(self.shapes, columns, strict=True)} for i in range(len(shares))]
 
 
-def _spread(n: int, d: int) -> np.ndarray:
+def spread(n: int, d: int) -> np.ndarray:
     """n points of the unit cube, evenly spread (additive sequence of the golden ratio), the middle first."""
     ratio = 2.0
     for _ in range(60):

@@ -7,8 +7,10 @@ from typing import Any
 
 import numpy as np
 
-from ...model.machines.spec import PartSpec
 from .cause import Cause, Rows, Size, Theta
+from .forms import extra_conductor
+
+PARTS, NETS = extra_conductor("extra_humidity", "surface.heat", "room.floor")
 
 
 def conductance(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mapping[str, Any]:
@@ -25,7 +27,7 @@ CAUSE = Cause(
     size=Size("G_ref", "W/K", "change of the conductance for one standard deviation of the humidity", 0.5, -4.0, 4.0),
     exposes="humidity logged in every test, two days with the same point",
     like="day to day: humidity and other scatter of the days are one answer unless humidity is measured",
-    parts=(PartSpec("extra_humidity", "ExtraConductor", {"G_ref": 0.0, "dT_ref": 35.0, "e": 0.0}),),
-    connections=(("extra_humidity.a", "surface.heat"), ("extra_humidity.b", "room.floor")),
+    parts=PARTS,
+    connections=NETS,
     values=conductance,
 )

@@ -1,13 +1,28 @@
 """Oil that gives its heat to the wall better or worse than assumed."""
 
-import math
+from __future__ import annotations
 
-from .cause import Cause, Size
+from collections.abc import Mapping
+from typing import Any
+
+from .cause import Cause, Rows, Shape, Size, Theta
+from .forms import extra_conductor
+
+PARTS, NETS = extra_conductor("extra_oil_wall", "oil.heat", "wall.heat")
+
+
+def conductance(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mapping[str, Any]:
+    """The extra conductance, as a share of the nominal one."""
+    return {"extra_oil_wall.G_ref": theta["share"] * base["oil_wall.G"], "extra_oil_wall.c": theta["c"]}
+
 
 CAUSE = Cause(
     id="cooling.oil_wall",
     doc="Another conductance between oil and wall: level, foam, deposits.",
-    size=Size("ln_factor", "1", "logarithm of the factor on the conductance", 0.5, -2.5, 1.5),
+    size=Size("share", "1", "conductance more than assumed, as a share of it, at 200 rpm", 0.5, -0.9, 6.0),
+    shapes=(Shape("c", "1", "exponent of the speed", -0.8, 0.8, 0.0, 0.3),),
     exposes="transients; a second probe in the wall",
-    values=lambda base, theta, rows: {"oil_wall.G": base["oil_wall.G"] * math.exp(theta["ln_factor"])},
+    parts=PARTS,
+    connections=NETS,
+    values=conductance,
 )

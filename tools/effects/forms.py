@@ -60,6 +60,13 @@ def extra_values(name: str, theta: Theta, **fixed: float) -> Mapping[str, float]
     return {f"{name}.{k}": v for k, v in values.items()}
 
 
+def extra_conductor(name: str, a: str, b: str) -> tuple[tuple[PartSpec, ...], tuple[tuple[str, ...], ...]]:
+    """A conductance of general form between two heat ports."""
+    values = {"G_ref": 0.0, "dT_ref": 35.0, "e": 0.0, "w_ref": W_REF, "c": 0.0, "T_on": 0.0, "T_side": 1.0}
+    nets = ((f"{name}.a", a), (f"{name}.b", b), (f"{name}.reading", "carrier.reading"))
+    return (PartSpec(name, "ExtraConductor", values),), nets
+
+
 def scaled(base: Mapping[str, float], factor: float, *paths: str) -> Mapping[str, float]:
     """The given values times a factor."""
     return {path: base[path] * factor for path in paths}

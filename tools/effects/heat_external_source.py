@@ -1,7 +1,7 @@
 """Heat that comes from beside the gearbox."""
 
 from .cause import Cause, Shape, Size
-from .forms import REGIME, extra_part, extra_values
+from .forms import REGIME, extra_part, extra_values, regime_of
 
 PARTS, NETS = extra_part("extra_source", "surface", braking=False)
 CAUSE = Cause(
@@ -16,5 +16,6 @@ CAUSE = Cause(
     exposes="temperatures with the gearbox at rest and its neighbours running",
     parts=PARTS,
     connections=NETS,
+    acts=regime_of,
     values=lambda base, theta, rows: extra_values("extra_source", theta),
 )

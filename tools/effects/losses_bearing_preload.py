@@ -1,7 +1,7 @@
 """Bearings that carry more than assumed."""
 
 from .cause import Cause, Shape, Size
-from .forms import OIL_SHARE_BEARING, REGIME, extra_part, extra_values
+from .forms import OIL_SHARE_BEARING, REGIME, extra_part, extra_values, regime_of
 
 PARTS, NETS = extra_part("extra_preload", "wall")
 CAUSE = Cause(
@@ -18,5 +18,6 @@ CAUSE = Cause(
     like="friction of shafts: preload and seal drag are the same torque to every steady instrument",
     parts=PARTS,
     connections=NETS,
+    acts=regime_of,
     values=lambda base, theta, rows: extra_values("extra_preload", theta),
 )

@@ -1,7 +1,7 @@
 """No-load loss of what turns in the oil."""
 
 from .cause import Cause, Shape, Size
-from .forms import OIL_SHARE_TEETH, REGIME, extra_part, extra_values
+from .forms import OIL_SHARE_TEETH, REGIME, extra_part, extra_values, regime_of
 
 PARTS, NETS = extra_part("extra_churning", "gears")
 CAUSE = Cause(
@@ -18,5 +18,6 @@ CAUSE = Cause(
     like="no-load oil loss: churning, windage and oil level differ only in how the oil is reached",
     parts=PARTS,
     connections=NETS,
+    acts=regime_of,
     values=lambda base, theta, rows: extra_values("extra_churning", theta),
 )

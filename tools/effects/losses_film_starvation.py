@@ -1,7 +1,7 @@
 """Teeth whose film breaks down where it is hot or fast."""
 
 from .cause import Cause, Shape, Size
-from .forms import OIL_SHARE_TEETH, extra_part, extra_values
+from .forms import OIL_SHARE_TEETH, extra_part, extra_values, regime_of
 
 PARTS, NETS = extra_part("extra_starvation", "gears")
 CAUSE = Cause(
@@ -19,6 +19,7 @@ CAUSE = Cause(
     exposes="points at high load and low viscosity, with and without fresh oil",
     parts=PARTS,
     connections=NETS,
+    acts=regime_of,
     values=lambda base, theta, rows: extra_values(
         "extra_starvation", {**theta, "regime": 0.7 if theta["regime"] < 0.81 else 0.9}
     ),

@@ -1,7 +1,7 @@
 """Teeth that rub more or less than assumed."""
 
 from .cause import Cause, Shape, Size
-from .forms import OIL_SHARE_TEETH, REGIME, extra_part, extra_values
+from .forms import OIL_SHARE_TEETH, REGIME, extra_part, extra_values, regime_of
 
 PARTS, NETS = extra_part("extra_mesh", "gears")
 CAUSE = Cause(
@@ -18,5 +18,6 @@ CAUSE = Cause(
     exposes="points at small and at large load, at one speed",
     parts=PARTS,
     connections=NETS,
+    acts=regime_of,
     values=lambda base, theta, rows: extra_values("extra_mesh", theta),
 )
