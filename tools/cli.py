@@ -210,6 +210,28 @@ def diagnose(
     command.command(request, command.Outputs(predictions, json, report, extended), alpha, seed)
 
 
+@app.command()
+@console.guarded
+def challenge(
+    sheet: Annotated[
+        Literal["own", "foreign"],
+        typer.Option(help="own: the rig behaves as the model; foreign: another simulator, with a healthy reference."),
+    ],
+    n: Annotated[int, typer.Option("--n", help="Number of cases.")] = 150,
+    seed: Annotated[int, typer.Option(help="The same seed hides the same.")] = 0,
+    jobs: Annotated[int, typer.Option(min=0, help="Processes to use; 0 for one per core.")] = 0,
+    out: Annotated[
+        Path | None, typer.Option(help="Folder for cases and answers; a run that was interrupted goes on from there.")
+    ] = None,
+    only: Annotated[str | None, typer.Option(help='One kind of cases, for example "clean".')] = None,
+    json: Json = None,
+) -> None:
+    """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
+    from .challenge import command
+
+    command.command(sheet, n, seed, jobs, out, only, json)
+
+
 @app.command("list")
 @console.guarded
 def list_(json: Json = None) -> None:
