@@ -18,6 +18,7 @@ from gearheat.tools.challenge import case, choose, rig, scoring
 from gearheat.tools.challenge.answers import Answer, Hypothesis, read_answer
 from gearheat.tools.challenge.bench import run_sheet
 from gearheat.tools.challenge.causes import CAUSES, OUTSIDE, REGIMES, merged_all
+from gearheat.tools.challenge.command import show
 from gearheat.tools.challenge.foreign import ForeignRig, draw_sizes
 from gearheat.tools.challenge.hidden import Draw, Effect, Surroundings
 from gearheat.tools.challenge.own import own_rig
@@ -409,7 +410,16 @@ def test_wilson_intervals() -> None:
     assert wilson(0, 0) == (0.0, 1.0)
 
 
-def test_report_counts() -> None:
+def test_command_refuses_what_it_cannot_do(gearheat) -> None:
+    for words, said in (
+        (["--sheet", "own", "--only", "claen"], 'Did you mean "clean"'),
+        (["--sheet", "own", "--n", "0"], "at least one case"),
+    ):
+        found = gearheat("challenge", *words)
+        assert found.code == 2 and said in found.err
+
+
+def test_report_counts(capsys: pytest.CaptureFixture[str]) -> None:
     def outcome(k: int, kind: str, truth: str, top: str) -> Outcome:
         return Outcome(k, kind, truth, top, True, True, truth == top, 1, True, 1, False, None, None, 2.0 + k)
 
@@ -419,3 +429,7 @@ def test_report_counts() -> None:
     assert [c["case"] for c in found["cases"]] == [0, 1, 2]
     assert found["seconds"]["median"] == 3.0
     json.dumps(found)
+    show(found)
+    printed = capsys.readouterr().out
+    assert all(m["name"] in printed for m in found["metrics"])
+    assert "0.50" in printed and "missed" in printed  # exact name: one of two
