@@ -60,22 +60,25 @@ def described(path: Path) -> Described:
         FmuError: the file is no FMU for FMI 2.0 co-simulation, or holds no binary for this machine
     """
     try:
+        with zipfile.ZipFile(path) as file:
+            root = ET.fromstring(file.read("modelDescription.xml"))
+        if (version := root.get("fmiVersion")) != "2.0":
+            raise FmuError(f"{path}: this FMU is for FMI {version}. Only FMI 2.0 for co-simulation can be played.")
         description = fmpy.read_model_description(str(path), validate=False)
         held = fmpy.supported_platforms(str(path))
-        differences = _differences(path)
+    except FmuError:
+        raise
     except FileNotFoundError:
         raise FmuError(f"{path}: there is no such file.") from None
     except Exception as error:  # zip, XML and FMPy errors alike: the file is no FMU
         raise FmuError(f"{path}: this file is no FMU ({error}).") from error
     if problem := _unplayable(description, held):
         raise FmuError(f"{path}: {problem}")
-    return Described(path, description, {v.name: v for v in description.modelVariables}, differences)
+    return Described(path, description, {v.name: v for v in description.modelVariables}, _differences(root))
 
 
 def _unplayable(description: Any, held: list[str]) -> str:
     """Why an FMU cannot be played; "" if it can."""
-    if description.fmiVersion != "2.0":
-        return f"this FMU is for FMI {description.fmiVersion}. Only FMI 2.0 for co-simulation can be played."
     simulation = description.coSimulation
     if simulation is None:
         return "this FMU is for model exchange alone. Only FMI 2.0 for co-simulation can be played."
@@ -90,10 +93,8 @@ def _unplayable(description: Any, held: list[str]) -> str:
     return ""
 
 
-def _differences(path: Path) -> frozenset[str]:
+def _differences(root: ET.Element) -> frozenset[str]:
     """Names of the variables that are marked as relative quantities, or whose type is; FMPy passes the mark over."""
-    with zipfile.ZipFile(path) as file:
-        root = ET.fromstring(file.read("modelDescription.xml"))
     types = {t.get("name") for t in root.iterfind("TypeDefinitions/SimpleType") if _is_relative(t)}
     return frozenset(
         str(v.get("name"))

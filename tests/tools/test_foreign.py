@@ -1,0 +1,140 @@
+"""An FMU that another tool has made: it plays, or a message says why it cannot."""
+
+from __future__ import annotations
+
+import csv
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import fmpy
+import pytest
+from gearheat.fmu import compiling
+from gearheat.fmu.export import archive
+from gearheat.fmu.play import Player
+from gearheat.model.errors import FmuError
+
+HERE = Path(__file__).parent / "foreign"
+DUTY = "time [s],T_room [degC]\n0,20\n600,20\n"
+
+
+@pytest.fixture(scope="module")
+def library(tmp_path_factory) -> bytes:
+    made = tmp_path_factory.mktemp("foreign") / "tank"
+    cache = compiling.cache_folder() / "zig"
+    folders = {f"ZIG_{kind.upper()}_CACHE_DIR": str(cache / kind) for kind in ("global", "local")}
+    target = ["-target", compiling.host_platform().targets[0]]
+    command = [sys.executable, "-m", "ziglang", "cc", *target, "-O1", "-shared", "-fPIC", "-fvisibility=hidden"]
+    subprocess.run([*command, "-o", made, HERE / "tank.c"], check=True, env={**os.environ, **folders})
+    return made.read_bytes()
+
+
+@pytest.fixture
+def tank(library, tmp_path):
+    """Writes the FMU, its description changed as a test wants it."""
+
+    def write(*changes: tuple[str, str]) -> Path:
+        text = (HERE / "tank.xml").read_text()
+        for old, new in changes:
+            assert old in text
+            text = text.replace(old, new, 1)
+        platform = compiling.host_platform()
+        path = tmp_path / "tank.fmu"
+        content = {
+            "modelDescription.xml": text.encode(),
+            f"binaries/{fmpy.platform}/tank{platform.suffix}": library,
+        }
+        path.write_bytes(archive(content))
+        return path
+
+    return write
+
+
+@pytest.fixture
+def duty(tmp_path):
+    (path := tmp_path / "duty.csv").write_text(DUTY)
+    return path
+
+
+def test_it_plays_with_differences_shown_without_the_offset(gearheat, tank, duty, tmp_path):
+    out = tmp_path / "out.csv"
+    answer = gearheat("play", tank(), "--duty", duty, "-o", out, "--set", "k=0.6 1/min", "--json", "-")
+    assert answer.code == 0, answer.err
+    with out.open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    assert list(rows[0]) == ["time [s]", "T[1,2] [degC]", "T_room [degC]", "dT [K]"]
+    assert [float(row["time [s]"]) for row in rows] == [60.0 * k for k in range(11)]
+    left = 0.99**600 * (350 - 293.15)
+    assert float(rows[-1]["T[1,2] [degC]"]) == pytest.approx(20 + left, rel=1e-8)
+    assert float(rows[-1]["dT [K]"]) == pytest.approx(left, rel=1e-8)
+    assert answer.json["units"]["dT"] == "K"
+
+
+def test_it_is_run_again_although_it_cannot_be_reset(tank):
+    with Player(tank()) as player:
+        first, second = (player.run({}, 60, 60.0)["dT"].tolist() for _ in range(2))
+    assert first == second
+    assert first[1] < first[0]
+
+
+def test_its_own_message_is_passed_on(gearheat, tank, duty, tmp_path):
+    hot = ("--set", "T[1,2]=900 degC")
+    answer = gearheat("play", tank(), "--duty", duty, "-o", tmp_path / "out.csv", *hot)
+    assert answer.code == 2
+    assert answer.problems() == ["tank.fmu: the tank boils\n"]
+
+
+def test_steps_of_one_length(tank):
+    with Player(tank()) as player, pytest.raises(FmuError, match="to 100 s is not 60 s long"):
+        player.run({}, 100, 60.0)
+
+
+def test_a_fmu_that_takes_any_step(tank):
+    with Player(tank(('"false"/>', '"true"/>'))) as player:
+        assert player.run({}, 100, 60.0).time.tolist() == [0, 60, 100]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "told"),
+    [
+        ({"inputs": {"lid_open": ([0, 1], [0, 1])}}, '"lid_open" is of type Boolean'),
+        ({"start": {"label": 1.0}}, '"label" is of type String'),
+        ({"start": {"dT": 1.0}}, '"dT" is calculated'),
+        ({"record": ["steps"]}, '"steps" is of type Integer'),
+    ],
+)
+def test_only_real_numbers_are_given_and_recorded(tank, arguments, told):
+    with Player(tank()) as player, pytest.raises(FmuError, match=told):
+        player.run(**{"inputs": {}, **arguments}, stop=60, step=60.0)
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (('fmiVersion="2.0"', 'fmiVersion="1.0"'), "this FMU is for FMI 1.0"),
+        (('fmiVersion="2.0"', 'fmiVersion="3.0"'), "FMI 3.0"),
+        (('tank" canHandleVariableCommunicationStepSize="false"', 'tank" needsExecutionTool="true"'), "Another tool"),
+        (
+            ("<CoSimulation", '<ModelExchange modelIdentifier="tank"/><!--'),
+            "for model exchange alone",
+        ),
+    ],
+)
+def test_what_cannot_be_played_is_said(gearheat, tank, duty, tmp_path, change, told):
+    changes = [change] if "ModelExchange" not in change[1] else [change, ('"false"/>', '"false"/>-->')]
+    answer = gearheat("play", tank(*changes), "--duty", duty, "-o", tmp_path / "out.csv")
+    assert answer.code == 2
+    assert told in answer.err
+    assert "Traceback" not in answer.err
+
+
+def test_a_binary_for_another_machine(gearheat, tank, duty, tmp_path):
+    path = tank()
+    path.write_bytes(
+        archive({"modelDescription.xml": (HERE / "tank.xml").read_bytes(), "binaries/win32/tank.dll": b""})
+    )
+    answer = gearheat("play", path, "--duty", duty, "-o", tmp_path / "out.csv")
+    assert answer.code == 2
+    assert "binaries for win32" in answer.err
+    assert "Ask its maker" in answer.err
