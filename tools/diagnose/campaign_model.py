@@ -66,7 +66,11 @@ class CampaignModel:
             variants: changed values by path, a number for all tests or an array of one per test
 
         Returns:
-            per variant channel -> readings (n rows), with `<channel>_rate`, their change per dwell at its end
+            per variant channel -> readings (n rows), with `<channel>_rate`, their change per dwell at its end; NaN
+            where a variant cannot be run
+
+        Raises:
+            SolveError: the first variant cannot be run
         """
         blocks = [self._test(k, variants) for k in range(len(self.tests))]
         joined = {c: np.concatenate([b[c] for b in blocks], axis=1) for c in blocks[0]}
@@ -84,9 +88,8 @@ class CampaignModel:
         times = [t for end, length in ends for t in (end - EARLY * length, end, end)]  # twice: both sides of a jump
         start = np.full(self.rig.n_states, run.T_start)
         rows = self.rig.batch.warmup(run.schedule, self.rig.inputs, p, start, times=times, tolerance=TOLERANCE)
-        if rows.status.any():
-            bad = int(np.flatnonzero(rows.status)[0])
-            raise SolveError(f"test {self.tests[k].number}: the model cannot be run with {variants[bad]}.")
+        if rows.status[0]:
+            raise SolveError(f"test {self.tests[k].number}: the model cannot be run with {variants[0]}.")
         found = {}
         for channel, path in OUTPUTS.items():
             values = rows[path].reshape(len(variants), -1, 3)
@@ -99,7 +102,7 @@ def _rise(reading: Reading) -> float:
     """Oil over room as measured [K]; at points to predict a typical value for their power."""
     if reading.given("T_oil_C"):
         return reading.values["T_oil_C"] - reading.values["T_amb_C"]
-    return 40.0 * reading.values["n_carrier_rpm"] / 200 * (reading.values["T_carrier_Nm"] / 2000) ** 0.5
+    return float(0.2 * reading.values["n_carrier_rpm"] * (reading.values["T_carrier_Nm"] / 2000) ** 0.5)
 
 
 def rows_of(readings: Sequence[Any], halves: Sequence[int]) -> Rows:
