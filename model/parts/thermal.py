@@ -26,7 +26,7 @@ class HeatCapacity(Component):
 
     heat = HeatPort()
 
-    T = State("K", "temperature", nominal=10.0, above=0.0, start=298.15)
+    T = State("K", "temperature", nominal=10.0, above=0.0, at_most=2000.0, start=298.15)
     C = Parameter("J/K", "heat capacity", above=0.0)
     Q_flow_external = Input("W", "heat flow rate from outside the model, e.g. a cooler (negative)", nominal=100.0)
 
