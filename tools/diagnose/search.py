@@ -15,15 +15,17 @@ from ..effects.library import CAUSES
 from .evidence import WIDTHS, White, log_bayes_factors, log_bayes_factors_pair, score
 from .problem import Linear, Problem
 
-#: Forms of each family in the first look; more of the prior and around the best ones for leaders.
-FORMS, MORE, NEAR = 10, 14, 36
+#: Forms of each family in the first look, and of each regime; more of the prior and around the best ones for leaders.
+FORMS, EACH, MORE, NEAR = 9, 3, 14, 36
 #: Forms around which more are drawn, and how far, in shares of the prior.
 CENTRES, REACH = 6, 0.13
-#: Leading singles searched for pairs; leading hypotheses looked at again.
-PAIR_LEADERS, AGAIN = 8, 6
+#: Leading singles searched for pairs; leading singles and pairs looked at again.
+PAIR_LEADERS, AGAIN_ONE, AGAIN_TWO = 8, 5, 3
 #: Prior probabilities: nothing wrong, one cause, two causes, something outside the library.
 NONE, ONE, TWO, OUTSIDE = 0.5, 0.4, 0.06, 0.04
 DRAWS = 4000
+#: How far below the best a single or a pair may lie to be looked at again: other forms may lift it by this.
+WORTH = (20.0, 8.0)
 #: Sizes of an unnamed smooth discrepancy, in multiples of its unit: 1 K, 2 N.m.
 UNNAMED = (0.7, 1.5, 3.0)
 
@@ -107,9 +109,7 @@ class Sample:
     @staticmethod
     def of_prior(cause: Cause, n: int, size: float | None = None) -> Sample:
         """n forms spread over the prior, the middle first."""
-        d = len(cause.shapes)
-        shares = spread(n, d) if d else np.zeros((1, 0))
-        return Sample(cause, shares, np.zeros(len(shares)), cause.size.sd if size is None else size)
+        return Sample(cause, *cause.sample(n, EACH), cause.size.sd if size is None else size)
 
 
 def families(problem: Problem, linear: Linear, white: White, samples: Iterable[Sample]) -> dict[str, Family]:
@@ -254,11 +254,12 @@ class Search:
 
     def _again(self, first: Sequence[Hypothesis]) -> list[Hypothesis]:
         """Leaders again, with nuisances where the cause acts and more forms of its family."""
-        ranked = sorted((h for h in first if h.causes), key=lambda h: -h.log_posterior)
         best = max(h.log_posterior for h in first)
-        leaders = [
-            h for h in ranked[:AGAIN] if h.log_posterior > best - 6.0 and h.log_posterior > first[0].log_posterior - 1.0
-        ]
+        leaders = []
+        for n, most in ((1, AGAIN_ONE), (2, AGAIN_TWO)):
+            ranked = sorted((h for h in first if len(h.causes) == n), key=lambda h: -h.log_posterior)
+            least = max(best - WORTH[n - 1], first[0].log_posterior - 1.0)
+            leaders += [h for h in ranked[:most] if h.log_posterior > least]
         kept = [h for h in first if h not in leaders]
         for k, h in enumerate(leaders):
             self.progress(f"looking again at {' and '.join(h.causes)}", 0.4 + 0.4 * k / len(leaders))

@@ -106,6 +106,7 @@ class Cause:
             rows are None where no campaign is at hand
         readings: (parameters, rows, true readings) -> what the instruments show
         acts: parameters -> where it acts: quantity with its side ("w+", "tau-", "T+") and threshold in SI, or None
+        strata: upper ends of the regimes in the prior of the shape "regime", so that each is looked into
     """
 
     id: str
@@ -119,6 +120,7 @@ class Cause:
     values: Callable[[Mapping[str, float], Theta, Rows | None], Mapping[str, Any]] = _no_values
     readings: Callable[[Theta, Rows, Readings], Readings] = _no_change
     acts: Callable[[Theta], tuple[str, float] | None] = _everywhere
+    strata: tuple[float, ...] = ()
 
     @property
     def physical(self) -> bool:
@@ -132,6 +134,26 @@ class Cause:
             return extended
         base = {f"{p.name}.{k}": v for p in extended.parts for k, v in p.values.items()}
         return extended.with_values(self.values(base, theta, None))
+
+    def sample(self, n: int, each: int) -> tuple[np.ndarray, np.ndarray]:
+        """Shares (m, shapes) spread over the prior, the middle first, and their log weights.
+
+        There are n of them; with strata n in the first and `each` in every other.
+        """
+        d = len(self.shapes)
+        if d == 0:
+            return np.zeros((1, 0)), np.zeros(1)
+        if not self.strata:
+            return spread(n, d), np.zeros(n)
+        place = [shape.name for shape in self.shapes].index("regime")
+        ends, counts = np.array(self.strata), [n] + [each] * (len(self.strata) - 1)
+        starts, shares, mass = np.concatenate([[0.0], ends[:-1]]), [], []
+        for start, end, count in zip(starts, ends, counts, strict=True):
+            own = spread(n if start == 0 else n + count, d)[-count:]
+            own[:, place] = start + (end - start) * own[:, place]
+            shares.append(own)
+            mass += [(end - start) / count] * count
+        return np.concatenate(shares), np.log(np.array(mass) * len(mass))
 
     def forms(self, shares: np.ndarray) -> list[dict[str, float]]:
         """Members of the family: shares (n, shapes) of the prior of each shape -> n forms."""

@@ -45,4 +45,5 @@ CAUSE = Cause(
     connections=NETS,
     values=conductance,
     acts=acts,
+    strata=(EVERYWHERE, ABOVE, 1.0),
 )

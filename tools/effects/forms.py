@@ -16,6 +16,7 @@ THRESHOLDS = {"w": (10.0, 26.5), "tau": (1500.0, 2750.0), "T": (315.0, 362.0)}
 #: Upper ends of the share of each regime in the prior.
 REGIMES = ((0.60, ""), (0.72, "w+"), (0.78, "w-"), (0.84, "tau+"), (0.88, "tau-"), (0.96, "T+"), (1.0, "T-"))
 
+STRATA = tuple(end for end, _ in REGIMES)
 REGIME = (
     Shape("regime", "1", "where it acts: everywhere, or above or below a threshold", 0.0, 1.0),
     Shape("threshold", "1", "place of the threshold in its range", 0.0, 1.0),

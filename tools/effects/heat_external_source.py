@@ -1,7 +1,7 @@
 """Heat that comes from beside the gearbox."""
 
 from .cause import Cause, Shape, Size
-from .forms import REGIME, extra_part, extra_values, regime_of
+from .forms import REGIME, STRATA, extra_part, extra_values, regime_of
 
 PARTS, NETS = extra_part("extra_source", "surface", braking=False)
 CAUSE = Cause(
@@ -17,5 +17,6 @@ CAUSE = Cause(
     parts=PARTS,
     connections=NETS,
     acts=regime_of,
+    strata=STRATA,
     values=lambda base, theta, rows: extra_values("extra_source", theta),
 )

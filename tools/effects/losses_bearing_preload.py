@@ -1,7 +1,7 @@
 """Bearings that carry more than assumed."""
 
 from .cause import Cause, Shape, Size
-from .forms import OIL_SHARE_BEARING, REGIME, extra_part, extra_values, regime_of
+from .forms import OIL_SHARE_BEARING, REGIME, STRATA, extra_part, extra_values, regime_of
 
 PARTS, NETS = extra_part("extra_preload", "wall")
 CAUSE = Cause(
@@ -19,5 +19,6 @@ CAUSE = Cause(
     parts=PARTS,
     connections=NETS,
     acts=regime_of,
+    strata=STRATA,
     values=lambda base, theta, rows: extra_values("extra_preload", theta),
 )
