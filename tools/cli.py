@@ -25,6 +25,9 @@ Set = Annotated[
 ]
 Json = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
 Workers = Annotated[int, typer.Option(min=0, help="Processes to use; 0 for one per core.")]
+Extended = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Rig file that `diagnose` wrote; it takes the rig's place.")
+]
 Tests = Annotated[str | None, typer.Option(help="Only these tests, for example 1,13,22-26.")]
 
 
@@ -39,12 +42,14 @@ def run(
     step: Annotated[str, typer.Option(help="Communication step of the FMU.")] = "60 s",
     set_: Set = None,
     workers: Workers = 0,
+    extended: Extended = None,
+    data: Annotated[Path | None, typer.Option(help="Measured table; the rig's own if left out.")] = None,
     json: Json = None,
 ) -> None:
     """The main job: export the FMU, play all measured tests, compare, report."""
     from . import run
 
-    run.command(rig, out, tests, step, set_ or [], workers, json)
+    run.command(rig, out, tests, step, set_ or [], workers, json, extended=extended, data=data)
 
 
 @app.command()
@@ -70,11 +75,11 @@ def losses(
 
 @app.command()
 @console.guarded
-def steady(rig: Rig, set_: Set = None, json: Json = None) -> None:
+def steady(rig: Rig, set_: Set = None, extended: Extended = None, json: Json = None) -> None:
     """Steady temperatures and losses at one operating point."""
     from . import points
 
-    points.steady_command(rig, set_ or [], json)
+    points.steady_command(str(extended or rig), set_ or [], json)
 
 
 @app.command()
@@ -89,12 +94,13 @@ def design(
         list[str] | None, typer.Option(help="Alternatives from a catalogue, for example oil=PAOR,MINR; each is solved.")
     ] = None,
     set_: Set = None,
+    extended: Extended = None,
     json: Json = None,
 ) -> None:
     """Find parameters or inputs for which outputs reach their targets."""
     from . import points
 
-    points.design_command(rig, free or [], target, set_ or [], among or [], json)
+    points.design_command(str(extended or rig), free or [], target, set_ or [], among or [], json)
 
 
 @app.command()
@@ -118,6 +124,7 @@ def export(
     rig: Rig,
     out: Annotated[Path, typer.Option("-o", "--out", help="FMU to write.")],
     set_: Set = None,
+    extended: Extended = None,
     drive: Annotated[str | None, typer.Option(help="Shaft end that drives, for example carrier or sun.")] = None,
     given: Annotated[
         Literal["speed", "torque"],
@@ -134,7 +141,7 @@ def export(
     """Write the rig as an FMU for FMI 2.0."""
     from . import exporting
 
-    exporting.export_command(rig, out, set_ or [], drive, given, platform, extras, json)
+    exporting.export_command(str(extended or rig), out, set_ or [], drive, given, platform, extras, json)
 
 
 @app.command()

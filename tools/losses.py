@@ -18,7 +18,7 @@ from ..scenarios.measured import Campaign, Protocol, Reading, read_measured
 from ..scenarios.scenario import Scenario
 from .console import answer, table
 from .points import conditions
-from .settings import SET, adjusted, choice_paths, driven_by, flat_of
+from .settings import DIAGNOSED, SET, adjusted, choice_paths, driven_by, flat_of
 
 
 def command(
@@ -91,9 +91,10 @@ def given(scenario: Scenario, protocol: Protocol, reading: Reading) -> dict[str,
 
 
 def oil_values(scenario: Scenario, protocol: Protocol, oil: str) -> dict[str, float]:
-    """What the catalogue says of the oil of a test, but for values that the user set."""
+    """What the catalogue says of the oil of a test, but for values that the user set or a diagnosis changed."""
     values = scenario.entry_values(protocol.oil, oil)
-    return {path: value for path, value in values.items() if scenario.value_sources.get(path) != SET}
+    kept = (SET, DIAGNOSED)
+    return {path: value for path, value in values.items() if not scenario.value_sources.get(path, "").startswith(kept)}
 
 
 def _at(flat: FlatModel, values: Sequence[dict[str, float]], temperatures: Sequence[float]) -> dict[str, np.ndarray]:

@@ -12,7 +12,6 @@ import numpy as np
 
 from ..model.core.flat import FlatModel
 from ..model.units import shown, to_si
-from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
 from . import campaign, describe, summary
 from .compare import Comparison, Rows, compare, present
@@ -21,14 +20,23 @@ from .exporting import write_fmu
 from .readings import sources
 from .report import Study, render
 from .rivals import Score, rivals
-from .settings import adjusted, driven_by, flat_of
+from .settings import adjusted, driven_by, flat_of, loaded
 
 #: First columns of a row, the rest follow in the order they arise.
 ROW = ("point", "test", "direction", "oil", "T_oil_C", "T_wall_C", "T_amb_C", "loss_Nm", "P_loss_W", "efficiency")
 
 
 def command(
-    rig: str, out: Path, tests: str | None, step: str, assignments: Sequence[str], workers: int, json: str | None
+    rig: str,
+    out: Path,
+    tests: str | None,
+    step: str,
+    assignments: Sequence[str],
+    workers: int,
+    json: str | None,
+    *,
+    extended: Path | None = None,
+    data: Path | None = None,
 ) -> None:
     """Everything from the rig file to the report; finished tests in the folder are used again."""
     began = time.perf_counter()
@@ -36,7 +44,7 @@ def command(
     dt = to_si(step, "s", name="--step")
     kept = folder(folder(out) / "tests")
     with campaign.crew(workers) as pool:
-        scenario = adjusted(load(rig), assignments)
+        scenario = adjusted(loaded(rig, extended, data), assignments)
         protocol = scenario.campaign.protocol if scenario.campaign else None
         scenario = driven_by(scenario, protocol.inputs) if protocol else scenario
         flat = flat_of(scenario)

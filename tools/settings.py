@@ -4,20 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 from ..model.core.declare import Choice, Given, declared
 from ..model.core.flat import FlatModel
 from ..model.core.flatten import flatten
-from ..model.errors import GearheatError, ScenarioError, suggestion
+from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
 from ..model.machines.spec import Spec, assemble
 from ..model.parts import PARTS
+from ..scenarios.load import load
+from ..scenarios.measured import read_measured
 from ..scenarios.scenario import Scenario, parse_assignments
 
 Drive = Mapping[str, tuple[str, ...]]
 
 #: Source of the values that the user sets; they hold for every test, whatever oil it ran with.
 SET = "set on the command line"
+#: Beginning of the source of a value that a diagnosis changed; it holds for every test, too.
+DIAGNOSED = "inferred: diagnosis of"
 
 
 def adjusted(
@@ -57,6 +62,29 @@ def adjusted(
         raise ScenarioError([f"{name} is set, but it follows from what drives the rig. Take it out." for name in idle])
     set_up = scenario.with_values(values, SET).driven(driven)
     return replace(set_up, spec=set_up.spec.with_values(choices))
+
+
+def loaded(rig: str, extended: Path | None = None, data: Path | None = None) -> Scenario:
+    """A rig, or its extension with the rig's measured data.
+
+    Args:
+        rig: name or file
+        extended: rig file of the extension, which takes the rig's place
+        data: measured table that takes the place of the rig's own
+
+    Raises:
+        GearheatError: all problems of the files; or data for a rig whose protocol is not known
+    """
+    scenario = load(rig)
+    if extended is not None:
+        found = load(extended)
+        campaign = scenario.campaign and replace(scenario.campaign, protocol=found.protocol or scenario.protocol)
+        scenario = replace(found, campaign=found.campaign or campaign)
+    if data is None:
+        return scenario
+    if scenario.protocol is None:
+        raise DataError(f"{scenario.name}: how its tests are run is not known. Give the rig file a table [campaign].")
+    return replace(scenario, campaign=read_measured(data, scenario.protocol))
 
 
 def flat_of(scenario: Scenario) -> FlatModel:

@@ -26,6 +26,8 @@ from gearheat.tools.diagnose.output import as_object, schema, show
 from gearheat.tools.diagnose.predictions import predictions_text
 from gearheat.tools.diagnose.report import render
 from gearheat.tools.effects.library import CAUSES
+from gearheat.tools.losses import oil_values
+from gearheat.tools.settings import loaded
 
 SPEEDS, TORQUES = (100.0, 150.0, 200.0, 250.0), (1500.0, 2500.0)
 HEAD = "point,test,order,direction,dwell_min,oil,n_carrier_rpm,T_carrier_Nm,T_sun_Nm,T_oil_C,T_wall_C,T_amb_C"
@@ -238,7 +240,9 @@ def test_series_belong_to_their_tests_and_run_forward(tmp_path, data):
     good.write_text(f"{head}\n1,0,1,100,1500,22,22,22\n1,300,1,100,1500,24,23,22\n2,0,1,100,2500,22,22,22\n")
     inputs = read_inputs(Request(data, series=good))
     assert inputs.series.samples == 3 and list(inputs.series.tests[1]["time_s"]) == [0, 300]
-    assert any("6 of 8 tests were not logged" in w for w in inputs.warnings) and "thermal.mass" not in inputs.invisible
+    assert any("6 of 8 tests were not logged" in w for w in inputs.warnings) and any(
+        "not used" in w for w in inputs.warnings
+    )
     bad.write_text(f"{head}\n1,300,1,100,1500,22,22,22\n1,0,1,100,1500,24,23,22\n99,0,1,100,2500,22,22,22\n")
     with pytest.raises(DataError, match=r"(?s)line 3: time goes back in test 1.*no test 99"):
         read_inputs(Request(data, series=bad))
@@ -349,6 +353,28 @@ def test_every_cause_goes_into_the_rig_or_into_a_comment(inputs, cause):
     changed = repr(extension.scenario.spec.parts) != repr(plain.spec.parts)
     assert changed != bool(extension.outside)
     assert changed or cause in extended_text(inputs, findings).partition("kind =")[0]
+
+
+def test_every_command_takes_the_extended_rig(inputs, tmp_path, gearheat):
+    path = tmp_path / "OUT.toml"
+    path.write_text(extended_text(inputs, made_up(inputs)))
+    plain, more = (
+        gearheat("steady", "planetary", "--set", "carrier.w=250 rpm", *options, "--json", "-").json["values"]
+        for options in ((), ("--extended", path))
+    )
+    assert more["found_churning.P"] > 50 and more["efficiency.P_loss"] > plain["efficiency.P_loss"]
+    rig = loaded("planetary", path)
+    assert len(rig.campaign.readings) == 72 and "found_churning.P_ref" in rig.settable()
+    assert len(loaded("planetary", path, tmp_path / "DATA.csv").campaign.readings) == 16
+
+
+def test_a_viscosity_that_was_found_holds_for_every_test(inputs, tmp_path):
+    path = tmp_path / "OUT.toml"
+    path.write_text(extended_text(inputs, made_up(inputs, ("losses.oil_viscosity",))))
+    rig = load(path)
+    assert rig.spec.part("oil").values["nu_40"] > 1.3 * inputs.oils["PAOR"]["oil.nu_40"]
+    taken = oil_values(rig, rig.protocol, "PAOR")
+    assert "oil.rho_15" in taken and not {"oil.nu_40", "oil.nu_100"} & set(taken)
 
 
 def test_without_an_alarm_the_rig_is_calibrated_and_nothing_is_added(inputs):

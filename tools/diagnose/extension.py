@@ -10,14 +10,13 @@ from ...scenarios.scenario import Scenario
 from ...scenarios.write import rig_text
 from ..effects.cause import Cause, Theta
 from ..effects.library import CAUSES
+from ..settings import DIAGNOSED
 from . import words
 from .findings import Findings
 from .inputs import Inputs
 
 #: Names of the parts that causes add, here and in the extended rig: a found part can be joined by that of a new search.
 ADDED, FOUND = "extra_", "found_"
-#: Beginning of the source of a value that a cause changed: it holds for every test, whatever the oil's table says.
-INFERRED = "inferred: diagnosis of"
 
 
 @dataclass(frozen=True)
@@ -41,12 +40,15 @@ def extended(inputs: Inputs, findings: Findings) -> Extension:
     outside: tuple[str, ...] = ()
     for cause, theta in _causes(findings):
         rig, left = _added(
-            rig, cause, theta, f"{INFERRED} {inputs.data.name}, {cause.id}", keep_oil=len(inputs.oils) > 1
+            rig, cause, theta, f"{DIAGNOSED} {inputs.data.name}, {cause.id}", keep_oil=len(inputs.oils) > 1
         )
         outside += left
-    doc = f"{rig.doc} As diagnosed from {inputs.data.name}: {_said(findings)}."
+    doc = f"{rig.doc}; as diagnosed from {inputs.data.name}: {_said(findings)}."
     spec = replace(rig.spec, doc=doc)
-    return Extension(replace(rig, doc=doc, spec=spec, overrides=(), entries={}, campaign=None), outside)
+    return Extension(
+        replace(rig, doc=doc, spec=spec, protocol=inputs.data.protocol, overrides=(), entries={}, campaign=None),
+        outside,
+    )
 
 
 def extended_text(inputs: Inputs, findings: Findings) -> str:
@@ -96,7 +98,7 @@ def _added(
         return scenario, (f"{said} {cause.doc}",)
     oil = scenario.protocol.oil if scenario.protocol else "oil"
     several = keep_oil and any(path.startswith(f"{oil}.") for path in changed)
-    source = source.replace(INFERRED, "inferred: for the rig's own oil, diagnosis of") if several else source
+    source = source.replace(DIAGNOSED, "inferred: for the rig's own oil, diagnosis of") if several else source
     names = {part.name: _free(part.name, parts) for part in cause.parts}
     spec = _with_parts(scenario.spec, cause, names)
     own = {f"{part.name}.{key}": value for part in cause.parts for key, value in part.values.items()} | changed

@@ -118,9 +118,9 @@ def show(findings: Findings) -> None:
     if listed:
         body = [(words.percent(c.probability), c.id, _first(c), words.regime(c)) for c in listed]
         table("", ("probability", "cause", "size (95 %)", "where"), body)
-    for group in findings.confusable:
-        if words.applied(findings) is not None:
-            print(f"cannot be told apart by these data: {', '.join(group)}")
+    if findings.confusable and words.applied(findings) is not None:
+        first, *others = findings.confusable[0]
+        print(f"these data cannot tell {first} from {', '.join(others)}")
     if effects := [text for key in words.IMPACTS if (text := words.impact(findings, key))]:
         print(f"mean effect on the readings: {', '.join(effects)}")
     print(f"oil temperature of readings left out: {words.gain(findings)}")

@@ -24,6 +24,10 @@ CHANNELS = {
 }
 
 
+#: More groups of readings than these have no line through their means.
+MOST_GROUPS = 8
+
+
 @dataclass(frozen=True)
 class Axis:
     """Against what residuals are drawn: a number, or words side by side."""
@@ -85,15 +89,32 @@ def residuals(findings: Findings, data: Campaign, card: Card, *, extended: bool)
             panel.axhline(0, color="#888888", linewidth=1)
             x = _place(panel, axis, readings)
             shift = 0.12 if isinstance(axis.value(readings[0]), str) else 0.0
-            _drawn(panel, x - shift * extended, before, readings, BEFORE, "before", hollow=extended)
-            if extended:
-                _drawn(panel, x + shift, after, readings, AFTER, "after", hollow=False)
+            for y, colour, word, side in sides(before, after, extended=extended):
+                _drawn(panel, x + side * shift, y, readings, colour, word, hollow=side < 0)
+                _trend(panel, x + side * shift, y, colour)
             panel.set_xlabel(axis.label)
             panel.label_outer()
         name, unit = CHANNELS.get(channel, (channel, ""))
         line[0].set_ylabel(f"{name}\nsimulated - measured [{unit}]")
     plots.legend(figure, panels[0])
     return plots.svg(figure)
+
+
+def sides(before: np.ndarray, after: np.ndarray, *, extended: bool) -> list[tuple[np.ndarray, str, str, int]]:
+    """What is drawn of a channel: values, colour, word, and to which side of its place."""
+    if not extended:
+        return [(before, AFTER, "calibrated model", 0)]
+    return [(before, BEFORE, "before", -1), (after, AFTER, "after", 1)]
+
+
+def _trend(panel: Axes, x: np.ndarray, y: np.ndarray, colour: str) -> None:
+    """A line through the means of readings that stand close together, where there are several such groups."""
+    order = np.argsort(x, kind="stable")
+    gaps = np.diff(x[order]) > 0.05 * np.ptp(x)
+    groups = np.split(order, np.flatnonzero(gaps) + 1)
+    if 1 < len(groups) <= MOST_GROUPS:
+        means = [(float(x[g].mean()), float(y[g].mean())) for g in groups]
+        panel.plot(*zip(*means, strict=True), color=colour, linewidth=1.5)
 
 
 def _place(panel: Axes, axis: Axis, readings: Sequence[Reading]) -> np.ndarray:

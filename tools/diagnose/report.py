@@ -51,7 +51,7 @@ def render(inputs: Inputs, findings: Findings) -> str:
         hypotheses=_hypotheses(findings),
         groups=_groups(findings),
         sizes=_sizes(findings),
-        impact=_impact(findings),
+        impact=_impact(findings) if hypothesis else [],
         gain=_gain(findings),
         experiments=_experiments(findings),
         exposes=_exposes(findings),
@@ -103,10 +103,11 @@ def _hypotheses(findings: Findings) -> Markup:
 def _groups(findings: Findings) -> list[dict[str, str]]:
     """Sets that cannot be told apart, with the reason where it is declared."""
     found = []
-    for group in findings.confusable:
+    for group in (g for g in findings.confusable if len(g) > 1):
         reasons = dict.fromkeys(CAUSES[c].like for c in group if c in CAUSES and CAUSES[c].like)
         shared = [r for r in reasons if sum(CAUSES[c].like == r for c in group if c in CAUSES) > 1]
-        found.append({"causes": ", ".join(words.name_of(c) for c in group), "reason": "; ".join(shared)})
+        first, *others = (words.name_of(c) for c in group)
+        found.append({"cause": first, "others": ", ".join(others), "reason": "; ".join(shared)})
     return found
 
 
@@ -118,8 +119,7 @@ def _sizes(findings: Findings) -> Markup:
             unit = "" if p.unit == "1" else p.unit
             name = words.name_of(cause.id) if k == 0 else ""
             about = words.meaning(cause.id, p.name) + (f"; {words.regime(cause)}" if k == 0 and cause.regime else "")
-            interval = f"{words.number(p.low)} to {words.number(p.high)}"
-            body.append((name, p.name, words.number(p.value), interval, unit, about))
+            body.append((name, p.name, words.number(p.value), words.interval(p), unit, about))
     if not body:
         return Markup("")
     return html_table(("cause", "parameter", "value", "95 % interval", "unit", "meaning"), body, text=(1, 4, 5))
@@ -138,7 +138,7 @@ def _in_sample(findings: Findings, inputs: Inputs, *, extended: bool) -> Markup:
         body.append([*line[:3], words.number(after), line[3]] if extended else line)
     middle = ("before", "after") if extended else ("calibrated model",)
     return (
-        html_table(("root mean square", "unit", *middle, "scatter of one reading"), body, text=(1,))
+        html_table(("root mean square", "unit", *middle, "repeatability of one reading"), body, text=(1,))
         if body
         else Markup("")
     )
@@ -152,7 +152,7 @@ def _gain(findings: Findings) -> dict[str, Any]:
         ("with the cause found without them", g.rmse_after, "after"),
     ]
     if g.noise_floor is not None:
-        bars.append(("scatter of one reading", g.noise_floor, "floor"))
+        bars.append(("scatter of one point, days included", g.noise_floor, "floor"))
     most = max((value for _, value, _ in bars if math.isfinite(value)), default=1.0) or 1.0
     rows = [
         {"name": n, "value": f"{words.number(v, 3)} K", "width": f"{100 * v / most:.1f}", "kind": k} for n, v, k in bars

@@ -76,6 +76,23 @@ def names_of(causes: Sequence[str]) -> str:
     return " and ".join(name_of(c) for c in causes) or "nothing"
 
 
+def likes(cause: str) -> list[str]:
+    """The other causes of its class, which count as the same answer."""
+    like = CAUSES[cause].like if cause in CAUSES else ""
+    return [c for c in CAUSES if like and c != cause and CAUSES[c].like == like]
+
+
+def likes_said(cause: str) -> str:
+    """The other causes of its class, as an addition to its name."""
+    others = [name_of(c) for c in likes(cause)]
+    return f", or its like: {' or '.join(others)}," if others else ""
+
+
+def sentence(text: str) -> str:
+    """A text with a capital at its beginning."""
+    return text[:1].upper() + text[1:]
+
+
 def number(value: float, digits: int = 3) -> str:
     """A number with so many digits, without an exponent where people would not write one."""
     text = f"{value:.{digits}g}"
@@ -95,8 +112,6 @@ def percent(probability: float) -> str:
 
 def chance(p: float) -> str:
     """How often chance alone does as much."""
-    if p >= 0.2:
-        return f"about {round(100 * p, -1):.0f} of 100 campaigns without a fault look like this or worse"
     if p >= 0.01:
         return f"about {100 * p:.0f} of 100 campaigns without a fault look like this or worse"
     if p >= 0.001:
@@ -105,9 +120,14 @@ def chance(p: float) -> str:
 
 
 def estimate(found: Estimate) -> str:
-    """A parameter with its unit and interval."""
+    """A parameter with its unit and interval; without one where it was held."""
     unit = "" if found.unit == "1" else f" {found.unit}"
-    return f"{number(found.value)}{unit} ({number(found.low)} to {number(found.high)})"
+    return f"{number(found.value)}{unit}" + (f" ({interval(found)})" if found.low < found.high else "")
+
+
+def interval(found: Estimate) -> str:
+    """The interval of a parameter; a parameter that was held has none."""
+    return f"{number(found.low)} to {number(found.high)}" if found.low < found.high else "held"
 
 
 def meaning(cause: str, parameter: str) -> str:
@@ -174,8 +194,11 @@ def verdict(findings: Findings) -> str:
     if findings.verdict == "consistent" or first is None:
         return f"Nothing beyond the stated accuracies: {chance(findings.p_any)}."
     if findings.verdict == "explained":
-        size = _size(findings, first)
-        return f"The model lacks one thing: {names_of(first.causes)} ({percent(first.probability)} sure){size}."
+        subject = (
+            "One cause explains it" if len(first.causes) == 1 else f"{len(first.causes)} causes explain it together"
+        )
+        named = " and ".join(name_of(c) + likes_said(c) for c in first.causes)
+        return f"{subject}: {named} ({percent(first.probability)} sure){_size(findings, first)}."
     if findings.verdict == "ambiguous":
         sets = [h for h in needed(findings) if h.causes]
         words = "; ".join(f"{names_of(h.causes)} ({percent(h.probability)})" for h in sets[:4])
