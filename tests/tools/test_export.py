@@ -1,0 +1,293 @@
+"""The command `export`: four drives of one rig, what goes beside the FMU, what is inside, and what is refused."""
+
+from __future__ import annotations
+
+import csv
+import json
+import re
+import xml.etree.ElementTree as ET
+import zipfile
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.util import read_csv
+from fmpy.validation import validate_fmu
+from gearheat.fmu import compiling
+from gearheat.fmu.play import Player
+from gearheat.fmu.related import PARAMETERS
+from gearheat.model.machines.spec import assemble
+from gearheat.scenarios.load import load
+from gearheat.tools.network import network_svg
+from gearheat.tools.settings import adjusted, flat_of
+
+SSV = "{http://ssp-standard.org/SSP1/SystemStructureParameterValues}"
+ABOUT = "{urn:org.gearheat:provenance:1}provenance"
+
+#: What turns on what a rig switches off, so that every parameter has something to act on.
+ACTIVE = {"churning.c": 5.0, "carrier_bearing.K_rs": 3e-8, "sun_bearing.K_rs": 3e-8, "planet_bearing.F_r_0": 50.0}
+
+VARIANTS = {
+    "carrier-speed": ((), {"carrier.w", "carrier.tau"}),
+    "sun-speed": (("--drive", "sun"), {"sun.w", "sun.tau"}),
+    "carrier-torque": (("--drive", "carrier", "--given", "torque"), {"carrier.tau", "sun.tau"}),
+    "sun-torque": (("--drive", "sun", "--given", "torque"), {"carrier.tau", "sun.tau"}),
+}
+
+
+@pytest.fixture
+def elsewhere(monkeypatch):
+    """Another platform, whose binary is not really compiled."""
+    other = next(n for n in compiling.PLATFORMS if n != compiling.host_platform().name)
+    build = compiling.binary
+
+    def binary(source, platform, **options):
+        return b"for another machine" if platform.name == other else build(source, platform, **options)
+
+    monkeypatch.setattr("gearheat.fmu.export.binary", binary)
+    return other
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory):
+    """Every variant with what the command said of it."""
+    from gearheat.tools.cli import app
+    from typer.testing import CliRunner
+
+    folder = tmp_path_factory.mktemp("export")
+    found = {}
+    for name, (options, _) in VARIANTS.items():
+        path = folder / f"{name}.fmu"
+        extras = ("--extras", str(folder / name)) if name.startswith("carrier") else ()
+        result = CliRunner().invoke(app, ["export", "planetary", "-o", str(path), *options, *extras, "--json", "-"])
+        assert result.exit_code == 0, result.stderr
+        found[name] = (path, json.loads(result.stdout))
+    return found
+
+
+def held(path: Path, name: str) -> str:
+    with zipfile.ZipFile(path) as file:
+        return file.read(name).decode()
+
+
+def values(content: str | bytes) -> dict[str, float]:
+    return {p.get("name", ""): float(p[0].get("value", "")) for p in ET.fromstring(content).iter(f"{SSV}Parameter")}
+
+
+def provenance(content: str | bytes) -> dict[str, dict[str, str]]:
+    parameters = ET.fromstring(content).iter(f"{SSV}Parameter")
+    return {p.get("name", ""): dict(said.attrib) for p in parameters for said in p.iter(ABOUT)}
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_each_drive_is_valid_and_has_its_inputs(exported, name):
+    path, found = exported[name]
+    assert validate_fmu(str(path)) == []
+    assert {i for i in found["inputs"] if i.endswith((".w", ".tau"))} == VARIANTS[name][1]
+    assert ("rotor.w" in found["outputs"]) == name.endswith("torque")
+    assert found["platforms"] == [compiling.host_platform().name]
+
+
+def test_all_drives_start_at_the_same_operating_point_and_stay_near_it(exported):
+    names = ["carrier.w", "carrier.tau", "sun.w", "sun.tau", "efficiency.P_loss", "carrier_bearing.P_loss"]
+    seen = {}
+    for name, (path, _) in exported.items():
+        with Player(path) as player:
+            seen[name] = player.run({}, 20, 1.0, record=names)
+    first = seen["carrier-speed"]
+    assert first["carrier.w"][0] == pytest.approx(250 * np.pi / 30)
+    assert first["sun.tau"][0] == pytest.approx(-2500 / 4 + first["efficiency.P_loss"][0] / first["sun.w"][0])
+    for name, played in seen.items():
+        for column in names:
+            assert played[column][0] == pytest.approx(first[column][0], rel=1e-9), (name, column)
+        assert played["carrier.w"][-1] == pytest.approx(first["carrier.w"][-1], rel=0.1)
+
+
+def test_what_is_set_stays_set(gearheat, tmp_path, elsewhere):
+    path = tmp_path / "rig.fmu"
+    options = (
+        "--platform",
+        elsewhere,
+        "--given",
+        "torque",
+        "--set",
+        "sun.tau=-500 N.m",
+        "--set",
+        "rotor.w=10 rad/s",
+        "--set",
+        "oil.T=50 degC",
+    )
+    assert gearheat("export", "planetary", "-o", path, *options).code == 0
+    start = {v.name: v.start for v in fmpy.read_model_description(str(path)).modelVariables}
+    assert float(start["sun.tau"]) == -500.0
+    assert float(start["rotor.w"]) == 10.0
+    assert float(start["oil.T"]) == pytest.approx(323.15)
+    assert float(start["carrier.tau"]) == 2500.0
+
+
+def test_what_has_no_effect_is_no_parameter(exported):
+    path, found = exported["carrier-speed"]
+    assert set(found["without_effect"]) == {
+        "grease.X_L", "grease.alpha_T", "grease.rho_15", "grease.s_p", "grease.t_p",
+        "churning.inner_share", "planet_bearing.inner_share", "planet_bearing.F_a_0",
+    }  # fmt: skip
+    described = fmpy.read_model_description(str(path)).modelVariables
+    parameters = {v.name: float(v.start) for v in described if v.causality == "parameter"}
+    assert set(parameters) == set(found["parameters"])
+    assert {"churning.a", "churning.b"} < set(parameters)
+    still = set(parameters)
+    with Player(path) as player:
+        for point in (ACTIVE, {"carrier.w": 1e-4, "carrier.tau": 1.0}):
+            before = player.run({}, 600, 600.0, start=point).values
+            for name in sorted(still):
+                start = {**point, name: 0.99 * point.get(name, parameters[name]) or 1e-3}
+                if (player.run({}, 600, 600.0, start=start).values != before).any():
+                    still.remove(name)
+    assert still == set()
+
+
+def test_sources_and_uncertainties_are_inside(exported):
+    path, _ = exported["carrier-speed"]
+    said = provenance(held(path, PARAMETERS))
+    assert said.keys() == values(held(path, PARAMETERS)).keys()
+    assert said["foot.G"]["kind"] == "calibrated"
+    assert said["foot.G"]["standardUncertainty"] == "0.19"
+    assert said["gear_set.b"] == {"kind": "cited", "source": "Dias2014, table 3.1"}
+    assert said["oil.c_p"]["source"] == "Cragoe1929, at 60 degC"
+    assert {about["kind"] for about in said.values()} == {"cited", "assumed", "inferred", "calibrated"}
+
+
+def test_the_documentation_says_what_it_is_and_how_it_was_checked(exported):
+    page = held(exported["carrier-speed"][0], "documentation/index.html")
+    titles = ["Network", "Use", "Inputs", "Outputs", "States", "Parameters", "Laws", "Ranges that are watched"]
+    for title in [*titles, "Sources", "Verification"]:
+        assert f"<h2>{title}</h2>" in page
+    for text in ("oil_carrier_body</text>", "Torque loss in a planetary multiplier gearbox", "0.19 W/K"):
+        assert text in page, text
+    within = re.search(r"temperature: largest difference .*?below (1e-\d+) K", page)
+    assert within is not None
+    assert float(within[1]) <= 1e-2
+    assert "below 1e-12" in page
+
+
+def test_the_picture_shows_every_part_with_a_shaft_or_heat():
+    for rig in ("planetary", "helical_two_stage"):
+        assembly = assemble(load(rig).spec)
+        picture = ET.fromstring(network_svg(assembly))
+        shown = {text.text for text in picture.iter("{http://www.w3.org/2000/svg}text")}
+        linked = {part.name for part in assembly.parts if {"Flange", "HeatPort", "AirPort"} & _ports(part)}
+        assert shown == linked
+        assert network_svg(assembly) == network_svg(assembly)
+
+
+def _ports(part):
+    return {type(port).__name__ for port in part.ports.values()}
+
+
+def test_sets_of_the_rig_and_of_every_oil(exported):
+    path, found = exported["carrier-speed"]
+    folder = path.with_suffix("")
+    names = {Path(name).relative_to(folder).as_posix() for name in found["extras"]}
+    oils = {name for name in names if name.startswith("oils/")}
+    beside = {f"carrier-speed{ending}" for ending in (".ssv", "_in.csv", "_ref.csv", "_ref.opt")}
+    assert names - oils == beside
+    assert names == {p.relative_to(folder).as_posix() for p in folder.rglob("*") if p.is_file()}
+    assert {"oils/PAOR.ssv", "oils/MINR.ssv", "oils/ISO_VG_220_PAG.ssv"} < oils
+    assert "oils/bearing_grease.ssv" not in oils  # it has no specific heat
+    rig = values((folder / "carrier-speed.ssv").read_bytes())
+    assert rig == values(held(path, PARAMETERS))
+    scenario = load("planetary")
+    for name in ("PAOR", "MINE", "ISO VG 32 ester"):
+        content = (folder / "oils" / f"{name.replace(' ', '_')}.ssv").read_bytes()
+        assert values(content) == scenario.entry_values("oil", name)
+        assert values(content).keys() <= rig.keys()
+        assert ET.fromstring(content).get("name") == name
+    said = provenance((folder / "oils" / "PAGD.ssv").read_bytes())
+    assert said["oil.c_p"]["kind"] == "assumed"
+
+
+def test_a_set_from_the_folder_moves_the_fmu_as_the_oil_moves_the_rig(exported):
+    path, _ = exported["carrier-speed"]
+    oil = values((path.with_suffix("") / "oils" / "MINR.ssv").read_bytes())
+    flat = flat_of(adjusted(load("planetary"), ["oil=MINR"]))
+    vectors = [flat.starts(kind) for kind in ("state", "input", "parameter")]
+    expected = np.array(flat.output_function(*vectors)[0]).ravel()
+    names = [q.name for q in flat.outputs]
+    with Player(path) as player:
+        ours = player.run({}, 1, 1.0, start=oil, record=names).values[0]
+        before = player.run({}, 1, 1.0, record=names).values[0]
+    assert ours == pytest.approx(expected, rel=1e-9, abs=1e-9)
+    assert abs(before[names.index("gear_set.mu_sp")] / ours[names.index("gear_set.mu_sp")] - 1) > 0.1
+
+
+@pytest.mark.parametrize("name", ["carrier-speed", "carrier-torque"])
+def test_fmpy_reproduces_the_reference(exported, name):
+    path, _ = exported[name]
+    folder = path.with_suffix("")
+    given, expected = read_csv(str(folder / f"{name}_in.csv")), read_csv(str(folder / f"{name}_ref.csv"))
+    options = dict(csv.reader((folder / f"{name}_ref.opt").open(), skipinitialspace=True))
+    stop, step = float(options["StopTime"]), float(options["OutputIntervalLength"])
+    assert (stop, step) == ((14400.0, 60.0) if name.endswith("speed") else (60.0, 0.5))
+    found = fmpy.simulate_fmu(
+        str(path), stop_time=stop, output_interval=step, input=given, relative_tolerance=float(options["RelTol"])
+    )
+    time, first, count = np.unique(expected["time"], return_index=True, return_counts=True)
+    for name, within in (("oil.T", 1e-3), ("surface.T", 1e-3), ("sun.w", 1e-2)):
+        at = np.interp(time, found["time"], found[name])
+        assert at[count == 1] == pytest.approx(expected[name][first[count == 1]], abs=within), name
+
+
+def test_the_same_rig_gives_the_same_bytes_with_and_without_extras(exported, gearheat, tmp_path):
+    path, found = exported["carrier-speed"]
+    again = gearheat("export", "planetary", "-o", tmp_path / "again.fmu", "--json", "-").json
+    assert again["sha256"] == found["sha256"]
+    assert (tmp_path / "again.fmu").read_bytes() == path.read_bytes()
+    assert again["extras"] == []
+    assert [p.name for p in tmp_path.iterdir()] == ["again.fmu"]
+
+
+def test_for_another_machine_the_reference_is_made_all_the_same(gearheat, tmp_path, elsewhere):
+    path = tmp_path / "rig.fmu"
+    more = ("--platform", elsewhere, "--extras", tmp_path / "more")
+    found = gearheat("export", "planetary", "-o", path, *more, "--json", "-").json
+    assert found["platforms"] == [elsewhere]
+    assert (tmp_path / "more" / "rig_ref.csv").is_file()
+    with zipfile.ZipFile(path) as file:
+        binaries = [n for n in file.namelist() if n.startswith("binaries/")]
+    assert binaries == [f"binaries/{elsewhere}/planetary{compiling.PLATFORMS[elsewhere].suffix}"]
+    assert "reference run" not in held(path, "documentation/index.html")
+
+
+def test_the_sentence_for_people(gearheat, tmp_path):
+    answer = gearheat("export", "planetary", "-o", tmp_path / "rig.fmu", "--extras", tmp_path)
+    assert answer.code == 0, answer.err
+    first, second = answer.out.splitlines()
+    assert first == f"{tmp_path / 'rig.fmu'}: 9 inputs, 52 outputs, 96 parameters, for {compiling.host_platform().name}"
+    assert re.fullmatch(r"\d\d files beside it, from .*rig\.ssv", second)
+
+
+def test_a_machine_listed_part_by_part(gearheat, tmp_path, elsewhere):
+    path = tmp_path / "rig.fmu"
+    answer = gearheat("export", "helical_two_stage", "-o", path, "--given", "torque", "--platform", elsewhere)
+    assert answer.code == 0, answer.err
+    start = {v.name: v.start for v in fmpy.read_model_description(str(path)).modelVariables}
+    assert float(start["rotor.w"]) == pytest.approx(1450 * np.pi / 30)
+    assert float(start["input.tau"]) == pytest.approx(590 / 12.56, rel=0.06)
+
+
+@pytest.mark.parametrize(
+    ("options", "told"),
+    [
+        (("--drive", "snu"), 'Did you mean "sun"'),
+        (("--platform", "linux46"), 'Did you mean "linux64"'),
+        (("--set", "carrier.w=100 rpm", "--given", "torque"), "follows from what drives the rig"),
+        (("--extras", "/dev/null/more"), "cannot be written"),
+        (("--set", "oil.nu_40=-1 mm2/s"), "out of range"),
+    ],
+)
+def test_what_is_wrong_is_told_before_anything_is_written(gearheat, tmp_path, options, told):
+    answer = gearheat("export", "planetary", "-o", tmp_path / "rig.fmu", *options)
+    assert answer.code == 2
+    assert told in answer.err
+    assert list(tmp_path.iterdir()) == []
