@@ -87,7 +87,8 @@ def residuals(rows: Rows, channels: Sequence[Channel], noise: Mapping[str, Any])
 
     A band, where the channel has a noise floor, is two of them wide to either side.
     """
-    groupings = ("n_set_rpm", "T_set_Nm", "oil", "direction")
+    known = ("n_set_rpm", "T_set_Nm", "oil", "direction")
+    groupings = [by for by in known if any(row.get(by) is not None for row in rows)]
     figure, panels = empty(12.0, 2.7 * len(channels) + 0.8, len(channels), len(groupings), sharex="col", sharey="row")
     for i, channel in enumerate(channels):
         line = panels[i * len(groupings) : (i + 1) * len(groupings)]
@@ -175,7 +176,7 @@ def _test_title(rows: Rows, test: int) -> str:
     if not rows:
         return f"test {test}"
     first = rows[0]
-    point = [f"{first[name]:g} {unit}" for name, unit in UNITS.items() if name in first]
+    point = [f"{first[name]:g} {unit}" for name, unit in UNITS.items() if first.get(name) is not None]
     return f"test {test}: {', '.join([first['oil'], *point])}" if point else str(first["oil"])
 
 
