@@ -81,7 +81,7 @@ static void set_shuffled(const Fmu *m, fmi2Component c, Random *r, int n, const 
 void check_shuffle(const Fmu *m, int n, char **arguments)
 {
     fmi2ValueReference refs[MOST];
-    double values[MOST], *first = rows_of(m), *other = rows_of(m);
+    double values[MOST], begun[MOST], seen[MOST], *first = rows_of(m), *other = rows_of(m);
     int round, rounds, count, i;
     Random r;
     NEEDS(n == 1, "shuffle ROUNDS");
@@ -91,6 +91,8 @@ void check_shuffle(const Fmu *m, int n, char **arguments)
     for (round = 0; round < rounds; round++) {
         fmi2Component c = instantiate(m, fmi2CoSimulation, NULL);
         set_shuffled(m, c, &r, count, refs, values);
+        MUST(read_all(m, c, round ? seen : begun));
+        if (round) EXPECT(memcmp(seen, begun, (size_t)m->n * sizeof *seen) == 0, "order %d begins otherwise", round);
         course(m, c, 7.0, round ? other : first);
         if (round) EXPECT(equal(m, first, other), "order %d of setting gives another run", round);
         m->f.FreeInstance(c);
@@ -165,7 +167,7 @@ static void wander(const Fmu *m, fmi2Component c, Random *r, double *time, doubl
 
 void check_rollback(const Fmu *m, int n, char **arguments)
 {
-    double *first, *other;
+    double *first, *other, at[MOST], seen[MOST];
     fmi2Component c = ready(m, 0.0);
     fmi2FMUstate state = NULL, later = NULL;
     double t = 0.0;
@@ -181,7 +183,9 @@ void check_rollback(const Fmu *m, int n, char **arguments)
         Random again;
         for (k = 0; k < before; k++) wander(m, c, &r, &t, first);
         if (below(&r, 3) == 0 && state) MUST(m->f.FreeFMUstate(c, &state)); /* else the old memory is used again */
+        if (below(&r, 2)) MUST(read_all(m, c, at)); /* with and without values computed before saving */
         MUST(m->f.GetFMUstate(c, &state));
+        MUST(read_all(m, c, at));
         again = r, back = t;
         memset(first, 0, (size_t)(STEPS * m->n) * sizeof *first);
         memset(other, 0, (size_t)(STEPS * m->n) * sizeof *other);
@@ -189,6 +193,10 @@ void check_rollback(const Fmu *m, int n, char **arguments)
         MUST(m->f.GetFMUstate(c, &later));
         if (below(&r, 2)) MUST(m->f.Reset(c));
         MUST(m->f.SetFMUstate(c, state));
+        if (round % 2) {
+            MUST(read_all(m, c, seen));
+            EXPECT(memcmp(at, seen, (size_t)m->n * sizeof *at) == 0, "rollback %d gives other values at once", round);
+        }
         t = back;
         for (k = 0; k < length; k++) wander(m, c, &again, &t, other + k * m->n);
         EXPECT(equal(m, first, other), "rollback %d gives another run", round);
@@ -279,6 +287,7 @@ typedef struct {
     const Fmu *m;
     double *rows;
     int number;
+    pthread_barrier_t *together;   /* all begin at once; NULL when alone */
 } Job;
 
 static void *work(void *job)
@@ -287,7 +296,8 @@ static void *work(void *job)
     const Fmu *m = j->m;
     fmi2Component c = NULL;
     int round, k;
-    for (round = 0; round < 3; round++) { /* instances come and go while others run */
+    if (j->together) pthread_barrier_wait(j->together);
+    for (round = 0; round < 10; round++) { /* instances come and go while others run */
         double t = 0.0;
         if (c) m->f.FreeInstance(c);
         c = ready(m, 1e-6);
@@ -304,20 +314,23 @@ void check_threads(const Fmu *m, int n, char **arguments)
 {
     enum { MANY = 16 };
     pthread_t threads[MANY];
-    Job alone[MANY], together[MANY];
+    pthread_barrier_t together;
+    Job alone[MANY], among[MANY];
     int i;
     (void)n, (void)arguments;
+    pthread_barrier_init(&together, NULL, MANY);
     for (i = 0; i < MANY; i++) {
-        alone[i] = (Job){m, rows_of(m), i}, together[i] = (Job){m, rows_of(m), i};
+        alone[i] = (Job){m, rows_of(m), i, NULL}, among[i] = (Job){m, rows_of(m), i, &together};
         work(&alone[i]);
     }
     for (i = 0; i < MANY; i++)
-        if (pthread_create(&threads[i], NULL, work, &together[i]) != 0) exit(2);
+        if (pthread_create(&threads[i], NULL, work, &among[i]) != 0) exit(2);
     for (i = 0; i < MANY; i++) {
         pthread_join(threads[i], NULL);
-        EXPECT(equal(m, alone[i].rows, together[i].rows), "thread %d differs from the same run alone", i);
-        free(alone[i].rows), free(together[i].rows);
+        EXPECT(equal(m, alone[i].rows, among[i].rows), "thread %d differs from the same run alone", i);
+        free(alone[i].rows), free(among[i].rows);
     }
+    pthread_barrier_destroy(&together);
     printf("16 threads\n");
 }
 
