@@ -53,11 +53,16 @@ def command(request: Request, outputs: Outputs, alpha: float, seed: int, infer: 
     inputs = _checked(request, outputs, alpha, seed)
     memory = memory_of(inputs.digest)
     progress = Progress(memory)
-    findings, predictor = (infer or _inference())(replace(inputs, memory=memory), alpha, seed, progress)
+    try:
+        findings, predictor = (infer or _inference())(replace(inputs, memory=memory), alpha, seed, progress)
+    except KeyboardInterrupt:
+        if memory.made or memory.reused:
+            note("what was computed is kept: the same command goes on from there")
+        raise
     _write(inputs, outputs, findings, predictor)
-    memory.forget()
     note(f"done after {progress.seconds:.1f} s")
     answer(output.as_object(findings), outputs.json, lambda: output.show(findings))
+    memory.forget()
 
 
 def _inference() -> Infer:

@@ -22,14 +22,14 @@ DAYS = 14
 
 
 class Memory:
-    """Arrays by what they were computed from. Without a file it keeps nothing.
+    """Arrays by what they were computed from; `made` were kept, `reused` found. Without a file it keeps nothing.
 
     Args:
         path: file to keep them in, made if need be; a file that cannot be used is done without
     """
 
     def __init__(self, path: Path | None = None) -> None:
-        self.path, self.reused = path, 0
+        self.path, self.reused, self.made = path, 0, 0
         self._base: sqlite3.Connection | None = None
         if path is None:
             return
@@ -61,6 +61,7 @@ class Memory:
         np.savez(text, allow_pickle=False, **made)
         with suppress(sqlite3.Error):
             self._base.execute("INSERT OR REPLACE INTO kept VALUES (?, ?)", (key, text.getvalue()))
+            self.made += 1
         return made
 
     def forget(self) -> None:

@@ -85,7 +85,7 @@ def likes(cause: str) -> list[str]:
 def likes_said(cause: str) -> str:
     """The other causes of its class, as an addition to its name."""
     others = [name_of(c) for c in likes(cause)]
-    return f", or its like: {' or '.join(others)}," if others else ""
+    return f" (or its like: {', '.join(others)})" if others else ""
 
 
 def sentence(text: str) -> str:
@@ -198,7 +198,7 @@ def verdict(findings: Findings) -> str:
             "One cause explains it" if len(first.causes) == 1 else f"{len(first.causes)} causes explain it together"
         )
         named = " and ".join(name_of(c) + likes_said(c) for c in first.causes)
-        return f"{subject}: {named} ({percent(first.probability)} sure){_size(findings, first)}."
+        return f"{subject}: {named}, {percent(first.probability)} sure{_size(findings, first)}."
     if findings.verdict == "ambiguous":
         sets = [h for h in needed(findings) if h.causes]
         words = "; ".join(f"{names_of(h.causes)} ({percent(h.probability)})" for h in sets[:4])
@@ -218,7 +218,7 @@ def _size(findings: Findings, hypothesis: Joint) -> str:
         if found and found.parameters:
             where = f", {regime(found)}" if found.regime else ""
             sizes.append(
-                f"{meaning(cause, found.parameters[0].name) or found.parameters[0].name} "
+                f"{meaning(cause, found.parameters[0].name) or found.parameters[0].name}: "
                 f"{estimate(found.parameters[0])}{where}"
             )
     return f"; {'; '.join(sizes)}" if sizes else ""
