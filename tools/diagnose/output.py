@@ -113,15 +113,19 @@ def _probability(value: float) -> float:
 def show(findings: Findings) -> None:
     """Print a diagnosis on one screen."""
     print(words.verdict(findings))
-    print(f"  {words.chance(findings.p_any)}; {words.adequacy(findings)}")
+    found = words.applied(findings) is not None
+    print(f"  {words.chance(findings.p_any)}; {words.adequacy(findings)}" if found else f"  {words.adequacy(findings)}")
     listed = [c for c in findings.causes if c.probability >= 0.01][:SHOWN]
     if listed:
         body = [(words.percent(c.probability), c.id, _first(c), words.regime(c)) for c in listed]
         table("", ("probability", "cause", "size (95 %)", "where"), body)
-    if findings.confusable and words.applied(findings) is not None:
+    if findings.confusable and found:
         first, *others = findings.confusable[0]
         print(f"these data cannot tell {first} from {', '.join(others)}")
-    if effects := [text for key in words.IMPACTS if (text := words.impact(findings, key))]:
+    if not found:
+        seen = [f"{c.id} {size}" for c in findings.causes if (size := words.visible(c))]
+        print(f"would have been found in 80 of 100 such campaigns: {', '.join(seen) or 'nothing'}")
+    if found and (effects := [text for key in words.IMPACTS if (text := words.impact(findings, key))]):
         print(f"mean effect on the readings: {', '.join(effects)}")
     print(f"oil temperature of readings left out: {words.gain(findings)}")
     for experiment in findings.next_experiment[:1]:

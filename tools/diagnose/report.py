@@ -189,12 +189,9 @@ def _detectable(findings: Findings) -> Markup:
     body = []
     known = {c.id: c for c in findings.causes}
     for cause in (CAUSES[c] for c in CAUSES if c in known):
-        size, least = cause.size, known[cause.id].detectable
-        most = max(abs(size.low), abs(size.high))
-        visible = math.isfinite(least) and least <= most
-        unit = "" if size.unit == "1" else f" {size.unit}"
-        body.append((words.name_of(cause.id), f"{words.number(least, 2)}{unit}" if visible else "not visible",
-                     f"{words.number(size.sd, 2)}{unit}", size.doc))  # fmt: skip
+        usual = f"{words.number(cause.size.sd, 2)}{'' if cause.size.unit == '1' else f' {cause.size.unit}'}"
+        seen = words.visible(known[cause.id]) or "not visible"
+        body.append((words.name_of(cause.id), seen, usual, cause.size.doc))
     return html_table(("cause", "smallest visible", "usual size", "meaning"), body, text=(3,)) if body else Markup("")
 
 

@@ -224,6 +224,16 @@ def _size(findings: Findings, hypothesis: Joint) -> str:
     return f"; {'; '.join(sizes)}" if sizes else ""
 
 
+def visible(found: Named) -> str:
+    """The smallest size of a cause that the data would reveal, with its unit; empty where no possible size is seen."""
+    if found.id not in CAUSES:
+        return ""
+    size = CAUSES[found.id].size
+    if not found.detectable <= max(abs(size.low), abs(size.high)):
+        return ""
+    return f"{number(found.detectable, 2)}{'' if size.unit == '1' else f' {size.unit}'}"
+
+
 def adequacy(findings: Findings) -> str:
     """Whether what is left after the best hypothesis is noise."""
     left = "what is left after it" if applied(findings) else "what the model leaves"
