@@ -1,0 +1,87 @@
+"""The figures of the README and the promises of the main job, over all 36 tests."""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gearheat.fmu.export import export
+from gearheat.fmu.play import Player
+from gearheat.model.run.simulate import simulate
+from gearheat.model.run.steady import steady
+from gearheat.scenarios.load import load
+from gearheat.scenarios.measured import schedule_of
+from gearheat.tools.settings import flat_of
+
+ROOT = Path(__file__).parents[2]
+
+
+@pytest.fixture(scope="module")
+def result(tmp_path_factory: pytest.TempPathFactory) -> dict:
+    """The main job, as a user runs it."""
+    command = [sys.executable, "-m", "gearheat.tools.cli", "run", "planetary", "--json", "-"]
+    command += ["--out", str(tmp_path_factory.mktemp("run"))]
+    return json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
+
+
+@pytest.fixture(scope="module")
+def rig():
+    scenario = load("planetary")
+    return scenario, flat_of(scenario)
+
+
+def test_all_72_readings_conserve_energy(result: dict) -> None:
+    assert len(result["rows"]) == 72
+    assert result["energy_residual_max"] < 1e-6
+
+
+def test_the_table_of_the_readme_is_what_the_main_job_prints(result: dict) -> None:
+    readme = (ROOT / "README.md").read_text(encoding="utf-8")
+    found = dict(re.findall(r"^\| ([^|]+?) +\| ([\d. |]+) \|$", readme, flags=re.MULTILINE))
+    channels = ("T_oil_K", "T_wall_K", "loss_Nm")
+
+    def printed(name: str) -> list[float]:
+        return [float(cell) for cell in found[name].split("|")]
+
+    expected = {
+        "simulation, all 72 readings": result["rmse"]["overall"],
+        "simulation, PAOR-16": result["rmse"]["PAOR-16"],
+        "noise floor": result["noise_floor"],
+        "constant alpha*A, left-out tests": result["rivals"]["constant_alphaA"]["leave_one_test_out"],
+        "linear, left-out tests": result["rivals"]["linear"]["leave_one_test_out"],
+    }
+    for name, values in expected.items():
+        assert printed(name) == [pytest.approx(values[c], abs=0.0051) for c in channels], name
+
+
+def test_after_240_minutes_the_oil_is_where_the_steady_solve_says(result: dict, rig) -> None:
+    """Every first half, at the readings' own speed, torque, room and oil."""
+    scenario, flat = rig
+    for test in scenario.campaign.tests():
+        first = test.halves[0]
+        values = {path: v for path, v in scenario.entry_values("oil", test.oil).items() if path in flat.index}
+        values |= {"carrier.w": first.si("n_carrier_rpm"), "carrier.tau": first.values["T_carrier_Nm"]}
+        values |= {"room.T": first.si("T_amb_C")}
+        (row,) = [r for r in result["rows"] if r["point"] == first.point]
+        assert steady(flat, values)["oil.T"][0] - 273.15 == pytest.approx(row["T_oil_C"], abs=0.05)
+
+
+@pytest.mark.parametrize("step", [1.0, 10.0, 60.0])
+def test_the_fmu_plays_what_simulate_computes(rig, step: float, tmp_path: Path) -> None:
+    """A whole test with its stop, every communication point, all states."""
+    scenario, flat = rig
+    test = scenario.campaign.tests()[15]
+    run = schedule_of(scenario.campaign, test)
+    times = np.arange(0.0, run.schedule.stop + 0.5 * step, step)
+    reference = simulate(flat, run.schedule, start=run.start(flat), times=times, tolerance=1e-9)
+    names = [q.name for q in flat.states]
+    inputs = {name: (run.schedule.time, v) for name, v in run.schedule.values.items()}
+    with Player(export(flat, tmp_path / "rig.fmu")) as player:
+        played = player.run(
+            inputs, run.schedule.stop, step, start=run.start(flat), record=names, output_times=list(times)
+        )
+    for name in names:
+        assert np.abs(played[name] - reference[name]).max() < 1e-3
