@@ -139,16 +139,16 @@ def _set_of_rig(scenario: Scenario, flat: FlatModel, sources: Mapping[str, str])
 
 
 def _sets_of_oils(scenario: Scenario, flat: FlatModel) -> dict[str, bytes]:
-    """A set for every oil of the catalogue that gives the oil baths all that their own oil gives this model."""
-    baths = [bath for bath in scenario.spec.of_type("OilBath") if "oil" in scenario.entries.get(bath, {})]
-    present = {bath: oil_values(scenario.entries[bath]["oil"]) for bath in baths}
-    filled = [q for q in flat.parameters if q.name.rpartition(".")[2] in present.get(q.name.rpartition(".")[0], {})]
-    keys = {q.name: q.name.rpartition(".")[2] for q in filled}
+    """A set for every oil of the catalogue that gives the oil baths all that oils can give this model."""
+    oils = {name: oil_values(name) for name in catalogue("oil")}
+    given = {key for values in oils.values() for key in values}
+    paths = {f"{bath}.{key}": key for bath in scenario.spec.of_type("OilBath") for key in given}
+    filled = [q for q in flat.parameters if q.name in paths]
     sets: dict[str, bytes] = {}
-    for name, entry in catalogue("oil").items() if filled else ():
-        values = oil_values(name)
-        if all(key in values for key in keys.values()):
-            chosen = [replace(q, start=values[keys[q.name]]) for q in filled]
-            sources = {path: entry.sources[key] for path, key in keys.items()}
+    for name, values in oils.items() if filled else ():
+        if all(paths[q.name] in values for q in filled):
+            entry = catalogue("oil")[name]
+            chosen = [replace(q, start=values[paths[q.name]]) for q in filled]
+            sources = {q.name: entry.sources[paths[q.name]] for q in filled}
             sets[name] = parameter_set(name, chosen, doc=f"{entry.doc}, for {scenario.name}", sources=sources)
     return sets

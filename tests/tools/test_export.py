@@ -19,6 +19,7 @@ from gearheat.fmu.play import Player
 from gearheat.fmu.related import PARAMETERS
 from gearheat.model.machines.spec import assemble
 from gearheat.scenarios.load import load
+from gearheat.scenarios.write import rig_text
 from gearheat.tools.network import network_svg
 from gearheat.tools.settings import adjusted, flat_of
 
@@ -265,6 +266,14 @@ def test_the_sentence_for_people(gearheat, tmp_path):
     first, second = answer.out.splitlines()
     assert first == f"{tmp_path / 'rig.fmu'}: 9 inputs, 52 outputs, 96 parameters, for {compiling.host_platform().name}"
     assert re.fullmatch(r"\d\d files beside it, from .*rig\.ssv", second)
+
+
+def test_an_extended_rig_has_its_oils_too(gearheat, tmp_path):
+    rig, fmu = tmp_path / "extended.toml", tmp_path / "rig.fmu"
+    rig.write_text(rig_text(load("planetary")), encoding="utf-8")
+    found = gearheat("export", rig, "-o", fmu, "--extras", tmp_path / "more", "--json", "-").json
+    assert len(list((tmp_path / "more" / "oils").iterdir())) == len(found["extras"]) - 4 >= 40
+    assert provenance(held(fmu, PARAMETERS))["foot.G"]["standardUncertainty"] == "0.19"
 
 
 def test_a_machine_listed_part_by_part(gearheat, tmp_path, elsewhere):
