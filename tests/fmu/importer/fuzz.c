@@ -35,7 +35,7 @@ static struct {
     int owner;
     double time;
 } states[STATES];
-static char bytes[ROOM];
+static char bytes[ROOM], undamaged[ROOM];
 static size_t size;
 
 #define WRONG(...) \
@@ -390,12 +390,13 @@ static fmi2Status saved(One *one)
         if (status != fmi2OK || n > ROOM) return status;
         if (below(&r, 6) == 0) n = below(&r, (unsigned)n + 2);
         status = m.f.SerializeFMUstate(one->c, states[k].state, or_null(bytes), n);
-        if (status == fmi2OK) size = n;
+        if (status == fmi2OK) memcpy(undamaged, bytes, size = n);
         return status;
     default:
         damage();
         n = below(&r, 5) ? size : below(&r, ROOM);
         status = m.f.DeSerializeFMUstate(one->c, or_null(bytes), n, &fresh);
+        if (status == fmi2OK && (size == 0 || memcmp(bytes, undamaged, size) != 0)) WRONG("a damaged state was taken");
         if (status == fmi2OK && m.f.SetFMUstate(one->c, fresh) == fmi2OK)
             if (m.f.GetRealStatus(one->c, fmi2LastSuccessfulTime, &one->time) != fmi2OK) one->time = 0.0;
         m.f.FreeFMUstate(one->c, &fresh);
@@ -475,7 +476,8 @@ static void one_call(One *one)
     if (k == 2) { /* the mode may say that the step failed; all values stay */
         if (known && (values_of(one->c, later) != known || memcmp(values, later, (size_t)known * sizeof *values) != 0))
             WRONG("a refused step changed a value");
-    } else if (snapshot(one->c, after) != n || memcmp(before, after, n) != 0) WRONG("status %d, but the state changed", status);
+    } else if (snapshot(one->c, after) != n || memcmp(before, after, n) != 0)
+        WRONG("status %d, but the state changed", status);
 }
 
 static void sequence(void)

@@ -62,7 +62,7 @@ void check_cycles(const Fmu *m, int n, char **arguments)
     EXPECT(pages <= 64, "%ld KB more are resident", pages);
 }
 
-/* Many small steps: by an importer that adds them up, so that its clock is off by round-off, or by one that does not. */
+/* Many small steps by an importer that adds them up, so that its clock is off by round-off, or multiplies. */
 static void small_steps(const Fmu *m, long count, double step, int adds_up, double *found)
 {
     double t = 0.0, last;

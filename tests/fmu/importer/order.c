@@ -208,7 +208,8 @@ static void one_call(size_t k, fmi2Type type, int mode, const double *undisturbe
         EXPECT(status <= fmi2Discard, "%s is legal in mode %d of type %d, but gave %d: %s", calls[k].name, mode, type,
                status, heard.last);
     } else if (!(calls[k].either & mode)) {
-        EXPECT(status == fmi2Error, "%s is illegal in mode %d of type %d, but gave %d", calls[k].name, mode, type, status);
+        EXPECT(status == fmi2Error, "%s is illegal in mode %d of type %d, but gave %d", calls[k].name, mode, type,
+               status);
     }
     if (status == fmi2Error) EXPECT(heard.errors > 0, "%s was refused without a word", calls[k].name);
     if (status > fmi2Discard) { /* the run goes on as if nothing had been called */

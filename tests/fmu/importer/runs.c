@@ -41,7 +41,10 @@ static void shuffle(Random *r, int n, int *order)
 {
     int i, k, kept;
     for (i = 0; i < n; i++) order[i] = i;
-    for (i = n - 1; i > 0; i--) k = (int)below(r, (unsigned)i + 1), kept = order[i], order[i] = order[k], order[k] = kept;
+    for (i = n - 1; i > 0; i--) {
+        k = (int)below(r, (unsigned)i + 1);
+        kept = order[i], order[i] = order[k], order[k] = kept;
+    }
 }
 
 /* Sets everything in a random order, in groups of random size, some before and some in initialization mode, some
@@ -286,7 +289,7 @@ void check_restore(const Fmu *m, int n, char **arguments)
 typedef struct {
     const Fmu *m;
     double *rows;
-    int number;
+    int number, rounds;
     pthread_barrier_t *together;   /* all begin at once; NULL when alone */
 } Job;
 
@@ -297,7 +300,7 @@ static void *work(void *job)
     fmi2Component c = NULL;
     int round, k;
     if (j->together) pthread_barrier_wait(j->together);
-    for (round = 0; round < 10; round++) { /* instances come and go while others run */
+    for (round = 0; round < j->rounds; round++) { /* instances come and go while others run */
         double t = 0.0;
         if (c) m->f.FreeInstance(c);
         c = ready(m, 1e-6);
@@ -316,11 +319,12 @@ void check_threads(const Fmu *m, int n, char **arguments)
     pthread_t threads[MANY];
     pthread_barrier_t together;
     Job alone[MANY], among[MANY];
-    int i;
-    (void)n, (void)arguments;
+    int i, rounds;
+    NEEDS(n == 1, "threads ROUNDS");
+    rounds = atoi(arguments[0]);
     pthread_barrier_init(&together, NULL, MANY);
     for (i = 0; i < MANY; i++) {
-        alone[i] = (Job){m, rows_of(m), i, NULL}, among[i] = (Job){m, rows_of(m), i, &together};
+        alone[i] = (Job){m, rows_of(m), i, rounds, NULL}, among[i] = (Job){m, rows_of(m), i, rounds, &together};
         work(&alone[i]);
     }
     for (i = 0; i < MANY; i++)
