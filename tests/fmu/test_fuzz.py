@@ -1,7 +1,7 @@
 """Random calls with random arguments, in a build that stops at undefined behaviour or at a wrong address.
 
-`GEARHEAT_FUZZ=100000 python -m pytest -s tests/fmu/test_fuzz.py` runs as many sequences of each model in each build, the
-planetary rig included, and tells what they did.
+`GEARHEAT_FUZZ=100000 python -m pytest -s tests/fmu/test_fuzz.py` runs as many sequences of each model in each build,
+the planetary rig included, and tells what they did.
 """
 
 import os
@@ -82,7 +82,11 @@ PLANTED = {
         "        if (r[i] < FIRST_U) m->s.x[r[i]] += 1;\n        if (settable(r[i]) == 0)\n",
         "but the state changed",
     ),
-    "takes damaged states": ("header.checksum != hash(bytes + sizeof header, sizeof(State))", "0", "damaged state was taken"),
+    "takes damaged states": (
+        "header.checksum != hash(bytes + sizeof header, sizeof(State))",
+        "0",
+        "damaged state was taken",
+    ),
     "steps to infinity": (
         "if (!isfinite(time + step) || step < 0)",
         "if (!isfinite(step) || step < 0)",
