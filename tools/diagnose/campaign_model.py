@@ -13,6 +13,7 @@ from ...model.errors import SolveError
 from ...model.machines.spec import Spec, assemble
 from ...scenarios.measured import Campaign, Reading, TestRun, schedule_of
 from ..effects.cause import Readings, Rows
+from .memory import Memory
 from .superset import as_read, superset
 
 #: Share of the dwell before its end at which a second sample is taken, for readings that were not stationary.
@@ -49,15 +50,24 @@ class CampaignModel:
         rig: the compiled superset
         campaign: readings or points, with their protocol
         oils: oil of a test -> its values by path
+        memory: what an interrupted diagnosis already simulated
+        span: first and last running order of the campaign to which the rows belong; its own where none is given
     """
 
-    def __init__(self, rig: Rig, campaign: Campaign, oils: Mapping[str, Mapping[str, float]]) -> None:
-        self.rig, self.campaign = rig, campaign
+    def __init__(
+        self,
+        rig: Rig,
+        campaign: Campaign,
+        oils: Mapping[str, Mapping[str, float]],
+        memory: Memory | None = None,
+        span: tuple[float, float] | None = None,
+    ) -> None:
+        self.rig, self.campaign, self.memory = rig, campaign, memory or Memory()
         self.tests = campaign.tests()
         self.runs: list[TestRun] = [schedule_of(campaign, test) for test in self.tests]
         self.oils = [oils[test.oil] for test in self.tests]
         self.readings = [reading for test in self.tests for reading in test.halves]
-        self.rows = rows_of(self.readings, [len(test.halves) for test in self.tests])
+        self.rows = rows_of(self.readings, [len(test.halves) for test in self.tests], span)
 
     def simulate(self, variants: Sequence[Mapping[str, Any]]) -> list[Readings]:
         """True readings for each variant.
@@ -72,17 +82,25 @@ class CampaignModel:
         Raises:
             SolveError: the first variant cannot be run
         """
-        blocks = [self._test(k, variants) for k in range(len(self.tests))]
-        joined = {c: np.concatenate([b[c] for b in blocks], axis=1) for c in blocks[0]}
-        return [{c: joined[c][v] for c in joined} for v in range(len(variants))]
+
+        def joined() -> dict[str, np.ndarray]:
+            blocks = [self._test(k, variants) for k in range(len(self.tests))]
+            return {c: np.concatenate([b[c] for b in blocks], axis=1) for c in blocks[0]}
+
+        key = (repr((self.campaign.readings, self.campaign.protocol, self.oils)), variants)
+        whole = self.memory.kept(key, joined)
+        return [{c: whole[c][v] for c in whole} for v in range(len(variants))]
 
     def _test(self, k: int, variants: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
         run, oil = self.runs[k], self.oils[k]
 
         def chosen(values: Mapping[str, Any]) -> dict[str, float]:
-            return {path: float(v if np.ndim(v) == 0 else v[k]) for path, v in values.items()}
+            """Values of this test; what a variant makes of the rig's oil it makes of the test's oil."""
+            found = {path: float(v if np.ndim(v) == 0 else v[k]) for path, v in values.items()}
+            changed = {path: oil[path] * found[path] / self.rig.base[path] for path in found.keys() & oil.keys()}
+            return {**oil, **found, **changed}
 
-        p = np.stack([self.rig.parameters({**oil, **chosen(values)}) for values in variants])
+        p = np.stack([self.rig.parameters(chosen(values)) for values in variants])
         dwell = [reading.values["dwell_min"] * 60.0 for reading in self.tests[k].halves]
         ends = zip(run.moments, dwell, strict=True)
         times = [t for end, length in ends for t in (end - EARLY * length, end, end)]  # twice: both sides of a jump
@@ -105,15 +123,15 @@ def _rise(reading: Reading) -> float:
     return float(0.2 * reading.values["n_carrier_rpm"] * (reading.values["T_carrier_Nm"] / 2000) ** 0.5)
 
 
-def rows_of(readings: Sequence[Any], halves: Sequence[int]) -> Rows:
+def rows_of(readings: Sequence[Any], halves: Sequence[int], span: tuple[float, float] | None = None) -> Rows:
     """What instruments' faults depend on, from the readings of the tests in running order."""
     test = np.repeat(np.arange(len(halves)), halves)
     order = np.array([reading.order for reading in readings], dtype=float)
-    span = max(order.max() - order.min(), 1.0)
+    first, last = span or (float(order.min()), float(order.max()))
     humidity = np.array([reading.values.get("humidity_pct", np.nan) for reading in readings])
     return Rows(
         test=test,
-        order=(order - order.min()) / span,
+        order=(order - first) / max(last - first, 1.0),
         direction=np.where(np.array([r.direction for r in readings]) == 1, 1.0, -1.0),
         w=np.array([reading.si("n_carrier_rpm") for reading in readings]),
         tau=np.array([reading.values["T_carrier_Nm"] for reading in readings]),

@@ -34,11 +34,12 @@ class Predictor:
     null: Linear
     top: Hypothesis
     applied: bool
+    oils: Mapping[str, Mapping[str, float]]
 
     def __call__(self, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
         """Nominal and extended oil temperatures [degC] at the readings of a table of points, in running order."""
-        oils = {t.oil: o for c in self.problem.campaigns for t, o in zip(c.model.tests, c.model.oils, strict=True)}
-        model = CampaignModel(self.problem.rig, points, oils)
+        orders = [float(reading.order) for reading in self.problem.data.model.readings]
+        model = CampaignModel(self.problem.rig, points, self.oils, span=(min(orders), max(orders)))
         nominal = self._at(model, self.null, {}, ())
         if not self.applied:
             return nominal, nominal
@@ -107,15 +108,15 @@ def infer(
         rows=shown(search, hypothesis),
     )
     progress("done", 1.0)
-    return findings, Predictor(problem, search.null, hypothesis, applied)
+    return findings, Predictor(problem, search.null, hypothesis, applied, inputs.oils)
 
 
 def problem_of(inputs: Inputs) -> Problem:
     """Data and reference as one problem on one rig."""
     rig = Rig(inputs.spec)
-    campaigns = [Campaigned.of(CampaignModel(rig, inputs.data, inputs.oils), acting=True)]
+    campaigns = [Campaigned.of(CampaignModel(rig, inputs.data, inputs.oils, inputs.memory), acting=True)]
     if inputs.reference is not None:
-        campaigns.append(Campaigned.of(CampaignModel(rig, inputs.reference, inputs.oils), acting=False))
+        campaigns.append(Campaigned.of(CampaignModel(rig, inputs.reference, inputs.oils, inputs.memory), acting=False))
     wide = inputs.reference is not None
     return Problem(rig, campaigns, inputs.card, Parameters.of(rig.base, inputs.card, wide=wide))
 
@@ -146,17 +147,12 @@ def impact(search: Search, h: Hypothesis) -> dict[str, tuple[float, float, float
 def shown(search: Search, h: Hypothesis) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
     """Channel -> measured, nominal and extended readings of the data."""
     c, part = search.problem.data, search.problem.place(search.problem.data)
-    extended = (h.linear or search.null).nominal if h.linear is not None and h.linear is not search.null else None
-    if extended is None:
-        extended = search.null.nominal.copy()
-        for f in h.families:
-            theta = h.theta[f.cause.id]
-            extended += f.signatures[:, form_of(f, theta)] * theta[f.cause.size.name]
+    extended = search.problem.shown_by((h.linear or search.null).values, h.theta, [CAUSES[c] for c in h.causes])
     return {
         channel: (
             c.measured[c.channels.part(channel)],
             search.null.nominal[part][c.channels.part(channel)],
-            extended[part][c.channels.part(channel)],
+            extended[c.channels.part(channel)],
         )
         for channel in c.channels.names
     }

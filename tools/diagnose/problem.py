@@ -125,6 +125,10 @@ class Problem:
         residual = self.measured - nominal + jacobian @ z
         return Linear(z, variants[0], nominal, residual, noise + jacobian @ jacobian.T, jacobian, noise)
 
+    def shown_by(self, values: Mapping[str, Any], theta: Mapping[str, Theta], causes: Sequence[Cause]) -> np.ndarray:
+        """What the instruments of the acting campaign show with causes of given parameters."""
+        return self._shown_with(self.data, [values], theta, causes)[:, 0]
+
     def _days(self, response: np.ndarray) -> np.ndarray:
         """Covariance of days whose cooling differs; readings of one test share theirs."""
         covariance = np.zeros((len(response), len(response)))
