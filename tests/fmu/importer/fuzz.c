@@ -371,7 +371,7 @@ static fmi2Status saved(One *one)
     unsigned k = below(&r, STATES);
     fmi2FMUstate fresh = NULL;
     fmi2Status status;
-    size_t n = 0;
+    size_t n = 0, needed;
     int foreign = states[k].state && ones[states[k].owner].type != one->type;
     switch (below(&r, 7)) {
     case 0:
@@ -388,9 +388,11 @@ static fmi2Status saved(One *one)
     case 4:
         status = m.f.SerializedFMUstateSize(one->c, states[k].state, &n);
         if (status != fmi2OK || n > ROOM) return status;
+        needed = n;
         if (below(&r, 6) == 0) n = below(&r, (unsigned)n + 2);
         status = m.f.SerializeFMUstate(one->c, states[k].state, or_null(bytes), n);
-        if (status == fmi2OK) memcpy(undamaged, bytes, size = n);
+        if (status == fmi2OK && n < needed) WRONG("a state was written to %d of %d bytes", (int)n, (int)needed);
+        if (status == fmi2OK) memcpy(undamaged, bytes, size = needed);
         return status;
     default:
         damage();
@@ -484,6 +486,7 @@ static void sequence(void)
 {
     unsigned n, k, i;
     seed(&r, current);
+    memset(bytes, 0, size);
     size = 0;
     for (i = 0; i < INSTANCES; i++) begin(&ones[i]);
     for (n = 10 + below(&r, 50), k = 0; k < n; k++) one_call(&ones[below(&r, 4) ? 0 : 1]);
