@@ -25,7 +25,7 @@ from gearheat.tools.diagnose.memory import Memory, fingerprint, memory_of
 from gearheat.tools.diagnose.output import as_object, schema, show
 from gearheat.tools.diagnose.predictions import predictions_text
 from gearheat.tools.diagnose.report import render
-from gearheat.tools.effects.library import CAUSES
+from gearheat.tools.effects.taxonomy import CAUSES
 from gearheat.tools.losses import oil_values
 from gearheat.tools.settings import loaded
 

@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from ..effects.library import CAUSES
+from ..effects.taxonomy import CAUSES
 from .campaign_model import CampaignModel
 from .evidence import White
 from .findings import Experiment

@@ -9,7 +9,7 @@ from ...model.machines.spec import PartSpec, Spec
 from ...scenarios.scenario import Scenario
 from ...scenarios.write import rig_text
 from ..effects.cause import Cause, Theta
-from ..effects.library import CAUSES
+from ..effects.taxonomy import CAUSES
 from ..settings import DIAGNOSED
 from . import words
 from .findings import Findings

@@ -9,7 +9,7 @@ import numpy as np
 
 from ...scenarios.measured import Campaign
 from ..effects.cause import Cause, Theta
-from ..effects.library import CAUSES
+from ..effects.taxonomy import CAUSES
 from .campaign_model import CampaignModel, Rig
 from .experiments import ranked
 from .findings import Findings, Joint

@@ -14,7 +14,7 @@ from ...scenarios.csv_table import Column
 from ...scenarios.load import load
 from ...scenarios.measured import POINTS, READINGS, Campaign, Protocol, Reading, read_measured
 from ...scenarios.scenario import Scenario
-from ..effects.library import CAUSES
+from ..effects.taxonomy import CAUSES
 from ..settings import driven_by
 from . import card as cards
 from .card import Card, read_card

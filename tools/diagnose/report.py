@@ -11,7 +11,7 @@ from jinja2 import Environment
 from markupsafe import Markup
 
 from ...model.units import from_si, shown
-from ..effects.library import CAUSES
+from ..effects.taxonomy import CAUSES
 from ..report import html_table
 from . import pictures, words
 from .card import DEFAULTS, PRIOR

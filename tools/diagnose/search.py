@@ -11,7 +11,7 @@ from scipy.special import logsumexp
 from scipy.stats import chi2, norm
 
 from ..effects.cause import Cause, Theta, spread
-from ..effects.library import CAUSES
+from ..effects.taxonomy import CAUSES
 from .evidence import WIDTHS, White, log_bayes_factors, log_bayes_factors_pair, score
 from .problem import Linear, Problem
 

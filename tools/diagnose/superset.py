@@ -8,7 +8,7 @@ import casadi as ca
 
 from ...model.core.flat import FlatModel, Quantity
 from ...model.machines.spec import Spec
-from ..effects.library import CAUSES
+from ..effects.taxonomy import CAUSES
 
 #: What stands between an input's reading and its truth; the truth is (reading - bias) / (1 + gain).
 READ = (

@@ -8,7 +8,7 @@ import numpy as np
 from scipy.stats import chi2, norm
 
 from ..effects.cause import Cause, Theta
-from ..effects.library import CAUSES
+from ..effects.taxonomy import CAUSES
 from .evidence import White
 from .findings import Estimate, Joint, Named
 from .search import Family, Hypothesis, Search

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from ..effects.library import CAUSES
+from ..effects.taxonomy import CAUSES
 from .findings import Estimate, Findings, Joint, Named
 
 #: Probability that the named hypotheses shall reach together.
