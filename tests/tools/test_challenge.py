@@ -357,10 +357,14 @@ def test_a_run_goes_on_where_it_stopped(tmp_path: Path) -> None:
 
 def truth_of(*causes: str, kind: str = "single") -> dict:
     return {
-        "case": 0, "kind": kind, "answer": sorted(merged_all(causes)), "impact": {"T_oil_K": 2.0, "loss_Nm": 0.0},
+        "case": 0,
+        "kind": kind,
+        "answer": sorted(merged_all(causes)),
+        "effects": [{"snr": 9.0}] * len(causes),
+        "impact": {"T_oil_K": 2.0, "loss_Nm": 0.0},
         "repeat_sd": {"T_oil_K": 0.5, "loss_Nm": 1.0},
         "points": [{"point": i, "T_oil_C": 52.0, "T_oil_without_C": 50.0} for i in (1, 2)],
-    }  # fmt: skip
+    }
 
 
 def answer(*hypotheses: tuple[tuple[str, ...], float], verdict: str = "explained", **rest: dict) -> Answer:
@@ -421,13 +425,14 @@ def test_command_refuses_what_it_cannot_do(gearheat) -> None:
 
 def test_report_counts(capsys: pytest.CaptureFixture[str]) -> None:
     def outcome(k: int, kind: str, truth: str, top: str) -> Outcome:
-        return Outcome(k, kind, truth, top, True, True, truth == top, 1, True, 1, False, None, None, 2.0 + k)
+        return Outcome(k, kind, 9.0, truth, top, True, True, truth == top, 1, True, 1, False, None, None, 2.0 + k)
 
     outcomes = [outcome(1, "single", "a", "a"), outcome(0, "single", "a", "b"), outcome(2, "weak", "a", "b")]
     found = report(outcomes, "own", 3)
     assert found["confusion"] == {"a": {"a": 1, "b": 1}}
     assert [c["case"] for c in found["cases"]] == [0, 1, 2]
     assert found["seconds"]["median"] == 3.0
+    assert [(r["n"], r["exact"]) for r in found["by_loudness"]] == [(0, 0), (2, 1), (0, 0)]
     json.dumps(found)
     show(found)
     printed = capsys.readouterr().out

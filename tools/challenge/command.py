@@ -77,11 +77,22 @@ def show(found: Mapping[str, Any]) -> None:
         for i, (top, count) in enumerate(sorted(row.items(), key=lambda item: (-item[1], item[0])))
     ]
     console.table("what was hidden, and the likeliest answer", ("hidden", "answer", "cases"), answers)
+    loudness = [_loudness(r) for r in found["by_loudness"] if r["n"]]
+    columns = ("signal-to-noise", "cases", "detected", "95 % interval", "exact name", "95 % interval")
+    console.table("one cause, by how loud it is", columns, loudness)
     seconds = found["seconds"]
     if seconds["median"] is not None:
         print(f"time per case: median {seconds['median']:.1f} s, longest {seconds['longest']:.1f} s")
     if found["answered"] < found["n"]:
         print(f"{found['n'] - found['answered']} cases without an answer count as missed")
+
+
+def _loudness(r: Mapping[str, Any]) -> tuple[str, ...]:
+    low, high = r["snr"]
+    span = f"{low:g} ... {high:g}" if high < 1e6 else f"above {low:g}"
+    detected, exact = (f"{r[name] / r['n']:.2f}" for name in ("detected", "exact"))
+    spans = [" ... ".join(f"{v:.2f}" for v in r[f"{name}_interval"]) for name in ("detected", "exact")]
+    return span, str(r["n"]), detected, spans[0], exact, spans[1]
 
 
 def _row(m: Mapping[str, Any]) -> tuple[str, ...]:

@@ -103,7 +103,7 @@ def draw_sizes(rng: np.random.Generator) -> Sizes:
             mesh_film=rng.uniform(0.1, 0.5),
             mesh_exponent=rng.uniform(0.2, 0.9),
             mesh_to_oil=rng.uniform(0.0, 0.4),
-            reducer=rng.uniform(-0.03, 0.03),
+            reducer=rng.uniform(-0.02, 0.02),
             viscous=rng.uniform(0.3, 0.7),
             bearing=rng.uniform(6.5, 16.0),
             bearing_oil=bool(rng.random() < 0.3),

@@ -28,6 +28,7 @@ class Outcome:
 
     Args:
         case, kind: of the case
+        snr: signal-to-noise of the quietest hidden effect; 0 for none
         truth, top: names as they count, joined by " + "; "nothing" for none
         answered: whether there was an answer
         alarm: whether it said that something is wrong
@@ -43,6 +44,7 @@ class Outcome:
 
     case: int
     kind: str
+    snr: float
     truth: str
     top: str
     answered: bool
@@ -67,6 +69,7 @@ def score(truth: Mapping[str, Any], answer: Answer | None, seconds: float, probl
     return Outcome(
         case=int(truth["case"]),
         kind=str(truth["kind"]),
+        snr=min((float(e["snr"]) for e in truth["effects"]), default=0.0),
         truth=_joined(names),
         top=_joined(top.names) if told.alarm or not top.claims else "nothing",
         answered=answer is not None,
@@ -150,6 +153,9 @@ class Bar:
 
 ONE = ("single", "regime")
 
+#: Ranges of signal-to-noise to tell apart.
+LOUDNESS = ((0.0, 8.0), (8.0, 16.0), (16.0, 1e9))
+
 BARS: tuple[Bar, ...] = (
     Bar(
         "false alarms on clean data", ("clean",), lambda o: o.alarm or not o.answered, (0.10, 0.05, 0.05), at_most=True
@@ -223,6 +229,25 @@ def confusion(outcomes: Sequence[Outcome]) -> dict[str, dict[str, int]]:
     return found
 
 
+def by_loudness(outcomes: Sequence[Outcome]) -> list[dict[str, Any]]:
+    """Detection and exact names of single and regime-limited causes, by signal-to-noise."""
+    found = []
+    for low, high in LOUDNESS:
+        here = [o for o in outcomes if o.kind in ONE and low <= o.snr < high]
+        detected, exact = sum(o.alarm for o in here), sum(o.exact for o in here)
+        found.append(
+            {
+                "snr": [low, high],
+                "n": len(here),
+                "detected": detected,
+                "exact": exact,
+                "detected_interval": wilson(detected, len(here)),
+                "exact_interval": wilson(exact, len(here)),
+            }
+        )
+    return found
+
+
 def report(outcomes: Sequence[Outcome], sheet: str, seed: int) -> dict[str, Any]:
     """Everything for the JSON file; times stand apart, all else is the same for the same code, sheet and seed."""
     ordered = sorted(outcomes, key=lambda o: o.case)
@@ -236,6 +261,7 @@ def report(outcomes: Sequence[Outcome], sheet: str, seed: int) -> dict[str, Any]
         "kinds": {kind: sum(o.kind == kind for o in ordered) for kind in dict.fromkeys(o.kind for o in ordered)},
         "answered": sum(o.answered for o in ordered),
         "metrics": [asdict(m) for m in metrics(ordered, sheet)],
+        "by_loudness": by_loudness(ordered),
         "confusion": confusion(ordered),
         "cases": cases,
         "seconds": {

@@ -13,6 +13,8 @@ differences; Sigma is its variance:
 - the eight parameters of the card with their `prior_sd`; with a reference campaign, where the rig is not the model,
   `WIDE_SD` each instead;
 - the cooling of the day of every test (`day_cooling_sd`);
+- with a reference campaign, a smooth remainder that no parameter removes: a quadratic of speed and load and a line in
+  the room's temperature for every direction, in oil, wall and loss (`REMAINDER_SD`), the same in both campaigns;
 - true speed, torque and room temperature of every half, practically free: they are known by their readings only, so
   a fault of such an instrument shows in what does not follow.
 
@@ -35,6 +37,9 @@ from .plan import Plan
 from .rig import HALVES, Rig, Run, simulate
 
 WIDE_SD = 0.4
+
+#: Remainder of a rig that is not the model: sun torque [N.m], oil and wall [K].
+REMAINDER_SD = {"T_sun_Nm": 0.25, "T_oil_C": 1.0, "T_oil2_C": 1.0, "T_wall_C": 1.0}
 
 #: Change of an oil temperature at which a rig would be stopped [K].
 OBVIOUS = 35.0
@@ -97,8 +102,8 @@ class _Block:
     sd: np.ndarray
 
 
-def _block(rig: Rig, campaign: Campaign, instruments: Instruments, prior: Mapping[str, float]) -> _Block:
-    """Sensitivities by differences, all in one run of many copies."""
+def _block(rig: Rig, campaign: Campaign, instruments: Instruments, prior: Mapping[str, float], wide: bool) -> _Block:
+    """Sensitivities by differences, all in one run of many copies; `wide` for a rig that is not the model."""
     plan, eps = campaign.plan, 0.05
     m, copies = plan.columns, 2 + len(prior) + 6
     big, base = plan.tiled(copies), tiled(campaign.base, copies)
@@ -129,8 +134,24 @@ def _block(rig: Rig, campaign: Campaign, instruments: Instruments, prior: Mappin
     shared += [np.repeat([float(r == c) for r in rows], m) * instruments.offset_sd[c] for c in instruments.channels]
     locals_ = [(change[day - 1] / eps, DAY_COOLING_SD)]
     locals_ += [(change[day + i] / size, FREE[name]) for i, (name, _, size) in enumerate(moves)]
+    if wide:
+        shared += _remainder(plan, rows, campaign.series)
     local = [_per_test(effect * s) for effect, s in locals_]
     return _Block(y[0], np.array(shared).T, np.concatenate(local, axis=1), np.repeat(sd, m))
+
+
+def _remainder(plan: Plan, rows: list[str], series: bool) -> list[np.ndarray]:
+    """Smooth terms of the conditions, per channel and direction, flat over rows and tests."""
+    x, y = (plan.n[0] - 175.0) / 75.0, (plan.load[0] - 2130.0) / 580.0
+    terms = [np.ones_like(x), x, y, x * y, x * x, y * y, (plan.room[1] - 24.0) / 5.0]
+    ends = len(rows) - (len(SERIES_CHANNELS) * 2 * MOMENTS if series else 0)
+    half = np.concatenate([np.arange(ends) % 2, np.arange(len(rows) - ends) // MOMENTS % 2])
+    found = []
+    for channel, sd in REMAINDER_SD.items():
+        for direction in (0, 1):
+            here = np.array([float(r == channel) for r in rows]) * (half == direction)
+            found += [sd * np.outer(here, term).ravel() for term in terms]
+    return found
 
 
 def _per_test(effect: np.ndarray) -> np.ndarray:
@@ -146,7 +167,8 @@ class Yardstick:
     def __init__(self, rig: Rig, campaign: Campaign, instruments: Instruments, reference: Campaign | None) -> None:
         self.rig, self.campaign, self.instruments = rig, campaign, instruments
         prior = dict(PRIOR_SD) if reference is None else dict.fromkeys(PRIOR_SD, WIDE_SD)
-        blocks = [_block(rig, c, instruments, prior) for c in (campaign, reference) if c is not None]
+        wide = reference is not None
+        blocks = [_block(rig, c, instruments, prior, wide) for c in (campaign, reference) if c is not None]
         self._quiet = blocks[0].quiet
         J = np.hstack([np.vstack([b.shared for b in blocks]), block_diag(*(b.local for b in blocks))])
         S = J @ J.T
