@@ -24,14 +24,15 @@ class Platform:
     targets: tuple[str, ...]
 
 
-#: An old C library of Linux by name: newer ones would bind exp, log and pow to versions a user may not have.
+#: An old C library of Linux by name: newer ones would bind exp, log and pow to versions a user may not have. An old
+#: macOS by name: without it the library asks for the newest the compiler knows.
 PLATFORMS = {
     p.name: p
     for p in (
         Platform("linux64", ".so", ("x86_64-linux-gnu.2.17",)),
         Platform("win64", ".dll", ("x86_64-windows-gnu",)),
         Platform("win32", ".dll", ("x86-windows-gnu",)),
-        Platform("darwin64", ".dylib", ("x86_64-macos", "aarch64-macos")),
+        Platform("darwin64", ".dylib", ("x86_64-macos.11.0", "aarch64-macos.11.0")),
     )
 }
 
