@@ -95,7 +95,7 @@ def _sized(effect: Effect, band: tuple[float, float], yard: Yardstick, rng: np.r
     magnitudes, snr = effect.high * _GRID[sensible], np.maximum.accumulate(snr[sensible])
     if not len(snr):
         return None
-    quietest, loudest = max(band[0], float(snr[0])), min(band[1], float(snr[-1]))
+    quietest, loudest = max(1.02 * band[0], float(snr[0])), min(band[1], float(snr[-1]))
     if not quietest < loudest:
         return None
     wanted = np.exp(rng.uniform(np.log(quietest), np.log(loudest)))
@@ -103,7 +103,7 @@ def _sized(effect: Effect, band: tuple[float, float], yard: Yardstick, rng: np.r
     magnitude = np.exp(np.interp(np.log(wanted), np.log(rising), np.log(magnitudes)))
     amplitude = float(f"{effect.sign * magnitude:.4g}")
     reached = yard.snr(effect, amplitude)
-    if not 0.97 * band[0] <= reached <= 1.1 * band[1]:
+    if not band[0] <= reached <= 1.1 * band[1]:
         return None
     return Hidden(effect, amplitude, reached)
 
