@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from types import SimpleNamespace
 
+import fmpy
 import pytest
 from fmu_in_c import check, checks, library, planetary, planetary_on_torques, sanitizer, told, unpacked
 
@@ -109,3 +110,25 @@ def test_model_exchange_with_an_integrator_of_ones_own(
     facts: dict[str, Path], model: str, phase: float, step: float
 ) -> None:
     check(facts[model], "exchange", phase, step, 1e-6)
+
+
+@pytest.mark.parametrize("model", ["rc", "heat", "planetary", "torques"])
+def test_derivatives_along_everything_in_every_mode_and_what_depends_on_what(
+    facts: dict[str, Path], model: str
+) -> None:
+    found: dict[str, set[str]] = {}
+    for line in check(facts[model], "slopes").splitlines():
+        unknown, known = line.split()
+        found.setdefault(unknown, set()).add(known)
+    described = fmpy.read_model_description(str(facts[model].parent / "model.fmu"))
+    parameters = {v.name for v in described.modelVariables if v.causality == "parameter"}
+    listed = {u.variable.name: {v.name for v in u.dependencies} for u in described.initialUnknowns}
+    while_stepping = {
+        u.variable.name: {v.name for v in u.dependencies} for u in (*described.outputs, *described.derivatives)
+    }
+    assert len(found) > 2
+    for unknown, known in found.items():
+        assert known <= listed[unknown], f"{unknown} depends on more at the start than is listed"
+        assert known - parameters <= while_stepping[unknown], f"{unknown} depends on more than is listed"
+    quiet = sum(len(listed[u] - found.get(u, set())) for u in listed if "residual" not in u)
+    assert quiet < 0.2 * sum(map(len, found.values())), "far more is listed than acts"

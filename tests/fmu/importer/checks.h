@@ -28,6 +28,6 @@ extern int failures;
 typedef void Check(const Fmu *m, int n, char **arguments);
 
 Check check_order, check_birth, check_shuffle, check_reset, check_rollback, check_save, check_restore, check_threads,
-    check_cycles, check_drift, check_steps, check_exchange, check_trace;
+    check_cycles, check_drift, check_steps, check_exchange, check_trace, check_slopes;
 
 #endif

@@ -13,7 +13,7 @@ int main(int n, char **arguments)
 #ifndef _WIN32 /* threads and what memory is in use are asked of Linux */
         {"shuffle", check_shuffle}, {"reset", check_reset},   {"rollback", check_rollback}, {"save", check_save},
         {"restore", check_restore}, {"threads", check_threads}, {"cycles", check_cycles},   {"drift", check_drift},
-        {"steps", check_steps},     {"exchange", check_exchange},
+        {"steps", check_steps},     {"exchange", check_exchange}, {"slopes", check_slopes},
 #endif
         {"order", check_order},     {"birth", check_birth},   {"trace", check_trace}};
     size_t k;
