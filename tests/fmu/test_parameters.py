@@ -10,6 +10,7 @@ from pathlib import Path
 import fmpy
 import numpy as np
 import pytest
+from fmpy.validation import validate_fmu
 from fmu_in_c import planetary
 from gearheat.fmu.compiling import cache_folder
 from gearheat.fmu.export import export
@@ -100,6 +101,7 @@ def test_the_same_rig_gives_the_same_file_in_every_process(tmp_path: Path) -> No
     script = f"""
 import sys; sys.path.insert(0, {str(tests)!r})
 from fmu_in_c import planetary
+from fmpy.validation import validate_fmu
 from gearheat.fmu.compiling import cache_folder
 from gearheat.fmu.export import export
 flat, start = planetary()
@@ -114,3 +116,7 @@ export(flat, sys.argv[1], start=dict(start))
         subprocess.run([sys.executable, "-c", script, str(path)], check=True, env=environment)
         digests.append(hashlib.sha256(path.read_bytes()).hexdigest())
     assert digests[0] == digests[1]
+
+
+def test_fmpy_finds_no_problem(player: Player) -> None:
+    assert validate_fmu(str(player._path)) == []
