@@ -21,7 +21,7 @@ from ..fmu.play import Player
 from ..model.core.flat import FlatModel
 from ..model.run.simulate import simulate
 from ..scenarios.load import load
-from . import campaign
+from . import bench_fmu, campaign, throughput
 from .console import answer, note, table
 from .settings import driven_by, flat_of
 
@@ -38,8 +38,13 @@ STEP = 60.0
 EVERY = 0.02
 
 
-def command(rig: str, tests: str | None, json: str | None) -> None:
-    """Measure and print."""
+def command(rig: str, tests: str | None, json: str | None, fmu: bool = False) -> None:
+    """Measure and print: the main job, and with `fmu` the FMU against its peers and the batch."""
+    if fmu:
+        note("the FMU, its peers and the batch; this installs PythonFMU in an environment of its own")
+        measured = {"schema": "gearheat.bench/1", **bench_fmu.measure(rig), "batch": throughput.measure(rig)}
+        answer(measured, json, lambda: _print_fmu(measured))
+        return
     note("gearheat --help")
     helped = min(_timed(lambda: _gearheat("--help"))[0] for _ in range(3))
     note(f"gearheat run {rig}, warm cache")
@@ -222,3 +227,10 @@ def _print(found: dict[str, Any]) -> None:
         rows.append(["largest error of a state at a reading", run["error_K"]])
     rows.append(["LSODA over FMU, at no larger error", found["ratio"]])
     table("Benchmark", ("what", "value"), rows)
+
+
+def _print_fmu(found: dict[str, Any]) -> None:
+    body = list(bench_fmu.rows(found))
+    for kind in ("steady", "warmup_330_min"):
+        body.append((f"batch, {kind} rows per second and core", f"{found['batch'][kind]['rows_per_core_s']:.0f}"))
+    table("The FMU and its peers, one run", ("what", "value"), [list(row) for row in body])

@@ -54,11 +54,12 @@ class Compiler:
             key.update(part.encode() + b"\0")
         stored = cache_folder() / "programs" / f"{key.hexdigest()}{suffix}"
         if not stored.exists():
-            store(stored, self._run(sources, options))
+            store(stored, self.made(sources, options))
             stored.chmod(0o755)
         return stored
 
-    def _run(self, sources: Sequence[Path], options: Sequence[str]) -> bytes:
+    def made(self, sources: Sequence[Path], options: Sequence[str]) -> bytes:
+        """Compile and link without keeping the result."""
         environment = dict(os.environ)
         for variable, name in (("ZIG_GLOBAL_CACHE_DIR", "global"), ("ZIG_LOCAL_CACHE_DIR", "local")):
             environment.setdefault(variable, str(cache_folder() / "zig" / name))

@@ -306,12 +306,13 @@ def sweep(
 def bench(
     rig: Rig = "planetary",
     tests: Tests = None,
+    fmu: Annotated[bool, typer.Option("--fmu", help="The FMU against its peers, and the batch, instead.")] = False,
     json: Json = None,
 ) -> None:
     """Time and memory of the main job, beside SciPy's LSODA on the same equations in the same run."""
     from . import bench
 
-    bench.command(rig, tests, json)
+    bench.command(rig, tests, json, fmu)
 
 
 def main() -> None:

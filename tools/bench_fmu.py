@@ -1,0 +1,304 @@
+"""The FMU against its peers on the same equations: what calls cost, a warm-up of 330 min, growth with the model's size.
+
+All ratios are of one run. A right-hand side is one call of the function of the rates, compiled from the source in the
+FMU; it is the unit in which costs are given. Times of peers are processor times, so other work on the machine does
+not count.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import subprocess
+import sys
+import tempfile
+import time
+import venv
+from collections.abc import Callable, Mapping
+from contextlib import redirect_stdout
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from ..fmu.export import export
+from ..fmu.play import Player
+from ..model.core.connect import Assembly
+from ..model.core.flat import FlatModel
+from ..model.core.flatten import flatten
+from ..model.parts import PARTS
+from ..model.run.schedule import Schedule, stepped
+from ..model.run.simulate import simulate
+from ..scenarios.load import load
+from .c_importer import HERE, Compiler, includes, program, unpack
+from .settings import flat_of
+
+#: The warm-up: five stages of 66 min at these parts of the speed; the same as in `importer/measure.c`.
+PARTS_OF_SPEED, STAGE = (0.4, 0.6, 0.8, 1.0, 0.2), 3960.0
+#: Thermal nodes of the chains by which growth is measured.
+CHAINS = (4, 20, 100, 400)
+#: Goal -> (what is measured, comparison, bound).
+GOALS = {
+    "step of the solver with input slopes, in right-hand sides": ("step_rhs", "<=", 4.5),
+    "set 4, step of 1 s, get 15, in right-hand sides": ("call_rhs", "<=", 7.0),
+    "330 min at 60 s, in right-hand sides": ("warmup_60_rhs", "<=", 3000.0),
+    "error of 330 min at 60 s [K]": ("warmup_60_error_K", "<=", 1e-4),
+    "LSODA at no smaller error over FMU from C": ("lsoda_ratio", ">=", 10.0),
+    "BDF at no smaller error over FMU from C": ("bdf_ratio", ">=", 10.0),
+    "PythonFMU over FMU from C, 60 s": ("pythonfmu_ratio", ">=", 50.0),
+    "FMU state [bytes]": ("state_bytes", "<=", 2048.0),
+}
+
+
+def measure(rig: str = "planetary", *, pythonfmu: bool = True, chains: tuple[int, ...] = CHAINS) -> dict[str, Any]:
+    """All figures of the bench of the FMU; `goals` lists each goal with its figure and whether it is met."""
+    scenario = load(rig)
+    flat = flat_of(scenario)
+    speed = next(q.name for q in flat.inputs if q.name.endswith(".w"))
+    duty = stepped([(STAGE, {speed: share * flat.quantity(speed).start}) for share in PARTS_OF_SPEED])
+    ends = [STAGE * (k + 1) for k in range(len(PARTS_OF_SPEED))]
+    reference = simulate(flat, duty, times=ends, tolerance=1e-12)
+    truth = np.stack([reference[q.name] for q in flat.states], axis=1)
+    with tempfile.TemporaryDirectory() as folder:
+        fmu = export(flat, Path(folder) / "rig.fmu")
+        found = _from_c(fmu, Path(folder), speed, truth, flat)
+        found["fmu_kB"] = fmu.stat().st_size / 1000
+        peers = _peers(flat, duty, ends, truth, fmu, speed)
+        if pythonfmu:
+            peers["PythonFMU, explicit Euler, in FMPy"] = _pythonfmu(flat, duty, ends, truth, Path(folder))
+    base = found["warmup_60_s"]
+    found["peers"] = {n: {"s": s, "error_K": e, "over_fmu_from_c": s / base} for n, (s, e) in peers.items()}
+    found["lsoda_ratio"] = found["peers"]["SciPy LSODA"]["over_fmu_from_c"]
+    found["bdf_ratio"] = found["peers"]["SciPy BDF"]["over_fmu_from_c"]
+    if pythonfmu:
+        found["pythonfmu_ratio"] = found["peers"]["PythonFMU, explicit Euler, in FMPy"]["over_fmu_from_c"]
+    found["growth"] = [_growth(n) for n in chains]
+    found["goals"] = [
+        {"goal": goal, "bound": f"{sign} {bound:g}", "measured": found[key], "met": _met(found[key], sign, bound)}
+        for goal, (key, sign, bound) in GOALS.items()
+        if key in found
+    ]
+    return found
+
+
+def _met(value: float, sign: str, bound: float) -> bool:
+    return value <= bound if sign == "<=" else value >= bound
+
+
+def _from_c(fmu: Path, folder: Path, speed: str, truth: np.ndarray, flat: FlatModel) -> dict[str, Any]:
+    """Figures of the importer in C; errors against the reference, temperatures only [K]."""
+    facts = unpack(fmu, folder / "unpacked")
+    out = subprocess.run(
+        [str(program([HERE / "measure.c"])), str(facts), speed], check=True, capture_output=True, text=True
+    )
+    lines = [line.split() for line in out.stdout.splitlines()]
+    single = {words[0]: float(words[1]) for words in lines if words[0] != "warmup"}
+    single |= _costs(folder / "unpacked" / "sources" / "all.c")
+    rhs = single["rhs"]
+    found: dict[str, Any] = {"rhs_s": rhs, "step_rhs": single["step"] / rhs, "outputs_rhs": single["outputs"] / rhs}
+    found |= {"call_rhs": single["call"] / rhs, "state_bytes": single["state"]}
+    warm = [i for i, q in enumerate(flat.states) if q.unit == "K"]
+    for words in (w for w in lines if w[0] == "warmup"):
+        step, seconds = words[1], float(words[2])
+        states = np.array([float(w) for w in words[3:]]).reshape(len(truth), -1)
+        found[f"warmup_{step}_s"] = seconds
+        found[f"warmup_{step}_rhs"] = seconds / single["rhs"]
+        found[f"warmup_{step}_error_K"] = float(np.abs(states[:, warm] - truth[:, warm]).max())
+    return found
+
+
+def _costs(source: Path) -> dict[str, float]:
+    """Seconds of one right-hand side, one step and all outputs, by the source of an FMU."""
+    options = ("-std=c11", "-O2", "-ffp-contract=off", f'-DSOURCE="{source.as_posix()}"', *includes())
+    made = source.parent / "costs"
+    made.write_bytes(Compiler.zig().made([HERE / "costs.c"], options))
+    made.chmod(0o755)
+    out = subprocess.run([str(made)], check=True, capture_output=True, text=True)
+    return {words[0]: float(words[1]) for words in map(str.split, out.stdout.splitlines())}
+
+
+def _clocked(work: Callable[[], np.ndarray], truth: np.ndarray, repeats: int = 3) -> tuple[float, float]:
+    """Least processor time of a run, and its largest error."""
+    best, values = np.inf, truth
+    for _ in range(repeats):
+        begun = time.process_time()
+        values = work()
+        best = min(best, time.process_time() - begun)
+    return best, float(np.abs(values - truth).max())
+
+
+def _peers(
+    flat: FlatModel, duty: Schedule, ends: list[float], truth: np.ndarray, fmu: Path, speed: str
+) -> dict[str, tuple[float, float]]:
+    """Name -> processor time [s] and largest error of the same warm-up by other means."""
+    inputs = {name: (duty.time, values) for name, values in duty.values.items()}
+    names = [q.name for q in flat.states]
+
+    def cvodes() -> np.ndarray:
+        found = simulate(flat, duty, times=ends, tolerance=1e-6)
+        return np.stack([found[q.name] for q in flat.states], axis=1)
+
+    def played() -> np.ndarray:
+        return np.asarray(player.run(inputs, ends[-1], 60.0, record=names, output_times=ends).values)
+
+    with Player(fmu) as player:
+        return {
+            "FMPy, this FMU, 60 s": _clocked(played, truth),
+            "FMPy, model exchange, its CVode": _clocked(lambda: _exchange(fmu, duty, ends, speed, names), truth, 1),
+            "CasADi cvodes from Python": _clocked(cvodes, truth),
+            "SciPy LSODA": _clocked(lambda: _scipy(flat, ends, speed, "LSODA"), truth, 1),
+            "SciPy BDF": _clocked(lambda: _scipy(flat, ends, speed, "BDF"), truth, 1),
+        }
+
+
+def _scipy(flat: FlatModel, ends: list[float], speed: str, method: str, tolerance: float = 1e-6) -> np.ndarray:
+    """The warm-up by a solver of SciPy on CasADi's right-hand side."""
+    p, u, ode = flat.starts("parameter"), flat.starts("input"), flat.ode_function
+    atol = tolerance * np.array([q.nominal for q in flat.states])
+    x, t, rows, place = flat.starts("state"), 0.0, [], flat.locate(speed)[1]
+    for end, share in zip(ends, PARTS_OF_SPEED, strict=True):
+        now = u.copy()
+        now[place] = share * u[place]
+
+        def rates(_: float, state: np.ndarray, now: np.ndarray = now) -> np.ndarray:
+            return np.asarray(ode(state, now, p)).ravel()
+
+        x, t = solve_ivp(rates, (t, end), x, method=method, rtol=1e-12, atol=atol).y[:, -1], end
+        rows.append(x)
+    return np.stack(rows)
+
+
+def _exchange(fmu: Path, duty: Schedule, ends: list[float], speed: str, names: list[str]) -> np.ndarray:
+    """The warm-up by model exchange in FMPy."""
+    from fmpy import simulate_fmu
+
+    signal = np.array(list(zip(duty.time, duty.values[speed], strict=True)), dtype=[("time", "d"), (speed, "d")])
+    options = {"stop_time": ends[-1], "output_interval": 60.0, "relative_tolerance": 1e-6}
+    with redirect_stdout(io.StringIO()):  # it warns of every input that keeps its start value
+        found = simulate_fmu(str(fmu), fmi_type="ModelExchange", input=signal, output=names, **options)
+    rows = [np.flatnonzero(np.isclose(found["time"], end))[0] for end in ends]
+    return np.stack([[found[name][row] for name in names] for row in rows])
+
+
+#: The model as a PythonFMU slave: explicit Euler of 0.5 s inside, the right-hand side by CasADi.
+SLAVE = """
+import casadi, os
+from pythonfmu import Fmi2Causality, Fmi2Slave, Real
+
+class Peer(Fmi2Slave):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.ode = casadi.Function.load({ode!r})
+        self.x, self.u, self.p = casadi.DM({x}), casadi.DM({u}), casadi.DM({p})
+        self.speed, self.warm = {speed}, 0.0
+        self.register_variable(Real("speed", causality=Fmi2Causality.input))
+        self.register_variable(Real("warm", causality=Fmi2Causality.output))
+        {outputs}
+
+    def do_step(self, t, h):
+        self.u[{place}] = self.speed
+        n = max(int(round(h / 0.5)), 1)
+        for _ in range(n):
+            self.x = self.x + h / n * self.ode(self.x, self.u, self.p)
+        {assign}
+        return True
+"""
+PLAY = """
+import json, sys, time
+import numpy as np
+from fmpy import read_model_description, extract
+from fmpy.fmi2 import FMU2Slave
+import fmpy
+md = read_model_description(sys.argv[1]); folder = extract(sys.argv[1])
+name = md.coSimulation.modelIdentifier
+fmu = FMU2Slave(guid=md.guid, unzipDirectory=folder, modelIdentifier=name, instanceName="peer")
+refs = {v.name: v.valueReference for v in md.modelVariables}
+fmu.instantiate(); fmu.setupExperiment(startTime=0.0); fmu.enterInitializationMode(); fmu.exitInitializationMode()
+parts, speed, n = json.loads(sys.argv[2]), float(sys.argv[3]), int(sys.argv[4])
+rows, t, begun = [], 0.0, time.process_time()
+for share in parts:
+    fmu.setReal([refs["speed"]], [share * speed])
+    for _ in range(66):
+        fmu.doStep(t, 60.0); t += 60.0
+    rows.append(fmu.getReal([refs[f"x{i}"] for i in range(n)]))
+print(json.dumps([time.process_time() - begun, rows]))
+"""
+
+
+def _pythonfmu(
+    flat: FlatModel, duty: Schedule, ends: list[float], truth: np.ndarray, folder: Path
+) -> tuple[float, float]:
+    """The same warm-up by PythonFMU in FMPy, both in an environment of their own."""
+    place, n = flat.locate(next(iter(duty.values)))[1], len(flat.states)
+    u, speed = flat.starts("input"), float(flat.starts("input")[place])
+    flat.ode_function.save(str(folder / "ode.casadi"))
+    text = SLAVE.format(
+        ode=str(folder / "ode.casadi"),
+        x=flat.starts("state").tolist(),
+        u=u.tolist(),
+        p=flat.starts("parameter").tolist(),
+        place=place,
+        speed=speed,
+        outputs="\n        ".join(
+            f'self.x{i} = 0.0; self.register_variable(Real("x{i}", causality=Fmi2Causality.output))' for i in range(n)
+        ),
+        assign="\n        ".join(f"self.x{i} = float(self.x[{i}])" for i in range(n)),
+    )
+    (folder / "peer.py").write_text(text, encoding="utf-8")
+    (folder / "play.py").write_text(PLAY, encoding="utf-8")
+    venv.create(folder / "peers", with_pip=True)
+    python = folder / "peers" / ("Scripts" if sys.platform == "win32" else "bin") / "python"
+    subprocess.run(
+        [str(python), "-m", "pip", "install", "-q", "pythonfmu", "fmpy", "casadi"], check=True, capture_output=True
+    )
+    subprocess.run(
+        [str(python), "-m", "pythonfmu", "build", "-f", "peer.py"], cwd=folder, check=True, capture_output=True
+    )
+    command = [str(python), "play.py", "Peer.fmu", json.dumps(PARTS_OF_SPEED), str(speed), str(n)]
+    out = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
+    seconds, rows = json.loads(out.stdout.splitlines()[-1])
+    return float(seconds), float(np.abs(np.array(rows) - truth).max())
+
+
+def _growth(n: int) -> dict[str, float]:
+    """Seconds to flatten, generate, compile, and step a chain of n masses and conductors."""
+    masses = [PARTS["HeatCapacity"](f"m{k}", C=1000.0) for k in range(n)]
+    links = [PARTS["ThermalConductor"](f"g{k}", G=10.0) for k in range(n - 1)]
+    nets = [(f"g{k}.a", f"m{k}.heat") for k in range(n - 1)] + [(f"g{k}.b", f"m{k + 1}.heat") for k in range(n - 1)]
+    chain = Assembly("chain", "a chain of masses and conductors", (*masses, *links), tuple(nets))
+    begun = [time.perf_counter()]
+    flat = flatten(chain)
+    begun.append(time.perf_counter())
+    with tempfile.TemporaryDirectory() as folder:
+        fmu = export(flat, Path(folder) / "chain.fmu")
+        begun.append(time.perf_counter())
+        with Player(fmu) as player:
+            steps = time.process_time()
+            player.run({}, 36000.0, 60.0, record=["m0.T"])
+            steps = (time.process_time() - steps) / 600
+    return {"nodes": n, "flatten_s": begun[1] - begun[0], "export_s": begun[2] - begun[1], "step_s": steps}
+
+
+def rows(found: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """The table: what, value."""
+    table = [
+        ("right-hand side [us]", f"{1e6 * found['rhs_s']:.2f}"),
+        ("step; outputs [right-hand sides]", f"{found['step_rhs']:.1f}; {found['outputs_rhs']:.1f}"),
+        ("set 4, step of 1 s, get 15 [right-hand sides]", f"{found['call_rhs']:.1f}"),
+    ]
+    for step in ("1", "10", "60"):
+        cost, error = found[f"warmup_{step}_rhs"], found[f"warmup_{step}_error_K"]
+        table.append((f"330 min at {step} s from C [right-hand sides; K]", f"{cost:.0f}; {error:.1e}"))
+    for name, peer in found["peers"].items():
+        table.append(
+            (
+                f"{name}, over the FMU from C at 60 s [ratio; error]",
+                f"{peer['over_fmu_from_c']:.1f}; {peer['error_K']:.1e}",
+            )
+        )
+    for chain in found["growth"]:
+        text = f"{chain['flatten_s']:.2f}; {chain['export_s']:.1f}; {1e6 * chain['step_s']:.0f}"
+        table.append((f"{chain['nodes']} thermal nodes: flatten [s]; export [s]; step of 60 s in FMPy [us]", text))
+    table += [("FMU [kB]", f"{found['fmu_kB']:.0f}"), ("FMU state [bytes]", f"{found['state_bytes']:.0f}")]
+    return table + [(f"goal {g['bound']}: {g['goal']}", "met" if g["met"] else "missed") for g in found["goals"]]
