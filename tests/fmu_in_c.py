@@ -71,7 +71,9 @@ def sanitizer(name: str, folder: Path) -> Compiler | None:
 @cache
 def checks(compiler: Compiler | None = None, *options: str) -> Path:
     """The program of all checks but the fuzzer."""
-    return program([HERE / n for n in ("main.c", "order.c", "runs.c", "long.c", "slopes.c", "trace.c")], options, compiler)
+    return program(
+        [HERE / n for n in ("main.c", "order.c", "runs.c", "long.c", "slopes.c", "trace.c")], options, compiler
+    )
 
 
 @cache
