@@ -104,6 +104,9 @@ def regime_in_columns(cause: Cause, theta: Theta) -> Mapping[str, tuple[float | 
     if regime is None:
         return {}
     name, value = regime
+    if name in ("d+", "d-"):
+        direction = 1.0 if name == "d+" else 2.0
+        return {"direction": (direction, direction)}
     column, shown = {
         "w": ("n_carrier_rpm", value * 30 / np.pi),
         "tau": ("T_carrier_Nm", value),

@@ -12,9 +12,12 @@ W_REF, NU_REF, TAU_REF = 20.944, 75e-6, 2000.0
 #: No threshold: so far below everything that the side does not matter.
 OPEN = {"w_on": -1e4, "w_side": 1.0, "tau_on": -1e6, "tau_side": 1.0, "T_on": 0.0, "T_side": 1.0}
 #: Ranges in which thresholds are looked for: speed [rad/s], torque [N.m], temperature [K].
-THRESHOLDS = {"w": (10.0, 26.5), "tau": (1500.0, 2750.0), "T": (315.0, 362.0)}
-#: Upper ends of the share of each regime in the prior.
-REGIMES = ((0.60, ""), (0.72, "w+"), (0.78, "w-"), (0.84, "tau+"), (0.88, "tau-"), (0.96, "T+"), (1.0, "T-"))
+THRESHOLDS = {"w": (10.0, 26.5), "tau": (1500.0, 2750.0), "T": (315.0, 362.0), "d": (0.0, 0.0)}
+#: Upper ends of the share of each regime in the prior; "d+" acts as multiplier only, "d-" as reducer only.
+REGIMES = (
+    *((0.56, ""), (0.66, "w+"), (0.71, "w-"), (0.77, "tau+"), (0.81, "tau-")),
+    *((0.89, "T+"), (0.93, "T-"), (0.965, "d+"), (1.0, "d-")),
+)
 
 STRATA = tuple(end for end, _ in REGIMES)
 REGIME = (
@@ -26,7 +29,7 @@ OIL_SHARE_BEARING = Shape("oil_share", "1", "share of the heat that goes into th
 
 
 def regime_of(theta: Theta) -> tuple[str, float] | None:
-    """The regime of a form: quantity with its side ("w+") and threshold in SI; None where it acts everywhere."""
+    """The regime of a form: quantity with its side ("w+", "d-") and threshold in SI; None where it acts everywhere."""
     name = next(name for end, name in REGIMES if theta.get("regime", 0.0) <= end)
     if not name:
         return None
@@ -57,7 +60,13 @@ def extra_values(name: str, theta: Theta, **fixed: float) -> Mapping[str, float]
     values = {k: v for k, v in {**fixed, **theta}.items() if k in keys} | OPEN
     if (regime := regime_of(theta)) is not None:
         quantity, threshold = regime
-        values |= {f"{quantity[:-1]}_on": threshold, f"{quantity[:-1]}_side": 1.0 if quantity.endswith("+") else -1.0}
+        if quantity in ("d+", "d-"):
+            values["backward" if quantity == "d+" else "forward"] = 0.0
+        else:
+            values |= {
+                f"{quantity[:-1]}_on": threshold,
+                f"{quantity[:-1]}_side": 1.0 if quantity.endswith("+") else -1.0,
+            }
     return {f"{name}.{k}": v for k, v in values.items()}
 
 
