@@ -32,7 +32,7 @@ from gearheat.tools.settings import loaded
 SPEEDS, TORQUES = (100.0, 150.0, 200.0, 250.0), (1500.0, 2500.0)
 HEAD = "point,test,order,direction,dwell_min,oil,n_carrier_rpm,T_carrier_Nm,T_sun_Nm,T_oil_C,T_wall_C,T_amb_C"
 OIL = {"nu40": 320.0, "nu100": 25.0, "rho15": 870.0, "alpha_T": 6e-4}
-SHAPES = {"a": 2.1, "b": 0.2, "oil_share": 0.8, "regime": 0.7, "threshold": 0.3}
+SHAPES = {"a": 2.1, "b": 0.2, "oil_share": 0.8, "regime": 0.6, "threshold": 0.3}
 
 
 @pytest.fixture(autouse=True)
