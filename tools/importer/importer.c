@@ -14,6 +14,7 @@ static void *open_library(const char *path) { return (void *)LoadLibraryA(path);
 static void *symbol(void *library, const char *name) { return (void *)(size_t)GetProcAddress(library, name); }
 static const char *why(void) { return "LoadLibrary failed"; }
 double clock_now(void) { return (double)clock() / CLOCKS_PER_SEC; }
+double processor_now(void) { return clock_now(); }
 #else
 #include <dlfcn.h>
 static void *open_library(const char *path) { return dlopen(path, RTLD_NOW | RTLD_LOCAL); }
@@ -23,6 +24,12 @@ double clock_now(void)
 {
     struct timespec t;
     clock_gettime(CLOCK_MONOTONIC, &t);
+    return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
+}
+double processor_now(void)
+{
+    struct timespec t;
+    clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 #endif
@@ -69,18 +76,23 @@ static void group(Fmu *m)
     for (i = 0; i < m->n; i++) m->refs[i] = sorted[i].r;
 }
 
+void *function(const char *library, const char *name)
+{
+    void *handle = open_library(library), *found = handle ? symbol(handle, name) : NULL;
+    if (!handle) give_up("cannot load the binary:", why());
+    if (!found) give_up("the binary lacks", name);
+    return found;
+}
+
 void load(Fmu *m, const char *facts, const char *library)
 {
-    void *handle;
     memset(m, 0, sizeof *m);
     read_facts(m, facts);
     group(m);
-    handle = open_library(library ? library : m->library);
-    if (!handle) give_up("cannot load the binary:", why());
+    if (!library) library = m->library;
 #define F(name) \
     { \
-        void *found = symbol(handle, "fmi2" #name); \
-        if (!found) give_up("the binary lacks", "fmi2" #name); \
+        void *found = function(library, "fmi2" #name); \
         memcpy(&m->f.name, &found, sizeof found); \
     }
     FMI2_FUNCTIONS(F)

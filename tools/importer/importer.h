@@ -75,6 +75,10 @@ fmi2Status read_all(const Fmu *m, fmi2Component c, double *values);
 void must(fmi2Status status, const char *call, const char *file, int line);
 
 double clock_now(void);            /* s, for differences */
+double processor_now(void);        /* s of this process, for differences: other work on the machine does not count */
+
+/* A function of another library; ends the program with a message when it cannot be had. */
+void *function(const char *library, const char *name);
 
 /* Random numbers, the same on every machine. */
 typedef struct {

@@ -1,6 +1,9 @@
-/* measure FACTS INPUT: what calls cost, in seconds, and a warm-up of 330 min in five stages of one input.
+/* measure COSTS                what the parts of an FMU cost, by the library of costs.c
+   measure COSTS FACTS INPUT    and what calls of the FMU and a warm-up of 330 min in five stages of one input cost
 
-   Lines: `call S` four inputs, a step of 1 s and fifteen outputs, `state BYTES`, and for each communication step `warmup STEP S` followed by the states at the ends of the stages. */
+   All costs are taken by turns and the least of many turns counts, so that a busy moment of the machine meets all of
+   them. Lines: `rhs S`, `step S`, `outputs S`, `call S` (four inputs, a step of 1 s, fifteen outputs), `warmup STEP S`
+   followed by the states at the ends of the stages, `state BYTES`, `instance BYTES` (where the system tells). */
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -8,79 +11,121 @@
 
 #include "importer.h"
 
-enum { CALLS = 500, REPEATS = 100, RUNS = 8, STAGES = 5, MOST = 64 };
-static const double parts[STAGES] = {0.4, 0.6, 0.8, 1.0, 0.2};
+enum { TURNS = 15, TIMES = 10000, CALLS = 4000, STAGES = 5, MOST = 64, MANY = 2000, LENGTHS = 3 };
+static const double parts[STAGES] = {0.4, 0.6, 0.8, 1.0, 0.2}, lengths[LENGTHS] = {1.0, 10.0, 60.0};
 #define STAGE 3960.0
 
-static double least(double a, double b)
+static void keep_least(double *least, double seconds)
 {
-    return a < b ? a : b;
+    if (*least == 0.0 || seconds < *least) *least = seconds;
 }
 
-static double call(const Fmu *m)
+static void part(const char *library, const char *name, double *least)
+{
+    void *found = function(library, name);
+    void (*work)(int);
+    double begun;
+    memcpy(&work, &found, sizeof found);
+    begun = processor_now();
+    work(TIMES);
+    keep_least(least, (processor_now() - begun) / TIMES);
+}
+
+static void call(const Fmu *m, double *least)
 {
     fmi2ValueReference in[4], out[15];
-    double u[4], y[15], t = 0.0, best = 1e9, begun;
+    double u[4], y[15], t = 0.0, begun;
     fmi2Component c = ready(m, 0.0);
     int k, i, nu = m->nu < 4 ? m->nu : 4, ny = m->ny < 15 ? m->ny : 15;
     for (i = 0; i < nu; i++) in[i] = m->u[i].r, u[i] = m->u[i].start;
     for (i = 0; i < ny; i++) out[i] = m->y[i].r;
-    for (i = 0; i < REPEATS; i++) {
-        begun = clock_now();
-        for (k = 0; k < CALLS; k++, t += 1.0) {
-            MUST(m->f.SetReal(c, in, (size_t)nu, u));
-            MUST(m->f.DoStep(c, t, 1.0, fmi2True));
-            MUST(m->f.GetReal(c, out, (size_t)ny, y));
-        }
-        best = least(best, clock_now() - begun);
+    begun = processor_now();
+    for (k = 0; k < CALLS; k++, t += 1.0) {
+        MUST(m->f.SetReal(c, in, (size_t)nu, u));
+        MUST(m->f.DoStep(c, t, 1.0, fmi2True));
+        MUST(m->f.GetReal(c, out, (size_t)ny, y));
     }
+    keep_least(least, (processor_now() - begun) / CALLS);
     m->f.FreeInstance(c);
-    return best / CALLS;
 }
 
-static void warmup(const Fmu *m, int input, double step)
+static void warmup(const Fmu *m, int input, double step, double values[STAGES][MOST], double *least)
 {
     fmi2ValueReference x[MOST];
-    double values[STAGES][MOST], best = 1e9, begun, u, t, end;
+    double begun, u, t = 0.0, end;
+    fmi2Component c = ready(m, 0.0);
     int i, k;
     for (i = 0; i < m->nx; i++) x[i] = m->x[i].r;
-    for (i = 0; i < RUNS; i++) {
-        fmi2Component c = ready(m, 0.0);
-        begun = clock_now();
-        for (k = 0, t = 0.0; k < STAGES; k++) {
-            u = parts[k] * m->all[input].start;
-            MUST(m->f.SetReal(c, &m->all[input].r, 1, &u));
-            for (end = (k + 1) * STAGE; t < end - 0.5 * step; t += step) MUST(m->f.DoStep(c, t, step, fmi2True));
-            MUST(m->f.GetReal(c, x, (size_t)m->nx, values[k]));
-        }
-        best = least(best, clock_now() - begun);
-        m->f.FreeInstance(c);
+    begun = processor_now();
+    for (k = 0; k < STAGES; k++) {
+        u = parts[k] * m->all[input].start;
+        MUST(m->f.SetReal(c, &m->all[input].r, 1, &u));
+        for (end = (k + 1) * STAGE; t < end - 0.5 * step; t += step) MUST(m->f.DoStep(c, t, step, fmi2True));
+        MUST(m->f.GetReal(c, x, (size_t)m->nx, values[k]));
     }
-    printf("warmup %g %.9g", step, best);
-    for (k = 0; k < STAGES; k++)
-        for (i = 0; i < m->nx; i++) printf(" %.17g", values[k][i]);
-    printf("\n");
+    keep_least(least, processor_now() - begun);
+    m->f.FreeInstance(c);
+}
+
+static long resident(void)
+{
+    long total, pages = 0;
+    FILE *file = fopen("/proc/self/statm", "r");
+    if (file && fscanf(file, "%ld %ld", &total, &pages) != 2) pages = 0;
+    if (file) fclose(file);
+    return 4096 * pages;
+}
+
+static void memory(const Fmu *m)
+{
+    static fmi2Component many[MANY];
+    fmi2FMUstate state = NULL;
+    size_t size;
+    long before;
+    int k;
+    many[0] = ready(m, 0.0);
+    MUST(m->f.GetFMUstate(many[0], &state));
+    MUST(m->f.SerializedFMUstateSize(many[0], state, &size));
+    MUST(m->f.FreeFMUstate(many[0], &state));
+    before = resident();
+    for (k = 1; k < MANY; k++) many[k] = ready(m, 0.0);
+    printf("state %lu\n", (unsigned long)size);
+    if (before) printf("instance %ld\n", (resident() - before) / (MANY - 1));
+    for (k = 0; k < MANY; k++) m->f.FreeInstance(many[k]);
 }
 
 int main(int n, char **arguments)
 {
-    static const double steps[] = {1.0, 10.0, 60.0};
-    fmi2FMUstate state = NULL;
-    fmi2Component c;
-    size_t size;
-    Fmu m;
-    int k;
-    if (n != 3) {
-        fprintf(stderr, "measure FACTS INPUT\n");
+    static double values[LENGTHS][STAGES][MOST];
+    double rhs = 0.0, step = 0.0, outputs = 0.0, calls = 0.0, run[LENGTHS] = {0.0};
+    void (*prepare)(void), *found;
+    int turn, k, i, j, input = 0;
+    Fmu m = {0};
+    if (n != 2 && n != 4) {
+        fprintf(stderr, "measure COSTS [FACTS INPUT]\n");
         return 2;
     }
-    load(&m, arguments[1], NULL);
-    c = ready(&m, 0.0);
-    MUST(m.f.GetFMUstate(c, &state));
-    MUST(m.f.SerializedFMUstateSize(c, state, &size));
-    MUST(m.f.FreeFMUstate(c, &state));
-    m.f.FreeInstance(c);
-    printf("call %.9g\nstate %lu\n", call(&m), (unsigned long)size);
-    for (k = 0; k < 3; k++) warmup(&m, position(&m, arguments[2]), steps[k]);
+    found = function(arguments[1], "prepare");
+    memcpy(&prepare, &found, sizeof found);
+    prepare();
+    if (n == 4) load(&m, arguments[2], NULL), input = position(&m, arguments[3]);
+    for (turn = 0; turn < TURNS; turn++) {
+        part(arguments[1], "rates", &rhs);
+        part(arguments[1], "steps", &step);
+        part(arguments[1], "outputs", &outputs);
+        if (n == 2) continue;
+        call(&m, &calls);
+        for (k = 0; k < LENGTHS; k++) warmup(&m, input, lengths[k], values[k], &run[k]);
+    }
+    printf("rhs %.9g\nstep %.9g\noutputs %.9g\n", rhs, step, outputs);
+    if (n == 2) return 0;
+    printf("call %.9g\n", calls);
+    for (k = 0; k < LENGTHS; k++) {
+        printf("warmup %g %.9g", lengths[k], run[k]);
+        for (j = 0; j < STAGES; j++)
+            for (i = 0; i < m.nx; i++) printf(" %.17g", values[k][j][i]);
+        printf("\n");
+    }
+    memory(&m);
     return 0;
 }
