@@ -104,6 +104,8 @@ def test_windows_computes_what_linux_computes(tmp_path: Path) -> None:
     (tmp_path / "windows.txt").write_text("library binaries\\win64\\planetary.dll\n" + rest)
     sources = [HERE / name for name in ("main.c", "order.c", "trace.c")]
     importer = program(sources, (), Compiler.zig("x86_64-windows-gnu"))
+    assert "refused" in in_windows(tmp_path, importer, "windows.txt", "birth")
+    in_windows(tmp_path, importer, "windows.txt", "order", "oil.Q_flow_external", "-1e9")
     found = numbers(in_windows(tmp_path, importer, "windows.txt", "trace"))
     expected = numbers(told(checks(), facts, "trace"))
     names = [line.split()[-1] for line in rest.splitlines()[1:]]
