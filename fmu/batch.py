@@ -14,7 +14,7 @@ import ctypes
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
@@ -24,7 +24,7 @@ from gearheat.model.run.schedule import Schedule
 
 from .batch_library import Course, address, driver, rows_from, shared
 from .batch_source import EXTRA, steady_source, warmup_source
-from .grid import grid
+from .grid import Grid, grid
 
 #: Of the local error of a warm-up, in nominals of the states.
 TOLERANCE = 1e-4
@@ -83,6 +83,14 @@ class Rows:
         """Violation of the energy balance of each row, relative to its throughput (n)."""
         residual: np.ndarray = np.abs(self.supplied - self.gained) / np.maximum(self.throughput, 1e-3)
         return residual
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A duty laid out for a model: points in time, and the same as C knows it."""
+
+    points: Grid
+    course: Course
 
 
 class Batch:
@@ -182,7 +190,7 @@ class Batch:
 
     def warmup(
         self,
-        schedule: Schedule,
+        schedule: Schedule | Prepared,
         u: np.ndarray | None = None,
         p: np.ndarray | None = None,
         start: np.ndarray | None = None,
@@ -194,7 +202,8 @@ class Batch:
         """Each row's course through a duty, by the solver of the FMU.
 
         Args:
-            schedule: inputs over time, the same for all rows; inputs it does not name keep the row's value
+            schedule: inputs over time, the same for all rows; inputs it does not name keep the row's value. A prepared
+                one has its times and its tolerance
             u, p: inputs (n, inputs) and parameters (n, parameters), or a vector for all rows; the model's own if None
             start: states at the beginning (n, states), or a vector for all rows; the model's own if None
             times: output times [s], not decreasing; a row at a jump shows the inputs behind it, a time given twice
@@ -207,12 +216,9 @@ class Batch:
             FmuError: times outside the schedule, the model has no C code, or the compiler fails
         """
         n, vectors, sound = self._checked(u, p, start)
-        if problems := self._schedule_problems(schedule, tolerance):
-            raise ScenarioError(problems)
-        inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
-        length = schedule.stop - schedule.start
-        points = grid(inputs, schedule.start, schedule.stop, length, [schedule.stop] if times is None else times)
-        course, m = Course(points, self.inputs, tolerance), len(points.row_time)
+        prepared = schedule if isinstance(schedule, Prepared) else self.prepared(schedule, times, tolerance)
+        points, course = prepared.points, prepared.course
+        m = len(points.row_time)
         x, y, energy = np.empty((n, m, len(self.states))), np.empty((n, m, len(self.outputs))), np.empty((n, 4))
         status, steps = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
         run = driver("batch_warmup", self.warmup_source)
@@ -225,6 +231,20 @@ class Batch:
         supplied, gained, throughput, outside = energy.T
         rows = Rows(self.columns, x, y, status, steps, supplied, gained, throughput, outside, points.row_time)
         return _marked(rows, sound)
+
+    def prepared(
+        self,
+        schedule: Schedule,
+        times: Sequence[float] | np.ndarray | None = None,
+        tolerance: float = TOLERANCE,
+    ) -> Prepared:
+        """A duty laid out once for many calls of `warmup`, which documents arguments and errors."""
+        if problems := self._schedule_problems(schedule, tolerance):
+            raise ScenarioError(problems)
+        inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
+        length = schedule.stop - schedule.start
+        points = grid(inputs, schedule.start, schedule.stop, length, [schedule.stop] if times is None else times)
+        return Prepared(points, Course(points, self.inputs, tolerance))
 
     def _checked(
         self, u: np.ndarray | None, p: np.ndarray | None, start: np.ndarray | None
@@ -278,12 +298,17 @@ def _stacked(group: Sequence[Quantity], given: Mapping[str, np.ndarray]) -> np.n
 
 def _in_range(group: Sequence[Quantity], vector: np.ndarray) -> Any:
     """Which rows have all their values in range: one answer for a vector that all rows share."""
-    sound = np.isfinite(vector)
-    for i, q in enumerate(group):
-        column = vector[..., i]
-        sound[..., i] &= (column > q.low) if q.low_open else (column >= q.low)
-        sound[..., i] &= (column < q.high) if q.high_open else (column <= q.high)
-    return sound.all(axis=-1)
+    low, high, low_open, high_open = _limits(tuple(group))
+    above = np.where(low_open, vector > low, vector >= low)
+    below = np.where(high_open, vector < high, vector <= high)
+    return (np.isfinite(vector) & above & below).all(axis=-1)
+
+
+@lru_cache(maxsize=64)
+def _limits(group: tuple[Quantity, ...]) -> tuple[np.ndarray, ...]:
+    """Lower and upper limits of a group, and whether each is left out."""
+    names = ("low", "high", "low_open", "high_open")
+    return tuple(np.array([getattr(q, name) for q in group]) for name in names)
 
 
 def _marked(rows: Rows, sound: np.ndarray) -> Rows:

@@ -19,6 +19,8 @@ from .ports import Flange, HeatPort, Lubricant, ShaftReading
 W_STEP, TAU_STEP, T_STEP = 0.5, 60.0, 1.5
 #: Speed below which a brake fades [rad/s].
 W_REST = 5e-3
+#: Speed below which cooling no longer changes with speed [rad/s].
+W_CALM = 4.0
 
 
 class ExtraLoss(Component):
@@ -66,11 +68,11 @@ class ExtraLoss(Component):
     def _form(self) -> Num:
         speed = smooth_abs(self.shaft.w, W_REST) / self.w_ref
         load = smooth_abs(self.reading.tau, 1e-2 * TAU_STEP) / self.tau_ref
-        return speed**self.a * (self.lubricant.nu / self.nu_ref) ** self.b * load**self.c
+        # one exponential instead of three powers; parts that share a shaft and an oil share the logarithms
+        return ca.exp(self.a * ca.log(speed) + self.b * ca.log(self.lubricant.nu / self.nu_ref) + self.c * ca.log(load))
 
     def _regime(self) -> Num:
-        direction = smooth_sign(self.reading.w * self.reading.tau, 1.0)
-        weight = self.forward * (1 + direction) / 2 + self.backward * (1 - direction) / 2
+        weight = _by_direction(self.reading, self.forward, self.backward)
         speed = _step(self.w_side * (smooth_abs(self.shaft.w, 1e-2) - self.w_on) / W_STEP)
         load = _step(self.tau_side * (smooth_abs(self.reading.tau, 1.0) - self.tau_on) / TAU_STEP)
         warmth = _step(self.T_side * (self.lubricant.T - self.T_on) / T_STEP)
@@ -84,7 +86,8 @@ class ExtraLoss(Component):
 class ExtraConductor(Component):
     """A conductance beside another: it follows powers of the temperature difference and of a shaft's speed.
 
-    A threshold of the temperature at a has a side: +1 acts above it, -1 below.
+    `forward` and `backward` weigh it where the shaft drives and is driven. A threshold of the temperature at a has a
+    side: +1 acts above it, -1 below.
     """
 
     a = HeatPort()
@@ -96,6 +99,8 @@ class ExtraConductor(Component):
     e = Parameter("1", "exponent of the difference in the conductance", above=-1.0)
     w_ref = Parameter("rad/s", "reference speed", nominal=10.0, above=0.0)
     c = Parameter("1", "exponent of the speed")
+    forward = Parameter("1", "weight where the read shaft drives")
+    backward = Parameter("1", "weight where it is driven")
     T_on = Parameter("K", "threshold of the temperature at a", nominal=10.0)
     T_side = Parameter("1", "side of the temperature threshold")
     Q_flow = Output("W", "heat flow rate from a to b", nominal=10.0)
@@ -103,12 +108,20 @@ class ExtraConductor(Component):
     def equations(self) -> Iterator[Equation]:
         """What enters at a leaves at b."""
         dT = self.a.T - self.b.T
-        form = (smooth_abs(dT, 0.1) / self.dT_ref) ** self.e
-        speed = (smooth_abs(self.reading.w, W_STEP) / self.w_ref) ** self.c
-        flow = self.G_ref * dT * form * speed * _step(self.T_side * (self.a.T - self.T_on) / T_STEP)
+        form = self.e * ca.log(smooth_abs(dT, 0.1) / self.dT_ref)
+        speed = self.c * ca.log(smooth_abs(self.reading.w, W_CALM) / self.w_ref)
+        weight = _by_direction(self.reading, self.forward, self.backward)
+        weight *= _step(self.T_side * (self.a.T - self.T_on) / T_STEP)
+        flow = self.G_ref * dT * ca.exp(form + speed) * weight
         yield equation("conduction", self.Q_flow, flow)
         yield equation("enters at a", self.a.Q_flow, self.Q_flow)
         yield equation("leaves at b", self.b.Q_flow, -self.Q_flow)
+
+
+def _by_direction(reading: ShaftReading, forward: Num, backward: Num) -> Num:
+    """One weight where the shaft drives, another where it is driven."""
+    direction = smooth_sign(reading.w * reading.tau, 1.0)
+    return forward * (1 + direction) / 2 + backward * (1 - direction) / 2
 
 
 def _step(x: Num) -> Num:

@@ -1,27 +1,33 @@
-"""A campaign under the superset model: readings of all tests for many variants of the model at once."""
+"""A campaign under the superset model: what the tests show for many variants of the model at once."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from ...fmu.batch import Batch
+from ...fmu.batch_library import cores
 from ...model.core.flatten import flatten
 from ...model.errors import SolveError
 from ...model.machines.spec import Spec, assemble
-from ...scenarios.measured import Campaign, Reading, TestRun, schedule_of
+from ...scenarios.measured import Campaign, Reading, Test, TestRun, schedule_of
 from ..effects.cause import Readings, Rows
+from .logged import Sampled, sampled
 from .memory import Memory
+from .series import Series
 from .superset import as_read, superset
 
-#: Share of the dwell before its end at which a second sample is taken, for readings that were not stationary.
-EARLY = 0.15
-#: Of the solver's local error: 1e-4 of 10 K, far below any probe.
-TOLERANCE = 1e-4
+#: Of the solver's local error: what it leaves of a course is some hundredths of a kelvin, far below any probe.
+TOLERANCE = 1e-2
 #: Channel -> what the model says of it.
 OUTPUTS = {"T_oil": "oil.T", "T_wall": "wall.T", "loss": "efficiency.tau_loss"}
+#: Changed values of a variant: a number for all tests or an array of one per test.
+Variant = Mapping[str, Any]
 
 
 class Rig:
@@ -29,22 +35,34 @@ class Rig:
 
     def __init__(self, spec: Spec) -> None:
         flat = as_read(flatten(assemble(superset(spec))))
-        self.batch = Batch(flat)
+        place = {q.name: i for i, q in enumerate(flat.outputs)}
+        states = {q.name: i for i, q in enumerate(flat.states)}
+        shown = [flat.x[states[o]] if o in states else flat.y[place[o]] for o in OUTPUTS.values()]
+        outputs = tuple(replace(flat.outputs[0], name=channel) for channel in OUTPUTS)
+        self.batch = Batch(replace(flat, outputs=outputs, y=ca.vertcat(*shown)))
         self.base = {q.name: q.start for q in flat.parameters}
         self.inputs = flat.starts("input")
         self.n_states = len(flat.states)
+        self._home = np.array(list(self.base.values()))
         self._place = {name: i for i, name in enumerate(self.base)}
 
-    def parameters(self, values: Mapping[str, float]) -> np.ndarray:
-        """The parameter vector with values replaced."""
-        vector = np.array(list(self.base.values()))
-        for path, value in values.items():
-            vector[self._place[path]] = value
-        return vector
+    def parameters(self, variants: Sequence[Variant], oils: Sequence[Mapping[str, float]]) -> np.ndarray:
+        """Parameters (tests, variants, NP); what a variant makes of the rig's oil it makes of the test's oil."""
+        p = np.tile(self._home, (len(oils), len(variants), 1))
+        for v, values in enumerate(variants):
+            for path, value in values.items():
+                p[:, v, self._place[path]] = value  # a number for all tests, or one for each
+        for test, oil in zip(p, oils, strict=True):
+            for path, value in oil.items():
+                test[:, self._place[path]] *= value / self.base[path]
+        return p
 
 
 class CampaignModel:
     """Tests of one campaign on one rig: `simulate` gives the true readings of variants of the model.
+
+    Readings are those at the ends of the halves, test by test (`n` of them), then those at places of logged courses
+    (`samples`), for which `rows` holds the conditions in the same order.
 
     Args:
         rig: the compiled superset
@@ -52,6 +70,7 @@ class CampaignModel:
         oils: oil of a test -> its values by path
         memory: what an interrupted diagnosis already simulated
         span: first and last running order of the campaign to which the rows belong; its own where none is given
+        series: logged courses
     """
 
     def __init__(
@@ -61,59 +80,98 @@ class CampaignModel:
         oils: Mapping[str, Mapping[str, float]],
         memory: Memory | None = None,
         span: tuple[float, float] | None = None,
+        series: Series | None = None,
     ) -> None:
         self.rig, self.campaign, self.memory = rig, campaign, memory or Memory()
         self.tests = campaign.tests()
         self.runs: list[TestRun] = [schedule_of(campaign, test) for test in self.tests]
         self.oils = [oils[test.oil] for test in self.tests]
         self.readings = [reading for test in self.tests for reading in test.halves]
-        self.rows = rows_of(self.readings, [len(test.halves) for test in self.tests], span)
+        self.logged: list[list[Sampled]] = [
+            sampled(series, test, _stop(run, test)) for run, test in zip(self.runs, self.tests, strict=True)
+        ]
+        ends = rows_of(self.readings, [len(test.halves) for test in self.tests], span)
+        self.n, self.rows = len(self.readings), self._with_samples(ends)
+        places = [self._places(k) for k in range(len(self.tests))]
+        self._name = repr((campaign.readings, campaign.protocol, self.oils, places))
+        batch = rig.batch
+        self._duties = [
+            (batch.prepared(run.schedule, times, TOLERANCE), ends, samples)
+            for run, (times, ends, samples) in zip(self.runs, places, strict=True)
+        ]
 
-    def simulate(self, variants: Sequence[Mapping[str, Any]]) -> list[Readings]:
-        """True readings for each variant.
+    @property
+    def samples(self) -> int:
+        """Number of places of logged courses."""
+        return len(self.rows.test) - self.n
 
-        Args:
-            variants: changed values by path, a number for all tests or an array of one per test
-
-        Returns:
-            per variant channel -> readings (n rows), with `<channel>_rate`, their change per dwell at its end; NaN
-            where a variant cannot be run
+    def simulate(self, variants: Sequence[Variant]) -> list[Readings]:
+        """True readings for each variant: channel -> (n + samples), NaN where a variant cannot be run.
 
         Raises:
             SolveError: the first variant cannot be run
         """
 
         def joined() -> dict[str, np.ndarray]:
-            blocks = [self._test(k, variants) for k in range(len(self.tests))]
-            return {c: np.concatenate([b[c] for b in blocks], axis=1) for c in blocks[0]}
+            p = self.rig.parameters(variants, self.oils)
+            with ThreadPoolExecutor(cores()) as pool:  # C lets go of the interpreter
+                blocks = list(pool.map(lambda k: self._test(k, variants, p[k]), range(len(self.tests))))
+            whole = np.concatenate([b[0] for b in blocks] + [b[1] for b in blocks], axis=1)
+            found = {channel: whole[:, :, i] for i, channel in enumerate(OUTPUTS)}
+            return {**found, "T_oil2": found["T_oil"], "dwell": np.zeros_like(found["T_oil"])}
 
-        key = (repr((self.campaign.readings, self.campaign.protocol, self.oils)), variants)
-        whole = self.memory.kept(key, joined)
+        whole = self.memory.kept((self._name, variants), joined)
         return [{c: whole[c][v] for c in whole} for v in range(len(variants))]
 
-    def _test(self, k: int, variants: Sequence[Mapping[str, Any]]) -> dict[str, np.ndarray]:
-        run, oil = self.runs[k], self.oils[k]
-
-        def chosen(values: Mapping[str, Any]) -> dict[str, float]:
-            """Values of this test; what a variant makes of the rig's oil it makes of the test's oil."""
-            found = {path: float(v if np.ndim(v) == 0 else v[k]) for path, v in values.items()}
-            changed = {path: oil[path] * found[path] / self.rig.base[path] for path in found.keys() & oil.keys()}
-            return {**oil, **found, **changed}
-
-        p = np.stack([self.rig.parameters(chosen(values)) for values in variants])
-        dwell = [reading.values["dwell_min"] * 60.0 for reading in self.tests[k].halves]
-        ends = zip(run.moments, dwell, strict=True)
-        times = [t for end, length in ends for t in (end - EARLY * length, end, end)]  # twice: both sides of a jump
-        start = np.full(self.rig.n_states, run.T_start)
-        rows = self.rig.batch.warmup(run.schedule, self.rig.inputs, p, start, times=times, tolerance=TOLERANCE)
+    def _test(self, k: int, variants: Sequence[Variant], p: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Outputs at the ends of the halves, and at places of the course (variants, places, channels)."""
+        start = np.repeat(self._start(variants, k), self.rig.n_states, axis=1)
+        duty, ends, places = self._duties[k]
+        rows = self.rig.batch.warmup(duty, self.rig.inputs, p, start, threads=1)
         if rows.status[0]:
             raise SolveError(f"test {self.tests[k].number}: the model cannot be run with {variants[0]}.")
-        found = {}
-        for channel, path in OUTPUTS.items():
-            values = rows[path].reshape(len(variants), -1, 3)
-            found[channel] = values[:, :, 1]
-            found[f"{channel}_rate"] = (values[:, :, 1] - values[:, :, 0]) / EARLY
-        return found
+        return rows.y[:, ends], rows.y[:, places]
+
+    def _start(self, variants: Sequence[Variant], k: int) -> np.ndarray:
+        """Temperature at the start of a test (variants, 1): that of the room, where it was not measured itself."""
+        first, T = self.tests[k].halves[0], self.runs[k].T_start
+        if first.given("T_start_C"):
+            return np.full((len(variants), 1), T)
+        bias = [values.get("read.room_bias", 0.0) for values in variants]
+        return np.array([[T - float(b if np.ndim(b) == 0 else b[k])] for b in bias])
+
+    def _places(self, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Times of the readings of a test, and which of them are the ends of its halves and which places of courses.
+
+        The end of a half is a time given twice: the row in front of the jump counts.
+        """
+        times: list[float] = []
+        ends, places = [], []
+        for h, end in enumerate(self.runs[k].moments):
+            dwell = self.tests[k].halves[h].si("dwell_min")
+            for item in self.logged[k][h : h + 1]:
+                places += range(len(times), len(times) + len(item.shares))
+                times += [end - dwell * (1 - share) for share in item.shares]
+            ends.append(len(times))
+            times += [end, end]
+        return np.array(times), np.array(ends, dtype=int), np.array(places, dtype=int)
+
+    def _with_samples(self, ends: Rows) -> Rows:
+        """The conditions of the ends, and behind them those of the places of logged courses: as at the end."""
+        firsts = np.cumsum([0, *(len(test.halves) for test in self.tests)])
+        items = [(firsts[k] + item.half, len(item.shares)) for k, own in enumerate(self.logged) for item in own]
+        which = np.array([row for row, count in items for _ in range(count)], dtype=int)
+        share = np.concatenate([ends.share, *(item.shares for own in self.logged for item in own)])
+        rows = np.concatenate([np.arange(len(ends.test)), which])
+        humidity = None if ends.humidity is None else ends.humidity[rows]
+        names = ("test", "order", "direction", "w", "tau", "T_room", "rise")
+        return Rows(**{name: getattr(ends, name)[rows] for name in names}, share=share, humidity=humidity)
+
+
+def _stop(run: TestRun, test: Test) -> float:
+    """Time between the halves of a test [s]."""
+    dwells = [half.si("dwell_min") for half in test.halves]
+    return (run.moments[-1] - sum(dwells)) / max(len(dwells) - 1, 1)
 
 
 def _rise(reading: Reading) -> float:
@@ -137,5 +195,6 @@ def rows_of(readings: Sequence[Any], halves: Sequence[int], span: tuple[float, f
         tau=np.array([reading.values["T_carrier_Nm"] for reading in readings]),
         T_room=np.array([reading.si("T_amb_C") for reading in readings]),
         rise=np.array([_rise(reading) for reading in readings]),
+        share=np.ones(len(readings)),
         humidity=humidity if np.isfinite(humidity).all() else None,
     )

@@ -14,7 +14,7 @@ from scipy.special import logsumexp
 from scipy.stats import norm
 
 #: Widths of a size's prior, as multiples of its stated half width.
-WIDTHS = np.array([0.5, 1.0, 2.0, 4.0])
+WIDTHS = np.array([0.4, 0.8, 1.6, 3.2])
 
 
 @dataclass(frozen=True)

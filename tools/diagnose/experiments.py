@@ -13,7 +13,7 @@ from .campaign_model import CampaignModel
 from .evidence import White
 from .findings import Experiment
 from .problem import Campaigned, Linear, Problem
-from .search import Family, Sample, families
+from .family import Family, Sample, families
 from .weigh import distance
 
 #: Forms of each cause by which an experiment is judged.
@@ -126,5 +126,5 @@ def _enlarged(problem: Problem) -> tuple[Problem, np.ndarray]:
     mask = np.zeros((len(CANDIDATES), len(enlarged.measured)), dtype=bool)
     part = enlarged.place(longer)
     for k, candidate in enumerate(CANDIDATES):
-        mask[k, part] = np.tile(owner == candidate.id, len(longer.channels.names))
+        mask[k, part] = (owner == candidate.id)[longer.channels.rows]
     return enlarged, mask

@@ -10,7 +10,8 @@ from scipy.special import logsumexp
 
 from .evidence import White
 from .findings import Gain
-from .search import NONE, ONE, Family, Hypothesis, Search
+from .family import Family
+from .search import NONE, ONE, Hypothesis, Search
 
 DRAWS = 2000
 
@@ -18,22 +19,23 @@ DRAWS = 2000
 def gain(search: Search, leading: Sequence[Hypothesis], seed: int, scheme: str = "leave-one-operating-point") -> Gain:
     """Errors of the oil temperature on held-out groups, before and after the best hypothesis of the remaining data."""
     c, part = search.problem.data, search.problem.place(search.problem.data)
-    oil = part.start + np.arange(c.channels.n)[c.channels.part("T_oil")] if c.channels.names[0] == "T_oil" else None
-    assert oil is not None  # the oil temperature is always the first channel
+    test, ends = c.model.rows.test, c.model.rows.test[: c.model.n]
+    labels = test[c.channels.rows]
+    oil = part.start + np.arange(len(labels))[c.channels.part("T_oil")]
     V, r = search.null.covariance, search.null.residual
-    before, after = np.zeros(c.channels.n), np.zeros(c.channels.n)
+    before, after = np.zeros(c.model.n), np.zeros(c.model.n)
     pool = candidates(search, leading)
     for group in groups(search, scheme):
-        out = part.start + np.flatnonzero(np.isin(np.tile(c.model.rows.test, len(c.channels.names)), group))
+        out = part.start + np.flatnonzero(np.isin(labels, group))
         kept = np.setdiff1d(np.arange(len(r)), out)
-        held = np.flatnonzero(np.isin(c.model.rows.test, group))
+        held = np.flatnonzero(np.isin(ends, group))
         factor = cho_factor(V[np.ix_(kept, kept)])
-        carry = cho_solve(factor, V[np.ix_(kept, part.start + held)]).T
-        before[held] = r[part.start + held] - carry @ r[kept]
+        carry = cho_solve(factor, V[np.ix_(kept, oil[held])]).T
+        before[held] = r[oil[held]] - carry @ r[kept]
         effect = chosen_effect(pool, r, V, kept)
         left = r - effect
-        after[held] = left[part.start + held] - carry @ left[kept]
-    ratios = _bootstrap(before, after, c.model.rows.test, seed)
+        after[held] = left[oil[held]] - carry @ left[kept]
+    ratios = _bootstrap(before, after, ends, seed)
     return Gain(scheme, "T_oil_C", rms(before), rms(after), ratios, noise_floor(search), len(before))
 
 
@@ -107,7 +109,7 @@ def groups(search: Search, scheme: str) -> Iterable[Sequence[int]]:
 def noise_floor(search: Search) -> float:
     """Standard deviation of one oil reading against the room, as the card states it."""
     card, c = search.problem.card, search.problem.data
-    rise = float(np.mean(c.measured[c.channels.part("T_oil")] - c.model.rows.T_room))
+    rise = float(np.mean(c.measured[c.channels.part("T_oil")] - c.model.rows.T_room[: c.model.n]))
     parts = (card.channel("T_oil_C").repeat_sd, card.channel("T_amb_C").repeat_sd, card.day_cooling_sd * rise)
     return float(np.sqrt(sum(p**2 for p in parts)))
 

@@ -12,13 +12,14 @@ from ..effects.cause import Cause, Theta
 from ..effects.taxonomy import CAUSES
 from .campaign_model import CampaignModel, Rig
 from .experiments import ranked
+from .family import form_of
 from .findings import Findings, Joint
 from .gain import gain
 from .inputs import Inputs
 from .nuisance import Parameters
 from .problem import Campaigned, Linear, Problem
 from .search import DRAWS, Hypothesis, Search
-from .weigh import SHOWN, confusable, form_of, joints, named, p_adequacy
+from .weigh import SHOWN, confusable, joints, named, p_adequacy
 
 #: Probability from which a hypothesis counts as the explanation; p below which what it leaves is not noise.
 SURE, ADEQUATE = 0.9, 0.01
@@ -114,9 +115,10 @@ def infer(
 def problem_of(inputs: Inputs) -> Problem:
     """Data and reference as one problem on one rig."""
     rig = Rig(inputs.spec)
-    campaigns = [Campaigned.of(CampaignModel(rig, inputs.data, inputs.oils, inputs.memory), acting=True)]
+    campaigns = [Campaigned.of(CampaignModel(rig, inputs.data, inputs.oils, inputs.memory, series=inputs.series), acting=True)]
     if inputs.reference is not None:
-        campaigns.append(Campaigned.of(CampaignModel(rig, inputs.reference, inputs.oils, inputs.memory), acting=False))
+        healthy = CampaignModel(rig, inputs.reference, inputs.oils, inputs.memory, series=inputs.reference_series)
+        campaigns.append(Campaigned.of(healthy, acting=False))
     wide = inputs.reference is not None
     return Problem(rig, campaigns, inputs.card, Parameters.of(rig.base, inputs.card, wide=wide))
 

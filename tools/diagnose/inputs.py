@@ -27,7 +27,7 @@ from .series import Series, read_series
 T = TypeVar("T")
 
 #: Whether the inference uses time series.
-SERIES_USED = False
+SERIES_USED = True
 
 
 @dataclass(frozen=True)

@@ -26,6 +26,7 @@ GROUPS: Mapping[str, tuple[tuple[str, ...], str, float]] = {
     "oil to wall": (("oil_wall.G", "oil_carrier_body.G"), "gow", 0.6),
     "wall to surface": (("wall_surface.G", "carrier_body_wall.G"), "gwh", 0.6),
     "capacities": (("gears.C", "carrier_body.C", "wall.C", "surface.C", "oil.V"), "cap", 0.5),
+    "capacities inside": (("gears.C", "carrier_body.C"), "cap", 0.5),
     "foundation": (("foot.G",), "hconv", 0.7),
     "area": (("cooling.A",), "hconv", 0.6),
 }
@@ -53,7 +54,7 @@ class Parameters:
         changed: dict[str, float] = {}
         for name, number in zip(self.sd, z, strict=True):
             for path in GROUPS[name][0]:
-                changed[path] = self.base[path] * math.exp(self.sd[name] * float(number))
+                changed[path] = changed.get(path, self.base[path]) * math.exp(self.sd[name] * float(number))
         if "cooling.emissivity" in changed:
             changed["cooling.emissivity"] = min(changed["cooling.emissivity"], 1.0)
         return changed
@@ -64,52 +65,81 @@ def day_values(base: Mapping[str, float], size: float) -> dict[str, Any]:
     return {path: base[path] * (1 + size) for path in ("cooling.A", "foot.G")}
 
 
+#: Channels of places along logged courses -> the readings they hold.
+COURSES = {"T_oil course": "T_oil", "T_wall course": "T_wall"}
+#: What the model leaves of a course [K], over how long a share of the dwell, and scatter of a dwell as logged.
+COURSE, LENGTH, DWELL = 0.25, 0.3, 0.02
+
+
 @dataclass(frozen=True)
 class Channels:
-    """The measured vector: which channels, their rows, and how readings and model become it."""
+    """The measured vector: channel -> which rows of the readings it holds."""
 
-    names: tuple[str, ...]
-    n: int
+    holds: Mapping[str, np.ndarray]
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Channels in order."""
+        return tuple(self.holds)
+
+    @property
+    def rows(self) -> np.ndarray:
+        """Row of the readings of each entry."""
+        return np.concatenate(list(self.holds.values()))
 
     def stack(self, readings: Mapping[str, np.ndarray]) -> np.ndarray:
-        """Readings of all channels as one vector; a second oil probe reads what the first reads."""
-        return np.concatenate([readings["T_oil" if c == "T_oil2" else c] for c in self.names])
+        """Readings of all channels as one vector."""
+        return np.concatenate([readings[COURSES.get(c, c)][rows] for c, rows in self.holds.items()])
 
     def part(self, channel: str) -> slice:
         """Place of a channel in the vector."""
-        k = self.names.index(channel)
-        return slice(k * self.n, (k + 1) * self.n)
+        begin = 0
+        for name, rows in self.holds.items():
+            if name == channel:
+                break
+            begin += len(rows)
+        return slice(begin, begin + len(self.holds[channel]))
+
+    def warm(self) -> np.ndarray:
+        """Which entries are temperatures."""
+        return np.concatenate([np.full(len(rows), c[:2] == "T_") for c, rows in self.holds.items()])
+
+    def course(self) -> np.ndarray:
+        """Which entries lie along logged courses."""
+        return np.concatenate([np.full(len(rows), c in COURSES) for c, rows in self.holds.items()])
 
 
-def instrument_covariance(channels: Channels, rows: Rows, card: Card) -> tuple[np.ndarray, np.ndarray]:
-    """Scatter of the readings: variances (m, m), and columns (m, k) of the instruments' fixed tolerances, scaled."""
-    m = len(channels.names) * channels.n
-    R = np.zeros((m, m))
-    columns = []
+def instrument_covariance(channels: Channels, rows: Rows, card: Card) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+    """Scatter of the readings: covariance (m, m), and fixed tolerance -> its effect (m), one standard deviation."""
+    which = channels.rows
+    m = len(which)
+    variance, columns = np.zeros(m), dict[str, np.ndarray]()
     for c in channels.names:
         part = channels.part(c)
         if c == "loss":
             carrier, sun = card.channel("T_carrier_Nm"), card.channel("T_sun_Nm")
-            R[part, part] += np.eye(channels.n) * (carrier.repeat_sd**2 + 16 * sun.repeat_sd**2)
-            for sd in (carrier.offset_sd, 4 * sun.offset_sd):
-                columns.append(_column(m, part, sd * rows.direction))
-            continue
-        channel = card.channel(f"{c}_C")
-        R[part, part] += np.eye(channels.n) * channel.repeat_sd**2
-        columns.append(_column(m, part, np.full(channels.n, channel.offset_sd)))
-    room = card.channel("T_amb_C")
-    warm = [channels.part(c) for c in channels.names if c != "loss"]
-    for a in warm:
-        for b in warm:
-            R[a, b] += np.eye(channels.n) * room.repeat_sd**2
-    shared = np.zeros(m)
-    for part in warm:
-        shared[part] = -room.offset_sd
-    columns.append(shared)
-    return R, np.stack(columns, axis=1)
+            variance[part] = carrier.repeat_sd**2 + 16 * sun.repeat_sd**2
+            for name, sd in (("T_carrier", carrier.offset_sd), ("T_sun", 4 * sun.offset_sd)):
+                columns[name] = _column(m, part, sd * rows.direction[which[part]])
+        elif c == "dwell":
+            variance[part] = DWELL**2
+        else:
+            probe = COURSES.get(c, c)
+            channel = card.channel(f"{probe}_C")
+            variance[part] = channel.repeat_sd**2
+            columns.setdefault(probe, np.zeros(m))[part] = channel.offset_sd
+    room, warm, share = card.channel("T_amb_C"), channels.warm(), rows.share[which]
+    same = (rows.test[which][:, None] == rows.test[which]) & (rows.direction[which][:, None] == rows.direction[which])
+    R = np.diag(variance) + np.outer(warm * share, warm * share) * same * room.repeat_sd**2
+    course = channels.course()
+    kind = np.concatenate([np.full(len(channels.holds[c]), k) for k, c in enumerate(channels.names)])
+    alike = same & (kind[:, None] == kind) & course[:, None]
+    R += alike * COURSE**2 * np.exp(-0.5 * ((share[:, None] - share) / LENGTH) ** 2)
+    columns["T_amb"] = -room.offset_sd * warm
+    return R, columns
 
 
-def _column(m: int, part: slice, values: np.ndarray) -> np.ndarray:
+def _column(m: int, part: slice, values: np.ndarray | float) -> np.ndarray:
     column = np.zeros(m)
     column[part] = values
     return column

@@ -12,14 +12,16 @@ from scipy.linalg import cho_factor, cho_solve
 from ..effects.cause import Cause, Readings, Theta
 from .campaign_model import CampaignModel, Rig
 from .card import Card
-from .nuisance import Channels, Parameters, day_values, instrument_covariance
+from .nuisance import COURSES, Channels, Parameters, day_values, instrument_covariance
 
 #: Steps of the difference quotients: in standard deviations of a nuisance, and share of a day's cooling.
 STEP, DAY_STEP = 0.25, 0.02
 #: Gauss-Newton ends when no nuisance moves by more than this; it always ends after so many steps.
 SETTLED, MOST_STEPS = 0.02, 8
 #: Standard deviation of the smooth remainder a reference campaign leaves, per feature: temperatures [K], loss [N.m].
-REMAINDER = {"T_oil": 0.8, "T_oil2": 0.8, "T_wall": 0.8, "loss": 1.0}
+REMAINDER = {"T_oil": 0.8, "T_oil2": 0.8, "T_wall": 0.8, "loss": 1.0, "T_oil course": 0.8, "T_wall course": 0.8}
+#: A second oil probe may stand elsewhere: standard deviation of the share of the wall that it sees.
+ELSEWHERE = 0.08
 
 
 @dataclass(frozen=True)
@@ -35,25 +37,44 @@ class Campaigned:
     def of(model: CampaignModel, *, acting: bool) -> Campaigned:
         """From a campaign's readings."""
         readings = measured_readings(model)
-        channels = Channels(tuple(readings), len(model.readings))
-        return Campaigned(model, channels, np.concatenate(list(readings.values())), acting)
+        holds = {channel: rows for channel, (rows, _) in readings.items()}
+        return Campaigned(model, Channels(holds), np.concatenate([v for _, v in readings.values()]), acting)
 
 
-def measured_readings(model: CampaignModel) -> dict[str, np.ndarray]:
-    """Measured channels: temperatures [K] and the loss torque on the carrier's side [N.m]."""
-    readings, rows = model.readings, model.rows
+def measured_readings(model: CampaignModel) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Measured channels: rows of the model's readings and values; temperatures [K], loss torque at the carrier [N.m]."""
+    readings, ends = model.readings, np.arange(model.n)
     found = {"T_oil": np.array([r.si("T_oil_C") for r in readings])}
     if all(r.given("T_oil2_C") for r in readings):
         found["T_oil2"] = np.array([r.si("T_oil2_C") for r in readings])
     found["T_wall"] = np.array([r.si("T_wall_C") for r in readings])
     sun = np.array([r.values["T_sun_Nm"] for r in readings])
-    found["loss"] = (rows.tau - 4 * sun) * rows.direction
-    return found
+    found["loss"] = (model.rows.tau[ends] - 4 * sun) * model.rows.direction[ends]
+    steady = {channel: (ends, values) for channel, values in found.items()}
+    return steady | _logged(model)
+
+
+def _logged(model: CampaignModel) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Channels of logged courses, and how long the logged dwells were against what is stated."""
+    places, halves = np.arange(model.n, model.n + model.samples), np.cumsum([0, *(len(t.halves) for t in model.tests)])
+    items = [(int(halves[k]) + item.half, item) for k, own in enumerate(model.logged) for item in own]
+    if not items:
+        return {}
+    stated = [model.readings[row].si("dwell_min") for row, _ in items]
+    dwell = np.array([item.dwell for _, item in items]) / stated - 1
+    return {
+        "T_oil course": (places, np.concatenate([item.T_oil for _, item in items])),
+        "T_wall course": (places, np.concatenate([item.T_wall for _, item in items])),
+        "dwell": (np.array([row for row, _ in items]), dwell),
+    }
 
 
 @dataclass(frozen=True)
 class Linear:
-    """The problem linearised at nuisances `z`: residual ~ N(signature of the truth, covariance)."""
+    """The problem linearised at nuisances `z`: residual ~ N(signature of the truth, covariance).
+
+    `theta` and `causes` act in it; `days` are the effects of the cooling of the acting campaign's tests (m, tests).
+    """
 
     z: np.ndarray
     values: Mapping[str, float]
@@ -62,6 +83,9 @@ class Linear:
     covariance: np.ndarray
     jacobian: np.ndarray
     noise: np.ndarray
+    days: np.ndarray
+    theta: Mapping[str, Theta] = field(default_factory=dict)
+    causes: Sequence[Cause] = ()
 
 
 @dataclass
@@ -74,18 +98,21 @@ class Problem:
     parameters: Parameters
     measured: np.ndarray = field(init=False)
     instrument: np.ndarray = field(init=False)
+    scatter: np.ndarray = field(init=False)
+    tied: np.ndarray = field(init=False)
 
     def __post_init__(self) -> None:
         self.measured = np.concatenate([c.measured for c in self.campaigns])
-        blocks, columns = [], []
+        blocks, shared = [], []
         for c in self.campaigns:
-            R, tolerance = instrument_covariance(c.channels, c.model.rows, self.card)
+            R, columns = instrument_covariance(c.channels, c.model.rows, self.card)
             blocks.append(R)
-            columns.append(tolerance)
-        shared = np.concatenate(columns)
-        if len(self.campaigns) > 1:
-            shared = np.concatenate([shared, np.concatenate([_remainder(c) for c in self.campaigns])], axis=1)
-        self.instrument = _block_diagonal(blocks) + shared @ shared.T
+            shared.append(columns | (_remainder(c) if len(self.campaigns) > 1 else {}))
+        tied = [[own.get(name, np.zeros(len(c.measured))) for name in sorted(set().union(*shared))]
+                for c, own in zip(self.campaigns, shared, strict=True)]
+        joined = np.concatenate([np.stack(own, axis=1) for own in tied])
+        self.scatter, self.tied = _block_diagonal(blocks), joined
+        self.instrument = self.scatter + joined @ joined.T
 
     @property
     def data(self) -> Campaigned:
@@ -102,13 +129,6 @@ class Problem:
             begin = end
         raise ValueError("no campaign of this problem")
 
-    def shown(self, variants: Sequence[Mapping[str, Any]]) -> np.ndarray:
-        """What healthy instruments show in all campaigns (m, variants)."""
-        parts = []
-        for c in self.campaigns:
-            parts.append(np.stack([c.channels.stack(r) for r in c.model.simulate(variants)], axis=1))
-        return np.concatenate(parts)
-
     def linearised(
         self, z: np.ndarray, theta: Mapping[str, Theta] | None = None, causes: Sequence[Cause] = ()
     ) -> Linear:
@@ -116,46 +136,75 @@ class Problem:
         variants = [self.parameters.values(z)]
         variants += [self.parameters.values(z + STEP * unit) for unit in np.eye(len(z))]
         variants.append({**variants[0], **day_values({**self.rig.base, **variants[0]}, DAY_STEP)})
-        parts = [self._shown_with(c, variants, theta or {}, causes if c.acting else ()) for c in self.campaigns]
+        parts = [self.shown_at(c, [(values, theta or {}) for values in variants], causes) for c in self.campaigns]
         columns = np.concatenate(parts)
         nominal = columns[:, 0]
         jacobian = (columns[:, 1:-1] - nominal[:, None]) / STEP
-        day = (columns[:, -1] - nominal) / DAY_STEP * self.card.day_cooling_sd
-        noise = self.instrument + self._days(day)
+        day = (columns[:, -1] - nominal) / DAY_STEP
+        days = self._days(day)
+        stated = self.card.day_cooling_sd**2 * sum(d @ d.T for d in days)
+        noise = self.instrument + stated + self._elsewhere(nominal)
         residual = self.measured - nominal + jacobian @ z
-        return Linear(z, variants[0], nominal, residual, noise + jacobian @ jacobian.T, jacobian, noise)
+        covariance = noise + jacobian @ jacobian.T
+        return Linear(z, variants[0], nominal, residual, covariance, jacobian, noise, days[0], theta or {}, causes)
 
     def shown_by(self, values: Mapping[str, Any], theta: Mapping[str, Theta], causes: Sequence[Cause]) -> np.ndarray:
         """What the instruments of the acting campaign show with causes of given parameters."""
-        return self._shown_with(self.data, [values], theta, causes)[:, 0]
+        return self.shown_at(self.data, [(values, theta)], causes)[:, 0]
 
-    def _days(self, response: np.ndarray) -> np.ndarray:
-        """Covariance of days whose cooling differs; readings of one test share theirs."""
-        covariance = np.zeros((len(response), len(response)))
-        for c in self.campaigns:
-            part = self.place(c)
-            test = np.tile(c.model.rows.test, len(c.channels.names))
-            same = test[:, None] == test[None, :]
-            covariance[part, part] = np.outer(response[part], response[part]) * same
-        return covariance
-
-    def _shown_with(
-        self, c: Campaigned, variants: Sequence[Mapping[str, Any]], theta: Mapping[str, Theta], causes: Sequence[Cause]
-    ) -> np.ndarray:
-        rows = c.model.rows
-        changed = []
-        for values in variants:
-            extended = dict(values)
-            for cause in causes:
-                extended |= cause.values({**self.rig.base, **extended}, theta[cause.id], rows)
-            changed.append(extended)
+    def _days(self, response: np.ndarray) -> list[np.ndarray]:
+        """Effects of every test's cooling (m, tests), the acting campaign's first."""
         found = []
-        for readings in c.model.simulate(changed):
-            shown: Readings = readings
-            for cause in causes:
-                shown = cause.readings(theta[cause.id], rows, shown)
-            found.append(c.channels.stack(shown))
-        return np.stack(found, axis=1)
+        for c in sorted(self.campaigns, key=lambda c: not c.acting):
+            part, test = self.place(c), c.model.rows.test[c.channels.rows]
+            columns = np.zeros((len(response), c.model.rows.n_tests))
+            columns[part] = response[part, None] * (test[:, None] == np.arange(c.model.rows.n_tests))
+            found.append(columns)
+        return found
+
+    def _elsewhere(self, nominal: np.ndarray) -> np.ndarray:
+        """Covariance of second oil probes that see something of the wall, each rig's its own."""
+        column = np.zeros(len(nominal))
+        for c in self.campaigns:
+            if "T_oil2" in c.channels.names:
+                own = nominal[self.place(c)]
+                difference = own[c.channels.part("T_wall")] - own[c.channels.part("T_oil")]
+                part = c.channels.part("T_oil2")
+                column[self.place(c).start + np.arange(part.start, part.stop)] = ELSEWHERE * difference
+        return np.outer(column, column)
+
+    def shown_at(
+        self, c: Campaigned, cases: Sequence[tuple[Mapping[str, Any], Mapping[str, Theta]]], causes: Sequence[Cause]
+    ) -> np.ndarray:
+        """What the instruments of a campaign show (m, cases), each with its own values and parameters of the causes."""
+        acting = list(causes) if c.acting else []
+        variants = [self._extended(values, theta, acting, c) for values, theta in cases]
+        n = len(cases)
+        if any(not cause.logged for cause in acting):
+            logged = [cause for cause in acting if cause.logged]
+            variants += [self._extended(values, theta, logged, c) for values, theta in cases]
+        found = c.model.simulate(variants)
+        if len(found) > n:
+            found = [_joined(end, course, c.model.n) for end, course in zip(found[:n], found[n:], strict=True)]
+        return np.stack(
+            [self._read(c, true, theta, acting) for true, (_, theta) in zip(found, cases, strict=True)], axis=1
+        )
+
+    def _extended(
+        self, values: Mapping[str, Any], theta: Mapping[str, Theta], causes: Sequence[Cause], c: Campaigned
+    ) -> dict[str, Any]:
+        """Values of the machine with causes acting."""
+        extended = dict(values)
+        for cause in causes:
+            extended |= cause.values({**self.rig.base, **extended}, theta[cause.id], c.model.rows)
+        return extended
+
+    @staticmethod
+    def _read(c: Campaigned, true: Readings, theta: Mapping[str, Theta], causes: Sequence[Cause]) -> np.ndarray:
+        """True readings as faulty instruments show them, as one vector."""
+        for cause in causes:
+            true = cause.readings(theta[cause.id], c.model.rows, true)
+        return c.channels.stack(true)
 
     def nuisances(self, linear: Linear, residual: np.ndarray) -> np.ndarray:
         """The most likely nuisances for a residual, by a linearisation."""
@@ -181,45 +230,68 @@ class Problem:
                 break
         return linear
 
-    def without(self, linear: Linear) -> Linear:
-        """A linearisation made with causes acting, with their effect put back into the residual."""
-        healthy = self.shown([linear.values])[:, 0]
-        return replace(linear, residual=linear.residual + linear.nominal - healthy)
-
     def signatures(self, linear: Linear, wanted: Sequence[tuple[Cause, Theta, float]]) -> np.ndarray:
-        """Change of all readings per unit of size, for causes of given form, as a secant to a given size (m, k)."""
+        """Change of all readings per unit of size, for causes of given form, as a secant to a given size (m, k).
+
+        The other causes that act in the linearisation go on acting.
+        """
         c, part = self.data, self.place(self.data)
-        rows = c.model.rows
-        base = {**self.rig.base, **linear.values}
-        variants = [dict(linear.values)]
+        variants: list[dict[str, Any]] = []
+        places: dict[tuple[str, ...], int] = {}
+        jobs = []
         for cause, form, size in wanted:
+            others = [other for other in linear.causes if other.id != cause.id]
+            name = tuple(other.id for other in others)
+            if name not in places:
+                places[name] = len(variants)
+                variants.append(self._extended(linear.values, linear.theta, others, c))
+            theta = {**linear.theta, cause.id: {**form, cause.size.name: size}}
+            jobs.append((cause, theta, others, places[name], len(variants) if cause.physical else places[name]))
             if cause.physical:
-                theta = {**form, cause.size.name: size}
-                variants.append({**linear.values, **cause.values(base, theta, rows)})
+                variants.append(self._extended(linear.values, theta, [*others, cause], c))
         simulated = c.model.simulate(variants)
-        healthy, physical = simulated[0], iter(simulated[1:])
-        nominal = c.channels.stack(healthy)
         found = np.zeros((len(self.measured), len(wanted)))
-        for k, (cause, form, size) in enumerate(wanted):
-            true = next(physical) if cause.physical else healthy
-            shown = cause.readings({**form, cause.size.name: size}, rows, true)
-            found[part, k] = (c.channels.stack(shown) - nominal) / size
+        for k, (cause, theta, others, before, after) in enumerate(jobs):
+            true = simulated[after] if cause.logged else _joined(simulated[after], simulated[before], c.model.n)
+            change = self._read(c, true, theta, [*others, cause]) - self._read(c, simulated[before], theta, others)
+            found[part, k] = change / wanted[k][2]
         found[:, ~np.isfinite(found).all(axis=0)] = 0.0  # a form that no machine has explains nothing
         return found
 
+    def put_back(self, linear: Linear) -> Linear:
+        """A linearisation with its causes' effects put back into the residual, by their signatures there."""
+        sizes = [linear.theta[c.id][c.size.name] for c in linear.causes]
+        acting = [(c, size) for c, size in zip(linear.causes, sizes, strict=True) if size != 0.0]
+        if not acting:
+            return linear
+        G = self.signatures(linear, [(c, linear.theta[c.id], size) for c, size in acting])
+        return replace(linear, residual=linear.residual + G @ np.array([size for _, size in acting]))
 
-def _remainder(c: Campaigned) -> np.ndarray:
-    """Columns of a smooth remainder in speed, torque, room and direction, the same in all campaigns of a rig."""
-    rows = c.model.rows
+
+def _joined(ends: Readings, courses: Readings, n: int) -> Readings:
+    """The readings at the ends of the halves from one, along the courses from the other."""
+    return {c: np.concatenate([ends[c][:n], courses[c][n:]]) for c in ends}
+
+
+def _remainder(c: Campaigned) -> dict[str, np.ndarray]:
+    """Effects of a smooth remainder in speed, torque, room and direction, the same in all campaigns of a rig.
+
+    Along logged courses it also changes with the share of the dwell that has passed.
+    """
+    rows, which = c.model.rows, c.channels.rows
     w, tau, room = (rows.w - 18.0) / 6.0, (rows.tau - 2100.0) / 500.0, (rows.T_room - 300.0) / 6.0
-    d = rows.direction
-    features = np.stack([np.ones_like(w), w, tau, room, d, w * tau, w**2, tau**2, d * w, d * tau], axis=1)
-    columns = []
+    d, one = rows.direction, np.ones(len(rows.w))
+    smooth = [one, w, tau, room, d, w * tau, w**2, tau**2, d * w, d * tau]
+    begun = [f * (1 - rows.share) ** k * (1 + side * d) for k in (1, 2, 4) for side in (1, -1) for f in (one, w, tau)]
+    found = {}
     for name in c.channels.names:
-        block = np.zeros((len(c.measured), features.shape[1]))
-        block[c.channels.part(name)] = features * REMAINDER[name]
-        columns.append(block)
-    return np.concatenate(columns, axis=1)
+        part = c.channels.part(name)
+        for k, feature in enumerate([*smooth, *begun] if name in COURSES else smooth):
+            if name in REMAINDER:
+                column = np.zeros(len(c.measured))
+                column[part] = feature[which[part]] * REMAINDER[name]
+                found[f"remainder of {name} {k}"] = column
+    return found
 
 
 def _block_diagonal(blocks: Sequence[np.ndarray]) -> np.ndarray:

@@ -15,6 +15,8 @@ READ = (
     Quantity("read.room_bias", "K (difference)", "room probe: reading less truth"),
     Quantity("read.speed_gain", "1", "speed reading: relative error"),
     Quantity("read.torque_bias", "N.m", "carrier's torque: reading less truth"),
+    Quantity("read.missing_forward", "1", "share of the dwell as multiplier that is missing"),
+    Quantity("read.missing_backward", "1", "share of the dwell as reducer that is missing"),
 )
 
 
@@ -36,12 +38,14 @@ def as_read(flat: FlatModel) -> FlatModel:
     }
     new = ca.vertcat(*[truth.get(q.name, u[q.name]) for q in flat.inputs])
     expressions = [flat.ode, flat.y, flat.residual, flat.supply, flat.throughput, flat.stored, flat.checked]
+    d = ca.sign(u["carrier.tau"])
+    pace = 1 - (p[3] * (1 + d) + p[4] * (1 - d)) / 2 * d**2  # a stop is no dwell
     ode, y, residual, supply, throughput, stored, checked = (ca.substitute(e, flat.u, new) for e in expressions)
     return replace(
         flat,
         parameters=(*flat.parameters, *READ),
         p=ca.vertcat(flat.p, p),
-        ode=ode,
+        ode=ode * pace,
         y=y,
         residual=residual,
         supply=supply,

@@ -11,10 +11,14 @@ from ..effects.cause import Cause, Theta
 from ..effects.taxonomy import CAUSES
 from .evidence import White
 from .findings import Estimate, Joint, Named
-from .search import Family, Hypothesis, Search
+from .family import Family, form_of
+from .scatter import SCATTER
+from .search import Hypothesis, Search
 
 #: Power of the detectable size; distance below which two causes are the same to a design; probability that is shown.
 POWER, NEAR, SHOWN = 0.8, 2.5, 0.005
+#: A nuisance whose prior is wider than this many standard deviations of the readings counts as fitted.
+FREE = 0.5
 
 
 def joints(search: Search) -> tuple[list[Joint], list[Hypothesis]]:
@@ -36,22 +40,20 @@ def family_of(cause: str) -> str:
 
 
 def p_adequacy(search: Search, h: Hypothesis) -> float:
-    """Omnibus p of what a hypothesis leaves; each fitted parameter takes a degree of freedom."""
-    linear = h.linear or search.null
-    if h.causes and linear is not search.null:
-        linear = search.problem.without(linear)
-    white = White.of(linear.residual, linear.covariance)
-    left = white.e.copy()
+    """Omnibus p of what a hypothesis leaves when all nuisances are fitted freely: each takes a degree of freedom."""
+    linear, problem = h.linear or search.null, search.problem
+    left = linear.residual.copy()
     for f in h.families:
-        k = form_of(f, h.theta[f.cause.id])
-        left -= white.columns(f.signatures[:, [k]])[:, 0] * h.theta[f.cause.id][f.cause.size.name]
-    used = sum(1 + len(CAUSES[c].shapes) // 2 for c in h.causes)
-    return float(chi2.sf(left @ left, len(left) - used))
-
-
-def form_of(f: Family, theta: Theta) -> int:
-    """Which form of a family given parameters are."""
-    return next(k for k, form in enumerate(f.forms) if all(theta[name] == value for name, value in form.items()))
+        left -= f.signatures[:, form_of(f, h.theta[f.cause.id])] * h.theta[f.cause.id][f.cause.size.name]
+    days = problem.card.day_cooling_sd**2 + (h.theta[SCATTER]["sd"] ** 2 if SCATTER in h.theta else 0.0)
+    noise = linear.noise - problem.instrument + problem.scatter
+    noise = noise + (days - problem.card.day_cooling_sd**2) * linear.days @ linear.days.T
+    white = White.of(left, noise)
+    Q, d, _ = np.linalg.svd(white.columns(np.concatenate([linear.jacobian, problem.tied], axis=1)), full_matrices=False)
+    fitted = d > FREE
+    e = white.e - Q[:, fitted] @ (Q[:, fitted].T @ white.e)
+    used = int(fitted.sum()) + sum(1 + len(CAUSES[c].shapes) // 2 for c in h.causes)
+    return float(chi2.sf(e @ e, max(len(e) - used, 1)))
 
 
 def named(search: Search, found: Sequence[Joint], leading: Sequence[Hypothesis]) -> list[Named]:
@@ -68,7 +70,9 @@ def named(search: Search, found: Sequence[Joint], leading: Sequence[Hypothesis])
     named_causes = []
     for cause in search.causes:
         parameters, regime = estimated.get(cause.id, ((), {}))
-        detectable = detectable_size(search, search.found[cause.id])
+        needed = (np.sqrt(search.critical) + norm.ppf(POWER)) ** 2
+        family = search.found.get(cause.id)
+        detectable = detectable_size(family, needed) if family else search.days.detectable(needed)
         named_causes.append(Named(cause.id, total[cause.id], detectable, parameters, regime))
     return sorted(named_causes, key=lambda n: (-n.probability, n.id))
 
@@ -88,7 +92,7 @@ def estimates(
     low, high = (float(np.clip(centre + s * 1.96 * spread, size.low, size.high)) for s in (-1, 1))
     found = [Estimate(size.name, centre, low, high, size.unit)]
     for shape in f.cause.shapes:
-        if shape.name in ("regime", "threshold"):
+        if shape.ends or shape.name == "threshold":
             continue
         values = np.array([form[shape.name] for form in f.forms])
         order = np.argsort(values)
@@ -115,10 +119,9 @@ def regime_in_columns(cause: Cause, theta: Theta) -> Mapping[str, tuple[float | 
     return {column: (float(shown), None) if name.endswith("+") else (None, float(shown))}
 
 
-def detectable_size(search: Search, f: Family) -> float:
+def detectable_size(f: Family, needed: float) -> float:
     """The smallest size that these data would reveal with 80 % power, in the middle form of a family."""
-    needed = np.sqrt(search.critical) + norm.ppf(POWER)
-    return float(needed / np.sqrt(max(f.q[0], 1e-300)))
+    return float(np.sqrt(needed / max(f.q[0], 1e-300)))
 
 
 def distance(a: Family, k: int, size: float, b: Family) -> float:
@@ -139,6 +142,8 @@ def confusable(search: Search, leading: Sequence[Named]) -> list[tuple[str, ...]
     """
     sets = []
     for name in leading:
+        if name.id not in search.found:
+            continue
         c, f = name.id, search.found[name.id]
         size = max([CAUSES[c].size.sd, *(abs(e.value) for e in name.parameters[:1])])
         near = [

@@ -26,7 +26,10 @@ class Size:
 
 @dataclass(frozen=True)
 class Shape:
-    """One parameter of a cause's form: a normal prior cut at its bounds, or an even one where `sd` is None."""
+    """One parameter of a cause's form: a normal prior cut at its bounds, or an even one where `sd` is None.
+
+    `ends` makes it a choice: upper ends of the shares of the prior that each of its kinds has.
+    """
 
     name: str
     unit: str
@@ -35,6 +38,7 @@ class Shape:
     high: float
     mean: float = 0.0
     sd: float | None = None
+    ends: tuple[float, ...] = ()
 
     def quantile(self, share: np.ndarray) -> np.ndarray:
         """Values of the prior at shares between 0 and 1."""
@@ -50,7 +54,7 @@ class Rows:
 
     `test` is the index of each row's test, `order` its running order from 0 (first) to 1 (last), `direction` +1 for a
     multiplier, -1 for a reducer; `w` [rad/s], `tau` [N.m] magnitude, `T_room` [K], `rise` of the oil over the room [K]
-    as measured (0 where it is not), `humidity` or None.
+    as measured (0 where it is not), `share` of the dwell that has passed (1 at its end), `humidity` or None.
     """
 
     test: np.ndarray
@@ -60,6 +64,7 @@ class Rows:
     tau: np.ndarray
     T_room: np.ndarray
     rise: np.ndarray
+    share: np.ndarray
     humidity: np.ndarray | None = None
 
     @property
@@ -74,7 +79,8 @@ class Rows:
 
 #: Parameter values of a cause by name: the size and the shapes.
 Theta = Mapping[str, float]
-#: Channel -> readings (n); channels are T_oil, T_oil2, T_wall [K], loss [N.m].
+#: Channel -> readings (n); channels are T_oil, T_oil2, T_wall [K], loss [N.m], and dwell, its share of what is stated
+#: less 1.
 Readings = Mapping[str, np.ndarray]
 
 
@@ -106,7 +112,8 @@ class Cause:
             rows are None where no campaign is at hand
         readings: (parameters, rows, true readings) -> what the instruments show
         acts: parameters -> where it acts: quantity with its side ("w+", "tau-", "T+") and threshold in SI, or None
-        strata: upper ends of the regimes in the prior of the shape "regime", so that each is looked into
+        logged: whether it changes a logged course
+        scatter: whether it makes days differ instead of changing them all
     """
 
     id: str
@@ -120,7 +127,8 @@ class Cause:
     values: Callable[[Mapping[str, float], Theta, Rows | None], Mapping[str, Any]] = _no_values
     readings: Callable[[Theta, Rows, Readings], Readings] = _no_change
     acts: Callable[[Theta], tuple[str, float] | None] = _everywhere
-    strata: tuple[float, ...] = ()
+    logged: bool = True
+    scatter: bool = False
 
     @property
     def physical(self) -> bool:
@@ -135,18 +143,23 @@ class Cause:
         base = {f"{p.name}.{k}": v for p in extended.parts for k, v in p.values.items()}
         return extended.with_values(self.values(base, theta, None))
 
+    @property
+    def choice(self) -> int | None:
+        """Place of the shape that is a choice; a family has one at most."""
+        return next((k for k, shape in enumerate(self.shapes) if shape.ends), None)
+
     def sample(self, n: int, each: int) -> tuple[np.ndarray, np.ndarray]:
         """Shares (m, shapes) spread over the prior, the middle first, and their log weights.
 
-        There are n of them; with strata n in the first and `each` in every other.
+        There are n of them; with a choice n of its first kind and `each` of every other.
         """
-        d = len(self.shapes)
+        d, place = len(self.shapes), self.choice
         if d == 0:
             return np.zeros((1, 0)), np.zeros(1)
-        if not self.strata:
+        if place is None:
             return spread(n, d), np.zeros(n)
-        place = [shape.name for shape in self.shapes].index("regime")
-        ends, counts = np.array(self.strata), [n] + [each] * (len(self.strata) - 1)
+        ends = np.array(self.shapes[place].ends)
+        counts = [n] + [each] * (len(ends) - 1)
         starts, shares, mass = np.concatenate([[0.0], ends[:-1]]), [], []
         for start, end, count in zip(starts, ends, counts, strict=True):
             own = spread(n if start == 0 else n + count, d)[-count:]

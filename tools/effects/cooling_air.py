@@ -6,28 +6,23 @@ from collections.abc import Mapping
 from typing import Any
 
 from .cause import Cause, Rows, Shape, Size, Theta
-from .forms import extra_conductor
+from .forms import DIRECTION, WARMTH, Regimes, extra_conductor
 
 PARTS, NETS = extra_conductor("extra_air", "surface.heat", "room.floor")
-#: Upper ends of the share of each regime: everywhere, above, below a temperature; the range of thresholds [K].
-EVERYWHERE, ABOVE, LOW, HIGH = 0.6, 0.8, 315.0, 358.0
-
-
-def acts(theta: Theta) -> tuple[str, float] | None:
-    """Above or below which temperature."""
-    if theta["regime"] <= EVERYWHERE:
-        return None
-    return "T+" if theta["regime"] <= ABOVE else "T-", LOW + theta["threshold"] * (HIGH - LOW)
+#: What it may be limited to.
+REGIMES = Regimes((*WARMTH, *DIRECTION))
 
 
 def conductance(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mapping[str, Any]:
     """The extra conductance and where it acts."""
-    values = {f"extra_air.{k}": theta[k] for k in ("G_ref", "e", "c")}
-    regime = acts(theta)
-    if regime is None:
-        return values | {"extra_air.T_on": 0.0, "extra_air.T_side": 1.0}
-    side, threshold = regime
-    return values | {"extra_air.T_on": threshold, "extra_air.T_side": 1.0 if side == "T+" else -1.0}
+    values = {k: theta[k] for k in ("G_ref", "e", "c")}
+    values |= {"T_on": 0.0, "T_side": 1.0, "forward": 1.0, "backward": 1.0}
+    name, threshold = REGIMES.of(theta) or ("", 0.0)
+    if name.startswith("T"):
+        values |= {"T_on": threshold, "T_side": 1.0 if name == "T+" else -1.0}
+    elif name:
+        values["backward" if name == "d+" else "forward"] = 0.0
+    return {f"extra_air.{k}": v for k, v in values.items()}
 
 
 CAUSE = Cause(
@@ -37,13 +32,11 @@ CAUSE = Cause(
     shapes=(
         Shape("e", "1", "exponent of the temperature difference", -0.3, 0.4, 0.05, 0.2),
         Shape("c", "1", "exponent of the speed: a fan on the shaft", -0.2, 1.0, 0.0, 0.2),
-        Shape("regime", "1", "where it acts: everywhere, above (0.7) or below (0.9) a temperature", 0.0, 1.0),
-        Shape("threshold", "1", "place of the threshold in its range", 0.0, 1.0),
+        *REGIMES.shapes,
     ),
     exposes="a fan switched on and off at one point; a cold room",
     parts=PARTS,
     connections=NETS,
     values=conductance,
-    acts=acts,
-    strata=(EVERYWHERE, ABOVE, 1.0),
+    acts=REGIMES.of,
 )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 
 from ...model.machines.spec import PartSpec
 from .cause import Shape, Theta
@@ -13,28 +14,45 @@ W_REF, NU_REF, TAU_REF = 20.944, 75e-6, 2000.0
 OPEN = {"w_on": -1e4, "w_side": 1.0, "tau_on": -1e6, "tau_side": 1.0, "T_on": 0.0, "T_side": 1.0}
 #: Ranges in which thresholds are looked for: speed [rad/s], torque [N.m], temperature [K].
 THRESHOLDS = {"w": (10.0, 26.5), "tau": (1500.0, 2750.0), "T": (315.0, 362.0), "d": (0.0, 0.0)}
-#: Upper ends of the share of each regime in the prior; "d+" acts as multiplier only, "d-" as reducer only.
-REGIMES = (
-    *((0.56, ""), (0.66, "w+"), (0.71, "w-"), (0.77, "tau+"), (0.81, "tau-")),
-    *((0.89, "T+"), (0.93, "T-"), (0.965, "d+"), (1.0, "d-")),
-)
+#: Share of the prior in which a form acts everywhere.
+EVERYWHERE = 0.56
 
-STRATA = tuple(end for end, _ in REGIMES)
-REGIME = (
-    Shape("regime", "1", "where it acts: everywhere, or above or below a threshold", 0.0, 1.0),
-    Shape("threshold", "1", "place of the threshold in its range", 0.0, 1.0),
-)
+
+@dataclass(frozen=True)
+class Regimes:
+    """Where a cause may be limited to: sides of a speed ("w+", "w-"), torque, temperature, or one direction.
+
+    "d+" acts as multiplier only, "d-" as reducer only.
+    """
+
+    names: tuple[str, ...]
+
+    @property
+    def ends(self) -> tuple[float, ...]:
+        """Upper ends of the shares of the prior: everywhere first, then each regime the same."""
+        n = len(self.names)
+        return (EVERYWHERE, *(EVERYWHERE + (1 - EVERYWHERE) * (k + 1) / n for k in range(n - 1)), 1.0)
+
+    @property
+    def shapes(self) -> tuple[Shape, Shape]:
+        """The shapes that say which regime, and where its threshold lies in its range."""
+        return (
+            Shape("regime", "1", "where it acts: everywhere, or above or below a threshold", 0.0, 1.0, ends=self.ends),
+            Shape("threshold", "1", "place of the threshold in its range", 0.0, 1.0),
+        )
+
+    def of(self, theta: Theta) -> tuple[str, float] | None:
+        """The regime of a form: its name and threshold in SI; None where it acts everywhere."""
+        name = next(name for end, name in zip(self.ends, ("", *self.names), strict=True) if theta["regime"] <= end)
+        if not name:
+            return None
+        low, high = THRESHOLDS[name[:-1]]
+        return name, low + theta["threshold"] * (high - low)
+
+
+SPEED, LOAD, WARMTH, DIRECTION = ("w+", "w-"), ("tau+", "tau-"), ("T+", "T-"), ("d+", "d-")
 OIL_SHARE_TEETH = Shape("oil_share", "1", "share of the heat that goes into the oil", 0.0, 1.0, 0.8, 0.15)
 OIL_SHARE_BEARING = Shape("oil_share", "1", "share of the heat that goes into the oil", 0.0, 1.0, 0.6, 0.25)
-
-
-def regime_of(theta: Theta) -> tuple[str, float] | None:
-    """The regime of a form: quantity with its side ("w+", "d-") and threshold in SI; None where it acts everywhere."""
-    name = next(name for end, name in REGIMES if theta.get("regime", 0.0) <= end)
-    if not name:
-        return None
-    low, high = THRESHOLDS[name[:-1]]
-    return name, low + theta["threshold"] * (high - low)
 
 
 def extra_part(
@@ -54,13 +72,13 @@ def extra_part(
     return (part,), nets
 
 
-def extra_values(name: str, theta: Theta, **fixed: float) -> Mapping[str, float]:
-    """Values of an extra part from the parameters of a form; `fixed` holds exponents that the form leaves alone."""
+def extra_values(name: str, theta: Theta, regime: tuple[str, float] | None = None) -> Mapping[str, float]:
+    """Values of an extra part from the parameters of a form and the regime in which it acts."""
     keys = ("P_ref", "a", "b", "c", "forward", "backward", "oil_share")
-    values = {k: v for k, v in {**fixed, **theta}.items() if k in keys} | OPEN
-    if (regime := regime_of(theta)) is not None:
+    values = {k: v for k, v in theta.items() if k in keys} | OPEN
+    if regime is not None:
         quantity, threshold = regime
-        if quantity in ("d+", "d-"):
+        if quantity in DIRECTION:
             values["backward" if quantity == "d+" else "forward"] = 0.0
         else:
             values |= {
@@ -73,6 +91,7 @@ def extra_values(name: str, theta: Theta, **fixed: float) -> Mapping[str, float]
 def extra_conductor(name: str, a: str, b: str) -> tuple[tuple[PartSpec, ...], tuple[tuple[str, ...], ...]]:
     """A conductance of general form between two heat ports."""
     values = {"G_ref": 0.0, "dT_ref": 35.0, "e": 0.0, "w_ref": W_REF, "c": 0.0, "T_on": 0.0, "T_side": 1.0}
+    values |= {"forward": 1.0, "backward": 1.0}
     nets = ((f"{name}.a", a), (f"{name}.b", b), (f"{name}.reading", "carrier.reading"))
     return (PartSpec(name, "ExtraConductor", values),), nets
 

@@ -1,9 +1,10 @@
 """No-load loss of what turns in the oil."""
 
 from .cause import Cause, Shape, Size
-from .forms import OIL_SHARE_TEETH, REGIME, STRATA, extra_part, extra_values, regime_of
+from .forms import OIL_SHARE_TEETH, SPEED, WARMTH, Regimes, extra_part, extra_values
 
 PARTS, NETS = extra_part("extra_churning", "gears")
+REGIMES = Regimes((*SPEED, *WARMTH,))
 CAUSE = Cause(
     id="losses.churning",
     doc="A loss without load that grows with speed: gears, planets and carrier move the oil.",
@@ -12,13 +13,12 @@ CAUSE = Cause(
         Shape("a", "1", "exponent of the speed", 1.2, 2.8, 2.0, 0.45),
         Shape("b", "1", "exponent of the viscosity", 0.0, 0.35),
         OIL_SHARE_TEETH,
-        *REGIME,
+        *REGIMES.shapes,
     ),
     exposes="points at higher speed and little load; coast-down without load",
     like="no-load oil loss: churning, windage and oil level differ only in how the oil is reached",
     parts=PARTS,
     connections=NETS,
-    acts=regime_of,
-    strata=STRATA,
-    values=lambda base, theta, rows: extra_values("extra_churning", theta),
+    acts=REGIMES.of,
+    values=lambda base, theta, rows: extra_values("extra_churning", theta, REGIMES.of(theta)),
 )

@@ -1,31 +1,37 @@
 """Teeth whose film breaks down where it is hot or fast."""
 
 from .cause import Cause, Shape, Size, Theta
-from .forms import OIL_SHARE_TEETH, extra_part, extra_values, regime_of
+from .forms import OIL_SHARE_TEETH, THRESHOLDS, extra_part, extra_values
 
 PARTS, NETS = extra_part("extra_starvation", "gears")
+#: Ways in which it sets in, and upper ends of their shares of the prior.
+KINDS, ENDS = ("", "T+", "w+", "w-"), (0.4, 0.7, 0.85, 1.0)
 
 
-def onset(theta: Theta) -> Theta:
-    """The form with its regime as one of the two that thin films know."""
-    return {**theta, "regime": 0.6 if theta["regime"] < 0.725 else 0.85}
+def onset(theta: Theta) -> tuple[str, float] | None:
+    """Where it sets in: nowhere but by its exponents, or above a speed, above a temperature or below a speed."""
+    kind = KINDS[sum(theta["onset"] > end for end in ENDS)]
+    if not kind:
+        return None
+    low, high = THRESHOLDS[kind[:-1]]
+    return kind, low + theta["threshold"] * (high - low)
 
 
 CAUSE = Cause(
     id="losses.film_starvation",
-    doc="A loss under load that sets in with thin films: above a temperature or a speed.",
+    doc="A loss under load that grows where films are thin: slow, hot, or beyond a temperature or speed.",
     size=Size("P_ref", "W", "loss at 200 rpm, 75 cSt and 2000 N.m, where it acts", 60.0, 0.0, 600.0),
     shapes=(
-        Shape("a", "1", "exponent of the speed", 0.6, 1.6, 1.0, 0.2),
-        Shape("b", "1", "exponent of the viscosity", -1.2, -0.2, -0.6, 0.25),
+        Shape("a", "1", "exponent of the speed", 0.0, 1.6, 0.5, 0.4),
+        Shape("b", "1", "exponent of the viscosity", -2.2, -0.2, -0.9, 0.45),
         Shape("c", "1", "exponent of the torque", 0.7, 1.5, 1.1, 0.2),
         OIL_SHARE_TEETH,
-        Shape("regime", "1", "above a speed (0.6), or above a temperature (0.85)", 0.56, 0.89),
+        Shape("onset", "1", "how it sets in: by its exponents, above a temperature, above or below a speed", 0.0, 1.0, ends=ENDS),
         Shape("threshold", "1", "place of the threshold in its range", 0.0, 1.0),
     ),
     exposes="points at high load and low viscosity, with and without fresh oil",
     parts=PARTS,
     connections=NETS,
-    acts=lambda theta: regime_of(onset(theta)),
-    values=lambda base, theta, rows: extra_values("extra_starvation", onset(theta)),
+    acts=onset,
+    values=lambda base, theta, rows: extra_values("extra_starvation", theta, onset(theta)),
 )

@@ -1,9 +1,10 @@
 """Teeth that rub more or less than assumed."""
 
 from .cause import Cause, Shape, Size
-from .forms import OIL_SHARE_TEETH, REGIME, STRATA, extra_part, extra_values, regime_of
+from .forms import LOAD, OIL_SHARE_TEETH, SPEED, WARMTH, Regimes, extra_part, extra_values
 
 PARTS, NETS = extra_part("extra_mesh", "gears")
+REGIMES = Regimes((*SPEED, *LOAD, *WARMTH,))
 CAUSE = Cause(
     id="losses.mesh_friction",
     doc="A loss that grows with load: friction of the teeth, roughness, additives.",
@@ -13,12 +14,11 @@ CAUSE = Cause(
         Shape("b", "1", "exponent of the viscosity", -0.4, 0.1, -0.05, 0.1),
         Shape("c", "1", "exponent of the torque", 0.7, 1.8, 1.2, 0.25),
         OIL_SHARE_TEETH,
-        *REGIME,
+        *REGIMES.shapes,
     ),
     exposes="points at small and at large load, at one speed",
     parts=PARTS,
     connections=NETS,
-    acts=regime_of,
-    strata=STRATA,
-    values=lambda base, theta, rows: extra_values("extra_mesh", theta),
+    acts=REGIMES.of,
+    values=lambda base, theta, rows: extra_values("extra_mesh", theta, REGIMES.of(theta)),
 )

@@ -1,9 +1,10 @@
 """Seals that brake more than assumed."""
 
 from .cause import Cause, Shape, Size
-from .forms import OIL_SHARE_BEARING, REGIME, STRATA, extra_part, extra_values, regime_of
+from .forms import DIRECTION, OIL_SHARE_BEARING, SPEED, WARMTH, Regimes, extra_part, extra_values
 
 PARTS, NETS = extra_part("extra_seal", "wall")
+REGIMES = Regimes((*SPEED, *WARMTH, *DIRECTION,))
 CAUSE = Cause(
     id="losses.seal_drag",
     doc="A friction torque without load dependence: lips that press more, or run dry.",
@@ -12,13 +13,12 @@ CAUSE = Cause(
         Shape("a", "1", "exponent of the speed", 0.7, 1.3, 1.0, 0.12),
         Shape("b", "1", "exponent of the viscosity", 0.0, 0.4),
         OIL_SHARE_BEARING,
-        *REGIME,
+        *REGIMES.shapes,
     ),
     exposes="drag torque measured by hand, temperature at the lips",
     like="friction of shafts: preload and seal drag are the same torque to every steady instrument",
     parts=PARTS,
     connections=NETS,
-    acts=regime_of,
-    strata=STRATA,
-    values=lambda base, theta, rows: extra_values("extra_seal", theta),
+    acts=REGIMES.of,
+    values=lambda base, theta, rows: extra_values("extra_seal", theta, REGIMES.of(theta)),
 )

@@ -1,9 +1,10 @@
 """Air and oil mist moved by what turns."""
 
 from .cause import Cause, Shape, Size
-from .forms import REGIME, STRATA, extra_part, extra_values, regime_of
+from .forms import SPEED, Regimes, extra_part, extra_values
 
 PARTS, NETS = extra_part("extra_windage", "gears")
+REGIMES = Regimes((*SPEED,))
 CAUSE = Cause(
     id="losses.windage",
     doc="A loss without load, steep in speed and without viscosity: air and mist are moved.",
@@ -11,13 +12,12 @@ CAUSE = Cause(
     shapes=(
         Shape("a", "1", "exponent of the speed", 2.6, 3.4, 3.0, 0.2),
         Shape("oil_share", "1", "share of the heat that goes into the oil", 0.0, 1.0, 0.4, 0.25),
-        *REGIME,
+        *REGIMES.shapes,
     ),
     exposes="points at higher speed and little load, at two oil levels",
     like="no-load oil loss: churning, windage and oil level differ only in how the oil is reached",
     parts=PARTS,
     connections=NETS,
-    acts=regime_of,
-    strata=STRATA,
-    values=lambda base, theta, rows: extra_values("extra_windage", theta),
+    acts=REGIMES.of,
+    values=lambda base, theta, rows: extra_values("extra_windage", theta, REGIMES.of(theta)),
 )

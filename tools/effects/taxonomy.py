@@ -14,7 +14,7 @@ MODULES = (
     *("sensor_torque_offset", "sensor_torque_gain", "sensor_torque_drift", "sensor_torque_step"),
     *("sensor_oil_temp_offset", "sensor_oil_temp_gain", "sensor_oil_temp_position", "sensor_wall_temp_offset"),
     *("sensor_ambient_bias", "sensor_ambient_heated", "sensor_speed_gain"),
-    *("procedure_not_stationary", "procedure_order"),
+    *("procedure_not_stationary", "procedure_order", "procedure_day_scatter"),
 )
 
 CAUSES: dict[str, Cause] = {c.id: c for c in (import_module(f"{__package__}.{name}").CAUSE for name in MODULES)}
