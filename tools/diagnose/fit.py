@@ -13,6 +13,7 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.stats import norm
 
+from ...model.errors import SolveError
 from ..effects.cause import Cause, Theta
 from .problem import Linear, Problem
 
@@ -35,11 +36,12 @@ class Mode:
 
 @dataclass(frozen=True)
 class Fit:
-    """Most likely nuisances and parameters of the causes, and how well the shapes are known."""
+    """Most likely nuisances and parameters of the causes, how well the shapes are known, and half the squared misfit."""
 
     z: np.ndarray
     theta: Mapping[str, Theta]
     modes: Mapping[str, Mode]
+    cost: float
 
 
 def fitted(problem: Problem, linear: Linear, start: Mapping[str, tuple[np.ndarray, float]]) -> Fit:
@@ -110,7 +112,9 @@ class _Fitting:
 
     def run(self) -> Fit:
         shown = self.linear.nominal
-        cost, J, H = self.cost(self.x, shown), np.empty(0), np.empty(0)
+        cost, H = self.cost(self.x, shown), np.eye(len(self.x))
+        if not np.isfinite(cost):
+            raise SolveError("the model cannot be run where the fit of its causes begins.")
         for step in range(STEPS):
             J, H = self.slopes(shown)
             gradient = J.T @ cho_solve(self.factor, self.problem.measured - shown) - self.x
@@ -129,7 +133,7 @@ class _Fitting:
             self.x, shown, cost = new, there, value
             if moved < SETTLED or (gained < 0.02 and step > 0):
                 break
-        return Fit(self.x[: self.n], self.theta(self.x), self.modes(np.linalg.inv(H)))
+        return Fit(self.x[: self.n], self.theta(self.x), self.modes(np.linalg.inv(H)), cost)
 
     def cost(self, x: np.ndarray, shown: np.ndarray) -> float:
         """Half the squared misfit, priors included."""

@@ -3,90 +3,80 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
 from scipy.special import logsumexp
 
 from .evidence import White
+from .family import Family, pair_evidence, pair_theta
 from .findings import Gain
-from .family import Family
-from .search import NONE, ONE, Hypothesis, Search
+from .problem import Linear
+from .scatter import SCATTER
+from .search import Hypothesis, Search, log_gauss
 
 DRAWS = 2000
 
 
+@dataclass(frozen=True)
+class View:
+    """Hypotheses that share a linearisation: none at all, families alone, or pairs of families."""
+
+    linear: Linear
+    hypotheses: tuple[tuple[float, tuple[Family, ...]], ...]
+
+
 def gain(search: Search, leading: Sequence[Hypothesis], seed: int, scheme: str = "leave-one-operating-point") -> Gain:
-    """Errors of the oil temperature on held-out groups, before and after the best hypothesis of the remaining data."""
+    """Errors of the oil temperature on held-out groups, before and after what the remaining data prefer."""
     c, part = search.problem.data, search.problem.place(search.problem.data)
     test, ends = c.model.rows.test, c.model.rows.test[: c.model.n]
     labels = test[c.channels.rows]
     oil = part.start + np.arange(len(labels))[c.channels.part("T_oil")]
-    V, r = search.null.covariance, search.null.residual
     before, after = np.zeros(c.model.n), np.zeros(c.model.n)
-    pool = candidates(search, leading)
+    views = views_of(search, leading)
     for group in groups(search, scheme):
         out = part.start + np.flatnonzero(np.isin(labels, group))
-        kept = np.setdiff1d(np.arange(len(r)), out)
+        kept = np.setdiff1d(np.arange(len(search.null.residual)), out)
         held = np.flatnonzero(np.isin(ends, group))
-        factor = cho_factor(V[np.ix_(kept, kept)])
-        carry = cho_solve(factor, V[np.ix_(kept, oil[held])]).T
-        before[held] = r[oil[held]] - carry @ r[kept]
-        effect = chosen_effect(pool, r, V, kept)
-        left = r - effect
-        after[held] = left[oil[held]] - carry @ left[kept]
+        logs, errors = zip(*(found for view in views for found in seen(view, kept, oil[held])), strict=True)
+        weights = np.exp(np.array(logs) - logsumexp(logs))
+        before[held], after[held] = errors[0], weights @ np.array(errors)
     ratios = _bootstrap(before, after, ends, seed)
     return Gain(scheme, "T_oil_C", rms(before), rms(after), ratios, noise_floor(search), len(before))
 
 
-def candidates(
-    search: Search, leading: Sequence[Hypothesis]
-) -> list[tuple[tuple[Family, ...], tuple[int, ...], float]]:
-    """What a fold may choose from: every form of every single, and the leading pairs, each with its log prior."""
-    prior = float(np.log(ONE / len(search.causes)))
-    pool: list[tuple[tuple[Family, ...], tuple[int, ...], float]] = []
-    seen = set()
-    for h in leading:
-        if len(h.causes) == 1:
-            f = h.families[0]
-            pool += [((f,), (k,), prior + float(f.log_w[k] - np.log(len(f.forms)))) for k in range(len(f.forms))]
-            seen.add(h.causes[0])
-        elif h.families:
-            best = tuple(_index(f, h) for f in h.families)
-            pool.append((h.families, best, prior - 3.0))
-    for f in search.found.values():
-        if f.cause.id not in seen:
-            pool += [((f,), (k,), prior + float(f.log_w[k] - np.log(len(f.forms)))) for k in range(len(f.forms))]
-    return pool
+def views_of(search: Search, leading: Sequence[Hypothesis]) -> list[View]:
+    """What a fold may choose from: nothing, every cause at the first look, and the leading hypotheses as fitted."""
+    fitted = [h for h in leading if h.families and h.linear is not search.null and SCATTER not in h.causes]
+    closer = {h.causes[0] for h in fitted if len(h.causes) == 1}
+    first = [(search.prior(1), (f,)) for f in search.found.values() if f.cause.id not in closer]
+    views = [View(search.null, ((search.prior(0), ()), *first))]
+    return views + [View(h.linear, ((search.prior(len(h.causes)), h.families),)) for h in fitted if h.linear]
 
 
-def _index(f: Family, h: Hypothesis) -> int:
-    theta = h.theta[f.cause.id]
-    return next(k for k, form in enumerate(f.forms) if all(theta[n] == v for n, v in form.items()))
-
-
-def chosen_effect(
-    pool: Sequence[tuple[tuple[Family, ...], tuple[int, ...], float]], r: np.ndarray, V: np.ndarray, kept: np.ndarray
-) -> np.ndarray:
-    """Effect on all readings of what the kept ones prefer, averaged over what they leave open; none counts too."""
+def seen(view: View, kept: np.ndarray, held: np.ndarray) -> Iterable[tuple[float, np.ndarray]]:
+    """Log posterior of each hypothesis by the kept readings, and the errors it leaves on the held ones."""
+    V, r = view.linear.covariance, view.linear.residual
     white = White.of(r[kept], V[np.ix_(kept, kept)])
-    columns = np.stack([f.signatures[:, k] for fs, ks, _ in pool for f, k in zip(fs, ks, strict=True)], axis=1)
-    G = white.columns(columns[kept])
-    logs, effects, j = [float(np.log(NONE))], [np.zeros(len(r))], 0
-    for fs, ks, prior in pool:
-        n = len(ks)
-        A = G[:, j : j + n]
-        sd = np.array([2 * f.cause.size.sd for f in fs])
-        precision = A.T @ A + np.diag(sd**-2)
-        size = np.linalg.solve(precision, A.T @ white.e)
-        size = np.clip(size, [f.cause.size.low for f in fs], [f.cause.size.high for f in fs])
-        fit = float(size @ (A.T @ white.e) - 0.5 * size @ precision @ size)
-        logs.append(prior + fit - 0.5 * float(np.log(np.linalg.det(precision) * np.prod(sd**2))))
-        effects.append(columns[:, j : j + n] @ size)
-        j += n
-    weights = np.exp(np.array(logs) - logsumexp(logs))
-    keep = np.flatnonzero(weights > 1e-4)
-    return np.asarray(sum(weights[i] * effects[i] for i in keep))
+    carry = white.columns(V[np.ix_(kept, held)]).T
+    base, error = log_gauss(white), r[held] - carry @ white.e
+    for prior, own in view.hypotheses:
+        if not own:
+            yield base + prior, error
+            continue
+        cut = [replace(f, signatures=f.signatures[kept]).seen(white) for f in own]
+        effect = np.zeros(len(held))
+        if len(own) == 1:
+            value, shares, sizes = cut[0].evidence(), [cut[0].weights()], [cut[0].sizes()[0]]
+        else:
+            value, joint = pair_evidence(*cut)
+            k, m = np.unravel_index(int(np.argmax(joint)), joint.shape)
+            theta = pair_theta(*cut, int(k), int(m))
+            shares = [np.eye(len(f.forms))[i] for f, i in zip(own, (k, m), strict=True)]
+            sizes = [np.full(len(f.forms), theta[f.cause.id][f.cause.size.name]) for f in own]
+        for f, g, w, size in zip(own, cut, shares, sizes, strict=True):
+            effect += (f.signatures[held] - carry @ g.white) @ (w * size)
+        yield base + value + prior, error - effect
 
 
 def groups(search: Search, scheme: str) -> Iterable[Sequence[int]]:

@@ -6,9 +6,9 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.linalg import cho_factor, cho_solve
 
 from ...scenarios.measured import Campaign
-from ..effects.cause import Cause, Theta
 from ..effects.taxonomy import CAUSES
 from .campaign_model import CampaignModel, Rig
 from .experiments import ranked
@@ -16,8 +16,8 @@ from .family import form_of
 from .findings import Findings, Joint
 from .gain import gain
 from .inputs import Inputs
-from .nuisance import Parameters
-from .problem import Campaigned, Linear, Problem
+from .nuisance import Channels, Parameters, instrument_covariance
+from .problem import Campaigned, Linear, Problem, remainder
 from .search import DRAWS, Hypothesis, Search
 from .weigh import SHOWN, confusable, joints, named, p_adequacy
 
@@ -25,47 +25,50 @@ from .weigh import SHOWN, confusable, joints, named, p_adequacy
 SURE, ADEQUATE = 0.9, 0.01
 #: Hypotheses and causes that are reported; causes between which experiments are judged.
 MOST, JUDGED = 12, 4
+#: Probability from which a hypothesis counts in predictions.
+COUNTS = 0.03
 
 
 @dataclass(frozen=True)
 class Predictor:
-    """Oil temperatures that the instruments will show at new points, without and with the top hypothesis."""
+    """Oil temperatures that the instruments will show at new points, without a cause and by the weighed hypotheses."""
 
     problem: Problem
     null: Linear
-    top: Hypothesis
-    applied: bool
+    weighed: tuple[tuple[float, Hypothesis], ...]
     oils: Mapping[str, Mapping[str, float]]
 
     def __call__(self, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
         """Nominal and extended oil temperatures [degC] at the readings of a table of points, in running order."""
         orders = [float(reading.order) for reading in self.problem.data.model.readings]
         model = CampaignModel(self.problem.rig, points, self.oils, span=(min(orders), max(orders)))
-        nominal = self._at(model, self.null, {}, ())
-        if not self.applied:
-            return nominal, nominal
-        causes = [CAUSES[c] for c in self.top.causes]
-        return nominal, self._at(model, self.top.linear or self.null, self.top.theta, causes)
+        extended, total = np.zeros(model.n), sum(weight for weight, _ in self.weighed)
+        for weight, h in self.weighed:
+            extended += weight / total * self._at(model, h)
+        return self._at(model, Hypothesis((), 0.0, linear=self.null)), extended
 
-    def _at(
-        self, model: CampaignModel, linear: Linear, theta: Mapping[str, Theta], causes: list[Cause] | tuple[()]
-    ) -> np.ndarray:
-        values = dict(linear.values)
+    def _at(self, model: CampaignModel, h: Hypothesis) -> np.ndarray:
+        linear, causes = h.linear or self.null, [CAUSES[c] for c in h.causes]
+        values, effect = dict(linear.values), np.zeros(len(linear.residual))
         for cause in causes:
-            values |= cause.values({**self.problem.rig.base, **values}, theta[cause.id], model.rows)
+            values |= cause.values({**self.problem.rig.base, **values}, h.theta[cause.id], model.rows)
         shown = model.simulate([values])[0]
         for cause in causes:
-            shown = cause.readings(theta[cause.id], model.rows, shown)
-        return np.asarray(shown["T_oil"] - 273.15 + self._offset(linear, theta, causes))
+            shown = cause.readings(h.theta[cause.id], model.rows, shown)
+        for f in h.families:
+            effect += f.signatures[:, form_of(f, h.theta[f.cause.id])] * h.theta[f.cause.id][f.cause.size.name]
+        return np.asarray(shown["T_oil"] - 273.15 + self._tied(model, linear, linear.residual - effect))
 
-    def _offset(self, linear: Linear, theta: Mapping[str, Theta], causes: list[Cause] | tuple[()]) -> float:
-        """The oil probe's fixed error, as the data tell it: the mean of what the fit leaves, shrunk by its prior."""
-        c, part = self.problem.data, self.problem.place(self.problem.data)
-        left = linear.residual - linear.jacobian @ linear.z
-        oil = left[part][c.channels.part("T_oil")]
-        channel = self.problem.card.channel("T_oil_C")
-        shrink = channel.offset_sd**2 / max(channel.offset_sd**2 + channel.repeat_sd**2 / len(oil), 1e-12)
-        return float(shrink * oil.mean())
+    def _tied(self, model: CampaignModel, linear: Linear, left: np.ndarray) -> np.ndarray:
+        """What the oil probe's tolerance, the room probe's and the smooth remainder add, as the data tell them."""
+        problem = self.problem
+        weights = problem.tied.T @ cho_solve(cho_factor(linear.covariance), left)
+        channels = Channels({"T_oil": np.arange(model.n)})
+        columns = instrument_covariance(channels, model.rows, problem.card)[1]
+        if len(problem.campaigns) > 1:
+            columns |= remainder(channels, model.rows)
+        known = dict(zip(problem.tied_names, weights, strict=True))
+        return np.asarray(sum(known[name] * column for name, column in columns.items()))
 
 
 def infer(
@@ -89,7 +92,9 @@ def infer(
     progress("next experiment", 0.92)
     causes = named(search, found, leading)
     weights = {n.id: max(n.probability, 0.02) for n in causes[:JUDGED]}
-    applied = alarm and bool(hypothesis.causes)
+    weighed = [(j.probability, h) for j, h in zip(found, members, strict=True) if j.probability > COUNTS]
+    if not alarm:
+        weighed = [(1.0, h) for h in members if not h.causes]
     findings = Findings(
         verdict=verdict,
         alpha=alpha,
@@ -109,7 +114,7 @@ def infer(
         rows=shown(search, hypothesis),
     )
     progress("done", 1.0)
-    return findings, Predictor(problem, search.null, hypothesis, applied, inputs.oils)
+    return findings, Predictor(problem, search.null, tuple(weighed), inputs.oils)
 
 
 def problem_of(inputs: Inputs) -> Problem:

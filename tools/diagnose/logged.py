@@ -10,8 +10,8 @@ import numpy as np
 from ...scenarios.measured import Test
 from .series import Series
 
-#: Places in a half as shares of its dwell, and the half width over which samples are averaged.
-SHARES, WIDTH = (0.05, 0.12, 0.2, 0.3, 0.45, 0.65, 0.85), 0.02
+#: Places in a half as shares of its dwell; half width over which samples are averaged, if there are so many.
+SHARES, WIDTH, MANY = (0.05, 0.12, 0.2, 0.3, 0.45, 0.65, 0.85), 0.02, 5
 #: A half that was logged over a dwell other than stated by less than this is compared place by place.
 AS_STATED = 0.03
 
@@ -51,12 +51,14 @@ def sampled(series: Series | None, test: Test, stop: float) -> list[Sampled]:
 
 
 def _places(share: np.ndarray, columns: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Places that were logged, and both temperatures there: samples around each, by a straight line through them."""
-    kept, values = [], []
-    for place in SHARES:
+    """Places that were logged, and both temperatures there: between the samples around each, or a line through many."""
+    kept = [place for place in SHARES if len(share) and share[0] <= place <= share[-1]]
+    values = np.zeros((len(kept), 2))
+    for k, place in enumerate(kept):
         near = np.abs(share - place) <= WIDTH
-        if near.sum() >= 2:
-            kept.append(place)
-            values.append([np.polynomial.Polynomial.fit(share[near], c[near], 1)(place) for c in columns])
-    T = np.array(values).reshape(-1, 2)
-    return np.array(kept), T[:, 0], T[:, 1]
+        for i, column in enumerate(columns):
+            if near.sum() >= MANY:
+                values[k, i] = np.polynomial.Polynomial.fit(share[near], column[near], 1)(place)
+            else:
+                values[k, i] = np.interp(place, share, column)
+    return np.array(kept), values[:, 0], values[:, 1]

@@ -9,7 +9,8 @@ from typing import Any
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
-from ..effects.cause import Cause, Readings, Theta
+from ...model.errors import SolveError
+from ..effects.cause import Cause, Readings, Rows, Theta
 from .campaign_model import CampaignModel, Rig
 from .card import Card
 from .nuisance import COURSES, Channels, Parameters, day_values, instrument_covariance
@@ -100,6 +101,7 @@ class Problem:
     instrument: np.ndarray = field(init=False)
     scatter: np.ndarray = field(init=False)
     tied: np.ndarray = field(init=False)
+    tied_names: Sequence[str] = field(init=False)
 
     def __post_init__(self) -> None:
         self.measured = np.concatenate([c.measured for c in self.campaigns])
@@ -107,10 +109,15 @@ class Problem:
         for c in self.campaigns:
             R, columns = instrument_covariance(c.channels, c.model.rows, self.card)
             blocks.append(R)
-            shared.append(columns | (_remainder(c) if len(self.campaigns) > 1 else {}))
-        tied = [[own.get(name, np.zeros(len(c.measured))) for name in sorted(set().union(*shared))]
-                for c, own in zip(self.campaigns, shared, strict=True)]
-        joined = np.concatenate([np.stack(own, axis=1) for own in tied])
+            shared.append(columns | (remainder(c.channels, c.model.rows) if len(self.campaigns) > 1 else {}))
+        self.tied_names = sorted(set().union(*shared))
+        none = [np.zeros(len(c.measured)) for c in self.campaigns]
+        joined = np.concatenate(
+            [
+                np.stack([own.get(name, zero) for name in self.tied_names], axis=1)
+                for own, zero in zip(shared, none, strict=True)
+            ]
+        )
         self.scatter, self.tied = _block_diagonal(blocks), joined
         self.instrument = self.scatter + joined @ joined.T
 
@@ -138,6 +145,8 @@ class Problem:
         variants.append({**variants[0], **day_values({**self.rig.base, **variants[0]}, DAY_STEP)})
         parts = [self.shown_at(c, [(values, theta or {}) for values in variants], causes) for c in self.campaigns]
         columns = np.concatenate(parts)
+        if not np.isfinite(columns).all():
+            raise SolveError("the model cannot be run near what its causes make of it.")
         nominal = columns[:, 0]
         jacobian = (columns[:, 1:-1] - nominal[:, None]) / STEP
         day = (columns[:, -1] - nominal) / DAY_STEP
@@ -273,22 +282,22 @@ def _joined(ends: Readings, courses: Readings, n: int) -> Readings:
     return {c: np.concatenate([ends[c][:n], courses[c][n:]]) for c in ends}
 
 
-def _remainder(c: Campaigned) -> dict[str, np.ndarray]:
+def remainder(channels: Channels, rows: Rows) -> dict[str, np.ndarray]:
     """Effects of a smooth remainder in speed, torque, room and direction, the same in all campaigns of a rig.
 
     Along logged courses it also changes with the share of the dwell that has passed.
     """
-    rows, which = c.model.rows, c.channels.rows
+    which = channels.rows
     w, tau, room = (rows.w - 18.0) / 6.0, (rows.tau - 2100.0) / 500.0, (rows.T_room - 300.0) / 6.0
     d, one = rows.direction, np.ones(len(rows.w))
     smooth = [one, w, tau, room, d, w * tau, w**2, tau**2, d * w, d * tau]
     begun = [f * (1 - rows.share) ** k * (1 + side * d) for k in (1, 2, 4) for side in (1, -1) for f in (one, w, tau)]
     found = {}
-    for name in c.channels.names:
-        part = c.channels.part(name)
+    for name in channels.names:
+        part = channels.part(name)
         for k, feature in enumerate([*smooth, *begun] if name in COURSES else smooth):
             if name in REMAINDER:
-                column = np.zeros(len(c.measured))
+                column = np.zeros(len(which))
                 column[part] = feature[which[part]] * REMAINDER[name]
                 found[f"remainder of {name} {k}"] = column
     return found

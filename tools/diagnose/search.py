@@ -16,7 +16,7 @@ from ..effects.cause import Cause, Theta
 from ..effects.taxonomy import CAUSES
 from .evidence import White, score
 from .family import FORMS, Family, Sample, families, form_of, nearer, pair_evidence, pair_promise, pair_theta
-from .fit import fitted
+from .fit import Fit, fitted
 from .problem import Linear, Problem
 from .scatter import SCATTER, Days
 from .unnamed import Unnamed
@@ -28,6 +28,8 @@ WITH_DAYS = 5
 #: Prior probabilities: nothing wrong, one cause, two causes, something outside the library.
 NONE, ONE, TWO, OUTSIDE = 0.5, 0.37, 0.08, 0.05
 DRAWS = 4000
+#: A fit begins at the next best kind, too, if it is no worse than this; places at which thresholds are tried.
+NEXT, SCAN = 9.0, np.linspace(0.04, 0.96, 12)
 #: How far below the best a single or a pair may lie to be looked at again: other forms may lift it by this.
 WORTH = (25.0, 10.0)
 
@@ -157,10 +159,8 @@ class Search:
     def _refined(self, h: Hypothesis) -> Hypothesis:
         """A hypothesis with its model linearised where it acts, and more forms around its best ones."""
         causes = [CAUSES[c] for c in h.causes]
-        start = {}
-        for c, f in zip(causes, h.families, strict=True):
-            start[c.id] = (f.shares[form_of(f, h.theta[c.id])], h.theta[c.id][c.size.name])
-        fit = fitted(self.problem, self.problem.linearised(self._shifted(h), h.theta, causes), start)
+        fit = min((self._fitted(h, start) for start in self._starts(h)), key=lambda fit: fit.cost)
+        fit = self._scanned(h, fit)
         linear = self.problem.linearised(fit.z, fit.theta, causes)
         back = self.problem.put_back(linear)
         white = White.of(back.residual, back.covariance)
@@ -168,18 +168,55 @@ class Search:
         for k, c in enumerate(causes):
             samples.append(nearer(c, fit.modes[c.id], sound(fit.theta[c.id][c.size.name], c), self.seed + k))
         found = families(self.problem, linear, white, samples)
-        if len(causes) == 1:
-            f = found[causes[0].id]
-            k = f.best()
-            theta: dict[str, Theta] = {f.cause.id: f.theta(k, float(f.sizes()[0][k]))}
-            value = f.evidence()
-        else:
-            a, b = (found[c.id] for c in causes)
-            value, joint = pair_evidence(a, b)
-            i, j = np.unravel_index(int(np.argmax(joint)), joint.shape)
-            theta = pair_theta(a, b, int(i), int(j))
+        theta = {c.id: found[c.id].theta(0, fit.theta[c.id][c.size.name]) for c in causes}
+        value = found[causes[0].id].evidence() if len(causes) == 1 else pair_evidence(*(found[c.id] for c in causes))[0]
         value += log_gauss(white) + self.prior(len(causes))
         return replace(h, log_posterior=float(value), theta=theta, families=tuple(found.values()), linear=back)
+
+    def _starts(self, h: Hypothesis) -> list[dict[str, tuple[np.ndarray, float]]]:
+        """Where fits begin: at the best forms, and for one cause at the best of its next best kind."""
+        first = {}
+        for f in h.families:
+            theta = h.theta[f.cause.id]
+            first[f.cause.id] = (f.shares[form_of(f, theta)], theta[f.cause.size.name])
+        starts, f = [first], h.families[0]
+        if len(h.causes) == 1 and f.cause.choice is not None:
+            kinds = np.searchsorted(f.cause.shapes[f.cause.choice].ends, f.shares[:, f.cause.choice])
+            logs = np.where(kinds == kinds[form_of(f, h.theta[f.cause.id])], -np.inf, f.log_bf() + f.log_w)
+            k = int(np.argmax(logs))
+            if logs[k] > (f.log_bf() + f.log_w).max() - NEXT:
+                starts.append({f.cause.id: (f.shares[k], float(f.sizes()[0][k]))})
+        return starts
+
+    def _fitted(self, h: Hypothesis, start: Mapping[str, tuple[np.ndarray, float]], z: np.ndarray | None = None) -> Fit:
+        causes = [CAUSES[c] for c in h.causes]
+        theta = {}
+        for c in causes:
+            form = c.forms(start[c.id][0][None])[0] if c.shapes else {}
+            theta[c.id] = {**form, c.size.name: start[c.id][1]}
+        begin = self._shifted(h) if z is None else z
+        return fitted(self.problem, self.problem.linearised(begin, theta, causes), start)
+
+    def _scanned(self, h: Hypothesis, fit: Fit) -> Fit:
+        """A fit, begun again where another threshold promises more: a threshold has many local best places."""
+        for c in (CAUSES[name] for name in h.causes):
+            mode, place = fit.modes[c.id], next((k for k, s in enumerate(c.shapes) if s.name == "threshold"), None)
+            if place is None or c.acts(fit.theta[c.id]) is None:
+                continue
+            size = fit.theta[c.id][c.size.name]
+            shares = np.tile(mode.shares, (1 + len(SCAN), 1))
+            shares[1:, place] = SCAN
+            linear = self.problem.linearised(fit.z, fit.theta, [CAUSES[name] for name in h.causes])
+            back = self.problem.put_back(linear)
+            white = White.of(back.residual, back.covariance)
+            sample = Sample(c, shares, np.zeros(len(shares)), sound(size, c))
+            logs = families(self.problem, linear, white, [sample])[c.id].log_bf()
+            k = int(np.argmax(logs))
+            if logs[k] > logs[0] + 0.5:
+                start = {name: (m.shares, fit.theta[name][CAUSES[name].size.name]) for name, m in fit.modes.items()}
+                again = self._fitted(h, {**start, c.id: (shares[k], size)}, fit.z)
+                fit = min(fit, again, key=lambda fit: fit.cost)
+        return fit
 
     def _shifted(self, h: Hypothesis) -> np.ndarray:
         """Nuisances under a hypothesis, by its linearisation."""
