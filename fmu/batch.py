@@ -14,7 +14,7 @@ import ctypes
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import IntEnum
-from functools import cached_property, lru_cache
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -23,8 +23,9 @@ from gearheat.model.errors import ScenarioError, suggestion
 from gearheat.model.run.schedule import Schedule
 
 from .batch_library import Course, address, driver, rows_from, shared
-from .batch_source import EXTRA, steady_source, warmup_source
+from .batch_source import EXTRA, METHOD, steady_source, warmup_source
 from .grid import Grid, grid
+from .rosenbrock import Tableau
 
 #: Of the local error of a warm-up, in nominals of the states.
 TOLERANCE = 1e-4
@@ -98,13 +99,15 @@ class Batch:
 
     Args:
         flat: the model
+        method: of warm-ups; one of lower order is quicker where little accuracy is wanted
     """
 
-    def __init__(self, flat: FlatModel) -> None:
+    def __init__(self, flat: FlatModel, method: Tableau = METHOD) -> None:
         self.name = flat.name
         self.states, self.inputs, self.parameters = flat.states, flat.inputs, flat.parameters
         self.outputs = flat.outputs
-        self._flat = flat
+        self._flat, self._method = flat, method
+        self._limits = [_limits(group) for group in (self.inputs, self.parameters, self.states)]
 
     @cached_property
     def steady_source(self) -> str:
@@ -114,12 +117,12 @@ class Batch:
     @cached_property
     def warmup_source(self) -> str:
         """The C text for warm-ups."""
-        return warmup_source(self._flat)
+        return warmup_source(self._flat, self._method)
 
     def __getstate__(self) -> dict[str, Any]:
         """All but the symbols, which cannot be pickled and are in the C text."""
         texts = {"steady_source": self.steady_source, "warmup_source": self.warmup_source}
-        return {name: value for name, value in self.__dict__.items() if name != "_flat"} | texts
+        return {name: value for name, value in self.__dict__.items() if name not in ("_flat", "_method")} | texts
 
     @property
     def columns(self) -> dict[str, tuple[str, int]]:
@@ -266,8 +269,8 @@ class Batch:
             raise ScenarioError(problems)
         n = counts.pop() if counts else 1
         sound = np.ones(n, dtype=bool)
-        for (_, group, _), vector in zip(named, vectors, strict=True):
-            sound &= _in_range(group, vector)
+        for limits, vector in zip(self._limits, vectors, strict=True):
+            sound &= _in_range(limits, vector)
         return n, tuple(vectors), sound
 
     def _schedule_problems(self, schedule: Schedule, tolerance: float) -> list[str]:
@@ -296,19 +299,18 @@ def _stacked(group: Sequence[Quantity], given: Mapping[str, np.ndarray]) -> np.n
     return np.ascontiguousarray(np.stack(np.broadcast_arrays(*columns), axis=-1))
 
 
-def _in_range(group: Sequence[Quantity], vector: np.ndarray) -> Any:
-    """Which rows have all their values in range: one answer for a vector that all rows share."""
-    low, high, low_open, high_open = _limits(tuple(group))
-    above = np.where(low_open, vector > low, vector >= low)
-    below = np.where(high_open, vector < high, vector <= high)
-    return (np.isfinite(vector) & above & below).all(axis=-1)
-
-
-@lru_cache(maxsize=64)
-def _limits(group: tuple[Quantity, ...]) -> tuple[np.ndarray, ...]:
+def _limits(group: Sequence[Quantity]) -> tuple[np.ndarray, ...]:
     """Lower and upper limits of a group, and whether each is left out."""
     names = ("low", "high", "low_open", "high_open")
     return tuple(np.array([getattr(q, name) for q in group]) for name in names)
+
+
+def _in_range(limits: tuple[np.ndarray, ...], vector: np.ndarray) -> Any:
+    """Which rows have all their values in range: one answer for a vector that all rows share."""
+    low, high, low_open, high_open = limits
+    above = np.where(low_open, vector > low, vector >= low)
+    below = np.where(high_open, vector < high, vector <= high)
+    return (np.isfinite(vector) & above & below).all(axis=-1)
 
 
 def _marked(rows: Rows, sound: np.ndarray) -> Rows:

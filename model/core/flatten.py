@@ -10,12 +10,16 @@ from ..sources import LawInfo, LawUse, recording
 from .component import Component
 from .connect import Assembly, nets
 from .flat import Check, FlatModel, Quantity
-from .solve import Row, Solution, Unknown, column, incidence, inline, solve
+from .solve import NEWTON_STEPS, Row, Solution, Unknown, column, incidence, inline, solve
 from .structure import check_structure
 
 
-def flatten(assembly: Assembly) -> FlatModel:
+def flatten(assembly: Assembly, newton_steps: int = NEWTON_STEPS) -> FlatModel:
     """Alias the potentials of each net, balance its flows, sort all equations and solve them block by block.
+
+    Args:
+        assembly: parts and their connections
+        newton_steps: of implicit blocks, from their guesses
 
     Raises:
         StructureError: ports that do not exist, too few or too many equations, a singular or unsolvable block
@@ -32,7 +36,7 @@ def flatten(assembly: Assembly) -> FlatModel:
     aliased = _Alias(alias)
     rows = [Row(r.name, aliased(r.lhs), aliased(r.rhs)) for r in rows]
     check_structure(assembly.name, incidence(rows, unknowns), [r.name for r in rows], [u.name for u in unknowns])
-    solution = Solution(_typical(assembly, unknowns))
+    solution = Solution(_typical(assembly, unknowns), newton_steps)
     solve(assembly.name, rows, unknowns, solution)
     return _flat_model(assembly, solution, aliased, checks, tuple(laws))
 

@@ -47,10 +47,12 @@ class Row:
 class Solution:
     """Definitions in the order in which they can be evaluated, and the residuals that implicit blocks leave.
 
-    `typical` holds a typical value of every symbol by its hash: it only steers the choice of pivots.
+    `typical` holds a typical value of every symbol by its hash: it only steers the choice of pivots. Implicit blocks
+    take `newton_steps` steps.
     """
 
     typical: Mapping[int, float]
+    newton_steps: int = NEWTON_STEPS
     symbols: list[Any] = field(default_factory=list)
     definitions: list[Any] = field(default_factory=list)
     residuals: list[tuple[str, Any]] = field(default_factory=list)
@@ -157,7 +159,7 @@ def _pivot(
 def _newton(model: str, rows: list[Row], unknowns: list[Unknown], solution: Solution) -> None:
     """Tear the block at its unknowns with a guess, sort the rest, and iterate on the torn ones."""
     torn, tests, rest_rows, rest = _tear(model, rows, unknowns)
-    inner = Solution(solution.typical)
+    inner = Solution(solution.typical, solution.newton_steps)
     if rest:
         solve(model, rest_rows, rest, inner)
     z = column([u.symbol for u in torn])
@@ -166,7 +168,7 @@ def _newton(model: str, rows: list[Row], unknowns: list[Unknown], solution: Solu
     jacobian = ca.jacobian(residual, z)
     step = ca.Function("step", [z, outer], [residual, jacobian], {"cse": True})
     value = ca.SX([u.guess for u in torn])
-    for _ in range(NEWTON_STEPS):
+    for _ in range(solution.newton_steps):
         r, j = step(value, outer)
         value = value - _linear_solve(model, j, r, torn, solution.typical)
     left, _ = step(value, outer)

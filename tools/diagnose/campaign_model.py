@@ -12,6 +12,7 @@ import numpy as np
 
 from ...fmu.batch import Batch
 from ...fmu.batch_library import cores
+from ...fmu.rosenbrock import RODAS3
 from ...model.core.flatten import flatten
 from ...model.errors import SolveError
 from ...model.machines.spec import Spec, assemble
@@ -34,15 +35,16 @@ class Rig:
     """The compiled superset of a machine, for any campaign on it."""
 
     def __init__(self, spec: Spec) -> None:
-        flat = as_read(flatten(assemble(superset(spec))))
+        flat = as_read(flatten(assemble(superset(spec)), newton_steps=1))  # losses to 1e-4 N.m
         place = {q.name: i for i, q in enumerate(flat.outputs)}
         states = {q.name: i for i, q in enumerate(flat.states)}
         shown = [flat.x[states[o]] if o in states else flat.y[place[o]] for o in OUTPUTS.values()]
         outputs = tuple(replace(flat.outputs[0], name=channel) for channel in OUTPUTS)
-        self.batch = Batch(replace(flat, outputs=outputs, y=ca.vertcat(*shown)))
+        self.batch = Batch(replace(flat, outputs=outputs, y=ca.vertcat(*shown)), RODAS3)
         self.base = {q.name: q.start for q in flat.parameters}
         self.inputs = flat.starts("input")
         self.n_states = len(flat.states)
+        self.pool = ThreadPoolExecutor(cores()) if cores() > 1 else None
         self._home = np.array(list(self.base.values()))
         self._place = {name: i for i, name in enumerate(self.base)}
 
@@ -114,8 +116,8 @@ class CampaignModel:
 
         def joined() -> dict[str, np.ndarray]:
             p = self.rig.parameters(variants, self.oils)
-            with ThreadPoolExecutor(cores()) as pool:  # C lets go of the interpreter
-                blocks = list(pool.map(lambda k: self._test(k, variants, p[k]), range(len(self.tests))))
+            every = self.rig.pool.map if self.rig.pool else map  # C lets go of the interpreter
+            blocks = list(every(lambda k: self._test(k, variants, p[k]), range(len(self.tests))))
             whole = np.concatenate([b[0] for b in blocks] + [b[1] for b in blocks], axis=1)
             found = {channel: whole[:, :, i] for i, channel in enumerate(OUTPUTS)}
             return {**found, "T_oil2": found["T_oil"], "dwell": np.zeros_like(found["T_oil"])}

@@ -11,15 +11,17 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
-from scipy.stats import norm
+from scipy.special import ndtr, ndtri
 
 from ...model.errors import SolveError
 from ..effects.cause import Cause, Theta
 from .problem import Linear, Problem
 
 #: Steps at most, and the change below which they end; length of a step of a nuisance, a size and a shape.
-STEPS, SETTLED = 5, 0.03
+STEPS, SETTLED = 4, 0.05
 LONGEST = {"z": 1.5, "size": 0.75, "shape": 0.8}
+#: A step that gains less than this in log likelihood is the last.
+LITTLE = 0.02
 #: Of the difference quotients by a shape, and by a size.
 SHAPE_STEP, SIZE_STEP = 0.2, 0.05
 #: Shapes stay inside so many standard deviations.
@@ -73,7 +75,7 @@ class _Fitting:
             x.append(size / (2 * c.size.sd))
             for k in self.free(c):
                 self.labels.append(("shape", c, k))
-                x.append(float(np.clip(norm.ppf(shares[k]), -FAR, FAR)))
+                x.append(float(np.clip(ndtri(shares[k]), -FAR, FAR)))
         self.x = np.array(x)
 
     @staticmethod
@@ -86,7 +88,7 @@ class _Fitting:
         found = np.full(len(cause.shapes), self.choices.get(cause.id, 0.5))
         for (kind, c, k), value in zip(self.labels, x[self.n :], strict=True):
             if kind == "shape" and c is cause:
-                found[k] = norm.cdf(value)
+                found[k] = float(ndtr(value))
         return found
 
     def theta(self, x: np.ndarray) -> dict[str, Theta]:
@@ -98,40 +100,30 @@ class _Fitting:
                 found[c.id] = {**form, c.size.name: 2 * c.size.sd * float(value)}
         return found
 
-    def shown(self, xs: Sequence[np.ndarray], *, all_campaigns: bool) -> np.ndarray:
-        """What all instruments show (m, n); where only the acting campaign is wanted the rest is not filled in."""
-        found = np.zeros((len(self.problem.measured), len(xs)))
-        for c in self.problem.campaigns:
-            if c.acting or all_campaigns:
-                found[self.problem.place(c)] = self.problem.shown_at(c, [self.at(x) for x in xs], self.causes)
-        return found
-
     def at(self, x: np.ndarray) -> tuple[Mapping[str, float], Mapping[str, Theta]]:
         """Values of the rig and parameters of the causes."""
         return self.problem.parameters.values(x[: self.n]), self.theta(x)
 
     def run(self) -> Fit:
-        shown = self.linear.nominal
-        cost, H = self.cost(self.x, shown), np.eye(len(self.x))
+        shown, J, H = self.looked(self.x)
+        cost = self.cost(self.x, shown)
         if not np.isfinite(cost):
             raise SolveError("the model cannot be run where the fit of its causes begins.")
-        for step in range(STEPS):
-            J, H = self.slopes(shown)
+        for _ in range(STEPS):
             gradient = J.T @ cho_solve(self.factor, self.problem.measured - shown) - self.x
             change = self.limited(np.linalg.solve(H, gradient))
             for _ in range(3):
                 new = self.legal(self.x + change)
-                there = self.shown([new], all_campaigns=True)[:, 0]
-                value = self.cost(new, there)
+                found = self.looked(new)
+                value = self.cost(new, found[0])
                 if np.isfinite(value) and value <= cost + 1e-6:
                     break
                 change = 0.3 * change
             else:
                 break
-            moved = float(np.abs(new - self.x).max())
-            gained = cost - value
-            self.x, shown, cost = new, there, value
-            if moved < SETTLED or (gained < 0.02 and step > 0):
+            moved, gained = float(np.abs(new - self.x).max()), cost - value
+            self.x, cost, (shown, J, H) = new, value, found
+            if moved < SETTLED or gained < LITTLE:
                 break
         return Fit(self.x[: self.n], self.theta(self.x), self.modes(np.linalg.inv(H)), cost)
 
@@ -142,21 +134,25 @@ class _Fitting:
             return float("inf")
         return float(0.5 * r @ cho_solve(self.factor, r) + 0.5 * x @ x)
 
-    def slopes(self, shown: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Jacobian by all unknowns, and the Hessian of the cost."""
-        moved, steps = [], []
+    def looked(self, at: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """What all instruments show there, its Jacobian by all unknowns, and the Hessian of the cost."""
+        xs, steps = [at], []
         for k, (kind, _, _) in enumerate(self.labels):
-            x = self.x.copy()
+            x = at.copy()
             length = SHAPE_STEP if kind == "shape" else max(SIZE_STEP, 0.1 * abs(x[self.n + k]))
             steps.append(-length if x[self.n + k] > 0 else length)
             x[self.n + k] += steps[-1]
-            moved.append(x)
-        there = self.shown(moved, all_campaigns=False)
-        columns = np.zeros_like(there)
-        columns[self.part] = (there[self.part] - shown[self.part, None]) / np.array(steps)
+            xs.append(x)
+        columns, base = np.zeros((len(self.problem.measured), len(steps))), np.zeros(len(self.problem.measured))
+        for c in self.problem.campaigns:
+            part = self.problem.place(c)
+            there = self.problem.shown_at(c, [self.at(x) for x in (xs if c.acting else xs[:1])], self.causes)
+            base[part] = there[:, 0]
+            if c.acting:
+                columns[part] = (there[:, 1:] - there[:, :1]) / np.array(steps)
         columns[:, ~np.isfinite(columns).all(axis=0)] = 0.0
         J = np.concatenate([self.linear.jacobian, columns], axis=1)
-        return J, J.T @ cho_solve(self.factor, J) + np.eye(J.shape[1])
+        return base, J, J.T @ cho_solve(self.factor, J) + np.eye(J.shape[1])
 
     def limited(self, change: np.ndarray) -> np.ndarray:
         """A change no longer than can be trusted."""

@@ -157,6 +157,19 @@ class Problem:
         covariance = noise + jacobian @ jacobian.T
         return Linear(z, variants[0], nominal, residual, covariance, jacobian, noise, days[0], theta or {}, causes)
 
+    def moved(self, linear: Linear, z: np.ndarray, theta: Mapping[str, Theta], causes: Sequence[Cause]) -> Linear:
+        """A linearisation carried to other nuisances and causes: their readings, the slopes of before.
+
+        Raises:
+            SolveError: the model cannot be run there
+        """
+        values = self.parameters.values(z)
+        nominal = np.concatenate([self.shown_at(c, [(values, theta)], causes)[:, 0] for c in self.campaigns])
+        if not np.isfinite(nominal).all():
+            raise SolveError("the model cannot be run with what its causes make of it.")
+        residual = self.measured - nominal + linear.jacobian @ z
+        return replace(linear, z=z, values=values, nominal=nominal, residual=residual, theta=theta, causes=causes)
+
     def shown_by(self, values: Mapping[str, Any], theta: Mapping[str, Theta], causes: Sequence[Cause]) -> np.ndarray:
         """What the instruments of the acting campaign show with causes of given parameters."""
         return self.shown_at(self.data, [(values, theta)], causes)[:, 0]

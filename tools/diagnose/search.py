@@ -195,7 +195,7 @@ class Search:
             form = c.forms(start[c.id][0][None])[0] if c.shapes else {}
             theta[c.id] = {**form, c.size.name: start[c.id][1]}
         begin = self._shifted(h) if z is None else z
-        return fitted(self.problem, self.problem.linearised(begin, theta, causes), start)
+        return fitted(self.problem, self.problem.moved(self.null, begin, theta, causes), start)
 
     def _scanned(self, h: Hypothesis, fit: Fit) -> Fit:
         """A fit, begun again where another threshold promises more: a threshold has many local best places."""
@@ -206,7 +206,7 @@ class Search:
             size = fit.theta[c.id][c.size.name]
             shares = np.tile(mode.shares, (1 + len(SCAN), 1))
             shares[1:, place] = SCAN
-            linear = self.problem.linearised(fit.z, fit.theta, [CAUSES[name] for name in h.causes])
+            linear = self.problem.moved(self.null, fit.z, fit.theta, [CAUSES[name] for name in h.causes])
             back = self.problem.put_back(linear)
             white = White.of(back.residual, back.covariance)
             sample = Sample(c, shares, np.zeros(len(shares)), sound(size, c))

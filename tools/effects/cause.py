@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from scipy.stats import truncnorm
+from scipy.special import ndtr, ndtri
 
 from ...model.machines.spec import PartSpec, Spec
 
@@ -44,8 +44,8 @@ class Shape:
         """Values of the prior at shares between 0 and 1."""
         if self.sd is None:
             return self.low + share * (self.high - self.low)
-        a, b = (self.low - self.mean) / self.sd, (self.high - self.mean) / self.sd
-        return np.asarray(truncnorm.ppf(share, a, b, loc=self.mean, scale=self.sd))
+        below, above = ndtr((np.array([self.low, self.high]) - self.mean) / self.sd)
+        return np.asarray(self.mean + self.sd * ndtri(below + share * (above - below)))
 
 
 @dataclass(frozen=True)
