@@ -23,9 +23,8 @@ from gearheat.model.errors import ScenarioError, suggestion
 from gearheat.model.run.schedule import Schedule
 
 from .batch_library import Course, address, driver, rows_from, shared
-from .batch_source import EXTRA, METHOD, steady_source, warmup_source
+from .batch_source import EXTRA, steady_source, warmup_source
 from .grid import Grid, grid
-from .rosenbrock import Tableau
 
 #: Of the local error of a warm-up, in nominals of the states.
 TOLERANCE = 1e-4
@@ -99,14 +98,13 @@ class Batch:
 
     Args:
         flat: the model
-        method: of warm-ups; one of lower order is quicker where little accuracy is wanted
     """
 
-    def __init__(self, flat: FlatModel, method: Tableau = METHOD) -> None:
+    def __init__(self, flat: FlatModel) -> None:
         self.name = flat.name
         self.states, self.inputs, self.parameters = flat.states, flat.inputs, flat.parameters
         self.outputs = flat.outputs
-        self._flat, self._method = flat, method
+        self._flat = flat
         self._limits = [_limits(group) for group in (self.inputs, self.parameters, self.states)]
 
     @cached_property
@@ -117,12 +115,12 @@ class Batch:
     @cached_property
     def warmup_source(self) -> str:
         """The C text for warm-ups."""
-        return warmup_source(self._flat, self._method)
+        return warmup_source(self._flat)
 
     def __getstate__(self) -> dict[str, Any]:
         """All but the symbols, which cannot be pickled and are in the C text."""
         texts = {"steady_source": self.steady_source, "warmup_source": self.warmup_source}
-        return {name: value for name, value in self.__dict__.items() if name not in ("_flat", "_method")} | texts
+        return {name: value for name, value in self.__dict__.items() if name != "_flat"} | texts
 
     @property
     def columns(self) -> dict[str, tuple[str, int]]:

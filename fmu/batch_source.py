@@ -54,14 +54,14 @@ def steady_source(flat: FlatModel) -> str:
     return _text(flat, sizes, pattern, functions, ("batch.h", "batch_steady.c"))
 
 
-def warmup_source(flat: FlatModel, method: rosenbrock.Tableau = METHOD) -> str:
+def warmup_source(flat: FlatModel) -> str:
     """The C text for warm-ups: the equations of the FMU with its audit, and its solver.
 
     Raises:
         FmuError: an operation has no C text, or the stored energy depends on an input
     """
     model = equations(flat)
-    x_new, error, slope, h = rosenbrock.step(model.ode, model.x, model.u, method)
+    x_new, error, slope, h = rosenbrock.step(model.ode, model.x, model.u, METHOD)
     (x_new, error, y, ode), c, c_values = _hoisted([x_new, error[:-1], model.y, model.ode], model.p)
     place = [model.x, model.u, slope, model.p, c, h]
     functions = [
@@ -69,7 +69,7 @@ def warmup_source(flat: FlatModel, method: rosenbrock.Tableau = METHOD) -> str:
         _function("step", place, ["x", "u", "slope", "p", "c", "h"], [x_new, error], ["x_new", "error"]),
         _function("outputs", [model.x, model.u, model.p, c], ["x", "u", "p", "c"], [y, ode], ["y", "dx"]),
     ]
-    sizes = {**_sizes(flat), "NX": ode.numel(), "NY": y.numel(), "NC": c.numel(), "ORDER": method.order}
+    sizes = {**_sizes(flat), "NX": ode.numel(), "NY": y.numel(), "NC": c.numel(), "ORDER": METHOD.order}
     return _text(flat, sizes, [], functions, ("batch.h", "batch_instance.h", "solver.c", "batch_warmup.c"))
 
 

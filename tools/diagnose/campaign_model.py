@@ -12,7 +12,6 @@ import numpy as np
 
 from ...fmu.batch import Batch
 from ...fmu.batch_library import cores
-from ...fmu.rosenbrock import RODAS3
 from ...model.core.flatten import flatten
 from ...model.errors import SolveError
 from ...model.machines.spec import Spec, assemble
@@ -23,7 +22,7 @@ from .memory import Memory
 from .series import Series
 from .superset import as_read, superset
 
-#: Of the solver's local error: what it leaves of a course is some hundredths of a kelvin, far below any probe.
+#: Of the solver's local error: what it leaves of a course is a few thousandths of a kelvin, far below any probe.
 TOLERANCE = 1e-2
 #: Channel -> what the model says of it.
 OUTPUTS = {"T_oil": "oil.T", "T_wall": "wall.T", "loss": "efficiency.tau_loss"}
@@ -40,7 +39,7 @@ class Rig:
         states = {q.name: i for i, q in enumerate(flat.states)}
         shown = [flat.x[states[o]] if o in states else flat.y[place[o]] for o in OUTPUTS.values()]
         outputs = tuple(replace(flat.outputs[0], name=channel) for channel in OUTPUTS)
-        self.batch = Batch(replace(flat, outputs=outputs, y=ca.vertcat(*shown)), RODAS3)
+        self.batch = Batch(replace(flat, outputs=outputs, y=ca.vertcat(*shown)))
         self.base = {q.name: q.start for q in flat.parameters}
         self.inputs = flat.starts("input")
         self.n_states = len(flat.states)

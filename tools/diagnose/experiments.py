@@ -11,9 +11,9 @@ import numpy as np
 from ..effects.taxonomy import CAUSES
 from .campaign_model import CampaignModel
 from .evidence import White
+from .family import Family, Sample, families
 from .findings import Experiment
 from .problem import Campaigned, Linear, Problem
-from .family import Family, Sample, families
 from .weigh import distance
 
 #: Forms of each cause by which an experiment is judged.

@@ -6,7 +6,7 @@ stands for, a size in multiples of twice its half width.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np

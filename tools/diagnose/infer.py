@@ -120,7 +120,9 @@ def infer(
 def problem_of(inputs: Inputs) -> Problem:
     """Data and reference as one problem on one rig."""
     rig = Rig(inputs.spec)
-    campaigns = [Campaigned.of(CampaignModel(rig, inputs.data, inputs.oils, inputs.memory, series=inputs.series), acting=True)]
+    campaigns = [
+        Campaigned.of(CampaignModel(rig, inputs.data, inputs.oils, inputs.memory, series=inputs.series), acting=True)
+    ]
     if inputs.reference is not None:
         healthy = CampaignModel(rig, inputs.reference, inputs.oils, inputs.memory, series=inputs.reference_series)
         campaigns.append(Campaigned.of(healthy, acting=False))

@@ -28,8 +28,10 @@ WITH_DAYS = 5
 #: Prior probabilities: nothing wrong, one cause, two causes, something outside the library.
 NONE, ONE, TWO, OUTSIDE = 0.5, 0.37, 0.08, 0.05
 DRAWS = 4000
+#: What another look is expected to lift a hypothesis by at least; one that stays behind even so is not looked at again.
+LIFT = 7.0
 #: A fit begins at the next best kind, too, if it is no worse than this; places at which thresholds are tried.
-NEXT, SCAN = 9.0, np.linspace(0.04, 0.96, 12)
+NEXT, SCAN = 7.0, np.linspace(0.05, 0.95, 10)
 #: How far below the best a single or a pair may lie to be looked at again: other forms may lift it by this.
 WORTH = (25.0, 10.0)
 
@@ -112,8 +114,12 @@ class Search:
             if not (a.cause.like and a.cause.like == b.cause.like)
         ]
         every.sort(key=lambda pair: -pair_promise(*pair))
-        found = []
+        found, classes = [], set()
         for a, b in every[:PAIRS]:
+            names = frozenset((a.cause.like or a.cause.id, b.cause.like or b.cause.id))
+            if names in classes:  # two of the same classes are one answer
+                continue
+            classes.add(names)
             value, weights = pair_evidence(a, b)
             k, m = np.unravel_index(int(np.argmax(weights)), weights.shape)
             theta = pair_theta(a, b, int(k), int(m))
@@ -149,12 +155,17 @@ class Search:
             ranked = sorted(named, key=lambda h: -h.log_posterior)
             least = max(best - WORTH[n - 1], first[0].log_posterior - 1.0)
             leaders += [h for h in ranked[:most] if h.log_posterior > least]
-        kept = [h for h in first if h not in leaders]
+        kept, lift = [h for h in first if h not in leaders], LIFT
+        found = [first[0]]
         for k, h in enumerate(leaders):
+            if h.log_posterior + lift < max(other.log_posterior for other in found):
+                kept.append(h)
+                continue
             self.progress(f"looking again at {' and '.join(h.causes)}", 0.4 + 0.4 * k / len(leaders))
             with suppress(SolveError):  # what no machine can run explains nothing
-                kept.append(self._refined(h))
-        return kept
+                found.append(self._refined(h))
+                lift = max(lift, 1.3 * (found[-1].log_posterior - h.log_posterior))
+        return [*found, *kept[1:]]
 
     def _refined(self, h: Hypothesis) -> Hypothesis:
         """A hypothesis with its model linearised where it acts, and more forms around its best ones."""

@@ -35,7 +35,9 @@ class Unnamed:
         self.inside = np.arange(part.start, part.stop)
         self.outside = np.setdiff1d(np.arange(len(problem.measured)), self.inside)
         rows, which = c.model.rows, c.channels.rows
-        features = np.stack([(rows.w - 18.0) / 4.0, (rows.tau - 2100.0) / 400.0, rows.direction, 2 * rows.order], axis=1)
+        features = np.stack(
+            [(rows.w - 18.0) / 4.0, (rows.tau - 2100.0) / 400.0, rows.direction, 2 * rows.order], axis=1
+        )
         features = features[which]
         kind = np.concatenate([np.full(len(c.channels.holds[n]), k) for k, n in enumerate(c.channels.names)])
         alike = kind[:, None] == kind
@@ -45,8 +47,12 @@ class Unnamed:
         self.kernels = (near * alike, same * 1.0 * alike)
         self.warm = c.channels.warm() * 1.0
         self.loss = np.concatenate([np.full(len(c.channels.holds[n]), n == "loss") for n in c.channels.names]) * 1.0
-        self.probe = np.concatenate([np.full(len(c.channels.holds[n]), n[:5] == "T_oil" and n != "T_oil2")
-                                     for n in c.channels.names]) * 1.0
+        self.probe = (
+            np.concatenate(
+                [np.full(len(c.channels.holds[n]), n[:5] == "T_oil" and n != "T_oil2") for n in c.channels.names]
+            )
+            * 1.0
+        )
 
     def evidence(self, hypotheses: Sequence[Hypothesis], null: Linear) -> float:
         """Log evidence, its prior left out, of a discrepancy beside nothing or beside one of the leading hypotheses."""

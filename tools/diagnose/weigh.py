@@ -10,8 +10,8 @@ from scipy.stats import chi2, norm
 from ..effects.cause import Cause, Theta
 from ..effects.taxonomy import CAUSES
 from .evidence import White
-from .findings import Estimate, Joint, Named
 from .family import Family, form_of
+from .findings import Estimate, Joint, Named
 from .scatter import SCATTER
 from .search import Hypothesis, Search
 

@@ -4,7 +4,13 @@ from .cause import Cause, Shape, Size
 from .forms import DIRECTION, LOAD, SPEED, Regimes, extra_part, extra_values
 
 PARTS, NETS = extra_part("extra_source", "surface", braking=False)
-REGIMES = Regimes((*SPEED, *LOAD, *DIRECTION,))
+REGIMES = Regimes(
+    (
+        *SPEED,
+        *LOAD,
+        *DIRECTION,
+    )
+)
 CAUSE = Cause(
     id="heat.external_source",
     doc="Heat from a motor, a neighbour or the sun: it warms, and no torque shows it.",

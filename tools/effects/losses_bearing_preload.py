@@ -4,7 +4,14 @@ from .cause import Cause, Shape, Size
 from .forms import DIRECTION, LOAD, OIL_SHARE_BEARING, SPEED, WARMTH, Regimes, extra_part, extra_values
 
 PARTS, NETS = extra_part("extra_preload", "wall")
-REGIMES = Regimes((*SPEED, *LOAD, *WARMTH, *DIRECTION,))
+REGIMES = Regimes(
+    (
+        *SPEED,
+        *LOAD,
+        *WARMTH,
+        *DIRECTION,
+    )
+)
 CAUSE = Cause(
     id="losses.bearing_preload",
     doc="A friction torque that hardly follows load: bearings preloaded more or less than assumed.",

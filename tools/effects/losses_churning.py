@@ -4,7 +4,12 @@ from .cause import Cause, Shape, Size
 from .forms import OIL_SHARE_TEETH, SPEED, WARMTH, Regimes, extra_part, extra_values
 
 PARTS, NETS = extra_part("extra_churning", "gears")
-REGIMES = Regimes((*SPEED, *WARMTH,))
+REGIMES = Regimes(
+    (
+        *SPEED,
+        *WARMTH,
+    )
+)
 CAUSE = Cause(
     id="losses.churning",
     doc="A loss without load that grows with speed: gears, planets and carrier move the oil.",

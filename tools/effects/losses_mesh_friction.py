@@ -4,7 +4,13 @@ from .cause import Cause, Shape, Size
 from .forms import LOAD, OIL_SHARE_TEETH, SPEED, WARMTH, Regimes, extra_part, extra_values
 
 PARTS, NETS = extra_part("extra_mesh", "gears")
-REGIMES = Regimes((*SPEED, *LOAD, *WARMTH,))
+REGIMES = Regimes(
+    (
+        *SPEED,
+        *LOAD,
+        *WARMTH,
+    )
+)
 CAUSE = Cause(
     id="losses.mesh_friction",
     doc="A loss that grows with load: friction of the teeth, roughness, additives.",

@@ -4,7 +4,13 @@ from .cause import Cause, Shape, Size
 from .forms import DIRECTION, OIL_SHARE_BEARING, SPEED, WARMTH, Regimes, extra_part, extra_values
 
 PARTS, NETS = extra_part("extra_seal", "wall")
-REGIMES = Regimes((*SPEED, *WARMTH, *DIRECTION,))
+REGIMES = Regimes(
+    (
+        *SPEED,
+        *WARMTH,
+        *DIRECTION,
+    )
+)
 CAUSE = Cause(
     id="losses.seal_drag",
     doc="A friction torque without load dependence: lips that press more, or run dry.",

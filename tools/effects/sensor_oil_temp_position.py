@@ -19,8 +19,14 @@ def readings(theta: Theta, rows: Rows, r: Readings) -> Readings:
 CAUSE = Cause(
     id="sensor.oil_temp.position",
     doc="The oil probe sees oil between the sump's and the wall's or the room's temperature, or a jet from the gears.",
-    size=Size("share", "1", "share of the excess over the room that the probe loses; of that over the wall a third", 0.08,
-              -0.05, 0.35),
+    size=Size(
+        "share",
+        "1",
+        "share of the excess over the room that the probe loses; of that over the wall a third",
+        0.08,
+        -0.05,
+        0.35,
+    ),
     shapes=(
         Shape("place", "1", "which other place: the room, or the wall", 0.0, 1.0, ends=ENDS),
         Shape("a", "1", "exponent of the speed", -1.0, 1.0, 0.0, 0.2),
