@@ -29,6 +29,9 @@ from .grid import Grid, grid
 #: Of the local error of a warm-up, in nominals of the states.
 TOLERANCE = 1e-4
 
+#: Steps of a warm-up between two points of its schedule or output.
+MOST_STEPS = 1_000_000
+
 #: Rows that a thread takes at a time. The results do not depend on it.
 STEADY_BLOCK, WARMUP_BLOCK = 1024, 8
 
@@ -98,13 +101,14 @@ class Batch:
 
     Args:
         flat: the model
+        most_steps: of a warm-up between two points of its schedule or output; a row that needs more is stopped
     """
 
-    def __init__(self, flat: FlatModel) -> None:
+    def __init__(self, flat: FlatModel, most_steps: int = MOST_STEPS) -> None:
         self.name = flat.name
         self.states, self.inputs, self.parameters = flat.states, flat.inputs, flat.parameters
         self.outputs = flat.outputs
-        self._flat = flat
+        self._flat, self._most_steps = flat, most_steps
         self._limits = [_limits(group) for group in (self.inputs, self.parameters, self.states)]
 
     @cached_property
@@ -115,7 +119,7 @@ class Batch:
     @cached_property
     def warmup_source(self) -> str:
         """The C text for warm-ups."""
-        return warmup_source(self._flat)
+        return warmup_source(self._flat, self._most_steps)
 
     def __getstate__(self) -> dict[str, Any]:
         """All but the symbols, which cannot be pickled and are in the C text."""

@@ -54,8 +54,10 @@ def steady_source(flat: FlatModel) -> str:
     return _text(flat, sizes, pattern, functions, ("batch.h", "batch_steady.c"))
 
 
-def warmup_source(flat: FlatModel) -> str:
+def warmup_source(flat: FlatModel, most_steps: int) -> str:
     """The C text for warm-ups: the equations of the FMU with its audit, and its solver.
+
+    `most_steps` is where it gives up between two points of the schedule or the output.
 
     Raises:
         FmuError: an operation has no C text, or the stored energy depends on an input
@@ -69,7 +71,7 @@ def warmup_source(flat: FlatModel) -> str:
         _function("step", place, ["x", "u", "slope", "p", "c", "h"], [x_new, error], ["x_new", "error"]),
         _function("outputs", [model.x, model.u, model.p, c], ["x", "u", "p", "c"], [y, ode], ["y", "dx"]),
     ]
-    sizes = {**_sizes(flat), "NX": ode.numel(), "NY": y.numel(), "NC": c.numel(), "ORDER": METHOD.order}
+    sizes = {**_sizes(flat), "NX": ode.numel(), "NY": y.numel(), "NC": c.numel(), "ORDER": METHOD.order, "MAX_STEPS": most_steps}
     return _text(flat, sizes, [], functions, ("batch.h", "batch_instance.h", "solver.c", "batch_warmup.c"))
 
 

@@ -24,6 +24,8 @@ from .superset import as_read, superset
 
 #: Of the solver's local error: what it leaves of a course is a few thousandths of a kelvin, far below any probe.
 TOLERANCE = 1e-2
+#: A course that takes more steps than this in a half runs away or chatters; a usual one takes ten.
+MOST_STEPS = 600
 #: Channel -> what the model says of it.
 OUTPUTS = {"T_oil": "oil.T", "T_wall": "wall.T", "loss": "efficiency.tau_loss"}
 #: Changed values of a variant: a number for all tests or an array of one per test.
@@ -39,7 +41,7 @@ class Rig:
         states = {q.name: i for i, q in enumerate(flat.states)}
         shown = [flat.x[states[o]] if o in states else flat.y[place[o]] for o in OUTPUTS.values()]
         outputs = tuple(replace(flat.outputs[0], name=channel) for channel in OUTPUTS)
-        self.batch = Batch(replace(flat, outputs=outputs, y=ca.vertcat(*shown)))
+        self.batch = Batch(replace(flat, outputs=outputs, y=ca.vertcat(*shown)), MOST_STEPS)
         self.base = {q.name: q.start for q in flat.parameters}
         self.inputs = flat.starts("input")
         self.n_states = len(flat.states)

@@ -1,4 +1,4 @@
-"""A hypothesis fitted: nuisances, sizes and shapes of its causes together, by Gauss-Newton to convergence.
+"""A hypothesis fitted: nuisances, sizes and shapes of its causes together, by damped Gauss-Newton to convergence.
 
 Every unknown is counted in standard deviations of its prior: a shape by the normal number that its share of the prior
 stands for, a size in multiples of twice its half width.
@@ -17,11 +17,11 @@ from ...model.errors import SolveError
 from ..effects.cause import Cause, Theta
 from .problem import Linear, Problem
 
-#: Steps at most, and the change below which they end; length of a step of a nuisance, a size and a shape.
-STEPS, SETTLED = 4, 0.05
+#: Steps at most, tries of each with more damping (Levenberg and Marquardt), and the change below which they end; length of a step of a nuisance, a size and a shape.
+STEPS, TRIES, SETTLED = 10, 4, 0.05
 LONGEST = {"z": 1.5, "size": 0.75, "shape": 0.8}
 #: A step that gains less than this in log likelihood is the last.
-LITTLE = 0.02
+LITTLE = 0.1
 #: Of the difference quotients by a shape, and by a size.
 SHAPE_STEP, SIZE_STEP = 0.2, 0.05
 #: Shapes stay inside so many standard deviations.
@@ -109,19 +109,20 @@ class _Fitting:
         cost = self.cost(self.x, shown)
         if not np.isfinite(cost):
             raise SolveError("the model cannot be run where the fit of its causes begins.")
+        damping = 0.0
         for _ in range(STEPS):
             gradient = J.T @ cho_solve(self.factor, self.problem.measured - shown) - self.x
-            change = self.limited(np.linalg.solve(H, gradient))
-            for _ in range(3):
+            for _ in range(TRIES):
+                change = self.limited(np.linalg.solve(H + damping * np.diag(np.diag(H)), gradient))
                 new = self.legal(self.x + change)
                 found = self.looked(new)
                 value = self.cost(new, found[0])
                 if np.isfinite(value) and value <= cost + 1e-6:
                     break
-                change = 0.3 * change
+                damping = max(5 * damping, 0.3)
             else:
                 break
-            moved, gained = float(np.abs(new - self.x).max()), cost - value
+            moved, gained, damping = float(np.abs(new - self.x).max()), cost - value, damping / 5
             self.x, cost, (shown, J, H) = new, value, found
             if moved < SETTLED or gained < LITTLE:
                 break

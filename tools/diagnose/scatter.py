@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,15 +13,13 @@ from .problem import Linear
 
 SCATTER = "procedure.day_scatter"
 #: Standard deviations of the days' cooling beside what is stated.
-SIZES = np.array([0.02, 0.04, 0.08, 0.16, 0.3])
+SIZES = np.array([0.02, 0.04, 0.08, 0.16])
 
 
 @dataclass(frozen=True)
 class Days:
-    """Effects of the days of the acting campaign: `columns` (m, tests) per unit of cooling; their scatter's spectrum."""
+    """Spectrum of the effects of the acting campaign's days, per unit of cooling: `directions` (m, tests), `lengths`."""
 
-    covariance: np.ndarray
-    columns: np.ndarray
     directions: np.ndarray
     lengths: np.ndarray
 
@@ -29,12 +27,7 @@ class Days:
     def of(linear: Linear, white: White) -> Days:
         """At a linearisation."""
         U, d, _ = np.linalg.svd(white.columns(linear.days), full_matrices=False)
-        return Days(linear.covariance, linear.days, U, d)
-
-    def covariances(self) -> Iterator[np.ndarray]:
-        """The whole scatter for each size."""
-        for size in SIZES:
-            yield self.covariance + size**2 * self.columns @ self.columns.T
+        return Days(U, d)
 
     def score(self, e: np.ndarray) -> np.ndarray:
         """Twice the gain in log likelihood at the best size, for whitened residuals (n, m)."""

@@ -18,11 +18,11 @@ from .evidence import White, score
 from .family import FORMS, Family, Sample, families, form_of, nearer, pair_evidence, pair_promise, pair_theta
 from .fit import Fit, fitted
 from .problem import Linear, Problem
-from .scatter import SCATTER, Days
+from .scatter import SCATTER, SIZES, Days
 from .unnamed import Unnamed
 
 #: Pairs of which the evidence is computed; leading singles and pairs looked at again.
-PAIRS, AGAIN_ONE, AGAIN_TWO = 30, 9, 6
+PAIRS, AGAIN_ONE, AGAIN_TWO = 20, 9, 6
 #: Leading singles that are also weighed together with days that differ.
 WITH_DAYS = 5
 #: Prior probabilities: nothing wrong, one cause, two causes, something outside the library.
@@ -30,6 +30,10 @@ NONE, ONE, TWO, OUTSIDE = 0.5, 0.37, 0.08, 0.05
 DRAWS = 4000
 #: What another look is expected to lift a hypothesis by at least; one that stays behind even so is not looked at again.
 LIFT = 7.0
+#: Shares of the first look's sizes at which a fit begins, until one can be run.
+SHARES = (1.0, 0.5, 0.2)
+#: Half the squared misfit per reading from which a fit is repeated with slopes taken where it ended.
+POOR = 0.7
 #: A fit begins at the next best kind, too, if it is no worse than this; places at which thresholds are tried.
 NEXT, SCAN = 7.0, np.linspace(0.05, 0.95, 10)
 #: How far below the best a single or a pair may lie to be looked at again: other forms may lift it by this.
@@ -73,7 +77,11 @@ class Search:
         self.p_any, self.critical = self._alarm()
         self.p_omnibus = float(chi2.sf(self.white.e @ self.white.e, len(self.white.e)))
         self.progress("pairs of causes", 0.35)
-        self.hypotheses = sorted(self._again(self._first_look()), key=lambda h: -h.log_posterior)
+        first = self._first_look()
+        found = self._again(first, [h for h in first if len(h.causes) == 1 and SCATTER not in h.causes], AGAIN_ONE)
+        self.progress("pairs of causes", 0.6)
+        pairs = [h for h in first if len(h.causes) == 2 and SCATTER not in h.causes] + self._beside(found)
+        self.hypotheses = self._settled([*found, *self._again(found, pairs, AGAIN_TWO), *self._with_days(found)])
         self.outside = Unnamed(self.problem).evidence(self.hypotheses, self.null) + np.log(OUTSIDE)
         self.progress("hypotheses weighed", 0.8)
 
@@ -104,7 +112,7 @@ class Search:
             singles.append(Hypothesis((f.cause.id,), self.base + f.evidence() + self.prior(1), theta, (f,), self.null))
         singles.sort(key=lambda h: -h.log_posterior)
         healthy = Hypothesis((), self.base + self.prior(0), linear=self.null)
-        return [healthy, *singles, *self._pairs(), *self._with_days(singles[:WITH_DAYS])]
+        return [healthy, *singles, *self._pairs()]
 
     def _pairs(self) -> list[Hypothesis]:
         """The most promising pairs of all."""
@@ -127,52 +135,77 @@ class Search:
             found.append(Hypothesis((a.cause.id, b.cause.id), log_posterior, theta, (a, b), self.null))
         return found
 
-    def _with_days(self, singles: Sequence[Hypothesis]) -> list[Hypothesis]:
-        """Days that differ more than stated, alone and beside one cause."""
-        found = []
-        if not any(c.scatter for c in self.causes):
-            return found
-        logs: dict[str, list[float]] = {"": []} | {h.causes[0]: [] for h in singles}
-        for covariance in self.days.covariances():
-            white = White.of(self.null.residual, covariance)
-            logs[""].append(log_gauss(white))
-            for h in singles:
-                logs[h.causes[0]].append(logs[""][-1] + h.families[0].seen(white).evidence())
-        for name, values in logs.items():
-            causes = (name, SCATTER) if name else (SCATTER,)
-            value = float(logsumexp(values) - np.log(len(values))) + self.prior(len(causes))
-            alone = {h.causes[0]: h for h in singles}.get(name)
-            theta = {SCATTER: self.days.theta(values)} | (dict(alone.theta) if alone else {})
-            found.append(Hypothesis(causes, value, theta, alone.families if alone else (), self.null))
-        return found
+    def _with_days(self, found: Sequence[Hypothesis]) -> list[Hypothesis]:
+        """Days that differ more than stated, alone and beside one cause as fitted."""
+        weighed: list[Hypothesis] = []
+        singles = sorted((h for h in found if len(h.causes) == 1), key=lambda h: -h.log_posterior)[:WITH_DAYS]
+        for h in [h for h in found if not h.causes] + singles:
+            linear, logs = h.linear or self.null, []
+            for size in SIZES:
+                white = White.of(linear.residual, linear.covariance + size**2 * linear.days @ linear.days.T)
+                logs.append(log_gauss(white) + sum(f.seen(white).evidence() for f in h.families))
+            causes = (*h.causes, SCATTER)
+            value = float(logsumexp(logs) - np.log(len(logs))) + self.prior(len(causes))
+            theta = {**h.theta, SCATTER: self.days.theta(logs)}
+            weighed.append(replace(h, causes=causes, log_posterior=value, theta=theta))
+        return weighed
 
-    def _again(self, first: Sequence[Hypothesis]) -> list[Hypothesis]:
-        """Leaders again, fitted, and with more forms around the most likely one."""
-        best = max(h.log_posterior for h in first)
-        leaders = []
-        for n, most in ((1, AGAIN_ONE), (2, AGAIN_TWO)):
-            named = [h for h in first if len(h.causes) == n and SCATTER not in h.causes]
-            ranked = sorted(named, key=lambda h: -h.log_posterior)
-            least = max(best - WORTH[n - 1], first[0].log_posterior - 1.0)
-            leaders += [h for h in ranked[:most] if h.log_posterior > least]
-        kept, lift = [h for h in first if h not in leaders], LIFT
-        found = [first[0]]
-        for k, h in enumerate(leaders):
-            if h.log_posterior + lift < max(other.log_posterior for other in found):
-                kept.append(h)
+    def _again(self, known: Sequence[Hypothesis], some: Sequence[Hypothesis], most: int) -> list[Hypothesis]:
+        """Leaders of some hypotheses fitted, with more forms around the most likely one; the others as they are."""
+        found, lift = [], LIFT
+        some = sorted(some, key=lambda h: -h.log_posterior)
+        for k, h in enumerate(some[:most]):
+            best = max(other.log_posterior for other in (*known, *found))
+            if h.log_posterior + lift < best:
+                found.append(h)
                 continue
-            self.progress(f"looking again at {' and '.join(h.causes)}", 0.4 + 0.4 * k / len(leaders))
+            self.progress(f"looking again at {' and '.join(h.causes)}", 0.4 + 0.2 * len(h.causes) * k / most)
             with suppress(SolveError):  # what no machine can run explains nothing
                 found.append(self._refined(h))
                 lift = max(lift, 1.3 * (found[-1].log_posterior - h.log_posterior))
-        return [*found, *kept[1:]]
+        others = [h for h in known if not h.causes and len(some) and len(some[0].causes) == 1]
+        return [*others, *found, *some[most:]]
+
+    def _beside(self, found: Sequence[Hypothesis]) -> list[Hypothesis]:
+        """Pairs of the leading cause as fitted with every other, looked at where it acts."""
+        a = max(found, key=lambda h: h.log_posterior)
+        if len(a.causes) != 1 or a.linear is None or a.linear is self.null:
+            return []
+        own, name = a.families[0], a.causes[0]
+        others = [c for c in self.causes if not c.scatter and c.id != name and not (c.like and c.like == own.cause.like)]
+        acting = self.problem.moved(a.linear, a.linear.z, a.theta, [own.cause])
+        white = White.of(a.linear.residual, a.linear.covariance)
+        base, pairs = log_gauss(white), []
+        for f in families(self.problem, acting, white, (Sample.of_prior(c, FORMS // 2) for c in others)).values():
+            value, weights = pair_evidence(own, f)
+            k, m = np.unravel_index(int(np.argmax(weights)), weights.shape)
+            causes = (name, f.cause.id)
+            theta = pair_theta(own, f, int(k), int(m))
+            pairs.append(Hypothesis(causes, base + value + self.prior(2), theta, (own, f), a.linear))
+        return pairs
+
+    def _settled(self, hypotheses: list[Hypothesis]) -> list[Hypothesis]:
+        """Hypotheses in order, until the first of them is one that was fitted."""
+        while True:
+            hypotheses = sorted(hypotheses, key=lambda h: -h.log_posterior)
+            first = hypotheses[0]
+            if not first.families or first.linear is not self.null or SCATTER in first.causes:
+                return hypotheses
+            hypotheses = hypotheses[1:]
+            with suppress(SolveError):
+                hypotheses.append(self._refined(first))
 
     def _refined(self, h: Hypothesis) -> Hypothesis:
         """A hypothesis with its model linearised where it acts, and more forms around its best ones."""
         causes = [CAUSES[c] for c in h.causes]
         fit = min((self._fitted(h, start) for start in self._starts(h)), key=lambda fit: fit.cost)
-        fit = self._scanned(h, fit)
+        with suppress(SolveError):
+            fit = self._scanned(h, fit)
         linear = self.problem.linearised(fit.z, fit.theta, causes)
+        if fit.cost > POOR * len(linear.residual):  # far from where the slopes of the nuisances were taken
+            start = {c.id: (fit.modes[c.id].shares, fit.theta[c.id][c.size.name]) for c in causes}
+            fit = fitted(self.problem, linear, start)
+            linear = self.problem.linearised(fit.z, fit.theta, causes)
         back = self.problem.put_back(linear)
         white = White.of(back.residual, back.covariance)
         samples = []
@@ -201,12 +234,19 @@ class Search:
 
     def _fitted(self, h: Hypothesis, start: Mapping[str, tuple[np.ndarray, float]], z: np.ndarray | None = None) -> Fit:
         causes = [CAUSES[c] for c in h.causes]
-        theta = {}
-        for c in causes:
-            form = c.forms(start[c.id][0][None])[0] if c.shapes else {}
-            theta[c.id] = {**form, c.size.name: start[c.id][1]}
         begin = self._shifted(h) if z is None else z
-        return fitted(self.problem, self.problem.moved(self.null, begin, theta, causes), start)
+        for share in SHARES:
+            theta = {}
+            for c in causes:
+                form = c.forms(start[c.id][0][None])[0] if c.shapes else {}
+                theta[c.id] = {**form, c.size.name: share * start[c.id][1]}
+            smaller = {name: (shares, share * size) for name, (shares, size) in start.items()}
+            try:
+                return fitted(self.problem, self.problem.moved(self.null, begin, theta, causes), smaller)
+            except SolveError:
+                if share == SHARES[-1]:
+                    raise
+        raise AssertionError("unreachable")
 
     def _scanned(self, h: Hypothesis, fit: Fit) -> Fit:
         """A fit, begun again where another threshold promises more: a threshold has many local best places."""

@@ -16,6 +16,7 @@ from scipy.special import logsumexp
 
 from .family import form_of
 from .problem import Linear, Problem
+from .scatter import SCATTER
 
 if TYPE_CHECKING:
     from .search import Hypothesis
@@ -56,7 +57,8 @@ class Unnamed:
 
     def evidence(self, hypotheses: Sequence[Hypothesis], null: Linear) -> float:
         """Log evidence, its prior left out, of a discrepancy beside nothing or beside one of the leading hypotheses."""
-        leading = [h for h in hypotheses if h.families][:BESIDE] + [h for h in hypotheses if not h.causes]
+        named = [h for h in hypotheses if h.families and SCATTER not in h.causes]
+        leading = named[:BESIDE] + [h for h in hypotheses if not h.causes]
         return float(logsumexp([h.log_posterior + self._gain(h, h.linear or null) for h in leading]))
 
     def _gain(self, h: Hypothesis, linear: Linear) -> float:
