@@ -102,7 +102,7 @@ class _Reader:
         self.problems: list[str] = []
         self.card = self.tried(lambda: read_card(request.card))
         self.problems += [] if self.card is None else card_problems(request.card, self.card)
-        self.scenario = self.tried(lambda: _rig(request.rig, self.card))
+        self.scenario = self.tried(lambda: rig_of(request.rig, self.card))
         tables = [path for path in (request.data, request.reference, request.predict) if path is not None]
         self.known, wrong = known_oils(tables, self.card)
         self.problems += wrong
@@ -119,12 +119,12 @@ class _Reader:
         """A table with the protocol of the rig and the card."""
         if path is None:
             return None
-        protocol = _protocol(self.scenario, self.card)
+        protocol = protocol_of(self.scenario, self.card)
         read = self.tried(lambda: read_measured(path, protocol, columns=columns, oils=self.known))
         if read is None:
             return None
         self.problems += implausible(read)
-        return read if self.card is None else _started(read, self.card.run)
+        return read if self.card is None else with_starts(read, self.card.run)
 
     def logged(self, path: Path | None, campaign: Campaign | None) -> Series | None:
         """A series of a campaign."""
@@ -160,7 +160,7 @@ class _Reader:
         return replace(found, warnings=_warnings(request, found))
 
 
-def _rig(name: str, card: Card | None) -> Scenario:
+def rig_of(name: str, card: Card | None) -> Scenario:
     """The rig, lubricated as the card says and driven as its campaigns are.
 
     Raises:
@@ -183,7 +183,7 @@ def _rig(name: str, card: Card | None) -> Scenario:
     return driven_by(replace(scenario, spec=spec), scenario.protocol.inputs)
 
 
-def _protocol(scenario: Scenario | None, card: Card | None) -> Protocol | None:
+def protocol_of(scenario: Scenario | None, card: Card | None) -> Protocol | None:
     """The rig's protocol with the stop that the card states."""
     protocol = scenario.protocol if scenario else None
     if protocol is None or card is None or "stop_min" not in card.run.model_fields_set:
@@ -191,7 +191,7 @@ def _protocol(scenario: Scenario | None, card: Card | None) -> Protocol | None:
     return replace(protocol, stop=60.0 * card.run.stop_min)
 
 
-def _started(campaign: Campaign, run: cards.Protocol) -> Campaign:
+def with_starts(campaign: Campaign, run: cards.Protocol) -> Campaign:
     """The campaign with the start of each test as the card states it, where the table does not."""
     if run.T_start_minus_amb_K == 0.0 and run.ambient_start_minus_reading_K == 0.0:
         return campaign
