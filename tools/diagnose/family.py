@@ -15,7 +15,7 @@ from .fit import Mode
 from .problem import Linear, Problem
 
 #: Forms of a first look, and of each of its regimes; forms of a closer look: over the prior, and around the best ones.
-FORMS, EACH, MORE, NEAR = 12, 4, 8, 24
+FORMS, EACH, MORE, NEAR = 12, 5, 8, 24
 #: Those are drawn wider than the fit says, and most keep its choice of kind.
 WIDER, FAITHFUL = 1.4, 0.85
 
@@ -88,7 +88,13 @@ class Sample:
     @staticmethod
     def of_prior(cause: Cause, n: int, size: float | None = None) -> Sample:
         """n forms spread over the prior, the middle first."""
-        return Sample(cause, *cause.sample(n, EACH), cause.size.sd if size is None else size)
+        return Sample(cause, *cause.sample(n, EACH), prior_size(cause) if size is None else size)
+
+
+def prior_size(cause: Cause) -> float:
+    """One half width of the prior, on the side that has room for it."""
+    size = cause.size
+    return min(size.sd, size.high) if size.high >= min(size.sd, -size.low) else -min(size.sd, -size.low)
 
 
 def families(problem: Problem, linear: Linear, white: White, samples: Iterable[Sample]) -> dict[str, Family]:

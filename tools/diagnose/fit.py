@@ -46,18 +46,19 @@ class Fit:
     cost: float
 
 
-def fitted(problem: Problem, linear: Linear, start: Mapping[str, tuple[np.ndarray, float]]) -> Fit:
+def fitted(problem: Problem, linear: Linear, start: Mapping[str, tuple[np.ndarray, float]], steps: int = STEPS) -> Fit:
     """Fit the causes of a linearisation.
 
     Args:
         problem: data and model
         linear: made with the causes acting; its nuisances are where the fit begins
         start: cause -> shares of its shapes, and size, where the fit begins
+        steps: at most
 
     Raises:
         SolveError: the model cannot be run where the fit begins
     """
-    return _Fitting(problem, linear, start).run()
+    return _Fitting(problem, linear, start).run(steps)
 
 
 class _Fitting:
@@ -104,13 +105,13 @@ class _Fitting:
         """Values of the rig and parameters of the causes."""
         return self.problem.parameters.values(x[: self.n]), self.theta(x)
 
-    def run(self) -> Fit:
+    def run(self, steps: int) -> Fit:
         shown, J, H = self.looked(self.x)
         cost = self.cost(self.x, shown)
         if not np.isfinite(cost):
             raise SolveError("the model cannot be run where the fit of its causes begins.")
         damping = 0.0
-        for _ in range(STEPS):
+        for _ in range(steps):
             gradient = J.T @ cho_solve(self.factor, self.problem.measured - shown) - self.x
             for _ in range(TRIES):
                 change = self.limited(np.linalg.solve(H + damping * np.diag(np.diag(H)), gradient))

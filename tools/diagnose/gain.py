@@ -47,7 +47,7 @@ def gain(search: Search, leading: Sequence[Hypothesis], seed: int, scheme: str =
 
 def views_of(search: Search, leading: Sequence[Hypothesis]) -> list[View]:
     """What a fold may choose from: nothing, every cause at the first look, and the leading hypotheses as fitted."""
-    fitted = [h for h in leading if h.families and h.linear is not search.null and SCATTER not in h.causes]
+    fitted = [h for h in leading if h.families and h.linear and h.linear.causes and SCATTER not in h.causes]
     closer = {h.causes[0] for h in fitted if len(h.causes) == 1}
     first = [(search.prior(1), (f,)) for f in search.found.values() if f.cause.id not in closer]
     views = [View(search.null, ((search.prior(0), ()), *first))]

@@ -280,14 +280,40 @@ class Problem:
         found[:, ~np.isfinite(found).all(axis=0)] = 0.0  # a form that no machine has explains nothing
         return found
 
-    def put_back(self, linear: Linear) -> Linear:
-        """A linearisation with its causes' effects put back into the residual, by their signatures there."""
+    def healthy(self) -> np.ndarray:
+        """Nuisances by the reference campaign alone; the nominal where there is none."""
+        references = [c for c in self.campaigns if not c.acting]
+        if not references:
+            return np.zeros(len(self.parameters.names))
+        return Problem(self.rig, references, self.card, self.parameters).settled().z
+
+    def put_back(self, linear: Linear, form: float = 0.0) -> Linear:
+        """A linearisation with its causes' effects put back into the residual, by their signatures there.
+
+        `form` is the standard deviation of what a form leaves of a true effect, as a share of it that changes smoothly
+        with the conditions: it adds to the scatter.
+        """
         sizes = [linear.theta[c.id][c.size.name] for c in linear.causes]
         acting = [(c, size) for c, size in zip(linear.causes, sizes, strict=True) if size != 0.0]
         if not acting:
             return linear
         G = self.signatures(linear, [(c, linear.theta[c.id], size) for c, size in acting])
-        return replace(linear, residual=linear.residual + G @ np.array([size for _, size in acting]))
+        effects, part = G * np.array([size for _, size in acting]), self.place(self.data)
+        rough = np.zeros_like(linear.noise)
+        rough[part, part] = form**2 * (effects[part] @ effects[part].T) * alike(self.data)
+        return replace(
+            linear,
+            residual=linear.residual + effects.sum(axis=1),
+            covariance=linear.covariance + rough,
+            noise=linear.noise + rough,
+        )
+
+
+def alike(c: Campaigned) -> np.ndarray:
+    """Correlation of what is smooth in speed, torque and direction, between all readings of a campaign."""
+    rows, which = c.model.rows, c.channels.rows
+    features = np.stack([(rows.w - 18.0) / 5.0, (rows.tau - 2100.0) / 450.0, rows.direction], axis=1)[which]
+    return np.asarray(np.exp(-0.5 * ((features[:, None, :] - features[None, :, :]) ** 2).sum(axis=2)))
 
 
 def _joined(ends: Readings, courses: Readings, n: int) -> Readings:

@@ -16,26 +16,34 @@ from ..effects.cause import Cause, Theta
 from ..effects.taxonomy import CAUSES
 from .evidence import White, score
 from .family import FORMS, Family, Sample, families, form_of, nearer, pair_evidence, pair_promise, pair_theta
-from .fit import Fit, fitted
+from .fit import STEPS, Fit, fitted
 from .problem import Linear, Problem
 from .scatter import SCATTER, SIZES, Days
 from .unnamed import Unnamed
 
 #: Pairs of which the evidence is computed; leading singles and pairs looked at again.
-PAIRS, AGAIN_ONE, AGAIN_TWO = 20, 9, 6
+PAIRS, AGAIN_ONE, AGAIN_TWO = 20, 8, 4
 #: Leading singles that are also weighed together with days that differ.
 WITH_DAYS = 5
 #: Prior probabilities: nothing wrong, one cause, two causes, something outside the library.
 NONE, ONE, TWO, OUTSIDE = 0.5, 0.37, 0.08, 0.05
 DRAWS = 4000
-#: What another look is expected to lift a hypothesis by at least; one that stays behind even so is not looked at again.
-LIFT = 7.0
+#: What another look may lift a hypothesis by: with thresholds that the first look hardly met, and without. One that
+#: stays behind even so is not looked at again.
+LIFT = {True: 45.0, False: 8.0}
 #: Shares of the first look's sizes at which a fit begins, until one can be run.
 SHARES = (1.0, 0.5, 0.2)
 #: Half the squared misfit per reading from which a fit is repeated with slopes taken where it ended.
 POOR = 0.7
-#: A fit begins at the next best kind, too, if it is no worse than this; places at which thresholds are tried.
-NEXT, SCAN = 7.0, np.linspace(0.05, 0.95, 10)
+#: A p of any cause below which the first look is repeated from the healthy machine.
+ELSEWHERE = 0.2
+#: Standard deviation of what a form of the library leaves of a true effect, as a share of it.
+FORM = 0.06
+#: Forms at which fits begin: how many, how much worse than the best at the first look, how far apart in the share of
+#: the threshold, and steps after which only the best goes on.
+MANY, NEXT, APART, BEGUN = 3, 15.0, 0.2, 3
+#: Places at which thresholds are tried when a fit has ended, and how many of the best it begins again from.
+SCAN, RETRIED = np.linspace(0.05, 0.95, 13), 2
 #: How far below the best a single or a pair may lie to be looked at again: other forms may lift it by this.
 WORTH = (25.0, 10.0)
 
@@ -71,16 +79,20 @@ class Search:
         self.white = White.of(self.null.residual, self.null.covariance)
         self.base = log_gauss(self.white)
         self.progress("effects of all causes", 0.15)
-        samples = (Sample.of_prior(c, FORMS) for c in self.causes if not c.scatter)
-        self.found = families(self.problem, self.null, self.white, samples)
+        self.found = self._families(self.null, self.white)
         self.days = Days.of(self.null, self.white)
         self.p_any, self.critical = self._alarm()
         self.p_omnibus = float(chi2.sf(self.white.e @ self.white.e, len(self.white.e)))
         self.progress("pairs of causes", 0.35)
-        first = self._first_look()
-        found = self._again(first, [h for h in first if len(h.causes) == 1 and SCATTER not in h.causes], AGAIN_ONE)
+        first = self._first_look(self.null, self.found)
+        if self.p_any < ELSEWHERE:  # what is wrong may have bent the calibration: look from the healthy machine as well
+            healthy = self.problem.linearised(self.problem.healthy())
+            found = self._families(healthy, White.of(healthy.residual, healthy.covariance))
+            first = better(first, self._first_look(healthy, found))
+        found = self._again(first[:1], [h for h in first if len(h.causes) == 1], AGAIN_ONE)
         self.progress("pairs of causes", 0.6)
-        pairs = [h for h in first if len(h.causes) == 2 and SCATTER not in h.causes] + self._beside(found)
+        pairs = [h for h in first if len(h.causes) == 2] + self._beside(found)
+        found += first[:1]
         self.hypotheses = self._settled([*found, *self._again(found, pairs, AGAIN_TWO), *self._with_days(found)])
         self.outside = Unnamed(self.problem).evidence(self.hypotheses, self.null) + np.log(OUTSIDE)
         self.progress("hypotheses weighed", 0.8)
@@ -104,21 +116,27 @@ class Search:
             largest = np.maximum(largest, score(draws @ f.white, f.q, *f.bounds).max(axis=1))
         return float((1 + (largest >= observed).sum()) / (DRAWS + 1)), float(np.quantile(largest, 0.95))
 
-    def _first_look(self) -> list[Hypothesis]:
-        singles = []
-        for f in self.found.values():
+    def _families(self, linear: Linear, white: White) -> dict[str, Family]:
+        """All causes with all forms of a first look."""
+        samples = (Sample.of_prior(c, FORMS) for c in self.causes if not c.scatter)
+        return families(self.problem, linear, white, samples)
+
+    def _first_look(self, linear: Linear, found: Mapping[str, Family]) -> list[Hypothesis]:
+        """No cause, single causes in order, and promising pairs, as one linearisation shows them."""
+        singles, base = [], log_gauss(White.of(linear.residual, linear.covariance))
+        for f in found.values():
             k = f.best()
             theta = {f.cause.id: f.theta(k, float(f.sizes()[0][k]))}
-            singles.append(Hypothesis((f.cause.id,), self.base + f.evidence() + self.prior(1), theta, (f,), self.null))
+            singles.append(Hypothesis((f.cause.id,), base + f.evidence() + self.prior(1), theta, (f,), linear))
         singles.sort(key=lambda h: -h.log_posterior)
-        healthy = Hypothesis((), self.base + self.prior(0), linear=self.null)
-        return [healthy, *singles, *self._pairs()]
+        none = Hypothesis((), base + self.prior(0), linear=linear)
+        return [none, *singles, *self._pairs(linear, found, base)]
 
-    def _pairs(self) -> list[Hypothesis]:
+    def _pairs(self, linear: Linear, families_there: Mapping[str, Family], base: float) -> list[Hypothesis]:
         """The most promising pairs of all."""
         every = [
             (a, b)
-            for a, b in combinations(self.found.values(), 2)
+            for a, b in combinations(families_there.values(), 2)
             if not (a.cause.like and a.cause.like == b.cause.like)
         ]
         every.sort(key=lambda pair: -pair_promise(*pair))
@@ -131,8 +149,7 @@ class Search:
             value, weights = pair_evidence(a, b)
             k, m = np.unravel_index(int(np.argmax(weights)), weights.shape)
             theta = pair_theta(a, b, int(k), int(m))
-            log_posterior = self.base + value + self.prior(2)
-            found.append(Hypothesis((a.cause.id, b.cause.id), log_posterior, theta, (a, b), self.null))
+            found.append(Hypothesis((a.cause.id, b.cause.id), base + value + self.prior(2), theta, (a, b), linear))
         return found
 
     def _with_days(self, found: Sequence[Hypothesis]) -> list[Hypothesis]:
@@ -152,27 +169,28 @@ class Search:
 
     def _again(self, known: Sequence[Hypothesis], some: Sequence[Hypothesis], most: int) -> list[Hypothesis]:
         """Leaders of some hypotheses fitted, with more forms around the most likely one; the others as they are."""
-        found, lift = [], LIFT
+        found: list[Hypothesis] = []
         some = sorted(some, key=lambda h: -h.log_posterior)
         for k, h in enumerate(some[:most]):
             best = max(other.log_posterior for other in (*known, *found))
-            if h.log_posterior + lift < best:
+            kinds = any(CAUSES[c].choice is not None for c in h.causes)
+            if h.log_posterior + LIFT[kinds] / len(h.causes) < best:
                 found.append(h)
                 continue
             self.progress(f"looking again at {' and '.join(h.causes)}", 0.4 + 0.2 * len(h.causes) * k / most)
             with suppress(SolveError):  # what no machine can run explains nothing
                 found.append(self._refined(h))
-                lift = max(lift, 1.3 * (found[-1].log_posterior - h.log_posterior))
-        others = [h for h in known if not h.causes and len(some) and len(some[0].causes) == 1]
-        return [*others, *found, *some[most:]]
+        return [*found, *some[most:]]
 
     def _beside(self, found: Sequence[Hypothesis]) -> list[Hypothesis]:
         """Pairs of the leading cause as fitted with every other, looked at where it acts."""
         a = max(found, key=lambda h: h.log_posterior)
-        if len(a.causes) != 1 or a.linear is None or a.linear is self.null:
+        if len(a.causes) != 1 or a.linear is None or not a.linear.causes:
             return []
         own, name = a.families[0], a.causes[0]
-        others = [c for c in self.causes if not c.scatter and c.id != name and not (c.like and c.like == own.cause.like)]
+        others = [
+            c for c in self.causes if not c.scatter and c.id != name and not (c.like and c.like == own.cause.like)
+        ]
         acting = self.problem.moved(a.linear, a.linear.z, a.theta, [own.cause])
         white = White.of(a.linear.residual, a.linear.covariance)
         base, pairs = log_gauss(white), []
@@ -189,7 +207,7 @@ class Search:
         while True:
             hypotheses = sorted(hypotheses, key=lambda h: -h.log_posterior)
             first = hypotheses[0]
-            if not first.families or first.linear is not self.null or SCATTER in first.causes:
+            if not first.families or (first.linear and first.linear.causes) or SCATTER in first.causes:
                 return hypotheses
             hypotheses = hypotheses[1:]
             with suppress(SolveError):
@@ -198,7 +216,7 @@ class Search:
     def _refined(self, h: Hypothesis) -> Hypothesis:
         """A hypothesis with its model linearised where it acts, and more forms around its best ones."""
         causes = [CAUSES[c] for c in h.causes]
-        fit = min((self._fitted(h, start) for start in self._starts(h)), key=lambda fit: fit.cost)
+        fit = self._begun(h)
         with suppress(SolveError):
             fit = self._scanned(h, fit)
         linear = self.problem.linearised(fit.z, fit.theta, causes)
@@ -206,7 +224,7 @@ class Search:
             start = {c.id: (fit.modes[c.id].shares, fit.theta[c.id][c.size.name]) for c in causes}
             fit = fitted(self.problem, linear, start)
             linear = self.problem.linearised(fit.z, fit.theta, causes)
-        back = self.problem.put_back(linear)
+        back = self.problem.put_back(linear, FORM)
         white = White.of(back.residual, back.covariance)
         samples = []
         for k, c in enumerate(causes):
@@ -217,22 +235,54 @@ class Search:
         value += log_gauss(white) + self.prior(len(causes))
         return replace(h, log_posterior=float(value), theta=theta, families=tuple(found.values()), linear=back)
 
+    def _begun(self, h: Hypothesis) -> Fit:
+        """The best of short fits from several forms, gone on with. Raises SolveError where none can be run."""
+        starts, tried = self._starts(h), []
+        if len(starts) == 1:
+            return self._fitted(h, starts[0])
+        for start in starts:
+            with suppress(SolveError):
+                tried.append(self._fitted(h, start, steps=BEGUN))
+        if not tried:
+            raise SolveError(f"{' and '.join(h.causes)}: no form of it can be run.")
+        best = min(tried, key=lambda fit: fit.cost)
+        start = {name: (m.shares, best.theta[name][CAUSES[name].size.name]) for name, m in best.modes.items()}
+        return self._fitted(h, start, best.z)
+
     def _starts(self, h: Hypothesis) -> list[dict[str, tuple[np.ndarray, float]]]:
-        """Where fits begin: at the best forms, and for one cause at the best of its next best kind."""
+        """Where fits begin: at the best forms, and for one cause at those of other kinds and thresholds nearly as good."""
         first = {}
         for f in h.families:
             theta = h.theta[f.cause.id]
             first[f.cause.id] = (f.shares[form_of(f, theta)], theta[f.cause.size.name])
         starts, f = [first], h.families[0]
-        if len(h.causes) == 1 and f.cause.choice is not None:
-            kinds = np.searchsorted(f.cause.shapes[f.cause.choice].ends, f.shares[:, f.cause.choice])
-            logs = np.where(kinds == kinds[form_of(f, h.theta[f.cause.id])], -np.inf, f.log_bf() + f.log_w)
-            k = int(np.argmax(logs))
-            if logs[k] > (f.log_bf() + f.log_w).max() - NEXT:
-                starts.append({f.cause.id: (f.shares[k], float(f.sizes()[0][k]))})
+        if len(h.causes) > 1:
+            return starts
+        shares, size = first[f.cause.id]
+        if f.cause.size.low < 0 < f.cause.size.high:  # far from linear: the other sign may do
+            other = -np.sign(size) * f.cause.size.sd
+            starts.append({f.cause.id: (shares, float(np.clip(other, f.cause.size.low, f.cause.size.high)))})
+        if f.cause.choice is None:
+            return starts
+        choice, logs, sizes = f.cause.choice, f.log_bf() + f.log_w, f.sizes()[0]
+        place = next((k for k, shape in enumerate(f.cause.shapes) if shape.name == "threshold"), choice)
+        kinds = np.searchsorted(f.cause.shapes[choice].ends, f.shares[:, choice])
+        seen = [(kinds[form_of(f, h.theta[f.cause.id])], first[f.cause.id][0][place])]
+        for k in np.argsort(-logs):
+            new = all(kinds[k] != kind or (kind and abs(f.shares[k, place] - at) > APART) for kind, at in seen)
+            if len(starts) < MANY and new and logs[k] > logs.max() - NEXT:
+                seen.append((kinds[k], f.shares[k, place]))
+                starts.append({f.cause.id: (f.shares[k], float(sizes[k]))})
         return starts
 
-    def _fitted(self, h: Hypothesis, start: Mapping[str, tuple[np.ndarray, float]], z: np.ndarray | None = None) -> Fit:
+    def _fitted(
+        self,
+        h: Hypothesis,
+        start: Mapping[str, tuple[np.ndarray, float]],
+        z: np.ndarray | None = None,
+        steps: int = STEPS,
+    ) -> Fit:
+        """A fit from a start, with smaller causes where it cannot be run."""
         causes = [CAUSES[c] for c in h.causes]
         begin = self._shifted(h) if z is None else z
         for share in SHARES:
@@ -242,7 +292,9 @@ class Search:
                 theta[c.id] = {**form, c.size.name: share * start[c.id][1]}
             smaller = {name: (shares, share * size) for name, (shares, size) in start.items()}
             try:
-                return fitted(self.problem, self.problem.moved(self.null, begin, theta, causes), smaller)
+                return fitted(
+                    self.problem, self.problem.moved(h.linear or self.null, begin, theta, causes), smaller, steps
+                )
             except SolveError:
                 if share == SHARES[-1]:
                     raise
@@ -257,16 +309,20 @@ class Search:
             size = fit.theta[c.id][c.size.name]
             shares = np.tile(mode.shares, (1 + len(SCAN), 1))
             shares[1:, place] = SCAN
-            linear = self.problem.moved(self.null, fit.z, fit.theta, [CAUSES[name] for name in h.causes])
+            linear = self.problem.moved(h.linear or self.null, fit.z, fit.theta, [CAUSES[name] for name in h.causes])
             back = self.problem.put_back(linear)
             white = White.of(back.residual, back.covariance)
             sample = Sample(c, shares, np.zeros(len(shares)), sound(size, c))
             logs = families(self.problem, linear, white, [sample])[c.id].log_bf()
-            k = int(np.argmax(logs))
-            if logs[k] > logs[0] + 0.5:
-                start = {name: (m.shares, fit.theta[name][CAUSES[name].size.name]) for name, m in fit.modes.items()}
-                again = self._fitted(h, {**start, c.id: (shares[k], size)}, fit.z)
-                fit = min(fit, again, key=lambda fit: fit.cost)
+            start = {name: (m.shares, fit.theta[name][CAUSES[name].size.name]) for name, m in fit.modes.items()}
+            short = []
+            for k in [k for k in np.argsort(-logs) if k][:RETRIED]:
+                with suppress(SolveError):
+                    short.append(self._fitted(h, {**start, c.id: (shares[k], size)}, fit.z, steps=BEGUN))
+            if short and min(other.cost for other in short) < fit.cost + 5.0:
+                best = min(short, key=lambda other: other.cost)
+                start = {name: (m.shares, best.theta[name][CAUSES[name].size.name]) for name, m in best.modes.items()}
+                fit = min(fit, self._fitted(h, start, best.z), key=lambda fit: fit.cost)
         return fit
 
     def _shifted(self, h: Hypothesis) -> np.ndarray:
@@ -278,6 +334,15 @@ class Search:
             residual -= f.signatures[:, form_of(f, theta)] * theta[f.cause.size.name]
         z = self.problem.nuisances(linear, residual)
         return linear.z + np.clip(z - linear.z, -1.5, 1.5)
+
+
+def better(some: Sequence[Hypothesis], others: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """The better of each hypothesis; no cause at all as the first list has it."""
+    found = {h.causes: h for h in some}
+    for h in others[1:]:
+        if h.causes not in found or h.log_posterior > found[h.causes].log_posterior:
+            found[h.causes] = h
+    return [some[0], *(h for h in found.values() if h.causes)]
 
 
 def visible(cause: Cause, problem: Problem) -> bool:

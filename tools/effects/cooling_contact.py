@@ -1,13 +1,32 @@
 """A resistance between the wall and the outer surface."""
 
-from .cause import Cause, Size
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from .cause import Cause, Rows, Shape, Size, Theta
+
+#: Rise of the oil over the room at which the size is stated [K].
+RISE = 40.0
+
+
+def conductance(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mapping[str, Any]:
+    """The joint with more resistance, per test by a power of the oil's rise: joints close or open as they warm."""
+    R: Any = theta["R"]
+    if rows is not None:
+        rise = np.array([rows.rise[rows.test == k].mean() for k in range(rows.n_tests)])
+        R = R * (np.maximum(rise, 5.0) / RISE) ** theta["e"]
+    return {"wall_surface.G": base["wall_surface.G"] / (1 + R * base["wall_surface.G"])}
+
 
 CAUSE = Cause(
     id="cooling.contact",
     doc="A gap or gasket between wall and outer surface.",
-    size=Size("R", "K/W", "resistance more than assumed", 0.006, -0.0004, 0.08),
+    size=Size("R", "K/W", "resistance more than assumed, at an oil 40 K above the room", 0.006, -0.0004, 0.08),
+    shapes=(Shape("e", "1", "exponent of the rise", -1.2, 1.2, 0.0, 0.4),),
     exposes="transients; a second probe on the outer surface",
-    values=lambda base, theta, rows: {
-        "wall_surface.G": base["wall_surface.G"] / (1 + theta["R"] * base["wall_surface.G"])
-    },
+    values=conductance,
 )
