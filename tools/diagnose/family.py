@@ -15,7 +15,7 @@ from .fit import Mode
 from .problem import Linear, Problem
 
 #: Forms of a first look, and of each of its regimes; forms of a closer look: over the prior, and around the best ones.
-FORMS, EACH, MORE, NEAR = 12, 5, 8, 24
+FORMS, EACH, MORE, NEAR = 12, 10, 8, 24
 #: Those are drawn wider than the fit says, and most keep its choice of kind.
 WIDER, FAITHFUL = 1.4, 0.85
 

@@ -38,7 +38,7 @@ class Mode:
 
 @dataclass(frozen=True)
 class Fit:
-    """Most likely nuisances and parameters of the causes, how well the shapes are known, and half the squared misfit."""
+    """Most likely nuisances and parameters of causes, how well the shapes are known, and half the squared misfit."""
 
     z: np.ndarray
     theta: Mapping[str, Theta]

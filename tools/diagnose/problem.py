@@ -43,7 +43,7 @@ class Campaigned:
 
 
 def measured_readings(model: CampaignModel) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-    """Measured channels: rows of the model's readings and values; temperatures [K], loss torque at the carrier [N.m]."""
+    """Measured channels: rows of the readings, and values: temperatures [K], loss torque at the carrier [N.m]."""
     readings, ends = model.readings, np.arange(model.n)
     found = {"T_oil": np.array([r.si("T_oil_C") for r in readings])}
     if all(r.given("T_oil2_C") for r in readings):

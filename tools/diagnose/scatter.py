@@ -18,7 +18,7 @@ SIZES = np.array([0.02, 0.04, 0.08, 0.16])
 
 @dataclass(frozen=True)
 class Days:
-    """Spectrum of the effects of the acting campaign's days, per unit of cooling: `directions` (m, tests), `lengths`."""
+    """Spectrum of the effects of the acting campaign's days per unit of cooling: `directions` (m, tests), `lengths`."""
 
     directions: np.ndarray
     lengths: np.ndarray

@@ -36,7 +36,7 @@ SHARES = (1.0, 0.5, 0.2)
 #: Half the squared misfit per reading from which a fit is repeated with slopes taken where it ended.
 POOR = 0.7
 #: A p of any cause below which the first look is repeated from the healthy machine.
-ELSEWHERE = 0.2
+ELSEWHERE = 0.05
 #: Standard deviation of what a form of the library leaves of a true effect, as a share of it.
 FORM = 0.06
 #: Forms at which fits begin: how many, how much worse than the best at the first look, how far apart in the share of
@@ -188,9 +188,8 @@ class Search:
         if len(a.causes) != 1 or a.linear is None or not a.linear.causes:
             return []
         own, name = a.families[0], a.causes[0]
-        others = [
-            c for c in self.causes if not c.scatter and c.id != name and not (c.like and c.like == own.cause.like)
-        ]
+        like = own.cause.like or name
+        others = [c for c in self.causes if not c.scatter and (c.like or c.id) != like]
         acting = self.problem.moved(a.linear, a.linear.z, a.theta, [own.cause])
         white = White.of(a.linear.residual, a.linear.covariance)
         base, pairs = log_gauss(white), []
@@ -250,7 +249,7 @@ class Search:
         return self._fitted(h, start, best.z)
 
     def _starts(self, h: Hypothesis) -> list[dict[str, tuple[np.ndarray, float]]]:
-        """Where fits begin: at the best forms, and for one cause at those of other kinds and thresholds nearly as good."""
+        """Where fits begin: at the best forms, and for one cause at other kinds and thresholds nearly as good."""
         first = {}
         for f in h.families:
             theta = h.theta[f.cause.id]
