@@ -3,9 +3,13 @@
 import csv
 import json
 import math
+import os
+import subprocess
+import sys
 from dataclasses import replace
 from pathlib import Path
 
+import casadi as ca
 import numpy as np
 import pytest
 from gearheat.model.core.flatten import flatten
@@ -14,21 +18,27 @@ from gearheat.model.machines.spec import assemble
 from gearheat.model.run.schedule import stepped
 from gearheat.model.run.simulate import simulate as run_model
 from gearheat.scenarios.load import load
-from gearheat.tools.challenge import case, choose, rig, scoring
+from gearheat.tools.challenge import bench, case, choose, rig, scoring
 from gearheat.tools.challenge.answers import Answer, Hypothesis, read_answer
 from gearheat.tools.challenge.bench import run_sheet
 from gearheat.tools.challenge.causes import CAUSES, OUTSIDE, REGIMES, merged_all
+from gearheat.tools.challenge.columns import Columns, Mapped
 from gearheat.tools.challenge.command import show
 from gearheat.tools.challenge.foreign import ForeignRig, draw_sizes
 from gearheat.tools.challenge.hidden import Draw, Effect, Surroundings
 from gearheat.tools.challenge.own import own_rig
-from gearheat.tools.challenge.plan import draw_plan
+from gearheat.tools.challenge.plan import CHANNELS, draw_plan
 from gearheat.tools.challenge.rig import simulate
+from gearheat.tools.challenge.rivals import Rivals
+from gearheat.tools.challenge.scene import Changes, Scene
 from gearheat.tools.challenge.scoring import Outcome, metrics, report, score, wilson
 from gearheat.tools.challenge.signal import Yardstick
-from gearheat.tools.challenge.stepping import graded
+from gearheat.tools.challenge.stepping import Clock, graded
 
 KELVIN = 273.15
+
+#: Many more steps than the bench takes.
+FINE = Clock((graded(14400.0, 4.0, 1.2, 120.0), graded(5400.0, 4.0, 1.2, 120.0)), graded(300.0, 4.0, 1.2, 30.0), 2)
 
 
 def setting(sheet: str, series: bool) -> case.Setting:
@@ -87,13 +97,35 @@ def test_own_rig_is_the_model() -> None:
 
 
 @pytest.mark.parametrize("seed", range(4))
-def test_steps_are_fine_enough(seed: int, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_steps_are_fine_enough(seed: int) -> None:
     foreign_rig, plan = ForeignRig(draw_sizes(np.random.default_rng(seed))), draw_plan(np.random.default_rng(seed))
-    coarse = simulate(foreign_rig, plan, {}).ends.values["T_oil_C"]
-    monkeypatch.setattr(rig, "HALVES", (graded(14400.0, 4.0, 1.2, 120.0), graded(5400.0, 4.0, 1.2, 120.0)))
-    monkeypatch.setattr(rig, "STOP", graded(300.0, 4.0, 1.2, 30.0))
-    fine = simulate(foreign_rig, plan, {}).ends.values["T_oil_C"]
-    np.testing.assert_allclose(coarse, fine, atol=0.02)
+    fine = simulate(foreign_rig, plan, {}, clock=FINE).ends.values["T_oil_C"]
+    for clock, within in ((rig.CLOCK, 0.02), (rig.COARSE, 0.06)):
+        got = simulate(foreign_rig, plan, {}, clock=clock).ends.values["T_oil_C"]
+        np.testing.assert_allclose(got, fine, atol=within)
+
+
+def test_a_joint_that_closes_while_it_warms(own: tuple[case.Setting, Yardstick]) -> None:
+    """Bad conduction that gets better with temperature stiffens the housing in the middle of a half."""
+    s, _ = own
+
+    def act(scene: Scene, a: np.ndarray, c: Changes) -> None:
+        c.scale("contact", np.exp(a * (1 - 0.3 * (scene.T["wall"] - 50.0) / 40.0)))
+
+    joint = [(Effect("cooling.contact", "ln", 4.2, act=act), np.full(s.campaign.plan.columns, -4.0))]
+    got, fine = (simulate(s.rig, s.campaign.plan, s.campaign.base, joint, clock=c) for c in (rig.CLOCK, FINE))
+    np.testing.assert_allclose(got.ends.values["T_wall_C"], fine.ends.values["T_wall_C"], atol=0.02)
+
+
+def test_many_columns_are_what_few_are() -> None:
+    """Instruction by instruction over all columns, or column by column: the same numbers."""
+    x, y = ca.SX.sym("x", 2), ca.SX.sym("y")
+    terms = [x[0] * y, ca.if_else(x[1] < y, ca.sqrt(x[0]), -x[0]), ca.fmax(x[0], 3 * y) ** 1.7, ca.sin(x[1]) / x[0]]
+    function = ca.Function("f", [x, y], [ca.vertcat(*terms), ca.exp(-y) + 2 * x[1] + x[1] ** 2], {"cse": True})
+    rng = np.random.default_rng(2)
+    several = rng.uniform(0.1, 2.0, (2, 100)), rng.uniform(0.1, 2.0, (1, 100))
+    for one, other in zip(*(make(function, 100)(*several) for make in (Columns, Mapped)), strict=True):
+        np.testing.assert_allclose(one, other, rtol=1e-13)
 
 
 @pytest.mark.parametrize("seed", range(6))
@@ -102,8 +134,6 @@ def test_foreign_rigs_conserve_energy(seed: int) -> None:
     foreign_rig, plan = ForeignRig(draw_sizes(np.random.default_rng(seed))), draw_plan(np.random.default_rng(9))
     long = replace(plan, dwell=np.full_like(plan.dwell, 6000.0), room=np.full_like(plan.room, 22.0))
     ends = simulate(foreign_rig, long, {}).ends
-    from gearheat.tools.challenge.scene import Changes
-
     surface = ends.true["surface"][0]
     given = foreign_rig._cooling(surface, np.full_like(surface, 22.0), Changes())
     lost = ends.loss[0] * long.n[0] * math.pi / 30
@@ -123,6 +153,28 @@ def test_columns_do_not_know_each_other(own: tuple[case.Setting, Yardstick]) -> 
 
 
 # ------------------------------------------------------------------------------------------- signal to noise, draws
+
+
+def test_effects_side_by_side(foreign: tuple[case.Setting, Yardstick]) -> None:
+    """Effects of all sorts in one run are what each is alone."""
+    s, yard = foreign
+    names = ("losses.churning", "cooling.contact", "procedure.not_stationary", "sensor.ambient.heated", "thermal.split")
+    effects = [CAUSES[name](draw(s, yard, seed)) for seed, name in enumerate(names * 2)]
+    amounts = np.array([0.1 * e.sign * e.high for e in effects])
+    alone = [yard.signatures(e, np.array([a]))[0] for e, a in zip(effects, amounts, strict=True)]
+    np.testing.assert_allclose(yard.together(effects, amounts), alone, atol=1e-9)
+
+
+def test_faults_of_instruments_need_no_other_run(foreign: tuple[case.Setting, Yardstick]) -> None:
+    s, yard = foreign
+    for name in ("sensor.torque.gain", "sensor.oil_temp.position", "sensor.torque.step"):
+        effect, plan = CAUSES[name](draw(s, yard)), s.campaign.plan
+        amount = np.repeat([0.01, 0.02], plan.columns)
+        quiet = simulate(s.rig, plan, s.campaign.base, series=True)
+        wanted = simulate(s.rig, plan.tiled(2), s.campaign.base, [(effect, amount)], series=True)
+        got = rig.misread(quiet, effect, amount)
+        for one, other in ((got.ends, wanted.ends), (got.steps, wanted.steps)):
+            np.testing.assert_allclose(one.stacked(CHANNELS), other.stacked(CHANNELS), rtol=1e-12)
 
 
 def test_a_lone_offset_has_its_closed_form(own: tuple[case.Setting, Yardstick]) -> None:
@@ -179,19 +231,23 @@ def test_regimes_limit(cause: str, own: tuple[case.Setting, Yardstick]) -> None:
 def test_weak_and_loud_amplitudes(own: tuple[case.Setting, Yardstick]) -> None:
     s, yard = own
     around = draw(s, yard).around
+    rivals = Rivals(yard, around, humidity=False, seed=(1,))
     for kind, (low, high) in (("weak", choose.WEAK), ("single", choose.BANDS["own"])):
         names = iter(["losses.mesh_friction"])
-        (hidden,) = choose.choose(kind, "own", names, yard, around, np.random.default_rng(4))
+        (hidden,) = choose.choose(kind, "own", names, yard, around, rivals, np.random.default_rng(4))
         assert low <= hidden.snr <= 1.1 * high
 
 
 def test_schedule_and_causes() -> None:
     kinds = [choose.schedule(1, 11, k) for k in range(150)]
     count = {kind: sum(k == kind for k, _ in kinds) for kind in choose.KINDS}
-    assert count == {"clean": 42, "single": 42, "regime": 24, "pair": 18, "outside": 12, "weak": 12}
-    assert sorted(rank for kind, rank in kinds if kind == "single") == list(range(42))
+    assert count == {"clean": 42, "single": 36, "alike": 6, "regime": 24, "pair": 18, "outside": 12, "weak": 12}
+    assert sorted(rank for kind, rank in kinds if kind == "single") == list(range(36))
     firsts = [next(choose.order_of_causes(1, 11, "single", rank)) for rank in range(len(CAUSES))]
     assert sorted(firsts) == sorted(CAUSES)
+    offered = list(choose.order_of_causes(1, 11, "alike", 2))
+    assert set(offered[1 : len(CAUSES) + 1]) == set(CAUSES)
+    assert offered != list(choose.order_of_causes(1, 11, "alike", 3))
 
 
 # --------------------------------------------------------------------------------------------------------- the files
@@ -335,6 +391,22 @@ def test_sure_and_wrong_costs(sheets: dict) -> None:
     assert found["single or regime wrong with > .9"].value == 1.0
 
 
+def test_what_is_alike_counts_by_the_set() -> None:
+    """Alike cases have rows of their own; with the others they count for what can be done for them: alarm and gain."""
+    near = replace(outcome(0, "alike", "a", "b"), covered=True)
+    sure = replace(outcome(1, "alike", "a", "b"), covered=False, sure_wrong=True)
+    named = outcome(2, "single", "c", "c")
+    found = {m.name: m for m in metrics([near, sure, named], "own")}
+    assert (found["alike: truth in the 90 % set"].value, found["alike: truth in the 90 % set"].must) == (0.5, 0.88)
+    assert (found["alike: wrong with > .9"].value, found["alike: wrong with > .9"].must_met) == (0.5, False)
+    assert found["exact name first"].value == 1.0 and found["exact name first"].n == 1
+    assert found["detection"].n == 3
+    for name, value in (("alike: exact name first", 0.0), ("exact name first, alike among them", 1 / 3)):
+        told = found[name]
+        assert told.value == pytest.approx(value)
+        assert (told.must, told.must_met, told.ambitious, told.ambitious_met) == (None,) * 4
+
+
 def test_no_answer_counts_as_missed(sheets: dict) -> None:
     found = sheets["silent"]
     assert found["false alarms on clean data"].value == 1.0
@@ -353,6 +425,20 @@ def test_a_run_goes_on_where_it_stopped(tmp_path: Path) -> None:
     again = run_sheet("foreign", 6, 3, tmp_path, kind="clean", diagnose=counted)
     assert asked == ["0000", "0001", "0002"]
     assert again[:2] == first and all(o.kind == "clean" for o in again)
+
+
+def outcome(k: int, kind: str, truth: str, top: str) -> Outcome:
+    return Outcome(k, kind, 9.0, truth, top, True, True, truth == top, 1, True, 1, False, None, None, 2.0 + k)
+
+
+def test_processes_have_one_thread_each(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("OMP_NUM_THREADS", "7")
+    monkeypatch.delenv("MKL_NUM_THREADS", raising=False)
+    with bench._one_thread():
+        program = "import os; print([os.environ[n] for n in ('OMP_NUM_THREADS', 'MKL_NUM_THREADS')])"
+        told = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True).stdout
+    assert told.strip() == "['1', '1']"
+    assert os.environ["OMP_NUM_THREADS"] == "7" and "MKL_NUM_THREADS" not in os.environ
 
 
 def truth_of(*causes: str, kind: str = "single") -> dict:
@@ -424,9 +510,6 @@ def test_command_refuses_what_it_cannot_do(gearheat) -> None:
 
 
 def test_report_counts(capsys: pytest.CaptureFixture[str]) -> None:
-    def outcome(k: int, kind: str, truth: str, top: str) -> Outcome:
-        return Outcome(k, kind, 9.0, truth, top, True, True, truth == top, 1, True, 1, False, None, None, 2.0 + k)
-
     outcomes = [outcome(1, "single", "a", "a"), outcome(0, "single", "a", "b"), outcome(2, "weak", "a", "b")]
     found = report(outcomes, "own", 3)
     assert found["confusion"] == {"a": {"a": 1, "b": 1}}

@@ -23,6 +23,9 @@ Diagnoser = Callable[[Path], tuple[Path, Path | None]]
 #: Longest time for one case [s].
 PATIENCE = 1800.0
 
+#: Variables that tell linear algebra how many threads to use.
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
 #: What is no claim of a cause.
 UNNAMED = frozenset({"model.unexplained"})
 
@@ -51,7 +54,7 @@ def ask_command(case: Path) -> tuple[Path, Path | None]:
             words += [option, str(case / name)]
     words += ["--predictions", str(predictions)]
     program = [sys.executable, "-c", "from gearheat.tools.cli import main; main()"]
-    limits = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")}
+    limits = dict.fromkeys(THREADS, "1")
     try:
         done = subprocess.run(
             [*program, *words],

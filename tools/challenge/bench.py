@@ -7,14 +7,15 @@ import json
 import multiprocessing
 import os
 import time
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ...model.errors import DataError
-from .answers import Answer, Diagnoser, ask_command, read_answer
+from .answers import THREADS, Answer, Diagnoser, ask_command, read_answer
 from .case import make_case
 from .scoring import Outcome, score
 
@@ -55,7 +56,7 @@ def run_sheet(
     n: int,
     out: Path,
     *,
-    jobs: int = 1,
+    jobs: int = 0,
     kind: str | None = None,
     diagnose: Diagnoser = ask_command,
     progress: Callable[[int, Outcome], None] = lambda done, outcome: None,
@@ -67,7 +68,7 @@ def run_sheet(
         seed: of the challenge
         n: number of cases
         out: folder; cases and answers that it holds already are used if the sources are still the same
-        jobs: processes; above 1 `diagnose` must be a function of a module
+        jobs: processes with one thread each, for which `diagnose` must be a function of a module; 0 for this one
         kind: only this kind of case; drawn per case if left out
         diagnose: what is asked
         progress: called after each case with how many are done and the outcome
@@ -84,18 +85,31 @@ def run_sheet(
 
 
 def _results(tasks: list[Task], jobs: int) -> Iterable[Outcome]:
-    if jobs <= 1:
+    if jobs < 1:
         yield from map(solve, tasks)
         return
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS"):  # for the processes that start below
-        os.environ.setdefault(name, "1")
-    with ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
+    with _one_thread(), ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
         futures = [pool.submit(solve, task) for task in tasks]
         try:
             yield from (future.result() for future in as_completed(futures))
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
+
+
+@contextmanager
+def _one_thread() -> Iterator[None]:
+    """Processes that start meanwhile do their linear algebra in one thread each: several at once are faster so."""
+    before = {name: os.environ.get(name) for name in THREADS}
+    os.environ.update(dict.fromkeys(THREADS, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                del os.environ[name]
+            else:
+                os.environ[name] = value
 
 
 def solve(task: Task) -> Outcome:

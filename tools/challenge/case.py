@@ -26,6 +26,7 @@ from .hidden import Surroundings
 from .own import own_rig
 from .plan import Plan, draw_plan, draw_points
 from .rig import Rig, Run, simulate
+from .rivals import Rivals
 from .signal import Campaign, Yardstick
 
 SHEETS = ("own", "foreign")
@@ -33,9 +34,12 @@ SHEETS = ("own", "foreign")
 #: Share of campaigns with a time series, with the humidity, with a second oil sensor, with tests that start warm.
 SERIES, HUMIDITY, SECOND_OIL, WARM = 0.12, 0.35, 0.5, 0.15
 
-#: Causes that only a certain column or file can show.
+#: Causes that only a certain column can show.
 NEEDS_HUMIDITY = ("cooling.humidity",)
-NEEDS_SERIES = ("thermal.mass", "thermal.split")
+
+
+#: Kinds of cases whose truth tells the nearest rival.
+RIVALRY = ("single", "regime", "alike")
 
 
 @dataclass(frozen=True)
@@ -80,26 +84,30 @@ def make_case(
 
     Raises:
         ScenarioError: an unknown sheet, kind or cause
-        LookupError: none of the causes can be as loud as wanted
+        LookupError: none of the causes can be as loud as wanted, and as far from its rivals
     """
     check(sheet, kind, causes)
     number = SHEETS.index(sheet)
     drawn, rank = schedule(number, seed, k)
     kind = kind or drawn
     setting_rng, hidden_rng, noise_rng = (np.random.default_rng([seed, number, k, 10 + i]) for i in range(3))
-    names = list(causes) * 25 if causes else order_of_causes(number, seed, kind, rank if kind == drawn else k)
+    names = list(causes) * 8 if causes else order_of_causes(number, seed, kind, rank if kind == drawn else k)
     setting = draw_setting(sheet, setting_rng, series)
     hidden: list[Hidden] = []
     if kind != "clean":
         yard = Yardstick(setting.rig, setting.campaign, setting.instruments, setting.reference)
         plan = setting.campaign.plan
         around = Surroundings(plan.n[0], plan.load[0], yard.oil, plan.tests, sheet == "own", setting.inner_share)
-        hidden = choose(kind, sheet, iter(names), yard, around, hidden_rng)
+        rivals = Rivals(yard, around, humidity=setting.columns.humidity, seed=(seed, number, k, 13))
+        hidden = choose(kind, sheet, iter(names), yard, around, rivals, hidden_rng)
     found = [h.effect.cause for h in hidden]
     if any(c in NEEDS_HUMIDITY for c in found):
         setting = replace(setting, columns=replace(setting.columns, humidity=True))
     truth = {"schema": "gearheat.truth/1", "sheet": sheet, "seed": seed, "case": k, "kind": kind}
     truth |= _write(setting, hidden, folder, noise_rng)
+    if kind in RIVALRY:
+        (rival,) = (h.rival for h in hidden)
+        truth["rival"] = {"cause": rival.cause, "distance": round(rival.distance, 3)} if rival else None
     (folder / "TRUTH.json").write_text(json.dumps(truth, indent=1) + "\n", encoding="utf-8")
     return truth
 

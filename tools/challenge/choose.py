@@ -3,18 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from .causes import CAUSES, OUTSIDE, REGIMES, merged
 from .hidden import Draw, Effect, Surroundings
+from .rivals import Rival, Rivals
 from .signal import Yardstick
 
-KINDS = ("clean", "single", "regime", "pair", "outside", "weak")
+#: "alike" is a single cause that nobody could tell from another one: the right answer is a set.
+KINDS = ("clean", "single", "regime", "pair", "outside", "weak", "alike")
 
 #: Kinds in every 25 cases; 150 cases hold 42 clean ones.
-SHARES: Mapping[str, int] = {"clean": 7, "single": 7, "regime": 4, "pair": 3, "outside": 2, "weak": 2}
+SHARES: Mapping[str, int] = {
+    "clean": 7,
+    "single": 6,
+    "alike": 1,
+    "regime": 4,
+    "pair": 3,
+    "outside": 2,
+    "weak": 2,
+}
 BLOCK = sum(SHARES.values())
 
 #: Band of signal-to-noise by sheet; a pair's parts must each keep `APART` where the other may take any size.
@@ -22,8 +32,11 @@ BANDS: Mapping[str, tuple[float, float]] = {"own": (5.0, 40.0), "foreign": (5.0,
 WEAK = (0.7, 2.4)
 APART = 4.0
 
-#: Forms tried of a cause before another cause is taken.
-TRIES = 4
+#: Least distance to the nearest rival of what must be told by its name, and largest one of what cannot be [sigma].
+APART_FROM_RIVALS, ALIKE = 3.0, 2.5
+
+#: Forms tried of a cause before another cause is taken, and sizes of a form.
+TRIES, SIZES = 4, 3
 
 #: Magnitudes tried, over the largest sensible one.
 _GRID = np.geomspace(1e-3, 1.0, 9)
@@ -31,11 +44,12 @@ _GRID = np.geomspace(1e-3, 1.0, 9)
 
 @dataclass(frozen=True)
 class Hidden:
-    """An effect, how much of it, and how loud it is alone."""
+    """An effect, how much of it, how loud it is alone, and what could be taken for it, where that counts."""
 
     effect: Effect
     amplitude: float
     snr: float
+    rival: Rival | None = None
 
 
 def schedule(sheet_number: int, seed: int, k: int) -> tuple[str, int]:
@@ -48,44 +62,106 @@ def schedule(sheet_number: int, seed: int, k: int) -> tuple[str, int]:
 
 
 def order_of_causes(sheet_number: int, seed: int, kind: str, rank: int) -> Iterator[str]:
-    """Causes to try for a case: rounds through all names, each round in another random order, starting at its rank."""
+    """Causes to try for a case: the first goes round through all names, the others follow in an order of the case."""
     names = list({"regime": REGIMES, "outside": OUTSIDE}.get(kind, CAUSES))
-    for position in range(rank, rank + 20 * len(names)):
-        turn, place = divmod(position, len(names))
-        mixed = np.random.default_rng([seed, sheet_number, KINDS.index(kind), turn, 2]).permutation(names)
-        yield str(mixed[place])
+    turn, place = divmod(rank, len(names))
+    key = [seed, sheet_number, KINDS.index(kind)]
+    yield str(np.random.default_rng([*key, turn, 2]).permutation(names)[place])
+    rng = np.random.default_rng([*key, rank, 3])
+    for _ in range(20):
+        yield from (str(name) for name in rng.permutation(names))
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What effects are chosen for: the kind of case, the campaign, and chance.
+
+    Args:
+        kind: of the case
+        band: wanted signal-to-noise
+        yard, around, rivals: of the campaign
+        rng: source of chance
+    """
+
+    kind: str
+    band: tuple[float, float]
+    yard: Yardstick
+    around: Surroundings
+    rivals: Rivals
+    rng: np.random.Generator
 
 
 def choose(
-    kind: str, sheet: str, names: Iterator[str], yard: Yardstick, around: Surroundings, rng: np.random.Generator
+    kind: str,
+    sheet: str,
+    names: Iterator[str],
+    yard: Yardstick,
+    around: Surroundings,
+    rivals: Rivals,
+    rng: np.random.Generator,
 ) -> list[Hidden]:
     """The hidden effects of a case.
 
     Raises:
-        LookupError: no cause that was offered can be as loud as wanted in this campaign
+        LookupError: no cause that was offered can be as loud as wanted in this campaign, and as far from its rivals
     """
     band = WEAK if kind == "weak" else BANDS[sheet]
     if kind == "clean":
         return []
+    choice = Choice(kind, band, yard, around, rivals, rng)
     if kind == "pair":
-        return _pair(band, names, yard, around, rng)
+        return _pair(names, choice)
     for name in names:
-        if found := _single(name, kind, band, yard, around, rng):
+        if found := _single(name, choice):
             return [found]
-    raise LookupError(f"no {kind} cause reaches a signal-to-noise of {band[0]:g}")
+    raise LookupError(
+        f"no {kind} cause reaches a signal-to-noise of {band[0]:g} at the distance wanted from its rivals"
+    )
 
 
-def _single(
-    name: str, kind: str, band: tuple[float, float], yard: Yardstick, around: Surroundings, rng: np.random.Generator
-) -> Hidden | None:
+def _single(name: str, choice: Choice, beside: Sequence[str] = ()) -> Hidden | None:
     """A form of the cause with an amplitude in the band, or None after some tries."""
     family = CAUSES.get(name) or OUTSIDE[name]
     for _ in range(TRIES):
-        draw = Draw(rng, around)
-        if kind == "regime":
+        draw = Draw(choice.rng, choice.around)
+        if choice.kind == "regime":
             draw = draw.limited(REGIMES[name])
-        if found := _sized(family(draw), band, yard, rng):
+        found = _sized(family(draw), choice.band, choice.yard, choice.rng)
+        if found and choice.kind == "alike":
+            found = _alike(found, choice)
+        elif found and choice.kind in ("single", "regime", "pair"):
+            found = _unlike(found, choice, beside)
+        if found:
             return found
+    return None
+
+
+def _unlike(found: Hidden, choice: Choice, beside: Sequence[str]) -> Hidden | None:
+    """The same, so loud that no rival comes near; None where that is too loud."""
+    now: Hidden | None = found
+    for _ in range(SIZES):
+        if now is None:
+            break
+        rival = choice.rivals.nearest(now.effect, now.amplitude, beside=beside, enough=APART_FROM_RIVALS)
+        if rival.distance >= APART_FROM_RIVALS:
+            return replace(now, rival=rival)
+        louder = 1.05 * now.snr * APART_FROM_RIVALS / max(rival.distance, 1e-3)
+        now = _sized(now.effect, (louder, choice.band[1]), choice.yard, choice.rng) if louder < choice.band[1] else None
+    return None
+
+
+def _alike(found: Hidden, choice: Choice) -> Hidden | None:
+    """The same, so quiet that a rival is near; None where that is too quiet."""
+    now: Hidden | None = found
+    for _ in range(SIZES):
+        if now is None:
+            break
+        rival = choice.rivals.nearest(now.effect, now.amplitude)
+        if rival.distance < ALIKE:
+            return replace(now, rival=rival)
+        quieter = 0.9 * now.snr * ALIKE / rival.distance
+        band = (choice.band[0], quieter / 1.1)
+        now = _sized(now.effect, band, choice.yard, choice.rng) if band[0] < band[1] else None
     return None
 
 
@@ -108,18 +184,16 @@ def _sized(effect: Effect, band: tuple[float, float], yard: Yardstick, rng: np.r
     return Hidden(effect, amplitude, reached)
 
 
-def _pair(
-    band: tuple[float, float], names: Iterator[str], yard: Yardstick, around: Surroundings, rng: np.random.Generator
-) -> list[Hidden]:
-    """Two causes of different classes, each loud, and each loud beside any amount of the other."""
+def _pair(names: Iterator[str], choice: Choice) -> list[Hidden]:
+    """Two causes of different classes, each loud, each loud beside any amount of the other, each far from others."""
     first: Hidden | None = None
     for name in names:
-        found = _single(name, "pair", band, yard, around, rng)
+        found = _single(name, choice, [first.effect.cause] if first else [])
         if found is None:
             continue
         if first is None:
             first = found
-        elif _apart([first, found], yard):
+        elif _apart([first, found], choice.yard):
             return [first, found]
     raise LookupError("no two causes that can be told apart")
 

@@ -99,8 +99,8 @@ def _row(m: Mapping[str, Any]) -> tuple[str, ...]:
     def number(value: float) -> str:
         return f"{value:.2f}"
 
-    def bar(value: float) -> str:
-        return f"{'<=' if m['at_most'] else '>='} {value:.2f}"
+    def bar(value: float | None) -> str:
+        return "" if value is None else f"{'<=' if m['at_most'] else '>='} {value:.2f}"
 
     def met(reached: bool | None) -> str:
         return "" if reached is None else "reached" if reached else "missed"

@@ -52,6 +52,45 @@ class Effect:
     regime: Mapping[str, object] = field(default_factory=dict)
 
 
+def side_by_side(effects: Sequence[Effect]) -> Effect:
+    """One effect that is another one in each of as many equal blocks of columns; of the physics and the pace only."""
+    count = len(effects)
+
+    def blocks(columns: int) -> list[tuple[Effect, slice]]:
+        width = columns // count
+        return [(e, slice(i * width, (i + 1) * width)) for i, e in enumerate(effects)]
+
+    def act(s: Scene, a: np.ndarray, c: Changes) -> None:
+        factors: dict[str, np.ndarray] = {}
+        heat: dict[str, np.ndarray] = {}
+        power = np.zeros(len(a))
+        for effect, block in blocks(len(a)):
+            changes = Changes()
+            if effect.act is not None:
+                effect.act(s.part(block), a[block], changes)
+            for name, factor in changes.factors.items():
+                factors.setdefault(name, np.ones(len(a)))[block] = factor
+            for place, watts in changes.heat.items():
+                heat.setdefault(place, np.zeros(len(a)))[block] = watts
+            power[block] = changes.brake_power
+        for name, merged in factors.items():
+            c.scale(name, merged)
+        for place, merged in heat.items():
+            c.warm(place, merged)
+        c.brake_power = c.brake_power + power
+
+    def pace(plan: Plan, half: int, a: np.ndarray) -> np.ndarray:
+        lengths = np.ones(plan.columns)
+        for effect, block in blocks(len(a)):
+            if effect.pace is not None:
+                lengths[block] = effect.pace(plan, half, a)[block]
+        return lengths
+
+    first = effects[0]
+    acts, paces = any(e.act is not None for e in effects), any(e.pace is not None for e in effects)
+    return Effect(first.cause, first.unit, first.high, act=act if acts else None, pace=pace if paces else None)
+
+
 def everywhere(scene: Scene) -> float:
     """No regime."""
     return 1.0
@@ -96,9 +135,13 @@ class Draw:
         """One of several names."""
         return str(self.rng.choice(choices, p=p))
 
+    def chance(self, p: float) -> bool:
+        """True with some probability."""
+        return bool(self.rng.random() < p)
+
     def either(self, positive: float = 0.5) -> float:
         """A sign."""
-        return 1.0 if self.rng.random() < positive else -1.0
+        return 1.0 if self.chance(positive) else -1.0
 
     def per_test(self) -> np.ndarray:
         """A standard normal number for every running order."""
@@ -108,7 +151,7 @@ class Draw:
         """The same, limited to one side of a threshold inside the campaign's range, or to one direction."""
         kind = self.pick(*kinds)
         if kind == "direction":
-            wanted = 1.0 if self.rng.random() < 0.5 else 2.0
+            wanted = 1.0 if self.chance(0.5) else 2.0
             return replace(self, gate=lambda s: float(s.direction == wanted), regime={"direction": wanted})
         side = self.either()
         values, widths = {

@@ -10,7 +10,7 @@ from .scene import Changes, Scene
 
 def air(d: Draw) -> Effect:
     """More or less convection, by a power of the temperature difference or evenly."""
-    p = d.uniform(-0.5, 0.5) if d.rng.random() < 0.7 else 0.0
+    p = d.uniform(-0.5, 0.5) if d.chance(0.7) else 0.0
 
     def act(s: Scene, a: np.ndarray, c: Changes) -> None:
         c.scale("conv", np.exp(a * (s.rise / 35.0) ** p * d.gate(s)))

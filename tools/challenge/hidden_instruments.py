@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 def _transducer(d: Draw) -> tuple[str, float]:
     """One of the two torque columns, and its full scale over that of the carrier's."""
-    return ("T_carrier_Nm", 1.0) if d.rng.random() < 0.5 else ("T_sun_Nm", 1.0 / RATIO)
+    return ("T_carrier_Nm", 1.0) if d.chance(0.5) else ("T_sun_Nm", 1.0 / RATIO)
 
 
 def torque_offset(d: Draw) -> Effect:
@@ -65,7 +65,7 @@ def torque_drift(d: Draw) -> Effect:
 def torque_step(d: Draw) -> Effect:
     """A zero that jumps once, and may creep back."""
     column, scale = _transducer(d)
-    at, creep = d.uniform(0.25, 0.75), d.uniform(0.0, 0.5) if d.rng.random() < 0.3 else 0.0
+    at, creep = d.uniform(0.25, 0.75), d.uniform(0.0, 0.5) if d.chance(0.3) else 0.0
 
     def read(r: Readings, a: np.ndarray) -> None:
         since = r.progress - at
@@ -147,7 +147,8 @@ def speed_gain(d: Draw) -> Effect:
 def not_stationary(d: Draw) -> Effect:
     """Readings taken before the stated time: in both halves or one, evenly or by chance."""
     kind = d.pick("both", "first", "second", p=(0.6, 0.25, 0.15))
-    ragged = np.abs(d.per_test()) if d.rng.random() < 0.3 else np.full(d.around.tests, 0.8)
+    by_chance = d.chance(0.3)
+    ragged = np.abs(d.per_test()) if by_chance else np.full(d.around.tests, 0.8)
 
     def pace(plan: Plan, half: int, a: np.ndarray) -> np.ndarray:
         if kind == ("second", "first")[half]:
@@ -156,7 +157,8 @@ def not_stationary(d: Draw) -> Effect:
         shortened: np.ndarray = np.exp(-np.minimum(a * hurry / 0.8, 3.5))
         return shortened
 
-    return Effect("procedure.not_stationary", "ln", 2.6, 1.0, {"kind": kind}, pace=pace)
+    form = {"kind": kind, "by_chance": by_chance}
+    return Effect("procedure.not_stationary", "ln", 2.6, 1.0, form, pace=pace)
 
 
 def order(d: Draw) -> Effect:

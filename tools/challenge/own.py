@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -15,6 +14,7 @@ import numpy as np
 from ...model.core.flatten import flatten
 from ...model.machines.spec import assemble
 from ...scenarios.load import load
+from .columns import over_columns
 from .scene import FACTORS, PLACES, RATIO, Changes, Scene
 
 KELVIN = 273.15
@@ -114,7 +114,6 @@ class OwnRig:
 
     def _evaluate(self, T: np.ndarray, scene: Scene, changes: Changes) -> tuple[np.ndarray, np.ndarray]:
         m = T.shape[1]
-        mapped = _mapped(self._function, m)
         given = np.empty((self._rows, m))
         given[0] = scene.w
         given[1] = scene.load if scene.direction == 1 else -scene.load
@@ -123,34 +122,8 @@ class OwnRig:
             given[3 + i] = changes.heat.get(place, 0.0)
         for i, name in enumerate(FACTORS):
             given[3 + len(PLACES) + i] = changes.factor(name)
-        return mapped(T + KELVIN, given)
-
-
-class _Columns:
-    """A CasADi function of columns, called without conversions."""
-
-    def __init__(self, function: Any, m: int) -> None:
-        self._function = function.map(m)
-        self._buffer, self._call = self._function.buffer()
-        self._in = [np.zeros(function.size_in(i)[0] * m) for i in range(2)]
-        self._out = [np.zeros(function.size_out(i)[0] * m) for i in range(2)]
-        for i, array in enumerate(self._in):
-            self._buffer.set_arg(i, array.data)
-        for i, array in enumerate(self._out):
-            self._buffer.set_res(i, array.data)
-        self._m = m
-
-    def __call__(self, x: np.ndarray, given: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Slopes (states, m) and sun torques (m,)."""
-        self._in[0][:] = x.ravel(order="F")
-        self._in[1][:] = given.ravel(order="F")
-        self._call()
-        return self._out[0].reshape(x.shape, order="F").copy(), self._out[1].copy()
-
-
-@cache
-def _mapped(function: Any, m: int) -> _Columns:
-    return _Columns(function, m)
+        ode, sun = over_columns(self._function, m)(T + KELVIN, given)
+        return ode, sun[0]
 
 
 @cache

@@ -11,14 +11,16 @@ import numpy as np
 from .hidden import Effect
 from .plan import CHANNELS, Plan
 from .scene import PLACES, RATIO, Changes, Scene
-from .stepping import graded, march
+from .stepping import Clock, graded, march
 
 #: An effect and how much of it each column has.
 Acting = tuple[Effect, np.ndarray]
 
-#: Shares of both halves at which steps end, and of the stop.
-HALVES = (graded(240 * 60.0), graded(90 * 60.0))
-STOP = graded(5 * 60.0, first=20.0, growth=1.6)
+#: Steps of the protocol, and fewer for what is only compared with each other at the ends of the halves.
+CLOCK = Clock((graded(240 * 60.0), graded(90 * 60.0)), graded(5 * 60.0, 20.0, 1.6), 5)
+COARSE = Clock(
+    (graded(240 * 60.0, 20.0, 1.6, 900.0), graded(90 * 60.0, 20.0, 1.6, 900.0)), graded(5 * 60.0, 40.0, 2.0), 3
+)
 
 
 class Rig(Protocol):
@@ -63,6 +65,17 @@ class Readings:
         sign = np.where(self.direction == 1, 1.0, -1.0)
         return sign * (self.values["T_carrier_Nm"] - RATIO * self.values["T_sun_Nm"])
 
+    def tiled(self, copies: int) -> Readings:
+        """The same columns several times over, one copy behind the other; arrays of their own."""
+        return replace(
+            self,
+            values={c: np.tile(v, copies) for c, v in self.values.items()},
+            true={c: np.tile(v, copies) for c, v in self.true.items()},
+            order=np.tile(self.order, copies),
+            progress=np.tile(self.progress, copies),
+            minutes=np.tile(self.minutes, copies),
+        )
+
     def stacked(self, channels: Sequence[str]) -> np.ndarray:
         """Channels, rows and columns as one array."""
         return np.array([self.values[c] for c in channels])
@@ -83,6 +96,7 @@ def simulate(
     acting: Sequence[Acting] = (),
     *,
     series: bool = False,
+    clock: Clock = CLOCK,
 ) -> Run:
     """Run all columns of a plan through half, stop and half.
 
@@ -92,6 +106,7 @@ def simulate(
         base: factors that hold throughout, e.g. the unequal nominal or the cooling of the day
         acting: hidden effects with their amplitude per column
         series: whether to read at every step; else `steps` are the ends, too
+        clock: the steps
     """
     T = np.tile(plan.start, (rig.nodes, 1))
     rooms = _rooms(plan)
@@ -100,16 +115,29 @@ def simulate(
     for half in (0, 1):
         if half == 1:
             stage = _Stage(rig, plan, base, acting, half, *rooms[1], stopped=True)
-            T = march(stage.rate, T, STOP, 60.0 * plan.stop)[-1]
+            T = march(stage.rate, T, clock.stop, 60.0 * plan.stop, clock.refresh)[-1]
         stage = _Stage(rig, plan, base, acting, half, *rooms[2 * half])
         minutes = plan.dwell[half] * _paces(acting, plan, half)
-        path = march(stage.rate, T, HALVES[half], 60.0 * minutes)
+        path = march(stage.rate, T, clock.halves[half], 60.0 * minutes, clock.refresh)
         T = path[-1]
         which = slice(None) if series else slice(-1, None)
-        parts.append(stage.read(path[which], HALVES[half][which], now, minutes))
+        parts.append(stage.read(path[which], clock.halves[half][which], now, minutes))
         now = now + minutes + plan.stop
     ends = joined([rows(part, slice(-1, None)) for part in parts])
     return Run(ends, joined(parts))
+
+
+def misread(run: Run, effect: Effect, amounts: np.ndarray) -> Run:
+    """A run as an effect of the instruments shows it, for several amounts: one per column, as many copies as they fill.
+
+    The physics need not run again for that.
+    """
+    copies = len(amounts) // len(run.ends.order)
+    shown = Run(run.ends.tiled(copies), run.steps.tiled(copies))
+    if effect.read is not None:
+        for readings in (shown.ends, shown.steps):
+            effect.read(readings, amounts)
+    return shown
 
 
 def joined(parts: Sequence[Readings]) -> Readings:

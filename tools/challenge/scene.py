@@ -79,6 +79,21 @@ class Scene:
         rise: np.ndarray = np.maximum(self.T["surface"] - self.room, 3.0)
         return rise
 
+    def part(self, which: slice) -> Scene:
+        """Some of the columns."""
+        return Scene(
+            self.n[which],
+            self.load[which],
+            self.direction,
+            self.order[which],
+            self.progress[which],
+            self.humidity[which],
+            {place: T[which] for place, T in self.T.items()},
+            self.room[which],
+            self.nu[which],
+            self.future,
+        )
+
 
 @dataclass
 class Changes:

@@ -2,6 +2,10 @@
 
 Names count by class: causes that no data of this kind can separate are one answer. "Exact" is equality of sets of
 names: a true cause with a second one beside it is not exact.
+
+Single and regime-limited causes lie far from every rival: they must be told by their name. Of a cause that is alike
+another one nobody could tell more than a set that holds it: there the set counts, and not to be sure of the wrong
+name; how often the right name comes first there is told without a bar, alone and together with all other single ones.
 """
 
 from __future__ import annotations
@@ -19,7 +23,7 @@ from .answers import Answer, rms
 SURE = 0.9
 
 #: Kinds of cases whose causes have names.
-NAMED = ("single", "regime", "pair")
+NAMED = ("single", "regime", "pair", "alike")
 
 
 @dataclass(frozen=True)
@@ -136,22 +140,25 @@ def median_interval(values: Sequence[float], z: float = 1.959964) -> tuple[float
 class Bar:
     """A metric of a sheet: the kinds of cases it is over, what it takes of them, and what it must reach.
 
-    `bars` is what it must reach, the ambition on the own sheet, and that on the foreign one.
+    `bars` is what it must reach, the ambition on the own sheet, and that on the foreign one; None for what has no bar.
     """
 
     name: str
     kinds: tuple[str, ...]
     take: Callable[[Outcome], float | bool | None]
-    bars: tuple[float, float, float]
+    bars: tuple[float, float, float] | None
     how: str = "rate"
     at_most: bool = False
 
-    def ambitious(self, sheet: str) -> float:
-        """The ambition on a sheet."""
-        return self.bars[1 if sheet == "own" else 2]
+    def on(self, sheet: str) -> tuple[float | None, float | None]:
+        """What it must reach on a sheet, and the ambition."""
+        return (None, None) if self.bars is None else (self.bars[0], self.bars[1 if sheet == "own" else 2])
 
 
+#: One cause that can be told by its name, one that cannot, and both.
 ONE = ("single", "regime")
+ALIKE = ("alike",)
+ANY = (*ONE, *ALIKE)
 
 #: Ranges of signal-to-noise to tell apart.
 LOUDNESS = ((0.0, 8.0), (8.0, 16.0), (16.0, 1e9))
@@ -169,6 +176,10 @@ BARS: tuple[Bar, ...] = (
     Bar("regime-limited cause first", ("regime",), lambda o: o.exact, (0.80, 0.90, 0.94)),
     Bar("outside: not claimed > .9", ("outside",), lambda o: o.answered and not o.sure_wrong, (0.50, 0.75, 0.80)),
     Bar("single or regime wrong with > .9", ONE, lambda o: o.sure_wrong, (0.08, 0.03, 0.03), at_most=True),
+    Bar("alike: truth in the 90 % set", ALIKE, lambda o: o.covered, (0.88, 0.93, 0.95)),
+    Bar("alike: wrong with > .9", ALIKE, lambda o: o.sure_wrong, (0.08, 0.03, 0.03), at_most=True),
+    Bar("alike: exact name first", ALIKE, lambda o: o.exact, None),
+    Bar("exact name first, alike among them", ANY, lambda o: o.exact, None),
     Bar("weak: wrong with > .9", ("weak",), lambda o: o.sure_wrong, (0.10, 0.05, 0.05), at_most=True),
     Bar("impact error, median", NAMED, lambda o: o.impact_error, (0.20, 0.10, 0.05), "median", True),
     Bar("held-out RMSE after/before, median", NAMED, lambda o: o.gain, (0.35, 0.25, 0.15), "median", True),
@@ -177,16 +188,16 @@ BARS: tuple[Bar, ...] = (
 
 @dataclass(frozen=True)
 class Metric:
-    """A metric with its 95 % interval, number of cases and bars; value None without cases."""
+    """A metric with its 95 % interval, number of cases and bars; value None without cases, bars where it has any."""
 
     name: str
     value: float | None
     interval: tuple[float, float] | None
     n: int
     at_most: bool
-    must: float
+    must: float | None
     must_met: bool | None
-    ambitious: float
+    ambitious: float | None
     ambitious_met: bool | None
 
 
@@ -197,8 +208,8 @@ def metrics(outcomes: Sequence[Outcome], sheet: str) -> list[Metric]:
         taken = [bar.take(o) for o in outcomes if o.kind in bar.kinds]
         values = [float(v) for v in taken if v is not None]
         value, interval = _summary(values, bar.how)
-        must, ambitious = bar.bars[0], bar.ambitious(sheet)
-        met = [None if value is None else _reached(value, b, bar.at_most) for b in (must, ambitious)]
+        must, ambitious = bar.on(sheet)
+        met = [_reached(value, b, bar.at_most) for b in (must, ambitious)]
         found.append(Metric(bar.name, value, interval, len(values), bar.at_most, must, met[0], ambitious, met[1]))
     return found
 
@@ -214,7 +225,9 @@ def _summary(values: Sequence[float], how: str) -> tuple[float | None, tuple[flo
     return mean, (mean - half, mean + half)
 
 
-def _reached(value: float, bar: float, at_most: bool) -> bool:
+def _reached(value: float | None, bar: float | None, at_most: bool) -> bool | None:
+    if value is None or bar is None:
+        return None
     return value <= bar + 1e-12 if at_most else value >= bar - 1e-12
 
 

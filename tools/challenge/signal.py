@@ -24,7 +24,7 @@ and tolerances are shared. The samples of a series are given the noise of the me
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -32,9 +32,10 @@ import numpy as np
 from scipy.linalg import block_diag, solve_triangular
 
 from .card import DAY_COOLING_SD, PRIOR_FACTORS, PRIOR_SD, Instruments, scaled, tiled
-from .hidden import Effect
+from .hidden import Effect, side_by_side
 from .plan import Plan
-from .rig import HALVES, Rig, Run, simulate
+from .rig import CLOCK, Rig, Run, misread, simulate
+from .stepping import Clock
 
 WIDE_SD = 0.4
 
@@ -51,6 +52,9 @@ FREE = {"n": 300.0, "load": 3000.0, "room": 100.0}
 MOMENTS = 8
 SAMPLES = 6.0
 
+#: Copies of a campaign in one run of several effects.
+BATCH = 64
+
 SERIES_CHANNELS = ("T_oil_C", "T_wall_C")
 
 
@@ -65,13 +69,13 @@ class Campaign:
 
 def _moments() -> np.ndarray:
     """Rows of the steps of a run at which a series counts."""
-    first, second = (len(h) for h in HALVES)
+    first, second = (len(half) for half in CLOCK.halves)
     a = np.linspace(3, first - 3, MOMENTS).astype(int)
     b = first + np.linspace(2, second - 3, MOMENTS).astype(int)
     return np.concatenate([a, b])
 
 
-def _readings(run: Run, instruments: Instruments, campaign: Campaign, copies: int) -> np.ndarray:
+def _readings(run: Run, instruments: Instruments, campaign: Campaign, copies: int, clock: Clock = CLOCK) -> np.ndarray:
     """All readings of every copy: (copies, rows, tests); rows are channels and moments."""
     found = run.ends.stacked(instruments.channels)
     stacked = found.reshape(-1, found.shape[-1])
@@ -174,6 +178,7 @@ class Yardstick:
         S = J @ J.T
         S[np.diag_indices_from(S)] += np.concatenate([b.sd for b in blocks]) ** 2
         self._root = np.linalg.cholesky(S)
+        self._runs: dict[Clock, Run] = {}
 
     @property
     def oil(self) -> np.ndarray:
@@ -181,22 +186,48 @@ class Yardstick:
         i = 2 * self.instruments.channels.index("T_oil_C")
         return self._quiet[i : i + 2]
 
-    def signatures(self, effect: Effect, amplitudes: np.ndarray) -> np.ndarray:
+    def signatures(self, effect: Effect, amplitudes: np.ndarray, *, clock: Clock = CLOCK) -> np.ndarray:
         """What some amplitudes change (amplitudes, rows, tests); not finite where the rig runs away."""
         copies = len(amplitudes)
         plan, base = self.campaign.plan.tiled(copies), tiled(self.campaign.base, copies)
-        acting = [(effect, np.repeat(amplitudes, self.campaign.plan.columns))]
+        amounts = np.repeat(amplitudes, self.campaign.plan.columns)
+        quiet = self._without_effect(clock)
         with np.errstate(all="ignore"):
-            run = simulate(self.rig, plan, base, acting, series=self.campaign.series)
-            change: np.ndarray = _readings(run, self.instruments, self.campaign, copies) - self._quiet
+            if effect.act is None and effect.pace is None:
+                run = misread(quiet, effect, amounts)
+            else:
+                acting = [(effect, amounts)]
+                run = simulate(self.rig, plan, base, acting, series=self.campaign.series, clock=clock)
+            shown = _readings(run, self.instruments, self.campaign, copies)
+            change: np.ndarray = shown - _readings(quiet, self.instruments, self.campaign, 1)
         if effect.pace is not None:  # a series shows its own clock: the same curve, cut off earlier
             change[:, 2 * len(self.instruments.channels) :] = 0.0
         return change
 
+    def together(self, effects: Sequence[Effect], amplitudes: np.ndarray, *, clock: Clock = CLOCK) -> np.ndarray:
+        """What each of several effects changes with an amplitude of its own (effects, rows, tests)."""
+        found = np.empty((len(effects), *self._quiet.shape))
+        sorts: dict[object, list[int]] = {}
+        for i, effect in enumerate(effects):
+            sorts.setdefault(i if effect.read is not None else effect.pace is None, []).append(i)
+        for alike in sorts.values():
+            for k in range(0, len(alike), BATCH):
+                some = alike[k : k + BATCH]
+                effect = effects[some[0]] if len(some) == 1 else side_by_side([effects[i] for i in some])
+                found[some] = self.signatures(effect, amplitudes[some], clock=clock)
+        return found
+
+    def _without_effect(self, clock: Clock) -> Run:
+        """The campaign without effect."""
+        if clock not in self._runs:
+            campaign = self.campaign
+            self._runs[clock] = simulate(self.rig, campaign.plan, campaign.base, series=campaign.series, clock=clock)
+        return self._runs[clock]
+
     def whitened(self, signatures: np.ndarray) -> np.ndarray:
         """Whitened signatures (rows of all campaigns, amplitudes)."""
         padded = np.zeros((len(self._root), len(signatures)))
-        padded[: self._quiet.size] = signatures.reshape(len(signatures), -1).T
+        padded[: self._quiet.size] = signatures.reshape(len(signatures), self._quiet.size).T
         white: np.ndarray = solve_triangular(self._root, padded, lower=True)
         return white
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -12,8 +13,14 @@ Rate = Callable[[np.ndarray, float], np.ndarray]
 #: L-stable choice of the two-stage method.
 GAMMA = 1.0 - 1.0 / np.sqrt(2.0)
 
-#: Steps before which the matrix is refreshed.
-REFRESH = (0, 8, 16)
+
+@dataclass(frozen=True, eq=False)
+class Clock:
+    """Shares of both halves and of the stop at which steps end, and every how many steps the matrix is refreshed."""
+
+    halves: tuple[np.ndarray, np.ndarray]
+    stop: np.ndarray
+    refresh: int
 
 
 def graded(duration: float, first: float = 12.0, growth: float = 1.35, largest: float = 480.0) -> np.ndarray:
@@ -25,17 +32,18 @@ def graded(duration: float, first: float = 12.0, growth: float = 1.35, largest: 
     return np.array(ends) / ends[-1]
 
 
-def march(rate: Rate, T: np.ndarray, shares: np.ndarray, duration: np.ndarray) -> np.ndarray:
+def march(rate: Rate, T: np.ndarray, shares: np.ndarray, duration: np.ndarray, refresh: int) -> np.ndarray:
     """Temperatures at all shares of a stretch (steps + 1, nodes, columns).
 
     The two-stage Rosenbrock method of Verwer: second order whatever matrix it is given, so the matrix (by differences)
-    is refreshed a few times only.
+    is refreshed now and then only. Heat paths that open while the rig warms up must not make it stale.
 
     Args:
         rate: slope
         T: temperatures at the beginning (nodes, columns)
         shares: where steps end, from 0 to 1
         duration: length of the stretch per column [s]
+        refresh: every how many steps the matrix is refreshed
     """
     unit = np.eye(len(T))
     path = np.empty((len(shares), *T.shape))
@@ -43,7 +51,7 @@ def march(rate: Rate, T: np.ndarray, shares: np.ndarray, duration: np.ndarray) -
     for i in range(len(shares) - 1):
         share, step = float(shares[i]), float(shares[i + 1] - shares[i])
         slope = rate(T, share)
-        if i in REFRESH:
+        if i % refresh == 0:
             matrix = _matrix(rate, T, share, slope)
         dt = step * duration
         inverse = np.linalg.inv(unit - (GAMMA * dt)[:, None, None] * matrix)
