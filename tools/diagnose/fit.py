@@ -17,8 +17,9 @@ from ...model.errors import SolveError
 from ..effects.cause import Cause, Theta
 from .problem import Linear, Problem
 
-#: Steps at most, tries of each with more damping (Levenberg and Marquardt), and the change below which they end; length of a step of a nuisance, a size and a shape.
+#: Steps at most, tries of each with more damping (Levenberg and Marquardt), and the change below which they end.
 STEPS, TRIES, SETTLED = 10, 4, 0.05
+#: Length of a step of a nuisance, a size and a shape.
 LONGEST = {"z": 1.5, "size": 0.75, "shape": 0.8}
 #: A step that gains less than this in log likelihood is the last.
 LITTLE = 0.1

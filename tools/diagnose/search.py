@@ -35,8 +35,8 @@ LIFT = {True: 45.0, False: 8.0}
 SHARES = (1.0, 0.5, 0.2)
 #: Half the squared misfit per reading from which a fit is repeated with slopes taken where it ended.
 POOR = 0.7
-#: A p of any cause below which the first look is repeated from the healthy machine.
-ELSEWHERE = 0.05
+#: A p of any cause below which the first look is repeated from the healthy machine, and above which little is fitted.
+ELSEWHERE, QUIET = 0.05, 0.25
 #: Standard deviation of what a form of the library leaves of a true effect, as a share of it.
 FORM = 0.06
 #: Forms at which fits begin: how many, how much worse than the best at the first look, how far apart in the share of
@@ -89,11 +89,13 @@ class Search:
             healthy = self.problem.linearised(self.problem.healthy())
             found = self._families(healthy, White.of(healthy.residual, healthy.covariance))
             first = better(first, self._first_look(healthy, found))
-        found = self._again(first[:1], [h for h in first if len(h.causes) == 1], AGAIN_ONE)
+        quiet = self.p_any > QUIET
+        found = self._again(first[:1], [h for h in first if len(h.causes) == 1], AGAIN_ONE if not quiet else 2)
         self.progress("pairs of causes", 0.6)
-        pairs = [h for h in first if len(h.causes) == 2] + self._beside(found)
+        pairs = [h for h in first if len(h.causes) == 2] + ([] if quiet else self._beside(found))
         found += first[:1]
-        self.hypotheses = self._settled([*found, *self._again(found, pairs, AGAIN_TWO), *self._with_days(found)])
+        pairs = self._again(found, pairs, AGAIN_TWO if not quiet else 0)
+        self.hypotheses = self._settled([*found, *pairs, *self._with_days(found)])
         self.outside = Unnamed(self.problem).evidence(self.hypotheses, self.null) + np.log(OUTSIDE)
         self.progress("hypotheses weighed", 0.8)
 
