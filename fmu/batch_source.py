@@ -71,7 +71,8 @@ def warmup_source(flat: FlatModel, most_steps: int) -> str:
         _function("step", place, ["x", "u", "slope", "p", "c", "h"], [x_new, error], ["x_new", "error"]),
         _function("outputs", [model.x, model.u, model.p, c], ["x", "u", "p", "c"], [y, ode], ["y", "dx"]),
     ]
-    sizes = {**_sizes(flat), "NX": ode.numel(), "NY": y.numel(), "NC": c.numel(), "ORDER": METHOD.order, "MAX_STEPS": most_steps}
+    sizes = {**_sizes(flat), "NX": ode.numel(), "NY": y.numel(), "NC": c.numel()}
+    sizes |= {"ORDER": METHOD.order, "MAX_STEPS": most_steps}
     return _text(flat, sizes, [], functions, ("batch.h", "batch_instance.h", "solver.c", "batch_warmup.c"))
 
 

@@ -149,7 +149,8 @@ class CampaignModel:
         The end of a half is a time given twice: the row in front of the jump counts.
         """
         times: list[float] = []
-        ends, places = [], []
+        ends: list[int] = []
+        places: list[int] = []
         for h, end in enumerate(self.runs[k].moments):
             dwell = self.tests[k].halves[h].si("dwell_min")
             for item in self.logged[k][h : h + 1]:

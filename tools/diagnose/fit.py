@@ -95,7 +95,7 @@ class _Fitting:
 
     def theta(self, x: np.ndarray) -> dict[str, Theta]:
         """Parameters of all causes."""
-        found = {}
+        found: dict[str, Theta] = {}
         for (kind, c, _), value in zip(self.labels, x[self.n :], strict=True):
             if kind == "size":
                 form = c.forms(self.shares(x, c)[None])[0] if c.shapes else {}
@@ -163,7 +163,7 @@ class _Fitting:
         for k, (kind, _, _) in enumerate(self.labels):
             if kind == "size":
                 longest[self.n + k] = max(LONGEST["size"], 0.6 * abs(self.x[self.n + k]))
-        return np.clip(change, -longest, longest)
+        return np.asarray(np.clip(change, -longest, longest))
 
     def legal(self, x: np.ndarray) -> np.ndarray:
         """Unknowns inside their bounds."""
@@ -172,7 +172,7 @@ class _Fitting:
             low, high = (c.size.low, c.size.high) if kind == "size" else (-FAR, FAR)
             scale = 2 * c.size.sd if kind == "size" else 1.0
             x[self.n + k] = np.clip(x[self.n + k], low / scale, high / scale)
-        return x
+        return np.asarray(x)
 
     def modes(self, covariance: np.ndarray) -> dict[str, Mode]:
         """Where each cause's shapes are, and how far they may be off."""

@@ -71,7 +71,7 @@ def seen(view: View, kept: np.ndarray, held: np.ndarray) -> Iterable[tuple[float
         else:
             value, joint = pair_evidence(*cut)
             k, m = np.unravel_index(int(np.argmax(joint)), joint.shape)
-            theta = pair_theta(*cut, int(k), int(m))
+            theta = pair_theta(cut[0], cut[1], int(k), int(m))
             shares = [np.eye(len(f.forms))[i] for f, i in zip(own, (k, m), strict=True)]
             sizes = [np.full(len(f.forms), theta[f.cause.id][f.cause.size.name]) for f in own]
         for f, g, w, size in zip(own, cut, shares, sizes, strict=True):

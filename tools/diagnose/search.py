@@ -87,8 +87,8 @@ class Search:
         first = self._first_look(self.null, self.found)
         if self.p_any < ELSEWHERE:  # what is wrong may have bent the calibration: look from the healthy machine as well
             healthy = self.problem.linearised(self.problem.healthy())
-            found = self._families(healthy, White.of(healthy.residual, healthy.covariance))
-            first = better(first, self._first_look(healthy, found))
+            there = self._families(healthy, White.of(healthy.residual, healthy.covariance))
+            first = better(first, self._first_look(healthy, there))
         quiet = self.p_any > QUIET
         found = self._again(first[:1], [h for h in first if len(h.causes) == 1], AGAIN_ONE if not quiet else 2)
         self.progress("pairs of causes", 0.6)
@@ -334,7 +334,7 @@ class Search:
             theta = h.theta[f.cause.id]
             residual -= f.signatures[:, form_of(f, theta)] * theta[f.cause.size.name]
         z = self.problem.nuisances(linear, residual)
-        return linear.z + np.clip(z - linear.z, -1.5, 1.5)
+        return np.asarray(linear.z + np.clip(z - linear.z, -1.5, 1.5))
 
 
 def better(some: Sequence[Hypothesis], others: Sequence[Hypothesis]) -> list[Hypothesis]:
