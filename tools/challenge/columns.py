@@ -7,7 +7,7 @@ faster for hundreds of columns.
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import lru_cache
 from typing import Any
 
 import casadi as ca
@@ -61,9 +61,9 @@ MANY = 64
 Evaluate = Callable[..., list[np.ndarray]]
 
 
-@cache
+@lru_cache(maxsize=32)
 def over_columns(function: Any, m: int) -> Evaluate:
-    """An SX function of dense vectors, for m columns; made once.
+    """An SX function of dense vectors, for m columns; the latest ones are kept.
 
     Raises:
         NotImplementedError: an operation of the function has no counterpart in numpy

@@ -53,7 +53,7 @@ MOMENTS = 8
 SAMPLES = 6.0
 
 #: Copies of a campaign in one run of several effects.
-BATCH = 64
+BATCH = 128
 
 SERIES_CHANNELS = ("T_oil_C", "T_wall_C")
 
