@@ -22,7 +22,7 @@ DAYS = 14
 
 
 class Memory:
-    """Arrays by what they were computed from; `made` were kept, `reused` found. Without a file it keeps nothing.
+    """Arrays by what they were computed from; `made` were kept now, `reused` earlier. Without a file it keeps nothing.
 
     Args:
         path: file to keep them in, made if need be; a file that cannot be used is done without
@@ -30,6 +30,7 @@ class Memory:
 
     def __init__(self, path: Path | None = None) -> None:
         self.path, self.reused, self.made = path, 0, 0
+        self._own: set[str] = set()
         self._base: sqlite3.Connection | None = None
         if path is None:
             return
@@ -54,7 +55,7 @@ class Memory:
             if row is not None:
                 with np.load(io.BytesIO(row[0]), allow_pickle=False) as arrays:
                     found = {name: arrays[name] for name in arrays.files}
-                self.reused += 1
+                self.reused += key not in self._own
                 return found
         made = dict(compute())
         text = io.BytesIO()
@@ -62,6 +63,7 @@ class Memory:
         with suppress(sqlite3.Error):
             self._base.execute("INSERT OR REPLACE INTO kept VALUES (?, ?)", (key, text.getvalue()))
             self.made += 1
+            self._own.add(key)
         return made
 
     def forget(self) -> None:
