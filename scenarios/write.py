@@ -64,7 +64,7 @@ def _uncertainties(scenario: Scenario, part: PartSpec) -> dict[str, Any]:
 
 
 def _value(value: float, unit: str) -> Any:
-    return value if unit == "1" else f"{float(value)!r} {unit}"
+    return value if unit == "1" else f"{float(value)!r} {unit.removesuffix(' (difference)')}"
 
 
 def _source(scenario: Scenario, path: str) -> str:

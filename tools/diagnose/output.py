@@ -127,6 +127,8 @@ def show(findings: Findings) -> None:
         print(f"would have been found in 80 of 100 such campaigns: {', '.join(seen) or 'nothing'}")
     if found and (effects := [text for key in words.IMPACTS if (text := words.impact(findings, key))]):
         print(f"mean effect on the readings: {', '.join(effects)}")
+    if found and findings.rows:
+        print(f"played over these readings (root mean square): {words.played(findings)}")
     print(f"oil temperature of readings left out: {words.gain(findings)}")
     for experiment in findings.next_experiment[:1]:
         print(f"measure next: {experiment.what} ({_separation(experiment)})")

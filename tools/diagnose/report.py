@@ -52,6 +52,7 @@ def render(inputs: Inputs, findings: Findings) -> str:
         groups=_groups(findings),
         sizes=_sizes(findings),
         impact=_impact(findings) if hypothesis else [],
+        played=words.played(findings) if hypothesis and findings.rows else "",
         gain=_gain(findings),
         experiments=_experiments(findings),
         exposes=_exposes(findings),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 from ..effects.taxonomy import CAUSES
@@ -252,3 +253,16 @@ def gain(findings: Findings) -> str:
         f" {number(low, 2)} to {number(high, 2)}), {SCHEMES.get(g.scheme, g.scheme)}"
     )
     return text if g.noise_floor is None else f"{text}; one reading scatters by {number(g.noise_floor, 2)} K"
+
+
+def played(findings: Findings) -> str:
+    """Root mean square of what the rig leaves on the data it was fitted to, calibrated alone and extended."""
+    shown = {"T_oil": ("oil", "K"), "T_wall": ("wall", "K"), "loss": ("loss torque", "N.m")}
+    said = []
+    for channel, (measured, nominal, extended) in findings.rows.items():
+        if channel not in shown:
+            continue
+        name, unit = shown[channel]
+        left = [math.sqrt(float(((model - measured) ** 2).mean())) for model in (nominal, extended)]
+        said.append(f"{name} {number(left[0])} {unit} calibrated, {number(left[1])} {unit} extended")
+    return "; ".join(said)
