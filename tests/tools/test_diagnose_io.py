@@ -16,6 +16,7 @@ from gearheat.model.errors import DataError, GearheatError
 from gearheat.model.machines.spec import assemble
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured import schedule_of
+from gearheat.scenarios.write import rig_text
 from gearheat.tools.diagnose import words
 from gearheat.tools.diagnose.command import Outputs, command
 from gearheat.tools.diagnose.extension import extended, extended_text
@@ -25,6 +26,7 @@ from gearheat.tools.diagnose.memory import Memory, fingerprint, memory_of
 from gearheat.tools.diagnose.output import as_object, schema, show
 from gearheat.tools.diagnose.predictions import predictions_text
 from gearheat.tools.diagnose.report import render
+from gearheat.tools.diagnose.superset import superset
 from gearheat.tools.effects.taxonomy import CAUSES
 from gearheat.tools.losses import oil_values
 from gearheat.tools.settings import loaded
@@ -470,3 +472,13 @@ def test_memory_that_cannot_be_kept_is_done_without(tmp_path, monkeypatch):
     memory.forget()
     (tmp_path / "bad.kept").write_bytes(b"no database at all, but long enough to be looked at as one" * 20)
     assert Memory(tmp_path / "bad.kept").kept("x", lambda: {"y": np.ones(2)})["y"].sum() == 2.0
+
+
+def test_a_rig_with_every_cause_is_read_back_as_it_was_written(tmp_path):
+    rig = load("planetary")
+    everything = replace(rig, spec=superset(rig.spec), entries={}, overrides=(), campaign=None)
+    path = tmp_path / "all.toml"
+    path.write_text(rig_text(everything), encoding="utf-8")
+    found = {part.name: part for part in load(path).spec.parts}
+    for part in (part for part in everything.spec.parts if part.name.startswith("extra_")):
+        assert found[part.name].values == pytest.approx(part.values)
