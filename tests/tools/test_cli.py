@@ -5,7 +5,20 @@ import sys
 
 import pytest
 
-COMMANDS = ("run", "losses", "steady", "design", "simulate", "export", "play", "compare", "calibrate", "list", "show", "plan")
+COMMANDS = (
+    "run",
+    "losses",
+    "steady",
+    "design",
+    "simulate",
+    "export",
+    "play",
+    "compare",
+    "calibrate",
+    "list",
+    "show",
+    "plan",
+)
 
 
 def test_help_loads_nothing_heavy():

@@ -17,21 +17,39 @@ from .search import Hypothesis, Search
 
 #: Power of the detectable size; distance below which two causes are the same to a design; probability that is shown.
 POWER, NEAR, SHOWN = 0.8, 2.5, 0.005
+#: Bayes factor above which a second cause counts.
+ASKED = 3.0
 #: A nuisance whose prior is wider than this many standard deviations of the readings counts as fitted.
 FREE = 0.5
 
 
 def joints(search: Search) -> tuple[list[Joint], list[Hypothesis]]:
-    """Hypotheses with those that differ within a class added up under their best member, most probable first."""
+    """Hypotheses added up under their best member, most probable first.
+
+    Those that differ within a class are one, and a pair whose second cause the data do not ask for is the cause alone.
+    """
+    alone = {h.causes[0]: h for h in search.hypotheses if len(h.causes) == 1}
     groups: dict[tuple[str, ...], list[tuple[Hypothesis, float]]] = {}
     for h, p in zip(search.hypotheses, search.probabilities(), strict=True):
-        groups.setdefault(tuple(sorted(family_of(c) for c in h.causes)), []).append((h, float(p)))
+        shown = asked_for(search, h, alone)
+        groups.setdefault(tuple(sorted(family_of(c) for c in shown)), []).append((h, float(p)))
     merged = []
-    for members in groups.values():
-        best = max(members, key=lambda member: member[1])[0]
+    for key, members in groups.items():
+        named_so = [m for m in members if tuple(sorted(family_of(c) for c in m[0].causes)) == key]
+        best = max(named_so, key=lambda member: member[1])[0]
         merged.append((Joint(best.causes, sum(p for _, p in members), best.theta), best))
     merged.sort(key=lambda item: -item[0].probability)
     return [j for j, _ in merged], [h for _, h in merged]
+
+
+def asked_for(search: Search, h: Hypothesis, alone: Mapping[str, Hypothesis]) -> tuple[str, ...]:
+    """The causes of a hypothesis without a second one whose Bayes factor beside the first is below `ASKED`."""
+    singles = [alone[c] for c in h.causes if c in alone]
+    if len(h.causes) < 2 or not singles:
+        return h.causes
+    single = max(singles, key=lambda other: other.log_posterior)
+    gained = (h.log_posterior - search.prior(2)) - (single.log_posterior - search.prior(1))
+    return h.causes if gained > np.log(ASKED) else single.causes
 
 
 def family_of(cause: str) -> str:
