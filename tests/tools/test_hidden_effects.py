@@ -47,7 +47,6 @@ MISSED: dict[tuple[str, ...], str] = {
     ("thermal.mass",): "consistent; nothing 0.70, thermal.split 0.11, thermal.mass 0.05",
     ("thermal.split",): "explained; humidity or day scatter + churning, windage or oil level 0.97",
     ("procedure.not_stationary",): "explained; cooling.air 0.91",
-    ("procedure.order",): "unexplained; nearly all probability outside the library",
 }
 
 

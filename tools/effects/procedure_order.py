@@ -6,28 +6,31 @@ from collections.abc import Mapping
 from typing import Any
 
 from .cause import Cause, Rows, Shape, Size, Theta
-from .forms import extra_conductor
 
-PARTS, NETS = extra_conductor("extra_order", "surface.heat", "room.floor")
+COOLING, TEETH = ("cooling.A", "foot.G"), ("gear_set.k_mu",)
+SHAFTS = ("carrier_bearing.count", "sun_bearing.count", "planet_bearing.count", "carrier_seal.count", "sun_seal.count")
+#: What changes by the shape "target", and upper ends of the shares of the prior.
+TARGETS, ENDS = (COOLING, TEETH, TEETH + SHAFTS), (0.4, 0.7, 1.0)
 
 
-def conductance(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mapping[str, Any]:
-    """Extra conductance per test, from the first to the last in running order."""
+def changing(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mapping[str, Any]:
+    """The target times 1 + change per test, from the first to the last in running order."""
     if rows is None:
         return {}
-    return {"extra_order.G_ref": theta["G_ref"] * (rows.per_test(rows.order) ** theta["power"] - theta["zero"])}
+    course = rows.per_test(rows.order) ** theta["power"] - theta["zero"]
+    target = TARGETS[sum(theta["target"] > end for end in ENDS)]
+    return {path: base[path] * (1 + theta["change"] * course).clip(0.05) for path in target}
 
 
 CAUSE = Cause(
     id="procedure.order",
-    doc="Cooling that changes steadily over the campaign: dirt, season, what stands around.",
-    size=Size("G_ref", "W/K", "conductance at the last test less that at the first", 1.5, -10.0, 10.0),
+    doc="Cooling or losses that change steadily over the campaign: dirt, season, running in, what stands around.",
+    size=Size("change", "1", "relative change from the first test to the last", 0.12, -0.9, 1.5),
     shapes=(
-        Shape("power", "1", "exponent of the running order", 0.5, 2.0, 1.0, 0.3),
+        Shape("target", "1", "what changes: cooling, friction of the teeth, or all losses", 0.0, 1.0, ends=ENDS),
+        Shape("power", "1", "exponent of the running order", 0.3, 2.0, 0.9, 0.35),
         Shape("zero", "1", "where in that course the nominal holds", 0.0, 1.0),
     ),
     exposes="the first point repeated at the end; tests in random order",
-    parts=PARTS,
-    connections=NETS,
-    values=conductance,
+    values=changing,
 )
