@@ -9,12 +9,11 @@ from itertools import combinations
 import numpy as np
 from scipy.linalg import block_diag
 
-from ..effects.cause import Cause
 from .candidates import Candidate
 from .checks import Check
 from .enlarged import Enlarged
 from .evidence import White
-from .family import Family, Sample
+from .family import Family, Sample, prior_size
 from .problem import Linear, Problem
 from .scatter import SIZES
 from .weigh import distance
@@ -150,19 +149,11 @@ def _scattered(cause: Scatter) -> float:
     return float(np.sqrt((ratios - np.log1p(ratios)).sum()))
 
 
-def prior_size(cause: Cause) -> float:
-    """One prior standard deviation, to the side on which the cause can be so large."""
-    size = cause.size
-    return size.sd if size.sd <= size.high else -size.sd
-
-
 def _families(
     problem: Problem, linear: Linear, samples: Sequence[Sample], checks: Sequence[Check]
 ) -> dict[str, Family]:
     """All forms of all causes, nothing seen yet."""
-    thetas = {
-        s.cause.id: [{**form, s.cause.size.name: s.size} for form in s.cause.forms(s.shares) or [{}]] for s in samples
-    }
+    thetas = {s.cause.id: [{**form, s.cause.size.name: s.size} for form in s.cause.forms(s.shares)] for s in samples}
     wanted = [(s.cause, theta, s.size) for s in samples for theta in thetas[s.cause.id]]
     simulated = problem.signatures(linear, wanted)
     found, begin = {}, 0

@@ -10,8 +10,8 @@ import numpy as np
 from ..effects.cause import Cause, spread
 from ..effects.taxonomy import CAUSES
 from .candidates import candidates
-from .design import Design, prior_size
-from .family import EACH, Sample
+from .design import Design
+from .family import Sample, prior_size
 from .findings import Experiment
 from .problem import Problem
 
@@ -51,7 +51,7 @@ def gain(before: float, after: float) -> float:
 def _few(cause: Cause) -> Sample:
     """Few forms of a cause: where each has to be simulated, those of its main kind."""
     if not cause.physical or cause.choice is None:
-        return Sample(cause, *cause.sample(FORMS, EACH), prior_size(cause))
+        return Sample.of_prior(cause, FORMS)
     shares = spread(FORMS, len(cause.shapes))
     shares[:, cause.choice] *= cause.shapes[cause.choice].ends[0]
     return Sample(cause, shares, np.zeros(FORMS), prior_size(cause))

@@ -92,15 +92,15 @@ class Sample:
 
 
 def prior_size(cause: Cause) -> float:
-    """One half width of the prior, on the side that has room for it."""
+    """One half width of the prior, to the side on which the cause can be so large."""
     size = cause.size
-    return min(size.sd, size.high) if size.high >= min(size.sd, -size.low) else -min(size.sd, -size.low)
+    return size.sd if size.sd <= size.high else -size.sd
 
 
 def families(problem: Problem, linear: Linear, white: White, samples: Iterable[Sample]) -> dict[str, Family]:
     """Signatures of all forms of all samples."""
     samples = list(samples)
-    forms = {s.cause.id: (s, s.cause.forms(s.shares) if s.cause.shapes else [{}]) for s in samples}
+    forms = {s.cause.id: (s, s.cause.forms(s.shares)) for s in samples}
     wanted = [(s.cause, form, s.size) for s, own in forms.values() for form in own]
     G = problem.signatures(linear, wanted)
     whitened = white.columns(G)
@@ -170,6 +170,12 @@ def pair_promise(a: Family, b: Family) -> float:
     fit = 0.5 * (pb * sa**2 + pa * sb**2 - 2 * cross * sa * sb) / det
     logs = fit - 0.5 * np.log(det * (a.cause.size.sd * b.cause.size.sd) ** 2)
     return float(logsumexp(logs + a.log_w[:, None] + b.log_w[None, :]) - np.log(logs.size))
+
+
+def best_pair(weights: np.ndarray) -> tuple[int, int]:
+    """The two forms of most weight."""
+    k, m = np.unravel_index(int(np.argmax(weights)), weights.shape)
+    return int(k), int(m)
 
 
 def pair_theta(a: Family, b: Family, k: int, m: int) -> dict[str, Theta]:

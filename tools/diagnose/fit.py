@@ -45,6 +45,12 @@ class Fit:
     theta: Mapping[str, Theta]
     modes: Mapping[str, Mode]
     cost: float
+    sizes: Mapping[str, float]
+
+    @property
+    def start(self) -> dict[str, tuple[np.ndarray, float]]:
+        """Where another fit may go on: cause -> shares of its shapes, and size."""
+        return {name: (mode.shares, self.sizes[name]) for name, mode in self.modes.items()}
 
 
 def fitted(problem: Problem, linear: Linear, start: Mapping[str, tuple[np.ndarray, float]], steps: int = STEPS) -> Fit:
@@ -98,7 +104,7 @@ class _Fitting:
         found: dict[str, Theta] = {}
         for (kind, c, _), value in zip(self.labels, x[self.n :], strict=True):
             if kind == "size":
-                form = c.forms(self.shares(x, c)[None])[0] if c.shapes else {}
+                form = c.forms(self.shares(x, c)[None])[0]
                 found[c.id] = {**form, c.size.name: 2 * c.size.sd * float(value)}
         return found
 
@@ -128,7 +134,9 @@ class _Fitting:
             self.x, cost, (shown, J, H) = new, value, found
             if moved < SETTLED or gained < LITTLE:
                 break
-        return Fit(self.x[: self.n], self.theta(self.x), self.modes(np.linalg.inv(H)), cost)
+        theta = self.theta(self.x)
+        sizes = {c.id: theta[c.id][c.size.name] for c in self.causes}
+        return Fit(self.x[: self.n], theta, self.modes(np.linalg.inv(H)), cost, sizes)
 
     def cost(self, x: np.ndarray, shown: np.ndarray) -> float:
         """Half the squared misfit, priors included."""

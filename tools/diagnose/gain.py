@@ -9,7 +9,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from .evidence import White
-from .family import Family, pair_evidence, pair_theta
+from .family import Family, best_pair, pair_evidence, pair_theta
 from .findings import Gain
 from .problem import Linear
 from .scatter import SCATTER
@@ -70,8 +70,8 @@ def seen(view: View, kept: np.ndarray, held: np.ndarray) -> Iterable[tuple[float
             value, shares, sizes = cut[0].evidence(), [cut[0].weights()], [cut[0].sizes()[0]]
         else:
             value, joint = pair_evidence(*cut)
-            k, m = np.unravel_index(int(np.argmax(joint)), joint.shape)
-            theta = pair_theta(cut[0], cut[1], int(k), int(m))
+            k, m = best_pair(joint)
+            theta = pair_theta(cut[0], cut[1], k, m)
             shares = [np.eye(len(f.forms))[i] for f, i in zip(own, (k, m), strict=True)]
             sizes = [np.full(len(f.forms), theta[f.cause.id][f.cause.size.name]) for f in own]
         for f, g, w, size in zip(own, cut, shares, sizes, strict=True):

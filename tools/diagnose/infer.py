@@ -49,24 +49,17 @@ class Predictor:
 
     def _at(self, model: CampaignModel, h: Hypothesis) -> np.ndarray:
         linear, causes = h.linear or self.null, [CAUSES[c] for c in h.causes]
-        values, effect = dict(linear.values), np.zeros(len(linear.residual))
-        for cause in causes:
-            values |= cause.values({**self.problem.rig.base, **values}, h.theta[cause.id], model.rows)
-        shown = model.simulate([values])[0]
-        for cause in causes:
-            shown = cause.readings(h.theta[cause.id], model.rows, shown)
-        for f in h.families:
-            effect += f.signatures[:, form_of(f, h.theta[f.cause.id])] * h.theta[f.cause.id][f.cause.size.name]
-        return np.asarray(shown["T_oil"] - 273.15 + self._tied(model, linear, linear.residual - effect))
+        points = Campaigned(model, Channels({"T_oil": np.arange(model.n)}), np.empty(0), acting=True)
+        shown = self.problem.shown_at(points, [(linear.values, h.theta)], causes)[:, 0]
+        return np.asarray(shown - 273.15 + self._tied(points, linear, linear.residual - h.effect))
 
-    def _tied(self, model: CampaignModel, linear: Linear, left: np.ndarray) -> np.ndarray:
+    def _tied(self, points: Campaigned, linear: Linear, left: np.ndarray) -> np.ndarray:
         """What the oil probe's tolerance, the room probe's and the smooth remainder add, as the data tell them."""
         problem = self.problem
         weights = problem.tied.T @ cho_solve(cho_factor(linear.covariance), left)
-        channels = Channels({"T_oil": np.arange(model.n)})
-        columns = instrument_covariance(channels, model.rows, problem.card)[1]
+        columns = instrument_covariance(points.channels, points.model.rows, problem.card)[1]
         if len(problem.campaigns) > 1:
-            columns |= remainder(channels, model.rows)
+            columns |= remainder(points.channels, points.model.rows)
         known = dict(zip(problem.tied_names, weights, strict=True))
         return np.asarray(sum(known[name] * column for name, column in columns.items()))
 

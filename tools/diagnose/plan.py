@@ -11,7 +11,7 @@ import numpy as np
 from ..effects.taxonomy import CAUSES
 from .campaign_model import CampaignModel, Rig
 from .candidates import Candidate, candidates
-from .design import FOLLOWED, Design, Pair, prior_size, visible
+from .design import FOLLOWED, Design, Pair, visible
 from .enlarged import answered
 from .experiments import gain
 from .family import FORMS, Sample
@@ -83,7 +83,7 @@ def planned(inputs: PlanInputs, progress: Callable[[str], None] = lambda stage: 
     progress("compiling the rig")
     problem = nominal(inputs)
     progress("simulating the campaign, its experiments and the causes in both")
-    samples = [Sample.of_prior(CAUSES[c], FORMS, prior_size(CAUSES[c])) for c in inputs.causes]
+    samples = [Sample.of_prior(CAUSES[c], FORMS) for c in inputs.causes]
     z = np.zeros(len(problem.parameters.names))
     design = Design.of(problem, z, candidates(problem.data.model), samples)
     return plan_from(inputs, design)

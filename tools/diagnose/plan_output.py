@@ -12,7 +12,8 @@ from .. import plots
 from ..console import table
 from ..effects.taxonomy import CAUSES
 from .candidates import Candidate
-from .design import Pair, prior_size
+from .design import Pair
+from .family import prior_size
 from .plan import APART, Outlook, Plan
 
 SCHEMA = "gearheat.plan/1"

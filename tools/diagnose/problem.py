@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
-from scipy.linalg import cho_factor, cho_solve
+from scipy.linalg import block_diag, cho_factor, cho_solve
 
 from ...model.errors import SolveError
 from ..effects.cause import Cause, Readings, Rows, Theta
@@ -118,7 +118,7 @@ class Problem:
                 for own, zero in zip(shared, none, strict=True)
             ]
         )
-        self.scatter, self.tied = _block_diagonal(blocks), joined
+        self.scatter, self.tied = block_diag(*blocks), joined
         self.instrument = self.scatter + joined @ joined.T
 
     @property
@@ -340,12 +340,3 @@ def remainder(channels: Channels, rows: Rows) -> dict[str, np.ndarray]:
                 column[part] = feature[which[part]] * REMAINDER[name]
                 found[f"remainder of {name} {k}"] = column
     return found
-
-
-def _block_diagonal(blocks: Sequence[np.ndarray]) -> np.ndarray:
-    size = sum(len(b) for b in blocks)
-    whole, begin = np.zeros((size, size)), 0
-    for b in blocks:
-        whole[begin : begin + len(b), begin : begin + len(b)] = b
-        begin += len(b)
-    return whole

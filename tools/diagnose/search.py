@@ -15,7 +15,7 @@ from ...model.errors import SolveError
 from ..effects.cause import Cause, Theta
 from ..effects.taxonomy import CAUSES
 from .evidence import White, score
-from .family import FORMS, Family, Sample, families, form_of, nearer, pair_evidence, pair_promise, pair_theta
+from .family import FORMS, Family, Sample, best_pair, families, form_of, nearer, pair_evidence, pair_promise, pair_theta
 from .fit import STEPS, Fit, fitted
 from .problem import Linear, Problem
 from .scatter import SCATTER, SIZES, Days
@@ -58,6 +58,15 @@ class Hypothesis:
     families: tuple[Family, ...] = ()
     linear: Linear | None = None
 
+    @property
+    def effect(self) -> np.ndarray | float:
+        """What its causes, as fitted, change in all readings (m); 0 without any."""
+        found: np.ndarray | float = 0.0
+        for f in self.families:
+            theta = self.theta[f.cause.id]
+            found = found + f.signatures[:, form_of(f, theta)] * theta[f.cause.size.name]
+        return found
+
 
 def log_gauss(white: White) -> float:
     """Log density of a residual without any cause."""
@@ -77,7 +86,6 @@ class Search:
         self.progress("calibrating without a cause", 0.0)
         self.null = self.problem.settled()
         self.white = White.of(self.null.residual, self.null.covariance)
-        self.base = log_gauss(self.white)
         self.progress("effects of all causes", 0.15)
         self.found = self._families(self.null, self.white)
         self.days = Days.of(self.null, self.white)
@@ -149,8 +157,7 @@ class Search:
                 continue
             classes.add(names)
             value, weights = pair_evidence(a, b)
-            k, m = np.unravel_index(int(np.argmax(weights)), weights.shape)
-            theta = pair_theta(a, b, int(k), int(m))
+            theta = pair_theta(a, b, *best_pair(weights))
             found.append(Hypothesis((a.cause.id, b.cause.id), base + value + self.prior(2), theta, (a, b), linear))
         return found
 
@@ -197,9 +204,8 @@ class Search:
         base, pairs = log_gauss(white), []
         for f in families(self.problem, acting, white, (Sample.of_prior(c, FORMS // 2) for c in others)).values():
             value, weights = pair_evidence(own, f)
-            k, m = np.unravel_index(int(np.argmax(weights)), weights.shape)
             causes = (name, f.cause.id)
-            theta = pair_theta(own, f, int(k), int(m))
+            theta = pair_theta(own, f, *best_pair(weights))
             pairs.append(Hypothesis(causes, base + value + self.prior(2), theta, (own, f), a.linear))
         return pairs
 
@@ -222,8 +228,7 @@ class Search:
             fit = self._scanned(h, fit)
         linear = self.problem.linearised(fit.z, fit.theta, causes)
         if fit.cost > POOR * len(linear.residual):  # far from where the slopes of the nuisances were taken
-            start = {c.id: (fit.modes[c.id].shares, fit.theta[c.id][c.size.name]) for c in causes}
-            fit = fitted(self.problem, linear, start)
+            fit = fitted(self.problem, linear, fit.start)
             linear = self.problem.linearised(fit.z, fit.theta, causes)
         back = self.problem.put_back(linear, FORM)
         white = White.of(back.residual, back.covariance)
@@ -247,8 +252,7 @@ class Search:
         if not tried:
             raise SolveError(f"{' and '.join(h.causes)}: no form of it can be run.")
         best = min(tried, key=lambda fit: fit.cost)
-        start = {name: (m.shares, best.theta[name][CAUSES[name].size.name]) for name, m in best.modes.items()}
-        return self._fitted(h, start, best.z)
+        return self._fitted(h, best.start, best.z)
 
     def _starts(self, h: Hypothesis) -> list[dict[str, tuple[np.ndarray, float]]]:
         """Where fits begin: at the best forms, and for one cause at other kinds and thresholds nearly as good."""
@@ -289,7 +293,7 @@ class Search:
         for share in SHARES:
             theta = {}
             for c in causes:
-                form = c.forms(start[c.id][0][None])[0] if c.shapes else {}
+                form = c.forms(start[c.id][0][None])[0]
                 theta[c.id] = {**form, c.size.name: share * start[c.id][1]}
             smaller = {name: (shares, share * size) for name, (shares, size) in start.items()}
             try:
@@ -315,25 +319,19 @@ class Search:
             white = White.of(back.residual, back.covariance)
             sample = Sample(c, shares, np.zeros(len(shares)), sound(size, c))
             logs = families(self.problem, linear, white, [sample])[c.id].log_bf()
-            start = {name: (m.shares, fit.theta[name][CAUSES[name].size.name]) for name, m in fit.modes.items()}
             short = []
             for k in [k for k in np.argsort(-logs) if k][:RETRIED]:
                 with suppress(SolveError):
-                    short.append(self._fitted(h, {**start, c.id: (shares[k], size)}, fit.z, steps=BEGUN))
+                    short.append(self._fitted(h, {**fit.start, c.id: (shares[k], size)}, fit.z, steps=BEGUN))
             if short and min(other.cost for other in short) < fit.cost + 5.0:
                 best = min(short, key=lambda other: other.cost)
-                start = {name: (m.shares, best.theta[name][CAUSES[name].size.name]) for name, m in best.modes.items()}
-                fit = min(fit, self._fitted(h, start, best.z), key=lambda fit: fit.cost)
+                fit = min(fit, self._fitted(h, best.start, best.z), key=lambda fit: fit.cost)
         return fit
 
     def _shifted(self, h: Hypothesis) -> np.ndarray:
         """Nuisances under a hypothesis, by its linearisation."""
         linear = h.linear or self.null
-        residual = linear.residual.copy()
-        for f in h.families:
-            theta = h.theta[f.cause.id]
-            residual -= f.signatures[:, form_of(f, theta)] * theta[f.cause.size.name]
-        z = self.problem.nuisances(linear, residual)
+        z = self.problem.nuisances(linear, linear.residual - h.effect)
         return np.asarray(linear.z + np.clip(z - linear.z, -1.5, 1.5))
 
 

@@ -14,7 +14,6 @@ import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 from scipy.special import logsumexp
 
-from .family import form_of
 from .problem import Linear, Problem
 from .scatter import SCATTER
 
@@ -63,10 +62,7 @@ class Unnamed:
 
     def _gain(self, h: Hypothesis, linear: Linear) -> float:
         """Log ratio of the likelihood with a discrepancy to that without, at the hypothesis' best parameters."""
-        residual, V = linear.residual.copy(), linear.covariance
-        for f in h.families:
-            theta = h.theta[f.cause.id]
-            residual -= f.signatures[:, form_of(f, theta)] * theta[f.cause.size.name]
+        residual, V = linear.residual - h.effect, linear.covariance
         a, b = self.inside, self.outside
         r, C = residual[a], V[np.ix_(a, a)]
         if len(b):

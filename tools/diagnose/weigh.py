@@ -60,13 +60,10 @@ def family_of(cause: str) -> str:
 def p_adequacy(search: Search, h: Hypothesis) -> float:
     """Omnibus p of what a hypothesis leaves when all nuisances are fitted freely: each takes a degree of freedom."""
     linear, problem = h.linear or search.null, search.problem
-    left = linear.residual.copy()
-    for f in h.families:
-        left -= f.signatures[:, form_of(f, h.theta[f.cause.id])] * h.theta[f.cause.id][f.cause.size.name]
     days = problem.card.day_cooling_sd**2 + (h.theta[SCATTER]["sd"] ** 2 if SCATTER in h.theta else 0.0)
     noise = linear.noise - problem.instrument + problem.scatter
     noise = noise + (days - problem.card.day_cooling_sd**2) * linear.days @ linear.days.T
-    white = White.of(left, noise)
+    white = White.of(linear.residual - h.effect, noise)
     Q, d, _ = np.linalg.svd(white.columns(np.concatenate([linear.jacobian, problem.tied], axis=1)), full_matrices=False)
     fitted = d > FREE
     e = white.e - Q[:, fitted] @ (Q[:, fitted].T @ white.e)

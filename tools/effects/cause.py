@@ -72,6 +72,11 @@ class Rows:
         """Number of tests."""
         return int(self.test.max()) + 1
 
+    @property
+    def rise_per_test(self) -> np.ndarray:
+        """Mean rise of the oil over the room in each test [K]."""
+        return np.array([self.rise[self.test == k].mean() for k in range(self.n_tests)])
+
     def per_test(self, values: np.ndarray) -> np.ndarray:
         """The first value of each test."""
         return np.array([values[self.test == k][0] for k in range(self.n_tests)])

@@ -17,8 +17,7 @@ def conductance(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> M
     """The joint with more resistance, per test by a power of the oil's rise: joints close or open as they warm."""
     R: Any = theta["R"]
     if rows is not None:
-        rise = np.array([rows.rise[rows.test == k].mean() for k in range(rows.n_tests)])
-        R = R * (np.maximum(rise, 5.0) / RISE) ** theta["e"]
+        R = R * (np.maximum(rows.rise_per_test, 5.0) / RISE) ** theta["e"]
     return {"wall_surface.G": base["wall_surface.G"] / (1 + R * base["wall_surface.G"])}
 
 

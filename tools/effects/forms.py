@@ -51,6 +51,8 @@ class Regimes:
 
 
 SPEED, LOAD, WARMTH, DIRECTION = ("w+", "w-"), ("tau+", "tau-"), ("T+", "T-"), ("d+", "d-")
+#: Capacities of what turns, and of the housing.
+INSIDE, OUTSIDE = ("gears.C", "carrier_body.C"), ("wall.C", "surface.C")
 OIL_SHARE_TEETH = Shape("oil_share", "1", "share of the heat that goes into the oil", 0.0, 1.0, 0.8, 0.15)
 OIL_SHARE_BEARING = Shape("oil_share", "1", "share of the heat that goes into the oil", 0.0, 1.0, 0.6, 0.25)
 

@@ -17,8 +17,7 @@ def bias(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mapping[
     """Reading less truth per test, by a power of the oil's rise over the room."""
     if rows is None:
         return {}
-    rise = np.array([rows.rise[rows.test == k].mean() for k in range(rows.n_tests)])
-    return {"read.room_bias": theta["bias"] * (np.maximum(rise, 0.0) / RISE) ** theta["e"]}
+    return {"read.room_bias": theta["bias"] * (np.maximum(rows.rise_per_test, 0.0) / RISE) ** theta["e"]}
 
 
 CAUSE = Cause(

@@ -6,9 +6,8 @@ import math
 from collections.abc import Mapping
 
 from .cause import Cause, Rows, Shape, Size, Theta
-from .forms import scaled
+from .forms import INSIDE, OUTSIDE, scaled
 
-INSIDE, OUTSIDE = ("gears.C", "carrier_body.C"), ("wall.C", "surface.C")
 #: Bodies by the shape "bodies", and upper ends of their shares of the prior.
 BODIES, ENDS = (INSIDE + OUTSIDE, OUTSIDE, INSIDE), (0.6, 0.85, 1.0)
 

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from .cause import Cause, Rows, Shape, Size, Theta
+from .forms import INSIDE, OUTSIDE
 
-INSIDE, OUTSIDE = ("gears.C", "carrier_body.C"), ("wall.C", "surface.C")
 #: Share of the prior in which capacity moves.
 CAPACITY = 0.7
 BEARINGS = ("carrier_bearing", "sun_bearing", "carrier_seal", "sun_seal")
