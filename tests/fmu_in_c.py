@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 from gearheat.fmu.export import export
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
@@ -93,3 +94,12 @@ def told(*command: object) -> str:
 def check(facts: Path, *arguments: object) -> str:
     """What one check tells of one FMU."""
     return told(checks(), facts, *arguments)
+
+
+def numbers(said: str) -> dict[str, np.ndarray]:
+    """Rows of numbers by the word they begin with."""
+    rows: dict[str, list[list[float]]] = {}
+    for line in said.splitlines():
+        word, *values = line.split()
+        rows.setdefault(word, []).append([float.fromhex(value) for value in values])
+    return {word: np.array(values) for word, values in rows.items()}

@@ -13,7 +13,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from binary_formats import Library, elf, pe, universal
-from fmu_in_c import HERE, checks, planetary, told
+from fmu_in_c import HERE, checks, numbers, planetary, told
 from gearheat.fmu.export import export
 from gearheat.tools.c_importer import Compiler, program, unpack
 
@@ -70,15 +70,6 @@ def in_windows(folder: Path, *command: object) -> str:
     done = subprocess.run(words, cwd=folder, env=environment, capture_output=True, text=True, check=False, timeout=300)
     assert done.returncode == 0, f"{words} ends with {done.returncode}\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}"
     return done.stdout
-
-
-def numbers(said: str) -> dict[str, np.ndarray]:
-    """Rows of numbers by the word they begin with."""
-    rows: dict[str, list[list[float]]] = {}
-    for line in said.splitlines():
-        word, *values = line.split()
-        rows.setdefault(word, []).append([float.fromhex(value) for value in values])
-    return {word: np.array(values) for word, values in rows.items()}
 
 
 def apart(found: np.ndarray, expected: np.ndarray, rounded: np.ndarray) -> float:

@@ -7,7 +7,7 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from fmu_in_c import LIBRARY, check, checks, gcc, library, planetary, told, unpacked
+from fmu_in_c import LIBRARY, check, checks, gcc, library, numbers, planetary, told, unpacked
 from gearheat.fmu.compiling import FLAGS, host_platform
 from gearheat.model.errors import FmuError
 from gearheat.tools.c_importer import Compiler
@@ -46,14 +46,6 @@ def test_the_same_tools_give_the_same_bits(facts: dict[str, Path], model: str, t
     )
 
 
-def rows(said: str) -> dict[str, np.ndarray]:
-    found: dict[str, list[list[float]]] = {}
-    for line in said.splitlines():
-        word, *values = line.split()
-        found.setdefault(word, []).append([float.fromhex(v) for v in values])
-    return {word: np.array(values) for word, values in found.items()}
-
-
 @pytest.mark.parametrize("model", MODELS)
 def test_the_systems_compiler_gives_the_same_numbers(facts: dict[str, Path], model: str, tmp_path: Path) -> None:
     if not (compiler := gcc()):
@@ -61,8 +53,8 @@ def test_the_systems_compiler_gives_the_same_numbers(facts: dict[str, Path], mod
     names = [line.split() for line in facts[model].read_text().splitlines()[2:]]
     names.sort(key=lambda words: "xduyp".index(words[2]))
     rounded = np.array(["residual" in words[-1] for words in names])  # these hold nothing but round-off
-    found = rows(rebuilt(facts[model], compiler, tmp_path, "-O2", "-Wall", "-Wextra", "-Werror"))["values"]
-    expected = rows(check(facts[model], "trace"))["values"]
+    found = numbers(rebuilt(facts[model], compiler, tmp_path, "-O2", "-Wall", "-Wextra", "-Werror"))["values"]
+    expected = numbers(check(facts[model], "trace"))["values"]
     scale = np.maximum(np.abs(expected).max(axis=0), 1e-300)
     apart = np.abs(found - expected).max(axis=0) / scale
     assert apart[~rounded].max() < 1e-12, [words[-1] for words, a in zip(names, apart, strict=True) if a > 1e-12]

@@ -15,7 +15,7 @@ from .enlarged import Enlarged
 from .evidence import White
 from .family import Family, Sample, prior_size
 from .problem import Linear, Problem
-from .scatter import SIZES
+from .scatter import Days
 from .weigh import distance
 
 Pair = tuple[str, str]
@@ -26,10 +26,9 @@ FOLLOWED, FOLLOWS = "cooling.humidity", "humidity"
 
 @dataclass(frozen=True)
 class Scatter:
-    """A cause that makes days differ: spectrum of the days' effects on whitened readings, and its prior size."""
+    """A cause that makes days differ, and its prior size."""
 
-    directions: np.ndarray
-    lengths: np.ndarray
+    days: Days
     sd: float
 
 
@@ -117,8 +116,7 @@ class Design:
         days, sd = self.days[rows], f.cause.size.sd
         if not f.cause.scatter:  # as much as the cooling of the days has to scatter to have the same effect
             sd *= float(np.linalg.norm(f.signatures[:, 0]) / np.linalg.norm(days.sum(axis=1)))
-        U, lengths, _ = np.linalg.svd(white.columns(days), full_matrices=False)
-        return Scatter(U, lengths, sd)
+        return Scatter(Days.of(days, white), sd)
 
 
 def apart(true: Family | Scatter, rival: Family | Scatter) -> float:
@@ -132,9 +130,8 @@ def apart(true: Family | Scatter, rival: Family | Scatter) -> float:
     if isinstance(rival, Family):
         return distance(true, 0, size, rival)
     g = size * true.white[:, 0]
-    ratios = (SIZES[:, None] * rival.lengths) ** 2
-    gains = (ratios / (1 + ratios)) @ ((g @ rival.directions) ** 2 + 1) - np.log1p(ratios).sum(axis=1)
-    return float(np.sqrt(max(float(g @ g) - max(float(gains.max()), 0.0), 0.0)))
+    gain = float(rival.days.gain((g[None] @ rival.days.directions) ** 2 + 1)[0])
+    return float(np.sqrt(max(float(g @ g) - gain, 0.0)))
 
 
 def visible(cause: Family | Scatter) -> float:
@@ -145,8 +142,7 @@ def visible(cause: Family | Scatter) -> float:
 
 
 def _scattered(cause: Scatter) -> float:
-    ratios = (cause.sd * cause.lengths) ** 2
-    return float(np.sqrt((ratios - np.log1p(ratios)).sum()))
+    return float(np.sqrt(cause.days.expected(np.array([cause.sd]))[0]))
 
 
 def _families(

@@ -9,7 +9,6 @@ import numpy as np
 
 from ..effects.cause import Theta
 from .evidence import White
-from .problem import Linear
 
 SCATTER = "procedure.day_scatter"
 #: Standard deviations of the days' cooling beside what is stated.
@@ -24,17 +23,25 @@ class Days:
     lengths: np.ndarray
 
     @staticmethod
-    def of(linear: Linear, white: White) -> Days:
-        """At a linearisation."""
-        U, d, _ = np.linalg.svd(white.columns(linear.days), full_matrices=False)
+    def of(columns: np.ndarray, white: White) -> Days:
+        """From the effects of the days (m, tests)."""
+        U, d, _ = np.linalg.svd(white.columns(columns), full_matrices=False)
         return Days(U, d)
 
     def score(self, e: np.ndarray) -> np.ndarray:
         """Twice the gain in log likelihood at the best size, for whitened residuals (n, m)."""
-        along = (e @ self.directions) ** 2
+        return self.gain((e @ self.directions) ** 2)
+
+    def gain(self, along: np.ndarray) -> np.ndarray:
+        """The same from squared residuals along the directions (n, tests)."""
         spread = (SIZES[:, None] * self.lengths) ** 2
         gains = along @ (spread / (1 + spread)).T - np.log1p(spread).sum(axis=1)
         return np.asarray(np.maximum(gains.max(axis=1), 0.0))
+
+    def expected(self, sizes: np.ndarray) -> np.ndarray:
+        """The mean score where days scatter by sizes (k)."""
+        spread = (sizes[:, None] * self.lengths) ** 2
+        return np.asarray((spread - np.log1p(spread)).sum(axis=1))
 
     def theta(self, logs: Sequence[float]) -> Theta:
         """The mean size, by the log evidence of each."""
@@ -44,6 +51,4 @@ class Days:
     def detectable(self, needed: float) -> float:
         """The size at which the expected score reaches what is needed."""
         sizes = np.geomspace(0.002, 2.0, 60)
-        spread = (sizes[:, None] * self.lengths) ** 2
-        expected = (spread - np.log1p(spread)).sum(axis=1)
-        return float(np.interp(needed, expected, sizes))
+        return float(np.interp(needed, self.expected(sizes), sizes))

@@ -88,7 +88,7 @@ class Search:
         self.white = White.of(self.null.residual, self.null.covariance)
         self.progress("effects of all causes", 0.15)
         self.found = self._families(self.null, self.white)
-        self.days = Days.of(self.null, self.white)
+        self.days = Days.of(self.null.days, self.white)
         self.p_any, self.critical = self._alarm()
         self.p_omnibus = float(chi2.sf(self.white.e @ self.white.e, len(self.white.e)))
         self.progress("pairs of causes", 0.35)
