@@ -44,12 +44,13 @@ def run(
     workers: Workers = 0,
     extended: Extended = None,
     data: Annotated[Path | None, typer.Option(help="Measured table; the rig's own if left out.")] = None,
+    card: Annotated[Path | None, typer.Option(help="How that table was taken: JSON, as for `diagnose`.")] = None,
     json: Json = None,
 ) -> None:
     """The main job: export the FMU, play all measured tests, compare, report."""
     from . import run
 
-    run.command(rig, out, tests, step, set_ or [], workers, json, extended=extended, data=data)
+    run.command(rig, out, tests, step, set_ or [], workers, json, extended=extended, data=data, card=card)
 
 
 @app.command()

@@ -13,6 +13,7 @@ from ..model.errors import DataError, ScenarioError
 from ..model.run.point import point
 from ..model.run.rows import evaluate
 from ..model.run.steady import steady, steady_table
+from ..scenarios.entries import catalogue
 from ..scenarios.load import load
 from ..scenarios.measured import Campaign, Protocol, Reading, read_measured
 from ..scenarios.scenario import Scenario
@@ -91,7 +92,12 @@ def given(scenario: Scenario, protocol: Protocol, reading: Reading) -> dict[str,
 
 
 def oil_values(scenario: Scenario, protocol: Protocol, oil: str) -> dict[str, float]:
-    """What the catalogue says of the oil of a test, but for values that the user set or a diagnosis changed."""
+    """What the catalogue says of the oil of a test, but for values that the user set or a diagnosis changed.
+
+    An oil that the catalogue lacks is that of the rig: a table is read with it only where the rig was filled with it.
+    """
+    if oil not in catalogue("oil"):
+        return {}
     values = scenario.entry_values(protocol.oil, oil)
     kept = (SET, DIAGNOSED)
     return {path: value for path, value in values.items() if not scenario.value_sources.get(path, "").startswith(kept)}

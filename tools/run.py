@@ -37,6 +37,7 @@ def command(
     *,
     extended: Path | None = None,
     data: Path | None = None,
+    card: Path | None = None,
 ) -> None:
     """Everything from the rig file to the report; finished tests in the folder are used again."""
     began = time.perf_counter()
@@ -44,7 +45,7 @@ def command(
     dt = to_si(step, "s", name="--step")
     kept = folder(folder(out) / "tests")
     with campaign.crew(workers) as pool:
-        scenario = adjusted(loaded(rig, extended, data), assignments)
+        scenario = adjusted(loaded(rig, extended, data, card), assignments)
         protocol = scenario.campaign.protocol if scenario.campaign else None
         scenario = driven_by(scenario, protocol.inputs) if protocol else scenario
         flat = flat_of(scenario)

@@ -64,17 +64,20 @@ def adjusted(
     return replace(set_up, spec=set_up.spec.with_values(choices))
 
 
-def loaded(rig: str, extended: Path | None = None, data: Path | None = None) -> Scenario:
+def loaded(rig: str, extended: Path | None = None, data: Path | None = None, card: Path | None = None) -> Scenario:
     """A rig, or its extension with the rig's measured data.
 
     Args:
         rig: name or file
         extended: rig file of the extension, which takes the rig's place
         data: measured table that takes the place of the rig's own
+        card: how that table was taken, as `diagnose` is told
 
     Raises:
-        GearheatError: all problems of the files; or data for a rig whose protocol is not known
+        GearheatError: all problems of the files; data for a rig whose protocol is not known, or a card without data
     """
+    if card is not None and data is None:
+        raise DataError(f"--card {card} says how a measured table was taken. Give the table, too, as --data FILE.")
     scenario = load(rig)
     if extended is not None:
         found = load(extended)
@@ -84,6 +87,10 @@ def loaded(rig: str, extended: Path | None = None, data: Path | None = None) -> 
         return scenario
     if scenario.protocol is None:
         raise DataError(f"{scenario.name}: how its tests are run is not known. Give the rig file a table [campaign].")
+    if card is not None:
+        from .diagnose.carded import carded
+
+        return carded(scenario, data, card, diagnosed=extended is not None)
     return replace(scenario, campaign=read_measured(data, scenario.protocol))
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 from ...model.machines.spec import PartSpec, Spec
 from ...scenarios.scenario import Scenario
@@ -92,7 +93,7 @@ def _added(
     with_parts = cause.added_to(scenario.spec)
     base = {f"{part.name}.{key}": value for part in with_parts.parts for key, value in part.values.items()}
     parts = {part.name for part in with_parts.parts}
-    changed = {p: v for p, v in cause.values(base, theta, None).items() if p.rpartition(".")[0] in parts}
+    changed = of_machine(cause, base, theta, parts)
     said = f"{cause.id}, {', '.join(f'{name} = {words.number(value, 4)}' for name, value in theta.items())}."
     if not changed:
         return scenario, (f"{said} {cause.doc}",)
@@ -107,6 +108,11 @@ def _added(
     losses = {**scenario.losses, **{f"P_{name}_W": (f"{name}.P",) for name in lossy}}
     extended = replace(scenario, spec=spec, losses=losses).with_values(values, source)
     return extended, (f"{said} For the other oils of the data.",) if several else ()
+
+
+def of_machine(cause: Cause, base: Mapping[str, float], theta: Theta, parts: Collection[str]) -> dict[str, Any]:
+    """What a cause changes in a machine with such parts: nothing that depends on the test, nothing of instruments."""
+    return {path: v for path, v in cause.values(base, theta, None).items() if path.rpartition(".")[0] in parts}
 
 
 def _renamed(path: str, names: Mapping[str, str]) -> str:

@@ -83,5 +83,8 @@ class Findings:
     warnings: tuple[str, ...]
     nominal: Mapping[str, float]
     extended: Mapping[str, float]
-    #: channel -> measured, nominal (calibrated without a cause), extended (with the top hypothesis), over the rows
+    #: channel -> root mean square that the rig leaves when it is played over the data: calibrated, extended
+    played: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    #: channel -> measured, nominal (calibrated without a cause), extended (with the top hypothesis, faults of the
+    #: instruments and the procedure included), over the rows
     rows: Mapping[str, tuple[Any, Any, Any]] = field(default_factory=dict)

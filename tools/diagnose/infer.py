@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -12,9 +13,10 @@ from ...scenarios.measured import Campaign
 from ..effects.taxonomy import CAUSES
 from .campaign_model import CampaignModel, Rig
 from .experiments import ranked
+from .extension import of_machine
 from .family import form_of
 from .findings import Findings, Joint
-from .gain import gain
+from .gain import gain, rms
 from .inputs import Inputs
 from .nuisance import Channels, Parameters, instrument_covariance
 from .problem import Campaigned, Linear, Problem, remainder
@@ -104,6 +106,7 @@ def infer(
         warnings=tuple(warnings),
         nominal=dict(search.null.values),
         extended=dict((hypothesis.linear or search.null).values),
+        played=played(search, hypothesis),
         rows=shown(search, hypothesis),
     )
     progress("done", 1.0)
@@ -158,3 +161,23 @@ def shown(search: Search, h: Hypothesis) -> dict[str, tuple[np.ndarray, np.ndarr
         )
         for channel in c.channels.names
     }
+
+
+def played(search: Search, h: Hypothesis) -> dict[str, tuple[float, float]]:
+    """Root mean square that the rig leaves on the readings: channel -> calibrated, extended by a hypothesis.
+
+    The extended rig is what `--extended` writes: faults of instruments and procedure, and what differs from test to
+    test, are no part of it; nor is what was found of an oil, where the data have several and each brings its own.
+    """
+    problem, c = search.problem, search.problem.data
+    base, several = problem.rig.base, len({test.oil for test in c.model.tests}) > 1
+    parts = {path.rpartition(".")[0] for path in base} - {"read"}
+    own: set[str] = set().union(*c.model.oils) if several else set()
+    values: dict[str, Any] = dict((h.linear or search.null).values)
+    for cause in (CAUSES[name] for name in h.causes):
+        changed = of_machine(cause, {**base, **values}, h.theta[cause.id], parts)
+        values |= {path: value for path, value in changed.items() if path not in own}
+    extended = c.channels.stack(c.model.simulate([values])[0])
+    nominal, channels = search.null.nominal[problem.place(c)], c.channels
+    left = [(n, channels.part(n)) for n in ("T_oil", "T_wall", "loss") if n in channels.names]
+    return {n: (rms(nominal[k] - c.measured[k]), rms(extended[k] - c.measured[k])) for n, k in left}

@@ -50,6 +50,7 @@ def as_object(findings: Findings) -> dict[str, Any]:
             key: {"value": _number(value), "ci95": [_number(low), _number(high)]}
             for key, (value, low, high) in findings.impact.items()
         },
+        **_played(findings),
         "gain": _known(
             {
                 "scheme": gain.scheme,
@@ -74,6 +75,17 @@ def as_object(findings: Findings) -> dict[str, Any]:
         ],
         "warnings": list(findings.warnings),
     }
+
+
+def _played(findings: Findings) -> dict[str, Any]:
+    """What the rig leaves on the data, calibrated and extended; nothing where it is not extended."""
+    if words.applied(findings) is None or not findings.played:
+        return {}
+    units = {"T_oil": "T_oil_K", "T_wall": "T_wall_K", "loss": "loss_Nm"}
+    left = {
+        units[c]: {"rms_calibrated": _number(a), "rms_extended": _number(b)} for c, (a, b) in findings.played.items()
+    }
+    return {"played": left}
 
 
 def _cause(cause: Named) -> dict[str, Any]:
@@ -127,8 +139,10 @@ def show(findings: Findings) -> None:
         print(f"would have been found in 80 of 100 such campaigns: {', '.join(seen) or 'nothing'}")
     if found and (effects := [text for key in words.IMPACTS if (text := words.impact(findings, key))]):
         print(f"mean effect on the readings: {', '.join(effects)}")
-    if found and findings.rows:
+    if found and findings.played:
         print(f"played over these readings (root mean square): {words.played(findings)}")
+        if lacking := words.not_played(findings):
+            print(f"  {lacking}")
     print(f"oil temperature of readings left out: {words.gain(findings)}")
     for experiment in findings.next_experiment[:1]:
         print(f"measure next: {experiment.what} ({_separation(experiment)})")

@@ -58,6 +58,8 @@ IMPACTS = {
     "T_wall_K": ("wall temperature", "K", "warmer", "colder"),
     "loss_Nm": ("loss torque", "N.m", "larger", "smaller"),
 }
+#: Channels that a rig is played against -> their name and unit.
+PLAYED = {"T_oil": ("oil", "K"), "T_wall": ("wall", "K"), "loss": ("loss torque", "N.m")}
 SCHEMES = {
     "leave-one-operating-point": "each test left out in turn",
     "leave-one-speed": "each speed left out in turn",
@@ -257,12 +259,24 @@ def gain(findings: Findings) -> str:
 
 def played(findings: Findings) -> str:
     """Root mean square of what the rig leaves on the data it was fitted to, calibrated alone and extended."""
-    shown = {"T_oil": ("oil", "K"), "T_wall": ("wall", "K"), "loss": ("loss torque", "N.m")}
     said = []
-    for channel, (measured, nominal, extended) in findings.rows.items():
-        if channel not in shown:
-            continue
-        name, unit = shown[channel]
-        left = [math.sqrt(float(((model - measured) ** 2).mean())) for model in (nominal, extended)]
+    for channel, left in findings.played.items():
+        name, unit = PLAYED[channel]
         said.append(f"{name} {number(left[0])} {unit} calibrated, {number(left[1])} {unit} extended")
     return "; ".join(said)
+
+
+def not_played(findings: Findings) -> str:
+    """What the extended rig lacks of the hypothesis and what is left with it, as a sentence; empty where it has all."""
+    with_all = []
+    for channel, (_, extended) in findings.played.items():
+        name, unit = PLAYED[channel]
+        measured, _, model = findings.rows.get(channel, (None, None, None))
+        if measured is None or model is None:
+            continue
+        left = math.sqrt(float(((model - measured) ** 2).mean()))
+        if number(left) != number(extended):
+            with_all.append(f"{name} {number(left)} {unit}")
+    if not with_all:
+        return ""
+    return f"with what the rig cannot hold, such as an instrument's fault, as found: {'; '.join(with_all)}"
