@@ -8,6 +8,7 @@ import math
 from pathlib import Path
 from types import SimpleNamespace
 
+import jsonschema
 import numpy as np
 import pytest
 from gearheat.fmu.play import Player
@@ -18,6 +19,7 @@ from gearheat.tools.diagnose.extension import extended_text
 from gearheat.tools.diagnose.findings import Findings, Gain, Joint
 from gearheat.tools.diagnose.infer import infer, played, problem_of
 from gearheat.tools.diagnose.inputs import Request, read_inputs
+from gearheat.tools.diagnose.output import schema
 from gearheat.tools.diagnose.search import Hypothesis
 from gearheat.tools.effects.taxonomy import CAUSES
 
@@ -93,7 +95,12 @@ def test_the_fmu_of_the_extended_rig_has_the_error_that_is_stated(case, card, tm
     findings: Findings = kept[0][0]
     assert words.applied(findings) and any(CAUSES[c].physical for c in words.applied(findings).causes)
     result = json.loads((tmp_path / "result.json").read_text())
-    assert words.played(findings) in (tmp_path / "report.html").read_text()
+    page = (tmp_path / "report.html").read_text()
+    assert words.played(findings) in page and "<td>q &lt; 0.001</td>" in page
+    jsonschema.validate(result, schema())
+    known = {cause["id"]: cause for cause in result["causes"]}
+    assert known["losses.churning"]["q"] < 0.001 and known["losses.churning"]["p_split"] < 0.001
+    assert not {"p_split", "q"} & set(known["procedure.day_scatter"])
     assert gearheat("export", "planetary", "--extended", rig, "-o", fmu).code == 0
     left = errors(fmu, case / "DATA.csv", card)
     print(left, result["played"])

@@ -22,13 +22,18 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Named:
-    """A cause with its marginal probability, the smallest size these data would reveal, and its parameters."""
+    """A cause with its marginal probability, the smallest size these data would reveal, and its parameters.
+
+    `p_split` and `q` are its certificate by the split of the tests (see split.py); None where it has none.
+    """
 
     id: str
     probability: float
     detectable: float
     parameters: tuple[Estimate, ...] = ()
     regime: Mapping[str, tuple[float | None, float | None]] = field(default_factory=dict)
+    p_split: float | None = None
+    q: float | None = None
 
 
 @dataclass(frozen=True)

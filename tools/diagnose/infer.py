@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -15,12 +15,13 @@ from .campaign_model import CampaignModel, Rig
 from .experiments import ranked
 from .extension import of_machine
 from .family import form_of
-from .findings import Findings, Joint
+from .findings import Findings, Joint, Named
 from .gain import gain, rms
 from .inputs import Inputs
 from .nuisance import Channels, Parameters, instrument_covariance
 from .problem import Campaigned, Linear, Problem, remainder
 from .search import DRAWS, Hypothesis, Search
+from .split import certified
 from .weigh import SHOWN, confusable, joints, named, p_adequacy
 
 #: Probability from which a hypothesis counts as the explanation; p below which what it leaves is not noise.
@@ -85,7 +86,7 @@ def infer(
         warnings.append("No reference campaign: a rig that differs from the nominal may look like a fault.")
     certified = gain(search, leading, seed)
     progress("next experiment", 0.92)
-    causes = named(search, found, leading)
+    causes = certificates(search, named(search, found, leading))
     weights = {n.id: max(n.probability, 0.02) for n in causes[:JUDGED]}
     weighed = [(j.probability, h) for j, h in zip(found, members, strict=True) if j.probability > COUNTS]
     if not alarm:
@@ -161,6 +162,12 @@ def shown(search: Search, h: Hypothesis) -> dict[str, tuple[np.ndarray, np.ndarr
         )
         for channel in c.channels.names
     }
+
+
+def certificates(search: Search, causes: Sequence[Named]) -> list[Named]:
+    """Causes with their certificates by the split of the tests, where they have one."""
+    known = certified(search)
+    return [replace(c, p_split=known[c.id][0], q=known[c.id][1]) if c.id in known else c for c in causes]
 
 
 def played(search: Search, h: Hypothesis) -> dict[str, tuple[float, float]]:

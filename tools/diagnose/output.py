@@ -98,6 +98,8 @@ def _cause(cause: Named) -> dict[str, Any]:
             "detectable": _number(cause.detectable) if visible else None,
             "parameters": [_parameter(p) for p in cause.parameters],
             "regime": regime or None,
+            "p_split": None if cause.p_split is None else _number(cause.p_split),
+            "q": None if cause.q is None else _number(cause.q),
         }
     )
 
@@ -129,8 +131,8 @@ def show(findings: Findings) -> None:
     print(f"  {words.chance(findings.p_any)}; {words.adequacy(findings)}" if found else f"  {words.adequacy(findings)}")
     listed = [c for c in findings.causes if c.probability >= 0.01][:SHOWN]
     if listed:
-        body = [(words.percent(c.probability), c.id, _first(c), words.regime(c)) for c in listed]
-        table("", ("probability", "cause", "size (95 %)", "where"), body)
+        body = [(words.percent(c.probability), c.id, _first(c), words.certificate(c), words.regime(c)) for c in listed]
+        table("", ("probability", "cause", "size (95 %)", "q (other half)", "where"), body)
     if findings.confusable and found:
         first, *others = findings.confusable[0]
         print(f"these data cannot tell {first} from {', '.join(others)}")

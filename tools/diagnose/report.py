@@ -79,7 +79,11 @@ def _bars(findings: Findings) -> list[dict[str, Any]]:
     total = sum(h.probability for h in findings.hypotheses)
     clean = sum(h.probability for h in findings.hypotheses if not h.causes)
     other = [("nothing wrong", clean), ("not in the library, or less probable than those listed", 1.0 - total)]
-    rows += [{"name": n, "id": "", "probability": p, "size": "", "where": ""} for n, p in other if p >= LEAST]
+    rows += [
+        {"name": n, "id": "", "probability": p, "size": "", "where": "", "certificate": ""}
+        for n, p in other
+        if p >= LEAST
+    ]
     for row in rows:
         row["percent"] = words.percent(row["probability"])
         row["width"] = f"{100 * min(max(row['probability'], 0.0), 1.0):.1f}"
@@ -88,7 +92,7 @@ def _bars(findings: Findings) -> list[dict[str, Any]]:
 
 def _told(cause: Named) -> dict[str, str]:
     size = words.estimate(cause.parameters[0]) if cause.parameters else ""
-    return {"size": size, "where": words.regime(cause)}
+    return {"size": size, "where": words.regime(cause), "certificate": words.certificate(cause)}
 
 
 def _hypotheses(findings: Findings) -> Markup:

@@ -227,6 +227,13 @@ def _size(findings: Findings, hypothesis: Joint) -> str:
     return f"; {'; '.join(sizes)}" if sizes else ""
 
 
+def certificate(found: Named) -> str:
+    """The q of a cause by the split of the tests; empty where it has none."""
+    if found.q is None:
+        return ""
+    return "< 0.001" if found.q < 0.001 else number(found.q, 2)
+
+
 def visible(found: Named) -> str:
     """The smallest size of a cause that the data would reveal, with its unit; empty where no possible size is seen."""
     if found.id not in CAUSES:
