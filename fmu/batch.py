@@ -22,7 +22,7 @@ from gearheat.model.core.flat import FlatModel, Quantity
 from gearheat.model.errors import ScenarioError, suggestion
 from gearheat.model.run.schedule import Schedule
 
-from .batch_library import Course, address, driver, rows_from, shared
+from .batch_library import Course, address, driver, instructions, rows_from, shared, widened
 from .batch_source import EXTRA, steady_source, warmup_source
 from .grid import Grid, grid
 
@@ -33,7 +33,7 @@ TOLERANCE = 1e-4
 MOST_STEPS = 1_000_000
 
 #: Rows that a thread takes at a time. The results do not depend on it.
-STEADY_BLOCK, WARMUP_BLOCK = 1024, 8
+STEADY_BLOCK, WARMUP_BLOCK = 1024, 64
 
 
 class Status(IntEnum):
@@ -226,7 +226,7 @@ class Batch:
         m = len(points.row_time)
         x, y, energy = np.empty((n, m, len(self.states))), np.empty((n, m, len(self.outputs))), np.empty((n, 4))
         status, steps = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
-        run = driver("batch_warmup", self.warmup_source)
+        run = driver("batch_warmup", widened(self.warmup_source, instructions()))
 
         def block(a: int, b: int) -> int:
             results = [address(array[a:]) for array in (x, y, energy, status, steps)]

@@ -5,10 +5,12 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import os
+import platform as host
 import tempfile
 import threading
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +26,9 @@ _SIGNATURES = {
     "batch_steady": [_COUNT, *[_POINTER, _COUNT] * 3, *[_POINTER] * 5],
     "batch_warmup": [_COUNT, _POINTER, *[_POINTER, _COUNT] * 3, _COUNT, *[_POINTER] * 5],
 }
+#: Vector instructions beyond those every processor of a kind has -> rows side by side, the best first. They change how
+#: fast a warm-up is, not one bit of it.
+WIDER = {"avx512f": 8, "avx2": 4}
 _LOADED: dict[tuple[str, str], Any] = {}
 _LOCK = threading.Lock()
 
@@ -40,6 +45,36 @@ def driver(name: str, source: str) -> Any:
             function.argtypes, function.restype = _SIGNATURES[name], ctypes.c_int
             _LOADED[name, source] = function
         return _LOADED[name, source]
+
+
+def widened(source: str, instructions: str) -> str:
+    """A C text of wrapper/lanes.h made for processors with one of `WIDER`; as it is without any."""
+    if not instructions:
+        return source
+    push = f'#pragma clang attribute push(__attribute__((target("{instructions}"))), apply_to=function)'
+    return f"{push}\n#define LANES {WIDER[instructions]}\n{source}\n#pragma clang attribute pop\n"
+
+
+def instructions() -> str:
+    """The best of `WIDER` this processor has; nothing where that is not known."""
+    return next((name for name in WIDER if name in processor()), "")
+
+
+@cache
+def processor() -> frozenset[str]:
+    """Which of `WIDER` this processor and its system have."""
+    if host.machine().lower() not in ("x86_64", "amd64"):
+        return frozenset()
+    if host.system() == "Windows":
+        numbers = {"avx2": 40, "avx512f": 41}  # PF_..._INSTRUCTIONS_AVAILABLE
+        ask = ctypes.windll.kernel32.IsProcessorFeaturePresent  # type: ignore[attr-defined, unused-ignore]
+        return frozenset(name for name, number in numbers.items() if ask(number))
+    try:
+        lines = Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
+    except OSError:
+        return frozenset()
+    flags = next((line.split() for line in lines if line.startswith("flags")), [])
+    return frozenset(WIDER) & frozenset(flags)
 
 
 def _load(source: str) -> ctypes.CDLL:
@@ -94,11 +129,13 @@ def shared(block: Callable[[int, int], int], n: int, size: int, threads: int) ->
     Args:
         block: does the rows from the first to before the second number; 0 where memory runs out
         n: number of rows
-        size: rows of a block
+        size: rows of a block, fewer where a thread would have none
         threads: 0 for one per core
     """
+    workers = threads or cores()
+    size = max(min(size, -(-n // workers)), 1)
     blocks = [(a, min(a + size, n)) for a in range(0, n, size)]
-    workers = min(threads or cores(), max(len(blocks), 1))
+    workers = min(workers, max(len(blocks), 1))
     if workers == 1:
         done = [block(a, b) for a, b in blocks]
     else:

@@ -51,7 +51,8 @@ def steady_source(flat: FlatModel) -> str:
     pattern = [
         _array("int", f"model_{name}", map(str, place)) for name, place in zip(("row", "column"), places, strict=True)
     ]
-    return _text(flat, sizes, pattern, functions, ("batch.h", "batch_steady.c"))
+    tables = [*_ranges(table(flat)), *pattern]
+    return _text(sizes, ["batch.h"], [*tables, *map(emit.function, functions)], ["batch_steady.c"])
 
 
 def warmup_source(flat: FlatModel, most_steps: int) -> str:
@@ -66,14 +67,18 @@ def warmup_source(flat: FlatModel, most_steps: int) -> str:
     x_new, error, slope, h = rosenbrock.step(model.ode, model.x, model.u, METHOD)
     (x_new, error, y, ode), c, c_values = _hoisted([x_new, error[:-1], model.y, model.ode], model.p)
     place = [model.x, model.u, slope, model.p, c, h]
+    step = _function("step", place, ["x", "u", "slope", "p", "c", "h"], [x_new, error], ["x_new", "error"])
     functions = [
-        _function("constants", [model.p], ["p"], [c_values], ["c"]),
-        _function("step", place, ["x", "u", "slope", "p", "c", "h"], [x_new, error], ["x_new", "error"]),
-        _function("outputs", [model.x, model.u, model.p, c], ["x", "u", "p", "c"], [y, ode], ["y", "dx"]),
+        emit.function(_function("constants", [model.p], ["p"], [c_values], ["c"])),
+        emit.function(step, "lanes_", "lanes"),
+        emit.function(
+            _function("outputs", [model.x, model.u, model.p, c], ["x", "u", "p", "c"], [y, ode], ["y", "dx"])
+        ),
     ]
     sizes = {**_sizes(flat), "NX": ode.numel(), "NY": y.numel(), "NC": c.numel()}
     sizes |= {"ORDER": METHOD.order, "MAX_STEPS": most_steps}
-    return _text(flat, sizes, [], functions, ("batch.h", "batch_instance.h", "solver.c", "batch_warmup.c"))
+    drivers = ["batch_instance.h", "trial.c", "batch_warmup.c"]
+    return _text(sizes, ["batch.h", "lanes.h"], [*_ranges(table(flat)), *functions], drivers)
 
 
 def _hoisted(parts: Sequence[Any], given: Any) -> tuple[list[Any], Any, Any]:
@@ -101,13 +106,14 @@ def _sizes(flat: FlatModel) -> dict[str, int]:
     }
 
 
-def _text(
-    flat: FlatModel, sizes: Mapping[str, int], tables: Sequence[str], functions: Sequence[Any], drivers: Sequence[str]
-) -> str:
+def _text(sizes: Mapping[str, int], above: Sequence[str], generated: Sequence[str], below: Sequence[str]) -> str:
+    """Sizes, the fixed text above the generated tables and functions, these, and the fixed text below them."""
     defined = "".join(f"#define {name} {value}\n" for name, value in sizes.items())
-    folder = files("gearheat.fmu") / "wrapper"
-    first, *others = [(folder / name).read_text(encoding="utf-8") for name in drivers]
-    return "\n".join([defined, first, *_ranges(table(flat)), *tables, *map(emit.function, functions), *others])
+    return "\n".join([defined, *map(_fixed, above), *generated, *map(_fixed, below)])
+
+
+def _fixed(name: str) -> str:
+    return (files("gearheat.fmu") / "wrapper" / name).read_text(encoding="utf-8")
 
 
 def _ranges(variables: Table) -> list[str]:

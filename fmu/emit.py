@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -60,7 +61,33 @@ _OPERATIONS = {
     "HYPOT": "hypot({0},{1})",
     "LIFT": "{0}",
 }
-_BY_CODE = {getattr(ca, f"OP_{name}"): text for name, text in _OPERATIONS.items() if hasattr(ca, f"OP_{name}")}
+#: Where the text for vectors is more than the same with the functions of wrapper/lanes.h.
+_OF_LANES = {
+    "LT": "lanes_true({0}<{1})",
+    "LE": "lanes_true({0}<={1})",
+    "EQ": "lanes_true({0}=={1})",
+    "NE": "lanes_true({0}!={1})",
+    "NOT": "lanes_true({0}==0)",
+    "AND": "lanes_true(({0}!=0)&({1}!=0))",
+    "OR": "lanes_true(({0}!=0)|({1}!=0))",
+    "SIGN": "lanes_true({0}>0)-lanes_true({0}<0)",
+    "IF_ELSE_ZERO": "lanes_only({0}!=0,{1})",
+}
+_FUNCTION_CALL = re.compile(r"^(?=[a-z])")
+
+
+def _by_code(operations: Mapping[str, str]) -> dict[int, str]:
+    return {getattr(ca, f"OP_{name}"): text for name, text in operations.items() if hasattr(ca, f"OP_{name}")}
+
+
+#: Type of the numbers -> text of a constant, and of each operation by code.
+_TEXTS = {
+    "double": ("{0}", _by_code(_OPERATIONS)),
+    "lanes": (
+        "lanes_all({0})",
+        _by_code({name: _FUNCTION_CALL.sub("lanes_", text) for name, text in _OPERATIONS.items()} | _OF_LANES),
+    ),
+}
 
 
 def number(value: float) -> str:
@@ -73,18 +100,23 @@ def number(value: float) -> str:
     return f"({text})" if text.startswith("-") else text
 
 
-def function(f: Any, prefix: str = "model_") -> str:
-    """The C text of an SX function: static void prefix+name(const double *in..., double *out...).
+def function(f: Any, prefix: str = "model_", kind: str = "double") -> str:
+    """The C text of an SX function: static void prefix+name(const kind *in..., kind *out...).
+
+    Args:
+        f: the function
+        prefix: what its name in C begins with
+        kind: type of its numbers: double, or lanes for some rows side by side by wrapper/lanes.h
 
     Raises:
         FmuError: an operation has no C text
     """
-    takes = [f"const double *{f.name_in(i)}" for i in range(f.n_in())]
-    gives = [f"double *{f.name_out(i)}" for i in range(f.n_out())]
+    takes = [f"const {kind} *{f.name_in(i)}" for i in range(f.n_in())]
+    gives = [f"{kind} *{f.name_out(i)}" for i in range(f.n_out())]
     shared = _shared_divisors(f)
-    lines = [line for k in range(f.n_instructions()) for line in _instruction(f, k, shared)]
+    lines = [line for k in range(f.n_instructions()) for line in _instruction(f, k, shared, kind)]
     names = [f"a{i}" for i in range(f.sz_w())] + [name for name, first in shared.values() if first]
-    declared = ["  double " + ", ".join(names[k : k + 20]) + ";" for k in range(0, len(names), 20)]
+    declared = [f"  {kind} " + ", ".join(names[k : k + 20]) + ";" for k in range(0, len(names), 20)]
     read = {f.instruction_input(k)[0] for k in range(f.n_instructions()) if f.instruction_id(k) == ca.OP_INPUT}
     unused = [f"  (void){f.name_in(i)};" for i in range(f.n_in()) if i not in read]
     unused += [f"  (void){f.name_out(i)};" for i in range(f.n_out()) if f.nnz_out(i) == 0]
@@ -111,18 +143,19 @@ def _shared_divisors(f: Any) -> dict[int, tuple[str, bool]]:
     return {k: (f"r{i}", k == group[0]) for i, group in enumerate(groups) for k in group}
 
 
-def _instruction(f: Any, k: int, shared: Mapping[int, tuple[str, bool]]) -> list[str]:
+def _instruction(f: Any, k: int, shared: Mapping[int, tuple[str, bool]], kind: str) -> list[str]:
+    constant, texts = _TEXTS[kind]
     code, inputs, outputs = f.instruction_id(k), f.instruction_input(k), f.instruction_output(k)
     if code == ca.OP_CONST:
-        return [f"  a{outputs[0]}={number(f.instruction_constant(k))};"]
+        return [f"  a{outputs[0]}={constant.format(number(f.instruction_constant(k)))};"]
     if code == ca.OP_INPUT:
         return [f"  a{outputs[0]}={f.name_in(inputs[0])}[{inputs[1]}];"]
     if code == ca.OP_OUTPUT:
         return [f"  {f.name_out(outputs[0])}[{outputs[1]}]=a{inputs[0]};"]
-    if code not in _BY_CODE:
+    if code not in texts:
         raise FmuError(f"{f.name()}: CasADi operation {code} has no counterpart in C.")
     if k in shared:
         name, first = shared[k]
         reciprocal = [f"  {name}=1/a{inputs[1]};"] if first else []
         return [*reciprocal, f"  a{outputs[0]}=a{inputs[0]}*{name};"]
-    return [f"  a{outputs[0]}={_BY_CODE[code].format(*(f'a{i}' for i in inputs))};"]
+    return [f"  a{outputs[0]}={texts[code].format(*(f'a{i}' for i in inputs))};"]

@@ -20,6 +20,7 @@ _WRAPPER = (
     "instance.h",
     "messages.c",
     "evaluate.c",
+    "trial.c",
     "solver.c",
     "common.c",
     "states.c",

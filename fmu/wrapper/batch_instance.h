@@ -35,3 +35,10 @@ static int in_range(int r, double value)
     return isfinite(value) && value >= model_low[r] && value <= model_high[r];
 }
 
+/* The step was made in a lane: trial() finds x_new filled, and the error behind it. */
+static void model_step(const double *x, const double *u, const double *slope, const double *p, const double *c,
+                       const double *h, double *x_new, double *error)
+{
+    (void)x, (void)u, (void)slope, (void)p, (void)c, (void)h;
+    memcpy(error, x_new + NX, N_CONTROLLED * sizeof(double));
+}

@@ -1,4 +1,8 @@
-/* Warm-ups by the adaptive solver of the FMU. The states behind the model's own are its audit's. */
+/* Warm-ups by the adaptive solver of the FMU. The states behind the model's own are its audit's.
+
+   A step costs far more than deciding on it, so the trial steps of some rows are made together, one in each lane. Every
+   row keeps its own time, step size and piece of the course, and the next row takes over the lane of one that is done.
+   Which rows share a call changes nothing in any of them. */
 
 enum { STORED = N_OUTPUTS, OUTSIDE = N_OUTPUTS + 2 };
 
@@ -41,34 +45,205 @@ static void set_inputs(Instance *m, const Course *course, int64_t k)
     m->outputs_known = 0;
 }
 
-/* One warm-up of an instance whose states, inputs and parameters are set. The energy that came in, that the states
-   gained, and the throughput [J] go to energy. */
-static int warm_up(Instance *m, const Course *course, Kept *kept, double *energy, int32_t *steps)
+/* A row on its way. */
+typedef struct {
+    Instance m;
+    Kept kept;
+    int64_t row, piece;        /* which row; the piece of the course it is in, m when it is done */
+    double begin;              /* stored energy at the start */
+    double x[NX], u[AT_LEAST_1(NU)];   /* where the next trial begins */
+    double t, h, first, size;  /* in the piece: time, step proposed, the one proposed first, the one tried */
+    int last, in_a_row;        /* the trial leads to the end of the piece; rejections in a row */
+    long in_piece;             /* steps in the piece */
+    int32_t steps;
+    int fresh;                 /* its parameters are not in its lane yet */
+} Runner;
+
+/* The arguments of batch_warmup, and the next row to begin with. */
+typedef struct {
+    int64_t n;
+    const Course *course;
+    const double *u;
+    int64_t u_stride;
+    const double *p;
+    int64_t p_stride;
+    const double *start;
+    int64_t start_stride, times;
+    double *x, *y, *energy;
+    int32_t *status, *steps;
+    int64_t next;
+} Rows;
+
+/* What lanes_step takes and gives. */
+typedef struct {
+    lanes x[NX], u[AT_LEAST_1(NU)], slope[AT_LEAST_1(NU)], p[AT_LEAST_1(NP)], c[AT_LEAST_1(NC)], h;
+    lanes x_new[NX], error[N_CONTROLLED];
+} Beside;
+
+/* What becomes of a row that is not done. */
+enum { ROW_UNDER_WAY = -1 };
+
+/* Begin a piece of the course as walk() begins a communication step. */
+static void depart(Runner *r, double length)
 {
-    double begin;
-    int64_t k;
+    State *s = &r->m.s;
+    memcpy(r->x, s->x, sizeof r->x);
+    memcpy(r->u, s->u, sizeof r->u);
+    r->t = r->first = 0.0;
+    r->h = s->jumped ? s->h_first : s->h_last;
+    if (!(r->h > 0.0)) r->h = length;
+    r->in_a_row = 0;
+    r->in_piece = 0;
+}
+
+static void arrive(Runner *r)
+{
+    State *s = &r->m.s;
+    memcpy(s->x, r->x, sizeof r->x);
+    memcpy(s->u, r->u, sizeof r->u);
+    s->h_first = r->first;
+    s->h_last = r->h;
+    s->jumped = 0;
+    r->m.outputs_known = 0;
+}
+
+/* To the next trial step, through the ends of pieces; or to the end of the course, where the energy that came in, that
+   the states gained, and the throughput [J] are left. */
+static int proceed(Runner *r, const Course *course, double *energy)
+{
+    Instance *m = &r->m;
+    double left, length;
+    while (length = course->length[r->piece], !(r->t < length)) {
+        arrive(r);
+        r->piece++;
+        keep(m, course->before[r->piece], &r->kept);
+        if (r->piece == course->m) {
+            refresh_outputs(m);
+            energy[0] = m->s.x[SUPPLIED];
+            energy[1] = m->y[STORED] - r->begin;
+            energy[2] = m->s.x[THROUGHPUT];
+            return ROW_OK;
+        }
+        set_inputs(m, course, r->piece);
+        keep(m, course->after[r->piece], &r->kept);
+        depart(r, course->length[r->piece]);
+    }
+    left = length - r->t;
+    r->last = r->h * (1 + 1e-9) >= left;
+    r->size = r->last ? left : 2 * r->h > left ? left / 2 : r->h;
+    return ROW_UNDER_WAY;
+}
+
+/* From an instance whose states, inputs and parameters are set to its first trial step. */
+static int start_out(Runner *r, const Course *course, double *energy)
+{
+    Instance *m = &r->m;
+    m->s.tolerance = course->tolerance;
+    r->piece = 0;
     set_inputs(m, course, 0);
     m->s.jumped = 1;
     refresh_outputs(m);
-    begin = m->y[STORED];
+    r->begin = m->y[STORED];
     if (!all_finite(m->dx, NX)) return ROW_NOT_FINITE;
-    for (k = 0; k < course->m; k++) {
-        Walk w;
-        int walked;
-        keep(m, course->before[k], kept);
-        if (k > 0) set_inputs(m, course, k);
-        keep(m, course->after[k], kept);
-        walked = walk(m, course->length[k], &w);
-        m->outputs_known = 0;
-        *steps += (int32_t)(w.accepted + w.rejected);
-        if (!walked) return ROW_STOPPED;
+    keep(m, course->before[0] + course->after[0], &r->kept);
+    depart(r, course->length[0]);
+    return proceed(r, course, energy);
+}
+
+/* Take or refuse the trial step in a lane, as walk() does. */
+static int conclude(Runner *r, const Beside *b, int lane, const Course *course, double *energy)
+{
+    double x_new[NX + N_CONTROLLED], error;
+    int worst, i;
+    for (i = 0; i < NX; i++) x_new[i] = b->x_new[i][lane];
+    for (i = 0; i < N_CONTROLLED; i++) x_new[NX + i] = b->error[i][lane];
+    error = trial(&r->m, r->x, r->u, r->size, x_new, &worst);
+    if (r->in_piece++ > MAX_STEPS) return ROW_STOPPED;
+    r->steps++;
+    if (!(error <= 1.0)) {
+        r->h = r->size * (isfinite(error) ? factor(error) : 0.2);
+        if (++r->in_a_row > MAX_REJECTIONS || r->t + r->h == r->t) return ROW_STOPPED;
+        return proceed(r, course, energy);
     }
-    keep(m, course->before[k], kept);
-    refresh_outputs(m);
-    energy[0] = m->s.x[SUPPLIED];
-    energy[1] = m->y[STORED] - begin;
-    energy[2] = m->s.x[THROUGHPUT];
-    return ROW_OK;
+    r->t = r->last ? course->length[r->piece] : r->t + r->size;
+    memcpy(r->x, x_new, sizeof r->x);
+    for (i = 0; i < NU; i++) r->u[i] = r->m.s.u[i] + r->m.s.slope[i] * r->t;
+    r->h = fmax(r->size < r->h ? r->h : 0.0, r->size * (r->in_a_row ? fmin(factor(error), 1.0) : factor(error)));
+    if (r->first == 0.0) r->first = r->h;
+    r->in_a_row = 0;
+    return proceed(r, course, energy);
+}
+
+static void put(Beside *b, int lane, const Runner *r)
+{
+    const State *s = &r->m.s;
+    int i;
+    for (i = 0; i < NX; i++) b->x[i][lane] = r->x[i];
+    for (i = 0; i < NU; i++) b->u[i][lane] = r->u[i];
+    for (i = 0; i < NU; i++) b->slope[i][lane] = s->slope[i];
+    b->h[lane] = r->size;
+    if (!r->fresh) return;
+    for (i = 0; i < NP; i++) b->p[i][lane] = s->p[i];
+    for (i = 0; i < NC; i++) b->c[i][lane] = r->m.c[i];
+}
+
+static int open_row(Runner *r, Rows *rows)
+{
+    Instance *m = &r->m;
+    int64_t row = r->row = rows->next++;
+    r->kept = (Kept){rows->x + row * rows->times * N, rows->y + row * rows->times * N_OUTPUTS, 0.0};
+    memset(&m->s, 0, sizeof m->s);
+    memcpy(m->s.x, rows->start + row * rows->start_stride, N * sizeof(double));
+    memcpy(m->s.u, rows->u + row * rows->u_stride, NU * sizeof(double));
+    memcpy(m->s.p, rows->p + row * rows->p_stride, NP * sizeof(double));
+    m->constants_known = m->constants_known && rows->p_stride == 0;
+    r->steps = 0;
+    r->fresh = 1;
+    return start_out(r, rows->course, rows->energy + 4 * row);
+}
+
+static void close_row(const Runner *r, Rows *rows, int outcome)
+{
+    int64_t row = r->row;
+    rows->status[row] = outcome;
+    rows->steps[row] = r->steps;
+    rows->energy[4 * row + 3] = r->kept.outside;
+    if (outcome == ROW_OK) return;
+    nothing(rows->x + row * rows->times * N, rows->times * N);
+    nothing(rows->y + row * rows->times * N_OUTPUTS, rows->times * N_OUTPUTS);
+    nothing(rows->energy + 4 * row, 4);
+}
+
+/* After an outcome of a lane's row, with the row or with those after it, to a trial step; 0 when there are no more. */
+static int carry_on(Runner *r, Rows *rows, int outcome)
+{
+    while (outcome != ROW_UNDER_WAY) {
+        close_row(r, rows, outcome);
+        if (rows->next == rows->n) return 0;
+        outcome = open_row(r, rows);
+    }
+    return 1;
+}
+
+static void run_rows(Rows *rows, Runner *runner)
+{
+    Beside b;
+    int busy[LANES] = {0}, lanes_busy = 0, lane;
+    memset(&b, 0, sizeof b);
+    for (lane = 0; lane < LANES && rows->next < rows->n; lane++)
+        lanes_busy += busy[lane] = carry_on(&runner[lane], rows, open_row(&runner[lane], rows));
+    while (lanes_busy > 0) {
+        /* A lane that never had a row mirrors the first one: zeros might take long. */
+        for (lane = 0; lane < LANES; lane++) put(&b, lane, &runner[lane < rows->n ? lane : 0]);
+        for (lane = 0; lane < LANES; lane++) runner[lane].fresh = 0;
+        lanes_step(b.x, b.u, b.slope, b.p, b.c, &b.h, b.x_new, b.error);
+        for (lane = 0; lane < LANES; lane++) {
+            Runner *r = &runner[lane];
+            if (!busy[lane]) continue;
+            busy[lane] = carry_on(r, rows, conclude(r, &b, lane, rows->course, rows->energy + 4 * r->row));
+            lanes_busy -= !busy[lane];
+        }
+    }
 }
 
 /* Warm-ups of n rows. x takes N numbers a row and time, y N_OUTPUTS; energy takes what came in, what was gained, the
@@ -77,26 +252,10 @@ BATCH_EXPORT int batch_warmup(int64_t n, const Course *course, const double *u, 
                               int64_t p_stride, const double *start, int64_t start_stride, int64_t times, double *x,
                               double *y, double *energy, int32_t *status, int32_t *steps)
 {
-    Instance *m = calloc(1, sizeof *m);
-    int64_t row;
-    if (!m) return 0;
-    for (row = 0; row < n; row++) {
-        double *x_row = x + row * times * N, *y_row = y + row * times * N_OUTPUTS;
-        Kept kept = {x_row, y_row, 0.0};
-        memset(&m->s, 0, sizeof m->s);
-        memcpy(m->s.x, start + row * start_stride, N * sizeof(double));
-        memcpy(m->s.u, u + row * u_stride, NU * sizeof(double));
-        memcpy(m->s.p, p + row * p_stride, NP * sizeof(double));
-        m->s.tolerance = course->tolerance;
-        m->constants_known = row > 0 && p_stride == 0;
-        steps[row] = 0;
-        status[row] = warm_up(m, course, &kept, energy + 4 * row, steps + row);
-        energy[4 * row + 3] = kept.outside;
-        if (status[row] == ROW_OK) continue;
-        nothing(x_row, times * N);
-        nothing(y_row, times * N_OUTPUTS);
-        nothing(energy + 4 * row, 4);
-    }
-    free(m);
+    Rows rows = {n, course, u, u_stride, p, p_stride, start, start_stride, times, x, y, energy, status, steps, 0};
+    Runner *runner = calloc(LANES, sizeof *runner);
+    if (!runner) return 0;
+    run_rows(&rows, runner);
+    free(runner);
     return 1;
 }

@@ -7,6 +7,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from gearheat.fmu.batch import Batch, Rows, Status
+from gearheat.fmu.batch_library import processor
 from gearheat.model.core.flat import FlatModel, Quantity
 from gearheat.model.errors import FmuError, ScenarioError, SolveError
 from gearheat.model.run.schedule import Schedule, stepped
@@ -191,6 +192,42 @@ def test_rows_that_cannot_be_solved_leave_the_others_alone() -> None:
     assert course.status.tolist() == [Status.OK, Status.STOPPED, Status.OUT_OF_RANGE, Status.OUT_OF_RANGE, Status.OK]
     assert np.isnan(course.x[1:4]).all()
     assert course.x[0, 1] == pytest.approx(rows.x[0], abs=1e-2)
+
+
+def crowd(n: int) -> dict[str, np.ndarray]:
+    """Rows for a brake whose oil thins out: they take different numbers of steps, and some run away."""
+    values = spread(n, drive__w=(5.0, 60.0), foot__G=(3.0, 8.0), oil__T=(260.0, 340.0))
+    return values | {"drive.w": np.where(np.arange(n) % 5 == 2, 100.0, values["drive.w"])}
+
+
+def test_a_row_alone_is_the_row_in_a_crowd() -> None:
+    """Among rows that go on longer, end sooner, run away or cannot begin."""
+    batch, n = Batch(brake(thinning=-0.02)), 37
+    values = crowd(n)
+    values["oil.T"][[0, 20]] = 1e5  # the oil has no viscosity any more: not a number, or at once out of range
+    arrays = batch.vectors(values)
+    duty, times = stepped([(3e3, {"room.T": 290.0}), (1e6, {"room.T": (290.0, 300.0)})]), [0.0, 10.0, 3e3, 3e3, 1.003e6]
+    rows = batch.warmup(duty, *arrays, times=times, threads=1)
+    assert set(rows.status) > {Status.OK, Status.STOPPED}
+    assert len(set(rows.iterations)) > 5
+    for k in range(n):
+        alone = batch.warmup(duty, *(a[k : k + 1] if a.ndim == 2 else a for a in arrays), times=times)
+        assert same(rows, alone, slice(k, k + 1)), k
+    shuffled = np.random.default_rng(3).permutation(n)
+    mixed = batch.warmup(duty, *(a[shuffled] if a.ndim == 2 else a for a in arrays), times=times, threads=1)
+    assert rows.x[shuffled].tobytes() == mixed.x.tobytes()
+    assert rows.iterations[shuffled].tobytes() == mixed.iterations.tobytes()
+
+
+def test_the_processor_leaves_the_bits_alone(heat: Batch, monkeypatch: pytest.MonkeyPatch) -> None:
+    if not processor():
+        pytest.skip("this processor has the basic instructions alone")
+    arrays = heat.vectors(spread(30, governor__w=(50, 300), load__tau=(-50, 50), housing__A=(0.2, 2)))
+    duty = stepped([(600.0, {"room.T": (290.0, 300.0)}), (600.0, {"room.T": 280.0})])
+    own = heat.warmup(duty, *arrays, times=[300.0, 1200.0])
+    for name in ("", *processor()):
+        monkeypatch.setattr("gearheat.fmu.batch.instructions", lambda name=name: name)
+        assert same(own, heat.warmup(duty, *arrays, times=[300.0, 1200.0]))
 
 
 def test_a_start_where_the_model_has_no_value() -> None:
