@@ -20,13 +20,15 @@ from gearheat.scenarios.write import rig_text
 from gearheat.tools.diagnose import words
 from gearheat.tools.diagnose.command import Outputs, command
 from gearheat.tools.diagnose.extension import extended, extended_text
-from gearheat.tools.diagnose.findings import Estimate, Experiment, Findings, Gain, Joint, Named
+from gearheat.tools.diagnose.findings import UNEXPLAINED, Estimate, Experiment, Findings, Gain, Joint, Named
+from gearheat.tools.diagnose.infer import verdict_of
 from gearheat.tools.diagnose.inputs import Request, read_inputs
 from gearheat.tools.diagnose.memory import Memory, fingerprint, memory_of
 from gearheat.tools.diagnose.output import as_object, schema, show
 from gearheat.tools.diagnose.predictions import predictions_text
 from gearheat.tools.diagnose.report import render
 from gearheat.tools.diagnose.superset import superset
+from gearheat.tools.diagnose.weigh import outside, with_outside
 from gearheat.tools.effects.taxonomy import CAUSES
 from gearheat.tools.losses import oil_values
 from gearheat.tools.settings import loaded
@@ -382,6 +384,62 @@ def test_without_an_alarm_the_rig_is_calibrated_and_nothing_is_added(inputs):
     rig = extended(inputs, findings).scenario
     assert not [part for part in rig.spec.parts if part.name.startswith("found_")]
     assert rig.spec.part("cooling").values["A"] == 0.43
+
+
+# -------------------------------------------------------------------------------------------------- outside the library
+
+
+def unexplained(inputs, verdict="unexplained", best=0.2, causes=("losses.churning",)) -> Findings:
+    """Findings of which the likeliest is that the library lacks the cause."""
+    findings = made_up(inputs, causes, verdict)
+    first, *others = findings.hypotheses
+    hypotheses = (Joint((UNEXPLAINED,), 0.7), replace(first, probability=best), *others)
+    named = (Named(UNEXPLAINED, 0.7, math.inf), *findings.causes)
+    return replace(findings, hypotheses=hypotheses, causes=named, played={"T_oil": (2.0, 1.0)})
+
+
+def test_what_is_missing_to_one_is_outside_the_library():
+    found = [Joint(("a",), 0.5), Joint((), 0.1), Joint(("b",), 0.03)]
+    assert [j.causes for j in with_outside(found)] == [("a",), (UNEXPLAINED,), (), ("b",)]
+    assert with_outside(found)[1].probability == pytest.approx(0.37)
+    assert with_outside([Joint(("a",), 0.996)]) == [Joint(("a",), 0.996)]
+    assert outside([Joint(("a",), 0.6), Joint((), 0.4 + 1e-12)]) == 0.0
+
+
+def test_what_the_library_lacks_explains_nothing():
+    lacks, one = Joint((UNEXPLAINED,), 0.95), Joint(("losses.churning",), 0.95)
+    assert verdict_of(True, lacks, 0.5) == "unexplained" and verdict_of(False, lacks, 0.5) == "consistent"
+    assert verdict_of(True, one, 0.5) == "explained" and verdict_of(True, one, 0.001) == "unexplained"
+
+
+def test_the_model_is_extended_by_the_best_of_the_library(inputs, capsys):
+    findings = unexplained(inputs)
+    assert words.applied(findings).causes == words.top(findings).causes == ("losses.churning",)
+    assert "found_churning" in {part.name for part in extended(inputs, findings).scenario.spec.parts}
+    said = words.verdict(findings)
+    assert "most probably outside the library (70 %)" in said and "churning of the oil (20 %)" in said
+    assert "leaves more than noise" in words.verdict(replace(findings, p_adequacy=0.001))
+    result = as_object(findings)
+    jsonschema.validate(result, schema())
+    assert result["hypotheses"][0] == {"causes": [UNEXPLAINED], "probability": 0.7}
+    assert result["causes"][0] == {"id": UNEXPLAINED, "probability": 0.7, "parameters": []}
+    show(findings)
+    page, screen = render(inputs, findings), capsys.readouterr().out
+    assert said in page.replace("&gt;", ">") and "something outside the library" in page
+    assert said in screen.replace("\n", " ") and UNEXPLAINED in screen
+
+
+def test_nothing_extends_the_model_where_the_best_of_the_library_is_no_cause(inputs):
+    findings = unexplained(inputs, causes=())
+    findings = replace(findings, extended=findings.nominal)
+    assert words.applied(findings) is None and "found_" not in extended_text(inputs, findings)
+    assert words.verdict(findings) == "Something is wrong, most probably outside the library (70 %)."
+    assert words.verdict(unexplained(inputs, "consistent")).startswith("Nothing beyond")
+    assert words.applied(unexplained(inputs, "consistent")) is None
+
+
+def test_what_the_library_lacks_is_one_of_what_is_left_open(inputs):
+    assert "something outside the library (70 %)" in words.verdict(unexplained(inputs, "ambiguous"))
 
 
 # ------------------------------------------------------------------------------------------------------ command, memory

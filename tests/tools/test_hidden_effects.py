@@ -98,7 +98,7 @@ def found(truth: dict[str, Any], answer: Answer) -> str:
 
 def quiet(answer: Answer) -> bool:
     """Absent and not named: no alarm, and no cause that the answer is sure of."""
-    causes = {name for h in answer.hypotheses for name in h.names}
+    causes = {name for h in answer.hypotheses if h.claims for name in h.names}
     claimed = {c: sum(h.probability for h in answer.hypotheses if c in h.names) for c in causes}
     return not answer.alarm and all(p <= SURE for p in claimed.values())
 
@@ -157,3 +157,5 @@ def test_what_counts_as_found() -> None:
     assert quiet(answer(((), 0.5), ((air,), 0.45), verdict="consistent"))
     assert not quiet(answer(((air,), 0.5), ((air, "b"), 0.45), verdict="consistent"))
     assert not quiet(answer(((), 0.95)))
+    assert quiet(answer((("model.unexplained",), 0.95), verdict="consistent"))
+    assert found(drag, answer((("model.unexplained",), 0.95))) == "missed"

@@ -8,6 +8,9 @@ from typing import Any
 
 from ..effects.cause import Theta
 
+#: The name of whatever the library lacks.
+UNEXPLAINED = "model.unexplained"
+
 
 @dataclass(frozen=True)
 class Estimate:
@@ -43,6 +46,11 @@ class Joint:
     causes: tuple[str, ...]
     probability: float
     theta: Mapping[str, Theta] = field(default_factory=dict)
+
+    @property
+    def outside(self) -> bool:
+        """Whether it is that the library lacks the cause."""
+        return self.causes == (UNEXPLAINED,)
 
 
 @dataclass(frozen=True)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
@@ -15,17 +16,18 @@ from .campaign_model import CampaignModel, Rig
 from .experiments import ranked
 from .extension import of_machine
 from .family import form_of
-from .findings import Findings, Joint, Named
+from .findings import UNEXPLAINED, Findings, Joint, Named
 from .gain import gain, rms
 from .inputs import Inputs
 from .nuisance import Channels, Parameters, instrument_covariance
 from .problem import Campaigned, Linear, Problem, remainder
 from .search import DRAWS, Hypothesis, Search
 from .split import certified
-from .weigh import SHOWN, confusable, joints, named, p_adequacy
+from .weigh import SHOWN, confusable, joints, named, outside, p_adequacy, with_outside
+from .words import ADEQUATE
 
-#: Probability from which a hypothesis counts as the explanation; p below which what it leaves is not noise.
-SURE, ADEQUATE = 0.9, 0.01
+#: Probability from which a hypothesis counts as the explanation.
+SURE = 0.9
 #: Hypotheses and causes that are reported; causes between which experiments are judged.
 MOST, JUDGED = 12, 4
 #: Probability from which a hypothesis counts in predictions.
@@ -75,20 +77,23 @@ def infer(
     search = Search(problem, seed, progress)
     search.run()
     found, members = joints(search)
-    top, hypothesis = found[0], members[0]
+    listed, hypothesis = with_outside(found), members[0]
     adequacy = p_adequacy(search, hypothesis)
     alarm = search.p_any <= alpha
-    verdict = verdict_of(alarm, top, adequacy)
+    verdict = verdict_of(alarm, listed[0], adequacy)
     progress("held-out points", 0.85)
     leading = [h for h in members if h.causes][:6]
     warnings = list(inputs.warnings)
     if len(problem.campaigns) == 1:
         warnings.append("No reference campaign: a rig that differs from the nominal may look like a fault.")
-    certified = gain(search, leading, seed)
+    gained = gain(search, leading, seed)
     progress("next experiment", 0.92)
     causes = certificates(search, named(search, found, leading))
+    unexplained = Named(UNEXPLAINED, outside(found), math.inf)
     weights = {n.id: max(n.probability, 0.02) for n in causes[:JUDGED]}
-    weighed = [(j.probability, h) for j, h in zip(found, members, strict=True) if j.probability > COUNTS]
+    weighed = [
+        (j.probability, h) for j, h in zip(found, members, strict=True) if j is found[0] or j.probability > COUNTS
+    ]
     if not alarm:
         weighed = [(1.0, h) for h in members if not h.causes]
     findings = Findings(
@@ -98,11 +103,11 @@ def infer(
         p_omnibus=search.p_omnibus,
         p_adequacy=adequacy,
         draws=DRAWS,
-        hypotheses=tuple(j for j in found[:MOST] if j.probability > SHOWN or j is top),
-        causes=tuple(causes),
+        hypotheses=tuple(j for j in listed[:MOST] if j.probability > SHOWN or j is found[0]),
+        causes=tuple(sorted([*causes, unexplained], key=lambda n: (-n.probability, n.id))),
         confusable=tuple(confusable(search, [n for n in causes[:3] if n.probability > 0.1])),
         impact=impact(search, hypothesis),
-        gain=certified,
+        gain=gained,
         next_experiment=tuple(ranked(problem, search.null.z, weights)),
         warnings=tuple(warnings),
         nominal=dict(search.null.values),
@@ -131,7 +136,7 @@ def verdict_of(alarm: bool, top: Joint, adequacy: float) -> str:
     """One word."""
     if not alarm:
         return "consistent"
-    if adequacy < ADEQUATE:
+    if adequacy < ADEQUATE or top.outside:
         return "unexplained"
     return "explained" if top.probability > SURE and top.causes else "ambiguous"
 

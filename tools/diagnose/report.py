@@ -78,7 +78,7 @@ def _bars(findings: Findings) -> list[dict[str, Any]]:
     ]
     total = sum(h.probability for h in findings.hypotheses)
     clean = sum(h.probability for h in findings.hypotheses if not h.causes)
-    other = [("nothing wrong", clean), ("not in the library, or less probable than those listed", 1.0 - total)]
+    other = [("nothing wrong", clean), ("less probable than those listed", 1.0 - total)]
     rows += [
         {"name": n, "id": "", "probability": p, "size": "", "where": "", "certificate": ""}
         for n, p in other

@@ -11,7 +11,7 @@ from ..effects.cause import Cause, Theta
 from ..effects.taxonomy import CAUSES
 from .evidence import White
 from .family import Family, form_of
-from .findings import Estimate, Joint, Named
+from .findings import UNEXPLAINED, Estimate, Joint, Named
 from .scatter import SCATTER
 from .search import Hypothesis, Search
 
@@ -40,6 +40,18 @@ def joints(search: Search) -> tuple[list[Joint], list[Hypothesis]]:
         merged.append((Joint(best.causes, sum(p for _, p in members), best.theta), best))
     merged.sort(key=lambda item: -item[0].probability)
     return [j for j, _ in merged], [h for _, h in merged]
+
+
+def with_outside(found: Sequence[Joint]) -> list[Joint]:
+    """Hypotheses with what is missing to 1, that the library lacks the cause, where that is worth showing."""
+    missing = outside(found)
+    listed = [*found, Joint((UNEXPLAINED,), missing)] if missing > SHOWN else [*found]
+    return sorted(listed, key=lambda joint: -joint.probability)
+
+
+def outside(found: Sequence[Joint]) -> float:
+    """Probability that no hypothesis of the library holds."""
+    return max(1.0 - sum(joint.probability for joint in found), 0.0)
 
 
 def asked_for(search: Search, h: Hypothesis, alone: Mapping[str, Hypothesis]) -> tuple[str, ...]:

@@ -10,6 +10,8 @@ from .findings import Estimate, Findings, Joint, Named
 
 #: Probability that the named hypotheses shall reach together.
 ENOUGH = 0.9
+#: p below which what is left is not noise.
+ADEQUATE = 0.01
 #: Plain names of the taxonomy.
 NAMES = {
     "losses.churning": "churning of the oil",
@@ -154,14 +156,14 @@ def regime(found: Named) -> str:
 
 
 def top(findings: Findings) -> Joint | None:
-    """The most probable hypothesis with a cause; None where nothing is wrong or found."""
-    named = [h for h in findings.hypotheses if h.causes]
+    """The most probable hypothesis with a cause of the library; None where nothing is wrong or found."""
+    named = [h for h in findings.hypotheses if h.causes and not h.outside]
     return max(named, key=lambda h: h.probability) if named else None
 
 
 def applied(findings: Findings) -> Joint | None:
-    """The hypothesis that the extended model holds: the first one, if there is an alarm and it names a cause."""
-    first = findings.hypotheses[0] if findings.hypotheses else None
+    """The hypothesis that the extended model holds: the library's first, if there is an alarm and it names a cause."""
+    first = next((h for h in findings.hypotheses if not h.outside), None)
     return first if first is not None and first.causes and findings.verdict != "consistent" else None
 
 
@@ -194,6 +196,8 @@ def impact(findings: Findings, key: str = "T_oil_K") -> str:
 def verdict(findings: Findings) -> str:
     """The verdict in one sentence."""
     first = top(findings)
+    if findings.verdict == "unexplained":
+        return _unexplained(findings)
     if findings.verdict == "consistent" or first is None:
         return f"Nothing beyond the stated accuracies: {chance(findings.p_any)}."
     if findings.verdict == "explained":
@@ -202,15 +206,20 @@ def verdict(findings: Findings) -> str:
         )
         named = " and ".join(name_of(c) + likes_said(c) for c in first.causes)
         return f"{subject}: {named}, {percent(first.probability)} sure{_size(findings, first)}."
-    if findings.verdict == "ambiguous":
-        sets = [h for h in needed(findings) if h.causes]
-        words = "; ".join(f"{names_of(h.causes)} ({percent(h.probability)})" for h in sets[:4])
-        more = f"; and {len(sets) - 4} more" if len(sets) > 4 else ""
-        return f"Something is wrong, and these data leave open what: {words}{more}."
-    return (
-        f"Something is wrong, and no cause of the library explains it: the best, {names_of(first.causes)},"
-        " leaves more than noise."
-    )
+    sets = [h for h in needed(findings) if h.causes]
+    words = "; ".join(f"{names_of(h.causes)} ({percent(h.probability)})" for h in sets[:4])
+    more = f"; and {len(sets) - 4} more" if len(sets) > 4 else ""
+    return f"Something is wrong, and these data leave open what: {words}{more}."
+
+
+def _unexplained(findings: Findings) -> str:
+    """The verdict where the best of the library is not enough, or where something outside it is more probable."""
+    first, missing = applied(findings), next((h for h in findings.hypotheses if h.outside), None)
+    if findings.p_adequacy >= ADEQUATE and missing is not None:
+        best = f"; the best within it: {names_of(first.causes)} ({percent(first.probability)})" if first else ""
+        return f"Something is wrong, most probably outside the library ({percent(missing.probability)}){best}."
+    best = f": the best, {names_of(first.causes)}, leaves more than noise" if first else ""
+    return f"Something is wrong, and no cause of the library explains it{best}."
 
 
 def _size(findings: Findings, hypothesis: Joint) -> str:
@@ -247,7 +256,7 @@ def visible(found: Named) -> str:
 def adequacy(findings: Findings) -> str:
     """Whether what is left after the best hypothesis is noise."""
     left = "what is left after it" if applied(findings) else "what the model leaves"
-    if findings.p_adequacy < 0.01:
+    if findings.p_adequacy < ADEQUATE:
         return f"{left} is not noise (p = {number(findings.p_adequacy, 2)}): another effect is in the data"
     return f"{left} looks like noise (p = {number(findings.p_adequacy, 2)})"
 
