@@ -69,8 +69,8 @@ def log_bayes_factors_pair(
 ) -> np.ndarray:
     """Log Bayes factor (k, l) of every pair of a signature of one family with one of another, against none."""
     found = []
-    for wa in WIDTHS[1:3]:
-        for wb in WIDTHS[1:3]:
+    for wa in WIDTHS:
+        for wb in WIDTHS:
             va, vb = (sd[0] * wa)[:, None] ** 2, (sd[1] * wb)[None, :] ** 2
             # posterior precision [[1/va + qa, c], [c, 1/vb + qb]]
             pa, pb = 1 / va + q[0][:, None], 1 / vb + q[1][None, :]

@@ -287,26 +287,29 @@ class Problem:
             return np.zeros(len(self.parameters.names))
         return Problem(self.rig, references, self.card, self.parameters).settled().z
 
-    def put_back(self, linear: Linear, form: float = 0.0) -> Linear:
+    def put_back(self, linear: Linear, forms: Sequence[float] = (0.0,)) -> list[Linear]:
         """A linearisation with its causes' effects put back into the residual, by their signatures there.
 
-        `form` is the standard deviation of what a form leaves of a true effect, as a share of it that changes smoothly
-        with the conditions: it adds to the scatter.
+        Each of `forms` is a standard deviation of what a form leaves of a true effect, as a share of it that changes
+        smoothly with the conditions: it adds to the scatter of a linearisation of its own.
         """
         sizes = [linear.theta[c.id][c.size.name] for c in linear.causes]
         acting = [(c, size) for c, size in zip(linear.causes, sizes, strict=True) if size != 0.0]
         if not acting:
-            return linear
+            return [linear] * len(forms)
         G = self.signatures(linear, [(c, linear.theta[c.id], size) for c, size in acting])
         effects, part = G * np.array([size for _, size in acting]), self.place(self.data)
         rough = np.zeros_like(linear.noise)
-        rough[part, part] = form**2 * (effects[part] @ effects[part].T) * alike(self.data)
-        return replace(
-            linear,
-            residual=linear.residual + effects.sum(axis=1),
-            covariance=linear.covariance + rough,
-            noise=linear.noise + rough,
-        )
+        rough[part, part] = (effects[part] @ effects[part].T) * alike(self.data)
+        return [
+            replace(
+                linear,
+                residual=linear.residual + effects.sum(axis=1),
+                covariance=linear.covariance + form**2 * rough,
+                noise=linear.noise + form**2 * rough,
+            )
+            for form in forms
+        ]
 
 
 def alike(c: Campaigned) -> np.ndarray:

@@ -37,8 +37,8 @@ SHARES = (1.0, 0.5, 0.2)
 POOR = 0.7
 #: A p of any cause below which the first look is repeated from the healthy machine, and above which little is fitted.
 ELSEWHERE, QUIET = 0.05, 0.25
-#: Standard deviation of what a form of the library leaves of a true effect, as a share of it.
-FORM = 0.06
+#: Standard deviations of what a form of the library leaves of a true effect, as shares of it, and their probabilities.
+FORM = {0.03: 0.35, 0.06: 0.35, 0.12: 0.22, 0.24: 0.08}
 #: Forms at which fits begin: how many, how much worse than the best at the first look, how far apart in the share of
 #: the threshold, and steps after which only the best goes on.
 MANY, NEXT, APART, BEGUN = 3, 15.0, 0.2, 3
@@ -100,10 +100,12 @@ class Search:
         quiet = self.p_any > QUIET
         found = self._again(first[:1], [h for h in first if len(h.causes) == 1], AGAIN_ONE if not quiet else 2)
         self.progress("pairs of causes", 0.6)
-        pairs = [h for h in first if len(h.causes) == 2] + ([] if quiet else self._beside(found))
+        beside = [] if quiet else self._beside(found)
+        seen = {frozenset(h.causes) for h in beside}
+        pairs = beside + [h for h in first if len(h.causes) == 2 and frozenset(h.causes) not in seen]
         found += first[:1]
         pairs = self._again(found, pairs, AGAIN_TWO if not quiet else 0)
-        self.hypotheses = self._settled([*found, *pairs, *self._with_days(found)])
+        self.hypotheses = distinct(self._settled([*found, *pairs, *self._with_days(found)]))
         self.outside = Unnamed(self.problem).evidence(self.hypotheses, self.null) + np.log(OUTSIDE)
         self.progress("hypotheses weighed", 0.8)
 
@@ -177,8 +179,13 @@ class Search:
         return weighed
 
     def _again(self, known: Sequence[Hypothesis], some: Sequence[Hypothesis], most: int) -> list[Hypothesis]:
-        """Leaders of some hypotheses fitted, with more forms around the most likely one; the others as they are."""
+        """Leaders of some hypotheses fitted, with more forms around the most likely one.
+
+        What the fits lose against the first look, in the middle, the first look of the others is taken to promise too
+        much as well.
+        """
         found: list[Hypothesis] = []
+        changes = [0.0]
         some = sorted(some, key=lambda h: -h.log_posterior)
         for k, h in enumerate(some[:most]):
             best = max(other.log_posterior for other in (*known, *found))
@@ -189,7 +196,9 @@ class Search:
             self.progress(f"looking again at {' and '.join(h.causes)}", 0.4 + 0.2 * len(h.causes) * k / most)
             with suppress(SolveError):  # what no machine can run explains nothing
                 found.append(self._refined(h))
-        return [*found, *some[most:]]
+                changes.append(found[-1].log_posterior - h.log_posterior)
+        less = min(float(np.median(changes[1:] or changes)), 0.0)
+        return [*found, *(replace(h, log_posterior=h.log_posterior + less) for h in some[most:])]
 
     def _beside(self, found: Sequence[Hypothesis]) -> list[Hypothesis]:
         """Pairs of the leading cause as fitted with every other, looked at where it acts."""
@@ -200,13 +209,13 @@ class Search:
         like = own.cause.like or name
         others = [c for c in self.causes if not c.scatter and (c.like or c.id) != like]
         acting = self.problem.moved(a.linear, a.linear.z, a.theta, [own.cause])
-        white = White.of(a.linear.residual, a.linear.covariance)
-        base, pairs = log_gauss(white), []
+        white, pairs = White.of(a.linear.residual, a.linear.covariance), []
+        alone = a.log_posterior - self.prior(1) - own.evidence()
         for f in families(self.problem, acting, white, (Sample.of_prior(c, FORMS // 2) for c in others)).values():
             value, weights = pair_evidence(own, f)
             causes = (name, f.cause.id)
             theta = pair_theta(own, f, *best_pair(weights))
-            pairs.append(Hypothesis(causes, base + value + self.prior(2), theta, (own, f), a.linear))
+            pairs.append(Hypothesis(causes, alone + value + self.prior(2), theta, (own, f), a.linear))
         return pairs
 
     def _settled(self, hypotheses: list[Hypothesis]) -> list[Hypothesis]:
@@ -230,16 +239,21 @@ class Search:
         if fit.cost > POOR * len(linear.residual):  # far from where the slopes of the nuisances were taken
             fit = fitted(self.problem, linear, fit.start)
             linear = self.problem.linearised(fit.z, fit.theta, causes)
-        back = self.problem.put_back(linear, FORM)
-        white = White.of(back.residual, back.covariance)
         samples = []
         for k, c in enumerate(causes):
             samples.append(nearer(c, fit.modes[c.id], sound(fit.theta[c.id][c.size.name], c), self.seed + k))
-        found = families(self.problem, linear, white, samples)
-        theta = {c.id: found[c.id].theta(0, fit.theta[c.id][c.size.name]) for c in causes}
-        value = found[causes[0].id].evidence() if len(causes) == 1 else pair_evidence(*(found[c.id] for c in causes))[0]
-        value += log_gauss(white) + self.prior(len(causes))
-        return replace(h, log_posterior=float(value), theta=theta, families=tuple(found.values()), linear=back)
+        near = families(self.problem, linear, White.of(linear.residual, linear.covariance), samples)
+        theta = {c.id: near[c.id].theta(0, fit.theta[c.id][c.size.name]) for c in causes}
+        logs, views = [], []
+        for back, weight in zip(self.problem.put_back(linear, list(FORM)), FORM.values(), strict=True):
+            white = White.of(back.residual, back.covariance)
+            own = tuple(f.seen(white) for f in near.values())
+            value = own[0].evidence() if len(own) == 1 else pair_evidence(*own)[0]
+            logs.append(value + log_gauss(white) + np.log(weight))
+            views.append((own, back))
+        found, back = views[int(np.argmax(logs))]
+        value = float(logsumexp(logs)) + self.prior(len(causes))
+        return replace(h, log_posterior=value, theta=theta, families=found, linear=back)
 
     def _begun(self, h: Hypothesis) -> Fit:
         """The best of short fits from several forms, gone on with. Raises SolveError where none can be run."""
@@ -315,7 +329,7 @@ class Search:
             shares = np.tile(mode.shares, (1 + len(SCAN), 1))
             shares[1:, place] = SCAN
             linear = self.problem.moved(h.linear or self.null, fit.z, fit.theta, [CAUSES[name] for name in h.causes])
-            back = self.problem.put_back(linear)
+            (back,) = self.problem.put_back(linear)
             white = White.of(back.residual, back.covariance)
             sample = Sample(c, shares, np.zeros(len(shares)), sound(size, c))
             logs = families(self.problem, linear, white, [sample])[c.id].log_bf()
@@ -337,11 +351,17 @@ class Search:
 
 def better(some: Sequence[Hypothesis], others: Sequence[Hypothesis]) -> list[Hypothesis]:
     """The better of each hypothesis; no cause at all as the first list has it."""
-    found = {h.causes: h for h in some}
-    for h in others[1:]:
-        if h.causes not in found or h.log_posterior > found[h.causes].log_posterior:
-            found[h.causes] = h
-    return [some[0], *(h for h in found.values() if h.causes)]
+    return [some[0], *(h for h in distinct([*some, *others]) if h.causes)]
+
+
+def distinct(hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
+    """The best of all hypotheses of the same causes."""
+    found: dict[frozenset[str], Hypothesis] = {}
+    for h in hypotheses:
+        causes = frozenset(h.causes)
+        if causes not in found or h.log_posterior > found[causes].log_posterior:
+            found[causes] = h
+    return list(found.values())
 
 
 def visible(cause: Cause, problem: Problem) -> bool:
