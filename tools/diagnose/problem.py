@@ -91,12 +91,16 @@ class Linear:
 
 @dataclass
 class Problem:
-    """All campaigns of a diagnosis; `acting` is the one whose causes are sought."""
+    """All campaigns of a diagnosis; `acting` is the one whose causes are sought.
+
+    `scattered` is the standard deviation of the acting campaign's days of cooling beside what the card states.
+    """
 
     rig: Rig
     campaigns: Sequence[Campaigned]
     card: Card
     parameters: Parameters
+    scattered: float = 0.0
     measured: np.ndarray = field(init=False)
     instrument: np.ndarray = field(init=False)
     scatter: np.ndarray = field(init=False)
@@ -152,7 +156,7 @@ class Problem:
         day = (columns[:, -1] - nominal) / DAY_STEP
         days = self._days(day)
         stated = self.card.day_cooling_sd**2 * sum(d @ d.T for d in days)
-        noise = self.instrument + stated + self._elsewhere(nominal)
+        noise = self.instrument + stated + self.scattered**2 * days[0] @ days[0].T + self._elsewhere(nominal)
         residual = self.measured - nominal + jacobian @ z
         covariance = noise + jacobian @ jacobian.T
         return Linear(z, variants[0], nominal, residual, covariance, jacobian, noise, days[0], theta or {}, causes)

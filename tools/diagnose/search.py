@@ -23,8 +23,8 @@ from .unnamed import Unnamed
 
 #: Pairs of which the evidence is computed; leading singles and pairs looked at again.
 PAIRS, AGAIN_ONE, AGAIN_TWO = 20, 8, 4
-#: Leading singles that are also weighed together with days that differ.
-WITH_DAYS = 5
+#: Leading singles that are also weighed together with days that differ, and those fitted where days differ so.
+WITH_DAYS, ON_SUCH_DAYS = 5, 3
 #: Prior probabilities: nothing wrong, one cause, two causes, something outside the library.
 NONE, ONE, TWO, OUTSIDE = 0.5, 0.37, 0.08, 0.05
 DRAWS = 4000
@@ -105,7 +105,10 @@ class Search:
         pairs = beside + [h for h in first if len(h.causes) == 2 and frozenset(h.causes) not in seen]
         found += first[:1]
         pairs = self._again(found, pairs, AGAIN_TWO if not quiet else 0)
-        self.hypotheses = distinct(self._settled([*found, *pairs, *self._with_days(found)]))
+        weighed = self._settled([*found, *pairs, *self._with_days(found)])
+        if SCATTER in weighed[0].causes and not quiet:
+            weighed = sorted([*weighed, *self._on_such_days(weighed[0])], key=lambda h: -h.log_posterior)
+        self.hypotheses = distinct(weighed)
         self.outside = Unnamed(self.problem).evidence(self.hypotheses, self.null) + np.log(OUTSIDE)
         self.progress("hypotheses weighed", 0.8)
 
@@ -177,6 +180,24 @@ class Search:
             theta = {**h.theta, SCATTER: self.days.theta(logs)}
             weighed.append(replace(h, causes=causes, log_posterior=value, theta=theta))
         return weighed
+
+    def _on_such_days(self, scattered: Hypothesis) -> list[Hypothesis]:
+        """Single causes fitted where days differ as found: a fit that takes the days for alike bends its cause."""
+        size = scattered.theta[SCATTER]["sd"]
+        there = Search(replace(self.problem, scattered=size), self.seed, self.progress)
+        there.null = there.problem.settled(self.null.z)
+        there.white = White.of(there.null.residual, there.null.covariance)
+        none, *first = there._first_look(there.null, there._families(there.null, there.white))
+        singles = there._again([none], [h for h in first if len(h.causes) == 1], ON_SUCH_DAYS)[:ON_SUCH_DAYS]
+        less, found = there.prior(2) - there.prior(1) - np.log(len(SIZES)), []
+        for h in singles:
+            if h.linear and h.linear.causes:
+                days = size**2 * h.linear.days @ h.linear.days.T
+                linear = replace(h.linear, covariance=h.linear.covariance - days, noise=h.linear.noise - days)
+                theta = {**h.theta, SCATTER: {"sd": size}}
+                value = h.log_posterior + less
+                found.append(replace(h, causes=(*h.causes, SCATTER), log_posterior=value, theta=theta, linear=linear))
+        return found
 
     def _again(self, known: Sequence[Hypothesis], some: Sequence[Hypothesis], most: int) -> list[Hypothesis]:
         """Leaders of some hypotheses fitted, with more forms around the most likely one.
