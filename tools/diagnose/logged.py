@@ -1,4 +1,7 @@
-"""Courses of tests, reduced to a few places of each half: what a time series adds to the steady readings."""
+"""Courses of tests, reduced to a few places of each half: what a time series adds to the steady readings.
+
+The temperature at a place is that of a smooth curve through all samples of the half, so that no sample is wasted.
+"""
 
 from __future__ import annotations
 
@@ -6,19 +9,25 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import BSpline
 
 from ...scenarios.measured import Test
 from .series import Series
 
-#: Places in a half as shares of its dwell; half width over which samples are averaged, if there are so many.
-SHARES, WIDTH, MANY = (0.05, 0.12, 0.2, 0.3, 0.45, 0.65, 0.85), 0.02, 5
+#: Places in a half as shares of its dwell; the knots between the pieces of the curve, which are cubic.
+SHARES, KNOTS = (0.05, 0.12, 0.2, 0.3, 0.45, 0.65, 0.85), (0.12, 0.3, 0.55)
+#: Samples from which there is a curve; below, places lie on the lines between samples.
+MANY = 14
 #: A half that was logged over a dwell other than stated by less than this is compared place by place.
 AS_STATED = 0.03
 
 
 @dataclass(frozen=True)
 class Sampled:
-    """What the series says of one half: dwell as logged and interval of the samples [s], temperatures [K] at places."""
+    """What the series says of one half: dwell as logged and interval of the samples [s], temperatures [K] at places.
+
+    `scatter` is the covariance of the values at the places (k, k) as a share of the variance of one sample.
+    """
 
     half: int
     dwell: float
@@ -26,6 +35,7 @@ class Sampled:
     shares: np.ndarray
     T_oil: np.ndarray
     T_wall: np.ndarray
+    scatter: np.ndarray
 
 
 def sampled(series: Series | None, test: Test, stop: float) -> list[Sampled]:
@@ -43,22 +53,23 @@ def sampled(series: Series | None, test: Test, stop: float) -> list[Sampled]:
         interval = float(np.median(np.diff(time)))
         begin = float(np.clip(end + stop, time[0] - interval, time[0]))
         end = float(time[-1])
-        shares = (time - begin) / stated if as_stated else np.empty(0)
-        temperatures = [columns[c][mine] + 273.15 for c in ("T_oil_C", "T_wall_C")]
-        found.append(Sampled(k, end - begin, interval, *_places(shares, temperatures)))
+        places, W = _places((time - begin) / stated if as_stated else np.empty(0))
+        T_oil, T_wall = (W @ (columns[c][mine] + 273.15) if len(W) else np.empty(0) for c in ("T_oil_C", "T_wall_C"))
+        found.append(Sampled(k, end - begin, interval, places, T_oil, T_wall, W @ W.T))
         as_stated = as_stated and abs((end - begin) / stated - 1) < AS_STATED
     return found
 
 
-def _places(share: np.ndarray, columns: Sequence[np.ndarray]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Places that were logged, and both temperatures there: between the samples around each, or a line through many."""
-    kept = [place for place in SHARES if len(share) and share[0] <= place <= share[-1]]
-    values = np.zeros((len(kept), 2))
-    for k, place in enumerate(kept):
-        near = np.abs(share - place) <= WIDTH
-        for i, column in enumerate(columns):
-            if near.sum() >= MANY:
-                values[k, i] = np.polynomial.Polynomial.fit(share[near], column[near], 1)(place)
-            else:
-                values[k, i] = np.interp(place, share, column)
-    return np.array(kept), values[:, 0], values[:, 1]
+def _places(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Places that were logged, and the weights (k, samples) of all samples in the values there."""
+    kept = np.array([place for place in SHARES if len(share) and share[0] <= place <= share[-1]])
+    if not len(kept):
+        return kept, np.empty((0, len(share)))
+    lines = np.stack([np.interp(kept, share, unit) for unit in np.eye(len(share))], axis=1)
+    first, last = share[0], share[-1]
+    if len(share) < MANY or first > 0.5 * SHARES[0] or last < SHARES[-1]:
+        return kept, lines
+    inner = first + (last - first) * np.array(KNOTS)
+    knots = np.concatenate([np.full(4, first), inner, np.full(4, last)])
+    B, at = (BSpline.design_matrix(x, knots, 3).toarray() for x in (share, kept))
+    return kept, np.asarray(at @ np.linalg.pinv(B))

@@ -73,9 +73,13 @@ COURSE, LENGTH, DWELL = 0.15, 0.3, 0.02
 
 @dataclass(frozen=True)
 class Channels:
-    """The measured vector: channel -> which rows of the readings it holds."""
+    """The measured vector: channel -> which rows of the readings it holds.
+
+    `scatter` is the covariance of values along courses as a share of the variance of one reading (places, places).
+    """
 
     holds: Mapping[str, np.ndarray]
+    scatter: np.ndarray | None = None
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -113,7 +117,7 @@ def instrument_covariance(channels: Channels, rows: Rows, card: Card) -> tuple[n
     """Scatter of the readings: covariance (m, m), and fixed tolerance -> its effect (m), one standard deviation."""
     which = channels.rows
     m = len(which)
-    variance, columns = np.zeros(m), dict[str, np.ndarray]()
+    variance, smooth, columns = np.zeros(m), np.zeros((m, m)), dict[str, np.ndarray]()
     for c in channels.names:
         part = channels.part(c)
         if c == "loss":
@@ -126,11 +130,14 @@ def instrument_covariance(channels: Channels, rows: Rows, card: Card) -> tuple[n
         else:
             probe = COURSES.get(c, c)
             channel = card.channel(f"{probe}_C")
-            variance[part] = channel.repeat_sd**2
+            if c in COURSES and channels.scatter is not None:
+                smooth[part, part] = channel.repeat_sd**2 * channels.scatter
+            else:
+                variance[part] = channel.repeat_sd**2
             columns.setdefault(probe, np.zeros(m))[part] = channel.offset_sd
     room, warm, share = card.channel("T_amb_C"), channels.warm(), rows.share[which]
     same = (rows.test[which][:, None] == rows.test[which]) & (rows.direction[which][:, None] == rows.direction[which])
-    R = np.diag(variance) + np.outer(warm * share, warm * share) * same * room.repeat_sd**2
+    R = np.diag(variance) + smooth + np.outer(warm * share, warm * share) * same * room.repeat_sd**2
     course = channels.course()
     kind = np.concatenate([np.full(len(channels.holds[c]), k) for k, c in enumerate(channels.names)])
     alike = same & (kind[:, None] == kind) & course[:, None]

@@ -39,7 +39,9 @@ class Campaigned:
         """From a campaign's readings."""
         readings = measured_readings(model)
         holds = {channel: rows for channel, (rows, _) in readings.items()}
-        return Campaigned(model, Channels(holds), np.concatenate([v for _, v in readings.values()]), acting)
+        logged = [item.scatter for own in model.logged for item in own]
+        scatter = block_diag(*logged) if logged else None
+        return Campaigned(model, Channels(holds, scatter), np.concatenate([v for _, v in readings.values()]), acting)
 
 
 def measured_readings(model: CampaignModel) -> dict[str, tuple[np.ndarray, np.ndarray]]:
