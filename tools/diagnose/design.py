@@ -149,12 +149,11 @@ def _families(
     problem: Problem, linear: Linear, samples: Sequence[Sample], checks: Sequence[Check]
 ) -> dict[str, Family]:
     """All forms of all causes, nothing seen yet."""
-    thetas = {s.cause.id: [{**form, s.cause.size.name: s.size} for form in s.cause.forms(s.shares)] for s in samples}
-    wanted = [(s.cause, theta, s.size) for s in samples for theta in thetas[s.cause.id]]
-    simulated = problem.signatures(linear, wanted)
+    looked_at = [(s, s.wanted()) for s in samples]
+    simulated = problem.signatures(linear, [one for _, wanted in looked_at for one in wanted])
     found, begin = {}, 0
-    for s in samples:
-        own = thetas[s.cause.id]
+    for s, wanted in looked_at:
+        own = [{**form, s.cause.size.name: size} for _, form, size in wanted]
         parts = [check.signatures(s.cause, own, problem.rig.base) for check in checks]
         G = np.concatenate([simulated[:, begin : begin + len(own)], *parts])
         begin += len(own)

@@ -78,17 +78,26 @@ class Family:
 
 @dataclass(frozen=True)
 class Sample:
-    """Forms of one cause: shares (n, shapes) of the prior, log weights against it, and the size of the secants."""
+    """Forms of one cause: shares (n, shapes) of the prior, log weights against it, and sizes of the secants (n or 1)."""
 
     cause: Cause
     shares: np.ndarray
     log_w: np.ndarray
-    size: float
+    size: float | np.ndarray
 
     @staticmethod
-    def of_prior(cause: Cause, n: int, size: float | None = None) -> Sample:
+    def of_prior(cause: Cause, n: int) -> Sample:
         """n forms spread over the prior, the middle first."""
-        return Sample(cause, *cause.sample(n, EACH), prior_size(cause) if size is None else size)
+        shares, log_w = cause.sample(n, EACH)
+        size = np.full(len(shares), prior_size(cause))
+        if cause.size.far is not None:
+            size[1::2] = cause.size.far
+        return Sample(cause, shares, log_w, size)
+
+    def wanted(self) -> list[tuple[Cause, Theta, float]]:
+        """Forms and sizes of which the signatures are sought."""
+        sizes = np.broadcast_to(self.size, len(self.shares))
+        return [(self.cause, form, float(size)) for form, size in zip(self.cause.forms(self.shares), sizes, strict=True)]
 
 
 def prior_size(cause: Cause) -> float:
@@ -99,17 +108,15 @@ def prior_size(cause: Cause) -> float:
 
 def families(problem: Problem, linear: Linear, white: White, samples: Iterable[Sample]) -> dict[str, Family]:
     """Signatures of all forms of all samples."""
-    samples = list(samples)
-    forms = {s.cause.id: (s, s.cause.forms(s.shares)) for s in samples}
-    wanted = [(s.cause, form, s.size) for s, own in forms.values() for form in own]
-    G = problem.signatures(linear, wanted)
+    looked_at = [(s, s.wanted()) for s in samples]
+    G = problem.signatures(linear, [one for _, wanted in looked_at for one in wanted])
     whitened = white.columns(G)
     found, begin = {}, 0
-    for s, own in forms.values():
-        part = slice(begin, begin + len(own))
+    for s, wanted in looked_at:
+        part, forms = slice(begin, begin + len(wanted)), [form for _, form, _ in wanted]
         g = whitened[:, part]
-        found[s.cause.id] = Family(s.cause, own, G[:, part], g, g.T @ white.e, (g**2).sum(axis=0), s.shares, s.log_w)
-        begin += len(own)
+        found[s.cause.id] = Family(s.cause, forms, G[:, part], g, g.T @ white.e, (g**2).sum(axis=0), s.shares, s.log_w)
+        begin += len(wanted)
     return found
 
 

@@ -319,9 +319,10 @@ class Problem:
 
 
 def alike(c: Campaigned) -> np.ndarray:
-    """Correlation of what is smooth in speed, torque and direction, between all readings of a campaign."""
+    """Correlation of what is smooth in speed, torque, direction and time, between all readings of a campaign."""
     rows, which = c.model.rows, c.channels.rows
-    features = np.stack([(rows.w - 18.0) / 5.0, (rows.tau - 2100.0) / 450.0, rows.direction], axis=1)[which]
+    conditions = [(rows.w - 18.0) / 5.0, (rows.tau - 2100.0) / 450.0, rows.direction, rows.share / 0.3]
+    features = np.stack(conditions, axis=1)[which]
     return np.asarray(np.exp(-0.5 * ((features[:, None, :] - features[None, :, :]) ** 2).sum(axis=2)))
 
 

@@ -35,10 +35,8 @@ class Unnamed:
         self.inside = np.arange(part.start, part.stop)
         self.outside = np.setdiff1d(np.arange(len(problem.measured)), self.inside)
         rows, which = c.model.rows, c.channels.rows
-        features = np.stack(
-            [(rows.w - 18.0) / 4.0, (rows.tau - 2100.0) / 400.0, rows.direction, 2 * rows.order], axis=1
-        )
-        features = features[which]
+        conditions = [(rows.w - 18.0) / 4.0, (rows.tau - 2100.0) / 400.0, rows.direction, 2 * rows.order]
+        features = np.stack([*conditions, rows.share / 0.3], axis=1)[which]
         kind = np.concatenate([np.full(len(c.channels.holds[n]), k) for k, n in enumerate(c.channels.names)])
         alike = kind[:, None] == kind
         near = np.exp(-0.5 * ((features[:, None, :] - features[None, :, :]) ** 2).sum(axis=2))

@@ -14,7 +14,10 @@ from ...model.machines.spec import PartSpec, Spec
 
 @dataclass(frozen=True)
 class Size:
-    """How much of a cause there is: zero is none. Signed if `low` is negative; `sd` is the prior's half width."""
+    """How much of a cause there is: zero is none. Signed if `low` is negative; `sd` is the prior's half width.
+
+    Where the effect is far from linear, a first look also takes secants to the size `far`.
+    """
 
     name: str
     unit: str
@@ -22,6 +25,7 @@ class Size:
     sd: float
     low: float
     high: float
+    far: float | None = None
 
 
 @dataclass(frozen=True)

@@ -24,7 +24,7 @@ def conductance(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> M
 CAUSE = Cause(
     id="cooling.contact",
     doc="A gap or gasket between wall and outer surface.",
-    size=Size("R", "K/W", "resistance more than assumed, at an oil 40 K above the room", 0.006, -0.0004, 0.08),
+    size=Size("R", "K/W", "resistance more than assumed, at an oil 40 K above the room", 0.006, -0.0004, 0.08, 0.03),
     shapes=(Shape("e", "1", "exponent of the rise", -1.6, 1.0, 0.0, 0.6),),
     exposes="transients; a second probe on the outer surface",
     values=conductance,

@@ -34,7 +34,7 @@ def readings(theta: Theta, rows: Rows, shown: Readings) -> Readings:
 CAUSE = Cause(
     id="procedure.not_stationary",
     doc="Readings taken earlier than the protocol says, while the gearbox still warms.",
-    size=Size("missing", "1", "share of the dwell that is missing", 0.3, 0.0, 0.95),
+    size=Size("missing", "1", "share of the dwell that is missing", 0.3, 0.0, 0.95, 0.75),
     shapes=(Shape("halves", "1", "in which halves: both, the first, or the second", 0.0, 1.0, ends=ENDS),),
     exposes="a logged warm-up; a longer dwell",
     values=values,
