@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -18,7 +19,9 @@ from .nuisance import COURSES, Channels, Parameters, day_values, instrument_cova
 #: Steps of the difference quotients: in standard deviations of a nuisance, and share of a day's cooling.
 STEP, DAY_STEP = 0.25, 0.02
 #: Gauss-Newton ends when no nuisance moves by more than this; it always ends after so many steps.
-SETTLED, MOST_STEPS = 0.02, 8
+SETTLED, MOST_STEPS = 0.02, 12
+#: Tries of each step with more damping (Levenberg and Marquardt), and the longest step of a nuisance.
+TRIES, LONGEST = 4, 1.5
 #: Standard deviation of the smooth remainder a reference campaign leaves, per feature: temperatures [K], loss [N.m].
 REMAINDER = {"T_oil": 0.8, "T_oil2": 0.8, "T_wall": 0.8, "loss": 1.0, "T_oil course": 0.8, "T_wall course": 0.8}
 #: A second oil probe may stand elsewhere: standard deviation of the share of the wall that it sees.
@@ -247,16 +250,31 @@ class Problem:
         causes: Sequence[Cause] = (),
         steps: int = MOST_STEPS,
     ) -> Linear:
-        """Gauss-Newton on the nuisances, causes held: to convergence, or so many steps."""
-        linear = self.linearised(np.zeros(len(self.parameters.names)) if z is None else z, theta, causes)
+        """Damped Gauss-Newton on the nuisances, causes held: to convergence, or so many steps."""
+        linear, damping = self.linearised(np.zeros(len(self.parameters.names)) if z is None else z, theta, causes), 0.0
         for _ in range(steps - 1):
-            new = self.nuisances(linear, linear.residual)
-            new = linear.z + np.clip(new - linear.z, -1.5, 1.5)
-            moved = float(np.abs(new - linear.z).max())
-            linear = self.linearised(new, theta, causes)
-            if moved < SETTLED:
+            factor = cho_factor(linear.noise)
+            weighted = cho_solve(factor, linear.jacobian)
+            H = linear.jacobian.T @ weighted + np.eye(len(linear.z))
+            downhill = weighted.T @ (self.measured - linear.nominal) - linear.z
+            before = self._cost(linear, factor)
+            for _ in range(TRIES):
+                change = np.clip(np.linalg.solve(H + damping * np.diag(np.diag(H)), downhill), -LONGEST, LONGEST)
+                with suppress(SolveError):
+                    if self._cost(self.moved(linear, linear.z + change, theta or {}, causes), factor) <= before + 1e-6:
+                        break
+                damping = max(5 * damping, 0.3)
+            else:
+                break
+            linear, damping = self.linearised(linear.z + change, theta, causes), damping / 5
+            if float(np.abs(change).max()) < SETTLED:
                 break
         return linear
+
+    def _cost(self, linear: Linear, factor: Any) -> float:
+        """Half the squared misfit at a linearisation, priors included."""
+        r = self.measured - linear.nominal
+        return float(0.5 * r @ cho_solve(factor, r) + 0.5 * linear.z @ linear.z)
 
     def signatures(self, linear: Linear, wanted: Sequence[tuple[Cause, Theta, float]]) -> np.ndarray:
         """Change of all readings per unit of size, for causes of given form, as a secant to a given size (m, k).
