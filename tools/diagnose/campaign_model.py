@@ -103,6 +103,23 @@ class CampaignModel:
             for run, (times, ends, samples) in zip(self.runs, places, strict=True)
         ]
 
+    def smoothed_away(self) -> np.ndarray:
+        """What the curves through the samples make of the nominal's courses, less the courses: (samples, channels)."""
+        start, found = [dict(self.rig.base)], []
+        for k, own in enumerate(self.logged):
+            (p,) = self.rig.parameters(start, self.oils[k : k + 1])
+            T = np.repeat(self._start(start, k), self.rig.n_states, axis=1)
+            for item in own:
+                if not len(item.shares):
+                    continue
+                end, dwell = self.runs[k].moments[item.half], self.tests[k].halves[item.half].si("dwell_min")
+                shares = np.concatenate([item.when, item.shares])
+                times, back = np.unique(end - dwell * np.maximum(1 - shares, 0.0), return_inverse=True)
+                duty = self.rig.batch.prepared(self.runs[k].schedule, np.repeat(times, 2), TOLERANCE)
+                y = self.rig.batch.warmup(duty, self.rig.inputs, p, T, threads=1).y[0, ::2][back]
+                found.append(item.weights @ y[: len(item.when)] - y[len(item.when) :])
+        return np.concatenate(found) if found else np.empty((0, len(OUTPUTS)))
+
     @property
     def samples(self) -> int:
         """Number of places of logged courses."""

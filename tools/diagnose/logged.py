@@ -26,7 +26,7 @@ AS_STATED = 0.03
 class Sampled:
     """What the series says of one half: dwell as logged and interval of the samples [s], temperatures [K] at places.
 
-    `scatter` is the covariance of the values at the places (k, k) as a share of the variance of one sample.
+    `weights` (k, n) make the values at k places of n samples, which were taken at shares `when` of the dwell.
     """
 
     half: int
@@ -35,7 +35,13 @@ class Sampled:
     shares: np.ndarray
     T_oil: np.ndarray
     T_wall: np.ndarray
-    scatter: np.ndarray
+    weights: np.ndarray
+    when: np.ndarray
+
+    @property
+    def scatter(self) -> np.ndarray:
+        """Covariance of the values at the places (k, k) as a share of the variance of one sample."""
+        return np.asarray(self.weights @ self.weights.T)
 
 
 def sampled(series: Series | None, test: Test, stop: float) -> list[Sampled]:
@@ -53,9 +59,10 @@ def sampled(series: Series | None, test: Test, stop: float) -> list[Sampled]:
         interval = float(np.median(np.diff(time)))
         begin = float(np.clip(end + stop, time[0] - interval, time[0]))
         end = float(time[-1])
-        places, W = _places((time - begin) / stated if as_stated else np.empty(0))
+        when = (time - begin) / stated if as_stated else np.empty(0)
+        places, W = _places(when)
         T_oil, T_wall = (W @ (columns[c][mine] + 273.15) if len(W) else np.empty(0) for c in ("T_oil_C", "T_wall_C"))
-        found.append(Sampled(k, end - begin, interval, places, T_oil, T_wall, W @ W.T))
+        found.append(Sampled(k, end - begin, interval, places, T_oil, T_wall, W, when))
         as_stated = as_stated and abs((end - begin) / stated - 1) < AS_STATED
     return found
 

@@ -69,6 +69,10 @@ def day_values(base: Mapping[str, float], size: float) -> dict[str, Any]:
 COURSES = {"T_oil course": "T_oil", "T_wall course": "T_wall"}
 #: What the model leaves of a course [K], over how long a share of the dwell, and scatter of a dwell as logged.
 COURSE, LENGTH, DWELL = 0.15, 0.3, 0.02
+#: Variance of a smoothed course over that of independent samples: what else is in a course is not all known.
+ALLOWED = 3.0
+#: Decay, per dwell, of what a start at another temperature than that of the room as read leaves in a course.
+BEGUN = 3.0
 
 
 @dataclass(frozen=True)
@@ -131,7 +135,7 @@ def instrument_covariance(channels: Channels, rows: Rows, card: Card) -> tuple[n
             probe = COURSES.get(c, c)
             channel = card.channel(f"{probe}_C")
             if c in COURSES and channels.scatter is not None:
-                smooth[part, part] = channel.repeat_sd**2 * channels.scatter
+                smooth[part, part] = ALLOWED * channel.repeat_sd**2 * channels.scatter
             else:
                 variance[part] = channel.repeat_sd**2
             columns.setdefault(probe, np.zeros(m))[part] = channel.offset_sd
@@ -141,6 +145,7 @@ def instrument_covariance(channels: Channels, rows: Rows, card: Card) -> tuple[n
     course = channels.course()
     kind = np.concatenate([np.full(len(channels.holds[c]), k) for k, c in enumerate(channels.names)])
     alike = same & (kind[:, None] == kind) & course[:, None]
+    R += np.outer(course * np.exp(-BEGUN * share), np.exp(-BEGUN * share)) * same * course * room.repeat_sd**2
     R += alike * COURSE**2 * np.exp(-0.5 * ((share[:, None] - share) / LENGTH) ** 2)
     columns["T_amb"] = -room.offset_sd * warm
     return R, columns
