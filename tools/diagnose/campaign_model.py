@@ -17,6 +17,7 @@ from ...model.errors import SolveError
 from ...model.machines.spec import Spec, assemble
 from ...scenarios.measured import Campaign, Reading, Test, TestRun, schedule_of
 from ..effects.cause import Readings, Rows
+from .card import BY_ROOM
 from .logged import Sampled, sampled
 from .memory import Memory
 from .series import Series
@@ -155,7 +156,7 @@ class CampaignModel:
     def _start(self, variants: Sequence[Variant], k: int) -> np.ndarray:
         """Temperature at the start of a test (variants, 1): that of the room, where it was not measured itself."""
         first, T = self.tests[k].halves[0], self.runs[k].T_start
-        if first.given("T_start_C"):
+        if first.given("T_start_C") and BY_ROOM not in first.values:
             return np.full((len(variants), 1), T)
         bias = [values.get("read.room_bias", 0.0) for values in variants]
         return np.array([[T - float(b if np.ndim(b) == 0 else b[k])] for b in bias])

@@ -11,6 +11,10 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 from ...model.errors import DataError
 
 
+#: Among the values of a reading: its start temperature is not measured but follows from the room as read.
+BY_ROOM = "T_start_by_room"
+
+
 class Channel(BaseModel):
     """Accuracy of one instrument: scatter from reading to reading, and a tolerance fixed over the campaign."""
 

@@ -97,7 +97,9 @@ class Sample:
     def wanted(self) -> list[tuple[Cause, Theta, float]]:
         """Forms and sizes of which the signatures are sought."""
         sizes = np.broadcast_to(self.size, len(self.shares))
-        return [(self.cause, form, float(size)) for form, size in zip(self.cause.forms(self.shares), sizes, strict=True)]
+        return [
+            (self.cause, form, float(size)) for form, size in zip(self.cause.forms(self.shares), sizes, strict=True)
+        ]
 
 
 def prior_size(cause: Cause) -> float:

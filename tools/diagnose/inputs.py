@@ -8,6 +8,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TypeVar
 
+import numpy as np
+
 from ...model.errors import DataError, GearheatError
 from ...model.machines.spec import Spec
 from ...scenarios.csv_table import Column
@@ -17,7 +19,7 @@ from ...scenarios.scenario import Scenario
 from ..effects.taxonomy import CAUSES
 from ..settings import driven_by
 from . import card as cards
-from .card import Card, read_card
+from .card import BY_ROOM, Card, read_card
 from .card_checks import card_problems, card_warnings
 from .data_checks import implausible, invisible_causes, outlying, small_reference, too_small
 from .lubrication import known_oils, lubricated, oil_values, oil_warnings
@@ -198,13 +200,14 @@ def with_starts(campaign: Campaign, run: cards.Protocol) -> Campaign:
     first = {test.halves[0].point for test in campaign.tests()}
 
     def started(reading: Reading) -> Reading:
-        room = T_start = float("nan")
-        if reading.point in first:
-            room = reading.values["T_amb_C"] + run.ambient_start_minus_reading_K
-            room = reading.values["T_amb_start_C"] if reading.given("T_amb_start_C") else room
-            T_start = room + run.T_start_minus_amb_K
-            T_start = reading.values["T_start_C"] if reading.given("T_start_C") else T_start
-        return replace(reading, values={**reading.values, "T_amb_start_C": room, "T_start_C": T_start})
+        if reading.point not in first:
+            return replace(reading, values={**reading.values, "T_amb_start_C": np.nan, "T_start_C": np.nan})
+        room = reading.values["T_amb_C"] + run.ambient_start_minus_reading_K
+        room = reading.values["T_amb_start_C"] if reading.given("T_amb_start_C") else room
+        values = {**reading.values, "T_amb_start_C": room}
+        if not reading.given("T_start_C"):
+            values |= {"T_start_C": room + run.T_start_minus_amb_K, BY_ROOM: 1.0}
+        return replace(reading, values=values)
 
     return replace(campaign, readings=tuple(started(reading) for reading in campaign.readings))
 
