@@ -10,7 +10,6 @@ from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from ...model.errors import DataError
 
-
 #: Among the values of a reading: its start temperature is not measured but follows from the room as read.
 BY_ROOM = "T_start_by_room"
 

@@ -78,7 +78,7 @@ class Family:
 
 @dataclass(frozen=True)
 class Sample:
-    """Forms of one cause: shares (n, shapes) of the prior, log weights against it, and sizes of the secants (n or 1)."""
+    """Forms of one cause: shares (n, shapes) of the prior, log weights against it, sizes of the secants (n or 1)."""
 
     cause: Cause
     shares: np.ndarray

@@ -5,7 +5,6 @@ The temperature at a place is that of a smooth curve through all samples of the 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
