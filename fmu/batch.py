@@ -258,8 +258,7 @@ class Batch:
         named = (("inputs", self.inputs, u), ("parameters", self.parameters, p), ("states", self.states, start))
         vectors, problems, counts = [], [], set()
         for word, group, given in named:
-            own = np.array([q.start for q in group])
-            vector = np.ascontiguousarray(own if given is None else given, dtype=float)
+            vector = np.ascontiguousarray([q.start for q in group] if given is None else given, dtype=float)
             if vector.ndim not in (1, 2) or vector.shape[-1] != len(group):
                 problems.append(f"{self.name}: {word} of shape {vector.shape}. Expected ({len(group)},) or a row each.")
             elif vector.ndim == 2:
@@ -318,6 +317,8 @@ def _in_range(limits: tuple[np.ndarray, ...], vector: np.ndarray) -> Any:
 def _marked(rows: Rows, sound: np.ndarray) -> Rows:
     """The rows, without those that were given values out of range."""
     rows.status[~sound] = Status.OUT_OF_RANGE
-    for array in (rows.x, rows.y, rows.supplied, rows.gained, rows.throughput, rows.outside):
-        array[rows.status != Status.OK] = np.nan
+    failed = rows.status != int(Status.OK)
+    if failed.any():
+        for array in (rows.x, rows.y, rows.supplied, rows.gained, rows.throughput, rows.outside):
+            array[failed] = np.nan
     return rows

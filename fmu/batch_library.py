@@ -47,6 +47,7 @@ def driver(name: str, source: str) -> Any:
         return _LOADED[name, source]
 
 
+@cache
 def widened(source: str, instructions: str) -> str:
     """A C text of wrapper/lanes.h made for processors with one of `WIDER`; as it is without any."""
     if not instructions:

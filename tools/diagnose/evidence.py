@@ -10,8 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import cholesky, solve_triangular
-from scipy.special import logsumexp
-from scipy.stats import norm
+from scipy.special import logsumexp, ndtr
 
 #: Widths of a size's prior, as multiples of its stated half width.
 WIDTHS = np.array([0.4, 0.8, 1.6, 3.2])
@@ -57,7 +56,7 @@ def log_bayes_factors(s: np.ndarray, q: np.ndarray, sd: np.ndarray, low: np.ndar
 
 
 def _mass(mean: np.ndarray, sd: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
-    return np.asarray(norm.cdf((high - mean) / sd) - norm.cdf((low - mean) / sd))
+    return np.asarray(ndtr((high - mean) / sd) - ndtr((low - mean) / sd))
 
 
 def log_bayes_factors_pair(
