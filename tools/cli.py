@@ -205,6 +205,7 @@ def diagnose(
     reference_series: Annotated[Path | None, typer.Option(help="Logged samples of the reference's tests: CSV.")] = None,
     predict: Annotated[Path | None, typer.Option(help="Points whose oil temperature is predicted: CSV.")] = None,
     predictions: Annotated[Path | None, typer.Option(help="CSV to write with the predictions.")] = None,
+    causes: Annotated[int, typer.Option(help="Most causes that may act together.")] = 2,
     alpha: Annotated[float, typer.Option(help="Accepted rate of false alarms.")] = 0.05,
     seed: Annotated[int, typer.Option(help="The same seed gives the same result.")] = 0,
     json: Json = None,
@@ -214,7 +215,7 @@ def diagnose(
     """What the model gets wrong in measured data: the causes by name, how big, how sure, and what to measure next."""
     from .diagnose import command, inputs
 
-    request = inputs.Request(data, rig, card, series, reference, reference_series, predict)
+    request = inputs.Request(data, rig, card, series, reference, reference_series, predict, causes)
     command.command(request, command.Outputs(predictions, json, report, extended), alpha, seed)
 
 

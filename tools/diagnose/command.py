@@ -21,6 +21,10 @@ from .report import render
 Infer = Callable[[Inputs, float, int, Callable[[str, float], None]], tuple[Findings, Predictor]]
 
 
+#: Causes that may be looked for together.
+MOST = 8
+
+
 @dataclass(frozen=True)
 class Outputs:
     """Where results go; None writes nothing, "-" as `json` is stdout."""
@@ -93,6 +97,8 @@ def _option_problems(request: Request, outputs: Outputs, alpha: float, seed: int
     problems = []
     if not 0.0 < alpha < 1.0:
         problems.append(f"--alpha {alpha:g} is no rate of false alarms. Give a number between 0 and 1, such as 0.05.")
+    if not 2 <= request.most <= MOST:
+        problems.append(f"--causes {request.most}: how many causes may act together. Give 2 to {MOST}.")
     if seed < 0:
         problems.append(f"--seed {seed} is below zero. Give 0 or more.")
     if request.predict is not None and outputs.predictions is None:

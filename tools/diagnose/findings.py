@@ -64,6 +64,8 @@ class Gain:
     ratio_ci90: tuple[float, float]
     noise_floor: float | None
     n: int
+    #: what plain statistics leave on the same readings: name -> error
+    rivals: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -96,6 +98,8 @@ class Findings:
     warnings: tuple[str, ...]
     nominal: Mapping[str, float]
     extended: Mapping[str, float]
+    #: the same as `gain` where whole groups of tests were held out
+    grouped: tuple[Gain, ...] = ()
     #: channel -> root mean square that the rig leaves when it is played over the data: calibrated, extended
     played: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     #: channel -> measured, nominal (calibrated without a cause), extended (with the top hypothesis, faults of the

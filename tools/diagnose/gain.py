@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import logsumexp
 
 from .evidence import White
-from .family import Family, best_pair, pair_evidence, pair_theta
+from .family import Family
 from .findings import Gain
 from .problem import Linear
-from .scatter import SCATTER
-from .search import Hypothesis, Search, log_gauss
+from .search import Hypothesis, Search, log_gauss, scattered
+from .together import best_together, evidence_of
 
 DRAWS = 2000
+#: Groups of tests that are held out together, beside single operating points.
+SCHEMES = ("leave-one-speed", "leave-one-load", "leave-one-oil", "first-oil-to-others")
 
 
 @dataclass(frozen=True)
@@ -32,26 +34,41 @@ def gain(search: Search, leading: Sequence[Hypothesis], seed: int, scheme: str =
     test, ends = c.model.rows.test, c.model.rows.test[: c.model.n]
     labels = test[c.channels.rows]
     oil = part.start + np.arange(len(labels))[c.channels.part("T_oil")]
-    before, after = np.zeros(c.model.n), np.zeros(c.model.n)
+    before, after = np.full(c.model.n, np.nan), np.full(c.model.n, np.nan)
+    rivals = {name: before.copy() for name in RIVALS}
     views = views_of(search, leading)
     for group in groups(search, scheme):
         out = part.start + np.flatnonzero(np.isin(labels, group))
         kept = np.setdiff1d(np.arange(len(search.null.residual)), out)
-        held = np.flatnonzero(np.isin(ends, group))
+        there = np.isin(ends, group)
+        held = np.flatnonzero(there)
         logs, errors = zip(*(found for view in views for found in seen(view, kept, oil[held])), strict=True)
         weights = np.exp(np.array(logs) - logsumexp(logs))
         before[held], after[held] = errors[0], weights @ np.array(errors)
-    ratios = _bootstrap(before, after, ends, seed)
-    return Gain(scheme, "T_oil_C", rms(before), rms(after), ratios, noise_floor(search), len(before))
+        for name, rival in RIVALS.items():
+            rivals[name][held] = rival(search, ~there, there)
+    tried = np.flatnonzero(np.isfinite(before))
+    ratios = _bootstrap(before[tried], after[tried], np.unique(ends[tried], return_inverse=True)[1], seed)
+    plain = {name: rms(errors[tried]) for name, errors in rivals.items()}
+    errors = rms(before[tried]), rms(after[tried])
+    return Gain(scheme, "T_oil_C", *errors, ratios, noise_floor(search), len(tried), plain)
+
+
+def gains(search: Search, leading: Sequence[Hypothesis], seed: int) -> tuple[Gain, ...]:
+    """Errors where whole groups are held out, by every scheme that leaves several groups."""
+    n = search.problem.data.model.rows.n_tests
+    schemes = {scheme: list(groups(search, scheme)) for scheme in SCHEMES}
+    sound = [scheme for scheme, own in schemes.items() if own and all(len(group) < n for group in own)]
+    return tuple(gain(search, leading, seed, scheme) for scheme in sound)
 
 
 def views_of(search: Search, leading: Sequence[Hypothesis]) -> list[View]:
     """What a fold may choose from: nothing, every cause at the first look, and the leading hypotheses as fitted."""
-    fitted = [h for h in leading if h.families and h.linear and h.linear.causes and SCATTER not in h.causes]
+    fitted = [h for h in leading if h.families and h.linear and h.linear.causes]
     closer = {h.causes[0] for h in fitted if len(h.causes) == 1}
     first = [(search.prior(1), (f,)) for f in search.found.values() if f.cause.id not in closer]
     views = [View(search.null, ((search.prior(0), ()), *first))]
-    return views + [View(h.linear, ((search.prior(len(h.causes)), h.families),)) for h in fitted if h.linear]
+    return views + [View(scattered(h), ((search.prior(len(h.causes)), h.families),)) for h in fitted]
 
 
 def seen(view: View, kept: np.ndarray, held: np.ndarray) -> Iterable[tuple[float, np.ndarray]]:
@@ -65,18 +82,43 @@ def seen(view: View, kept: np.ndarray, held: np.ndarray) -> Iterable[tuple[float
             yield base + prior, error
             continue
         cut = [replace(f, signatures=f.signatures[kept]).seen(white) for f in own]
-        effect = np.zeros(len(held))
         if len(own) == 1:
-            value, shares, sizes = cut[0].evidence(), [cut[0].weights()], [cut[0].sizes()[0]]
+            shares, sizes = [cut[0].weights()], [cut[0].sizes()[0]]
         else:
-            value, joint = pair_evidence(*cut)
-            k, m = best_pair(joint)
-            theta = pair_theta(cut[0], cut[1], k, m)
-            shares = [np.eye(len(f.forms))[i] for f, i in zip(own, (k, m), strict=True)]
-            sizes = [np.full(len(f.forms), theta[f.cause.id][f.cause.size.name]) for f in own]
+            places, at = best_together(cut)
+            shares = [np.eye(len(f.forms))[k] for f, k in zip(own, places, strict=True)]
+            sizes = [np.full(len(f.forms), size) for f, size in zip(own, at, strict=True)]
+        effect = np.zeros(len(held))
         for f, g, w, size in zip(own, cut, shares, sizes, strict=True):
             effect += (f.signatures[held] - carry @ g.white) @ (w * size)
-        yield base + value + prior, error - effect
+        yield base + evidence_of(cut) + prior, error - effect
+
+
+def constant_cooling(search: Search, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """Errors of an oil that is warmer than the room by the loss over one constant."""
+    c = search.problem.data
+    loss = c.measured[c.channels.part("loss")] * c.model.rows.w[: c.model.n] * c.model.rows.direction[: c.model.n]
+    return _regression(search, np.abs(loss)[:, None], kept, held)
+
+
+def linear_in_conditions(search: Search, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """Errors of an oil whose rise over the room is linear in speed and load."""
+    rows, n = search.problem.data.model.rows, search.problem.data.model.n
+    return _regression(search, np.stack([np.ones(n), rows.w[:n], rows.tau[:n]], axis=1), kept, held)
+
+
+def _regression(search: Search, features: np.ndarray, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
+    c = search.problem.data
+    rise = c.measured[c.channels.part("T_oil")] - c.model.rows.T_room[: c.model.n]
+    found = np.linalg.lstsq(features[kept], rise[kept], rcond=None)[0]
+    return np.asarray(rise[held] - features[held] @ found)
+
+
+#: Plain statistics to beat: what it assumes -> its errors on held readings.
+RIVALS: Mapping[str, Callable[[Search, np.ndarray, np.ndarray], np.ndarray]] = {
+    "constant cooling": constant_cooling,
+    "linear in speed and load": linear_in_conditions,
+}
 
 
 def groups(search: Search, scheme: str) -> Iterable[Sequence[int]]:
@@ -86,6 +128,8 @@ def groups(search: Search, scheme: str) -> Iterable[Sequence[int]]:
     if scheme == "leave-one-operating-point":
         return [[k] for k in range(n)]
     tests = search.problem.data.model.tests
+    if scheme == "first-oil-to-others":
+        return [[k for k in range(n) if tests[k].oil != tests[0].oil]]
     if scheme == "leave-one-oil":
         labels: list[object] = [t.oil for t in tests]
     else:

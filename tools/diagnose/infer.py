@@ -17,7 +17,7 @@ from .experiments import ranked
 from .extension import of_machine
 from .family import form_of
 from .findings import UNEXPLAINED, Findings, Joint, Named
-from .gain import gain, rms
+from .gain import gain, gains, rms
 from .inputs import Inputs
 from .nuisance import Channels, Parameters, instrument_covariance
 from .problem import Campaigned, Linear, Problem, remainder
@@ -74,7 +74,7 @@ def infer(
 ) -> tuple[Findings, Predictor]:
     """The whole diagnosis."""
     problem = problem_of(inputs)
-    search = Search(problem, seed, progress)
+    search = Search(problem, seed, progress, inputs.most)
     search.run()
     found, members = joints(search)
     listed, hypothesis = with_outside(found), members[0]
@@ -86,7 +86,7 @@ def infer(
     warnings = list(inputs.warnings)
     if len(problem.campaigns) == 1:
         warnings.append("No reference campaign: a rig that differs from the nominal may look like a fault.")
-    gained = gain(search, leading, seed)
+    gained, grouped = gain(search, leading, seed), gains(search, leading, seed)
     progress("next experiment", 0.92)
     causes = certificates(search, named(search, found, leading))
     unexplained = Named(UNEXPLAINED, outside(found), math.inf)
@@ -108,6 +108,7 @@ def infer(
         confusable=tuple(confusable(search, [n for n in causes[:3] if n.probability > 0.1])),
         impact=impact(search, hypothesis),
         gain=gained,
+        grouped=grouped,
         next_experiment=tuple(ranked(problem, search.null.z, weights)),
         warnings=tuple(warnings),
         nominal=dict(search.null.values),

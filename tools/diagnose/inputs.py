@@ -34,7 +34,7 @@ SERIES_USED = True
 
 @dataclass(frozen=True)
 class Request:
-    """The files of a diagnosis and the rig they belong to."""
+    """The files of a diagnosis, the rig they belong to, and how many causes a hypothesis may hold at most."""
 
     data: Path
     rig: str = "planetary"
@@ -43,6 +43,7 @@ class Request:
     reference: Path | None = None
     reference_series: Path | None = None
     predict: Path | None = None
+    most: int = 2
 
     def files(self) -> dict[str, Path]:
         """The files that are read, by the name of their option."""
@@ -65,6 +66,7 @@ class Inputs:
         invisible: cause -> why these data cannot show it, or cannot tell it from another
         warnings: what the user should know of the files
         digest: hash of the rig and of all that was read
+        most: causes that a hypothesis may hold
         memory: what an earlier, interrupted diagnosis of the same computed
     """
 
@@ -79,6 +81,7 @@ class Inputs:
     invisible: Mapping[str, str] = field(default_factory=dict)
     warnings: tuple[str, ...] = ()
     digest: str = ""
+    most: int = 2
     memory: Memory = field(default_factory=Memory)
 
     @property
@@ -157,6 +160,7 @@ class _Reader:
             series=series,
             reference_series=reference_series,
             invisible=invisible_causes(data, logged=SERIES_USED and series is not None),
+            most=self.request.most,
             digest=_digest(request, scenario),
         )
         return replace(found, warnings=_warnings(request, found))

@@ -10,7 +10,7 @@ from typing import Any
 
 from ..console import table
 from . import words
-from .findings import Estimate, Experiment, Findings, Named
+from .findings import Estimate, Experiment, Findings, Gain, Named
 
 SCHEMA = "gearheat.diagnosis/1"
 #: Digits that are kept of every number: beyond them the order of sums shows.
@@ -29,7 +29,6 @@ def schema() -> dict[str, Any]:
 
 def as_object(findings: Findings) -> dict[str, Any]:
     """The JSON object of a diagnosis; the same findings give the same object."""
-    gain = findings.gain
     return {
         "schema": SCHEMA,
         "verdict": findings.verdict,
@@ -51,18 +50,8 @@ def as_object(findings: Findings) -> dict[str, Any]:
             for key, (value, low, high) in findings.impact.items()
         },
         **_played(findings),
-        "gain": _known(
-            {
-                "scheme": gain.scheme,
-                "nested": True,
-                "channel": gain.channel,
-                "rmse_before": _number(gain.rmse_before),
-                "rmse_after": _number(gain.rmse_after),
-                "ratio_ci90": [_number(v) for v in gain.ratio_ci90],
-                "noise_floor": None if gain.noise_floor is None else _number(gain.noise_floor),
-                "n": gain.n,
-            }
-        ),
+        "gain": _gain(findings.gain),
+        "gain_grouped": [_gain(g) for g in findings.grouped],
         "next_experiment": [
             {
                 "id": e.id,
@@ -86,6 +75,22 @@ def _played(findings: Findings) -> dict[str, Any]:
         units[c]: {"rms_calibrated": _number(a), "rms_extended": _number(b)} for c, (a, b) in findings.played.items()
     }
     return {"played": left}
+
+
+def _gain(gain: Gain) -> dict[str, Any]:
+    return _known(
+        {
+            "scheme": gain.scheme,
+            "nested": True,
+            "channel": gain.channel,
+            "rmse_before": _number(gain.rmse_before),
+            "rmse_after": _number(gain.rmse_after),
+            "ratio_ci90": [_number(v) for v in gain.ratio_ci90],
+            "noise_floor": None if gain.noise_floor is None else _number(gain.noise_floor),
+            "n": gain.n,
+            "rivals": {name: _number(value) for name, value in gain.rivals.items()},
+        }
+    )
 
 
 def _cause(cause: Named) -> dict[str, Any]:
@@ -145,7 +150,9 @@ def show(findings: Findings) -> None:
         print(f"played over these readings (root mean square): {words.played(findings)}")
         if lacking := words.not_played(findings):
             print(f"  {lacking}")
-    print(f"oil temperature of readings left out: {words.gain(findings)}")
+    print(f"oil temperature of readings left out: {words.gain(findings.gain)}")
+    for grouped in findings.grouped if found else ():
+        print(f"  {words.gain(grouped)}")
     for experiment in findings.next_experiment[:1]:
         print(f"measure next: {experiment.what} ({_separation(experiment)})")
     for warning in findings.warnings[:WARNINGS]:

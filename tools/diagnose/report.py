@@ -55,6 +55,7 @@ def render(inputs: Inputs, findings: Findings) -> str:
         played=words.played(findings) if hypothesis else "",
         not_played=words.not_played(findings) if hypothesis else "",
         gain=_gain(findings),
+        grouped=_grouped(findings),
         experiments=_experiments(findings),
         exposes=_exposes(findings),
         detectable=_detectable(findings),
@@ -159,6 +160,7 @@ def _gain(findings: Findings) -> dict[str, Any]:
     ]
     if g.noise_floor is not None:
         bars.append(("scatter of one point, days included", g.noise_floor, "floor"))
+    bars += [(f"plain statistics: {name}", value, "floor") for name, value in g.rivals.items()]
     most = max((value for _, value, _ in bars if math.isfinite(value)), default=1.0) or 1.0
     rows = [
         {"name": n, "value": f"{words.number(v, 3)} K", "width": f"{100 * v / most:.1f}", "kind": k} for n, v, k in bars
@@ -167,6 +169,25 @@ def _gain(findings: Findings) -> dict[str, Any]:
     low, high = (words.number(v, 2) for v in g.ratio_ci90)
     scheme = words.SCHEMES.get(g.scheme, g.scheme)
     return {"rows": rows, "ratio": words.number(ratio, 2), "low": low, "high": high, "scheme": scheme, "n": g.n}
+
+
+def _grouped(findings: Findings) -> Markup:
+    """Errors where whole groups of tests were left out, with those of plain statistics."""
+    if not findings.grouped:
+        return Markup("")
+    rivals = list(findings.grouped[0].rivals)
+    body = [
+        (
+            words.SCHEMES.get(g.scheme, g.scheme),
+            str(g.n),
+            words.number(g.rmse_before, 2),
+            words.number(g.rmse_after, 2),
+            *(words.number(g.rivals[name], 2) for name in rivals),
+        )
+        for g in findings.grouped
+    ]
+    head = ("left out", "readings", "before [K]", "after [K]", *(f"{name} [K]" for name in rivals))
+    return html_table(head, body, text=(0,))
 
 
 def _experiments(findings: Findings) -> Markup:

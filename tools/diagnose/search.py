@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from itertools import combinations
+from math import comb
 
 import numpy as np
 from scipy.special import logsumexp
@@ -19,6 +20,7 @@ from .family import FORMS, Family, Sample, best_pair, families, form_of, nearer,
 from .fit import STEPS, Fit, fitted
 from .problem import Linear, Problem
 from .scatter import SCATTER, SIZES, Days
+from .together import evidence_of
 from .unnamed import Unnamed
 
 #: Pairs of which the evidence is computed; leading singles and pairs looked at again.
@@ -27,6 +29,8 @@ PAIRS, AGAIN_ONE, AGAIN_TWO = 20, 8, 4
 WITH_DAYS, ON_SUCH_DAYS = 5, 3
 #: Prior probabilities: nothing wrong, one cause, two causes, something outside the library.
 NONE, ONE, TWO, OUTSIDE = 0.5, 0.37, 0.08, 0.05
+#: Of each further cause, where more than two are looked for.
+MORE = 0.25
 DRAWS = 4000
 #: What another look may lift a hypothesis by: with thresholds that the first look hardly met, and without. One that
 #: stays behind even so is not looked at again.
@@ -68,16 +72,25 @@ class Hypothesis:
         return found
 
 
+def scattered(h: Hypothesis, sign: float = 1.0) -> Linear:
+    """The linearisation of a hypothesis with the scatter of its days in the covariance, or taken out of it."""
+    assert h.linear is not None
+    days = sign * (h.theta[SCATTER]["sd"] if SCATTER in h.theta else 0.0) ** 2 * h.linear.days @ h.linear.days.T
+    return replace(h.linear, covariance=h.linear.covariance + days, noise=h.linear.noise + days)
+
+
 def log_gauss(white: White) -> float:
     """Log density of a residual without any cause."""
     return float(-0.5 * white.e @ white.e - np.log(np.diag(white.L)).sum())
 
 
 class Search:
-    """The search on one problem; `run` fills null, families, p values and hypotheses."""
+    """The search on one problem; `run` fills null, families, p values and hypotheses of at most so many causes."""
 
-    def __init__(self, problem: Problem, seed: int = 0, progress: Callable[[str, float], None] | None = None) -> None:
-        self.problem, self.seed = problem, seed
+    def __init__(
+        self, problem: Problem, seed: int = 0, progress: Callable[[str, float], None] | None = None, most: int = 2
+    ) -> None:
+        self.problem, self.seed, self.most = problem, seed, most
         self.causes = [c for c in CAUSES.values() if visible(c, problem)]
         self.progress = progress or (lambda stage, share: None)
 
@@ -109,6 +122,11 @@ class Search:
         if SCATTER in weighed[0].causes and not quiet:
             weighed = sorted([*weighed, *self._on_such_days(weighed[0])], key=lambda h: -h.log_posterior)
         self.hypotheses = distinct(weighed)
+        if self.most > 2 and not quiet:
+            from .several import grown  # which builds on this module
+
+            more = [*self.hypotheses, *grown(self, self.most)]
+            self.hypotheses = distinct(sorted(more, key=lambda h: -h.log_posterior))
         self.outside = Unnamed(self.problem).evidence(self.hypotheses, self.null) + np.log(OUTSIDE)
         self.progress("hypotheses weighed", 0.8)
 
@@ -119,8 +137,8 @@ class Search:
 
     def prior(self, count: int) -> float:
         """Log prior probability of one hypothesis of so many causes."""
-        n = len(self.causes)
-        return float(np.log({0: NONE, 1: ONE / n, 2: TWO / (n * (n - 1) / 2)}[count]))
+        every = {0: NONE, 1: ONE}.get(count, TWO * MORE ** (count - 2))
+        return float(np.log(every / comb(len(self.causes), count)))
 
     def _alarm(self) -> tuple[float, float]:
         """Family-wise p of the largest directed score, by drawing residuals without any cause; and its 95 % point."""
@@ -192,11 +210,10 @@ class Search:
         less, found = there.prior(2) - there.prior(1) - np.log(len(SIZES)), []
         for h in singles:
             if h.linear and h.linear.causes:
-                days = size**2 * h.linear.days @ h.linear.days.T
-                linear = replace(h.linear, covariance=h.linear.covariance - days, noise=h.linear.noise - days)
                 theta = {**h.theta, SCATTER: {"sd": size}}
+                bare = scattered(replace(h, theta=theta), -1.0)
                 value = h.log_posterior + less
-                found.append(replace(h, causes=(*h.causes, SCATTER), log_posterior=value, theta=theta, linear=linear))
+                found.append(replace(h, causes=(*h.causes, SCATTER), log_posterior=value, theta=theta, linear=bare))
         return found
 
     def _again(self, known: Sequence[Hypothesis], some: Sequence[Hypothesis], most: int) -> list[Hypothesis]:
@@ -269,7 +286,7 @@ class Search:
         for back, weight in zip(self.problem.put_back(linear, list(FORM)), FORM.values(), strict=True):
             white = White.of(back.residual, back.covariance)
             own = tuple(f.seen(white) for f in near.values())
-            value = own[0].evidence() if len(own) == 1 else pair_evidence(*own)[0]
+            value = evidence_of(own)
             logs.append(value + log_gauss(white) + np.log(weight))
             views.append((own, back))
         found, back = views[int(np.argmax(logs))]

@@ -26,12 +26,12 @@ FREE = 0.5
 def joints(search: Search) -> tuple[list[Joint], list[Hypothesis]]:
     """Hypotheses added up under their best member, most probable first.
 
-    Those that differ within a class are one, and a pair whose second cause the data do not ask for is the cause alone.
+    Those that differ within a class are one, and a cause that the data do not ask for beside the others does not count.
     """
-    alone = {h.causes[0]: h for h in search.hypotheses if len(h.causes) == 1}
+    known = {frozenset(h.causes): h for h in search.hypotheses}
     groups: dict[tuple[str, ...], list[tuple[Hypothesis, float]]] = {}
     for h, p in zip(search.hypotheses, search.probabilities(), strict=True):
-        shown = asked_for(search, h, alone)
+        shown = asked_for(search, h, known)
         groups.setdefault(tuple(sorted(family_of(c) for c in shown)), []).append((h, float(p)))
     merged = []
     for key, members in groups.items():
@@ -54,14 +54,14 @@ def outside(found: Sequence[Joint]) -> float:
     return max(1.0 - sum(joint.probability for joint in found), 0.0)
 
 
-def asked_for(search: Search, h: Hypothesis, alone: Mapping[str, Hypothesis]) -> tuple[str, ...]:
-    """The causes of a hypothesis without a second one whose Bayes factor beside the first is below `ASKED`."""
-    singles = [alone[c] for c in h.causes if c in alone]
-    if len(h.causes) < 2 or not singles:
+def asked_for(search: Search, h: Hypothesis, known: Mapping[frozenset[str], Hypothesis]) -> tuple[str, ...]:
+    """The causes of a hypothesis without those whose Bayes factor beside the others is below `ASKED`."""
+    fewer = [known[s] for c in h.causes if (s := frozenset(h.causes) - {c}) in known and s]
+    if not fewer:
         return h.causes
-    single = max(singles, key=lambda other: other.log_posterior)
-    gained = (h.log_posterior - search.prior(2)) - (single.log_posterior - search.prior(1))
-    return h.causes if gained > np.log(ASKED) else single.causes
+    best, n = max(fewer, key=lambda other: other.log_posterior), len(h.causes)
+    gained = (h.log_posterior - search.prior(n)) - (best.log_posterior - search.prior(n - 1))
+    return h.causes if gained > np.log(ASKED) else asked_for(search, best, known)
 
 
 def family_of(cause: str) -> str:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from ..effects.taxonomy import CAUSES
-from .findings import Estimate, Findings, Joint, Named
+from .findings import Estimate, Findings, Gain, Joint, Named
 
 #: Probability that the named hypotheses shall reach together.
 ENOUGH = 0.9
@@ -67,6 +67,7 @@ SCHEMES = {
     "leave-one-speed": "each speed left out in turn",
     "leave-one-load": "each torque left out in turn",
     "leave-one-oil": "each oil left out in turn",
+    "first-oil-to-others": "the other oils predicted from the first",
     "split": "half of the tests left out",
 }
 
@@ -261,16 +262,17 @@ def adequacy(findings: Findings) -> str:
     return f"{left} looks like noise (p = {number(findings.p_adequacy, 2)})"
 
 
-def gain(findings: Findings) -> str:
-    """What the extension gains where it was not fitted."""
-    g = findings.gain
+def gain(g: Gain) -> str:
+    """What the extension gains where it was not fitted, the scatter of a reading, and what plain statistics reach."""
     low, high = g.ratio_ci90
     ratio = g.rmse_after / g.rmse_before if g.rmse_before else float("nan")
     text = (
         f"{number(g.rmse_before, 2)} K before, {number(g.rmse_after, 2)} K after (ratio {number(ratio, 2)},"
         f" {number(low, 2)} to {number(high, 2)}), {SCHEMES.get(g.scheme, g.scheme)}"
     )
-    return text if g.noise_floor is None else f"{text}; one reading scatters by {number(g.noise_floor, 2)} K"
+    said = [] if g.noise_floor is None else [f"one reading scatters by {number(g.noise_floor, 2)} K"]
+    said += [f"{name} {number(value, 2)} K" for name, value in g.rivals.items()]
+    return "; ".join([text, *said])
 
 
 def played(findings: Findings) -> str:
