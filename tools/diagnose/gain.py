@@ -58,7 +58,7 @@ def gains(search: Search, leading: Sequence[Hypothesis], seed: int) -> tuple[Gai
     """Errors where whole groups are held out, by every scheme that leaves several groups."""
     n = search.problem.data.model.rows.n_tests
     schemes = {scheme: list(groups(search, scheme)) for scheme in SCHEMES}
-    sound = [scheme for scheme, own in schemes.items() if own and all(len(group) < n for group in own)]
+    sound = [scheme for scheme, own in schemes.items() if own and all(0 < len(group) < n for group in own)]
     return tuple(gain(search, leading, seed, scheme) for scheme in sound)
 
 
