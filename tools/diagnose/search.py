@@ -199,9 +199,9 @@ class Search:
             weighed.append(replace(h, causes=causes, log_posterior=value, theta=theta))
         return weighed
 
-    def _on_such_days(self, scattered: Hypothesis) -> list[Hypothesis]:
+    def _on_such_days(self, leader: Hypothesis) -> list[Hypothesis]:
         """Single causes fitted where days differ as found: a fit that takes the days for alike bends its cause."""
-        size = scattered.theta[SCATTER]["sd"]
+        size = leader.theta[SCATTER]["sd"]
         there = Search(replace(self.problem, scattered=size), self.seed, self.progress)
         there.null = there.problem.settled(self.null.z)
         there.white = White.of(there.null.residual, there.null.covariance)
