@@ -24,6 +24,9 @@ SETTLED, MOST_STEPS = 0.02, 12
 TRIES, LONGEST = 4, 1.5
 #: Standard deviation of the smooth remainder a reference campaign leaves, per feature: temperatures [K], loss [N.m].
 REMAINDER = {"T_oil": 0.8, "T_oil2": 0.8, "T_wall": 0.8, "loss": 1.0, "T_oil course": 0.8, "T_wall course": 0.8}
+#: Parameters that another filling or mounting of the gearbox changes, and by what share of their prior deviations.
+REFILLED = ("mesh friction", "bearing loss", "seal loss", "oil to gears", "oil to wall")
+CHANGED = 0.5
 #: A second oil probe may stand elsewhere: standard deviation of the share of the wall that it sees.
 ELSEWHERE = 0.08
 
@@ -163,6 +166,7 @@ class Problem:
         days = self._days(day)
         stated = self.card.day_cooling_sd**2 * sum(d @ d.T for d in days)
         noise = self.instrument + stated + self.scattered**2 * days[0] @ days[0].T + self._elsewhere(nominal)
+        noise = noise + self._between_grids(jacobian)
         residual = self.measured - nominal + jacobian @ z
         covariance = noise + jacobian @ jacobian.T
         return Linear(z, variants[0], nominal, residual, covariance, jacobian, noise, days[0], theta or {}, causes)
@@ -192,6 +196,19 @@ class Problem:
             columns = np.zeros((len(response), c.model.rows.n_tests))
             columns[part] = response[part, None] * (test[:, None] == np.arange(c.model.rows.n_tests))
             found.append(columns)
+        return found
+
+    def _between_grids(self, jacobian: np.ndarray) -> np.ndarray:
+        """Covariance of what another filling and mounting change: each grid of a campaign has losses of its own."""
+        own = [k for k, name in enumerate(self.parameters.names) if name in REFILLED]
+        found = np.zeros((len(jacobian), len(jacobian)))
+        for c in self.campaigns:
+            part = self.place(c)
+            names = np.array([test.halves[0].texts.get("grid", "") for test in c.model.tests])
+            grid = names[c.model.rows.test[c.channels.rows]]
+            if len(set(names)) > 1:
+                J = CHANGED * jacobian[part][:, own]
+                found[part, part] = J @ J.T * (grid[:, None] == grid)
         return found
 
     def _elsewhere(self, nominal: np.ndarray) -> np.ndarray:
