@@ -206,6 +206,9 @@ def diagnose(
     predict: Annotated[Path | None, typer.Option(help="Points whose oil temperature is predicted: CSV.")] = None,
     predictions: Annotated[Path | None, typer.Option(help="CSV to write with the predictions.")] = None,
     causes: Annotated[int, typer.Option(help="Most causes that may act together.")] = 2,
+    repeatability: Annotated[
+        str, typer.Option(help="Scatter of a reading: of the card, or what repeated points show where that is more.")
+    ] = "card",
     alpha: Annotated[float, typer.Option(help="Accepted rate of false alarms.")] = 0.05,
     seed: Annotated[int, typer.Option(help="The same seed gives the same result.")] = 0,
     json: Json = None,
@@ -215,7 +218,7 @@ def diagnose(
     """What the model gets wrong in measured data: the causes by name, how big, how sure, and what to measure next."""
     from .diagnose import command, inputs
 
-    request = inputs.Request(data, rig, card, series, reference, reference_series, predict, causes)
+    request = inputs.Request(data, rig, card, series, reference, reference_series, predict, causes, repeatability)
     command.command(request, command.Outputs(predictions, json, report, extended), alpha, seed)
 
 

@@ -99,6 +99,8 @@ def _option_problems(request: Request, outputs: Outputs, alpha: float, seed: int
         problems.append(f"--alpha {alpha:g} is no rate of false alarms. Give a number between 0 and 1, such as 0.05.")
     if not 2 <= request.most <= MOST:
         problems.append(f"--causes {request.most}: how many causes may act together. Give 2 to {MOST}.")
+    if request.repeatability not in ("card", "points"):
+        problems.append(f'--repeatability "{request.repeatability}" is unknown. Give card or points.')
     if seed < 0:
         problems.append(f"--seed {seed} is below zero. Give 0 or more.")
     if request.predict is not None and outputs.predictions is None:

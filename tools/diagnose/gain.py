@@ -12,6 +12,7 @@ from .evidence import White
 from .family import Family
 from .findings import Gain
 from .problem import Linear
+from .repeated import repeated
 from .search import Hypothesis, Search, log_gauss, scattered
 from .together import best_together, evidence_of
 
@@ -141,8 +142,10 @@ def groups(search: Search, scheme: str) -> Iterable[Sequence[int]]:
 
 
 def noise_floor(search: Search) -> float:
-    """Standard deviation of one oil reading against the room, as the card states it."""
+    """Standard deviation of one oil reading against the room: by repeated points, or else as the card states it."""
     card, c = search.problem.card, search.problem.data
+    if (found := repeated(c.model.campaign)) is not None:
+        return found.T_oil
     rise = float(np.mean(c.measured[c.channels.part("T_oil")] - c.model.rows.T_room[: c.model.n]))
     parts = (card.channel("T_oil_C").repeat_sd, card.channel("T_amb_C").repeat_sd, card.day_cooling_sd * rise)
     return float(np.sqrt(sum(p**2 for p in parts)))

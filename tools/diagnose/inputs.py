@@ -24,6 +24,7 @@ from .card_checks import card_problems, card_warnings
 from .data_checks import implausible, invisible_causes, outlying, small_reference, too_small
 from .lubrication import known_oils, lubricated, oil_values, oil_warnings
 from .memory import Memory
+from .repeated import repeated, scatter_warning, with_repeatability
 from .series import Series, read_series
 
 T = TypeVar("T")
@@ -34,7 +35,8 @@ SERIES_USED = True
 
 @dataclass(frozen=True)
 class Request:
-    """The files of a diagnosis, the rig they belong to, and how many causes a hypothesis may hold at most."""
+    """The files of a diagnosis, the rig they belong to, how many causes may act together, and whose repeatability
+    counts: that of the "card", or what repeated "points" show where that is more."""
 
     data: Path
     rig: str = "planetary"
@@ -44,6 +46,7 @@ class Request:
     reference_series: Path | None = None
     predict: Path | None = None
     most: int = 2
+    repeatability: str = "card"
 
     def files(self) -> dict[str, Path]:
         """The files that are read, by the name of their option."""
@@ -149,6 +152,12 @@ class _Reader:
         scenario, card = self.scenario, self.card
         if self.problems or scenario is None or card is None or data is None:
             raise DataError(self.problems)
+        if request.repeatability == "points":
+            if (shown := repeated(data)) is None:
+                raise DataError(
+                    f"{data.name}: no points were repeated that could show a repeatability. Take the card's."
+                )
+            card = with_repeatability(card, shown)
         used = sorted({r.oil for c in (data, reference, points) if c is not None for r in c.readings})
         found = Inputs(
             scenario=scenario,
@@ -220,6 +229,7 @@ def _warnings(request: Request, inputs: Inputs) -> tuple[str, ...]:
     """All warnings of all files, each once."""
     found = [w for c in (inputs.data, inputs.reference, inputs.points) if c is not None for w in c.warnings]
     found += [w for s in (inputs.series, inputs.reference_series) if s is not None for w in s.warnings]
+    found += scatter_warning(inputs.data, inputs.card)
     found += card_warnings(request.card, inputs.card) + oil_warnings(inputs.oils, inputs.card)
     if not SERIES_USED:
         series = [s.name for s in (inputs.series, inputs.reference_series) if s is not None]
