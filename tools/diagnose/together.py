@@ -69,7 +69,8 @@ def best_together(parts: Sequence[Family]) -> tuple[list[int], np.ndarray]:
 def joint_logs(parts: Sequence[Family]) -> np.ndarray:
     """Log Bayes factors of several families, one value for each form of the last one."""
     first = [0] * (len(parts) - 1)
-    return np.array([gaussian(parts, [*first, k])[0] for k in range(len(parts[-1].forms))]) + parts[-1].log_w
+    logs = [gaussian(parts, [*first, k])[0] for k in range(len(parts[-1].forms))]
+    return np.asarray(np.array(logs) + parts[-1].log_w)
 
 
 def gaussian(parts: Sequence[Family], forms: Sequence[int]) -> tuple[float, np.ndarray]:

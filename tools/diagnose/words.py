@@ -149,8 +149,9 @@ def regime(found: Named) -> str:
     parts = []
     for column, (low, high) in found.regime.items():
         quantity, unit = REGIMES.get(column, (column, ""))
+        words = ("above", "below") if low != high else ("",)
         ends = [
-            f"{word} {number(end)} {unit}".strip() for word, end in (("above", low), ("below", high)) if end is not None
+            f"{w} {number(end)} {unit}".strip() for w, end in zip(words, (low, high), strict=False) if end is not None
         ]
         parts.append(f"{quantity} {' and '.join(ends)}")
     return f"only at {', '.join(parts)}" if parts else ""
