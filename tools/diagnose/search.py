@@ -34,7 +34,7 @@ MORE = 0.25
 DRAWS = 4000
 #: What another look may lift a hypothesis by: with thresholds that the first look hardly met, and without. One that
 #: stays behind even so is not looked at again.
-LIFT = {True: 45.0, False: 8.0}
+LIFT = {True: 120.0, False: 40.0}
 #: Shares of the first look's sizes at which a fit begins, until one can be run.
 SHARES = (1.0, 0.5, 0.2)
 #: Half the squared misfit per reading from which a fit is repeated with slopes taken where it ended.
@@ -45,7 +45,7 @@ ELSEWHERE, QUIET = 0.05, 0.25
 FORM = {0.03: 0.35, 0.06: 0.35, 0.12: 0.22, 0.24: 0.08}
 #: Forms at which fits begin: how many, how much worse than the best at the first look, how far apart in the share of
 #: the threshold, and steps after which only the best goes on.
-MANY, NEXT, APART, BEGUN = 3, 15.0, 0.2, 3
+MANY, NEXT, APART, BEGUN = 4, 40.0, 0.2, 3
 #: Places at which thresholds are tried when a fit has ended, and how many of the best it begins again from.
 SCAN, RETRIED = np.linspace(0.05, 0.95, 13), 2
 #: How far below the best a single or a pair may lie to be looked at again: other forms may lift it by this.
@@ -319,6 +319,8 @@ class Search:
         if f.cause.size.low < 0 < f.cause.size.high:  # far from linear: the other sign may do
             other = -np.sign(size) * f.cause.size.sd
             starts.append({f.cause.id: (shares, float(np.clip(other, f.cause.size.low, f.cause.size.high)))})
+        if f.cause.size.far is not None:
+            starts.append({f.cause.id: (shares, f.cause.size.far)})
         if f.cause.choice is None:
             return starts
         choice, logs, sizes = f.cause.choice, f.log_bf() + f.log_w, f.sizes()[0]
@@ -327,7 +329,7 @@ class Search:
         seen = [(kinds[form_of(f, h.theta[f.cause.id])], first[f.cause.id][0][place])]
         for k in np.argsort(-logs):
             new = all(kinds[k] != kind or (kind and abs(f.shares[k, place] - at) > APART) for kind, at in seen)
-            if len(starts) < MANY and new and logs[k] > logs.max() - NEXT:
+            if len(seen) < MANY and new and logs[k] > logs.max() - NEXT:
                 seen.append((kinds[k], f.shares[k, place]))
                 starts.append({f.cause.id: (f.shares[k], float(sizes[k]))})
         return starts
