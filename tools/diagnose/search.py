@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
-from itertools import combinations
+from itertools import combinations, pairwise
 from math import comb
 
 import numpy as np
@@ -46,21 +46,39 @@ FORM = {0.03: 0.35, 0.06: 0.35, 0.12: 0.22, 0.24: 0.08}
 #: Forms at which fits begin: how many, how much worse than the best at the first look, how far apart in the share of
 #: the threshold, and steps after which only the best goes on.
 MANY, NEXT, APART, BEGUN = 4, 40.0, 0.2, 3
-#: Places at which thresholds are tried when a fit has ended, and how many of the best it begins again from.
-SCAN, RETRIED = np.linspace(0.05, 0.95, 13), 2
+#: Places at which thresholds are tried when a fit has ended, how many of the best it begins again from, and shares of
+#: shapes that are the same.
+SCAN, RETRIED, NEARBY = np.linspace(0.05, 0.95, 13), 3, 0.1
 #: How far below the best a single or a pair may lie to be looked at again: other forms may lift it by this.
 WORTH = (25.0, 10.0)
 
 
+#: Where a fit begins: cause -> shares of its shapes, and size.
+Start = Mapping[str, tuple[np.ndarray, float]]
+
+
 @dataclass(frozen=True)
 class Hypothesis:
-    """A set of causes: log evidence with its prior, fitted parameters, and the families at their linearisation."""
+    """A set of causes: log evidence with its prior, fitted parameters, and the families at their linearisation.
+
+    `also` is where another first look would begin to fit it.
+    """
 
     causes: tuple[str, ...]
     log_posterior: float
     theta: Mapping[str, Theta] = field(default_factory=dict)
     families: tuple[Family, ...] = ()
     linear: Linear | None = None
+    also: tuple[Start, ...] = ()
+
+    @property
+    def begin(self) -> Start:
+        """Where its fit begins: cause -> shares of the shapes, and size."""
+        found = {}
+        for f in self.families:
+            theta = self.theta[f.cause.id]
+            found[f.cause.id] = (f.shares[form_of(f, theta)], theta[f.cause.size.name])
+        return found
 
     @property
     def effect(self) -> np.ndarray | float:
@@ -306,13 +324,10 @@ class Search:
         best = min(tried, key=lambda fit: fit.cost)
         return self._fitted(h, best.start, best.z)
 
-    def _starts(self, h: Hypothesis) -> list[dict[str, tuple[np.ndarray, float]]]:
+    def _starts(self, h: Hypothesis) -> list[Start]:
         """Where fits begin: at the best forms, and for one cause at other kinds and thresholds nearly as good."""
-        first = {}
-        for f in h.families:
-            theta = h.theta[f.cause.id]
-            first[f.cause.id] = (f.shares[form_of(f, theta)], theta[f.cause.size.name])
-        starts, f = [first], h.families[0]
+        first = h.begin
+        starts, f = [first, *h.also], h.families[0]
         if len(h.causes) > 1:
             return starts
         shares, size = first[f.cause.id]
@@ -337,7 +352,7 @@ class Search:
     def _fitted(
         self,
         h: Hypothesis,
-        start: Mapping[str, tuple[np.ndarray, float]],
+        start: Start,
         z: np.ndarray | None = None,
         steps: int = STEPS,
     ) -> Fit:
@@ -360,23 +375,27 @@ class Search:
         raise AssertionError("unreachable")
 
     def _scanned(self, h: Hypothesis, fit: Fit) -> Fit:
-        """A fit, begun again where another threshold promises more: a threshold has many local best places."""
-        for c in (CAUSES[name] for name in h.causes):
-            mode, place = fit.modes[c.id], next((k for k, s in enumerate(c.shapes) if s.name == "threshold"), None)
-            if place is None or c.acts(fit.theta[c.id]) is None:
+        """A fit, begun again where other kinds or thresholds promise more: each has a best place of its own."""
+        causes = [CAUSES[name] for name in h.causes]
+        for c in causes:
+            if c.choice is None:
                 continue
             size = fit.theta[c.id][c.size.name]
-            shares = np.tile(mode.shares, (1 + len(SCAN), 1))
-            shares[1:, place] = SCAN
-            linear = self.problem.moved(h.linear or self.null, fit.z, fit.theta, [CAUSES[name] for name in h.causes])
+            shares = kinds_and_thresholds(c, fit.modes[c.id].shares)
+            linear = self.problem.moved(h.linear or self.null, fit.z, fit.theta, causes)
             (back,) = self.problem.put_back(linear)
             white = White.of(back.residual, back.covariance)
             sample = Sample(c, shares, np.zeros(len(shares)), sound(size, c))
-            logs = families(self.problem, linear, white, [sample])[c.id].log_bf()
-            short = []
-            for k in [k for k in np.argsort(-logs) if k][:RETRIED]:
-                with suppress(SolveError):
-                    short.append(self._fitted(h, {**fit.start, c.id: (shares[k], size)}, fit.z, steps=BEGUN))
+            f = families(self.problem, linear, white, [sample])[c.id]
+            logs, sizes, short = f.log_bf(), f.sizes()[0], list[Fit]()
+            tried = [shares[0]]
+            for k in np.argsort(-logs):
+                new = all(np.abs(shares[k] - other).max() > NEARBY for other in tried)
+                if new and len(tried) <= RETRIED and logs[k] > logs[0] - NEXT:
+                    tried.append(shares[k])
+                    with suppress(SolveError):
+                        start = {**fit.start, c.id: (shares[k], sound(float(sizes[k]), c))}
+                        short.append(self._fitted(h, start, fit.z, steps=BEGUN))
             if short and min(other.cost for other in short) < fit.cost + 5.0:
                 best = min(short, key=lambda other: other.cost)
                 fit = min(fit, self._fitted(h, best.start, best.z), key=lambda fit: fit.cost)
@@ -389,9 +408,33 @@ class Search:
         return np.asarray(linear.z + np.clip(z - linear.z, -1.5, 1.5))
 
 
+def kinds_and_thresholds(cause: Cause, shares: np.ndarray) -> np.ndarray:
+    """Shares of the shapes with every kind of a choice at every threshold (n, shapes), the given ones first."""
+    choice = cause.choice
+    assert choice is not None
+    ends = (0.0, *cause.shapes[choice].ends)
+    place = next((k for k, shape in enumerate(cause.shapes) if shape.name == "threshold"), None)
+    found = [shares]
+    for start, end in pairwise(ends):
+        for threshold in SCAN if place is not None else (0.5,):
+            other = shares.copy()
+            other[choice] = (start + end) / 2
+            if place is not None:
+                other[place] = threshold
+            found.append(other)
+            acts = cause.acts(cause.forms(other[None])[0])
+            if acts is None or acts[0][0] == "d":  # no threshold there
+                break
+    return np.array(found)
+
+
 def better(some: Sequence[Hypothesis], others: Sequence[Hypothesis]) -> list[Hypothesis]:
-    """The better of each hypothesis; no cause at all as the first list has it."""
-    return [some[0], *(h for h in distinct([*some, *others]) if h.causes)]
+    """The better of each hypothesis, single ones to be begun from both; no cause at all as the first list has it."""
+    found, begins = distinct([*some, *others]), dict[frozenset[str], list[Start]]()
+    for h in (*some, *others):
+        begins.setdefault(frozenset(h.causes), []).append(h.begin)
+    both = [replace(h, also=tuple(begins[frozenset(h.causes)])) if len(h.causes) == 1 else h for h in found]
+    return [some[0], *(h for h in both if h.causes)]
 
 
 def distinct(hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:
