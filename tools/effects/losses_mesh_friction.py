@@ -16,9 +16,9 @@ CAUSE = Cause(
     doc="A loss that grows with load: friction of the teeth, roughness, additives.",
     size=Size("P_ref", "W", "loss at 200 rpm and 2000 N.m", 50.0, -150.0, 400.0),
     shapes=(
-        Shape("a", "1", "exponent of the speed", 0.6, 1.2, 0.85, 0.12),
+        Shape("a", "1", "exponent of the speed", 0.35, 1.25, 0.82, 0.18),
         Shape("b", "1", "exponent of the viscosity", -0.4, 0.1, -0.05, 0.1),
-        Shape("c", "1", "exponent of the torque", 0.7, 1.8, 1.2, 0.25),
+        Shape("c", "1", "exponent of the torque", 0.7, 2.1, 1.3, 0.35),
         OIL_SHARE_TEETH,
         *REGIMES.shapes,
     ),
