@@ -13,7 +13,7 @@ from .family import Family
 from .findings import Gain
 from .problem import Linear
 from .repeated import repeated
-from .search import Hypothesis, Search, log_gauss, scattered
+from .search import Hypothesis, Search, log_gauss
 from .together import best_together, evidence_of
 
 DRAWS = 2000
@@ -69,7 +69,7 @@ def views_of(search: Search, leading: Sequence[Hypothesis]) -> list[View]:
     closer = {h.causes[0] for h in fitted if len(h.causes) == 1}
     first = [(search.prior(1), (f,)) for f in search.found.values() if f.cause.id not in closer]
     views = [View(search.null, ((search.prior(0), ()), *first))]
-    return views + [View(scattered(h), ((search.prior(len(h.causes)), h.families),)) for h in fitted]
+    return views + [View(h.scattered(), ((search.prior(len(h.causes)), h.families),)) for h in fitted]
 
 
 def seen(view: View, kept: np.ndarray, held: np.ndarray) -> Iterable[tuple[float, np.ndarray]]:

@@ -71,6 +71,14 @@ class Hypothesis:
     linear: Linear | None = None
     also: tuple[Start, ...] = ()
 
+    def scattered(self, null: Linear | None = None, sign: float = 1.0) -> Linear:
+        """Its linearisation, `null` where it has none, with the scatter of its days in the covariance, or taken out."""
+        linear = self.linear or null
+        assert linear is not None
+        size = self.theta[SCATTER]["sd"] if SCATTER in self.theta else 0.0
+        days = sign * size**2 * linear.days @ linear.days.T
+        return replace(linear, covariance=linear.covariance + days, noise=linear.noise + days)
+
     @property
     def begin(self) -> Start:
         """Where its fit begins: cause -> shares of the shapes, and size."""
@@ -88,13 +96,6 @@ class Hypothesis:
             theta = self.theta[f.cause.id]
             found = found + f.signatures[:, form_of(f, theta)] * theta[f.cause.size.name]
         return found
-
-
-def scattered(h: Hypothesis, sign: float = 1.0) -> Linear:
-    """The linearisation of a hypothesis with the scatter of its days in the covariance, or taken out of it."""
-    assert h.linear is not None
-    days = sign * (h.theta[SCATTER]["sd"] if SCATTER in h.theta else 0.0) ** 2 * h.linear.days @ h.linear.days.T
-    return replace(h.linear, covariance=h.linear.covariance + days, noise=h.linear.noise + days)
 
 
 def log_gauss(white: White) -> float:
@@ -229,7 +230,7 @@ class Search:
         for h in singles:
             if h.linear and h.linear.causes:
                 theta = {**h.theta, SCATTER: {"sd": size}}
-                bare = scattered(replace(h, theta=theta), -1.0)
+                bare = replace(h, theta=theta).scattered(sign=-1.0)
                 value = h.log_posterior + less
                 found.append(replace(h, causes=(*h.causes, SCATTER), log_posterior=value, theta=theta, linear=bare))
         return found

@@ -12,7 +12,7 @@ from ...model.errors import SolveError
 from .evidence import White
 from .family import FORMS, Sample, families
 from .scatter import SCATTER, SIZES
-from .search import Hypothesis, Search, log_gauss, scattered
+from .search import Hypothesis, Search, log_gauss
 from .together import evidence_of, joint, joint_logs, only
 
 #: Hypotheses that are grown, and candidates that are fitted, of each number of causes.
@@ -45,7 +45,7 @@ def beside(search: Search, h: Hypothesis) -> list[Hypothesis]:
     own = [f.cause for f in h.families]
     classes = {c.like or c.id for c in own}
     others = [c for c in search.causes if not c.scatter and (c.like or c.id) not in classes]
-    linear = scattered(h)
+    linear = h.scattered()
     acting = search.problem.moved(linear, linear.z, h.theta, own)
     white = White.of(linear.residual, linear.covariance)
     at_mode = [only(f, h.theta[f.cause.id]).seen(white) for f in h.families]
@@ -70,10 +70,10 @@ def fitted_with_days(search: Search, h: Hypothesis) -> Hypothesis:
     size = h.theta[SCATTER]["sd"] if SCATTER in h.theta else 0.0
     there = Search(replace(search.problem, scattered=size), search.seed, search.progress)
     there.null = search.null
-    linear = scattered(h) if size else h.linear
+    linear = h.scattered() if size else h.linear
     fit = there._refined(replace(h, causes=causes, theta=theta, linear=linear))
     assert fit.linear is not None
-    bare = scattered(replace(fit, theta={**fit.theta, SCATTER: {"sd": size}}), -1.0) if size else fit.linear
+    bare = replace(fit, theta={**fit.theta, SCATTER: {"sd": size}}).scattered(sign=-1.0) if size else fit.linear
 
     def value(sd: float) -> float:
         white = White.of(bare.residual, bare.covariance + sd**2 * bare.days @ bare.days.T)

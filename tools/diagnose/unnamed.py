@@ -15,7 +15,6 @@ from scipy.linalg import cho_factor, cho_solve
 from scipy.special import logsumexp
 
 from .problem import Linear, Problem
-from .scatter import SCATTER
 
 if TYPE_CHECKING:
     from .search import Hypothesis
@@ -54,9 +53,9 @@ class Unnamed:
 
     def evidence(self, hypotheses: Sequence[Hypothesis], null: Linear) -> float:
         """Log evidence, its prior left out, of a discrepancy beside nothing or beside one of the leading hypotheses."""
-        named = [h for h in hypotheses if h.families and SCATTER not in h.causes]
+        named = [h for h in hypotheses if h.causes]
         leading = named[:BESIDE] + [h for h in hypotheses if not h.causes]
-        return float(logsumexp([h.log_posterior + self._gain(h, h.linear or null) for h in leading]))
+        return float(logsumexp([h.log_posterior + self._gain(h, h.scattered(null)) for h in leading]))
 
     def _gain(self, h: Hypothesis, linear: Linear) -> float:
         """Log ratio of the likelihood with a discrepancy to that without, at the hypothesis' best parameters."""
