@@ -16,7 +16,7 @@ CAUSE = Cause(
     doc="A friction torque without load dependence: lips that press more, or run dry.",
     size=Size("P_ref", "W", "loss at 200 rpm and 75 cSt", 40.0, -80.0, 300.0),
     shapes=(
-        Shape("a", "1", "exponent of the speed", 0.7, 1.3, 1.0, 0.12),
+        Shape("a", "1", "exponent of the speed", 0.6, 1.5, 1.0, 0.18),
         Shape("b", "1", "exponent of the viscosity", 0.0, 0.4),
         OIL_SHARE_BEARING,
         *REGIMES.shapes,
