@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -216,6 +217,8 @@ def diagnose(
     extended: Annotated[Path | None, typer.Option(help="Rig file to write: the rig with what was found.")] = None,
 ) -> None:
     """What the model gets wrong in measured data: the causes by name, how big, how sure, and what to measure next."""
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # its matrices are small
+        os.environ.setdefault(name, "1")
     from .diagnose import command, inputs
 
     request = inputs.Request(data, rig, card, series, reference, reference_series, predict, causes, repeatability)

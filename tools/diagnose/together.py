@@ -82,9 +82,12 @@ def gaussian(parts: Sequence[Family], forms: Sequence[int]) -> tuple[float, np.n
     sizes = np.linalg.solve(Q + wide, s)
     widths = WIDTHS[np.argmin(np.abs(np.log(WIDTHS) - np.log(np.abs(sizes / sd) + 1e-9)[:, None]), axis=1)]
     v = (widths * sd) ** 2
-    sizes = np.linalg.solve(Q + np.diag(1 / v), s)
-    half = [np.log(2.0) for f in parts if f.cause.size.low >= 0 or f.cause.size.high <= 0]
-    log = 0.5 * s @ sizes - 0.5 * np.linalg.slogdet(np.eye(len(s)) + v[:, None] * Q)[1]
-    wrong = [x < f.cause.size.low or x > f.cause.size.high for f, x in zip(parts, sizes, strict=True)]
-    log += sum(half) - np.log(len(WIDTHS)) * len(s) - 8.0 * sum(wrong)
+    A, low, high = Q + np.diag(1 / v), *np.array([(f.cause.size.low, f.cause.size.high) for f in parts]).T
+    sizes = np.linalg.solve(A, s)
+    wrong = (sizes < low) | (sizes > high)
+    if wrong.any():  # held at the bound, the others as likely as can be beside it
+        sizes, free = np.clip(sizes, low, high), ~wrong
+        sizes[free] = np.linalg.solve(A[np.ix_(free, free)], s[free] - A[np.ix_(free, wrong)] @ sizes[wrong])
+    log = s @ sizes - 0.5 * sizes @ A @ sizes - 0.5 * np.linalg.slogdet(np.eye(len(s)) + v[:, None] * Q)[1]
+    log += np.log(2.0) * ((low >= 0) | (high <= 0)).sum() - np.log(len(WIDTHS)) * len(s)
     return float(log), sizes
