@@ -37,16 +37,14 @@ FEW = (
     ("cooling.air",),
     ("sensor.torque.offset",),
     ("sensor.oil_temp.offset",),
-    ("procedure.day_scatter",),
+    ("procedure.order",),
     PAIRS[0],
 )
 ALL = os.environ.get("GEARHEAT_HIDDEN", "") == "all"
 
 #: What is answered instead where the truth is not found.
 MISSED: dict[tuple[str, ...], str] = {
-    ("thermal.mass",): "consistent; nothing 0.70, thermal.split 0.11, thermal.mass 0.05",
     ("thermal.split",): "explained; humidity or day scatter + churning, windage or oil level 0.97",
-    ("procedure.not_stationary",): "explained; cooling.air 0.91",
 }
 
 
