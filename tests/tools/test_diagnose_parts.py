@@ -18,11 +18,12 @@ from gearheat.tools.diagnose.campaign_model import CampaignModel
 from gearheat.tools.diagnose.card import BY_ROOM, Card
 from gearheat.tools.diagnose.evidence import WIDTHS, White
 from gearheat.tools.diagnose.family import Family, Sample, pair_evidence
+from gearheat.tools.diagnose.hypothesis import Hypothesis, distinct
 from gearheat.tools.diagnose.inputs import Request, read_inputs
 from gearheat.tools.diagnose.nuisance import ALLOWED, Channels, instrument_covariance
 from gearheat.tools.diagnose.problem import CHANGED, REFILLED, Linear, Problem
 from gearheat.tools.diagnose.repeated import repeated, scatter_warning, with_repeatability
-from gearheat.tools.diagnose.search import NONE, Hypothesis, Search, distinct
+from gearheat.tools.diagnose.search import NONE, Search
 from gearheat.tools.diagnose.series import Series
 from gearheat.tools.diagnose.weigh import ASKED, asked_for, joints
 from gearheat.tools.effects.cause import Rows

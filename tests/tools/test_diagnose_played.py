@@ -17,10 +17,10 @@ from gearheat.tools.diagnose import words
 from gearheat.tools.diagnose.command import Outputs, command
 from gearheat.tools.diagnose.extension import extended_text
 from gearheat.tools.diagnose.findings import Findings, Gain, Joint
+from gearheat.tools.diagnose.hypothesis import Hypothesis
 from gearheat.tools.diagnose.infer import infer, played, problem_of
 from gearheat.tools.diagnose.inputs import Request, read_inputs
 from gearheat.tools.diagnose.output import schema
-from gearheat.tools.diagnose.search import Hypothesis
 from gearheat.tools.effects.taxonomy import CAUSES
 
 #: The diagnosis solves a course to a few thousandths of a kelvin, the FMU to less.

@@ -34,6 +34,11 @@ class White:
         return np.asarray(solve_triangular(self.L, signatures, lower=True))
 
 
+def log_gauss(white: White) -> float:
+    """Log density of a residual without any cause."""
+    return float(-0.5 * white.e @ white.e - np.log(np.diag(white.L)).sum())
+
+
 def log_bayes_factors(s: np.ndarray, q: np.ndarray, sd: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
     """Log Bayes factor of each signature against none.
 

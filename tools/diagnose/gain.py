@@ -8,12 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import logsumexp
 
-from .evidence import White
+from .evidence import White, log_gauss
 from .family import Family
 from .findings import Gain
+from .hypothesis import Hypothesis
 from .problem import Linear
 from .repeated import repeated
-from .search import Hypothesis, Search, log_gauss
+from .search import Search
 from .together import best_together, evidence_of
 
 DRAWS = 2000

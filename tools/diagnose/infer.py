@@ -18,10 +18,11 @@ from .extension import of_machine
 from .family import form_of
 from .findings import UNEXPLAINED, Findings, Joint, Named
 from .gain import gain, gains, rms
+from .hypothesis import Hypothesis
 from .inputs import Inputs
 from .nuisance import Channels, Parameters, instrument_covariance
 from .problem import Campaigned, Linear, Problem, remainder
-from .search import DRAWS, Hypothesis, Search
+from .search import DRAWS, Search
 from .split import certified
 from .weigh import SHOWN, confusable, joints, named, outside, p_adequacy, with_outside
 from .words import ADEQUATE

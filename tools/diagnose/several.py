@@ -9,10 +9,12 @@ import numpy as np
 from scipy.special import logsumexp
 
 from ...model.errors import SolveError
-from .evidence import White
+from .evidence import White, log_gauss
 from .family import FORMS, Sample, families
+from .hypothesis import Hypothesis
+from .refine import Refiner
 from .scatter import SCATTER, SIZES
-from .search import Hypothesis, Search, log_gauss
+from .search import Search
 from .together import evidence_of, joint, joint_logs, only
 
 #: Hypotheses that are grown, and candidates that are fitted, of each number of causes.
@@ -68,10 +70,9 @@ def fitted_with_days(search: Search, h: Hypothesis) -> Hypothesis:
     causes = tuple(c for c in h.causes if c != SCATTER)
     theta = {c: h.theta[c] for c in causes}
     size = h.theta[SCATTER]["sd"] if SCATTER in h.theta else 0.0
-    there = Search(replace(search.problem, scattered=size), search.seed, search.progress)
-    there.null = search.null
+    there = Refiner(replace(search.problem, scattered=size), search.null, search.seed, search.prior)
     linear = h.scattered() if size else h.linear
-    fit = there._refined(replace(h, causes=causes, theta=theta, linear=linear))
+    fit = there.refined(replace(h, causes=causes, theta=theta, linear=linear))
     assert fit.linear is not None
     bare = replace(fit, theta={**fit.theta, SCATTER: {"sd": size}}).scattered(sign=-1.0) if size else fit.linear
 

@@ -17,7 +17,7 @@ from scipy.special import logsumexp
 from .problem import Linear, Problem
 
 if TYPE_CHECKING:
-    from .search import Hypothesis
+    from .hypothesis import Hypothesis
 
 #: Sizes of the discrepancy in the temperatures [K] and in the loss torque [N.m]; none in either is no discrepancy.
 WARM, LOSS = (0.0, 0.6, 1.5, 4.0), (0.0, 1.5, 4.0, 10.0)

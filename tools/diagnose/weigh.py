@@ -12,8 +12,9 @@ from ..effects.taxonomy import CAUSES
 from .evidence import White
 from .family import Family, form_of
 from .findings import UNEXPLAINED, Estimate, Joint, Named
+from .hypothesis import Hypothesis
 from .scatter import SCATTER
-from .search import Hypothesis, Search
+from .search import Search
 
 #: Power of the detectable size; distance below which two causes are the same to a design; probability that is shown.
 POWER, NEAR, SHOWN = 0.8, 2.5, 0.005
