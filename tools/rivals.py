@@ -86,7 +86,7 @@ def _score(rival: Rival, rows: Rows) -> Score:
         design, target = rival.design(rows, channel), _target(rows, channel)
         if not (np.isfinite(target).all() and np.isfinite(design).all()):
             continue
-        fit = _fit(design, target)
+        fit = least_squares(design, target)
         coefficients[channel.key] = [float(c) for c in fit]
         in_sample[channel.key] = rms(design @ fit - target)
         left_out[channel.key] = rms(_held_out(design, target, [row.get("test") for row in rows]))
@@ -99,7 +99,7 @@ def _target(rows: Rows, channel: Channel) -> np.ndarray:
     return values if channel.relative_to is None else values - numbers(rows, channel.relative_to)
 
 
-def _fit(design: np.ndarray, target: np.ndarray) -> np.ndarray:
+def least_squares(design: np.ndarray, target: np.ndarray) -> np.ndarray:
     """Least-squares coefficients, of smallest norm where the readings do not determine them."""
     scale = np.maximum(np.abs(design).max(axis=0), 1e-300)
     return np.asarray(np.linalg.lstsq(design / scale, target, rcond=None)[0] / scale)
@@ -111,5 +111,5 @@ def _held_out(design: np.ndarray, target: np.ndarray, tests: Sequence[Any]) -> n
     for test in dict.fromkeys(tests):
         out = np.array([t == test for t in tests])
         if not out.all():
-            error[out] = design[out] @ _fit(design[~out], target[~out]) - target[out]
+            error[out] = design[out] @ least_squares(design[~out], target[~out]) - target[out]
     return error

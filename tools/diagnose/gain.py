@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import logsumexp
 
+from ..rivals import least_squares
 from .evidence import White, log_gauss
 from .family import Family
 from .findings import Gain
@@ -112,8 +113,7 @@ def linear_in_conditions(search: Search, kept: np.ndarray, held: np.ndarray) -> 
 def _regression(search: Search, features: np.ndarray, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
     c = search.problem.data
     rise = c.measured[c.channels.part("T_oil")] - c.model.rows.T_room[: c.model.n]
-    found = np.linalg.lstsq(features[kept], rise[kept], rcond=None)[0]
-    return np.asarray(rise[held] - features[held] @ found)
+    return np.asarray(rise[held] - features[held] @ least_squares(features[kept], rise[kept]))
 
 
 #: Plain statistics to beat: what it assumes -> its errors on held readings.

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
 from ...scenarios.measured import Campaign, Reading
+from ..compare import noise_floor, repeats
 from .card import Card
 
 #: Points closer than this in speed and torque are the same; degrees of freedom below which nothing is said.
@@ -28,19 +30,18 @@ class Repeated:
 
 def repeated(data: Campaign) -> Repeated | None:
     """What repeated points say: oil and wall over the room, loss torque at the carrier; None with too few of them."""
-    groups: list[list[Reading]] = []
+    firsts: list[Reading] = []
+    rows = []
     for reading in data.readings:
-        group = next((g for g in groups if _same(g[0], reading)), None)
-        if group is None:
-            groups.append([reading])
-        else:
-            group.append(reading)
-    freedom = sum(len(g) - 1 for g in groups)
+        first = next((f for f in firsts if _same(f, reading)), reading)
+        if first is reading:
+            firsts.append(reading)
+        rows.append(_row(reading, first))
+    freedom = sum(len(group) - 1 for group in repeats(rows))
     if freedom < LEAST:
         return None
-    inside = sum(((x := np.array([_values(r) for r in g])) - x.mean(axis=0)).T ** 2 @ np.ones(len(g)) for g in groups)
-    oil, wall, loss = np.sqrt(np.asarray(inside) / freedom)
-    return Repeated(float(oil), float(wall), float(loss), freedom)
+    floor = noise_floor(rows)
+    return Repeated(floor["T_oil_K"], floor["T_wall_K"], floor["loss_Nm"], freedom)
 
 
 def with_repeatability(card: Card, found: Repeated) -> Card:
@@ -83,10 +84,11 @@ def _same(a: Reading, b: Reading) -> bool:
     return near and a.oil == b.oil and a.direction == b.direction and a.test != b.test
 
 
-def _values(reading: Reading) -> tuple[float, float, float]:
+def _row(reading: Reading, first: Reading) -> dict[str, Any]:
+    """A reading as a row of a comparison, at the point of the first reading that it repeats."""
     v = reading.values
-    return (
-        v["T_oil_C"] - v["T_amb_C"],
-        v["T_wall_C"] - v["T_amb_C"],
-        abs(v["T_carrier_Nm"]) - 4 * abs(v["T_sun_Nm"]),
-    )
+    measured = {f"{column}_meas": v[column] for column in ("T_oil_C", "T_wall_C")}
+    measured["loss_Nm_meas"] = abs(v["T_carrier_Nm"]) - 4 * abs(v["T_sun_Nm"])
+    point = {"n_set_rpm": first.values["n_carrier_rpm"], "T_set_Nm": first.values["T_carrier_Nm"]}
+    belongs = {"test": reading.test, "oil": reading.oil, "direction": reading.direction, "T_amb_C": v["T_amb_C"]}
+    return {**belongs, **point, **measured}
