@@ -59,11 +59,16 @@ class Hypothesis:
 
 def better(some: Sequence[Hypothesis], others: Sequence[Hypothesis]) -> list[Hypothesis]:
     """The better of each hypothesis, single ones to be begun from both; no cause at all as the first list has it."""
-    found, begins = distinct([*some, *others]), dict[frozenset[str], list[Start]]()
+    found, looks = distinct([*some, *others]), dict[frozenset[str], list[Hypothesis]]()
     for h in (*some, *others):
-        begins.setdefault(frozenset(h.causes), []).append(h.begin)
-    both = [replace(h, also=tuple(begins[frozenset(h.causes)])) if len(h.causes) == 1 else h for h in found]
-    return [some[0], *(h for h in both if h.causes)]
+        looks.setdefault(frozenset(h.causes), []).append(h)
+
+    def begun_from_both(h: Hypothesis) -> Hypothesis:
+        if len(h.causes) != 1:
+            return h
+        return replace(h, also=tuple(other.begin for other in looks[frozenset(h.causes)] if other is not h))
+
+    return [some[0], *(begun_from_both(h) for h in found if h.causes)]
 
 
 def distinct(hypotheses: Sequence[Hypothesis]) -> list[Hypothesis]:

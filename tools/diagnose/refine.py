@@ -104,7 +104,7 @@ class Refiner:
         if f.cause.choice is None:
             return starts
         choice, logs, sizes = f.cause.choice, f.log_bf() + f.log_w, f.sizes()[0]
-        place = next((k for k, shape in enumerate(f.cause.shapes) if shape.name == "threshold"), choice)
+        place = choice if f.cause.threshold is None else f.cause.threshold
         kinds = np.searchsorted(f.cause.shapes[choice].ends, f.shares[:, choice])
         seen = [(kinds[form_of(f, h.theta[f.cause.id])], first[f.cause.id][0][place])]
         for k in np.argsort(-logs):
@@ -175,10 +175,9 @@ class Refiner:
 
 def kinds_and_thresholds(cause: Cause, shares: np.ndarray) -> np.ndarray:
     """Shares of the shapes with every kind of a choice at every threshold (n, shapes), the given ones first."""
-    choice = cause.choice
+    choice, place = cause.choice, cause.threshold
     assert choice is not None
     ends = (0.0, *cause.shapes[choice].ends)
-    place = next((k for k, shape in enumerate(cause.shapes) if shape.name == "threshold"), None)
     found = [shares]
     for start, end in pairwise(ends):
         for threshold in SCAN if place is not None else (0.5,):

@@ -180,7 +180,7 @@ class Search:
         much as well.
         """
         found: list[Hypothesis] = []
-        changes = [0.0]
+        changes: list[float] = []
         some = sorted(some, key=lambda h: -h.log_posterior)
         for k, h in enumerate(some[:most]):
             best = max(other.log_posterior for other in (*known, *found))
@@ -192,7 +192,7 @@ class Search:
             with suppress(SolveError):  # what no machine can run explains nothing
                 found.append(self.refiner.refined(h))
                 changes.append(found[-1].log_posterior - h.log_posterior)
-        less = min(float(np.median(changes[1:] or changes)), 0.0)
+        less = min(float(np.median(changes or [0.0])), 0.0)
         return [*found, *(replace(h, log_posterior=h.log_posterior + less) for h in some[most:])]
 
     def _beside(self, found: Sequence[Hypothesis]) -> list[Hypothesis]:

@@ -157,6 +157,11 @@ class Cause:
         """Place of the shape that is a choice; a family has one at most."""
         return next((k for k, shape in enumerate(self.shapes) if shape.ends), None)
 
+    @property
+    def threshold(self) -> int | None:
+        """Place of the shape that says where in its range a threshold lies."""
+        return next((k for k, shape in enumerate(self.shapes) if shape.name == "threshold"), None)
+
     def sample(self, n: int, each: int) -> tuple[np.ndarray, np.ndarray]:
         """Shares (m, shapes) spread over the prior, the middle first, and their log weights.
 
