@@ -34,9 +34,7 @@ class Hypothesis:
         """Its linearisation, `null` where it has none, with the scatter of its days in the covariance, or taken out."""
         linear = self.linear or null
         assert linear is not None
-        size = self.theta[SCATTER]["sd"] if SCATTER in self.theta else 0.0
-        days = sign * size**2 * linear.days @ linear.days.T
-        return replace(linear, covariance=linear.covariance + days, noise=linear.noise + days)
+        return linear.with_days(self.theta[SCATTER]["sd"], sign) if SCATTER in self.theta else linear
 
     @property
     def begin(self) -> Start:

@@ -29,9 +29,6 @@ from .series import Series, read_series
 
 T = TypeVar("T")
 
-#: Whether the inference uses time series.
-SERIES_USED = True
-
 
 @dataclass(frozen=True)
 class Request:
@@ -168,7 +165,7 @@ class _Reader:
             points=points,
             series=series,
             reference_series=reference_series,
-            invisible=invisible_causes(data, logged=SERIES_USED and series is not None),
+            invisible=invisible_causes(data, logged=series is not None),
             most=self.request.most,
             digest=_digest(request, scenario),
         )
@@ -231,9 +228,6 @@ def _warnings(request: Request, inputs: Inputs) -> tuple[str, ...]:
     found += [w for s in (inputs.series, inputs.reference_series) if s is not None for w in s.warnings]
     found += scatter_warning(inputs.data, inputs.card)
     found += card_warnings(request.card, inputs.card) + oil_warnings(inputs.oils, inputs.card)
-    if not SERIES_USED:
-        series = [s.name for s in (inputs.series, inputs.reference_series) if s is not None]
-        found += [f"{name}: checked, but not used: the steady readings alone are diagnosed." for name in series]
     found += small_reference(inputs.reference) + outlying(inputs.data, inputs.points)
     found += [f"{cause}: {reason}." for cause, reason in inputs.invisible.items()]
     return tuple(dict.fromkeys(found))

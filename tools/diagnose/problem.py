@@ -97,6 +97,11 @@ class Linear:
     theta: Mapping[str, Theta] = field(default_factory=dict)
     causes: Sequence[Cause] = ()
 
+    def with_days(self, size: float, sign: float = 1.0) -> Linear:
+        """The same where the acting campaign's days scatter by so much more in their cooling, or less with sign -1."""
+        days = sign * size**2 * self.days @ self.days.T
+        return replace(self, covariance=self.covariance + days, noise=self.noise + days)
+
 
 @dataclass
 class Problem:

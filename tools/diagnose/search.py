@@ -147,7 +147,7 @@ class Search:
         for h in [h for h in found if not h.causes] + singles:
             linear, logs = h.linear or self.null, []
             for size in SIZES:
-                white = White.of(linear.residual, linear.covariance + size**2 * linear.days @ linear.days.T)
+                white = White.of(linear.residual, linear.with_days(size).covariance)
                 logs.append(log_gauss(white) + sum(f.seen(white).evidence() for f in h.families))
             causes = (*h.causes, SCATTER)
             value = float(logsumexp(logs) - np.log(len(logs))) + self.prior(len(causes))

@@ -77,7 +77,7 @@ def fitted_with_days(search: Search, h: Hypothesis) -> Hypothesis:
     bare = replace(fit, theta={**fit.theta, SCATTER: {"sd": size}}).scattered(sign=-1.0) if size else fit.linear
 
     def value(sd: float) -> float:
-        white = White.of(bare.residual, bare.covariance + sd**2 * bare.days @ bare.days.T)
+        white = White.of(bare.residual, bare.with_days(sd).covariance)
         return log_gauss(white) + evidence_of([f.seen(white) for f in fit.families])
 
     now, more = fit.log_posterior - value(size), search.prior(len(causes) + 1) - search.prior(len(causes))
