@@ -431,6 +431,15 @@ def test_both_halves_of_a_test_are_reduced_to_places():
     assert one.scatter == pytest.approx(one.weights @ one.weights.T)
 
 
+def test_many_samples_are_averaged_in_groups():
+    time = np.arange(1.0, 240.0 * 60 + 1)  # every second
+    columns = {"time_s": time, "T_oil_C": time / 60, "T_wall_C": time / 30, "direction": np.ones(len(time), int)}
+    (one,) = logged.sampled(Series("SERIES.csv", {1: columns}), Test(1, 1, "PAOR", (reading(1, 1),)), 300.0)
+    assert len(one.when) == logged.MOST and one.count.sum() == len(time) and one.count.min() == 150
+    assert one.T_oil == pytest.approx(273.15 + 240 * one.shares)
+    assert np.diag(one.scatter).max() < 0.3 / 150 * 1.1  # hardly any noise is left
+
+
 def test_behind_a_dwell_not_as_stated_there_are_no_places():
     one, two = logged_test(180.0)
     assert one.dwell == pytest.approx(180 * 60.0) and two.dwell == pytest.approx(90 * 60.0)

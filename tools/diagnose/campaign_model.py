@@ -96,30 +96,13 @@ class CampaignModel:
         ]
         ends = rows_of(self.readings, [len(test.halves) for test in self.tests], span)
         self.n, self.rows = len(self.readings), self._with_samples(ends)
-        places = [self._places(k) for k in range(len(self.tests))]
-        self._name = repr((campaign.readings, campaign.protocol, self.oils, places))
+        times = [self._times(k) for k in range(len(self.tests))]
+        self._name = repr((campaign.readings, campaign.protocol, self.oils, times))
         batch = rig.batch
         self._duties = [
-            (batch.prepared(run.schedule, times, TOLERANCE), ends, samples)
-            for run, (times, ends, samples) in zip(self.runs, places, strict=True)
+            (batch.prepared(run.schedule, own, TOLERANCE), ends, courses)
+            for run, (own, ends, courses) in zip(self.runs, times, strict=True)
         ]
-
-    def smoothed_away(self) -> np.ndarray:
-        """What the curves through the samples make of the nominal's courses, less the courses: (samples, channels)."""
-        start, found = [dict(self.rig.base)], []
-        for k, own in enumerate(self.logged):
-            (p,) = self.rig.parameters(start, self.oils[k : k + 1])
-            T = np.repeat(self._start(start, k), self.rig.n_states, axis=1)
-            for item in own:
-                if not len(item.shares):
-                    continue
-                end, dwell = self.runs[k].moments[item.half], self.tests[k].halves[item.half].si("dwell_min")
-                shares = np.concatenate([item.when, item.shares])
-                times, back = np.unique(end - dwell * np.maximum(1 - shares, 0.0), return_inverse=True)
-                duty = self.rig.batch.prepared(self.runs[k].schedule, np.repeat(times, 2), TOLERANCE)
-                y = self.rig.batch.warmup(duty, self.rig.inputs, p, T, threads=1).y[0, ::2][back]
-                found.append(item.weights @ y[: len(item.when)] - y[len(item.when) :])
-        return np.concatenate(found) if found else np.empty((0, len(OUTPUTS)))
 
     @property
     def samples(self) -> int:
@@ -151,7 +134,8 @@ class CampaignModel:
         rows = self.rig.batch.warmup(duty, self.rig.inputs, p, start, threads=1)
         if rows.status[0]:
             raise SolveError(f"test {self.tests[k].number}: the model cannot be run with {variants[0]}.")
-        return rows.y[:, ends], rows.y[:, places]
+        courses = [rows.y[:, :0], *(item.weights @ rows.y[:, which] for item, which in places)]
+        return rows.y[:, ends], np.concatenate(courses, axis=1)
 
     def _start(self, variants: Sequence[Variant], k: int) -> np.ndarray:
         """Temperature at the start of a test (variants, 1): that of the room, where it was not measured itself."""
@@ -161,22 +145,24 @@ class CampaignModel:
         bias = [values.get("read.room_bias", 0.0) for values in variants]
         return np.array([[T - float(b if np.ndim(b) == 0 else b[k])] for b in bias])
 
-    def _places(self, k: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Times of the readings of a test, and which of them are the ends of its halves and which places of courses.
+    def _times(self, k: int) -> tuple[np.ndarray, np.ndarray, list[tuple[Sampled, np.ndarray]]]:
+        """Times of the readings of a test, and which of them are the ends of its halves and which those of courses.
 
         The end of a half is a time given twice: the row in front of the jump counts.
         """
         times: list[float] = []
         ends: list[int] = []
-        places: list[int] = []
+        courses: list[tuple[Sampled, np.ndarray]] = []
         for h, end in enumerate(self.runs[k].moments):
             dwell = self.tests[k].halves[h].si("dwell_min")
             for item in self.logged[k][h : h + 1]:
-                places += range(len(times), len(times) + len(item.shares))
-                times += [end - dwell * (1 - share) for share in item.shares]
+                if len(item.shares):
+                    before = item.when[item.when < 1]
+                    courses.append((item, len(times) + np.minimum(np.arange(len(item.when)), len(before))))
+                    times += list(end - dwell * (1 - before))
             ends.append(len(times))
             times += [end, end]
-        return np.array(times), np.array(ends, dtype=int), np.array(places, dtype=int)
+        return np.array(times), np.array(ends, dtype=int), courses
 
     def _with_samples(self, ends: Rows) -> Rows:
         """The conditions of the ends, and behind them those of the places of logged courses: as at the end."""

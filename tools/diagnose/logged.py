@@ -1,6 +1,7 @@
 """Courses of tests, reduced to a few places of each half: what a time series adds to the steady readings.
 
-The temperature at a place is that of a smooth curve through all samples of the half, so that no sample is wasted.
+The temperature at a place is that of a smooth curve through all samples of the half, so that no sample is wasted. The
+model's course is reduced in the same way: where a curve cannot follow, it misses both alike.
 """
 
 from __future__ import annotations
@@ -17,6 +18,8 @@ from .series import Series
 SHARES, KNOTS = (0.05, 0.12, 0.2, 0.3, 0.45, 0.65, 0.85), (0.12, 0.3, 0.55)
 #: Samples from which there is a curve; below, places lie on the lines between samples.
 MANY = 14
+#: More samples of a half than that are averaged in groups first.
+MOST = 96
 #: A half that was logged over a dwell other than stated by less than this is compared place by place.
 AS_STATED = 0.03
 
@@ -25,7 +28,8 @@ AS_STATED = 0.03
 class Sampled:
     """What the series says of one half: dwell as logged and interval of the samples [s], temperatures [K] at places.
 
-    `weights` (k, n) make the values at k places of n samples, which were taken at shares `when` of the dwell.
+    `weights` (k, n) make the values at k places of n groups of `count` samples, the middle of which were taken at shares
+    `when` of the dwell.
     """
 
     half: int
@@ -36,11 +40,12 @@ class Sampled:
     T_wall: np.ndarray
     weights: np.ndarray
     when: np.ndarray
+    count: np.ndarray
 
     @property
     def scatter(self) -> np.ndarray:
         """Covariance of the values at the places (k, k) as a share of the variance of one sample."""
-        return np.asarray(self.weights @ self.weights.T)
+        return np.asarray(self.weights / self.count @ self.weights.T)
 
 
 def sampled(series: Series | None, test: Test, stop: float) -> list[Sampled]:
@@ -58,10 +63,13 @@ def sampled(series: Series | None, test: Test, stop: float) -> list[Sampled]:
         interval = float(np.median(np.diff(time)))
         begin = float(np.clip(end + stop, time[0] - interval, time[0]))
         end = float(time[-1])
-        when = (time - begin) / stated if as_stated else np.empty(0)
+        first = np.unique(np.linspace(0, len(time), min(len(time), MOST) + 1).astype(int))[:-1]
+        count = np.diff(np.r_[first, len(time)])
+        grouped = {c: np.add.reduceat(columns[c][mine], first) / count for c in ("time_s", "T_oil_C", "T_wall_C")}
+        when = (grouped["time_s"] - begin) / stated if as_stated else np.empty(0)
         places, W = _places(when)
-        T_oil, T_wall = (W @ (columns[c][mine] + 273.15) if len(W) else np.empty(0) for c in ("T_oil_C", "T_wall_C"))
-        found.append(Sampled(k, end - begin, interval, places, T_oil, T_wall, W, when))
+        T_oil, T_wall = (W @ (grouped[c] + 273.15) if len(W) else np.empty(0) for c in ("T_oil_C", "T_wall_C"))
+        found.append(Sampled(k, end - begin, interval, places, T_oil, T_wall, W, when, count))
         as_stated = as_stated and abs((end - begin) / stated - 1) < AS_STATED
     return found
 

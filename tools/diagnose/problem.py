@@ -71,10 +71,9 @@ def _logged(model: CampaignModel) -> dict[str, tuple[np.ndarray, np.ndarray]]:
         return {}
     stated = [model.readings[row].si("dwell_min") for row, _ in items]
     dwell = np.array([item.dwell for _, item in items]) / stated - 1
-    bent = model.smoothed_away()
     return {
-        "T_oil course": (places, np.concatenate([item.T_oil for _, item in items]) - bent[:, 0]),
-        "T_wall course": (places, np.concatenate([item.T_wall for _, item in items]) - bent[:, 1]),
+        "T_oil course": (places, np.concatenate([item.T_oil for _, item in items])),
+        "T_wall course": (places, np.concatenate([item.T_wall for _, item in items])),
         "dwell": (np.array([row for row, _ in items]), dwell),
     }
 
