@@ -15,8 +15,8 @@ from ..core.declare import Choice, Output, Parameter
 from ..laws.smooth import Num, smooth_abs, smooth_sign
 from .ports import Flange, HeatPort, Lubricant, ShaftReading
 
-#: Rounding of thresholds: speed [rad/s], torque [N.m], temperature [K].
-W_STEP, TAU_STEP, T_STEP = 0.5, 60.0, 1.5
+#: Rounding of thresholds: speed [rad/s], torque [N.m], logarithm of speed times viscosity.
+W_STEP, TAU_STEP, FILM_STEP = 0.5, 60.0, 0.3
 #: Speed below which a brake fades [rad/s].
 W_REST = 5e-3
 #: Speed below which cooling no longer changes with speed [rad/s].
@@ -29,7 +29,7 @@ class ExtraLoss(Component):
     .. math:: P = P_{ref} (|w|/w_{ref})^a (\\nu/\\nu_{ref})^b (|\\tau|/\\tau_{ref})^c
 
     `forward` and `backward` weigh it where the read shaft drives and is driven. Each threshold has a side: +1 acts
-    above it, -1 below.
+    above it, -1 below. What needs thin films acts where speed times viscosity is below `film_on`.
     """
 
     shaft = Flange()
@@ -54,6 +54,8 @@ class ExtraLoss(Component):
     tau_side = Parameter("1", "side of the torque threshold")
     T_on = Parameter("K", "threshold of the lubricant's temperature", nominal=10.0)
     T_side = Parameter("1", "side of the temperature threshold")
+    T_width = Parameter("K (difference)", "how gradually it sets in with temperature", nominal=1.0, above=0.0)
+    film_on = Parameter("m2/s2", "speed times viscosity below which films are thin", nominal=1e-3, above=0.0)
     oil_share = Parameter("1", "share of the heat that goes into the oil")
     P = Output("W", "power", nominal=10.0)
 
@@ -75,8 +77,9 @@ class ExtraLoss(Component):
         weight = _by_direction(self.reading, self.forward, self.backward)
         speed = _step(self.w_side * (smooth_abs(self.shaft.w, 1e-2) - self.w_on) / W_STEP)
         load = _step(self.tau_side * (smooth_abs(self.reading.tau, 1.0) - self.tau_on) / TAU_STEP)
-        warmth = _step(self.T_side * (self.lubricant.T - self.T_on) / T_STEP)
-        return weight * speed * load * warmth
+        warmth = _step(self.T_side * (self.lubricant.T - self.T_on) / self.T_width)
+        film = _step((ca.log(self.film_on) - ca.log(smooth_abs(self.shaft.w, W_REST) * self.lubricant.nu)) / FILM_STEP)
+        return weight * speed * load * warmth * film
 
     def supplied_power(self) -> Iterable[Num]:
         """A heater's power comes from outside."""
@@ -103,6 +106,7 @@ class ExtraConductor(Component):
     backward = Parameter("1", "weight where it is driven")
     T_on = Parameter("K", "threshold of the temperature at a", nominal=10.0)
     T_side = Parameter("1", "side of the temperature threshold")
+    T_width = Parameter("K (difference)", "how gradually it sets in with temperature", nominal=1.0, above=0.0)
     Q_flow = Output("W", "heat flow rate from a to b", nominal=10.0)
 
     def equations(self) -> Iterator[Equation]:
@@ -111,7 +115,7 @@ class ExtraConductor(Component):
         form = self.e * ca.log(smooth_abs(dT, 0.1) / self.dT_ref)
         speed = self.c * ca.log(smooth_abs(self.reading.w, W_CALM) / self.w_ref)
         weight = _by_direction(self.reading, self.forward, self.backward)
-        weight *= _step(self.T_side * (self.a.T - self.T_on) / T_STEP)
+        weight *= _step(self.T_side * (self.a.T - self.T_on) / self.T_width)
         flow = self.G_ref * dT * ca.exp(form + speed) * weight
         yield equation("conduction", self.Q_flow, flow)
         yield equation("enters at a", self.a.Q_flow, self.Q_flow)

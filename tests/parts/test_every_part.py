@@ -56,8 +56,18 @@ EXAMPLES: dict[str, dict] = {
     "ExtraLoss": dict(
         P_ref=50.0, w_ref=20.0, nu_ref=7e-5, tau_ref=2000.0, a=2.0, b=0.2, c=0.5, forward=1.0, backward=0.5
     )
-    | dict(w_on=10.0, w_side=1.0, tau_on=-1e4, tau_side=1.0, T_on=340.0, T_side=-1.0, oil_share=0.8),
-    "ExtraConductor": dict(G_ref=2.0, dT_ref=35.0, e=0.3, w_ref=20.0, c=0.5, T_on=330.0, T_side=1.0)
+    | dict(
+        w_on=10.0,
+        w_side=1.0,
+        tau_on=-1e4,
+        tau_side=1.0,
+        T_on=340.0,
+        T_side=-1.0,
+        T_width=1.5,
+        film_on=2e-3,
+        oil_share=0.8,
+    ),
+    "ExtraConductor": dict(G_ref=2.0, dT_ref=35.0, e=0.3, w_ref=20.0, c=0.5, T_on=330.0, T_side=1.0, T_width=1.5)
     | dict(forward=1.0, backward=0.5),
 }
 #: Ports without a source: on them a part gives information, or a temperature of its own.

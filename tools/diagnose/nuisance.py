@@ -16,19 +16,38 @@ import numpy as np
 from ..effects.cause import Rows
 from .card import Card
 
-#: Groups of parameters that change together: name -> (paths, key of the card's priors, wide standard deviation).
-GROUPS: Mapping[str, tuple[tuple[str, ...], str, float]] = {
-    "mesh friction": (("gear_set.k_mu",), "mu", 0.4),
-    "bearing loss": (("carrier_bearing.count", "sun_bearing.count", "planet_bearing.count"), "brg", 0.4),
-    "seal loss": (("carrier_seal.count", "sun_seal.count"), "seal", 0.5),
-    "radiation": (("cooling.emissivity",), "rad", 0.4),
-    "oil to gears": (("oil_gears.G",), "gow", 0.6),
-    "oil to wall": (("oil_wall.G", "oil_carrier_body.G"), "gow", 0.6),
-    "wall to surface": (("wall_surface.G", "carrier_body_wall.G"), "gwh", 0.6),
-    "capacities": (("gears.C", "carrier_body.C", "wall.C", "surface.C", "oil.V"), "cap", 0.5),
-    "capacities inside": (("gears.C", "carrier_body.C"), "cap", 0.5),
-    "foundation": (("foot.G",), "hconv", 0.7),
-    "area": (("cooling.A",), "hconv", 0.6),
+
+@dataclass(frozen=True)
+class Group:
+    """Parameters that change together: path -> exponent, key of the card's priors, wide standard deviation.
+
+    `share` is that of the key's standard deviation which the group has.
+    """
+
+    paths: Mapping[str, float]
+    key: str
+    wide: float
+    share: float = 1.0
+
+    @staticmethod
+    def of(key: str, wide: float, *paths: str) -> Group:
+        """Parameters that change alike."""
+        return Group(dict.fromkeys(paths, 1.0), key, wide)
+
+
+#: All groups by name. Convection is an area that radiates no more for it; of the foundation the card says nothing.
+GROUPS: Mapping[str, Group] = {
+    "mesh friction": Group.of("mu", 0.4, "gear_set.k_mu"),
+    "bearing loss": Group.of("brg", 0.4, "carrier_bearing.count", "sun_bearing.count", "planet_bearing.count"),
+    "seal loss": Group.of("seal", 0.5, "carrier_seal.count", "sun_seal.count"),
+    "radiation": Group.of("rad", 0.6, "cooling.emissivity"),
+    "oil to gears": Group.of("gow", 0.6, "oil_gears.G"),
+    "oil to wall": Group.of("gow", 0.6, "oil_wall.G", "oil_carrier_body.G"),
+    "wall to surface": Group.of("gwh", 0.6, "wall_surface.G", "carrier_body_wall.G"),
+    "capacities": Group.of("cap", 0.5, "gears.C", "carrier_body.C", "wall.C", "surface.C", "oil.V"),
+    "capacities inside": Group.of("cap", 0.5, "gears.C", "carrier_body.C"),
+    "foundation": Group({"foot.G": 1.0}, "hconv", 0.7, 0.5),
+    "convection": Group({"cooling.A": 1.0, "cooling.emissivity": -1.0}, "hconv", 0.6),
 }
 
 
@@ -42,7 +61,7 @@ class Parameters:
     @staticmethod
     def of(base: Mapping[str, float], card: Card, *, wide: bool) -> Parameters:
         """From the rig's values and the card."""
-        return Parameters(base, {name: (far if wide else card.prior(key)) for name, (_, key, far) in GROUPS.items()})
+        return Parameters(base, {name: (g.wide if wide else g.share * card.prior(g.key)) for name, g in GROUPS.items()})
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -51,10 +70,11 @@ class Parameters:
 
     def values(self, z: np.ndarray) -> dict[str, float]:
         """Changed values by path."""
-        changed: dict[str, float] = {}
+        logs: dict[str, float] = {}
         for name, number in zip(self.sd, z, strict=True):
-            for path in GROUPS[name][0]:
-                changed[path] = changed.get(path, self.base[path]) * math.exp(self.sd[name] * float(number))
+            for path, exponent in GROUPS[name].paths.items():
+                logs[path] = logs.get(path, 0.0) + exponent * self.sd[name] * float(number)
+        changed = {path: self.base[path] * math.exp(log) for path, log in logs.items()}
         if "cooling.emissivity" in changed:
             changed["cooling.emissivity"] = min(changed["cooling.emissivity"], 1.0)
         return changed
@@ -68,9 +88,9 @@ def day_values(base: Mapping[str, float], size: float) -> dict[str, Any]:
 #: Channels of places along logged courses -> the readings they hold.
 COURSES = {"T_oil course": "T_oil", "T_wall course": "T_wall"}
 #: What the model leaves of a course [K], over how long a share of the dwell, and scatter of a dwell as logged.
-COURSE, LENGTH, DWELL = 0.15, 0.3, 0.02
-#: Variance of a smoothed course over that of independent samples: what else is in a course is not all known.
-ALLOWED = 3.0
+COURSE, LENGTH, DWELL = 0.1, 0.3, 0.02
+#: Variance of a smoothed course over that of independent samples, which those of a probe are not quite.
+ALLOWED = 1.2
 #: Decay, per dwell, of what a start at another temperature than that of the room as read leaves in a course.
 BEGUN = 3.0
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from itertools import pairwise
@@ -14,7 +14,7 @@ from ...model.errors import SolveError
 from ..effects.cause import Cause
 from ..effects.taxonomy import CAUSES
 from .evidence import White, log_gauss
-from .family import Sample, families, form_of, nearer
+from .family import Family, Sample, best_pair, families, form_of, nearer, pair_evidence, pair_theta
 from .fit import STEPS, Fit, fitted
 from .hypothesis import Hypothesis, Start
 from .problem import Linear, Problem
@@ -25,13 +25,15 @@ SHARES = (1.0, 0.5, 0.2)
 #: Half the squared misfit per reading from which a fit is repeated with slopes taken where it ended.
 POOR = 0.7
 #: Standard deviations of what a form of the library leaves of a true effect, as shares of it, and their probabilities.
-FORM = {0.03: 0.35, 0.06: 0.35, 0.12: 0.22, 0.24: 0.08}
+FORM = {0.01: 0.25, 0.03: 0.25, 0.06: 0.25, 0.12: 0.18, 0.24: 0.07}
 #: Forms at which fits begin: how many, how much worse than the best at the first look, how far apart in the share of
 #: the threshold, and steps after which only the best goes on.
 MANY, NEXT, APART, BEGUN = 4, 40.0, 0.2, 3
 #: Places at which thresholds are tried when a fit has ended, how many of the best it begins again from, and shares of
 #: shapes that are the same.
 SCAN, RETRIED, NEARBY = np.linspace(0.05, 0.95, 13), 3, 0.1
+#: A fit is begun again so often at most, where a form drawn around it promises so much more and the fit keeps so much.
+STALLED, PROMISED, KEPT = 2, 5.0, 1.0
 
 
 @dataclass(frozen=True)
@@ -56,14 +58,11 @@ class Refiner:
         fit = self._begun(h)
         with suppress(SolveError):
             fit = self._scanned(h, fit)
-        linear = self.problem.linearised(fit.z, fit.theta, causes)
-        if fit.cost > POOR * len(linear.residual):  # far from where the slopes of the nuisances were taken
-            fit = fitted(self.problem, linear, fit.start)
-            linear = self.problem.linearised(fit.z, fit.theta, causes)
-        samples = []
-        for k, c in enumerate(causes):
-            samples.append(nearer(c, fit.modes[c.id], sound(fit.theta[c.id][c.size.name], c), self.seed + k))
-        near = families(self.problem, linear, White.of(linear.residual, linear.covariance), samples)
+        fit, linear, near = self._near(causes, fit)
+        for _ in range(STALLED):
+            if (better := self._better(h, fit, linear, near)) is None:
+                break
+            fit, linear, near = self._near(causes, better)
         theta = {c.id: near[c.id].theta(0, fit.theta[c.id][c.size.name]) for c in causes}
         logs, views = [], []
         for back, weight in zip(self.problem.put_back(linear, list(FORM)), FORM.values(), strict=True):
@@ -75,6 +74,47 @@ class Refiner:
         found, back = views[int(np.argmax(logs))]
         value = float(logsumexp(logs)) + self.prior(len(causes))
         return replace(h, log_posterior=value, theta=theta, families=found, linear=back)
+
+    def _near(self, causes: Sequence[Cause], fit: Fit) -> tuple[Fit, Linear, dict[str, Family]]:
+        """A fit, the model linearised there, and forms around it."""
+        linear = self.problem.linearised(fit.z, fit.theta, causes)
+        if fit.cost > POOR * len(linear.residual):  # far from where the slopes of the nuisances were taken
+            fit = fitted(self.problem, linear, fit.start)
+            linear = self.problem.linearised(fit.z, fit.theta, causes)
+        samples = []
+        for k, c in enumerate(causes):
+            samples.append(nearer(c, fit.modes[c.id], sound(fit.theta[c.id][c.size.name], c), self.seed + k))
+        return fit, linear, families(self.problem, linear, White.of(linear.residual, linear.covariance), samples)
+
+    def _better(self, h: Hypothesis, fit: Fit, linear: Linear, near: Mapping[str, Family]) -> Fit | None:
+        """A fit begun again at one of the forms drawn around it, where the way of the fit was too rough to get there.
+
+        None for more than two causes, where no form promises more, or what was promised is not kept.
+        """
+        if len(near) > 2:
+            return None
+        (back,) = self.problem.put_back(linear)
+        white = White.of(back.residual, back.covariance)
+        own = [f.seen(white) for f in near.values()]
+        if len(own) == 1:
+            logs = own[0].log_bf()
+            best: tuple[int, ...] = (own[0].best(),)
+            theta = {own[0].cause.id: own[0].theta(best[0], float(own[0].sizes()[0][best[0]]))}
+        else:
+            logs = pair_evidence(*own)[1] - own[0].log_w[:, None] - own[1].log_w
+            best = best_pair(logs)
+            theta = pair_theta(*own, *best)
+        if logs[best] < logs[(0,) * len(own)] + PROMISED:
+            return None
+        start = {
+            f.cause.id: (f.shares[k], sound(theta[f.cause.id][f.cause.size.name], f.cause))
+            for f, k in zip(own, best, strict=True)
+        }
+        with suppress(SolveError):
+            again = self._fitted(h, start, fit.z)
+            if again.cost < fit.cost - KEPT:
+                return again
+        return None
 
     def _begun(self, h: Hypothesis) -> Fit:
         """The best of short fits from several forms, gone on with. Raises SolveError where none can be run."""
@@ -131,9 +171,7 @@ class Refiner:
                 theta[c.id] = {**form, c.size.name: share * start[c.id][1]}
             smaller = {name: (shares, share * size) for name, (shares, size) in start.items()}
             try:
-                return fitted(
-                    self.problem, self.problem.moved(h.linear or self.null, begin, theta, causes), smaller, steps
-                )
+                return fitted(self.problem, self.problem.moved(self._from(h), begin, theta, causes), smaller, steps)
             except SolveError:
                 if share == SHARES[-1]:
                     raise
@@ -147,7 +185,7 @@ class Refiner:
                 continue
             size = fit.theta[c.id][c.size.name]
             shares = kinds_and_thresholds(c, fit.modes[c.id].shares)
-            linear = self.problem.moved(h.linear or self.null, fit.z, fit.theta, causes)
+            linear = self.problem.moved(self._from(h), fit.z, fit.theta, causes)
             (back,) = self.problem.put_back(linear)
             white = White.of(back.residual, back.covariance)
             sample = Sample(c, shares, np.zeros(len(shares)), sound(size, c))
@@ -166,9 +204,14 @@ class Refiner:
                 fit = min(fit, self._fitted(h, best.start, best.z), key=lambda fit: fit.cost)
         return fit
 
+    def _from(self, h: Hypothesis) -> Linear:
+        """The linearisation a fit begins from, without scatter of forms that miss what they should explain."""
+        J, noise = (h.linear or self.null).jacobian, self.null.noise
+        return replace(h.linear or self.null, noise=noise, covariance=noise + J @ J.T)
+
     def _shifted(self, h: Hypothesis) -> np.ndarray:
         """Nuisances under a hypothesis, by its linearisation."""
-        linear = h.linear or self.null
+        linear = self._from(h)
         z = self.problem.nuisances(linear, linear.residual - h.effect)
         return np.asarray(linear.z + np.clip(z - linear.z, -1.5, 1.5))
 

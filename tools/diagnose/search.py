@@ -32,9 +32,9 @@ NONE, ONE, TWO, OUTSIDE = 0.5, 0.37, 0.08, 0.05
 #: Of each further cause, where more than two are looked for.
 MORE = 0.25
 DRAWS = 4000
-#: What another look may lift a hypothesis by: with thresholds that the first look hardly met, and without. One that
-#: stays behind even so is not looked at again.
-LIFT = {True: 120.0, False: 40.0}
+#: What another look may lift a hypothesis by: with thresholds that the first look hardly met, and without, and so many
+#: times what it has lifted others. One that stays behind even so is not looked at again.
+LIFT, OTHERS = {True: 120.0, False: 40.0}, 2.0
 #: A p of any cause below which the first look is repeated from the healthy machine, and above which little is fitted.
 ELSEWHERE, QUIET = 0.05, 0.25
 
@@ -185,7 +185,8 @@ class Search:
         for k, h in enumerate(some[:most]):
             best = max(other.log_posterior for other in (*known, *found))
             kinds = any(CAUSES[c].choice is not None for c in h.causes)
-            if h.log_posterior + LIFT[kinds] / len(h.causes) < best:
+            lift = max(LIFT[kinds] / len(h.causes), OTHERS * max(changes, default=0.0))
+            if h.log_posterior + lift < best:
                 found.append(h)
                 continue
             self.progress(f"looking again at {' and '.join(h.causes)}", 0.4 + 0.2 * len(h.causes) * k / most)

@@ -143,6 +143,7 @@ def regime_in_columns(cause: Cause, theta: Theta) -> Mapping[str, tuple[float | 
         "w": ("n_carrier_rpm", value * 30 / np.pi),
         "tau": ("T_carrier_Nm", value),
         "T": ("T_oil_C", value - 273.15),
+        "film": ("film_mm2_s2", 1e6 * value),
     }[name[:-1]]
     return {column: (float(shown), None) if name.endswith("+") else (None, float(shown))}
 

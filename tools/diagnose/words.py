@@ -53,6 +53,7 @@ REGIMES = {
     "n_carrier_rpm": ("carrier speed", "rpm"),
     "T_carrier_Nm": ("carrier torque", "N.m"),
     "T_oil_C": ("oil temperature", "°C"),
+    "film_mm2_s2": ("carrier speed times viscosity", "mm²/s²"),
 }
 #: Keys of an impact -> what changes, its unit, and how much more is said.
 IMPACTS = {

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from .cause import Cause, Rows, Shape, Size, Theta
-from .forms import DIRECTION, WARMTH, Regimes, extra_conductor
+from .forms import ANY_WARMTH, DIRECTION, WARMTH, Regimes, extra_conductor
 
 PARTS, NETS = extra_conductor("extra_air", "surface.heat", "room.floor")
 #: What it may be limited to.
@@ -16,10 +16,10 @@ REGIMES = Regimes((*WARMTH, *DIRECTION))
 def conductance(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mapping[str, Any]:
     """The extra conductance and where it acts."""
     values = {k: theta[k] for k in ("G_ref", "e", "c")}
-    values |= {"T_on": 0.0, "T_side": 1.0, "forward": 1.0, "backward": 1.0}
+    values |= {"forward": 1.0, "backward": 1.0} | ANY_WARMTH
     name, threshold = REGIMES.of(theta) or ("", 0.0)
     if name.startswith("T"):
-        values |= {"T_on": threshold, "T_side": 1.0 if name == "T+" else -1.0}
+        values |= {"T_on": threshold, "T_side": 1.0 if name == "T+" else -1.0, "T_width": theta["T_width"]}
     elif name:
         values["backward" if name == "d+" else "forward"] = 0.0
     return {f"extra_air.{k}": v for k, v in values.items()}
@@ -30,7 +30,7 @@ CAUSE = Cause(
     doc="More or less convection: draught, a cover, a fan.",
     size=Size("G_ref", "W/K", "conductance to the air more than assumed, at 35 K and 200 rpm", 2.5, -8.0, 20.0),
     shapes=(
-        Shape("e", "1", "exponent of the temperature difference", -0.3, 0.4, 0.05, 0.2),
+        Shape("e", "1", "exponent of the temperature difference", -0.5, 0.5, 0.05, 0.2),
         Shape("c", "1", "exponent of the speed: a fan on the shaft", -0.2, 1.0, 0.0, 0.2),
         *REGIMES.shapes,
     ),

@@ -11,9 +11,11 @@ from .cause import Shape, Theta
 #: Reference point of all extra powers: 200 rpm, 75 cSt, 2000 N.m.
 W_REF, NU_REF, TAU_REF = 20.944, 75e-6, 2000.0
 #: No threshold: so far below everything that the side does not matter.
-OPEN = {"w_on": -1e4, "w_side": 1.0, "tau_on": -1e6, "tau_side": 1.0, "T_on": 0.0, "T_side": 1.0}
-#: Ranges in which thresholds are looked for: speed [rad/s], torque [N.m], temperature [K].
-THRESHOLDS = {"w": (10.0, 26.5), "tau": (1500.0, 2750.0), "T": (315.0, 362.0), "d": (0.0, 0.0)}
+OPEN = {"w_on": -1e4, "w_side": 1.0, "tau_on": -1e6, "tau_side": 1.0, "film_on": 1e6}
+ANY_WARMTH = {"T_on": 0.0, "T_side": 1.0, "T_width": 1.5}
+OPEN |= ANY_WARMTH
+#: Ranges in which thresholds are looked for: speed [rad/s], torque [N.m], temperature [K], speed x viscosity [m2/s2].
+THRESHOLDS = {"w": (10.0, 26.5), "tau": (1500.0, 2750.0), "T": (315.0, 362.0), "d": (0.0, 0.0), "film": (4e-4, 3e-3)}
 #: Share of the prior in which a form acts everywhere.
 EVERYWHERE = 0.56
 
@@ -34,12 +36,14 @@ class Regimes:
         return (EVERYWHERE, *(EVERYWHERE + (1 - EVERYWHERE) * (k + 1) / n for k in range(n - 1)), 1.0)
 
     @property
-    def shapes(self) -> tuple[Shape, Shape]:
-        """The shapes that say which regime, and where its threshold lies in its range."""
-        return (
+    def shapes(self) -> tuple[Shape, ...]:
+        """The shapes that say which regime, where its threshold lies in its range, and how wide one of warmth is."""
+        both = (
             Shape("regime", "1", "where it acts: everywhere, or above or below a threshold", 0.0, 1.0, ends=self.ends),
             Shape("threshold", "1", "place of the threshold in its range", 0.0, 1.0),
         )
+        width = Shape("T_width", "K", "how gradually it sets in with temperature", 0.8, 6.0, 2.0, 1.5)
+        return (*both, width) if set(self.names) & set(WARMTH) else both
 
     def of(self, theta: Theta) -> tuple[str, float] | None:
         """The regime of a form: its name and threshold in SI; None where it acts everywhere."""
@@ -83,17 +87,18 @@ def extra_values(name: str, theta: Theta, regime: tuple[str, float] | None = Non
         if quantity in DIRECTION:
             values["backward" if quantity == "d+" else "forward"] = 0.0
         else:
-            values |= {
-                f"{quantity[:-1]}_on": threshold,
-                f"{quantity[:-1]}_side": 1.0 if quantity.endswith("+") else -1.0,
-            }
+            values[f"{quantity[:-1]}_on"] = threshold
+            if quantity in WARMTH:
+                values["T_width"] = theta["T_width"]
+            if f"{quantity[:-1]}_side" in values:  # thin films have one side
+                values[f"{quantity[:-1]}_side"] = 1.0 if quantity.endswith("+") else -1.0
     return {f"{name}.{k}": v for k, v in values.items()}
 
 
 def extra_conductor(name: str, a: str, b: str) -> tuple[tuple[PartSpec, ...], tuple[tuple[str, ...], ...]]:
     """A conductance of general form between two heat ports."""
-    values = {"G_ref": 0.0, "dT_ref": 35.0, "e": 0.0, "w_ref": W_REF, "c": 0.0, "T_on": 0.0, "T_side": 1.0}
-    values |= {"forward": 1.0, "backward": 1.0}
+    values = {"G_ref": 0.0, "dT_ref": 35.0, "e": 0.0, "w_ref": W_REF, "c": 0.0}
+    values |= {"forward": 1.0, "backward": 1.0} | ANY_WARMTH
     nets = ((f"{name}.a", a), (f"{name}.b", b), (f"{name}.reading", "carrier.reading"))
     return (PartSpec(name, "ExtraConductor", values),), nets
 

@@ -5,11 +5,11 @@ from .forms import OIL_SHARE_TEETH, THRESHOLDS, extra_part, extra_values
 
 PARTS, NETS = extra_part("extra_starvation", "gears")
 #: Ways in which it sets in, and upper ends of their shares of the prior.
-KINDS, ENDS = ("", "T+", "w+", "w-"), (0.4, 0.7, 0.85, 1.0)
+KINDS, ENDS = ("", "film-", "w+"), (0.45, 0.9, 1.0)
 
 
 def onset(theta: Theta) -> tuple[str, float] | None:
-    """Where it sets in: nowhere but by its exponents, or above a speed, above a temperature or below a speed."""
+    """Where it sets in: nowhere but by its exponents, below a speed times viscosity, or above a speed."""
     kind = KINDS[sum(theta["onset"] > end for end in ENDS)]
     if not kind:
         return None
@@ -19,7 +19,7 @@ def onset(theta: Theta) -> tuple[str, float] | None:
 
 CAUSE = Cause(
     id="losses.film_starvation",
-    doc="A loss under load that grows where films are thin: slow, hot, or beyond a temperature or speed.",
+    doc="A loss under load that grows where films are thin: slow and hot, or so fast that they are starved.",
     size=Size("P_ref", "W", "loss at 200 rpm, 75 cSt and 2000 N.m, where it acts", 60.0, 0.0, 600.0),
     shapes=(
         Shape("a", "1", "exponent of the speed", 0.0, 1.6, 0.5, 0.4),
@@ -29,7 +29,7 @@ CAUSE = Cause(
         Shape(
             "onset",
             "1",
-            "how it sets in: by its exponents, above a temperature, above or below a speed",
+            "how it sets in: by its exponents, below a speed times viscosity, above a speed",
             0.0,
             1.0,
             ends=ENDS,
