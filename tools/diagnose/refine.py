@@ -97,13 +97,15 @@ class Refiner:
         white = White.of(back.residual, back.covariance)
         own = [f.seen(white) for f in near.values()]
         if len(own) == 1:
-            logs = own[0].log_bf()
-            best: tuple[int, ...] = (own[0].best(),)
-            theta = {own[0].cause.id: own[0].theta(best[0], float(own[0].sizes()[0][best[0]]))}
+            (f,) = own
+            logs = f.log_bf()
+            best: tuple[int, ...] = (f.best(),)
+            theta = {f.cause.id: f.theta(best[0], float(f.sizes()[0][best[0]]))}
         else:
-            logs = pair_evidence(*own)[1] - own[0].log_w[:, None] - own[1].log_w
+            f, g = own
+            logs = pair_evidence(f, g)[1] - f.log_w[:, None] - g.log_w
             best = best_pair(logs)
-            theta = pair_theta(*own, *best)
+            theta = pair_theta(f, g, *best)
         if logs[best] < logs[(0,) * len(own)] + PROMISED:
             return None
         start = {
