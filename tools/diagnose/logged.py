@@ -28,8 +28,7 @@ AS_STATED = 0.03
 class Sampled:
     """What the series says of one half: dwell as logged and interval of the samples [s], temperatures [K] at places.
 
-    `weights` (k, n) make the values at k places of n groups of `count` samples, which were taken around shares `when` of
-    the dwell.
+    `weights` (k, n) make the values at k places of n groups of `count` samples around shares `when` of the dwell.
     """
 
     half: int
