@@ -126,7 +126,7 @@ def test_convection_changes_no_radiation_and_of_the_foundation_less_is_unknown()
     assert values["cooling.A"] * values["cooling.emissivity"] == pytest.approx(0.35)
     radiating = parameters.values(np.array([0.0, 1.0]))
     assert radiating == pytest.approx({"cooling.A": 0.5, "cooling.emissivity": 0.7 * np.exp(0.05)})
-    assert parameters.values(np.array([-9.0, 0.0]))["cooling.emissivity"] == 1.0
+    assert parameters.values(np.array([-9.0, 0.0]))["cooling.emissivity"] > 1.0  # over the area that convects
     assert Parameters.of(base, card, wide=False).sd["foundation"] == pytest.approx(0.04)
 
 

@@ -15,6 +15,7 @@ from ..settings import DIAGNOSED
 from . import words
 from .findings import Findings
 from .inputs import Inputs
+from .superset import EFFECTIVE
 
 #: Names of the parts that causes add, here and in the extended rig: a found part can be joined by that of a new search.
 ADDED, FOUND = "extra_", "found_"
@@ -36,6 +37,7 @@ def extended(inputs: Inputs, findings: Findings) -> Extension:
     own = _own_oil(inputs)
     calibrated = findings.nominal if hypothesis is None else findings.extended
     values = {path: float(value) for path, value in calibrated.items() if path in known}
+    values[EFFECTIVE] = min(values[EFFECTIVE], 1.0)  # a rig file holds what a surface can do
     rig = rig.with_values(own, f"inferred: the oil of {inputs.data.name}")
     rig = rig.with_values(values, f"calibrated: diagnosis of {inputs.data.name}")
     outside: tuple[str, ...] = ()

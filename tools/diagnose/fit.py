@@ -17,8 +17,8 @@ from ...model.errors import SolveError
 from ..effects.cause import Cause, Theta
 from .problem import Linear, Problem
 
-#: Steps at most, tries of each with more damping (Levenberg and Marquardt), and the change below which they end.
-STEPS, TRIES, SETTLED = 10, 4, 0.05
+#: Steps at most, and tries of each with more damping (Levenberg and Marquardt).
+STEPS, TRIES = 10, 4
 #: Length of a step of a nuisance, a size and a shape.
 LONGEST = {"z": 1.5, "size": 0.75, "shape": 0.8}
 #: A step that gains less than this in log likelihood is the last.
@@ -130,9 +130,9 @@ class _Fitting:
                 damping = max(5 * damping, 0.3)
             else:
                 break
-            moved, gained, damping = float(np.abs(new - self.x).max()), cost - value, damping / 5
+            gained, damping = cost - value, damping / 5
             self.x, cost, (shown, J, H) = new, value, found
-            if moved < SETTLED or gained < LITTLE:
+            if gained < LITTLE:
                 break
         theta = self.theta(self.x)
         sizes = {c.id: theta[c.id][c.size.name] for c in self.causes}

@@ -24,6 +24,7 @@ from .nuisance import Channels, Parameters, instrument_covariance
 from .problem import Campaigned, Linear, Problem, remainder
 from .search import DRAWS, Search
 from .split import certified
+from .superset import EFFECTIVE
 from .weigh import SHOWN, confusable, joints, named, outside, p_adequacy, with_outside
 from .words import ADEQUATE
 
@@ -191,6 +192,7 @@ def played(search: Search, h: Hypothesis) -> dict[str, tuple[float, float]]:
     for cause in (CAUSES[name] for name in h.causes):
         changed = of_machine(cause, {**base, **values}, h.theta[cause.id], parts)
         values |= {path: value for path, value in changed.items() if path not in own}
+    values[EFFECTIVE] = min(values[EFFECTIVE], 1.0)
     extended = c.channels.stack(c.model.simulate([values])[0])
     nominal, channels = search.null.nominal[problem.place(c)], c.channels
     left = [(n, channels.part(n)) for n in ("T_oil", "T_wall", "loss") if n in channels.names]

@@ -74,10 +74,7 @@ class Parameters:
         for name, number in zip(self.sd, z, strict=True):
             for path, exponent in GROUPS[name].paths.items():
                 logs[path] = logs.get(path, 0.0) + exponent * self.sd[name] * float(number)
-        changed = {path: self.base[path] * math.exp(log) for path, log in logs.items()}
-        if "cooling.emissivity" in changed:
-            changed["cooling.emissivity"] = min(changed["cooling.emissivity"], 1.0)
-        return changed
+        return {path: self.base[path] * math.exp(log) for path, log in logs.items()}
 
 
 def day_values(base: Mapping[str, float], size: float) -> dict[str, Any]:

@@ -22,8 +22,6 @@ from .together import evidence_of
 
 #: Shares of the first look's sizes at which a fit begins, until one can be run.
 SHARES = (1.0, 0.5, 0.2)
-#: Half the squared misfit per reading from which a fit is repeated with slopes taken where it ended.
-POOR = 0.7
 #: Standard deviations of what a form of the library leaves of a true effect, as shares of it, and their probabilities.
 FORM = {0.01: 0.25, 0.03: 0.25, 0.06: 0.25, 0.12: 0.18, 0.24: 0.07}
 #: Forms at which fits begin: how many, how much worse than the best at the first look, how far apart in the share of
@@ -32,8 +30,9 @@ MANY, NEXT, APART, BEGUN = 4, 40.0, 0.2, 3
 #: Places at which thresholds are tried when a fit has ended, how many of the best it begins again from, and shares of
 #: shapes that are the same.
 SCAN, RETRIED, NEARBY = np.linspace(0.05, 0.95, 13), 3, 0.1
-#: A fit is begun again so often at most, where a form drawn around it promises so much more and the fit keeps so much.
-STALLED, PROMISED, KEPT = 2, 5.0, 1.0
+#: A fit goes on so often at most with slopes of the nuisances taken where it ended, and is begun again so often at a form
+#: drawn around it that promises so much more in log likelihood, while it keeps so much of it.
+STALE, STALLED, PROMISED, KEPT = 2, 2, 5.0, 0.5
 
 
 @dataclass(frozen=True)
@@ -78,9 +77,11 @@ class Refiner:
     def _near(self, causes: Sequence[Cause], fit: Fit) -> tuple[Fit, Linear, dict[str, Family]]:
         """A fit, the model linearised there, and forms around it."""
         linear = self.problem.linearised(fit.z, fit.theta, causes)
-        if fit.cost > POOR * len(linear.residual):  # far from where the slopes of the nuisances were taken
-            fit = fitted(self.problem, linear, fit.start)
-            linear = self.problem.linearised(fit.z, fit.theta, causes)
+        for _ in range(STALE):
+            better = fitted(self.problem, linear, fit.start)
+            if better.cost > fit.cost - KEPT:
+                break
+            fit, linear = better, self.problem.linearised(better.z, better.theta, causes)
         samples = []
         for k, c in enumerate(causes):
             samples.append(nearer(c, fit.modes[c.id], sound(fit.theta[c.id][c.size.name], c), self.seed + k))

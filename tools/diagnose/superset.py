@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import casadi as ca
+import numpy as np
 
 from ...model.core.flat import FlatModel, Quantity
 from ...model.machines.spec import Spec
@@ -18,6 +19,8 @@ READ = (
     Quantity("read.missing_forward", "1", "share of the dwell as multiplier that is missing"),
     Quantity("read.missing_backward", "1", "share of the dwell as reducer that is missing"),
 )
+#: Where convection and radiation are told apart, an emissivity over the area that convects: it may exceed 1.
+EFFECTIVE = "cooling.emissivity"
 
 
 def superset(spec: Spec) -> Spec:
@@ -43,7 +46,7 @@ def as_read(flat: FlatModel) -> FlatModel:
     ode, y, residual, supply, throughput, stored, checked = (ca.substitute(e, flat.u, new) for e in expressions)
     return replace(
         flat,
-        parameters=(*flat.parameters, *READ),
+        parameters=(*(replace(q, high=np.inf) if q.name == EFFECTIVE else q for q in flat.parameters), *READ),
         p=ca.vertcat(flat.p, p),
         ode=ode * pace,
         y=y,
