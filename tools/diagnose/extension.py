@@ -37,7 +37,7 @@ def extended(inputs: Inputs, findings: Findings) -> Extension:
     own = _own_oil(inputs)
     calibrated = findings.nominal if hypothesis is None else findings.extended
     values = {path: float(value) for path, value in calibrated.items() if path in known}
-    values[EFFECTIVE] = min(values[EFFECTIVE], 1.0)  # a rig file holds what a surface can do
+    values |= {path: min(values[path], 1.0) for path in (EFFECTIVE,) if path in values}  # what a surface can do
     rig = rig.with_values(own, f"inferred: the oil of {inputs.data.name}")
     rig = rig.with_values(values, f"calibrated: diagnosis of {inputs.data.name}")
     outside: tuple[str, ...] = ()

@@ -30,8 +30,8 @@ MANY, NEXT, APART, BEGUN = 4, 40.0, 0.2, 3
 #: Places at which thresholds are tried when a fit has ended, how many of the best it begins again from, and shares of
 #: shapes that are the same.
 SCAN, RETRIED, NEARBY = np.linspace(0.05, 0.95, 13), 3, 0.1
-#: A fit goes on so often at most with slopes of the nuisances taken where it ended, and is begun again so often at a form
-#: drawn around it that promises so much more in log likelihood, while it keeps so much of it.
+#: A fit goes on so often at most with slopes of the nuisances taken where it ended, and is begun again so often at a
+#: form drawn around it that promises so much more in log likelihood; the least gain that counts.
 STALE, STALLED, PROMISED, KEPT = 2, 2, 5.0, 0.5
 
 
