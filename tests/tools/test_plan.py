@@ -220,7 +220,7 @@ def test_a_pair_of_one_class_does_not_hide_the_others(plan):
 
 def test_several_experiments_where_one_is_not_enough(plan):
     found = plan(*WARMING, *TORQUE)
-    assert found.verdict == "none"
+    assert found.verdict == "several"
     assert {e.id for e in found.together[-1].experiments} == {"transients", "tare"}
     assert found.together[-1].smallest > APART > found.together[0].smallest
 
