@@ -70,7 +70,8 @@ def fitted_with_days(search: Search, h: Hypothesis) -> Hypothesis:
     causes = tuple(c for c in h.causes if c != SCATTER)
     theta = {c: h.theta[c] for c in causes}
     size = h.theta[SCATTER]["sd"] if SCATTER in h.theta else 0.0
-    there = Refiner(replace(search.problem, scattered=size), search.null, search.seed, search.prior)
+    null = search.null.with_days(size)
+    there = Refiner(replace(search.problem, scattered=size), null, search.seed, search.prior)
     linear = h.scattered() if size else h.linear
     fit = there.refined(replace(h, causes=causes, theta=theta, linear=linear))
     assert fit.linear is not None
