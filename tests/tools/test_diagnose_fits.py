@@ -8,6 +8,7 @@ from types import SimpleNamespace
 import casadi as ca
 import numpy as np
 import pytest
+from gearheat.model.errors import SolveError
 from gearheat.model.parts.extra import ExtraLoss
 from gearheat.tools.diagnose import refine
 from gearheat.tools.diagnose.card import Card
@@ -15,9 +16,11 @@ from gearheat.tools.diagnose.family import Family
 from gearheat.tools.diagnose.fit import Fit, Mode
 from gearheat.tools.diagnose.hypothesis import Hypothesis
 from gearheat.tools.diagnose.nuisance import Parameters
-from gearheat.tools.diagnose.problem import Linear
+from gearheat.tools.diagnose.problem import Linear, Problem
 from gearheat.tools.diagnose.refine import PROMISED, Refiner
+from gearheat.tools.diagnose.scatter import SCATTER
 from gearheat.tools.diagnose.search import LIFT, OTHERS, Search
+from gearheat.tools.diagnose.several import fitted_with_days
 from gearheat.tools.diagnose.weigh import regime_in_columns
 from gearheat.tools.effects.forms import OPEN, THRESHOLDS
 from gearheat.tools.effects.taxonomy import CAUSES
@@ -60,6 +63,24 @@ def test_a_fit_begins_without_the_scatter_of_what_a_form_leaves():
     assert begun.noise == pytest.approx(null.noise)
     assert begun.covariance == pytest.approx(null.noise + begun.jacobian @ begun.jacobian.T)
     assert begun.causes == (AIR,)
+
+
+def test_a_fit_beside_days_that_differ_begins_with_their_scatter(monkeypatch):
+    null, size = linear(), 0.1
+    begun = []
+
+    def refined(self, h):
+        begun.append(self._from(h).noise)
+        raise SolveError("seen enough")
+
+    monkeypatch.setattr(Refiner, "refined", refined)
+    h = Hypothesis((AIR.id, SCATTER), 0.0, {AIR.id: {}, SCATTER: {"sd": size}}, linear=linear(causes=(AIR,)))
+    toy = Problem.__new__(Problem)
+    toy.__dict__.update(rig=None, campaigns=[], card=None, parameters=None)
+    monkeypatch.setattr(Problem, "__post_init__", lambda self: None)
+    with pytest.raises(SolveError):
+        fitted_with_days(SimpleNamespace(problem=toy, null=null, seed=0, prior=lambda n: 0.0), h)
+    assert begun[0] == pytest.approx(null.noise + size**2 * null.days @ null.days.T)
 
 
 @pytest.mark.parametrize(("after", "kept"), [(3.0, True), (39.5, False), (60.0, False)])
