@@ -12,6 +12,7 @@ from gearheat.model.errors import SolveError
 from gearheat.model.parts.extra import ExtraLoss
 from gearheat.tools.diagnose import refine
 from gearheat.tools.diagnose.card import Card
+from gearheat.tools.diagnose.extension import of_machine
 from gearheat.tools.diagnose.family import Family
 from gearheat.tools.diagnose.fit import Fit, Mode
 from gearheat.tools.diagnose.hypothesis import Hypothesis
@@ -21,6 +22,7 @@ from gearheat.tools.diagnose.refine import PROMISED, Refiner
 from gearheat.tools.diagnose.scatter import SCATTER
 from gearheat.tools.diagnose.search import LIFT, OTHERS, Search
 from gearheat.tools.diagnose.several import fitted_with_days
+from gearheat.tools.diagnose.superset import buildable
 from gearheat.tools.diagnose.weigh import regime_in_columns
 from gearheat.tools.effects.forms import OPEN, THRESHOLDS
 from gearheat.tools.effects.taxonomy import CAUSES
@@ -149,6 +151,14 @@ def test_convection_changes_no_radiation_and_of_the_foundation_less_is_unknown()
     assert radiating == pytest.approx({"cooling.A": 0.5, "cooling.emissivity": 0.7 * np.exp(0.05)})
     assert parameters.values(np.array([-9.0, 0.0]))["cooling.emissivity"] > 1.0  # over the area that convects
     assert Parameters.of(base, card, wide=False).sd["foundation"] == pytest.approx(0.04)
+
+
+@pytest.mark.parametrize(("calibrated", "factor", "written"), [(1.2, -0.3, 0.7), (0.95, 0.1, 1.0), (0.8, 0.1, 0.88)])
+def test_a_rig_file_holds_no_surface_that_radiates_more_than_a_black_one(calibrated, factor, written):
+    base = buildable({"cooling.emissivity": calibrated, "cooling.A": 1.3})
+    assert base["cooling.A"] == 1.3 and base["cooling.emissivity"] <= 1.0
+    changed = of_machine(CAUSES["cooling.emissivity"], base, {"factor": factor}, {"cooling"})
+    assert changed == pytest.approx({"cooling.emissivity": written})
 
 
 def test_thin_films_set_in_below_a_speed_times_viscosity():

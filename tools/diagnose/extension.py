@@ -15,7 +15,7 @@ from ..settings import DIAGNOSED
 from . import words
 from .findings import Findings
 from .inputs import Inputs
-from .superset import EFFECTIVE
+from .superset import buildable
 
 #: Names of the parts that causes add, here and in the extended rig: a found part can be joined by that of a new search.
 ADDED, FOUND = "extra_", "found_"
@@ -36,8 +36,7 @@ def extended(inputs: Inputs, findings: Findings) -> Extension:
     known = {f"{part.name}.{key}" for part in rig.spec.parts for key in part.values}
     own = _own_oil(inputs)
     calibrated = findings.nominal if hypothesis is None else findings.extended
-    values = {path: float(value) for path, value in calibrated.items() if path in known}
-    values |= {path: min(values[path], 1.0) for path in (EFFECTIVE,) if path in values}  # what a surface can do
+    values = {path: float(value) for path, value in buildable(calibrated).items() if path in known}
     rig = rig.with_values(own, f"inferred: the oil of {inputs.data.name}")
     rig = rig.with_values(values, f"calibrated: diagnosis of {inputs.data.name}")
     outside: tuple[str, ...] = ()
@@ -114,7 +113,8 @@ def _added(
 
 def of_machine(cause: Cause, base: Mapping[str, float], theta: Theta, parts: Collection[str]) -> dict[str, Any]:
     """What a cause changes in a machine with such parts: nothing that depends on the test, nothing of instruments."""
-    return {path: v for path, v in cause.values(base, theta, None).items() if path.rpartition(".")[0] in parts}
+    changed = buildable(cause.values(base, theta, None))
+    return {path: v for path, v in changed.items() if path.rpartition(".")[0] in parts}
 
 
 def _renamed(path: str, names: Mapping[str, str]) -> str:

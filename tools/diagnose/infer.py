@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
@@ -24,7 +23,7 @@ from .nuisance import Channels, Parameters, instrument_covariance
 from .problem import Campaigned, Linear, Problem, remainder
 from .search import DRAWS, Search
 from .split import certified
-from .superset import EFFECTIVE
+from .superset import buildable
 from .weigh import SHOWN, confusable, joints, named, outside, p_adequacy, with_outside
 from .words import ADEQUATE
 
@@ -188,11 +187,10 @@ def played(search: Search, h: Hypothesis) -> dict[str, tuple[float, float]]:
     base, several = problem.rig.base, len({test.oil for test in c.model.tests}) > 1
     parts = {path.rpartition(".")[0] for path in base} - {"read"}
     own: set[str] = set().union(*c.model.oils) if several else set()
-    values: dict[str, Any] = dict((h.linear or search.null).values)
+    values = buildable((h.linear or search.null).values)
     for cause in (CAUSES[name] for name in h.causes):
         changed = of_machine(cause, {**base, **values}, h.theta[cause.id], parts)
         values |= {path: value for path, value in changed.items() if path not in own}
-    values[EFFECTIVE] = min(values[EFFECTIVE], 1.0)
     extended = c.channels.stack(c.model.simulate([values])[0])
     nominal, channels = search.null.nominal[problem.place(c)], c.channels
     left = [(n, channels.part(n)) for n in ("T_oil", "T_wall", "loss") if n in channels.names]

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -21,6 +23,11 @@ READ = (
 )
 #: Where convection and radiation are told apart, an emissivity over the area that convects: it may exceed 1.
 EFFECTIVE = "cooling.emissivity"
+
+
+def buildable(values: Mapping[str, Any]) -> dict[str, Any]:
+    """Values of a machine as a rig file can hold them: no surface radiates more than a black one."""
+    return {path: np.minimum(v, 1.0) if path == EFFECTIVE else v for path, v in values.items()}
 
 
 def superset(spec: Spec) -> Spec:
