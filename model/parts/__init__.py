@@ -3,7 +3,7 @@
 from ..core.component import Component
 from .bearings import DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
-from .extra import ExtraConductor, ExtraLoss
+from .extra import ExtraConductor, ExtraHeat, ExtraLoss
 from .gears import HelicalGearPair, PlanetarySet, ShaftSupport, TwoGearSupport
 from .lubrication import Grease, OilBath
 from .sealing import LipSeal
@@ -46,6 +46,7 @@ PARTS: dict[str, type[Component]] = {
         CylinderCooling,
         FinnedBoxCooling,
         Room,
+        ExtraHeat,
         ExtraLoss,
         ExtraConductor,
     )

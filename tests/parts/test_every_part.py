@@ -23,6 +23,9 @@ TEETH = dict(z_1=36.0, z_2=36.0, m_n=0.002, alpha_n=math.radians(20), beta=math.
 TEETH |= dict(Ra=6e-7, k_mu=1.044, E=2.06e11, poisson=0.3)
 SURFACE = dict(A=0.8, emissivity=0.9)
 BOX = SURFACE | dict(height=0.3, length=0.4, width=0.2, share_top=0.2, share_bottom=0.2)
+EXTRA = dict(P_ref=50.0, w_ref=20.0, nu_ref=7e-5, tau_ref=2000.0, a=2.0, b=0.2, c=0.5, forward=1.0, backward=0.5)
+EXTRA |= dict(w_on=10.0, w_side=1.0, w_width=0.5, tau_on=-1e4, tau_side=1.0, tau_width=60.0)
+EXTRA |= dict(T_on=340.0, T_side=-1.0, T_width=1.5, film_on=2e-3, oil_share=0.8)
 SUPPORT = dict(span=0.1, x=0.04, r=0.05, axial_share_a=1.0)
 
 #: Values of one plausible example of every part.
@@ -53,20 +56,8 @@ EXAMPLES: dict[str, dict] = {
     "CylinderCooling": SURFACE | dict(D=0.3, share_ends=0.33),
     "FinnedBoxCooling": BOX | dict(A_fins=0.5, fin_height=0.03, fin_thickness=0.004, k_fin=50.0),
     "Room": {},
-    "ExtraLoss": dict(
-        P_ref=50.0, w_ref=20.0, nu_ref=7e-5, tau_ref=2000.0, a=2.0, b=0.2, c=0.5, forward=1.0, backward=0.5
-    )
-    | dict(
-        w_on=10.0,
-        w_side=1.0,
-        tau_on=-1e4,
-        tau_side=1.0,
-        T_on=340.0,
-        T_side=-1.0,
-        T_width=1.5,
-        film_on=2e-3,
-        oil_share=0.8,
-    ),
+    "ExtraLoss": EXTRA,
+    "ExtraHeat": EXTRA | dict(wall_share=0.3, inside_share=0.2),
     "ExtraConductor": dict(G_ref=2.0, dT_ref=35.0, e=0.3, w_ref=20.0, c=0.5, T_on=330.0, T_side=1.0, T_width=1.5)
     | dict(forward=1.0, backward=0.5),
 }
@@ -127,7 +118,7 @@ LOSSES = ("part.P_loss", "part.P_loss_sp", "part.P_loss_pr", "part.P")
 #: Each kind once, gears and bearings under each of their choices.
 CASES = [(kind, {}) for kind in PARTS] + [("PlanetarySet", {"power_flow": "ideal"}), ("Inertia", {"dynamic": False})]
 CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath", "axially_loaded")]
-CASES += [("TaperedRollerBearing", {"oil_bath": False}), ("ExtraLoss", {"braking": False})]
+CASES += [("TaperedRollerBearing", {"oil_bath": False})]
 _flat: dict = {}
 
 

@@ -24,7 +24,7 @@ from gearheat.tools.diagnose.search import LIFT, OTHERS, Search
 from gearheat.tools.diagnose.several import fitted_with_days
 from gearheat.tools.diagnose.superset import buildable
 from gearheat.tools.diagnose.weigh import regime_in_columns
-from gearheat.tools.effects.forms import OPEN, THRESHOLDS
+from gearheat.tools.effects.forms import OPEN, THRESHOLDS, USUAL
 from gearheat.tools.effects.taxonomy import CAUSES
 
 #: Readings of the made-up problems.
@@ -187,15 +187,17 @@ def test_a_loss_of_thin_films_fades_where_films_are_thick(film, weight):
     assert float(ca.DM(loss._regime())) == pytest.approx(weight, abs=0.01)
 
 
-@pytest.mark.parametrize("cause", [c for c in CAUSES.values() if any(s.name == "T_width" for s in c.shapes)])
-def test_a_threshold_of_warmth_is_as_gradual_as_the_form_says(cause):
-    shares = np.full(len(cause.shapes), 0.5)
-    seen = {}
+@pytest.mark.parametrize("cause", [c for c in CAUSES.values() if any(s.name == "width" for s in c.shapes)])
+def test_a_threshold_is_as_gradual_as_the_form_says(cause):
+    shares = np.full(len(cause.shapes), 0.6)
     for share in np.linspace(0.01, 0.99, 99):
         shares[cause.choice] = share
         (form,) = cause.forms(shares[None])
         acts = cause.acts(form)
-        (width,) = {v for k, v in cause.values({}, {**form, cause.size.name: 1.0}, None).items() if "T_width" in k}
-        seen[acts[0] if acts else ""] = width == pytest.approx(form["T_width"])
-    assert {name for name, follows in seen.items() if follows} >= {"T+", "T-"}
-    assert not seen[""]
+        quantity = acts[0][:-1] if acts else ""
+        values = cause.values({}, {**form, cause.size.name: 1.0}, None).items()
+        widths = {k.rpartition(".")[2]: v for k, v in values if k.endswith("_width")}
+        for name, usual in USUAL.items():
+            if f"{name}_width" in widths:
+                gradual = form["width"] if name == quantity else 1.0
+                assert widths[f"{name}_width"] == pytest.approx(usual * gradual)

@@ -27,10 +27,9 @@ SHARES: Mapping[str, int] = {
 }
 BLOCK = sum(SHARES.values())
 
-#: Band of signal-to-noise by sheet; a pair's parts must each keep `APART` where the other may take any size.
+#: Band of signal-to-noise by sheet; of a pair's parts, where the other acts and may have any size.
 BANDS: Mapping[str, tuple[float, float]] = {"own": (5.0, 40.0), "foreign": (5.0, 60.0)}
 WEAK = (0.7, 2.4)
-APART = 4.0
 
 #: Least distance to the nearest rival of what must be told by its name, and largest one of what cannot be [sigma].
 APART_FROM_RIVALS, ALIKE = 3.0, 2.5
@@ -185,25 +184,37 @@ def _sized(effect: Effect, band: tuple[float, float], yard: Yardstick, rng: np.r
 
 
 def _pair(names: Iterator[str], choice: Choice) -> list[Hidden]:
-    """Two causes of different classes, each loud, each loud beside any amount of the other, each far from others."""
+    """Two causes of different classes, each as loud and as far from rivals beside the other as if it were alone."""
     first: Hidden | None = None
     for name in names:
+        if first and _related(first.effect.cause, name):
+            continue
         found = _single(name, choice, [first.effect.cause] if first else [])
         if found is None:
             continue
         if first is None:
             first = found
-        elif _apart([first, found], choice.yard):
-            return [first, found]
+        else:
+            both = [_beside(first, found, choice), _beside(found, first, choice)]
+            if None not in both:
+                return [part for part in both if part]
     raise LookupError("no two causes that can be told apart")
 
 
-def _apart(parts: Sequence[Hidden], yard: Yardstick) -> bool:
-    """Whether two effects are of different classes and instruments, and neither could stand for the other."""
-    names = [merged(part.effect.cause) for part in parts]
-    stems = [name.rpartition(".")[0] for name in names]
-    if names[0] == names[1] or (stems[0] == stems[1] and stems[0].startswith("sensor")):
-        return False
-    a, b = (yard.whitened(yard.signatures(p.effect, np.array([p.amplitude])))[:, 0] for p in parts)
-    left = [np.linalg.norm(x - y * (x @ y) / (y @ y)) for x, y in ((a, b), (b, a))]
-    return bool(min(left) >= APART)
+def _related(a: str, b: str) -> bool:
+    """Whether two causes are of one class or one instrument."""
+    stems = [name.rpartition(".")[0] for name in (a, b)]
+    return merged(a) == merged(b) or (stems[0] == stems[1] and stems[0].startswith("sensor"))
+
+
+def _beside(part: Hidden, other: Hidden, choice: Choice) -> Hidden | None:
+    """The part, as loud as it is where the other one acts; None where it is too quiet or a rival is near.
+
+    Rivals are all other causes beside the other one of whatever size, and that one in another form.
+    """
+    yard = choice.yard.beside(other.effect, other.amplitude)
+    snr = yard.snr(part.effect, part.amplitude)
+    if not choice.band[0] <= snr <= 1.1 * choice.band[1]:
+        return None
+    rival = choice.rivals.seen_by(yard).nearest(part.effect, part.amplitude, enough=APART_FROM_RIVALS)
+    return replace(part, snr=snr, rival=rival) if rival.distance >= APART_FROM_RIVALS else None

@@ -72,9 +72,13 @@ class Rivals:
     """
 
     def __init__(self, yard: Yardstick, around: Surroundings, *, humidity: bool, seed: Sequence[int]) -> None:
-        self._yard, self._around, self._seed = yard, around, tuple(seed)
+        self._yard, self._around, self._humidity, self._seed = yard, around, humidity, tuple(seed)
         self._causes = [(i, c) for i, c in enumerate(CAUSES) if humidity or c != "cooling.humidity"]
         self._clock = CLOCK if yard.campaign.series else COARSE
+
+    def seen_by(self, yard: Yardstick) -> Rivals:
+        """The same rivals, by another yardstick."""
+        return Rivals(yard, self._around, humidity=self._humidity, seed=self._seed)
 
     @cached_property
     def _kinds(self) -> list[list[tuple[Form, float]]]:

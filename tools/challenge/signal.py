@@ -16,7 +16,8 @@ differences; Sigma is its variance:
 - with a reference campaign, a smooth remainder that no parameter removes: a quadratic of speed and load and a line in
   the room's temperature for every direction, in oil, wall and loss (`REMAINDER_SD`), the same in both campaigns;
 - true speed, torque and room temperature of every half, practically free: they are known by their readings only, so
-  a fault of such an instrument shows in what does not follow.
+  a fault of such an instrument shows in what does not follow;
+- beside another hidden effect, the size of that one, practically free.
 
 A reference campaign adds its own readings, in which the signature is zero, and its own days and conditions; parameters
 and tolerances are shared. The samples of a series are given the noise of the mean over the samples they stand for.
@@ -34,7 +35,7 @@ from scipy.linalg import block_diag, solve_triangular
 from .card import DAY_COOLING_SD, PRIOR_FACTORS, PRIOR_SD, Instruments, scaled, tiled
 from .hidden import Effect, side_by_side
 from .plan import Plan
-from .rig import CLOCK, Rig, Run, misread, simulate
+from .rig import CLOCK, Acting, Rig, Run, misread, simulate
 from .stepping import Clock
 
 WIDE_SD = 0.4
@@ -47,6 +48,9 @@ OBVIOUS = 35.0
 
 #: Practically free: true speed [rpm], torque [N.m] and room [K] of a half.
 FREE = {"n": 300.0, "load": 3000.0, "room": 100.0}
+
+#: A step of the size of another effect, and how uncertain it is, both over that size.
+RESIZED, ANY_SIZE = 0.05, 10.0
 
 #: Shares of the steps of both halves at which a series counts, and how many of its samples each stands for.
 MOMENTS = 8
@@ -106,10 +110,17 @@ class _Block:
     sd: np.ndarray
 
 
-def _block(rig: Rig, campaign: Campaign, instruments: Instruments, prior: Mapping[str, float], wide: bool) -> _Block:
+def _block(
+    rig: Rig,
+    campaign: Campaign,
+    instruments: Instruments,
+    prior: Mapping[str, float],
+    wide: bool,
+    beside: tuple[Effect, float] | None = None,
+) -> _Block:
     """Sensitivities by differences, all in one run of many copies; `wide` for a rig that is not the model."""
     plan, eps = campaign.plan, 0.05
-    m, copies = plan.columns, 2 + len(prior) + 6
+    m, copies = plan.columns, 3 + len(prior) + 6
     big, base = plan.tiled(copies), tiled(campaign.base, copies)
 
     def only(copy: int, size: float) -> np.ndarray:
@@ -131,7 +142,8 @@ def _block(rig: Rig, campaign: Campaign, instruments: Instruments, prior: Mappin
     for i, (name, which, size) in enumerate(moves):
         for row in which:
             getattr(big, name)[row] += only(day + 1 + i, size)
-    y = _readings(simulate(rig, big, base, series=campaign.series), instruments, campaign, copies)
+    acting: list[Acting] = [(beside[0], beside[1] * (1 + only(copies - 1, RESIZED)))] if beside else []
+    y = _readings(simulate(rig, big, base, acting, series=campaign.series), instruments, campaign, copies)
     change = y[1:] - y[:1]
     rows, sd = _labels(instruments, campaign.series)
     shared = [change[i].ravel() / eps * s for i, s in enumerate(prior.values())]
@@ -140,6 +152,7 @@ def _block(rig: Rig, campaign: Campaign, instruments: Instruments, prior: Mappin
     locals_ += [(change[day + i] / size, FREE[name]) for i, (name, _, size) in enumerate(moves)]
     if wide:
         shared += _remainder(plan, rows, campaign.series)
+    shared.append(change[-1].ravel() / RESIZED * ANY_SIZE)
     local = [_per_test(effect * s) for effect, s in locals_]
     return _Block(y[0], np.array(shared).T, np.concatenate(local, axis=1), np.repeat(sd, m))
 
@@ -166,19 +179,39 @@ def _per_test(effect: np.ndarray) -> np.ndarray:
 
 
 class Yardstick:
-    """Signal-to-noise of effects in one campaign."""
+    """Signal-to-noise of effects in one campaign.
 
-    def __init__(self, rig: Rig, campaign: Campaign, instruments: Instruments, reference: Campaign | None) -> None:
+    Args:
+        rig, campaign, instruments: that show them
+        reference: the healthy campaign, if there is one
+        beside: another effect that acts as well, and about how much of it
+    """
+
+    def __init__(
+        self,
+        rig: Rig,
+        campaign: Campaign,
+        instruments: Instruments,
+        reference: Campaign | None,
+        beside: tuple[Effect, float] | None = None,
+    ) -> None:
         self.rig, self.campaign, self.instruments = rig, campaign, instruments
+        self._reference, self._other = reference, beside
         prior = dict(PRIOR_SD) if reference is None else dict.fromkeys(PRIOR_SD, WIDE_SD)
         wide = reference is not None
-        blocks = [_block(rig, c, instruments, prior, wide) for c in (campaign, reference) if c is not None]
+        blocks = [_block(rig, campaign, instruments, prior, wide, beside)]
+        if reference is not None:
+            blocks.append(_block(rig, reference, instruments, prior, wide))
         self._quiet = blocks[0].quiet
         J = np.hstack([np.vstack([b.shared for b in blocks]), block_diag(*(b.local for b in blocks))])
         S = J @ J.T
         S[np.diag_indices_from(S)] += np.concatenate([b.sd for b in blocks]) ** 2
         self._root = np.linalg.cholesky(S)
         self._runs: dict[Clock, Run] = {}
+
+    def beside(self, effect: Effect, amplitude: float) -> Yardstick:
+        """The same where another effect acts, too, the size of which nobody knows."""
+        return Yardstick(self.rig, self.campaign, self.instruments, self._reference, (effect, amplitude))
 
     @property
     def oil(self) -> np.ndarray:
@@ -196,7 +229,7 @@ class Yardstick:
             if effect.act is None and effect.pace is None:
                 run = misread(quiet, effect, amounts)
             else:
-                acting = [(effect, amounts)]
+                acting = [(effect, amounts), *self._others(len(amounts))]
                 run = simulate(self.rig, plan, base, acting, series=self.campaign.series, clock=clock)
             shown = _readings(run, self.instruments, self.campaign, copies)
             change: np.ndarray = shown - _readings(quiet, self.instruments, self.campaign, 1)
@@ -218,11 +251,16 @@ class Yardstick:
         return found
 
     def _without_effect(self, clock: Clock) -> Run:
-        """The campaign without effect."""
+        """The campaign without the effects that are looked at."""
         if clock not in self._runs:
-            campaign = self.campaign
-            self._runs[clock] = simulate(self.rig, campaign.plan, campaign.base, series=campaign.series, clock=clock)
+            plan, base, series = self.campaign.plan, self.campaign.base, self.campaign.series
+            others = self._others(plan.columns)
+            self._runs[clock] = simulate(self.rig, plan, base, others, series=series, clock=clock)
         return self._runs[clock]
+
+    def _others(self, columns: int) -> list[Acting]:
+        """What acts whatever effect is looked at."""
+        return [(self._other[0], np.full(columns, self._other[1]))] if self._other else []
 
     def whitened(self, signatures: np.ndarray) -> np.ndarray:
         """Whitened signatures (rows of all campaigns, amplitudes)."""

@@ -14,6 +14,7 @@ from ..effects.taxonomy import CAUSES
 from ..settings import DIAGNOSED
 from . import words
 from .findings import Findings
+from .habit import HABIT, POWER
 from .inputs import Inputs
 from .superset import buildable
 
@@ -38,7 +39,10 @@ def extended(inputs: Inputs, findings: Findings) -> Extension:
     calibrated = findings.nominal if hypothesis is None else findings.extended
     values = {path: float(value) for path, value in buildable(calibrated).items() if path in known}
     rig = rig.with_values(own, f"inferred: the oil of {inputs.data.name}")
-    rig = rig.with_values(values, f"calibrated: diagnosis of {inputs.data.name}")
+    source = f"calibrated: diagnosis of {inputs.data.name}"
+    rig = rig.with_values(values, source)
+    if power := calibrated.get(POWER):
+        rig, _ = _added(rig, HABIT, {HABIT.size.name: float(power)}, source, keep_oil=False)
     outside: tuple[str, ...] = ()
     for cause, theta in _causes(findings):
         rig, left = _added(
@@ -105,7 +109,7 @@ def _added(
     spec = _with_parts(scenario.spec, cause, names)
     own = {f"{part.name}.{key}": value for part in cause.parts for key, value in part.values.items()} | changed
     values = {_renamed(path, names): value for path, value in own.items()}
-    lossy = [names[part.name] for part in cause.parts if part.values.get("braking")]
+    lossy = [names[part.name] for part in cause.parts if part.type == "ExtraLoss"]
     losses = {**scenario.losses, **{f"P_{name}_W": (f"{name}.P",) for name in lossy}}
     extended = replace(scenario, spec=spec, losses=losses).with_values(values, source)
     return extended, (f"{said} For the other oils of the data.",) if several else ()

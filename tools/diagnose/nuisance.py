@@ -15,19 +15,21 @@ import numpy as np
 
 from ..effects.cause import Rows
 from .card import Card
+from .habit import HABIT, POWER
 
 
 @dataclass(frozen=True)
 class Group:
     """Parameters that change together: path -> exponent, key of the card's priors, wide standard deviation.
 
-    `share` is that of the key's standard deviation which the group has.
+    `share` is that of the key's standard deviation which the group has. What is zero in a rig is `added` to it.
     """
 
     paths: Mapping[str, float]
     key: str
     wide: float
     share: float = 1.0
+    added: bool = False
 
     @staticmethod
     def of(key: str, wide: float, *paths: str) -> Group:
@@ -35,7 +37,8 @@ class Group:
         return Group(dict.fromkeys(paths, 1.0), key, wide)
 
 
-#: All groups by name. Convection is an area that radiates no more for it; of the foundation the card says nothing.
+#: All groups by name. Convection is an area that radiates no more for it; of the foundation the card says nothing, and
+#: of friction in thin films only a reference campaign tells.
 GROUPS: Mapping[str, Group] = {
     "mesh friction": Group.of("mu", 0.4, "gear_set.k_mu"),
     "bearing loss": Group.of("brg", 0.4, "carrier_bearing.count", "sun_bearing.count", "planet_bearing.count"),
@@ -48,6 +51,7 @@ GROUPS: Mapping[str, Group] = {
     "capacities inside": Group.of("cap", 0.5, "gears.C", "carrier_body.C"),
     "foundation": Group({"foot.G": 1.0}, "hconv", 0.7, 0.5),
     "convection": Group({"cooling.A": 1.0, "cooling.emissivity": -1.0}, "hconv", 0.6),
+    HABIT.id: Group({POWER: 1.0}, "mu", HABIT.size.sd, 0.0, added=True),
 }
 
 
@@ -61,7 +65,8 @@ class Parameters:
     @staticmethod
     def of(base: Mapping[str, float], card: Card, *, wide: bool) -> Parameters:
         """From the rig's values and the card."""
-        return Parameters(base, {name: (g.wide if wide else g.share * card.prior(g.key)) for name, g in GROUPS.items()})
+        sd = {name: (g.wide if wide else g.share * card.prior(g.key)) for name, g in GROUPS.items()}
+        return Parameters(base, {name: sd[name] for name, g in GROUPS.items() if wide or g.share})
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -71,10 +76,12 @@ class Parameters:
     def values(self, z: np.ndarray) -> dict[str, float]:
         """Changed values by path."""
         logs: dict[str, float] = {}
+        added: dict[str, float] = {}
         for name, number in zip(self.sd, z, strict=True):
+            changes = added if GROUPS[name].added else logs
             for path, exponent in GROUPS[name].paths.items():
-                logs[path] = logs.get(path, 0.0) + exponent * self.sd[name] * float(number)
-        return {path: self.base[path] * math.exp(log) for path, log in logs.items()}
+                changes[path] = changes.get(path, 0.0) + exponent * self.sd[name] * float(number)
+        return {path: self.base[path] * math.exp(log) for path, log in logs.items()} | added
 
 
 def day_values(base: Mapping[str, float], size: float) -> dict[str, Any]:

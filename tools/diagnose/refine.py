@@ -33,6 +33,8 @@ SCAN, RETRIED, NEARBY = np.linspace(0.05, 0.95, 13), 3, 0.1
 #: A fit goes on so often at most with slopes of the nuisances taken where it ended, and is begun again so often at a
 #: form drawn around it that promises so much more in log likelihood; the least gain that counts.
 STALE, STALLED, PROMISED, KEPT = 2, 2, 5.0, 0.5
+#: What a second cause costs, about, where its evidence is not known yet.
+OCCAM = 5.0
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,28 @@ class Refiner:
         found, back = views[int(np.argmax(logs))]
         value = float(logsumexp(logs)) + self.prior(len(causes))
         return replace(h, log_posterior=value, theta=theta, families=found, linear=back)
+
+    def from_afar(self, h: Hypothesis, alone: Hypothesis) -> Hypothesis:
+        """A pair with a cause far from linear, begun also where a short fit from a far size ends, if that promises.
+
+        Args:
+            h: the pair, as a first look beside a fitted cause shows it
+            alone: the fitted cause
+        """
+        tried = []
+        for f in h.families:
+            if f.cause.size.far is None or f.cause.id in alone.causes:
+                continue
+            for far in (-f.cause.size.far, f.cause.size.far):
+                if f.cause.size.low <= far <= f.cause.size.high:
+                    with suppress(SolveError):
+                        start = {**h.begin, f.cause.id: (h.begin[f.cause.id][0], far)}
+                        tried.append(self._fitted(h, start, steps=BEGUN))
+        if not tried or alone.linear is None:
+            return h
+        best, base = min(tried, key=lambda fit: fit.cost), self._fitted(alone, alone.begin, alone.linear.z, steps=1)
+        value = alone.log_posterior + base.cost - best.cost - OCCAM + self.prior(2) - self.prior(1)
+        return h if value < h.log_posterior else replace(h, log_posterior=value, also=(*h.also, best.start))
 
     def _near(self, causes: Sequence[Cause], fit: Fit) -> tuple[Fit, Linear, dict[str, Family]]:
         """A fit, the model linearised there, and forms around it."""

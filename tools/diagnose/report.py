@@ -16,6 +16,7 @@ from ..report import html_table
 from . import pictures, words
 from .card import DEFAULTS, PRIOR
 from .findings import Findings, Named
+from .habit import HABIT, POWER
 from .inputs import Inputs
 
 #: Causes drawn as bars have at least this probability; hypotheses in the table, too.
@@ -256,6 +257,9 @@ def _calibrated(inputs: Inputs, findings: Findings) -> Markup:
         body.append(
             (path, *(words.number(from_si(float(v), unit), 4) for v in (own[key], value, extended)), _unit(unit))
         )
+    if POWER in findings.nominal:
+        power = (0.0, findings.nominal[POWER], findings.extended.get(POWER, findings.nominal[POWER]))
+        body.append((HABIT.doc, *(words.number(p, 4) for p in power), "W"))
     return html_table(("value", "rig", "calibrated", "with the cause", "unit"), body, text=(4,)) if body else Markup("")
 
 

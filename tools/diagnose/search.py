@@ -211,7 +211,8 @@ class Search:
             value, weights = pair_evidence(own, f)
             causes = (name, f.cause.id)
             theta = pair_theta(own, f, *best_pair(weights))
-            pairs.append(Hypothesis(causes, alone + value + self.prior(2), theta, (own, f), a.linear))
+            pair = Hypothesis(causes, alone + value + self.prior(2), theta, (own, f), a.linear)
+            pairs.append(pair if f.cause.size.far is None else self.refiner.from_afar(pair, a))
         return pairs
 
     def _settled(self, hypotheses: list[Hypothesis]) -> list[Hypothesis]:

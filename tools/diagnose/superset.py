@@ -12,6 +12,7 @@ import numpy as np
 from ...model.core.flat import FlatModel, Quantity
 from ...model.machines.spec import Spec
 from ..effects.taxonomy import CAUSES
+from .habit import HABIT
 
 #: What stands between an input's reading and its truth; the truth is (reading - bias) / (1 + gain).
 READ = (
@@ -31,8 +32,8 @@ def buildable(values: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def superset(spec: Spec) -> Spec:
-    """The machine with every cause added, neutral."""
-    for cause in CAUSES.values():
+    """The machine with every cause added, neutral, and with friction in thin films that is its own."""
+    for cause in (*CAUSES.values(), HABIT):
         spec = cause.added_to(spec)
     return spec
 

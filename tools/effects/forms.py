@@ -11,9 +11,11 @@ from .cause import Shape, Theta
 #: Reference point of all extra powers: 200 rpm, 75 cSt, 2000 N.m.
 W_REF, NU_REF, TAU_REF = 20.944, 75e-6, 2000.0
 #: No threshold: so far below everything that the side does not matter.
-OPEN = {"w_on": -1e4, "w_side": 1.0, "tau_on": -1e6, "tau_side": 1.0, "film_on": 1e6}
-ANY_WARMTH = {"T_on": 0.0, "T_side": 1.0, "T_width": 1.5}
+ANY_WARMTH = {"T_on": 0.0, "T_side": 1.0, "T_width": 2.0}
+OPEN = {"w_on": -1e4, "w_side": 1.0, "w_width": 0.5, "tau_on": -1e6, "tau_side": 1.0, "tau_width": 60.0, "film_on": 1e6}
 OPEN |= ANY_WARMTH
+#: How gradually a form usually sets in at a threshold [rad/s, N.m, K].
+USUAL = {"w": 0.5, "tau": 60.0, "T": 2.0}
 #: Ranges in which thresholds are looked for: speed [rad/s], torque [N.m], temperature [K], speed x viscosity [m2/s2].
 THRESHOLDS = {"w": (10.0, 26.5), "tau": (1500.0, 2750.0), "T": (315.0, 362.0), "d": (0.0, 0.0), "film": (4e-4, 3e-3)}
 #: Share of the prior in which a form acts everywhere.
@@ -37,13 +39,13 @@ class Regimes:
 
     @property
     def shapes(self) -> tuple[Shape, ...]:
-        """The shapes that say which regime, where its threshold lies in its range, and how wide one of warmth is."""
+        """The shapes that say which regime, where its threshold lies in its range, and how gradually it sets in."""
         both = (
             Shape("regime", "1", "where it acts: everywhere, or above or below a threshold", 0.0, 1.0, ends=self.ends),
             Shape("threshold", "1", "place of the threshold in its range", 0.0, 1.0),
         )
-        width = Shape("T_width", "K", "how gradually it sets in with temperature", 0.8, 6.0, 2.0, 1.5)
-        return (*both, width) if set(self.names) & set(WARMTH) else both
+        width = Shape("width", "1", "how gradually it sets in at the threshold, over the usual", 0.4, 3.0, 1.0, 0.75)
+        return both if set(self.names) <= set(DIRECTION) else (*both, width)
 
     def of(self, theta: Theta) -> tuple[str, float] | None:
         """The regime of a form: its name and threshold in SI; None where it acts everywhere."""
@@ -62,12 +64,11 @@ OIL_SHARE_BEARING = Shape("oil_share", "1", "share of the heat that goes into th
 
 
 def extra_part(
-    name: str, body: str, *, braking: bool = True
+    name: str, body: str, part: str = "ExtraLoss"
 ) -> tuple[tuple[PartSpec, ...], tuple[tuple[str, ...], ...]]:
-    """An extra loss on the carrier's shaft, or a heater that follows its speed, that heats the oil and a body."""
-    values = {"braking": braking, "P_ref": 0.0, "w_ref": W_REF, "nu_ref": NU_REF, "tau_ref": TAU_REF}
+    """An extra loss on the carrier's shaft, or another part that follows its speed, that heats the oil and a body."""
+    values = {"P_ref": 0.0, "w_ref": W_REF, "nu_ref": NU_REF, "tau_ref": TAU_REF}
     values |= {"a": 1.0, "b": 0.0, "c": 0.0, "forward": 1.0, "backward": 1.0, "oil_share": 0.5} | OPEN
-    part = PartSpec(name, "ExtraLoss", values)
     nets = (
         (f"{name}.shaft", "carrier.flange"),
         (f"{name}.reading", "carrier.reading"),
@@ -75,23 +76,23 @@ def extra_part(
         (f"{name}.oil", "oil.heat"),
         (f"{name}.lubricant", "oil.lubricant"),
     )
-    return (part,), nets
+    return (PartSpec(name, part, values),), nets
 
 
 def extra_values(name: str, theta: Theta, regime: tuple[str, float] | None = None) -> Mapping[str, float]:
     """Values of an extra part from the parameters of a form and the regime in which it acts."""
-    keys = ("P_ref", "a", "b", "c", "forward", "backward", "oil_share")
+    keys = ("P_ref", "a", "b", "c", "forward", "backward", "oil_share", "wall_share", "inside_share")
     values = {k: v for k, v in theta.items() if k in keys} | OPEN
     if regime is not None:
         quantity, threshold = regime
         if quantity in DIRECTION:
             values["backward" if quantity == "d+" else "forward"] = 0.0
         else:
-            values[f"{quantity[:-1]}_on"] = threshold
-            if quantity in WARMTH:
-                values["T_width"] = theta["T_width"]
-            if f"{quantity[:-1]}_side" in values:  # thin films have one side
-                values[f"{quantity[:-1]}_side"] = 1.0 if quantity.endswith("+") else -1.0
+            what = quantity[:-1]
+            values[f"{what}_on"] = threshold
+            if what in USUAL:  # thin films have one side and one width
+                values[f"{what}_side"] = 1.0 if quantity.endswith("+") else -1.0
+                values[f"{what}_width"] = USUAL[what] * theta.get("width", 1.0)
     return {f"{name}.{k}": v for k, v in values.items()}
 
 

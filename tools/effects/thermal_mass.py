@@ -21,7 +21,7 @@ def values(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mappin
 CAUSE = Cause(
     id="thermal.mass",
     doc="Other heat capacities: warm-ups last longer or shorter.",
-    size=Size("ln_factor", "1", "logarithm of the factor on the heat capacities", 0.35, -1.5, 1.5, 1.0),
+    size=Size("ln_factor", "1", "logarithm of the factor on the heat capacities", 0.35, -1.5, 1.5, 1.2),
     shapes=(Shape("bodies", "1", "which: all, the housing, or what turns", 0.0, 1.0, ends=ENDS),),
     exposes="a logged warm-up",
     values=values,
