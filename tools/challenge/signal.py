@@ -17,7 +17,7 @@ differences; Sigma is its variance:
   the room's temperature for every direction, in oil, wall and loss (`REMAINDER_SD`), the same in both campaigns;
 - true speed, torque and room temperature of every half, practically free: they are known by their readings only, so
   a fault of such an instrument shows in what does not follow;
-- beside another hidden effect, the size of that one, practically free.
+- beside another hidden effect, the size of that one, practically free; days that scatter are noise to the others.
 
 A reference campaign adds its own readings, in which the signature is zero, and its own days and conditions; parameters
 and tolerances are shared. The samples of a series are given the noise of the mean over the samples they stand for.
@@ -51,6 +51,9 @@ FREE = {"n": 300.0, "load": 3000.0, "room": 100.0}
 
 #: A step of the size of another effect, and how uncertain it is, both over that size.
 RESIZED, ANY_SIZE = 0.05, 10.0
+
+#: The effect that is chance itself: its size is the standard deviation of the cooling of the days.
+SCATTER = "procedure.day_scatter"
 
 #: Shares of the steps of both halves at which a series counts, and how many of its samples each stands for.
 MOMENTS = 8
@@ -148,7 +151,8 @@ def _block(
     rows, sd = _labels(instruments, campaign.series)
     shared = [change[i].ravel() / eps * s for i, s in enumerate(prior.values())]
     shared += [np.repeat([float(r == c) for r in rows], m) * instruments.offset_sd[c] for c in instruments.channels]
-    locals_ = [(change[day - 1] / eps, DAY_COOLING_SD)]
+    days = beside[1] if beside and beside[0].cause == SCATTER else 0.0
+    locals_ = [(change[day - 1] / eps, float(np.hypot(DAY_COOLING_SD, days)))]
     locals_ += [(change[day + i] / size, FREE[name]) for i, (name, _, size) in enumerate(moves)]
     if wide:
         shared += _remainder(plan, rows, campaign.series)
