@@ -180,3 +180,37 @@ def test_alike_is_the_same_again(tmp_path: Path) -> None:
     first, second = (json.loads((tmp_path / name / "TRUTH.json").read_text(encoding="utf-8")) for name in "ab")
     assert first == second and first["rival"]["cause"] in CAUSES
     assert (tmp_path / "a/case/DATA.csv").read_bytes() == (tmp_path / "b/case/DATA.csv").read_bytes()
+
+
+def test_a_part_of_a_pair_is_as_loud_as_it_is_beside_the_other(own: Place) -> None:
+    """A foundation that carries off most heat leaves little for humidity to change."""
+    draw = Draw(np.random.default_rng(3), own.around)
+    humidity, foundation = CAUSES["cooling.humidity"](draw), CAUSES["cooling.foundation"](draw)
+    size = own.loud(humidity, 12.0)
+    beside = own.yard.beside(foundation, 3.0)
+    assert beside.snr(humidity, size) < 0.7 * own.yard.snr(humidity, size)
+
+
+def test_what_another_size_of_the_other_part_would_do_too_is_not_heard(own: Place) -> None:
+    draw = Draw(np.random.default_rng(3), own.around)
+    offset = CAUSES["sensor.torque.offset"](draw)
+    beside = own.yard.beside(offset, 5.0)
+    assert own.yard.snr(offset, 6.0) > 3.0 > 0.5 > beside.snr(offset, 1.0)
+
+
+def test_days_that_scatter_are_noise_to_the_other_part(own: Place) -> None:
+    draw = Draw(np.random.default_rng(3), own.around)
+    source = CAUSES["heat.external_source"](draw)
+    size = own.loud(source, 12.0)
+    beside = own.yard.beside(CAUSES["procedure.day_scatter"](draw), 0.15)
+    assert beside.snr(source, size) < 0.7 * own.yard.snr(source, size)
+
+
+@pytest.mark.parametrize("seed", [2, 3])
+def test_pairs_are_loud_and_apart_beside_each_other(own: Place, seed: int) -> None:
+    causes = ("losses.churning", "sensor.wall_temp.offset", "sensor.torque.offset", "cooling.foundation")
+    parts = own.chosen("pair", *causes, seed=seed)
+    for part, other in (parts, parts[::-1]):
+        yard = own.yard.beside(other.effect, other.amplitude)
+        assert part.snr == pytest.approx(yard.snr(part.effect, part.amplitude))
+        assert part.snr >= choose.BANDS["own"][0] and part.rival.distance >= choose.APART_FROM_RIVALS

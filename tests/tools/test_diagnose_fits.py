@@ -15,8 +15,9 @@ from gearheat.tools.diagnose.card import Card
 from gearheat.tools.diagnose.extension import of_machine
 from gearheat.tools.diagnose.family import Family
 from gearheat.tools.diagnose.fit import Fit, Mode
+from gearheat.tools.diagnose.habit import HABIT, POWER
 from gearheat.tools.diagnose.hypothesis import Hypothesis
-from gearheat.tools.diagnose.nuisance import Parameters
+from gearheat.tools.diagnose.nuisance import GROUPS, Parameters
 from gearheat.tools.diagnose.problem import Linear, Problem
 from gearheat.tools.diagnose.refine import PROMISED, Refiner
 from gearheat.tools.diagnose.scatter import SCATTER
@@ -201,3 +202,58 @@ def test_a_threshold_is_as_gradual_as_the_form_says(cause):
             if f"{name}_width" in widths:
                 gradual = form["width"] if name == quantity else 1.0
                 assert widths[f"{name}_width"] == pytest.approx(usual * gradual)
+
+
+def test_thin_films_fall_with_speed_and_viscosity_alike_unless_they_set_in_at_a_threshold():
+    starved = CAUSES["losses.film_starvation"]
+    shares = np.full(len(starved.shapes), 0.5)
+    for share, smooth in ((0.2, True), (0.7, False)):
+        shares[starved.choice] = share
+        (form,) = starved.forms(shares[None])
+        values = starved.values({}, {**form, "P_ref": 80.0}, None)
+        a, b = (values[f"extra_starvation.{name}"] for name in "ab")
+        assert (a - b, b) == pytest.approx((form["a"], -form["p"] if smooth else 0.0))
+
+
+def test_a_power_that_falls_with_speed_is_bounded_at_standstill():
+    loss = ExtraLoss.__new__(ExtraLoss)
+    loss.__dict__.update({"a": -1.3, "b": 0.0, "c": 0.0, "w_ref": 20.0, "nu_ref": 1e-4, "tau_ref": 2000.0})
+    loss.__dict__["lubricant"] = SimpleNamespace(nu=1e-4)
+    loss.__dict__["reading"] = SimpleNamespace(tau=2000.0)
+    powers = []
+    for w in (0.0, 10.0, 20.0):
+        loss.__dict__["shaft"] = SimpleNamespace(w=w)
+        powers.append(float(ca.DM(loss._form())))
+    assert powers[1:] == pytest.approx([2**1.3, 1.0], rel=0.02)
+    assert powers[0] < 50.0
+
+
+def test_friction_in_thin_films_is_added_where_a_reference_tells_it():
+    base = {path: 2.0 for group in GROUPS.values() for path in group.paths} | {POWER: 0.0}
+    card = SimpleNamespace(prior=lambda key: 0.1)
+    wide, stated = (Parameters.of(base, card, wide=w) for w in (True, False))
+    z = np.array([1.0 if name == HABIT.id else 0.0 for name in wide.names])
+    assert wide.values(z) == {**base, POWER: HABIT.size.sd}
+    assert HABIT.id not in stated.names and POWER not in stated.values(np.zeros(len(stated.names)))
+
+
+@pytest.mark.parametrize(("cost", "better"), [(10.0, True), (38.0, False)])
+def test_a_pair_with_masses_is_begun_from_afar_where_that_promises_more(monkeypatch, cost, better):
+    mass = CAUSES["thermal.mass"]
+    near, tried = family_of(mass, [1.0], np.ones(M)), []
+    alone = Hypothesis((AIR.id,), -50.0, {AIR.id: {}}, linear=linear(causes=(AIR,)))
+    pair = Hypothesis((AIR.id, mass.id), -51.0, {mass.id: near.theta(0, 0.1)}, (near,), alone.linear)
+
+    def fitted(self, h, start, z=None, steps=0):
+        if h is alone:
+            return fit_of(AIR, 40.0)
+        tried.append(start[mass.id][1])
+        return fit_of(mass, cost + (0.0 if tried[-1] > 0 else 5.0), size=tried[-1])
+
+    monkeypatch.setattr(Refiner, "_fitted", fitted)
+    found = Refiner(SimpleNamespace(), linear(), 0, lambda n: 0.0).from_afar(pair, alone)
+    assert sorted(tried) == [-mass.size.far, mass.size.far]
+    assert (found is pair) != better
+    if better:
+        assert found.log_posterior == pytest.approx(-50.0 + 40.0 - cost - refine.OCCAM)
+        assert [start[mass.id][1] for start in found.also] == [mass.size.far]
