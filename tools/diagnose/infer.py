@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import cho_factor, cho_solve
 
+from ...model.errors import SolveError
 from ...scenarios.measured import Campaign
 from ..effects.taxonomy import CAUSES
 from .campaign_model import CampaignModel, Rig
@@ -33,6 +35,8 @@ SURE = 0.9
 MOST, JUDGED = 12, 4
 #: Probability from which a hypothesis counts in predictions.
 COUNTS = 0.03
+#: Weight of the likeliest one where it has none, because something outside the library is all but certain.
+LEAST = 1e-300
 
 
 @dataclass(frozen=True)
@@ -48,10 +52,13 @@ class Predictor:
         """Nominal and extended oil temperatures [degC] at the readings of a table of points, in running order."""
         orders = [float(reading.order) for reading in self.problem.data.model.readings]
         model = CampaignModel(self.problem.rig, points, self.oils, span=(min(orders), max(orders)))
-        extended, total = np.zeros(model.n), sum(weight for weight, _ in self.weighed)
+        nominal = self._at(model, Hypothesis((), 0.0, linear=self.null))
+        weights, shown = [], []
         for weight, h in self.weighed:
-            extended += weight / total * self._at(model, h)
-        return self._at(model, Hypothesis((), 0.0, linear=self.null)), extended
+            with suppress(SolveError):  # what cannot be run there predicts nothing
+                shown.append(self._at(model, h))
+                weights.append(weight)
+        return nominal, np.average(shown, axis=0, weights=weights) if shown else nominal
 
     def _at(self, model: CampaignModel, h: Hypothesis) -> np.ndarray:
         linear, causes = h.linear or self.null, [CAUSES[c] for c in h.causes]
@@ -93,10 +100,15 @@ def infer(
     unexplained = Named(UNEXPLAINED, outside(found), math.inf)
     weights = {n.id: max(n.probability, 0.02) for n in causes[:JUDGED]}
     weighed = [
-        (j.probability, h) for j, h in zip(found, members, strict=True) if j is found[0] or j.probability > COUNTS
+        (max(j.probability, LEAST), h)
+        for j, h in zip(found, members, strict=True)
+        if j is found[0] or j.probability > COUNTS
     ]
     if not alarm:
         weighed = [(1.0, h) for h in members if not h.causes]
+    left = played(search, hypothesis)
+    if not left:
+        warnings.append("The extended rig cannot be run over these readings: no rig file holds what was fitted.")
     findings = Findings(
         verdict=verdict,
         alpha=alpha,
@@ -114,7 +126,7 @@ def infer(
         warnings=tuple(warnings),
         nominal=dict(search.null.values),
         extended=dict((hypothesis.linear or search.null).values),
-        played=played(search, hypothesis),
+        played=left,
         rows=shown(search, hypothesis),
     )
     progress("done", 1.0)
@@ -180,6 +192,7 @@ def certificates(search: Search, causes: Sequence[Named]) -> list[Named]:
 def played(search: Search, h: Hypothesis) -> dict[str, tuple[float, float]]:
     """Root mean square that the rig leaves on the readings: channel -> calibrated, extended by a hypothesis.
 
+    Nothing where the extended rig cannot be run as a rig file can hold it.
     The extended rig is what `--extended` writes: faults of instruments and procedure, and what differs from test to
     test, are no part of it; nor is what was found of an oil, where the data have several and each brings its own.
     """
@@ -191,7 +204,10 @@ def played(search: Search, h: Hypothesis) -> dict[str, tuple[float, float]]:
     for cause in (CAUSES[name] for name in h.causes):
         changed = of_machine(cause, {**base, **values}, h.theta[cause.id], parts)
         values |= {path: value for path, value in changed.items() if path not in own}
-    extended = c.channels.stack(c.model.simulate([values])[0])
+    try:
+        extended = c.channels.stack(c.model.simulate([values])[0])
+    except SolveError:
+        return {}
     nominal, channels = search.null.nominal[problem.place(c)], c.channels
     left = [(n, channels.part(n)) for n in ("T_oil", "T_wall", "loss") if n in channels.names]
     return {n: (rms(nominal[k] - c.measured[k]), rms(extended[k] - c.measured[k])) for n, k in left}
