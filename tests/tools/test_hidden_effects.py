@@ -44,17 +44,26 @@ ALL = os.environ.get("GEARHEAT_HIDDEN", "") == "all"
 
 #: What is answered instead where the truth is not found.
 MISSED: dict[tuple[str, ...], str] = {
-    PAIRS[2]: "ambiguous; cooling.foundation + sensor.oil_temp.offset 0.63, cooling.air + sensor.oil_temp.offset 0.27",
-    ("thermal.split",): "explained; humidity or day scatter + churning, windage or oil level 0.97",
+    PAIRS[2]: "ambiguous; cooling.foundation + sensor.oil_temp.offset 0.69, cooling.air + sensor.oil_temp.offset 0.29",
+    ("thermal.mass",): "explained; preload or seal drag + thermal.mass 1.00",
 }
+#: Single causes among them, hidden once more in the next rig where they are so loud.
+AGAIN = [names for names in MISSED if len(names) == 1]
 
 
-def hidden(names: tuple[str, ...], folder: Path) -> dict[str, Any]:
-    """Write a case and give its truth, which no file keeps: causes far from all others, or alike where none is."""
+def hidden(names: tuple[str, ...], folder: Path, again: bool = False) -> dict[str, Any]:
+    """Write a case and give its truth, which no file keeps: causes far from all others, or alike where none is.
+
+    Args:
+        names: what is hidden
+        folder: for the files
+        again: whether the first rig in which it could be hidden is passed over
+    """
     kind, number, series = "pair" if len(names) > 1 else "single", NUMBERS[names], names[0] in NEEDS_SERIES
     try:
         truth = make_case(SHEET, SEED, number, folder, kind=kind, causes=names, series=series)
-        while series and truth["effects"][0]["snr"] < LOUD:
+        while again or (series and truth["effects"][0]["snr"] < LOUD):
+            again = again and truth["effects"][0]["snr"] < LOUD
             number += len(NUMBERS) + len(CLEAN)
             truth = make_case(SHEET, SEED, number, folder, kind=kind, causes=names, series=series)
     except LookupError:
@@ -115,13 +124,14 @@ def parameters() -> list[Any]:
     """What is hidden, with the known misses marked."""
     chosen = tuple(NUMBERS) if ALL else FEW
     missed = {n: [pytest.mark.xfail(strict=False, reason=f"answered: {MISSED[n]}")] for n in chosen if n in MISSED}
-    return [pytest.param(n, id="+".join(n), marks=missed.get(n, [])) for n in chosen]
+    found = [pytest.param(n, False, id="+".join(n), marks=missed.get(n, [])) for n in chosen]
+    return found + [pytest.param(n, True, id=f"{'+'.join(n)} again") for n in AGAIN if n in chosen]
 
 
-@pytest.mark.parametrize("names", parameters())
-def test_what_is_hidden_is_found(names: tuple[str, ...], tmp_path: Path) -> None:
+@pytest.mark.parametrize(("names", "again"), parameters())
+def test_what_is_hidden_is_found(names: tuple[str, ...], again: bool, tmp_path: Path) -> None:
     began = time.perf_counter()
-    truth = hidden(names, tmp_path)
+    truth = hidden(names, tmp_path, again)
     assert truth["causes"] and set(truth["causes"]) == set(names)
     made = time.perf_counter()
     answer = diagnosed(tmp_path / "case")

@@ -105,8 +105,11 @@ def _impact_error(truth: Mapping[str, Any], told: Answer) -> float | None:
 
 
 def _gain(truth: Mapping[str, Any], told: Answer) -> float | None:
-    """Error of the extended over that of the nominal prediction; None where the oil changes by less than its noise."""
-    points = truth["points"]
+    """Error of the extended over that of the nominal prediction; None where the oil changes by less than its noise.
+
+    Points at which the rig runs away count for nothing.
+    """
+    points = [p for p in truth["points"] if math.isfinite(p["T_oil_C"])]
     if rms([p["T_oil_C"] - p["T_oil_without_C"] for p in points]) < truth["repeat_sd"]["T_oil_K"]:
         return None
     if any(p["point"] not in told.nominal or p["point"] not in told.extended for p in points):

@@ -14,10 +14,10 @@ RISE = 40.0
 
 
 def conductance(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mapping[str, Any]:
-    """The joint with more resistance, per test by a power of the oil's rise: joints close or open as they warm."""
+    """The joint with more resistance, per test exponential in the oil's rise: joints close or open as they warm."""
     R: Any = theta["R"]
     if rows is not None:
-        R = R * (np.maximum(rows.rise_per_test, 5.0) / RISE) ** theta["e"]
+        R = R * np.exp(theta["e"] * (rows.rise_per_test / RISE - 1))
     return {"wall_surface.G": base["wall_surface.G"] / (1 + R * base["wall_surface.G"])}
 
 
@@ -25,7 +25,7 @@ CAUSE = Cause(
     id="cooling.contact",
     doc="A gap or gasket between wall and outer surface.",
     size=Size("R", "K/W", "resistance more than assumed, at an oil 40 K above the room", 0.006, -0.0004, 0.08, 0.03),
-    shapes=(Shape("e", "1", "exponent of the rise", -1.6, 1.0, 0.0, 0.6),),
+    shapes=(Shape("e", "1", "change of its logarithm by 40 K more", -2.0, 1.2, 0.0, 0.8),),
     exposes="transients; a second probe on the outer surface",
     values=conductance,
 )
