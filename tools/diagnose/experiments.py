@@ -7,6 +7,7 @@ from itertools import combinations
 
 import numpy as np
 
+from ...model.errors import SolveError
 from ..effects.cause import Cause, spread
 from ..effects.taxonomy import CAUSES
 from .candidates import candidates
@@ -32,7 +33,10 @@ def ranked(problem: Problem, z: np.ndarray, weights: Mapping[str, float]) -> lis
     pairs = list(combinations(sorted(weights), 2))
     if not pairs:
         return []
-    design = Design.of(problem, z, candidates(problem.data.model), [_few(CAUSES[c]) for c in sorted(weights)])
+    try:
+        design = Design.of(problem, z, candidates(problem.data.model), [_few(CAUSES[c]) for c in sorted(weights)])
+    except SolveError:  # where the model does not run no experiment is judged
+        return []
     before, found = design.distances(), []
     for candidate in design.experiments:
         after = design.distances(candidate.id)

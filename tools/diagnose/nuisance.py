@@ -92,7 +92,7 @@ def day_values(base: Mapping[str, float], size: float) -> dict[str, Any]:
 #: Channels of places along logged courses -> the readings they hold.
 COURSES = {"T_oil course": "T_oil", "T_wall course": "T_wall"}
 #: What the model leaves of a course [K], over how long a share of the dwell, and scatter of a dwell as logged.
-COURSE, LENGTH, DWELL = 0.15, 0.3, 0.02
+COURSE, LENGTH, DWELL = 0.25, 0.3, 0.02
 #: Variance of a smoothed course over that of independent samples, which those of a probe are not quite.
 ALLOWED = 1.5
 #: Decay, per dwell, of what a start at another temperature than that of the room as read leaves in a course.

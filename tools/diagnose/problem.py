@@ -284,11 +284,12 @@ class Problem:
                 change = np.clip(np.linalg.solve(H + damping * np.diag(np.diag(H)), downhill), -LONGEST, LONGEST)
                 with suppress(SolveError):
                     if self._cost(self.moved(linear, linear.z + change, theta or {}, causes), factor) <= before + 1e-6:
+                        linear = self.linearised(linear.z + change, theta, causes)
                         break
                 damping = max(5 * damping, 0.3)
             else:
                 break
-            linear, damping = self.linearised(linear.z + change, theta, causes), damping / 5
+            damping /= 5
             if float(np.abs(change).max()) < SETTLED:
                 break
         return linear

@@ -105,7 +105,11 @@ class Refiner:
             better = fitted(self.problem, linear, fit.start)
             if better.cost > fit.cost - KEPT:
                 break
-            fit, linear = better, self.problem.linearised(better.z, better.theta, causes)
+            try:
+                linear = self.problem.linearised(better.z, better.theta, causes)
+            except SolveError:
+                break
+            fit = better
         samples = []
         for k, c in enumerate(causes):
             samples.append(nearer(c, fit.modes[c.id], sound(fit.theta[c.id][c.size.name], c), self.seed + k))

@@ -63,9 +63,10 @@ class Search:
         self.progress("pairs of causes", 0.35)
         first = self._first_look(self.null, self.found)
         if self.p_any < ELSEWHERE:  # what is wrong may have bent the calibration: look from the healthy machine as well
-            healthy = self.problem.linearised(self.problem.healthy())
-            there = self._families(healthy, White.of(healthy.residual, healthy.covariance))
-            first = better(first, self._first_look(healthy, there))
+            with suppress(SolveError):
+                healthy = self.problem.linearised(self.problem.healthy())
+                there = self._families(healthy, White.of(healthy.residual, healthy.covariance))
+                first = better(first, self._first_look(healthy, there))
         quiet = self.p_any > QUIET
         found = self._again(first[:1], [h for h in first if len(h.causes) == 1], AGAIN_ONE if not quiet else 2)
         self.progress("pairs of causes", 0.6)
