@@ -190,7 +190,7 @@ def test_a_loss_of_thin_films_fades_where_films_are_thick(film, weight):
 
 @pytest.mark.parametrize("cause", [c for c in CAUSES.values() if any(s.name == "width" for s in c.shapes)])
 def test_a_threshold_is_as_gradual_as_the_form_says(cause):
-    shares = np.full(len(cause.shapes), 0.6)
+    shares, seen = np.full(len(cause.shapes), 0.6), {}
     for share in np.linspace(0.01, 0.99, 99):
         shares[cause.choice] = share
         (form,) = cause.forms(shares[None])
@@ -202,6 +202,10 @@ def test_a_threshold_is_as_gradual_as_the_form_says(cause):
             if f"{name}_width" in widths:
                 gradual = form["width"] if name == quantity else 1.0
                 assert widths[f"{name}_width"] == pytest.approx(usual * gradual)
+        seen[acts[0] if acts else ""] = f"{quantity}_width" in widths
+    assert len(seen) == len(cause.shapes[cause.choice].ends)
+    assert {name for name, follows in seen.items() if follows} == {name for name in seen if name[:-1] in USUAL}
+    assert not seen[""]
 
 
 def test_thin_films_fall_with_speed_and_viscosity_alike_unless_they_set_in_at_a_threshold():

@@ -194,10 +194,8 @@ def _pair(names: Iterator[str], choice: Choice) -> list[Hidden]:
             continue
         if first is None:
             first = found
-        else:
-            both = [_beside(first, found, choice), _beside(found, first, choice)]
-            if None not in both:
-                return [part for part in both if part]
+        elif (one := _beside(first, found, choice)) and (other := _beside(found, first, choice)):
+            return [one, other]
     raise LookupError("no two causes that can be told apart")
 
 

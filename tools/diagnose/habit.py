@@ -12,6 +12,8 @@ from ..effects.cause import Cause, Size
 from ..effects.forms import extra_part
 
 (_LOSS,), _NETS = extra_part("extra_habit", "gears")
+#: Path of its size.
+POWER = f"{_LOSS.name}.P_ref"
 #: As film starvation in the middle of its family.
 HABIT = Cause(
     id="thin films",
@@ -21,5 +23,3 @@ HABIT = Cause(
     connections=_NETS,
     values=lambda base, theta, rows: {POWER: theta["P_ref"]},
 )
-#: Path of its size.
-POWER = "extra_habit.P_ref"

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from .cause import Cause, Rows, Shape, Size, Theta
-from .forms import ANY_WARMTH, DIRECTION, USUAL, WARMTH, Regimes, extra_conductor
+from .forms import ANY_WARMTH, DIRECTION, WARMTH, Regimes, extra_conductor, limits
 
 PARTS, NETS = extra_conductor("extra_air", "surface.heat", "room.floor")
 #: What it may be limited to.
@@ -16,12 +16,7 @@ REGIMES = Regimes((*WARMTH, *DIRECTION))
 def conductance(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mapping[str, Any]:
     """The extra conductance and where it acts."""
     values = {k: theta[k] for k in ("G_ref", "e", "c")}
-    values |= {"forward": 1.0, "backward": 1.0} | ANY_WARMTH
-    name, threshold = REGIMES.of(theta) or ("", 0.0)
-    if name.startswith("T"):
-        values |= {"T_on": threshold, "T_side": 1.0 if name == "T+" else -1.0, "T_width": USUAL["T"] * theta["width"]}
-    elif name:
-        values["backward" if name == "d+" else "forward"] = 0.0
+    values |= {"forward": 1.0, "backward": 1.0} | ANY_WARMTH | limits(theta, REGIMES.of(theta))
     return {f"extra_air.{k}": v for k, v in values.items()}
 
 

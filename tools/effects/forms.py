@@ -10,12 +10,12 @@ from .cause import Shape, Theta
 
 #: Reference point of all extra powers: 200 rpm, 75 cSt, 2000 N.m.
 W_REF, NU_REF, TAU_REF = 20.944, 75e-6, 2000.0
-#: No threshold: so far below everything that the side does not matter.
-ANY_WARMTH = {"T_on": 0.0, "T_side": 1.0, "T_width": 2.0}
-OPEN = {"w_on": -1e4, "w_side": 1.0, "w_width": 0.5, "tau_on": -1e6, "tau_side": 1.0, "tau_width": 60.0, "film_on": 1e6}
-OPEN |= ANY_WARMTH
 #: How gradually a form usually sets in at a threshold [rad/s, N.m, K].
 USUAL = {"w": 0.5, "tau": 60.0, "T": 2.0}
+#: No threshold: so far below everything that the side does not matter.
+ANY_WARMTH = {"T_on": 0.0, "T_side": 1.0, "T_width": USUAL["T"]}
+OPEN = {"w_on": -1e4, "w_side": 1.0, "w_width": USUAL["w"], "tau_on": -1e6, "tau_side": 1.0, "tau_width": USUAL["tau"]}
+OPEN |= {"film_on": 1e6} | ANY_WARMTH
 #: Ranges in which thresholds are looked for: speed [rad/s], torque [N.m], temperature [K], speed x viscosity [m2/s2].
 THRESHOLDS = {"w": (10.0, 26.5), "tau": (1500.0, 2750.0), "T": (315.0, 362.0), "d": (0.0, 0.0), "film": (4e-4, 3e-3)}
 #: Share of the prior in which a form acts everywhere.
@@ -82,18 +82,22 @@ def extra_part(
 def extra_values(name: str, theta: Theta, regime: tuple[str, float] | None = None) -> Mapping[str, float]:
     """Values of an extra part from the parameters of a form and the regime in which it acts."""
     keys = ("P_ref", "a", "b", "c", "forward", "backward", "oil_share", "wall_share", "inside_share")
-    values = {k: v for k, v in theta.items() if k in keys} | OPEN
-    if regime is not None:
-        quantity, threshold = regime
-        if quantity in DIRECTION:
-            values["backward" if quantity == "d+" else "forward"] = 0.0
-        else:
-            what = quantity[:-1]
-            values[f"{what}_on"] = threshold
-            if what in USUAL:  # thin films have one side and one width
-                values[f"{what}_side"] = 1.0 if quantity.endswith("+") else -1.0
-                values[f"{what}_width"] = USUAL[what] * theta.get("width", 1.0)
+    values = {k: v for k, v in theta.items() if k in keys} | OPEN | limits(theta, regime)
     return {f"{name}.{k}": v for k, v in values.items()}
+
+
+def limits(theta: Theta, regime: tuple[str, float] | None) -> dict[str, float]:
+    """Values of an extra part, by key, that limit it to a regime; none where it acts everywhere."""
+    if regime is None:
+        return {}
+    quantity, threshold = regime
+    if quantity in DIRECTION:
+        return {"backward" if quantity == "d+" else "forward": 0.0}
+    what = quantity[:-1]
+    if what not in USUAL:  # thin films have one side and one width
+        return {f"{what}_on": threshold}
+    width = USUAL[what] * theta.get("width", 1.0)
+    return {f"{what}_on": threshold, f"{what}_side": 1.0 if quantity[-1] == "+" else -1.0, f"{what}_width": width}
 
 
 def extra_conductor(name: str, a: str, b: str) -> tuple[tuple[PartSpec, ...], tuple[tuple[str, ...], ...]]:
