@@ -40,7 +40,7 @@ def show_command(rig: str, errata: bool, json: str | None) -> None:
         "doc": scenario.doc,
         "kind": scenario.kind,
         "parts": [{"name": p.name, "type": p.type, "doc": _doc(PARTS[p.type])} for p in scenario.spec.parts],
-        "parameters": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.parameters],
+        "parameters": [_parameter(scenario, q) for q in flat.parameters],
         "choices": choices(scenario),
         "inputs": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.inputs],
         "states": [_line(q) for q in flat.states],
@@ -107,6 +107,13 @@ def _line(q: Quantity) -> dict[str, Any]:
     return {"name": q.name, "value": from_si(q.start, q.unit), "unit": shown(q.unit), "doc": q.doc}
 
 
+def _parameter(scenario: Scenario, q: Quantity) -> dict[str, Any]:
+    """A parameter with its standard uncertainty, in the unit shown, where the rig states one."""
+    sd = scenario.uncertainties.get(q.name)
+    known = sd if sd is None or q.unit == "K" else from_si(sd, q.unit)  # degC and K have the same differences
+    return {**_line(q), "uncertainty": known, "source": source_of(scenario, q.name)}
+
+
 def _doc(cls: type) -> str:
     return (cls.__doc__ or "").strip().splitlines()[0]
 
@@ -115,7 +122,8 @@ def _print(found: dict[str, Any]) -> None:
     print(f"{found['rig']}: {found['doc']}\n")
     valued = ("name", "value", "unit", "doc")
     table("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")))
-    table("Parameters", (*valued, "source"), _rows(found["parameters"], (*valued, "source")))
+    known = ("name", "value", "uncertainty", "unit", "doc", "source")
+    table("Parameters", known, _rows(found["parameters"], known))
     table("Choices", ("name", "value", "doc"), _rows(found["choices"], ("name", "value", "doc")))
     table("Inputs", (*valued, "source"), _rows(found["inputs"], (*valued, "source")))
     table("States (with start value)", valued, _rows(found["states"], valued))

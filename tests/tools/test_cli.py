@@ -67,6 +67,8 @@ def test_show_gives_every_parameter_a_value_a_unit_and_a_source(gearheat):
     assert parameters["oil.nu_40"]["source"]
     assert parameters["carrier_seal.d_sh"]["value"] == pytest.approx(0.14)
     assert [s["name"] for s in found["states"]] == ["oil.T", "gears.T", "carrier_body.T", "wall.T", "surface.T"]
+    assert parameters["foot.G"]["uncertainty"] == pytest.approx(0.19)
+    assert parameters["cooling.A"]["uncertainty"] is None
     assert all(law["source"] for law in found["laws"])
 
 
