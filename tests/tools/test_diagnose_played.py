@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,13 +13,14 @@ import jsonschema
 import numpy as np
 import pytest
 from gearheat.fmu.play import Player
+from gearheat.model.errors import SolveError
 from gearheat.tools.challenge.case import make_case
 from gearheat.tools.diagnose import words
 from gearheat.tools.diagnose.command import Outputs, command
 from gearheat.tools.diagnose.extension import extended_text
 from gearheat.tools.diagnose.findings import Findings, Gain, Joint
 from gearheat.tools.diagnose.hypothesis import Hypothesis
-from gearheat.tools.diagnose.infer import infer, played, problem_of
+from gearheat.tools.diagnose.infer import Predictor, infer, played, problem_of
 from gearheat.tools.diagnose.inputs import Request, read_inputs
 from gearheat.tools.diagnose.output import schema
 from gearheat.tools.effects.taxonomy import CAUSES
@@ -171,3 +173,18 @@ def test_faults_that_the_rig_cannot_hold_are_not_in_the_statement(case, card, tm
 def test_a_card_belongs_to_measured_data(case, gearheat):
     (problem,) = gearheat("run", "--card", case / "CARD.json").problems()
     assert "--data" in problem
+
+
+def test_a_nominal_rig_that_runs_away_gives_way_to_the_explained_one_without_its_cause(case):
+    inputs = read_inputs(Request(case / "DATA.csv", card=case / "CARD.json", predict=case / "POINTS.csv"))
+    theta = of_hypothesis(inputs, ("losses.churning",)).hypotheses[0].theta
+    problem = problem_of(inputs)
+    healthy = problem.linearised(np.full(len(problem.parameters.names), 0.3))
+    explained = Hypothesis(("losses.churning",), 0.0, theta, linear=healthy)
+    bent = replace(healthy, values={**healthy.values, "gear_set.k_mu": 1e4})
+    known = Predictor(problem, healthy, ((1.0, explained),), inputs.oils)(inputs.points)
+    instead = Predictor(problem, bent, ((1.0, explained),), inputs.oils)(inputs.points)
+    assert (known[1] > known[0] + 1).all()
+    np.testing.assert_array_equal(instead, known)
+    with pytest.raises(SolveError):
+        Predictor(problem, bent, ((1.0, Hypothesis((), 0.0, linear=bent)),), inputs.oils)(inputs.points)

@@ -49,10 +49,16 @@ class Predictor:
     oils: Mapping[str, Mapping[str, float]]
 
     def __call__(self, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
-        """Nominal and extended oil temperatures [degC] at the readings of a table of points, in running order."""
+        """Nominal and extended oil temperatures [degC] at the readings of a table of points, in running order.
+
+        A nominal rig that, bent by a loud cause, cannot be run there gives way to that of the likeliest hypothesis.
+        """
         orders = [float(reading.order) for reading in self.problem.data.model.readings]
         model = CampaignModel(self.problem.rig, points, self.oils, span=(min(orders), max(orders)))
-        nominal = self._at(model, Hypothesis((), 0.0, linear=self.null))
+        try:
+            nominal = self._at(model, Hypothesis((), 0.0, linear=self.null))
+        except SolveError:
+            nominal = self._at(model, replace(self.weighed[0][1], causes=()))
         weights, shown = [], []
         for weight, h in self.weighed:
             with suppress(SolveError):  # what cannot be run there predicts nothing
