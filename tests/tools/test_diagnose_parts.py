@@ -116,6 +116,20 @@ def test_a_one_sided_size_keeps_half_of_its_prior(one_width):
     assert together.gaussian(against_it, [0, 0])[0] < alone  # of the other sign it explains nothing
 
 
+@pytest.mark.parametrize("count", [1, 2, 3])
+def test_intervals_hold_the_size_beside_causes_of_any_size(one_width, count):
+    one_width(1.6)
+    parts = [family(n, k, forms=3, length=3.0, alike=3.0) for k, n in enumerate(TWO_SIDED[:count])]
+    held, n, rng = 0, 400, np.random.default_rng(5)
+    for seed in range(n):
+        sizes, last = 1.6 * rng.standard_normal(count), int(rng.integers(3))
+        *others, f = against(parts, sizes, seed, forms=[*[0] * (count - 1), last])
+        weights, mean, sd = together.sizes_by_form([*(replace(g, white=g.white[:, :1]) for g in others), f])
+        assert weights.sum() == pytest.approx(1.0) and mean.shape == sd.shape == (3,)
+        held += abs(sizes[-1] * f.cause.size.sd - mean[last]) < 1.96 * sd[last]
+    assert held / n == pytest.approx(0.95, abs=0.03)
+
+
 @pytest.mark.parametrize("seed", range(6))
 @pytest.mark.parametrize("count", [1, 2, 3])
 def test_the_chosen_widths_stand_for_the_mixture(count, seed):

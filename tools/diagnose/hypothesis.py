@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from ..effects.cause import Theta
+from .evidence import White
 from .family import Family, form_of
 from .problem import Linear
 from .scatter import SCATTER
@@ -35,6 +36,12 @@ class Hypothesis:
         linear = self.linear or null
         assert linear is not None
         return linear.with_days(self.theta[SCATTER]["sd"], sign) if SCATTER in self.theta else linear
+
+    def parts(self, null: Linear) -> list[Family]:
+        """Its families against what it leaves as scatter."""
+        linear = self.scattered(null)
+        white = White.of(linear.residual, linear.covariance)
+        return [f.seen(white) for f in self.families]
 
     @property
     def begin(self) -> Start:

@@ -26,6 +26,7 @@ from .problem import Campaigned, Linear, Problem, remainder
 from .search import DRAWS, Search
 from .split import certified
 from .superset import buildable
+from .together import posterior
 from .weigh import SHOWN, confusable, joints, named, outside, p_adequacy, with_outside
 from .words import ADEQUATE
 
@@ -164,15 +165,16 @@ def verdict_of(alarm: bool, top: Joint, adequacy: float) -> str:
 def impact(search: Search, h: Hypothesis) -> dict[str, tuple[float, float, float]]:
     """Mean change of the readings that a hypothesis makes, with 95 % interval: channel -> (value, low, high)."""
     c, part = search.problem.data, search.problem.place(search.problem.data)
-    totals = {"T_oil_K": ("T_oil", 0.0, 0.0), "T_wall_K": ("T_wall", 0.0, 0.0), "loss_Nm": ("loss", 0.0, 0.0)}
-    for f in h.families:
-        theta = h.theta[f.cause.id]
-        k = form_of(f, theta)
-        size, sd = theta[f.cause.size.name], float(f.sizes()[1][k])
-        for name, (channel, value, variance) in totals.items():
-            mean = float(f.signatures[part, k][c.channels.part(channel)].mean())
-            totals[name] = (channel, value + mean * size, variance + (mean * sd) ** 2)
-    return {n: (v, v - 1.96 * s**0.5, v + 1.96 * s**0.5) for n, (_, v, s) in totals.items()}
+    forms = [form_of(f, h.theta[f.cause.id]) for f in h.families]
+    sizes = np.array([h.theta[f.cause.id][f.cause.size.name] for f in h.families])
+    covariance = posterior(h.parts(search.null), forms)[1] if forms else np.empty((0, 0))
+    found = {}
+    for name, channel in {"T_oil_K": "T_oil", "T_wall_K": "T_wall", "loss_Nm": "loss"}.items():
+        rows = c.channels.part(channel)
+        mean = [f.signatures[part, k][rows].mean() for f, k in zip(h.families, forms, strict=True)]
+        value, spread = float(np.dot(mean, sizes)), 1.96 * float(np.dot(mean, covariance @ mean)) ** 0.5
+        found[name] = (value, value - spread, value + spread)
+    return found
 
 
 def shown(search: Search, h: Hypothesis) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:

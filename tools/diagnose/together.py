@@ -73,11 +73,37 @@ def joint_logs(parts: Sequence[Family]) -> np.ndarray:
     return np.asarray(np.array(logs) + parts[-1].log_w)
 
 
-def gaussian(parts: Sequence[Family], forms: Sequence[int]) -> tuple[float, np.ndarray]:
-    """Log Bayes factor of some forms together, and their most likely sizes, under priors as wide as the sizes ask."""
+def sizes_by_form(parts: Sequence[Family]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Of each form of the last family its posterior weight, and mean and standard deviation of its size.
+
+    The other families have their first forms, and any size.
+    """
+    f = parts[-1]
+    if len(parts) == 1:
+        return f.weights(), *f.sizes()
+    logs, first = joint_logs(parts), [0] * (len(parts) - 1)
+    found = [posterior(parts, [*first, k]) for k in range(len(f.forms))]
+    mean, variance = np.array([(sizes[-1], covariance[-1, -1]) for sizes, covariance in found]).T
+    return np.exp(logs - logsumexp(logs)), np.clip(mean, *f.bounds), np.sqrt(variance)
+
+
+def posterior(parts: Sequence[Family], forms: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
+    """Mean and covariance of the sizes of some forms together, under wide priors."""
+    Q, s, sd = _information(parts, forms)
+    covariance = np.linalg.inv(Q + np.diag(1 / (WIDTHS[-1] * sd) ** 2))
+    return covariance @ s, covariance
+
+
+def _information(parts: Sequence[Family], forms: Sequence[int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """What the readings say of the sizes of some forms (information, score), and their prior standard deviations."""
     G = np.stack([f.white[:, k] for f, k in zip(parts, forms, strict=True)], axis=1)
     s = np.array([f.s[k] for f, k in zip(parts, forms, strict=True)])
-    Q, sd = G.T @ G, np.array([f.cause.size.sd for f in parts])
+    return G.T @ G, s, np.array([f.cause.size.sd for f in parts])
+
+
+def gaussian(parts: Sequence[Family], forms: Sequence[int]) -> tuple[float, np.ndarray]:
+    """Log Bayes factor of some forms together, and their most likely sizes, under priors as wide as the sizes ask."""
+    Q, s, sd = _information(parts, forms)
     wide = np.diag(1 / (WIDTHS[-1] * sd) ** 2)
     sizes = np.linalg.solve(Q + wide, s)
     widths = WIDTHS[np.argmin(np.abs(np.log(WIDTHS) - np.log(np.abs(sizes / sd) + 1e-9)[:, None]), axis=1)]

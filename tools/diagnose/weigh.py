@@ -10,11 +10,12 @@ from scipy.stats import chi2, norm
 from ..effects.cause import Cause, Theta
 from ..effects.taxonomy import CAUSES
 from .evidence import White
-from .family import Family, form_of
+from .family import Family
 from .findings import UNEXPLAINED, Estimate, Joint, Named
 from .hypothesis import Hypothesis
 from .scatter import SCATTER
 from .search import Search
+from .together import only, sizes_by_form
 
 #: Power of the detectable size; distance below which two causes are the same to a design; probability that is shown.
 POWER, NEAR, SHOWN = 0.8, 2.5, 0.005
@@ -92,9 +93,12 @@ def named(search: Search, found: Sequence[Joint], leading: Sequence[Hypothesis])
             total[c] += joint.probability
     estimated: dict[str, tuple[tuple[Estimate, ...], Mapping[str, tuple[float | None, float | None]]]] = {}
     for h in leading:
-        for f in h.families:
+        parts = h.parts(search.null)
+        at_mode = [only(f, h.theta[f.cause.id]) for f in parts]
+        for i, f in enumerate(parts):
             if f.cause.id not in estimated and total[f.cause.id] > SHOWN:
-                estimated[f.cause.id] = estimates(f, h.theta[f.cause.id], alone=len(h.causes) == 1)
+                others = [*at_mode[:i], *at_mode[i + 1 :]]
+                estimated[f.cause.id] = estimates([*others, f], h.theta[f.cause.id])
     named_causes = []
     for cause in search.causes:
         parameters, regime = estimated.get(cause.id, ((), {}))
@@ -106,14 +110,13 @@ def named(search: Search, found: Sequence[Joint], leading: Sequence[Hypothesis])
 
 
 def estimates(
-    f: Family, theta: Theta, *, alone: bool
+    parts: Sequence[Family], theta: Theta
 ) -> tuple[tuple[Estimate, ...], Mapping[str, tuple[float | None, float | None]]]:
-    """Size and shapes with 95 % intervals from the posterior over forms; the regime in the columns of the data."""
-    w = f.weights()
-    mean, sd = f.sizes()
-    if not alone:
-        w = np.eye(len(w))[form_of(f, theta)]
-        mean = np.full(len(w), theta[f.cause.size.name])
+    """Size and shapes of the last of some families with 95 % intervals, and its regime in the columns of the data.
+
+    They are from the posterior over its forms; the other families have one form and any size.
+    """
+    f, (w, mean, sd) = parts[-1], sizes_by_form(parts)
     centre = float(w @ mean)
     spread = float(np.sqrt(w @ (sd**2 + (mean - centre) ** 2)))
     size = f.cause.size
