@@ -122,12 +122,23 @@ def test_intervals_hold_the_size_beside_causes_of_any_size(one_width, count):
     parts = [family(n, k, forms=3, length=3.0, alike=3.0) for k, n in enumerate(TWO_SIDED[:count])]
     held, n, rng = 0, 400, np.random.default_rng(5)
     for seed in range(n):
-        sizes, last = 1.6 * rng.standard_normal(count), int(rng.integers(3))
-        *others, f = against(parts, sizes, seed, forms=[*[0] * (count - 1), last])
-        weights, mean, sd = together.sizes_by_form([*(replace(g, white=g.white[:, :1]) for g in others), f])
-        assert weights.sum() == pytest.approx(1.0) and mean.shape == sd.shape == (3,)
-        held += abs(sizes[-1] * f.cause.size.sd - mean[last]) < 1.96 * sd[last]
+        shares, k = 1.6 * rng.standard_normal(count), int(rng.integers(3))
+        *others, f = against(parts, shares, seed, forms=[*[0] * (count - 1), k])
+        sizes = [share * g.cause.size.sd for share, g in zip(shares, parts, strict=True)]
+        together_now = [*(replace(g, white=g.white[:, :1]) for g in others), f]
+        weights, sd = together.by_form(together_now, sizes)
+        assert weights.sum() == pytest.approx(1.0) and weights.shape == sd.shape == (3,)
+        found = together.gaussian(together_now, [*[0] * (count - 1), k])[1]
+        held += abs(sizes[-1] - found[-1]) < 1.96 * sd[k]
     assert held / n == pytest.approx(0.95, abs=0.03)
+
+
+def test_a_size_at_its_bound_leaves_the_others_no_room():
+    a, b = against([family("losses.churning", 1, alike=3.0), family(TWO_SIDED[0], 2, alike=3.0)], (1.0, 1.0))
+    size = a.cause.size
+    beside = {x: together.by_form([a, b], (x, 1.0))[1][0] for x in (size.low, size.sd, size.high)}
+    assert beside[size.low] == beside[size.high] == pytest.approx(b.sizes()[1][0])
+    assert beside[size.sd] > 1.5 * beside[size.low]
 
 
 @pytest.mark.parametrize("seed", range(6))

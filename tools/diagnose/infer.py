@@ -26,7 +26,7 @@ from .problem import Campaigned, Linear, Problem, remainder
 from .search import DRAWS, Search
 from .split import certified
 from .superset import buildable
-from .together import posterior
+from .together import covariance
 from .weigh import SHOWN, confusable, joints, named, outside, p_adequacy, with_outside
 from .words import ADEQUATE
 
@@ -167,12 +167,12 @@ def impact(search: Search, h: Hypothesis) -> dict[str, tuple[float, float, float
     c, part = search.problem.data, search.problem.place(search.problem.data)
     forms = [form_of(f, h.theta[f.cause.id]) for f in h.families]
     sizes = np.array([h.theta[f.cause.id][f.cause.size.name] for f in h.families])
-    covariance = posterior(h.parts(search.null), forms)[1] if forms else np.empty((0, 0))
+    known = covariance(h.parts(search.null), forms) if forms else np.empty((0, 0))
     found = {}
     for name, channel in {"T_oil_K": "T_oil", "T_wall_K": "T_wall", "loss_Nm": "loss"}.items():
         rows = c.channels.part(channel)
         mean = [f.signatures[part, k][rows].mean() for f, k in zip(h.families, forms, strict=True)]
-        value, spread = float(np.dot(mean, sizes)), 1.96 * float(np.dot(mean, covariance @ mean)) ** 0.5
+        value, spread = float(np.dot(mean, sizes)), 1.96 * float(np.dot(mean, known @ mean)) ** 0.5
         found[name] = (value, value - spread, value + spread)
     return found
 

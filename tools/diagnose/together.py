@@ -12,6 +12,9 @@ from ..effects.cause import Theta
 from .evidence import WIDTHS
 from .family import Family, best_pair, form_of, pair_evidence
 
+#: Share of the prior's half width from a bound within which a size is at it.
+NEAR = 1e-3
+
 
 def evidence_of(parts: Sequence[Family]) -> float:
     """Log Bayes factor of families together, averaged over their forms: from three on over one family at a time."""
@@ -73,25 +76,27 @@ def joint_logs(parts: Sequence[Family]) -> np.ndarray:
     return np.asarray(np.array(logs) + parts[-1].log_w)
 
 
-def sizes_by_form(parts: Sequence[Family]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Of each form of the last family its posterior weight, and mean and standard deviation of its size.
+def by_form(parts: Sequence[Family], sizes: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
+    """Of each form of the last family its posterior weight, and the standard deviation of its size.
 
-    The other families have their first forms, and any size.
+    The others have their first forms, and any size; where they were found at a bound they stay there.
     """
-    f = parts[-1]
-    if len(parts) == 1:
-        return f.weights(), *f.sizes()
-    logs, first = joint_logs(parts), [0] * (len(parts) - 1)
-    found = [posterior(parts, [*first, k]) for k in range(len(f.forms))]
-    mean, variance = np.array([(sizes[-1], covariance[-1, -1]) for sizes, covariance in found]).T
-    return np.exp(logs - logsumexp(logs)), np.clip(mean, *f.bounds), np.sqrt(variance)
+    *others, f = parts
+    free = [g for g, size in zip(others, sizes, strict=False) if not _at_bound(g, size)]
+    variances = [covariance([*free, f], [*[0] * len(free), k])[-1, -1] for k in range(len(f.forms))]
+    logs = joint_logs(parts)
+    return np.exp(logs - logsumexp(logs)), np.sqrt(variances)
 
 
-def posterior(parts: Sequence[Family], forms: Sequence[int]) -> tuple[np.ndarray, np.ndarray]:
-    """Mean and covariance of the sizes of some forms together, under wide priors."""
-    Q, s, sd = _information(parts, forms)
-    covariance = np.linalg.inv(Q + np.diag(1 / (WIDTHS[-1] * sd) ** 2))
-    return covariance @ s, covariance
+def _at_bound(f: Family, size: float) -> bool:
+    room = NEAR * f.cause.size.sd
+    return not f.cause.size.low + room < size < f.cause.size.high - room
+
+
+def covariance(parts: Sequence[Family], forms: Sequence[int]) -> np.ndarray:
+    """Covariance of the sizes of some forms together, under wide priors."""
+    Q, _, sd = _information(parts, forms)
+    return np.linalg.inv(Q + np.diag(1 / (WIDTHS[-1] * sd) ** 2))
 
 
 def _information(parts: Sequence[Family], forms: Sequence[int]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -15,7 +15,7 @@ from .findings import UNEXPLAINED, Estimate, Joint, Named
 from .hypothesis import Hypothesis
 from .scatter import SCATTER
 from .search import Search
-from .together import only, sizes_by_form
+from .together import by_form, only
 
 #: Power of the detectable size; distance below which two causes are the same to a design; probability that is shown.
 POWER, NEAR, SHOWN = 0.8, 2.5, 0.005
@@ -97,8 +97,8 @@ def named(search: Search, found: Sequence[Joint], leading: Sequence[Hypothesis])
         at_mode = [only(f, h.theta[f.cause.id]) for f in parts]
         for i, f in enumerate(parts):
             if f.cause.id not in estimated and total[f.cause.id] > SHOWN:
-                others = [*at_mode[:i], *at_mode[i + 1 :]]
-                estimated[f.cause.id] = estimates([*others, f], h.theta[f.cause.id])
+                last = [*at_mode[:i], *at_mode[i + 1 :], f]
+                estimated[f.cause.id] = estimates(last, h.theta, alone=len(h.causes) == 1)
     named_causes = []
     for cause in search.causes:
         parameters, regime = estimated.get(cause.id, ((), {}))
@@ -110,13 +110,18 @@ def named(search: Search, found: Sequence[Joint], leading: Sequence[Hypothesis])
 
 
 def estimates(
-    parts: Sequence[Family], theta: Theta
+    parts: Sequence[Family], theta: Mapping[str, Theta], *, alone: bool
 ) -> tuple[tuple[Estimate, ...], Mapping[str, tuple[float | None, float | None]]]:
     """Size and shapes of the last of some families with 95 % intervals, and its regime in the columns of the data.
 
-    They are from the posterior over its forms; the other families have one form and any size.
+    They are from the posterior over its forms, beside what else was found.
     """
-    f, (w, mean, sd) = parts[-1], sizes_by_form(parts)
+    f, found_sizes = parts[-1], [theta[g.cause.id][g.cause.size.name] for g in parts]
+    if alone:
+        w, (mean, sd) = f.weights(), f.sizes()
+    else:
+        w, sd = by_form(parts, found_sizes)
+        mean = np.full(len(w), found_sizes[-1])
     centre = float(w @ mean)
     spread = float(np.sqrt(w @ (sd**2 + (mean - centre) ** 2)))
     size = f.cause.size
@@ -130,7 +135,7 @@ def estimates(
         share = np.cumsum(w[order])
         low, high = (float(values[order][min(int(np.searchsorted(share, s)), len(w) - 1)]) for s in (0.025, 0.975))
         found.append(Estimate(shape.name, float(w @ values), low, high, shape.unit))
-    return tuple(found), regime_in_columns(f.cause, theta)
+    return tuple(found), regime_in_columns(f.cause, theta[f.cause.id])
 
 
 def regime_in_columns(cause: Cause, theta: Theta) -> Mapping[str, tuple[float | None, float | None]]:
