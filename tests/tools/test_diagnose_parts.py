@@ -21,7 +21,7 @@ from gearheat.tools.diagnose.family import Family, Sample, pair_evidence
 from gearheat.tools.diagnose.hypothesis import Hypothesis, distinct
 from gearheat.tools.diagnose.inputs import Request, read_inputs
 from gearheat.tools.diagnose.nuisance import ALLOWED, Channels, instrument_covariance
-from gearheat.tools.diagnose.problem import CHANGED, REFILLED, Linear, Problem
+from gearheat.tools.diagnose.problem import CHANGED, REFILLED, Linear, Problem, remainder
 from gearheat.tools.diagnose.repeated import repeated, scatter_warning, with_repeatability
 from gearheat.tools.diagnose.search import NONE, Search
 from gearheat.tools.diagnose.series import Series
@@ -469,6 +469,7 @@ def test_behind_a_dwell_not_as_stated_there_are_no_places():
     one, two = logged_test(180.0)
     assert one.dwell == pytest.approx(180 * 60.0) and two.dwell == pytest.approx(90 * 60.0)
     assert len(one.shares) and one.shares.max() < 0.75 and not len(two.shares)
+    assert two.scatter.shape == (0, 0) and len(two.when) == 0
     assert one.T_oil == pytest.approx(273.15 + 240 * one.shares)
 
 
@@ -481,6 +482,22 @@ def rows(n: int = 4, places: int = 6) -> Rows:
         w=np.full(n + places, 20.0), tau=np.full(n + places, 2000.0), T_room=np.full(n + places, 298.0),
         rise=np.full(n + places, 40.0), share=np.concatenate([np.ones(n), np.linspace(0.05, 0.85, places)]),
     )  # fmt: skip
+
+
+def test_what_the_model_leaves_of_a_course_ends_as_that_of_its_readings():
+    r, holds = rows(), {"T_oil": np.arange(4), "T_oil course": np.arange(4, 10)}
+    at_end = replace(r, share=np.ones_like(r.share))
+    left, ended = (remainder(Channels(holds), each) for each in (r, at_end))
+    own = {name for name in left if "course" in name}
+    assert own and all(not left[name][:4].any() for name in own)  # a reading is the end of its course
+    assert all(not ended[name].any() for name in own)
+    for name in left.keys() - own:
+        assert left[name][4:] == pytest.approx(left[name][0])  # the same conditions
+    # the first minutes may differ from all that comes later
+    A = np.stack([left[name][4:] for name in sorted(own)], axis=1)
+    first = np.eye(6)[0]
+    sharp = A @ np.linalg.solve(A.T @ A + 0.01 * np.eye(A.shape[1]), A.T @ first)
+    assert sharp[0] > 0.9 and np.abs(sharp[1:]).max() < 0.15
 
 
 def test_values_along_courses_scatter_as_their_curve_does():

@@ -142,13 +142,14 @@ def test_what_is_hidden_is_found(names: tuple[str, ...], again: bool, tmp_path: 
     assert how != "missed", told
 
 
+@pytest.mark.parametrize("series", [False, True], ids=["readings", "series"])
 @pytest.mark.parametrize("number", CLEAN if ALL else CLEAN[:1])
-def test_what_is_absent_is_not_named(number: int, tmp_path: Path) -> None:
-    truth = make_case(SHEET, SEED, number, tmp_path, kind="clean", series=False)
+def test_what_is_absent_is_not_named(number: int, series: bool, tmp_path: Path) -> None:
+    truth = make_case(SHEET, SEED, number, tmp_path, kind="clean", series=series)
     (tmp_path / "TRUTH.json").unlink()
     assert truth["causes"] == []
     answer = diagnosed(tmp_path / "case")
-    print(f"\nclean {number}: {said(answer)}", flush=True)
+    print(f"\nclean {number}{' with series' * series}: {said(answer)}", flush=True)
     assert quiet(answer), said(answer)
 
 

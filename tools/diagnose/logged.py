@@ -65,7 +65,9 @@ def sampled(series: Series | None, test: Test, stop: float) -> list[Sampled]:
         first = np.unique(np.linspace(0, len(time), min(len(time), MOST) + 1).astype(int))[:-1]
         count = np.diff(np.r_[first, len(time)])
         grouped = {c: np.add.reduceat(columns[c][mine], first) / count for c in ("time_s", "T_oil_C", "T_wall_C")}
-        when = (grouped["time_s"] - begin) / stated if as_stated else np.empty(0)
+        when = (grouped["time_s"] - begin) / stated
+        if not as_stated:
+            when, count = when[:0], count[:0]
         places, W = _places(when)
         T_oil, T_wall = (W @ (grouped[c] + 273.15) if len(W) else np.empty(0) for c in ("T_oil_C", "T_wall_C"))
         found.append(Sampled(k, end - begin, interval, places, T_oil, T_wall, W, when, count))

@@ -24,6 +24,9 @@ SETTLED, MOST_STEPS = 0.02, 12
 TRIES, LONGEST = 4, 1.5
 #: Standard deviation of the smooth remainder a reference campaign leaves, per feature: temperatures [K], loss [N.m].
 REMAINDER = {"T_oil": 0.8, "T_oil2": 0.8, "T_wall": 0.8, "loss": 1.0, "T_oil course": 0.8, "T_wall course": 0.8}
+#: Powers of the share of the dwell to come by which it fades along a course: the highest are the first minutes, when
+#: every rig's gears, oil and wall warm in their own way, and the oil is as thick as the room is cold.
+FADING = (1, 2, 4, 8, 16)
 #: Parameters that another filling or mounting of the gearbox changes, and by what share of their prior deviations.
 REFILLED = ("mesh friction", "bearing loss", "seal loss", "oil to gears", "oil to wall")
 CHANGED = 0.5
@@ -375,19 +378,20 @@ def _joined(ends: Readings, courses: Readings, n: int) -> Readings:
 def remainder(channels: Channels, rows: Rows) -> dict[str, np.ndarray]:
     """Effects of a smooth remainder in speed, torque, room and direction, the same in all campaigns of a rig.
 
-    Along logged courses it also changes with the share of the dwell that has passed.
+    A probe's logged course shares that of its readings, and has more that fades as the dwell passes.
     """
     which = channels.rows
     w, tau, room = (rows.w - 18.0) / 6.0, (rows.tau - 2100.0) / 500.0, (rows.T_room - 300.0) / 6.0
     d, one = rows.direction, np.ones(len(rows.w))
     smooth = [one, w, tau, room, d, w * tau, w**2, tau**2, d * w, d * tau]
-    begun = [f * (1 - rows.share) ** k * (1 + side * d) for k in (1, 2, 4) for side in (1, -1) for f in (one, w, tau)]
-    found = {}
-    for name in channels.names:
+    fading = [(1 - rows.share) ** k * (1 + side * d) for k in FADING for side in (1, -1)]
+    begun = [fades * f for fades in fading for f in (one, w, tau, room)]
+    found: dict[str, np.ndarray] = {}
+    for name in (n for n in channels.names if n in REMAINDER):
         part = channels.part(name)
-        for k, feature in enumerate([*smooth, *begun] if name in COURSES else smooth):
-            if name in REMAINDER:
-                column = np.zeros(len(which))
-                column[part] = feature[which[part]] * REMAINDER[name]
-                found[f"remainder of {name} {k}"] = column
+        features = {f"remainder of {COURSES.get(name, name)} {k}": f for k, f in enumerate(smooth)}
+        if name in COURSES:
+            features |= {f"remainder of {name} {k}": f for k, f in enumerate(begun)}
+        for own, feature in features.items():
+            found.setdefault(own, np.zeros(len(which)))[part] = feature[which[part]] * REMAINDER[name]
     return found
