@@ -302,6 +302,18 @@ def test_same_seed_same_bytes(sheet: str, tmp_path: Path) -> None:
     assert (tmp_path / "a/TRUTH.json").read_bytes() == (tmp_path / "b/TRUTH.json").read_bytes()
 
 
+def test_a_rig_that_would_overheat_is_drawn_again(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The first one drawn here runs away in its hardest test."""
+
+    def hottest() -> float:
+        case.make_case("foreign", 68, 42, tmp_path, kind="clean", series=False)
+        return max(float(row["T_oil_C"]) for name in ("DATA", "REF") for row in read(tmp_path / "case" / f"{name}.csv"))
+
+    assert hottest() < case.HOT
+    monkeypatch.setattr(case, "HOT", np.inf)
+    assert hottest() > 200.0
+
+
 def test_truth_is_what_the_readings_do(tmp_path: Path) -> None:
     """A sensor's shift is its whole impact, at the data and at the points to predict."""
     truth = case.make_case("own", 2, 1, tmp_path, kind="single", causes=["sensor.oil_temp.offset"], series=False)
