@@ -63,24 +63,22 @@ def hidden(names: tuple[str, ...], folder: Path, again: bool = False) -> dict[st
         folder: for the files
         again: whether the first rig in which it could be hidden is passed over
     """
-    kind, number, series = "pair" if len(names) > 1 else "single", NUMBERS[names], names[0] in NEEDS_SERIES
+    kind, series = "pair" if len(names) > 1 else "single", names[0] in NEEDS_SERIES
+    number = NUMBERS[names]
     try:
-        truth = make_case(SHEET, SEED, number, folder, kind=kind, causes=names, series=series)
-        while again or not shown(truth, series):
-            again = again and not shown(truth, series)
-            number += len(NUMBERS) + len(CLEAN)
+        while True:
             truth = make_case(SHEET, SEED, number, folder, kind=kind, causes=names, series=series)
+            loud = not series or truth["effects"][0]["snr"] >= LOUD
+            if loud and not again:
+                break
+            again = again and not loud
+            number += len(NUMBERS) + len(CLEAN)
     except LookupError:
         if kind == "pair":
             raise
         truth = make_case(SHEET, SEED, number, folder, kind="alike", causes=names, series=series)
     (folder / "TRUTH.json").unlink()
     return truth
-
-
-def shown(truth: dict[str, Any], series: bool) -> bool:
-    """Whether a hidden cause is so loud as to be found."""
-    return not series or truth["effects"][0]["snr"] >= LOUD
 
 
 def diagnosed(case: Path) -> Answer:
@@ -129,11 +127,15 @@ def said(answer: Answer) -> str:
     return f"{answer.verdict}, {len(answer.credible())} likeliest: {', '.join(ranked)}"
 
 
+def known(answered: str | None) -> list[pytest.MarkDecorator]:
+    """The mark of a known miss, by what is answered; none where there is none."""
+    return [pytest.mark.xfail(strict=False, reason=f"answered: {answered}")] if answered else []
+
+
 def parameters() -> list[Any]:
     """What is hidden, with the known misses marked."""
     chosen = tuple(NUMBERS) if ALL else FEW
-    missed = {n: [pytest.mark.xfail(strict=False, reason=f"answered: {MISSED[n]}")] for n in chosen if n in MISSED}
-    found = [pytest.param(n, False, id="+".join(n), marks=missed.get(n, [])) for n in chosen]
+    found = [pytest.param(n, False, id="+".join(n), marks=known(MISSED.get(n))) for n in chosen]
     return found + [pytest.param(n, True, id=f"{'+'.join(n)} again") for n in AGAIN if n in chosen]
 
 
@@ -153,12 +155,10 @@ def test_what_is_hidden_is_found(names: tuple[str, ...], again: bool, tmp_path: 
 
 def clean() -> list[Any]:
     """Clean campaigns without and with a series, with the known false alarm marked."""
-    found = []
-    for number, series in product(CLEAN if ALL else CLEAN[:1], (False, True)):
-        why = ALARMED.get((number, series))
-        marks = [pytest.mark.xfail(strict=False, reason=f"answered: {why}")] if why else []
-        found.append(pytest.param(number, series, id=f"{number}-{'series' if series else 'readings'}", marks=marks))
-    return found
+    return [
+        pytest.param(n, series, id=f"{n}-{'series' if series else 'readings'}", marks=known(ALARMED.get((n, series))))
+        for n, series in product(CLEAN if ALL else CLEAN[:1], (False, True))
+    ]
 
 
 @pytest.mark.parametrize(("number", "series"), clean())
