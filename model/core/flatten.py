@@ -1,4 +1,4 @@
-"""From parts and connections to an explicit flat model."""
+"""From parts and connections to a flat model: explicit but for the algebraic variables of its implicit blocks."""
 
 from __future__ import annotations
 
@@ -9,17 +9,17 @@ import casadi as ca
 from ..sources import LawInfo, LawUse, recording
 from .component import Component
 from .connect import Assembly, nets
+from .declare import Variable
 from .flat import Check, FlatModel, Quantity
-from .solve import NEWTON_STEPS, Row, Solution, Unknown, column, incidence, inline, solve
+from .solve import Row, Solution, Unknown, column, incidence, inline, scaled_residual, solve, start_of
 from .structure import check_structure
 
 
-def flatten(assembly: Assembly, newton_steps: int = NEWTON_STEPS) -> FlatModel:
+def flatten(assembly: Assembly) -> FlatModel:
     """Alias the potentials of each net, balance its flows, sort all equations and solve them block by block.
 
     Args:
         assembly: parts and their connections
-        newton_steps: of implicit blocks, from their guesses
 
     Raises:
         StructureError: ports that do not exist, too few or too many equations, a singular or unsolvable block
@@ -36,7 +36,7 @@ def flatten(assembly: Assembly, newton_steps: int = NEWTON_STEPS) -> FlatModel:
     aliased = _Alias(alias)
     rows = [Row(r.name, aliased(r.lhs), aliased(r.rhs)) for r in rows]
     check_structure(assembly.name, incidence(rows, unknowns), [r.name for r in rows], [u.name for u in unknowns])
-    solution = Solution(_typical(assembly, unknowns), newton_steps)
+    solution = Solution(_typical(assembly, unknowns))
     solve(assembly.name, rows, unknowns, solution)
     return _flat_model(assembly, solution, aliased, checks, tuple(laws))
 
@@ -58,10 +58,12 @@ def _nets(assembly: Assembly) -> tuple[list[Row], list[Unknown], list[tuple[Any,
     for net in nets(assembly):
         first = net[0]
         for name, d in type(first).potentials().items():
-            unknowns.append(Unknown(first.symbols[name], f"{first.name}.{name}", d.nominal))
+            unknowns.append(Unknown(first.symbols[name], f"{first.name}.{name}", d.nominal, unit=d.unit))
             alias += [(port.symbols[name], first.symbols[name]) for port in net[1:]]
         for name, flow in type(first).flows().items():
-            unknowns += [Unknown(port.symbols[name], f"{port.name}.{name}", flow.nominal) for port in net]
+            unknowns += [
+                Unknown(port.symbols[name], f"{port.name}.{name}", flow.nominal, unit=flow.unit) for port in net
+            ]
             total = sum((port.symbols[name] for port in net), ca.SX(0))
             rows.append(Row(f"sum of {name} at {first.name}", total, ca.SX(0)))
     return rows, unknowns, alias
@@ -80,10 +82,10 @@ def _typical(assembly: Assembly, unknowns: list[Unknown]) -> dict[int, float]:
 
 def _unknowns(part: Component) -> list[Unknown]:
     found = [Unknown(part.derivatives[k], f"der({part.name}.{k})", d.nominal) for k, d in part.states.items()]
-    found += [Unknown(part.symbols[k], f"{part.name}.{k}", d.nominal, d.guess) for k, d in part.variables.items()]
-    found += [
-        Unknown(part.symbols[k], f"{part.name}.{k}", d.nominal) for k, d in part.inputs.items() if not part.is_input(k)
-    ]
+    declared = [*part.variables.items(), *((k, d) for k, d in part.inputs.items() if not part.is_input(k))]
+    for k, d in declared:
+        guess = d.guess if isinstance(d, Variable) else None
+        found.append(Unknown(part.symbols[k], f"{part.name}.{k}", d.nominal, guess, d.unit))
     return found
 
 
@@ -108,7 +110,7 @@ def _flat_model(
     expressions = [
         column([part.derivatives[k] for part, k in states]),
         column([part.symbols[k] for part, k, _ in outputs]),
-        column([residual for _, residual in solution.residuals]),
+        column([test.residual for test in solution.tests]),
         sum(supplies, ca.SX(0)),
         sum((ca.fabs(power) for power in supplies), ca.SX(0)),
         sum((aliased(part.stored_energy()) for part in parts), ca.SX(0)),
@@ -117,6 +119,7 @@ def _flat_model(
     sizes = [e.numel() for e in expressions]
     together = inline(ca.vertcat(*expressions), solution)
     ode, y, residual, supply, throughput, stored, checked = ca.vertsplit(together, [0, *_cumulative(sizes)])
+    residual, names = scaled_residual(solution, residual)
 
     def quantities(items: list[tuple[Component, str]], kind: str) -> tuple[Quantity, ...]:
         return tuple(getattr(part, kind)[k].quantity(f"{part.name}.{k}", part.values[k]) for part, k in items)
@@ -129,12 +132,14 @@ def _flat_model(
         parameters=quantities(parameters, "parameters"),
         outputs=tuple(d.quantity(f"{part.name}.{k}") for part, k, d in outputs),
         x=x,
+        algebraic=tuple(Quantity(u.name, u.unit, "", u.nominal, start_of(u)) for u in solution.torn),
+        z=column([u.symbol for u in solution.torn]),
         u=column([part.symbols[k] for part, k in inputs]),
         p=column([part.symbols[k] for part, k in parameters]),
         ode=ode,
         y=y,
         residual=residual,
-        residual_names=tuple(name for name, _ in solution.residuals),
+        residual_names=names,
         supply=supply,
         throughput=throughput,
         stored=stored,

@@ -14,22 +14,22 @@ from .result import Audit, Outside, Result
 SLACK = 1e-9
 
 
-def evaluate(flat: FlatModel, x: np.ndarray, u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
+def evaluate(flat: FlatModel, x: np.ndarray, z: np.ndarray, u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
     """All output expressions, a column per row of the result.
 
     Args:
         flat: the model
         x: states, n_x by rows
+        z: algebraic variables, n_z by rows
         u: inputs, n_u by rows
-        p: parameters, n_p, or n_p by rows
+        p: parameters, n_p by rows
 
     Returns:
         "y", "residual", "supply", "throughput", "stored", "checked", each with one column per row
     """
     function = flat.output_function
     rows = x.shape[1]
-    p = p if p.ndim == 2 else np.tile(p[:, None], (1, rows))
-    values = function(x, u, p) if rows > 1 else function(x[:, 0], u[:, 0], p[:, 0])
+    values = function(x, z, u, p) if rows > 1 else function(*(v[:, 0] for v in (x, z, u, p)))
     return {name: np.array(value) for name, value in zip(function.name_out(), values, strict=True)}
 
 
