@@ -11,7 +11,7 @@ from ..core.flat import FlatModel
 from ..errors import SolveError
 from ..units import text
 from .fast import Fast, once
-from .newton import CONTRACTION, TOLERANCE, Box, System, homotopy, newton
+from .newton import CONTRACTION, CONVERGED, Box, System, homotopy, newton
 
 #: Where an iteration starts, in nominals from the model's own guess, when it finds no way from there.
 GUESSES = (1.0, 10.0, 100.0, 1000.0)
@@ -79,12 +79,12 @@ class Algebra:
         for _ in range(MOST_TOGETHER):
             d = self._corrections(x, z, u, p)
             length = np.max(np.abs(d) / self.box.scale[:, None], axis=0)
-            easy &= np.isfinite(length) & ((length <= CONTRACTION * last) | (length <= TOLERANCE))
+            easy &= np.isfinite(length) & ((length <= CONTRACTION * last) | (length <= CONVERGED))
             z, last = np.where(easy, z + d, z), length
-            if (length[easy] <= TOLERANCE).all():
+            if (length[easy] <= CONVERGED).all():
                 break
         else:
-            easy &= last <= TOLERANCE
+            easy &= last <= CONVERGED
         for k in np.flatnonzero(~easy):
             z[:, k] = self.solve(x[:, k], u[:, k], p[:, k], None if warm is None else warm[:, k])
         return z

@@ -14,7 +14,7 @@ import numpy as np
 System = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 #: A root is found when the next correction is below this, in scales.
-TOLERANCE = 1e-10
+CONVERGED = 1e-10
 
 #: Least shortening of the next correction by a full step.
 CONTRACTION = 0.75
@@ -92,7 +92,7 @@ def newton(system: System, z: np.ndarray, box: Box, most: int = MOST_NEWTON) -> 
         if d is None:
             return Root(z, False, step)
         length = box.size(d)
-        if length <= TOLERANCE:
+        if length <= CONVERGED:
             return Root(z + d, True, step)
         damping = min(damping, box.share(z, d))
         while True:
