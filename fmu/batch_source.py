@@ -72,9 +72,7 @@ def warmup_source(flat: FlatModel, most_steps: int) -> str:
     model = equations(flat)
     x_new, z_new, error, slope, h = rosenbrock.step(model.ode, model.residual, model.x, model.z, model.u, METHOD)
     inner = ca.densify(ca.jacobian(model.residual, model.z))
-    parts, c, c_values = _hoisted(
-        [x_new, z_new, error[:-1], model.y, model.ode, model.residual, inner[:]], model.p
-    )
+    parts, c, c_values = _hoisted([x_new, z_new, error[:-1], model.y, model.ode, model.residual, inner[:]], model.p)
     x_new, z_new, error, y, ode, residual, inner = parts
     place, names = [model.x, model.z, model.u, model.p, c], list("xzupc")
     step = _function(

@@ -104,9 +104,7 @@ class Equations:
         both = ca.jtimes(whole, ca.vertcat(moved, self.z), ca.vertcat(*dots.values(), z_dot))
         ny = found["y"].shape[0]
         point = {"x": self.x, "z": self.z, "u": self.u, "p": self.p, "c": c} | dots
-        return _function(
-            "directional", list(point.values()), [both[:ny], both[ny:]], list(point), ["y_dot", "dx_dot"]
-        )
+        return _function("directional", list(point.values()), [both[:ny], both[ny:]], list(point), ["y_dot", "dx_dot"])
 
     @cached_property
     def constants_directional(self) -> Any:

@@ -19,8 +19,8 @@ class Tableau:
     """Coefficients of a Rosenbrock method in the form that needs no product with the Jacobian.
 
     (M - h gamma J) U_i = h gamma (f(x + sum a_ij U_j, t + alpha_i h) + h d_i df/dt) + gamma M sum c_ij U_j,
-    x_new = x + sum m_i U_i, error = sum e_i U_i (Hairer and Wanner 1996, sections IV.7 and VI.4); M is the identity, with
-    zeros for algebraic equations.
+    x_new = x + sum m_i U_i, error = sum e_i U_i (Hairer and Wanner 1996, sections IV.7 and VI.4). M is the identity,
+    with zeros for algebraic equations.
 
     Attributes:
         order: order of the result; that of the error estimate's companion is one less
@@ -93,9 +93,7 @@ def _combine(weights: tuple[float, ...], stages: list[Any]) -> Any:
     return total
 
 
-def step(
-    ode: Any, residual: Any, x: Any, z: Any, u: Any, tableau: Tableau = RODAS3
-) -> tuple[Any, Any, Any, Any, Any]:
+def step(ode: Any, residual: Any, x: Any, z: Any, u: Any, tableau: Tableau = RODAS3) -> tuple[Any, Any, Any, Any, Any]:
     """One step of size h of dx/dt = ode(x, z, u), 0 = residual(x, z, u) with inputs u + slope t.
 
     Args:

@@ -175,14 +175,15 @@ def _scipy(flat: FlatModel, ends: list[float], speed: str, method: str) -> Run:
 
 
 def _explicit(flat: FlatModel) -> tuple[Any, list[Any]]:
-    """The rates as a function of x, u, p with symbols for these; CasADi's Newton method solves the implicit equations."""
+    """The rates as a function of x, u, p, and symbols for these; CasADi's Newton solves the implicit equations."""
     x, u, p = symbols = [ca.MX.sym(name, v.shape[0]) for name, v in zip("xup", (flat.x, flat.u, flat.p), strict=True)]
     given = ca.vertcat(flat.x, flat.u, flat.p)
     z = ca.DM(flat.starts("algebraic"))
     if flat.algebraic:
         root = ca.rootfinder("z", "fast_newton", {"x": flat.z, "p": given, "g": flat.residual})
-        z = root(x0=algebra(flat).solve(*map(flat.starts, ("state", "input", "parameter"))), p=ca.vertcat(*symbols))["x"]
-    return ca.Function("ode", symbols, [flat.ode_function(x, z, u, p)]), symbols
+        start = algebra(flat).solve(*map(flat.starts, ("state", "input", "parameter")))
+        z = root(x0=start, p=ca.vertcat(*symbols))["x"]
+    return ca.Function("ode", symbols, [flat.function(x, z, u, p)[0]]), symbols
 
 
 def _fmpy(

@@ -57,8 +57,9 @@ class FlatModel:
     """dx/dt = ode(x, z, u, p), 0 = residual(x, z, u, p), y = y(x, z, u, p); all are CasADi SX columns.
 
     `algebraic` are the torn unknowns z of the implicit blocks, their `start` where an iteration begins. As many
-    equations, named in `residual_names` and scaled to the size of z, hold at every moment. `supply` [W] is the power that crosses the model's boundary inwards, `throughput` [W] the sum of
-    its magnitudes, `stored` [J] the energy of the states: `supply` is the time derivative of `stored`, always.
+    equations, named in `residual_names` and scaled to the size of z, hold at every moment. `supply` [W] is the power
+    that crosses the model's boundary inwards, `throughput` [W] the sum of its magnitudes, `stored` [J] the energy of
+    the states: `supply` is the time derivative of `stored`, always.
     """
 
     name: str
@@ -109,16 +110,11 @@ class FlatModel:
         return [self.x, self.z, self.u, self.p]
 
     @cached_property
-    def ode_function(self) -> Any:
-        """CasADi function (x, z, u, p) -> (ode,)."""
-        return ca.Function("ode", self.point, [self.ode], ["x", "z", "u", "p"], ["ode"], {"cse": True})
-
-    @cached_property
-    def output_function(self) -> Any:
-        """CasADi function (x, z, u, p) -> (y, residual, supply, throughput, stored, checked)."""
-        names = ["y", "residual", "supply", "throughput", "stored", "checked"]
+    def function(self) -> Any:
+        """CasADi function (x, z, u, p) -> (ode, y, residual, supply, throughput, stored, checked)."""
+        names = ["ode", "y", "residual", "supply", "throughput", "stored", "checked"]
         results = [getattr(self, name) for name in names]
-        return ca.Function("outputs", self.point, results, ["x", "z", "u", "p"], names, {"cse": True})
+        return ca.Function("model", self.point, results, ["x", "z", "u", "p"], names, {"cse": True})
 
     def starts(self, kind: str) -> np.ndarray:
         """Default values of all states, algebraic variables, inputs or parameters, in order."""

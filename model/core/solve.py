@@ -253,7 +253,7 @@ def scaled_residual(solution: Solution, residual: Any) -> tuple[Any, tuple[str, 
     entries = np.abs(_at_typical(matrix, typical)) * nominals
     entries = np.where(np.isfinite(entries), entries, 1.0)
     size = entries.sum(axis=1)
-    with np.errstate(divide="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore"):
         cost = -np.log(entries / size[:, None])
     row, _ = linear_sum_assignment(np.where(np.isfinite(cost), cost, 1e6).T)[::-1]
     return residual[row.tolist()] / ca.DM(size[row]), tuple(solution.tests[i].name for i in row)

@@ -134,7 +134,8 @@ class Algebra:
         worst = int(np.argmax(np.where(np.isfinite(residual), np.abs(residual), np.inf)))
         q = self.quantities[worst]
         return (
-            f'the equation "{self.blocks[worst]}" has no solution here (last {q.name} {text(float(z[worst]), q.unit, 4)}).\n'
+            f'the equation "{self.blocks[worst]}" has no solution here '
+            f"(last {q.name} {text(float(z[worst]), q.unit, 4)}).\n"
             "Check speeds, torques, temperatures and parameters of that part."
         )
 

@@ -18,6 +18,9 @@ from .fast import Fast, once
 #: Steps between two output times before IDAS gives up.
 MOST_STEPS = 100_000
 
+#: First step of IDAS over its tolerance [s].
+FIRST_STEP = 1e-3
+
 #: Steps in search of the moment where an integration fails, and the size of a scaled state that is beyond all reason.
 MOST_TRIAL_STEPS, BLOWN_UP = 20_000, 1e9
 
@@ -82,7 +85,8 @@ class Transient:
         self.z_nominal = np.array([q.nominal for q in flat.algebraic])
         self.algebra = algebra(flat)
         n, nz = len(flat.inputs), len(flat.algebraic)
-        s, z, line, time = ca.SX.sym("s", max(len(x), 1)), ca.SX.sym("z", nz), ca.SX.sym("line", 2 * n + 1), ca.SX.sym("t")
+        sizes = {"s": max(len(x), 1), "z": nz, "line": 2 * n + 1, "t": 1}
+        s, z, line, time = (ca.SX.sym(name, size) for name, size in sizes.items())
         states = ca.DM(self.origin) + ca.DM(self.nominal) * s if len(x) else ca.SX(0, 1)
         inputs = line[:n] + line[n : 2 * n] * (time - line[2 * n])
         rate, residual, *power = _rates(flat)(states, ca.DM(self.z_nominal) * z, inputs, ca.SX(ca.DM(p)))
@@ -108,7 +112,7 @@ class Transient:
         except RuntimeError:
             raise self._failure(stretch, x) from None
         path = self._states(np.column_stack([self._scaled(x), np.array(done["xf"])]))
-        algebraic = np.column_stack([z, self.z_nominal[:, None] * np.array(done["zf"]).reshape(len(z), -1)])
+        algebraic = np.column_stack([z, self.z_nominal[:, None] * np.array(done["zf"]).reshape(len(z), len(grid) - 1)])
         if not (np.isfinite(path).all() and np.isfinite(algebraic).all()):
             raise self._failure(stretch, x)
         return path, algebraic, np.array(done["qf"])[:, -1]
@@ -149,6 +153,8 @@ class Transient:
                 "abstol": self.tolerance,
                 "max_num_steps": MOST_STEPS,
                 "quad_err_con": True,
+                "calc_ic": False,  # the begin is consistent; only its slopes are unknown to IDAS, hence a tiny first step
+                "step0": FIRST_STEP * self.tolerance,
                 "linear_solver": "csparse",  # pivots; the default squares entries and loses those that underflow
                 "disable_internal_warnings": True,
                 "show_eval_warnings": False,

@@ -112,11 +112,12 @@ class Search:
         self.f = np.array([self._inside(f, q, bounds) for f, q in zip(own, quantities, strict=True)])
         self.start = start
         own_box = unknowns_box(flat)
+        scales = [0.1 * max(abs(f), 0.1 * q.nominal) for f, q in zip(own, quantities, strict=True)]
         ends = [bounds.get(q.name, (q.low, q.high)) for q in quantities]
         self.box = Box(
             np.append(own_box.low, [max(a, q.low) for (a, _), q in zip(ends, quantities, strict=True)]),
             np.append(own_box.high, [min(b, q.high) for (_, b), q in zip(ends, quantities, strict=True)]),
-            np.append(own_box.scale, [0.1 * max(abs(f), 0.1 * q.nominal) for f, q in zip(own, quantities, strict=True)]),
+            np.append(own_box.scale, scales),
             np.append(own_box.stride, [STRIDE] * len(own)),
         )
         self.compiled = _compiled(flat, self.free, self.names)

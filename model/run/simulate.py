@@ -11,7 +11,6 @@ import numpy as np
 from ..core.flat import FlatModel
 from ..errors import ScenarioError, SolveError, suggestion
 from ..units import text
-from .algebra import algebra
 from .integrate import Failure, Stretch, Transient
 from .point import Point, point, problem_of
 from .result import Audit, Result
@@ -45,7 +44,8 @@ def simulate(
         times: output times [s], not decreasing; a row at a jump shows the inputs after it, a time given twice both
             sides. Without it: every 60 s, and both sides of every jump
         tolerance: of the local error, relative to each state's nominal and its distance from the start
-        method: "idas" (SUNDIALS BDF for differential-algebraic systems, through CasADi) or "lsoda" (SciPy, one Python call per right-hand side)
+        method: "idas" (SUNDIALS BDF for differential-algebraic systems, through CasADi) or "lsoda" (SciPy, one Python
+            call per right-hand side)
 
     Returns:
         all states, inputs and outputs, with the energy audit from integrated powers
@@ -173,8 +173,7 @@ def _result(
     last: np.ndarray,
     energy: np.ndarray,
 ) -> Result:
-    p = np.tile(begin.p[:, None], (1, len(time)))
-    evaluated = evaluate(flat, x, algebra(flat).solve_rows(x, u, p, z), u, p)
+    evaluated = evaluate(flat, x, u, begin.p, z)
     stored = ca.Function("stored", [flat.x, flat.u, flat.p], [flat.stored])
     ends = [float(stored(state, u[:, k], begin.p)) for state, k in ((begin.x, 0), (last, -1))]
     held = float(max(np.abs(evaluated["stored"]).max(), *map(abs, ends)))

@@ -110,7 +110,7 @@ def table(flat: FlatModel, found: Sequence[Equilibrium], u: np.ndarray, p: np.nd
     """
     x = np.array([e.x for e in found]).T.reshape(len(flat.states), len(found))
     z = np.array([e.z for e in found]).T.reshape(len(flat.algebraic), len(found))
-    evaluated = evaluate(flat, x, z, u, p)
+    evaluated = evaluate(flat, x, u, p, z)
     supply, throughput = evaluated["supply"][0], evaluated["throughput"][0]
     audits = [Audit(float(s), 0.0, float(t)) for s, t in zip(supply, throughput, strict=True)]
     worst = max(audits, key=lambda audit: audit.residual)

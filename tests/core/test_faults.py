@@ -4,7 +4,7 @@ from collections.abc import Iterator
 
 import pytest
 from gearheat.model.core.component import Component, Equation, equation
-from gearheat.model.core.declare import Choice, Input, Output, Parameter, Variable
+from gearheat.model.core.declare import Choice, Input, Output, Parameter
 from gearheat.model.errors import ScenarioError, StructureError
 from small_parts import (
     Ambient,
@@ -62,21 +62,6 @@ def test_a_circuit_without_ground() -> None:
     text = fault(Resistor("r", R=1.0), Resistor("s", R=1.0), nets=[("r.a", "s.a"), ("r.b", "s.b")])
     assert "say the same twice" in text
     assert "r." in text or "s." in text
-
-
-def test_an_implicit_block_without_a_guess() -> None:
-    class Square(Component):
-        x = Variable("1", "unknown")
-        y = Variable("1", "unknown")
-
-        def equations(self) -> Iterator[Equation]:
-            yield equation("circle", self.x**2 + self.y**2, 2.0)
-            yield equation("hyperbola", self.x * self.y, 1.0)
-
-    text = fault(Square("s"), nets=[])
-    assert "s: circle" in text
-    assert "s: hyperbola" in text
-    assert "guess" in text
 
 
 def test_all_wrong_connections_at_once() -> None:
