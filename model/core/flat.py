@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -65,12 +65,10 @@ class FlatModel:
     name: str
     doc: str
     states: tuple[Quantity, ...]
-    algebraic: tuple[Quantity, ...]
     inputs: tuple[Quantity, ...]
     parameters: tuple[Quantity, ...]
     outputs: tuple[Quantity, ...]
     x: Any
-    z: Any
     u: Any
     p: Any
     ode: Any
@@ -83,6 +81,8 @@ class FlatModel:
     checks: tuple[Check, ...]
     checked: Any
     laws: tuple[LawInfo, ...]
+    algebraic: tuple[Quantity, ...] = ()
+    z: Any = field(default_factory=lambda: ca.SX(0, 1))
 
     @cached_property
     def index(self) -> Mapping[str, tuple[str, int]]:

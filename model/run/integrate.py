@@ -153,7 +153,7 @@ class Transient:
                 "abstol": self.tolerance,
                 "max_num_steps": MOST_STEPS,
                 "quad_err_con": True,
-                "calc_ic": False,  # the begin is consistent; only its slopes are unknown to IDAS, hence a tiny first step
+                "calc_ic": False,  # the begin is consistent but for its slopes, hence a tiny first step
                 "step0": FIRST_STEP * self.tolerance,
                 "linear_solver": "csparse",  # pivots; the default squares entries and loses those that underflow
                 "disable_internal_warnings": True,
