@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
-
-from .elimination import SparseLU
+from gearheat.model.core.eliminate import Factors
 
 
 @dataclass(frozen=True)
@@ -105,7 +104,7 @@ def step(ode: Any, x: Any, u: Any, tableau: Tableau = RODAS3) -> tuple[Any, Any,
     """
     slope, h = ca.SX.sym("slope", u.shape[0]), ca.SX.sym("h")
     gamma_h = tableau.gamma * h
-    factors = SparseLU(ca.SX.eye(x.shape[0]) - gamma_h * ca.jacobian(ode, x))
+    factors = Factors(ca.SX.eye(x.shape[0]) - gamma_h * ca.jacobian(ode, x))
     ode_t = ca.jtimes(ode, u, slope)
     rates: dict[tuple[tuple[float, ...], float], Any] = {}
     stages: list[Any] = []
