@@ -8,11 +8,11 @@ from itertools import pairwise
 from typing import Any
 
 import casadi as ca
+from gearheat.model.core.eliminate import Factors
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.errors import FmuError
 
 from . import rosenbrock
-from .elimination import SparseLU
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,7 @@ class Equations:
         given = {"x": self.x, "u": self.u, "p": self.p, "c": c}
         dots = {f"{name}_dot": ca.SX.sym(f"{name}_dot", v.shape[0]) for name, v in given.items()}
         moved = ca.vertcat(*given.values())
-        z_dot = -SparseLU(ca.jacobian(found["residual"], self.z)).solve(
+        z_dot = -Factors(ca.jacobian(found["residual"], self.z)).solve(
             ca.jtimes(found["residual"], moved, ca.vertcat(*dots.values()))
         )
         whole = ca.vertcat(found["y"], found["ode"])

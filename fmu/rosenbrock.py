@@ -10,8 +10,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
-
-from .elimination import SparseLU
+from gearheat.model.core.eliminate import Factors
 
 
 @dataclass(frozen=True)
@@ -112,7 +111,7 @@ def step(ode: Any, residual: Any, x: Any, z: Any, u: Any, tableau: Tableau = ROD
     w, whole = ca.vertcat(x, z), ca.vertcat(ode, residual)
     jacobian = ca.jacobian(whole, w)
     # algebraic rows are divided by -gamma h, so that h alone scales the others
-    factors = SparseLU(ca.vertcat(ca.horzcat(ca.SX.eye(n), ca.SX(n, k)) - gamma_h * jacobian[:n, :], jacobian[n:, :]))
+    factors = Factors(ca.vertcat(ca.horzcat(ca.SX.eye(n), ca.SX(n, k)) - gamma_h * jacobian[:n, :], jacobian[n:, :]))
     slopes = ca.jtimes(whole, u, slope)
     rates: dict[tuple[tuple[float, ...], float], Any] = {}
     stages: list[Any] = []

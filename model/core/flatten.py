@@ -34,7 +34,8 @@ def flatten(assembly: Assembly) -> FlatModel:
         laws |= dict.fromkeys(use.law for use in uses)
         unknowns += _unknowns(part)
     aliased = _Alias(alias)
-    rows = [Row(r.name, aliased(r.lhs), aliased(r.rhs)) for r in rows]
+    lefts, rights = aliased([r.lhs for r in rows]), aliased([r.rhs for r in rows])
+    rows = [Row(r.name, lhs, rhs) for r, lhs, rhs in zip(rows, lefts, rights, strict=True)]
     check_structure(assembly.name, incidence(rows, unknowns), [r.name for r in rows], [u.name for u in unknowns])
     solution = Solution(_typical(assembly, unknowns))
     solve(assembly.name, rows, unknowns, solution)
@@ -42,14 +43,18 @@ def flatten(assembly: Assembly) -> FlatModel:
 
 
 class _Alias:
-    """Replaces the potential of every port by the one symbol of its net."""
+    """Replaces the potential of every port by the one symbol of its net.
+
+    Scalars are replaced in one call: its cost grows with the number of ports, whatever it is given.
+    """
 
     def __init__(self, pairs: list[tuple[Any, Any]]) -> None:
         self.old = column([old for old, _ in pairs])
         self.new = column([new for _, new in pairs])
 
-    def __call__(self, expression: Any) -> Any:
-        return ca.substitute(ca.SX(expression), self.old, self.new) if self.old.numel() else ca.SX(expression)
+    def __call__(self, expressions: list[Any]) -> list[Any]:
+        (replaced,) = ca.substitute([ca.densify(column(expressions))], [self.old], [self.new])
+        return list(replaced.nonzeros())
 
 
 def _nets(assembly: Assembly) -> tuple[list[Row], list[Unknown], list[tuple[Any, Any]]]:
@@ -106,15 +111,15 @@ def _flat_model(
     parameters = [(part, k) for part in parts for k in part.parameters]
     outputs = [(part, k, d) for part in parts for k, d in part.outputs().items()]
     x = column([part.symbols[k] for part, k in states])
-    supplies = [aliased(power) for part in parts for power in part.supplied_power()]
+    supplies = aliased([power for part in parts for power in part.supplied_power()])
     expressions = [
         column([part.derivatives[k] for part, k in states]),
         column([part.symbols[k] for part, k, _ in outputs]),
         column([test.residual for test in solution.tests]),
         sum(supplies, ca.SX(0)),
         sum((ca.fabs(power) for power in supplies), ca.SX(0)),
-        sum((aliased(part.stored_energy()) for part in parts), ca.SX(0)),
-        column([aliased(value) for _, value in checks]),
+        sum(aliased([part.stored_energy() for part in parts]), ca.SX(0)),
+        column(aliased([value for _, value in checks])),
     ]
     sizes = [e.numel() for e in expressions]
     together = inline(ca.vertcat(*expressions), solution)

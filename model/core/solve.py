@@ -18,6 +18,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import min_weight_full_bipartite_matching
 
 from ..errors import StructureError
+from .eliminate import Factors, Singular, typical_sizes
 
 #: What it costs to let an equation determine an unknown: given by one side, linear in it, nonlinear; and on top of
 #: these where it gives a torn unknown, which it is to test.
@@ -118,39 +119,16 @@ def _explicit(row: Row, z: Any) -> Any:
 
 
 def _eliminate(model: str, matrix: Any, constant: Any, unknowns: list[Unknown], solution: Solution) -> None:
-    """Solve matrix z + constant = 0 by Gauss elimination, rows and columns in the order of least fill."""
-    n = len(unknowns)
-    a = {(i, j): matrix[i, j] for i, j in zip(*matrix.sparsity().get_triplet(), strict=True)}
-    b = [-constant[i] for i in range(n)]
-    size = _sizes(matrix, solution.typical)
-    open_rows, open_columns, order = set(range(n)), set(range(n)), []
-    while open_rows:
-        pivot = _pivot(a, size, open_rows, open_columns)
-        if pivot is None:
-            names = ", ".join(unknowns[c].name for c in sorted(open_columns)[:5])
-            raise StructureError(f"{model}: the equations for {names} say the same twice. Give one of these a value.")
-        i, j = pivot
-        open_rows.discard(i)
-        open_columns.discard(j)
-        order.append((i, j))
-        others = [c for c in open_columns if (i, c) in a]
-        for r in sorted(r for r in open_rows if (r, j) in a):
-            factor = a.pop((r, j)) / a[i, j]
-            ratio = size.pop((r, j)) / size[i, j]
-            b[r] = b[r] - factor * b[i]
-            for c in others:
-                a[r, c] = a.get((r, c), 0) - factor * a[i, c]
-                size[r, c] = size.get((r, c), 0.0) - ratio * size[i, c]
-    for i, j in reversed(order):
-        known = sum((a[i, c] * unknowns[c].symbol for r, c in a if r == i and c != j), ca.SX(0))
-        solution.define(unknowns[j].symbol, (b[i] - known) / a[i, j])
-
-
-def _sizes(matrix: Any, typical: Mapping[int, float]) -> dict[tuple[int, int], float]:
-    """Typical values of the entries: they only steer the choice of pivots, so one that cannot be had counts as 1."""
-    values = _at_typical(matrix, typical)
-    entries = {(i, j): float(values[i, j]) for i, j in zip(*matrix.sparsity().get_triplet(), strict=True)}
-    return {entry: value if np.isfinite(value) else 1.0 for entry, value in entries.items()}
+    """Solve matrix z + constant = 0."""
+    try:
+        z = Factors(matrix, typical_sizes(matrix, solution.typical)).solve(-constant)
+    except Singular as error:
+        names = ", ".join(unknowns[c].name for c in error.columns[:5])
+        raise StructureError(
+            f"{model}: the equations for {names} say the same twice. Give one of these a value."
+        ) from None
+    for unknown, value in zip(unknowns, z.nonzeros(), strict=True):
+        solution.define(unknown.symbol, value)
 
 
 def _at_typical(matrix: Any, typical: Mapping[int, float]) -> np.ndarray:
@@ -159,17 +137,6 @@ def _at_typical(matrix: Any, typical: Mapping[int, float]) -> np.ndarray:
     point = [typical.get(symbol.element_hash(), 1.0) for symbol in free]
     values = ca.Function("sizes", free, [matrix])(*point) if free else ca.DM(matrix)
     return np.array(ca.DM(values).full())
-
-
-def _pivot(
-    a: Mapping[Any, Any], size: Mapping[Any, float], rows: set[int], columns: set[int]
-) -> tuple[int, int] | None:
-    """Markowitz: least fill among entries that are not small in their row; None where a row has nothing left."""
-    entries = [(i, j) for i, j in a if i in rows and j in columns]
-    in_row = {i: [c for r, c in entries if r == i] for i in rows}
-    in_column = {j: [r for r, c in entries if c == j] for j in columns}
-    sound = [(i, j) for i, j in entries if abs(size[i, j]) > max(1e-3 * max(abs(size[i, c]) for c in in_row[i]), 1e-12)]
-    return min(sound, key=lambda e: ((len(in_row[e[0]]) - 1) * (len(in_column[e[1]]) - 1), e), default=None)
 
 
 def _tear(model: str, rows: list[Row], unknowns: list[Unknown], solution: Solution) -> None:
