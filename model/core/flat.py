@@ -58,7 +58,8 @@ class FlatModel:
 
     `residual` holds what the implicit blocks leave after their Newton steps (scaled by nominals), named in
     `residual_names`. `supply` [W] is the power that crosses the model's boundary inwards, `throughput` [W] the sum of
-    its magnitudes, `stored` [J] the energy of the states: `supply` is the time derivative of `stored`, always.
+    its magnitudes, `stored` [J] the energy of the states: `supply` is the time derivative of `stored`, always. `joined`
+    says which quantities are outputs because rigid couplings tie them to states ("rotor_2.w follows rotor_1.w").
     """
 
     name: str
@@ -80,6 +81,7 @@ class FlatModel:
     checks: tuple[Check, ...]
     checked: Any
     laws: tuple[LawInfo, ...]
+    joined: tuple[str, ...] = ()
 
     @cached_property
     def index(self) -> Mapping[str, tuple[str, int]]:
