@@ -17,6 +17,8 @@ from .solve import Row, Unknown, column
 PLACE = re.compile(r"^\S+\.[ch]pp:\d+: ")
 #: What CasADi says where Python has to decide by the value of a symbol.
 UNDECIDED = ("truth value", "__bool__")
+#: What CasADi says of an argument that is neither a number nor a symbol.
+KIND = "Wrong number or type of arguments"
 
 
 def rows_of(part: Component) -> list[Row]:
@@ -74,6 +76,8 @@ def _told(part: Component, rows: Sequence[Row], error: Exception) -> str:
             f"{where}: Python has to decide by the value of a symbol (if, and, or, max), which it does not have yet. "
             "Use smooth functions (gearheat.model.laws.smooth) or casadi.if_else, or a Choice."
         )
+    if KIND in str(error):
+        return f"{where}: a side or an argument is neither a number nor a symbol. Yield one equation for every number."
     said = PLACE.sub("", str(error).strip()) or type(error).__name__
     return f"{where}: {' '.join(said.split()).rstrip('.')}. Correct the equation that follows: its sides are scalars."
 
@@ -84,7 +88,7 @@ def _undeclared(part: Component, error: KeyError | AttributeError) -> str:
         return str(error.args[0]) if error.args else ""
     if "has no equations" in str(error):
         return "equations"
-    return str(error.name or "")
+    return str(error.name) if error.obj is part else ""
 
 
 def check_symbols(rows: Sequence[Row], unknowns: Sequence[Unknown], parts: Sequence[Component]) -> None:

@@ -55,32 +55,40 @@ class Faults:
         """Equations that are one more than their unknowns."""
         inside = sorted({c for r in chosen for c in self.columns[r]})
         rows, unknowns = [self.rows[r] for r in chosen], [self.unknowns[c] for c in inside]
-        what, remedy = self._contradiction(tie(rows, unknowns, self.known), rows)
+        relation = tie(rows, unknowns, self.known)
         said = [r for r in rows if not r.name.startswith("sum of ")] or rows
+        if relation is None:  # a long way through losses: what is given at its ends says more than all of it
+            said = [r for r in said if self._inputs_of([r])] or said
         said.sort(key=lambda r: not self._inputs_of([r]))
-        ports = self._ports_of(unknowns, {r.name.partition(": ")[0] for r in said})
+        ports = self._ports_of(unknowns, {_part(r) for r in said})
         where = f" (at {some([p.name for p in ports])})" if ports else ""
-        instead = [words for words in dict.fromkeys(type(p).instead for p in ports) if words]
-        remedy = ", or ".join([remedy, *instead])
+        what, remedy = self._contradiction(relation, rows, ports)
         text = f"{self.model}: {what}\nToo much is said in {some([r.name for r in said])}{where}.\n{remedy}."
-        return Fault((text,), any(type(p).flows() for p in ports))
+        levels = {name for net in self.nets if type(net[0]).flows() for name in _of_net(net)}
+        return Fault((text,), not levels.isdisjoint(u.name for u in unknowns))
 
-    def _contradiction(self, relation: Relation | None, rows: Sequence[Row]) -> tuple[str, str]:
+    def _contradiction(self, relation: Relation | None, rows: Sequence[Row], ports: Sequence[Port]) -> tuple[str, str]:
         """What some equations say too much, and what to do about it."""
         given = self._inputs_of(rows) if relation is None else list(relation.inputs)
         states = [] if relation is None else [f"{part.name}.{key}" for part, key in relation.states]
+        ways = [self._drop(given)] if given else []
+        if relation is not None and given and states:
+            ways += [f"leave {listed([part.name for part, _ in relation.states])} out"]
+        if relation is not None and len(given) + len(states) > 1:
+            ways += [words for words in dict.fromkeys(type(p).instead for p in ports) if words]
         if states and given:
-            return f"{listed(states)} is a state, but tied rigidly to {listed(given)}, which is given.", self._drop(
-                given
-            )
-        if states:
+            what = f"{listed(states)} is a state, but tied rigidly to {listed(given)}, which is given."
+        elif states:
             what = f"{listed(states)} is a state, but what it is tied to holds it at one value."
-            return what, "Free it or leave it out; where a loop of gears closes, its ratios have to fit"
-        if len(given) > 1:
-            return f"{listed(given)} are given, but one of them follows from the rest.", self._drop(given)
-        if given:
-            return f"{given[0]} is given, but follows from the rest.", self._drop(given)
-        return "the same is said twice, or two things that contradict each other.", "Take one of them away"
+            parts = listed([part.name for part, _ in relation.states]) if relation else ""
+            ways = [f"Free {parts} or leave it out; where a loop closes, its ratios have to fit"]
+        elif len(given) > 1:
+            what = f"{listed(given)} are given, but one of them follows from the rest."
+        elif given:
+            what = f"{given[0]} is given, but follows from the rest."
+        else:
+            what, ways = "two equations say the same or contradict each other.", ["Take a part that holds it away"]
+        return what, ", or ".join(ways)
 
     def _drop(self, given: Sequence[str]) -> str:
         """How not to give one of some inputs: by the part's choice, or without the part."""
@@ -96,10 +104,22 @@ class Faults:
         return [path for h, path in self.known.inputs.items() if h in held]
 
     def _ports_of(self, unknowns: Sequence[Unknown], parts: set[str]) -> list[Port]:
-        """Ports of some parts in the nets whose potentials are among some unknowns."""
+        """Ports of some parts whose flow, or the potentials of whose net, are among some unknowns.
+
+        Parts that only pass a potential on, from one port to another, are left out where others end it.
+        """
         names = {u.name for u in unknowns}
-        met = [net for net in self.nets if any(f"{net[0].name}.{k}" in names for k in type(net[0]).potentials())]
-        return [port for net in met for port in net if port.name.rpartition(".")[0] in parts]
+        ports = [
+            port
+            for net in self.nets
+            for port in net
+            if port.name.rpartition(".")[0] in parts
+            and type(port).flows()
+            and not names.isdisjoint((*_of_net(net), *(f"{port.name}.{k}" for k in type(port).flows())))
+        ]
+        owners = [p.name.rpartition(".")[0] for p in ports]
+        ends = [p for p, owner in zip(ports, owners, strict=True) if owners.count(owner) == 1]
+        return ends or ports
 
     def too_little(self, chosen: Sequence[int]) -> Fault:
         """Unknowns that have fewer equations than they are."""
@@ -110,12 +130,7 @@ class Faults:
                 for p in deaf
             ]
             return Fault(tuple(told), True)
-        levels = [
-            name
-            for net in self.nets
-            for k in type(net[0]).potentials()
-            if type(net[0]).flows() and (name := f"{net[0].name}.{k}") in names
-        ]
+        levels = [name for net in self.nets if type(net[0]).flows() for name in _of_net(net) if name in names]
         givable = [path for path in self.givable if path in names]
         remedy = f"Give {listed(givable, 'or')}, or connect" if givable else "Give a value, connect"
         what = some(levels or givable or sorted(names, key=lambda name: name.count(".")))
@@ -135,6 +150,15 @@ class Faults:
             if potentials and not any(port.symbols[k].element_hash() in said for k in potentials):
                 found.append(port)
         return found
+
+
+def _of_net(net: Sequence[Port]) -> list[str]:
+    """The names of the potentials of a net: those of its first port."""
+    return [f"{net[0].name}.{k}" for k in type(net[0]).potentials()]
+
+
+def _part(row: Row) -> str:
+    return row.name.partition(": ")[0]
 
 
 def some(names: Sequence[str]) -> str:

@@ -30,10 +30,10 @@ def check_structure(
         typical: typical value of every symbol by its hash
     """
     columns = columns_of(incidence(rows, unknowns))
+    if problems := floating(assembly.name, assembly.ports(), rows, unknowns, columns):
+        raise StructureError(problems)
     matching = Matching(columns, len(unknowns))
     if not matching.spare_rows and not matching.free_columns:
-        if problems := floating(assembly.name, assembly.ports(), rows, unknowns, columns):
-            raise StructureError(problems)
         return
     faults = Faults(assembly, rows, unknowns, columns, typical)
     much = [faults.too_much(c) for c in _apart(sorted(map(matching.too_many, matching.spare_rows), key=len))]

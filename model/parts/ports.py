@@ -37,7 +37,7 @@ class Flange(Port):
 
     missing = "no shaft turns it"
     source = "the flange of a shaft end, a gear or an inertia"
-    instead = "give a torque in its place, or leave out an inertia whose speed is given (dynamic = false)"
+    instead = "give a torque in place of a speed"
 
     w = Potential("rad/s", "angular velocity", nominal=10.0)
     tau = Flow("N.m", "torque", nominal=100.0)
