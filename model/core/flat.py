@@ -59,7 +59,8 @@ class FlatModel:
     `algebraic` are the torn unknowns z of the implicit blocks, their `start` where an iteration begins. As many
     equations, named in `residual_names` and scaled to the size of z, hold at every moment. `supply` [W] is the power
     that crosses the model's boundary inwards, `throughput` [W] the sum of its magnitudes, `stored` [J] the energy of
-    the states: `supply` is the time derivative of `stored`, always.
+    the states: `supply` is the time derivative of `stored`, always. `joined` says which quantities are outputs because
+    rigid couplings tie them to states ("rotor_2.w follows rotor_1.w").
     """
 
     name: str
@@ -83,6 +84,7 @@ class FlatModel:
     laws: tuple[LawInfo, ...]
     algebraic: tuple[Quantity, ...] = ()
     z: Any = field(default_factory=lambda: ca.SX(0, 1))
+    joined: tuple[str, ...] = ()
 
     @cached_property
     def index(self) -> Mapping[str, tuple[str, int]]:

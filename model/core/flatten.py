@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import casadi as ca
@@ -9,9 +11,11 @@ import casadi as ca
 from ..sources import LawInfo, LawUse, recording
 from .component import Component
 from .connect import Assembly, nets
-from .declare import Variable
+from .declare import Declaration, Variable
+from .equations import check_symbols, rows_of
 from .flat import Check, FlatModel, Quantity
-from .solve import Row, Solution, Unknown, column, incidence, inline, scaled_residual, solve, start_of
+from .reduce import reduce
+from .solve import Row, Solution, Unknown, column, inline, scaled_residual, solve, start_of
 from .structure import check_structure
 
 
@@ -29,17 +33,20 @@ def flatten(assembly: Assembly) -> FlatModel:
     laws: dict[LawInfo, None] = {}
     for part in assembly.parts:
         with recording() as uses:
-            rows += [Row(f"{part.name}: {e.name}", e.lhs, e.rhs) for e in part.equations()]
+            rows += rows_of(part)
         checks += _checks(part, uses)
         laws |= dict.fromkeys(use.law for use in uses)
         unknowns += _unknowns(part)
     aliased = _Alias(alias)
     lefts, rights = aliased([r.lhs for r in rows]), aliased([r.rhs for r in rows])
     rows = [Row(r.name, lhs, rhs) for r, lhs, rhs in zip(rows, lefts, rights, strict=True)]
-    check_structure(assembly.name, incidence(rows, unknowns), [r.name for r in rows], [u.name for u in unknowns])
-    solution = Solution(_typical(assembly, unknowns))
-    solve(assembly.name, rows, unknowns, solution)
-    return _flat_model(assembly, solution, aliased, checks, tuple(laws))
+    check_symbols(rows, unknowns, assembly.parts)
+    typical = _typical(assembly, unknowns)
+    reduced = reduce(assembly, rows, unknowns, typical)
+    check_structure(assembly, reduced.rows, reduced.unknowns, typical)
+    solution = Solution(typical)
+    solve(assembly.name, reduced.rows, reduced.unknowns, solution)
+    return _flat_model(assembly, solution, aliased, checks, tuple(laws), reduced.joined)
 
 
 class _Alias:
@@ -103,13 +110,18 @@ def _checks(part: Component, uses: list[LawUse]) -> list[tuple[Check, Any]]:
 
 
 def _flat_model(
-    assembly: Assembly, solution: Solution, aliased: _Alias, checks: list[tuple[Check, Any]], laws: tuple[LawInfo, ...]
+    assembly: Assembly,
+    solution: Solution,
+    aliased: _Alias,
+    checks: list[tuple[Check, Any]],
+    laws: tuple[LawInfo, ...],
+    joined: Mapping[str, str],
 ) -> FlatModel:
     parts = assembly.parts
-    states = [(part, k) for part in parts for k in part.states]
+    states = [(part, k) for part in parts for k in part.states if f"{part.name}.{k}" not in joined]
     inputs = [(part, k) for part in parts for k in part.inputs if part.is_input(k)]
     parameters = [(part, k) for part in parts for k in part.parameters]
-    outputs = [(part, k, d) for part in parts for k, d in part.outputs().items()]
+    outputs = [(part, k, d) for part in parts for k, d in _shown(part, joined).items()]
     x = column([part.symbols[k] for part, k in states])
     supplies = aliased([power for part in parts for power in part.supplied_power()])
     expressions = [
@@ -135,7 +147,7 @@ def _flat_model(
         states=quantities(states, "states"),
         inputs=quantities(inputs, "inputs"),
         parameters=quantities(parameters, "parameters"),
-        outputs=tuple(d.quantity(f"{part.name}.{k}") for part, k, d in outputs),
+        outputs=tuple(_output(f"{part.name}.{k}", d, joined) for part, k, d in outputs),
         x=x,
         algebraic=tuple(Quantity(u.name, u.unit, "", u.nominal, start_of(u)) for u in solution.torn),
         z=column([u.symbol for u in solution.torn]),
@@ -151,7 +163,18 @@ def _flat_model(
         checks=tuple(check for check, _ in checks),
         checked=checked,
         laws=laws,
+        joined=tuple(joined.values()),
     )
+
+
+def _shown(part: Component, joined: Mapping[str, str]) -> dict[str, Declaration]:
+    """The outputs of a part, and those of its states that follow others."""
+    return {k: d for k, d in part.states.items() if f"{part.name}.{k}" in joined} | part.outputs()
+
+
+def _output(path: str, declaration: Declaration, joined: Mapping[str, str]) -> Quantity:
+    quantity = declaration.quantity(path)
+    return replace(quantity, doc=f"{quantity.doc}; {joined[path]}") if path in joined else quantity
 
 
 def _cumulative(sizes: list[int]) -> list[int]:
