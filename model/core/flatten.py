@@ -30,6 +30,7 @@ def flatten(assembly: Assembly, newton_steps: int = NEWTON_STEPS) -> FlatModel:
     for part in assembly.parts:
         with recording() as uses:
             rows += [Row(f"{part.name}: {e.name}", e.lhs, e.rhs) for e in part.equations()]
+        uses = [*part.uses, *uses]
         checks += _checks(part, uses)
         laws |= dict.fromkeys(use.law for use in uses)
         unknowns += _unknowns(part)
@@ -103,6 +104,7 @@ def _flat_model(
     inputs = [(part, k) for part in parts for k in part.inputs if part.is_input(k)]
     parameters = [(part, k) for part in parts for k in part.parameters]
     outputs = [(part, k, d) for part in parts for k, d in part.outputs().items()]
+    related = [pair for part in parts for pair in part.all_relations()]
     x = column([part.symbols[k] for part, k in states])
     supplies = [aliased(power) for part in parts for power in part.supplied_power()]
     expressions = [
@@ -127,7 +129,9 @@ def _flat_model(
         states=quantities(states, "states"),
         inputs=quantities(inputs, "inputs"),
         parameters=quantities(parameters, "parameters"),
-        outputs=tuple(d.quantity(f"{part.name}.{k}") for part, k, d in outputs),
+        outputs=tuple(
+            d.quantity(f"{part.name}.{k}", part.values[k] if k in part.derived else 0.0) for part, k, d in outputs
+        ),
         x=x,
         u=column([part.symbols[k] for part, k in inputs]),
         p=column([part.symbols[k] for part, k in parameters]),
@@ -141,6 +145,9 @@ def _flat_model(
         checks=tuple(check for check, _ in checks),
         checked=checked,
         laws=laws,
+        derived={f"{part.name}.{k}": part.follows_from(part.symbols[k]) for part in parts for k in part.derived},
+        relations=tuple(relation for relation, _ in related),
+        related=column([value for _, value in related]),
     )
 
 

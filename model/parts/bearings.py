@@ -105,7 +105,7 @@ class TaperedRollerBearing(SkfBearing):
         "drag loss factor of the oil level",
         nominal=1e-4,
         at_least=0.0,
-        derived=lambda v: float(drag_loss_factor(v["H"] / v["d_m"], roller=True)),
+        derived=lambda p: drag_loss_factor(p.H / p.d_m, roller=True),
     )
 
     def has(self, name: str) -> bool:
@@ -133,7 +133,7 @@ class DeepGrooveBallBearing(SkfBearing):
         "drag loss factor of the oil level",
         nominal=1e-4,
         at_least=0.0,
-        derived=lambda v: float(drag_loss_factor(v["H"] / v["d_m"])),
+        derived=lambda p: drag_loss_factor(p.H / p.d_m),
     )
     axially_loaded = Choice((True, False), "which of the catalogue's two sliding formulas holds", default=True)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import casadi as ca
@@ -95,26 +95,6 @@ class ToothedPart(Component):
         return mu, specific_film_thickness(reduction * h, ca.sqrt(2.0) * self.Ra)
 
 
-def _addendum_ratios(v: Mapping[str, float]) -> list[float]:
-    """Addendum contact ratios of pinion and wheel from the geometry of an external pair."""
-    alpha_t = transverse_pressure_angle(v["alpha_n"], v["beta"])
-    a = reference_diameter(v["m_n"], v["z_1"] + v["z_2"], v["beta"]) / 2
-    alpha_wt = working_pressure_angle(alpha_t, a, v["a_w"])
-    p_et = transverse_base_pitch(v["m_n"], v["beta"], alpha_t)
-    ratios = []
-    for z, x in ((v["z_1"], v["x_1"]), (v["z_2"], v["x_2"])):
-        d = reference_diameter(v["m_n"], z, v["beta"])
-        tip, base = tip_diameter(d, v["m_n"], x), base_diameter(d, alpha_t)
-        ratios.append(float(addendum_contact_ratio(tip, base, alpha_wt, p_et)))
-    return ratios
-
-
-def _loss_factor(v: Mapping[str, float]) -> float:
-    """Tooth loss factor of an external pair from its geometry."""
-    beta_b = base_helix_angle(v["alpha_n"], v["beta"])
-    return float(tooth_loss_factor(v["z_1"], v["z_2"] / v["z_1"], beta_b, *_addendum_ratios(v)))
-
-
 class HelicalGearPair(ToothedPart):
     """Two external helical gears on parallel shafts."""
 
@@ -124,12 +104,29 @@ class HelicalGearPair(ToothedPart):
 
     x_1 = Parameter("1", "profile shift of the pinion")
     x_2 = Parameter("1", "profile shift of the wheel")
-    eps_alpha = Parameter("1", "transverse contact ratio", above=0.0, derived=lambda v: sum(_addendum_ratios(v)))
-    H_v = Parameter("1", "tooth loss factor", at_least=0.0, derived=_loss_factor)
+    eps_alpha = Parameter("1", "transverse contact ratio", above=0.0, derived=lambda p: sum(p.addendum_ratios()))
+    H_v = Parameter("1", "tooth loss factor", at_least=0.0, derived=lambda p: p.loss_factor())
     tau_loss = Output("N.m", "friction torque of the mesh, on the pinion", nominal=1.0, guess=0.0)
     P_loss = Output("W", "mesh loss", nominal=100.0)
     mu = Output("1", "tooth friction coefficient", nominal=0.1)
     Lambda = Output("1", "specific film thickness")
+
+    def addendum_ratios(self) -> list[Num]:
+        """Addendum contact ratios of pinion and wheel [1]."""
+        alpha_t = transverse_pressure_angle(self.alpha_n, self.beta)
+        alpha_wt = working_pressure_angle(alpha_t, self.radius(self.z_1 + self.z_2), self.a_w)
+        p_et = transverse_base_pitch(self.m_n, self.beta, alpha_t)
+        ratios = []
+        for z, x in ((self.z_1, self.x_1), (self.z_2, self.x_2)):
+            d = 2 * self.radius(z)
+            tip, base = tip_diameter(d, self.m_n, x), base_diameter(d, alpha_t)
+            ratios.append(addendum_contact_ratio(tip, base, alpha_wt, p_et))
+        return ratios
+
+    def loss_factor(self) -> Num:
+        """Tooth loss factor from the geometry [1]."""
+        beta_b = base_helix_angle(self.alpha_n, self.beta)
+        return tooth_loss_factor(self.z_1, self.z_2 / self.z_1, beta_b, *self.addendum_ratios())
 
     def equations(self) -> Iterator[Equation]:
         """The gear that drives brings the loss; what is left arrives at the other."""
