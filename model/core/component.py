@@ -25,6 +25,10 @@ class Equation:
     rhs: Any
 
 
+#: A relation and the expression of the value that tells whether it holds.
+Related = tuple[Relation, Any]
+
+
 def equation(name: str, lhs: Any, rhs: Any) -> Equation:
     """A named, unordered equation."""
     return Equation(name, ca.SX(lhs), ca.SX(rhs))
@@ -116,7 +120,7 @@ class Component:
 
     def relation(
         self, name: str, value: str, number: Any, low: float = -inf, high: float = inf, *, remedy: str, unit: str = "1"
-    ) -> tuple[Relation, Any]:
+    ) -> Related:
         """What must hold between parameters, with the expression of the value that tells it.
 
         Args:
@@ -135,7 +139,7 @@ class Component:
         held = {symbol.element_hash() for symbol in ca.symvar(ca.SX(expression))}
         return tuple(f"{self.name}.{k}" for k in self.parameters if self.symbols[k].element_hash() in held)
 
-    def all_relations(self) -> Iterator[tuple[Relation, Any]]:
+    def all_relations(self) -> Iterator[Related]:
         """The declared relations, whole numbers, and the ranges of what follows from other parameters."""
         yield from self.relations()
         for key, d in self.parameters.items():
@@ -152,7 +156,7 @@ class Component:
             number = self.symbols[key]
             yield self.relation(f"{key} can be derived", d.doc, number, low, high, remedy=remedy, unit=d.unit)
 
-    def relations(self) -> Iterable[tuple[Relation, Any]]:
+    def relations(self) -> Iterable[Related]:
         """What must hold between the parameters, each made by `relation`."""
         return ()
 

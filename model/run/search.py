@@ -120,6 +120,7 @@ class Search:
             np.append(states.scale, [0.1 * max(abs(f), 0.1 * q.nominal) for f, q in zip(own, quantities, strict=True)]),
         )
         self.compiled = self._compiled()
+        self.limits: dict[str, None] = {}
 
     def _inside(self, value: float, q: Quantity, bounds: Mapping[str, tuple[float, float]]) -> float:
         """A start inside the range, away from its ends."""
@@ -158,15 +159,24 @@ class Search:
         return self.at(x, f)[0][self.n :]
 
     def balance(self, f: np.ndarray, warm: np.ndarray | None = None) -> np.ndarray:
-        """Steady states at freed values. Raises SolveError where there are none."""
-        return balance(self.flat, self.point(f), warm, self.free, "design", lead=False)
+        """Steady states at freed values. Raises SolveError where there are none, or where parameters contradict."""
+        here = self.point(f)
+        if not self.allowed(here.p):
+            raise SolveError("design: the parameters contradict each other.")
+        return balance(self.flat, here, warm, self.free, "design", lead=False)
+
+    def allowed(self, p: np.ndarray) -> bool:
+        """Whether all relations between parameters hold; those that do not are remembered for the message."""
+        broken = self.flat.contradictions(p)
+        self.limits |= dict.fromkeys(f'{r.component}: "{r.name}"' for r in broken)
+        return not broken
 
     def newton(self, x: np.ndarray, f: np.ndarray, goal: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
         """States and freed values at once by Newton's method; None if that ends nowhere a machine would stay."""
         root = newton(self._system(goal), np.append(x, f), self.box)
         x, f = root.z[: self.n], root.z[self.n :]
         here = self.point(f)
-        if not root.found or (np.abs(self.aims(x, f) - goal) > MET * self.size).any():
+        if not root.found or (np.abs(self.aims(x, f) - goal) > MET * self.size).any() or not self.allowed(here.p):
             return None
         jacobian = rates(self.flat)(x, here.u, here.p)[1].reshape(self.n, self.n)
         return (x, f) if stable(jacobian) else None
