@@ -17,7 +17,7 @@ _SWITCHES = frozenset(
 
 
 def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> FlatModel:
-    """The model without the parameters that cannot move any rate, output or checked argument, whatever all else is.
+    """The model without the parameters that cannot move any rate, output, checked argument or relation.
 
     A parameter goes where the model does not hold it, or where its derivative is zero as an expression, as that of a
     share of heat whose two ways end in one body. One that has no effect only at the present values stays.
@@ -26,7 +26,7 @@ def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> Flat
         flat: the model
         start: values that replace those of the model; a parameter that goes is replaced by its value
     """
-    parts = [flat.ode, flat.y, flat.residual, flat.supply, flat.throughput, flat.stored, flat.checked]
+    parts = [flat.ode, flat.y, flat.residual, flat.supply, flat.throughput, flat.stored, flat.checked, flat.related]
     column = ca.vertcat(ca.SX(0, 1), *(ca.SX(part) for part in parts))
     if "effective" not in flat.prepared:
         flat.prepared["effective"] = _moving(column, flat.p)
@@ -41,13 +41,13 @@ def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> Flat
     sizes = [0]
     for part in parts:
         sizes.append(sizes[-1] + ca.SX(part).numel())
-    ode, y, residual, supply, throughput, stored, checked = ca.vertsplit(column, sizes)
+    ode, y, residual, supply, throughput, stored, checked, related = ca.vertsplit(column, sizes)
     return replace(
         flat,
         parameters=tuple(flat.parameters[i] for i in kept),
         p=ca.vertcat(ca.SX(0, 1), *symbols.values()),
         **{"ode": ode, "y": y, "residual": residual, "supply": supply},
-        **{"throughput": throughput, "stored": stored, "checked": checked},
+        **{"throughput": throughput, "stored": stored, "checked": checked, "related": related},
     )
 
 

@@ -111,6 +111,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c)
     Instance *m = c;
     int i;
     if (!allowed(m, INITIALIZATION, "fmi2ExitInitializationMode")) return fmi2Error;
+    if (!check_relations(m, "fmi2ExitInitializationMode")) return fmi2Error;
     refresh_outputs(m);
     for (i = 0; i < NX; i++)
         if (!isfinite(m->dx[i]))

@@ -140,12 +140,12 @@ class Component:
         return tuple(f"{self.name}.{k}" for k in self.parameters if self.symbols[k].element_hash() in held)
 
     def all_relations(self) -> Iterator[Related]:
-        """The declared relations, whole numbers, and the ranges of what follows from other parameters."""
-        yield from self.relations()
+        """Whole numbers, the declared relations, and the ranges of what follows from other parameters."""
         for key, d in self.parameters.items():
             if d.whole:
                 away, remedy = self.symbols[key] - ca.floor(self.symbols[key] + 0.5), "Give a whole number."
                 yield self.relation(f"{key} is whole", "its distance to a whole number", away, 0.0, 0.0, remedy=remedy)
+        yield from self.relations()
         for key, d in self.derived.items():
             q = d.quantity(f"{self.name}.{key}")
             remedy = f"Change what it follows from, or give {key} a value of its own."

@@ -128,8 +128,7 @@ FACE = 'b = "42 mm"'
         (
             '"Dias2014, chapter 4"',
             "3",
-            "rig.toml [part.oil]: source is 3."
-            ' Write a citation such as "Dias2014, table 5.7", or "assumed: reason".',
+            'rig.toml [part.oil]: source is 3. Write a citation such as "Dias2014, table 5.7", or "assumed: reason".',
         ),
         (
             "sources = { A = ",
