@@ -21,7 +21,7 @@ static int check_relations(Instance *m, const char *function)
     for (undefined = 0; undefined < 2 && m->relations_hold; undefined++)
         for (i = 0; i < NR; i++) {
             if (value[i] >= model_relation_low[i] && value[i] <= model_relation_high[i]) continue;
-            if (!isfinite(value[i]) != undefined) continue;
+            if (isfinite(value[i]) == (undefined != 0)) continue;
             m->relations_hold = 0;
             refuse(m, "%s: %s %.6g, %s", function, model_relations[i], value[i], model_remedies[i]);
         }

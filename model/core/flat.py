@@ -180,7 +180,7 @@ class FlatModel:
         """The relations that do not hold between the values of all parameters, each with what is wrong."""
         if not self.relations:
             return {}
-        values = [float(v) for v in np.asarray(self.relation_function(p)).ravel()]
+        values = [float(v) for v in self.relation_function(p).full().ravel()]
         return {r: f"{r.component}: {r.problem(v, self._given(r, p))}" for r, v in broken(self.relations, values)}
 
     def _given(self, relation: Relation, p: np.ndarray) -> str:
