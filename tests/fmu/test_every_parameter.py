@@ -1,4 +1,4 @@
-"""Every parameter of the shipped rigs, set in the FMU, in a batch or for a run, gives what its value in the rig file gives.
+"""Every parameter of the shipped rigs, set in the FMU, in a batch or for a run, gives what the rig file gives with it.
 
 Where values contradict each other, all of them refuse.
 """
