@@ -18,7 +18,7 @@ _SWITCHES = frozenset(
 
 
 def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> FlatModel:
-    """The model without the parameters that cannot move any rate, output or checked argument, whatever all else is.
+    """The model without the parameters that cannot move any rate, output, checked argument or relation.
 
     A parameter goes where the model does not hold it, or where its derivative is zero as an expression, as that of a
     share of heat whose two ways end in one body. One that has no effect only at the present values stays.
@@ -40,19 +40,19 @@ def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> Flat
     sizes = [0]
     for part in parts:
         sizes.append(sizes[-1] + ca.SX(part).numel())
-    ode, y, residual, supply, throughput, stored, checked = ca.vertsplit(column, sizes)
+    ode, y, residual, supply, throughput, stored, checked, related = ca.vertsplit(column, sizes)
     return replace(
         flat,
         parameters=tuple(flat.parameters[i] for i in kept),
         p=ca.vertcat(ca.SX(0, 1), *symbols.values()),
         **{"ode": ode, "y": y, "residual": residual, "supply": supply},
-        **{"throughput": throughput, "stored": stored, "checked": checked},
+        **{"throughput": throughput, "stored": stored, "checked": checked, "related": related},
     )
 
 
 def _parts(flat: FlatModel) -> tuple[list[Any], Any]:
     """All expressions of a model, and one column of them."""
-    parts = [flat.ode, flat.y, flat.residual, flat.supply, flat.throughput, flat.stored, flat.checked]
+    parts = [flat.ode, flat.y, flat.residual, flat.supply, flat.throughput, flat.stored, flat.checked, flat.related]
     return parts, ca.vertcat(ca.SX(0, 1), *(ca.SX(part) for part in parts))
 
 

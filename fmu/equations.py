@@ -23,6 +23,7 @@ class Equations:
         x, z, u, p: SX symbols
         ode, residual, y: SX columns in the order of the variable table, functions of x, z, u, p
         checked: the law arguments with a range
+        related: what the relations between parameters are told by, of p alone
     """
 
     x: Any
@@ -33,6 +34,7 @@ class Equations:
     residual: Any
     y: Any
     checked: Any
+    related: Any
 
     @cached_property
     def _hoisted(self) -> tuple[dict[str, Any], Any, Any, Any]:
@@ -114,11 +116,16 @@ class Equations:
         dot = ca.jtimes(values, self.p, p_dot)
         return _function("constants_directional", [self.p, p_dot], [dot], ["p", "p_dot"], ["c_dot"])
 
+    @cached_property
+    def relations(self) -> Any:
+        """(p) -> the values by which the relations between parameters are told."""
+        return _function("relations_of", [self.p], [self.related], ["p"], ["related"])
+
     @property
     def functions(self) -> tuple[Any, ...]:
         """All functions the C code needs."""
         own = (self.constants, self.step, self.algebra, self.outputs, self.rates, self.arguments)
-        return (*own, self.directional, self.constants_directional)
+        return (*own, self.directional, self.constants_directional, self.relations)
 
 
 def _function(name: str, inputs: list[Any], outputs: list[Any], names_in: list[str], names_out: list[str]) -> Any:
@@ -147,6 +154,7 @@ def equations(flat: FlatModel) -> Equations:
         residual=ca.densify(flat.residual),
         y=ca.densify(ca.vertcat(*outputs)),
         checked=ca.densify(ca.vertcat(ca.SX(0, 1), flat.checked)),
+        related=ca.densify(ca.vertcat(ca.SX(0, 1), flat.related)),
     )
 
 

@@ -66,6 +66,7 @@ def _sizes(flat: FlatModel, model: Equations, table: Table) -> str:
         "NP": len(table.of("parameter")),
         "NC": model.constants.numel_out(0),
         "NK": len(flat.checks),
+        "NR": len(flat.relations),
         "ORDER": RODAS3.order,
         "TOLERANCE": TOLERANCE,
         "MODEL_NAME": _string(flat.name),
@@ -88,7 +89,7 @@ def newton_constants() -> dict[str, str]:
 
 
 def _tables(flat: FlatModel, table: Table) -> str:
-    checks = flat.checks
+    checks, relations = flat.checks, flat.relations
     strings = {
         "model_names": [v.name for v in table],
         "model_units": [fmi_unit(v.quantity.unit) for v in table],
@@ -97,6 +98,8 @@ def _tables(flat: FlatModel, table: Table) -> str:
         "model_checks": [
             f"{c.component}: {c.argument} of {c.law.name} ({c.law.source}, {c.law.where})" for c in checks
         ],
+        "model_relations": [f'{r.component}: "{r.name}" does not hold: {r.value} is' for r in relations],
+        "model_remedies": [f"expected {r.bounds}. {r.remedy}" for r in relations],
     }
     numbers = {
         "model_start": [v.start or 0.0 for v in table],
@@ -107,6 +110,8 @@ def _tables(flat: FlatModel, table: Table) -> str:
         "model_z_nominal": [q.nominal for q in flat.algebraic],
         "model_check_low": [c.low for c in checks],
         "model_check_high": [c.high for c in checks],
+        "model_relation_low": [r.low for r in relations],
+        "model_relation_high": [r.high for r in relations],
     }
     texts = [_array("const char *const", name, map(_string, values)) for name, values in strings.items()]
     texts += [_array("const double", name, map(emit.number, values)) for name, values in numbers.items()]

@@ -113,6 +113,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c)
     const char *block;
     int i;
     if (!allowed(m, INITIALIZATION, "fmi2ExitInitializationMode")) return fmi2Error;
+    if (!check_relations(m, "fmi2ExitInitializationMode")) return fmi2Error;
     if ((block = unsolved(m)) != NULL)
         return refuse(m, "fmi2ExitInitializationMode: the equation \"%s\" has no solution. Check start values, inputs and "
                       "parameters.", block);

@@ -38,6 +38,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
         return refuse(m, "fmi2DoStep: the step starts at %.10g s, but the instance is at %.10g s.", time, m->s.time);
     if (m->s.stop_defined && step > 0 && time >= m->s.stop + round_off)
         return refuse(m, "fmi2DoStep: the step starts at %.10g s, behind the stop time %.10g s.", time, m->s.stop);
+    if (!check_relations(m, "fmi2DoStep")) return fmi2Error;
     if (!walk(m, step, &w)) {
         const char *name = model_names[FIRST_X + w.worst];
         m->s.mode = STEP_FAILED;

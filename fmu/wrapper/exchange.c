@@ -26,6 +26,7 @@ fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)
 {
     Instance *m = c;
     if (!allowed_for(m, fmi2ModelExchange, EVENT, "fmi2EnterContinuousTimeMode")) return fmi2Error;
+    if (!check_relations(m, "fmi2EnterContinuousTimeMode")) return fmi2Error;
     m->s.mode = CONTINUOUS_TIME;
     return fmi2OK;
 }

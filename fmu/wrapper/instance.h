@@ -58,6 +58,7 @@ typedef struct {
 typedef struct {
     State s;
     int constants_known;   /* c belongs to s.p */
+    int relations_hold;    /* all relations between the parameters hold at s.p */
     int outputs_known;     /* y and dx belong to s */
     unsigned log_mask;
     unsigned log_mask_at_start;

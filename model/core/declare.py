@@ -64,12 +64,14 @@ class Flow(Declaration):
 class Parameter(Declaration):
     """A number that stays a symbol until a model is run.
 
-    `default` is only for numerics, never for physics; `derived` computes the value from the component's other values
-    where it is not given (a contact ratio from the geometry).
+    `default` is only for numerics, never for physics. `derived` makes of the component an expression in its other
+    parameters (a contact ratio from the geometry), which holds wherever no value is given. `whole` asks for a whole
+    number.
     """
 
     default: float | None = None
-    derived: Callable[[Mapping[str, float]], float] | None = None
+    derived: Callable[[Any], Any] | None = None
+    whole: bool = False
 
 
 @dataclass(eq=False)

@@ -34,6 +34,7 @@ def flatten(assembly: Assembly) -> FlatModel:
     for part in assembly.parts:
         with recording() as uses:
             rows += rows_of(part)
+        uses = [*part.uses, *uses]
         checks += _checks(part, uses)
         laws |= dict.fromkeys(use.law for use in uses)
         unknowns += _unknowns(part)
@@ -122,6 +123,7 @@ def _flat_model(
     inputs = [(part, k) for part in parts for k in part.inputs if part.is_input(k)]
     parameters = [(part, k) for part in parts for k in part.parameters]
     outputs = [(part, k, d) for part in parts for k, d in _shown(part, joined).items()]
+    related = [pair for part in parts for pair in part.all_relations()]
     x = column([part.symbols[k] for part, k in states])
     supplies = aliased([power for part in parts for power in part.supplied_power()])
     expressions = [
@@ -147,7 +149,7 @@ def _flat_model(
         states=quantities(states, "states"),
         inputs=quantities(inputs, "inputs"),
         parameters=quantities(parameters, "parameters"),
-        outputs=tuple(_output(f"{part.name}.{k}", d, joined) for part, k, d in outputs),
+        outputs=tuple(_output(part, k, d, joined) for part, k, d in outputs),
         x=x,
         algebraic=tuple(Quantity(u.name, u.unit, "", u.nominal, start_of(u)) for u in solution.torn),
         z=column([u.symbol for u in solution.torn]),
@@ -164,6 +166,9 @@ def _flat_model(
         checked=checked,
         laws=laws,
         joined=tuple(joined.values()),
+        derived={f"{part.name}.{k}": part.follows_from(part.symbols[k]) for part in parts for k in part.derived},
+        relations=tuple(relation for relation, _ in related),
+        related=column([value for _, value in related]),
     )
 
 
@@ -172,8 +177,9 @@ def _shown(part: Component, joined: Mapping[str, str]) -> dict[str, Declaration]
     return {k: d for k, d in part.states.items() if f"{part.name}.{k}" in joined} | part.outputs()
 
 
-def _output(path: str, declaration: Declaration, joined: Mapping[str, str]) -> Quantity:
-    quantity = declaration.quantity(path)
+def _output(part: Component, key: str, declaration: Declaration, joined: Mapping[str, str]) -> Quantity:
+    path = f"{part.name}.{key}"
+    quantity = declaration.quantity(path, part.values[key] if key in part.derived else 0.0)
     return replace(quantity, doc=f"{quantity.doc}; {joined[path]}") if path in joined else quantity
 
 

@@ -239,6 +239,7 @@ def _out_of_reach(search: Search, scale: Range, tried: Sequence[Tried]) -> str:
     if not solved:
         return (
             f"design: there is no steady state at any {name} from {ends}. Check the loads, the cooling and the bounds."
+            + _limits(search)
         )
     low, high = min(t.y for t in solved), max(t.y for t in solved)
     if high - low <= UNMOVED * search.size[0]:
@@ -252,7 +253,13 @@ def _out_of_reach(search: Search, scale: Range, tried: Sequence[Tried]) -> str:
     return (
         f"design: {target} reaches {text(low, aim)} ... {text(high, aim)} while {name} goes from {ends}{some}: "
         f"the target {text(float(search.goal[0]), aim)} is out of reach.\nWiden the bounds or free something else."
+        + _limits(search)
     )
+
+
+def _limits(search: Search) -> str:
+    """The relations between parameters that freed values ran into, in words."""
+    return f"\nThe search was limited by {', '.join(search.limits)}." if search.limits else ""
 
 
 def _by_starts(search: Search, begin: Equilibrium) -> Design:
@@ -278,7 +285,8 @@ def _no_values(search: Search, reached: Sequence[np.ndarray]) -> str:
     wanted = ", ".join(f"{name} = {text(float(value), unit)}" for name, value, unit in aims)
     head = f"design: no values of {', '.join(search.free)} found that give {wanted}.\n"
     if not reached:
-        return head + "There is no steady state anywhere in their ranges: check the loads, the cooling and the bounds."
+        nowhere = "There is no steady state anywhere in their ranges: check the loads, the cooling and the bounds."
+        return head + nowhere + _limits(search)
     extremes = zip(search.names, np.min(reached, axis=0), np.max(reached, axis=0), units, strict=True)
     seen = [
         f"{name} stays at {text(float(a), unit)}"
@@ -286,4 +294,5 @@ def _no_values(search: Search, reached: Sequence[np.ndarray]) -> str:
         else f"{name} reaches {text(float(a), unit)} ... {text(float(b), unit)}"
         for name, a, b, unit in extremes
     ]
-    return head + f"Over their ranges {', '.join(seen)}: change the targets or the bounds, or free something else."
+    advice = "change the targets or the bounds, or free something else."
+    return head + f"Over their ranges {', '.join(seen)}: {advice}" + _limits(search)

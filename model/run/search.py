@@ -121,6 +121,7 @@ class Search:
             np.append(own_box.stride, [STRIDE] * len(own)),
         )
         self.compiled = _compiled(flat, self.free, self.names)
+        self.limits: dict[str, None] = {}
 
     def _inside(self, value: float, q: Quantity, bounds: Mapping[str, tuple[float, float]]) -> float:
         """A start inside the range, away from its ends."""
@@ -147,15 +148,24 @@ class Search:
         return self.at(found, f)[0][self.n :]
 
     def equilibrium(self, f: np.ndarray, warm: Equilibrium | None = None) -> Equilibrium:
-        """The steady state at freed values. Raises SolveError where there is none."""
-        return equilibrium(self.flat, self.point(f), warm, self.free, "design", continued=False)
+        """The steady state at freed values. Raises SolveError where there is none, or where parameters contradict."""
+        here = self.point(f)
+        if not self.allowed(here.p):
+            raise SolveError("design: the parameters contradict each other.")
+        return equilibrium(self.flat, here, warm, self.free, "design", continued=False)
+
+    def allowed(self, p: np.ndarray) -> bool:
+        """Whether all relations between parameters hold; those that do not are remembered for the message."""
+        broken = self.flat.contradictions(p)
+        self.limits |= dict.fromkeys(f'{r.component}: "{r.name}"' for r in broken)
+        return not broken
 
     def newton(self, start: Equilibrium, f: np.ndarray, goal: np.ndarray) -> tuple[Equilibrium, np.ndarray] | None:
         """Steady state and freed values at once by Newton's method; None if that ends nowhere a machine would stay."""
         root = newton(self._system(goal), np.append(start.w, f), self.box)
         found, f = self._split(root.z)
         here = self.point(f)
-        if not root.found or (np.abs(self.aims(found, f) - goal) > MET * self.size).any():
+        if not root.found or (np.abs(self.aims(found, f) - goal) > MET * self.size).any() or not self.allowed(here.p):
             return None
         jacobian = rates(self.flat)(found.x, found.z, here.u, here.p)[1].reshape(self.n, self.n)
         return (found, f) if stable(reduced(jacobian, len(found.x))) else None

@@ -35,7 +35,7 @@ EXAMPLES: dict[str, dict] = {
     "FixedFlange": {},
     "FanLoad": dict(k=0.1),
     "Inertia": dict(J=0.01),
-    "Efficiency": dict(ratio=4.0),
+    "Efficiency": {},
     "PlanetarySet": TEETH
     | dict(N=3.0, z_3=108.0, eps_alpha_sp=1.666, eps_alpha_pr=1.883, H_v_sp=0.168, H_v_pr=0.062)
     | dict(n_axial_carrier=1.0, n_axial_sun=3.0, s_planet=0.021),
