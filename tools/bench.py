@@ -20,9 +20,9 @@ from ..fmu.export import export
 from ..fmu.play import Player
 from ..model.core.flat import FlatModel
 from ..model.run.simulate import simulate
-from ..scenarios.load import load
 from . import bench_fmu, campaign, throughput
 from .console import answer, note, table
+from .rigs import load
 from .settings import driven_by, flat_of
 
 #: Tolerances at which LSODA runs; the cheapest one that is as accurate as the FMU is what the FMU is compared with.

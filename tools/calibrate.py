@@ -16,10 +16,10 @@ from ..fmu.play import Player
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import DataError, GearheatError, ScenarioError, SolveError
 from ..model.units import from_si, shown, to_si
-from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
 from . import campaign
 from .console import answer, note, table
+from .rigs import load
 from .settings import adjusted, driven_by, flat_of
 
 #: Relative step of the difference quotients; well above what the FMU's own tolerance leaves.

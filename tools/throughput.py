@@ -16,8 +16,8 @@ from ..fmu.batch import Batch
 from ..model.core.flat import FlatModel
 from ..model.run.schedule import Schedule, stepped
 from ..model.run.simulate import simulate
-from ..scenarios.load import load
 from . import sweep
+from .rigs import load
 from .settings import adjusted, flat_of
 
 #: What varies from row to row: the load by this much of its value, the room by this much [K].

@@ -14,11 +14,11 @@ from ..model.run.schedule import Schedule
 from ..model.run.simulate import simulate
 from ..model.units import from_si, shown, to_si
 from ..scenarios.duty import duty_names, read_duty
-from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
 from .console import answer, file_of, writable, write
 from .playing import series
 from .points import outside_of
+from .rigs import load
 from .settings import adjusted, flat_of
 
 

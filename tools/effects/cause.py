@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from ...model.machines.spec import PartSpec, Spec
+from .parts import FIT_PARTS
 
 
 @dataclass(frozen=True)
@@ -146,7 +147,7 @@ class Cause:
 
     def added_to(self, spec: Spec, theta: Theta | None = None) -> Spec:
         """The machine with the cause in it; neutral where no parameters are given."""
-        extended = spec.with_parts(self.parts, self.connections)
+        extended = spec.with_parts(self.parts, self.connections, FIT_PARTS)
         if theta is None:
             return extended
         base = {f"{p.name}.{k}": v for p in extended.parts for k, v in p.values.items()}
