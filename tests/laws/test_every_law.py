@@ -48,10 +48,10 @@ OWN = {
 }
 ZERO = {
     **{"w": "w_width", "v_sum": "v_width", "u_sum": "u_width", "slide_roll": "slide_width", "v": "v_width"},
-    **{"F_n_l": "F_width", "F_r": "F_width", "F_a": "F_width", "P_1": "F_width", "P_a": "P_width"},
+    **{"F_n_l": "F_width", "F_r": "F_width", "F_a": "F_width", "P_1": "F_width"},
 }
 #: Arguments that may be zero but not negative.
-NOT_NEGATIVE = {"h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c"}
+NOT_NEGATIVE = {"P_a", "h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c"}
 #: Torques and losses: magnitudes, never negative.
 MAGNITUDES = ("rolling.", "sealing.", "churning.", "mesh.", "film.")
 
