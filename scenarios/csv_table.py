@@ -96,7 +96,7 @@ def _lines(path: Path) -> list[tuple[int, list[str]]]:
     except FileNotFoundError:
         raise DataError(f"{path}: there is no such file. Check the path.") from None
     except UnicodeDecodeError:
-        raise DataError(f"{path.name}: is no text in UTF-8. Export the table as CSV.") from None
+        raise DataError(f"{path.name}: is not UTF-8 text. Export the table as CSV.") from None
     except OSError as error:
         raise DataError(f"{path}: cannot be read ({error.strerror}). Give a CSV file.") from None
     reader = csv.reader(text.replace("\x00", "\ufffd").splitlines())

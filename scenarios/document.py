@@ -24,7 +24,7 @@ def read_toml(path: Path) -> dict[str, Any]:
     except FileNotFoundError:
         raise ScenarioError(f"{path}: there is no such file. Check the path.") from None
     except UnicodeDecodeError:
-        raise ScenarioError(f"{path.name}: is no text in UTF-8. Save it as a TOML file.") from None
+        raise ScenarioError(f"{path.name}: is not UTF-8 text. Save it as a TOML file.") from None
     except OSError as error:
         raise ScenarioError(f"{path}: cannot be read ({error.strerror}). Give a TOML file.") from None
     try:

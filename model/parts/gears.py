@@ -167,7 +167,11 @@ class PlanetarySet(ToothedPart):
     planet_load = BearingLoad()
     reading = ShaftReading()
 
-    power_flow = Choice(("successive", "ideal"), "whether losses reduce what is passed on", default="successive")
+    power_flow = Choice(
+        ("successive", "ideal"),
+        "ideal: mesh forces from the input torque; successive: each stage sees upstream losses",
+        default="successive",
+    )
     N = Parameter("1", "number of planets", above=0.0)
     z_3 = Parameter("1", "number of teeth of the ring", above=0.0)
     eps_alpha_sp = Parameter("1", "transverse contact ratio sun-planet", above=0.0)

@@ -122,7 +122,7 @@ class Cause:
             rows are None where no campaign is at hand
         readings: (parameters, rows, true readings) -> what the instruments show
         acts: parameters -> where it acts: quantity with its side ("w+", "tau-", "T+") and threshold in SI, or None
-        logged: whether it changes a logged course
+        logged: whether it changes a logged time series
         scatter: whether it makes days differ instead of changing them all
     """
 
