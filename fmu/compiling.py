@@ -79,6 +79,11 @@ def cache_folder() -> Path:
 def binary(source: str, platform: Platform, *, optimise: str = "-O2") -> bytes:
     """The shared library of a C source; the same source is compiled once only.
 
+    Args:
+        source: the C text
+        platform: the platform of FMI to compile for
+        optimise: option of the compiler
+
     Raises:
         FmuError: the compiler is missing or fails, or the cache cannot be written
     """
@@ -97,6 +102,10 @@ def binary(source: str, platform: Platform, *, optimise: str = "-O2") -> bytes:
 
 def store(path: Path, content: bytes) -> None:
     """Write a file so that nobody ever sees half of it.
+
+    Args:
+        path: the file; its folder is made
+        content: what it is to hold
 
     Raises:
         FmuError: the folder or the file cannot be written

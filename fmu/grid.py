@@ -38,6 +38,14 @@ def grid(
 ) -> Grid:
     """Lay out a run; communication points stand every `step`, on every row and on every point of the inputs.
 
+    Args:
+        inputs: name -> (times [s], values in SI), linear between the points, a time given twice is a jump
+        begin: start of the run [s]
+        stop: its end [s]
+        step: communication step [s]
+        output_times: times of the rows [s], not decreasing; when None every communication point, and both sides of
+            every jump
+
     Raises:
         FmuError: times or values that make no sense
     """

@@ -47,7 +47,15 @@ class Table:
 
 
 def raise_all(problems: Sequence[str], name: str) -> None:
-    """Raise DataError if there are problems; beyond a page of them the rest are counted."""
+    """Refuse a file that has problems; beyond a page of them the rest are counted.
+
+    Args:
+        problems: what is wrong with a file, one text each
+        name: of the file
+
+    Raises:
+        DataError: there are problems
+    """
     if len(problems) > SHOWN:
         rest = len(problems) - SHOWN
         problems = [
@@ -122,6 +130,10 @@ def number(cell: str) -> float:
 
 def parse(path: Path, columns: Iterable[Column]) -> tuple[Table, list[str]]:
     """The table in a file and all that is wrong with its columns and cells; unknown columns only warn.
+
+    Args:
+        path: the CSV file
+        columns: the columns that are known, with unit and range
 
     Raises:
         DataError: what `read_cells` finds, since nothing can be read beyond it

@@ -76,7 +76,15 @@ class Scenario:
         }
 
     def with_values(self, values: Mapping[str, float], source: str = "given by the user") -> Scenario:
-        """The scenario with values replaced, by path, in SI. Raises ScenarioError for parts that do not exist."""
+        """The scenario with values replaced.
+
+        Args:
+            values: path -> value in SI
+            source: where the values are from
+
+        Raises:
+            ScenarioError: parts that do not exist
+        """
         moved = {path: values[path] for path in self.inputs() if path in values}
         return replace(
             self,
@@ -92,7 +100,15 @@ class Scenario:
         return replace(self, spec=self.spec.driven(fixed), given=fixed)
 
     def entry_values(self, part: str, name: str) -> dict[str, float]:
-        """Values by path that a catalogue entry gives a part ("oil", "MINR"). Raises ScenarioError with suggestions."""
+        """Values in SI by path that a catalogue entry gives a part.
+
+        Args:
+            part: name of a part ("oil")
+            name: of an entry of its catalogue ("MINR")
+
+        Raises:
+            ScenarioError: unknown name, with suggestions
+        """
         declarations = settable(self.spec.types[self.spec.part(part).type])
         kinds = self.entries.get(part) or FILES
         known = {n: e for kind in kinds for n, e in catalogue(kind).items() if entry_values(e, declarations)}

@@ -47,7 +47,11 @@ class Spec:
         return tuple(part.name for part in self.parts if part.type in types)
 
     def with_values(self, values: Mapping[str, Any]) -> Spec:
-        """The spec with values replaced, by path ("oil.nu_40"). Unknown parts are reported all at once."""
+        """The spec with values replaced, by path ("oil.nu_40").
+
+        Raises:
+            ScenarioError: values for parts that the spec does not have, all at once
+        """
         by_part: dict[str, dict[str, Any]] = {}
         for path, value in values.items():
             name, _, key = path.rpartition(".")
@@ -83,6 +87,9 @@ class Spec:
         """The spec with the quantities ("w", "tau") that are given at each shaft end; none at those not named.
 
         A shaft whose speed is given nowhere keeps its inertia as a state; otherwise inertias are left out.
+
+        Raises:
+            ScenarioError: names that are no shaft end
         """
         choices: dict[str, Any] = {f"{end}.given": tuple(given.get(end, ())) for end in self.of_type("ShaftEnd")}
         unknown = [end for end in given if f"{end}.given" not in choices]
