@@ -13,6 +13,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from gearheat.model.errors import FmuError, suggestion
+from gearheat.model.files import replacing
 
 
 @dataclass(frozen=True)
@@ -112,25 +113,12 @@ def store(path: Path, content: bytes) -> None:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(content)
-            os.chmod(name, 0o666 & ~_umask())
-            os.replace(name, path)
-        except BaseException:
-            Path(name).unlink(missing_ok=True)
-            raise
+        with replacing(path) as beside:
+            beside.write_bytes(content)
     except OSError as error:
         raise FmuError(
             f"{path}: cannot be written ({error.strerror}). Choose a file in a folder you may write to."
         ) from error
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def _compile(source: str, target: str, optimise: str) -> bytes:

@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ..model.errors import DataError, suggestion
+from .document import read_text
 
 #: Most problems that one message lists; the rest are counted.
 SHOWN = 30
@@ -99,14 +100,7 @@ def read_cells(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
 
 
 def _lines(path: Path) -> list[tuple[int, list[str]]]:
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise DataError(f"{path}: there is no such file. Check the path.") from None
-    except UnicodeDecodeError:
-        raise DataError(f"{path.name}: is not UTF-8 text. Export the table as CSV.") from None
-    except OSError as error:
-        raise DataError(f"{path}: cannot be read ({error.strerror}). Give a CSV file.") from None
+    text = read_text(path, "CSV", DataError)
     reader = csv.reader(text.replace("\x00", "\ufffd").splitlines())
     try:
         cells = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]

@@ -171,7 +171,7 @@ def _integration(rig: str, tests: str | None) -> dict[str, Any]:
     }
 
 
-def _simulated(flat: FlatModel, runs: Sequence[campaign.TestRun], method: str, tolerance: float) -> np.ndarray:
+def _simulated(flat: FlatModel, runs: Sequence[campaign.Run], method: str, tolerance: float) -> np.ndarray:
     """States at all readings."""
     names = {q.name for q in flat.states}
     found = []
@@ -193,19 +193,18 @@ def _simulated(flat: FlatModel, runs: Sequence[campaign.TestRun], method: str, t
     return np.concatenate(found)
 
 
-def _played(player: Player, runs: Sequence[campaign.TestRun], states: Sequence[str]) -> np.ndarray:
+def _played(player: Player, runs: Sequence[campaign.Run], states: Sequence[str]) -> np.ndarray:
     """States at all readings."""
     found = []
     for run in runs:
-        inputs = {name: (run.schedule.time, values) for name, values in run.schedule.values.items()}
         times, stop = _both_sides(run), run.schedule.stop
-        played = player.run(inputs, stop, STEP, start=run.start, record=sorted(states), output_times=times)
+        played = player.run(run.inputs, stop, STEP, start=run.start, record=sorted(states), output_times=times)
         rows = [int(np.flatnonzero(played.time == moment)[0]) for moment in run.moments]
         found.append(played.values[rows])
     return np.concatenate(found)
 
 
-def _both_sides(run: campaign.TestRun) -> list[float]:
+def _both_sides(run: campaign.Run) -> list[float]:
     """Times of the readings; twice where a jump follows, so that the first row shows the state before it."""
     return [m for m in run.moments for _ in range(2 if m < run.schedule.stop else 1)]
 

@@ -121,7 +121,7 @@ def _bounded(quantities: Sequence[Quantity], bounds: Sequence[str]) -> list[Quan
     return list(found.values())
 
 
-def _of_grid(runs: Sequence[campaign.TestRun], grid: str) -> list[campaign.TestRun]:
+def _of_grid(runs: Sequence[campaign.Run], grid: str) -> list[campaign.Run]:
     grids = list(dict.fromkeys(r.texts.get("grid", "") for c in runs for r in c.readings))
     found = [c for c in runs if c.readings[0].texts.get("grid") == grid]
     if not found:
@@ -129,9 +129,7 @@ def _of_grid(runs: Sequence[campaign.TestRun], grid: str) -> list[campaign.TestR
     return found
 
 
-def fitted(
-    scenario: Scenario, flat: FlatModel, quantities: Sequence[Quantity], runs: Sequence[campaign.TestRun]
-) -> Fit:
+def fitted(scenario: Scenario, flat: FlatModel, quantities: Sequence[Quantity], runs: Sequence[campaign.Run]) -> Fit:
     """Least squares on T_oil_C over the readings of the tests.
 
     Raises:
@@ -174,17 +172,14 @@ def fitted(
     )
 
 
-def _simulated(
-    player: Player, runs: Sequence[campaign.TestRun], path: str
-) -> Callable[[Mapping[str, float]], np.ndarray]:
+def _simulated(player: Player, runs: Sequence[campaign.Run], path: str) -> Callable[[Mapping[str, float]], np.ndarray]:
     """Parameter values -> the oil temperature at every reading [K]."""
 
     def readings(values: Mapping[str, float]) -> np.ndarray:
         found: list[float] = []
         for run in runs:
-            inputs = {n: (run.schedule.time, v) for n, v in run.schedule.values.items()}
             played = player.run(
-                inputs,
+                run.inputs,
                 run.schedule.stop,
                 60.0,
                 start={**run.start, **values},

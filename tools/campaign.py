@@ -37,7 +37,7 @@ AUDIT = (SUPPLIED, THROUGHPUT, STORED)
 
 
 @dataclass(frozen=True)
-class TestRun:
+class Run:
     """One test of a campaign, or the operating point of a rig without one: what drives the model, what was read."""
 
     test: int
@@ -47,8 +47,13 @@ class TestRun:
     moments: tuple[float, ...]
     readings: tuple[Reading, ...]
 
+    @property
+    def inputs(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """What drives the model: name -> (times [s], values in SI)."""
+        return {name: (self.schedule.time, values) for name, values in self.schedule.values.items()}
 
-def runs_of(scenario: Scenario, flat: FlatModel, tests: str | None = None) -> tuple[TestRun, ...]:
+
+def runs_of(scenario: Scenario, flat: FlatModel, tests: str | None = None) -> tuple[Run, ...]:
     """What is to be played.
 
     Args:
@@ -66,21 +71,21 @@ def runs_of(scenario: Scenario, flat: FlatModel, tests: str | None = None) -> tu
     return tuple(_run_of(scenario, played, campaign, test) for test in campaign.tests() if test.number in wanted)
 
 
-def _run_of(scenario: Scenario, flat: FlatModel, campaign: Campaign, test: Any) -> TestRun:
+def _run_of(scenario: Scenario, flat: FlatModel, campaign: Campaign, test: Any) -> Run:
     run = schedule_of(campaign, test)
     assert campaign.protocol is not None  # schedule_of has refused it
     oil = oil_values(scenario, campaign.protocol, test.oil)
     start = run.start(flat) | {name: value for name, value in oil.items() if name in flat.index}
-    return TestRun(test.number, test.oil, run.schedule, start, run.moments, test.halves)
+    return Run(test.number, test.oil, run.schedule, start, run.moments, test.halves)
 
 
-def _held(scenario: Scenario, flat: FlatModel) -> TestRun:
+def _held(scenario: Scenario, flat: FlatModel) -> Run:
     """The operating point held from a start at room temperature."""
     from .transients import first_temperatures
 
     inputs = {q.name: q.start for q in flat.inputs if q.name in scenario.operating_point}
     oil = next((entry for kinds in scenario.entries.values() for kind, entry in kinds.items() if kind == "oil"), "")
-    return TestRun(1, oil, stepped([(HOLD, inputs)]), first_temperatures(scenario, flat, None), (HOLD,), ())
+    return Run(1, oil, stepped([(HOLD, inputs)]), first_temperatures(scenario, flat, None), (HOLD,), ())
 
 
 def _wanted(tests: str | None, campaign: Campaign) -> set[int]:
@@ -116,7 +121,7 @@ def _inputs(scenario: Scenario) -> tuple[str, ...]:
 
 
 def jobs(
-    found: Iterable[TestRun], fmu: Path, digest: str, step: float, record: Mapping[str, str], folder: Path | None
+    found: Iterable[Run], fmu: Path, digest: str, step: float, record: Mapping[str, str], folder: Path | None
 ) -> tuple[Job, ...]:
     """The jobs of the worker processes."""
     return tuple(
@@ -124,7 +129,7 @@ def jobs(
             test=run.test,
             fmu=fmu,
             digest=digest,
-            inputs={name: (run.schedule.time, values) for name, values in run.schedule.values.items()},
+            inputs=run.inputs,
             start=run.start,
             moments=run.moments,
             step=step,
@@ -181,7 +186,7 @@ def _played(left: Sequence[Job], pool: ProcessPoolExecutor | None) -> Iterator[t
 
 
 def rows(
-    scenario: Scenario, found: Sequence[TestRun], played: Mapping[int, list[dict[str, float]]]
+    scenario: Scenario, found: Sequence[Run], played: Mapping[int, list[dict[str, float]]]
 ) -> list[dict[str, Any]]:
     """One row per reading, in the order of the measured table, simulated and measured."""
     made = []
@@ -197,7 +202,7 @@ def rows(
 
 
 def outside_of(
-    flat: FlatModel, found: Sequence[TestRun], played: Mapping[int, list[dict[str, float]]]
+    flat: FlatModel, found: Sequence[Run], played: Mapping[int, list[dict[str, float]]]
 ) -> tuple[Outside, ...]:
     """The laws that were used outside their range at any of the readings."""
     states = {q.name for q in flat.states}

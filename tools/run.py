@@ -95,7 +95,7 @@ def _result(
 def _study(
     scenario: Scenario,
     flat: FlatModel,
-    found: Sequence[campaign.TestRun],
+    found: Sequence[campaign.Run],
     played: Mapping[int, list[dict[str, float]]],
     rows: Rows,
     result: Mapping[str, Any],
