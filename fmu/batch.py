@@ -40,11 +40,12 @@ class Status(IntEnum):
     """What became of a row; its numbers are NaN unless it is OK."""
 
     OK = 0
-    NO_BALANCE = 1  #: no steady state was found
-    UNSTABLE = 2  #: the only balance found is one the machine leaves by itself
+    NO_EQUILIBRIUM = 1  #: no steady state was found
+    UNSTABLE = 2  #: the only equilibrium found is one the machine leaves by itself
     NOT_FINITE = 3  #: the model cannot be evaluated at the start
     STOPPED = 4  #: a warm-up cannot go on: a state leaves its range or changes without bound
     OUT_OF_RANGE = 5  #: an input, a parameter or a start value is not finite or out of its range
+    NO_SOLUTION = 6  #: an implicit equation has no solution at the start, or on the way of a warm-up
 
 
 @dataclass(frozen=True)

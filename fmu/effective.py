@@ -8,6 +8,7 @@ from typing import Any
 
 import casadi as ca
 from gearheat.model.core.flat import FlatModel
+from gearheat.model.run.fast import once
 
 #: Operations through which a parameter acts although the derivative is zero: it decides when something happens.
 _SWITCHES = frozenset(
@@ -26,11 +27,9 @@ def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> Flat
         flat: the model
         start: values that replace those of the model; a parameter that goes is replaced by its value
     """
-    parts = [flat.ode, flat.y, flat.residual, flat.supply, flat.throughput, flat.stored, flat.checked]
-    column = ca.vertcat(ca.SX(0, 1), *(ca.SX(part) for part in parts))
-    if "effective" not in flat.prepared:
-        flat.prepared["effective"] = _moving(column, flat.p)
-    kept = [i for i in range(len(flat.parameters)) if i in flat.prepared["effective"]]
+    parts, column = _parts(flat)
+    moving = _moving(flat)
+    kept = [i for i in range(len(flat.parameters)) if i in moving]
     if len(kept) == len(flat.parameters):
         return flat
     values = {q.name: q.start for q in flat.parameters} | dict(start or {})
@@ -51,8 +50,16 @@ def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> Flat
     )
 
 
-def _moving(column: Any, p: Any) -> set[int]:
+def _parts(flat: FlatModel) -> tuple[list[Any], Any]:
+    """All expressions of a model, and one column of them."""
+    parts = [flat.ode, flat.y, flat.residual, flat.supply, flat.throughput, flat.stored, flat.checked]
+    return parts, ca.vertcat(ca.SX(0, 1), *(ca.SX(part) for part in parts))
+
+
+@once
+def _moving(flat: FlatModel) -> set[int]:
     """Positions of the parameters with an effect."""
+    p, (_, column) = flat.p, _parts(flat)
     held = _columns(ca.jacobian_sparsity(column, p))
     moving = _columns(ca.sparsify(ca.jacobian(ca.cse(column), p)).sparsity())
     return moving | _switching(column, p) if held - moving else moving

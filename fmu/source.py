@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from importlib.resources import files
+from typing import Any
 
 from gearheat.model.core.flat import FlatModel
+from gearheat.model.run import newton
+from gearheat.model.run.algebra import GUESSES
 
 from . import emit
 from .description import TOLERANCE
@@ -19,6 +22,7 @@ _HEADERS = ("fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h")
 _WRAPPER = (
     "instance.h",
     "messages.c",
+    "newton.c",
     "evaluate.c",
     "trial.c",
     "solver.c",
@@ -56,6 +60,7 @@ def _wrapper_file(name: str) -> str:
 def _sizes(flat: FlatModel, model: Equations, table: Table) -> str:
     sizes = {
         "NX": len(table.of("state")),
+        "NZ": len(flat.algebraic),
         "NU": len(table.of("input")),
         "NY": len(table.of("output")),
         "NP": len(table.of("parameter")),
@@ -66,7 +71,20 @@ def _sizes(flat: FlatModel, model: Equations, table: Table) -> str:
         "MODEL_NAME": _string(flat.name),
         "MODEL_GUID": _string(GUID_MARK),
     }
-    return "#include <math.h>\n\n" + "".join(f"#define {name} {value}\n" for name, value in sizes.items())
+    return "#include <math.h>\n\n" + defined(sizes | newton_constants())
+
+
+def defined(values: Mapping[str, Any]) -> str:
+    """Definitions for the preprocessor."""
+    return "".join(f"#define {name} {value}\n" for name, value in values.items())
+
+
+def newton_constants() -> dict[str, str]:
+    """The numbers of `gearheat.model.run.newton` and `algebra`, for the same methods in C."""
+    numbers = {name: value for name, value in vars(newton).items() if name.isupper() and isinstance(value, int | float)}
+    guesses = ", ".join(emit.number(factor) for factor in GUESSES)
+    written = {name: str(v) if isinstance(v, int) else emit.number(v) for name, v in numbers.items()}
+    return written | {"GUESSES": f"{{{guesses}}}", "N_GUESSES": str(len(GUESSES))}
 
 
 def _tables(flat: FlatModel, table: Table) -> str:
@@ -75,6 +93,7 @@ def _tables(flat: FlatModel, table: Table) -> str:
         "model_names": [v.name for v in table],
         "model_units": [fmi_unit(v.quantity.unit) for v in table],
         "model_ranges": [v.range_text for v in table],
+        "model_blocks": flat.residual_names,
         "model_checks": [
             f"{c.component}: {c.argument} of {c.law.name} ({c.law.source}, {c.law.where})" for c in checks
         ],
@@ -84,6 +103,8 @@ def _tables(flat: FlatModel, table: Table) -> str:
         "model_low": [v.bounds[0] for v in table],
         "model_high": [v.bounds[1] for v in table],
         "model_nominal": [v.quantity.nominal for v in table],
+        "model_z_start": [q.start for q in flat.algebraic],
+        "model_z_nominal": [q.nominal for q in flat.algebraic],
         "model_check_low": [c.low for c in checks],
         "model_check_high": [c.high for c in checks],
     }

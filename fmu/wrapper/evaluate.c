@@ -7,12 +7,42 @@ static void refresh_constants(Instance *m)
     m->constants_known = 1;
 }
 
+/* Solve the implicit equations where states, inputs or parameters have changed; -1, or the number of the one without a
+   solution. */
+static int refresh_algebra(Instance *m)
+{
+    int failed;
+    if (m->s.consistent) return -1;
+    refresh_constants(m);
+    failed = implicit_solve(m->s.x, m->s.z, m->s.u, m->s.p, m->c);
+    m->s.consistent = failed < 0;
+    return failed;
+}
+
 static void refresh_outputs(Instance *m)
 {
+    int i;
     if (m->outputs_known) return;
     refresh_constants(m);
-    model_outputs(m->s.x, m->s.u, m->s.p, m->c, m->y, m->dx);
+    if (refresh_algebra(m) < 0) model_outputs(m->s.x, m->s.z, m->s.u, m->s.p, m->c, m->y, m->dx);
+    else {
+        for (i = 0; i < NY; i++) m->y[i] = NAN;
+        for (i = 0; i < NX; i++) m->dx[i] = NAN;
+    }
     m->outputs_known = 1;
+}
+
+/* The name of the implicit equation that has no solution here, or NULL. */
+static const char *unsolved(Instance *m)
+{
+    int failed = refresh_algebra(m);
+    return failed < 0 ? NULL : model_blocks[failed];
+}
+
+/* Something the outputs depend on has changed. */
+static void changed(Instance *m)
+{
+    m->outputs_known = m->s.consistent = 0;
 }
 
 /* Where a value lies: NULL for a value the model calculates. */
@@ -52,7 +82,8 @@ static void warn_validity(Instance *m)
     int i;
     if (NK == 0 || !(m->log_mask & (1u << LOG_WARNING))) return;
     refresh_constants(m);
-    model_arguments(m->s.x, m->s.u, m->s.p, m->c, argument);
+    if (refresh_algebra(m) >= 0) return;
+    model_arguments(m->s.x, m->s.z, m->s.u, m->s.p, m->c, argument);
     for (i = 0; i < NK; i++) {
         if (m->warned[i] || !(argument[i] < model_check_low[i] || argument[i] > model_check_high[i])) continue;
         m->warned[i] = 1;

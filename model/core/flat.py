@@ -1,9 +1,9 @@
-"""The flat model: an explicit ordinary differential equation with named quantities, and nothing of gears in it."""
+"""The flat model: a differential-algebraic system of index 1 with named quantities, and nothing of gears in it."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -52,13 +52,15 @@ class Check:
     high: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class FlatModel:
-    """dx/dt = ode(x, u, p), y = y(x, u, p); all vectors are CasADi SX columns in the order of their quantities.
+    """dx/dt = ode(x, z, u, p), 0 = residual(x, z, u, p), y = y(x, z, u, p); all are CasADi SX columns.
 
-    `residual` holds what the implicit blocks leave after their Newton steps (scaled by nominals), named in
-    `residual_names`. `supply` [W] is the power that crosses the model's boundary inwards, `throughput` [W] the sum of
-    its magnitudes, `stored` [J] the energy of the states: `supply` is the time derivative of `stored`, always.
+    `algebraic` are the torn unknowns z of the implicit blocks, their `start` where an iteration begins. As many
+    equations, named in `residual_names` and scaled to the size of z, hold at every moment. `supply` [W] is the power
+    that crosses the model's boundary inwards, `throughput` [W] the sum of its magnitudes, `stored` [J] the energy of
+    the states: `supply` is the time derivative of `stored`, always. `joined` says which quantities are outputs because
+    rigid couplings tie them to states ("rotor_2.w follows rotor_1.w").
     """
 
     name: str
@@ -80,6 +82,9 @@ class FlatModel:
     checks: tuple[Check, ...]
     checked: Any
     laws: tuple[LawInfo, ...]
+    algebraic: tuple[Quantity, ...] = ()
+    z: Any = field(default_factory=lambda: ca.SX(0, 1))
+    joined: tuple[str, ...] = ()
 
     @cached_property
     def index(self) -> Mapping[str, tuple[str, int]]:
@@ -101,29 +106,20 @@ class FlatModel:
         except KeyError:
             raise ScenarioError(f'{self.name}: unknown name "{name}".{suggestion(name, self.index)}') from None
 
-    @cached_property
-    def ode_function(self) -> Any:
-        """CasADi function (x, u, p) -> (ode,)."""
-        return ca.Function("ode", [self.x, self.u, self.p], [self.ode], ["x", "u", "p"], ["ode"], {"cse": True})
+    @property
+    def point(self) -> list[Any]:
+        """What every expression is a function of: x, z, u, p."""
+        return [self.x, self.z, self.u, self.p]
 
     @cached_property
-    def output_function(self) -> Any:
-        """CasADi function (x, u, p) -> (y, residual, supply, throughput, stored, checked)."""
-        return ca.Function(
-            "outputs",
-            [self.x, self.u, self.p],
-            [self.y, self.residual, self.supply, self.throughput, self.stored, self.checked],
-            ["x", "u", "p"],
-            ["y", "residual", "supply", "throughput", "stored", "checked"],
-            {"cse": True},
-        )
-
-    @cached_property
-    def prepared(self) -> dict[str, Any]:
-        """What runs have compiled of this model, by name, so that it is compiled once."""
-        return {}
+    def function(self) -> Any:
+        """CasADi function (x, z, u, p) -> (ode, y, residual, supply, throughput, stored, checked)."""
+        names = ["ode", "y", "residual", "supply", "throughput", "stored", "checked"]
+        results = [getattr(self, name) for name in names]
+        return ca.Function("model", self.point, results, ["x", "z", "u", "p"], names, {"cse": True})
 
     def starts(self, kind: str) -> np.ndarray:
-        """Default values of all states, inputs or parameters, in order."""
-        group = {"state": self.states, "input": self.inputs, "parameter": self.parameters}[kind]
+        """Default values of all states, algebraic variables, inputs or parameters, in order."""
+        groups = {"state": self.states, "algebraic": self.algebraic, "input": self.inputs, "parameter": self.parameters}
+        group = groups[kind]
         return np.array([q.start for q in group])

@@ -70,7 +70,8 @@ def problem_of(
     kind, _ = flat.index[name]
     if kind not in allowed:
         expected = " or ".join(WORDS[k] for k in allowed)
-        return f"{who}: {name} is {WORDS[kind]} of {flat.name}. Expected {expected}."
+        joined = next((f" ({text})" for text in flat.joined if text.startswith(f"{name} ")), "")
+        return f"{who}: {name} is {WORDS[kind]} of {flat.name}{joined}. Expected {expected}."
     if value is None:
         return None
     problem = flat.quantity(name).problem(value)

@@ -15,6 +15,7 @@ from fmu_in_c import planetary
 from gearheat.fmu.compiling import cache_folder
 from gearheat.fmu.export import export
 from gearheat.fmu.play import Player
+from gearheat.model.run.rows import evaluate_at
 
 #: Values under which laws act that the rig's own values switch off, and the parameters that act only then.
 SWITCHES = {
@@ -87,10 +88,10 @@ def test_what_is_not_exported_acts_nowhere(exported: dict[str, float]) -> None:
         u = flat.starts("input")
         u[flat.locate("carrier.w")[1]] = w
         p = flat.starts("parameter")
-        usual = [np.array(v) for f in (flat.ode_function, flat.output_function) for v in f.call([x, u, p])]
+        usual = evaluate_at(flat, x, u, p).values()
         for i in left_out:
             p[i] = 1.3 * p[i] + 0.1
-        changed = [np.array(v) for f in (flat.ode_function, flat.output_function) for v in f.call([x, u, p])]
+        changed = evaluate_at(flat, x, u, p).values()
         for a, b in zip(usual, changed, strict=True):
             assert a == pytest.approx(b, rel=1e-12, abs=1e-9)  # a share of two equal bodies is round-off
 

@@ -12,6 +12,7 @@ from gearheat.model.core.declare import Input, Port, declared
 from gearheat.model.core.flatten import flatten
 from gearheat.model.parts import PARTS as PHYSICS
 from gearheat.model.parts.ports import Flange, HeatPort
+from gearheat.model.run.rows import evaluate_at
 from gearheat.tools.effects.parts import FIT_PARTS
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -146,11 +147,11 @@ def at(flat, rng) -> dict[str, float]:
     x = [value(q) for q in flat.states]
     u = [value(q) for q in flat.inputs]
     p = flat.starts("parameter")
-    y, _, supply, throughput, _, _ = flat.output_function(x, u, p)
-    gain = ca.Function("gain", [flat.x, flat.u, flat.p], [ca.jtimes(flat.stored, flat.x, flat.ode)])(x, u, p)
+    found = evaluate_at(flat, x, u, p)
+    gain = ca.Function("gain", [flat.x, flat.p], [ca.jacobian(flat.stored, flat.x)])(x, p) @ found["ode"]
     names = [q.name for q in (*flat.states, *flat.inputs, *flat.outputs)]
-    values = [*x, *u, *np.array(y).ravel()]
-    audit = {"supply": float(supply), "throughput": float(throughput), "gain": float(gain)}
+    values = [*x, *u, *found["y"]]
+    audit = {"supply": float(found["supply"][0]), "throughput": float(found["throughput"][0]), "gain": float(gain)}
     return dict(zip(names, map(float, values), strict=True)) | audit
 
 
