@@ -7,13 +7,13 @@ from typing import Any
 
 from ..model.core.declare import Choice, Parameter, declared
 from ..model.core.flat import FlatModel, Quantity
-from ..model.parts import PARTS
 from ..model.sources import LawInfo, sources
 from ..model.units import from_si, shown, text
 from ..scenarios.entries import FILES, catalogue
-from ..scenarios.load import list_rigs, load
+from ..scenarios.load import list_rigs
 from ..scenarios.scenario import Scenario
 from .console import answer, table
+from .rigs import load
 from .settings import flat_of
 
 
@@ -33,13 +33,13 @@ def list_command(json: str | None) -> None:
 def show_command(rig: str, errata: bool, json: str | None) -> None:
     """Everything a rig file says, in SI where unit and value stand apart and as shown to a person otherwise."""
     scenario = load(rig)
-    flat = flat_of(scenario)
+    flat, types = flat_of(scenario), scenario.spec.types
     found = {
         "schema": "gearheat.show/1",
         "rig": scenario.name,
         "doc": scenario.doc,
         "kind": scenario.kind,
-        "parts": [{"name": p.name, "type": p.type, "doc": _doc(PARTS[p.type])} for p in scenario.spec.parts],
+        "parts": [{"name": p.name, "type": p.type, "doc": _doc(types[p.type])} for p in scenario.spec.parts],
         "parameters": [_parameter(scenario, flat, q) for q in every_parameter(scenario, flat)],
         "choices": choices(scenario),
         "inputs": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.inputs],
@@ -57,7 +57,7 @@ def source_of(scenario: Scenario, path: str) -> str:
     if path in scenario.value_sources:
         return scenario.value_sources[path]
     part, _, key = path.rpartition(".")
-    parameter = declared(PARTS[scenario.spec.part(part).type], Parameter).get(key)
+    parameter = declared(scenario.spec.types[scenario.spec.part(part).type], Parameter).get(key)
     return "follows from the other values" if parameter is not None and parameter.derived else "default"
 
 
@@ -78,7 +78,7 @@ def choices(scenario: Scenario) -> list[dict[str, Any]]:
     """The structural choices of all parts, with what is chosen."""
     found = []
     for part in scenario.spec.parts:
-        for key, choice in declared(PARTS[part.type], Choice).items():
+        for key, choice in declared(scenario.spec.types[part.type], Choice).items():
             value = part.values.get(key, choice.default)
             found.append({"name": f"{part.name}.{key}", "value": value, "options": choice.options, "doc": choice.doc})
     return found

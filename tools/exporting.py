@@ -16,11 +16,11 @@ from ..model.core.flat import FlatModel
 from ..model.machines.spec import assemble
 from ..model.run.point import point
 from ..model.run.rows import evaluate_at
-from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
 from .console import answer, file_of, folder, writable
 from .extras import checked, reference_duty, write_extras
 from .network import network_svg
+from .rigs import load
 from .settings import Drive, adjusted, driven_at, flat_of, given_paths
 from .transients import first_temperatures
 

@@ -14,11 +14,11 @@ from ..model.run.point import point
 from ..model.run.rows import evaluate
 from ..model.run.steady import steady, steady_table
 from ..scenarios.entries import catalogue
-from ..scenarios.load import load
 from ..scenarios.measured import Campaign, Protocol, Reading, read_measured
 from ..scenarios.scenario import Scenario
 from .console import answer, table
 from .points import conditions
+from .rigs import load
 from .settings import DIAGNOSED, SET, adjusted, choice_paths, driven_by, flat_of
 
 

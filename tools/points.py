@@ -11,9 +11,9 @@ from ..model.run.design import Design, design
 from ..model.run.result import Result
 from ..model.run.steady import steady
 from ..model.units import from_si, shown
-from ..scenarios.load import load
 from ..scenarios.scenario import Scenario, parse_assignments
 from .console import answer, table
+from .rigs import load
 from .settings import adjusted, flat_of
 
 #: Words of a table of values.

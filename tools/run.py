@@ -49,7 +49,7 @@ def command(
         protocol = scenario.campaign.protocol if scenario.campaign else None
         scenario = driven_by(scenario, protocol.inputs) if protocol else scenario
         flat = flat_of(scenario)
-        found = campaign.courses(scenario, flat, tests)
+        found = campaign.runs_of(scenario, flat, tests)
         fmu = write_fmu(scenario, flat, out / f"{scenario.name}.fmu")
         note(f"exported {fmu}")
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()
@@ -95,7 +95,7 @@ def _result(
 def _study(
     scenario: Scenario,
     flat: FlatModel,
-    found: Sequence[campaign.Course],
+    found: Sequence[campaign.Run],
     played: Mapping[int, list[dict[str, float]]],
     rows: Rows,
     result: Mapping[str, Any],
@@ -126,7 +126,7 @@ def _room(scenario: Scenario) -> str:
 
 
 def _telling(rows: Rows) -> list[int]:
-    """Tests whose course is drawn: the lightest and the heaviest of each of the first three oils."""
+    """Tests whose time series is drawn: the lightest and the heaviest of each of the first three oils."""
     chosen: list[int] = []
     for oil in list(dict.fromkeys(row["oil"] for row in rows))[:3]:
         mine = sorted((row for row in rows if row["oil"] == oil), key=lambda row: row["P_loss_W"])

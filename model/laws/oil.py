@@ -1,4 +1,4 @@
-"""Oil and grease: viscosity, density, specific heat, conductivity, and the slopes of viscosity that films need."""
+"""Oil and grease: viscosity, density, conductivity, and the slopes of viscosity that films need."""
 
 from __future__ import annotations
 
@@ -52,21 +52,6 @@ def kinematic_viscosity(T: Num, nu_40: Num, nu_100: Num) -> Num:
     return 1e-6 * (ca.exp(ca.exp(W_40 + (W_100 - W_40) * share)) - 0.7)
 
 
-@law(source="ASTMD341", where="Walther equation", valid="within the points the constants come from")
-def kinematic_viscosity_walther(T: Num, m: Num, n: Num) -> Num:
-    r"""Kinematic viscosity [m2/s] from explicit Walther constants.
-
-    .. math:: \nu = 10^{10^{m - n \lg T}} - 0.7
-
-    Args:
-        T: temperature [K]
-        m: intercept, for decimal logarithms and cSt [1]
-        n: slope [1]
-    """
-    inner = ca.exp(math.log(10) * m - n * ca.log(T))  # 10^(m - n lg T)
-    return 1e-6 * (ca.exp(math.log(10) * inner) - 0.7)
-
-
 @law(source="Dias2014", where="oil properties, density", verified=False)
 def density(T: Num, rho_15: Num, alpha_T: Num) -> Num:
     r"""Density [kg/m3], linear in the temperature.
@@ -79,19 +64,6 @@ def density(T: Num, rho_15: Num, alpha_T: Num) -> Num:
         alpha_T: relative change of density with temperature, negative [1/K]
     """
     return rho_15 * (1 + alpha_T * (T - T_15))
-
-
-@law(source="ASTMD341", where="definition of kinematic viscosity", verified=False)
-def dynamic_viscosity(nu: Num, rho: Num) -> Num:
-    r"""Dynamic viscosity [Pa.s].
-
-    .. math:: \eta = \nu \rho
-
-    Args:
-        nu: kinematic viscosity [m2/s]
-        rho: density [kg/m3]
-    """
-    return nu * rho
 
 
 @law(source="Gold2001", where="pressure-viscosity coefficient up to 0.2 GPa", valid="base oils of the constants' type")
@@ -143,22 +115,3 @@ def conductivity(T: Num, rho_15: Num) -> Num:
     """
     T_C = T - T_0
     return 120 * (1 - 0.0005 / 3 * T_C) / rho_15
-
-
-@law(
-    source="Cragoe1929",
-    where="specific heat of liquids",
-    valid="petroleum products; PAG: take a measured value",
-    verified=False,
-)
-def specific_heat(T: Num, rho_15: Num) -> Num:
-    r"""Specific heat [J/(kg.K)].
-
-    .. math:: c_p = \frac{1685 + 3.4 (T - 273.15)}{\sqrt{\rho_{15}/999}}
-
-    Args:
-        T: temperature [K]
-        rho_15: density at 15 degC [kg/m3]
-    """
-    T_C = T - T_0
-    return (1685 + 3.4 * T_C) / ca.sqrt(rho_15 / 999)

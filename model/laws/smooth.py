@@ -42,11 +42,6 @@ def smooth_power(x: Num, exponent: Num, width: float = SPEED_WIDTH) -> Num:
     return x * x * (x * x + width * width) ** (0.5 * exponent - 1)
 
 
-def smooth_positive(x: Num, width: float) -> Num:
-    """The positive part of x, in the unit of x: never negative, width/2 at x = 0."""
-    return 0.5 * (x + smooth_abs(x, width))
-
-
 def smooth_max(a: Num, b: Num, width: float) -> Num:
     """The larger of two, in their unit: never below either, above it by at most width/2, where they are equal."""
     return 0.5 * (a + b + smooth_abs(a - b, width))

@@ -10,11 +10,15 @@ from gearheat.model.core.component import Component, equation
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.declare import Input, Port, declared
 from gearheat.model.core.flatten import flatten
-from gearheat.model.parts import PARTS
+from gearheat.model.parts import PARTS as PHYSICS
 from gearheat.model.parts.ports import Flange, HeatPort
 from gearheat.model.run.rows import evaluate_at
+from gearheat.tools.effects.parts import FIT_PARTS
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+#: Every class of component: the physics, and the fit terms of the diagnosis.
+PARTS = PHYSICS | FIT_PARTS
 
 OIL = dict(nu_40=3.2438e-4, nu_100=3.527e-5, rho_15=859.0, alpha_T=-5.6e-4, s_p=7.382, t_p=0.1335, X_L=0.666)
 FRICTION = dict(count=2.0, inner_share=0.4)

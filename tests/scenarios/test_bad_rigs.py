@@ -287,5 +287,5 @@ def test_a_folder_without_a_rig(tmp_path: Path) -> None:
 
 def test_a_file_that_is_no_text(tmp_path: Path) -> None:
     (path := tmp_path / "rig.toml").write_bytes(b"\xff\x00")
-    with pytest.raises(ScenarioError, match="is no text in UTF-8"):
+    with pytest.raises(ScenarioError, match="is not UTF-8 text"):
         load(path)
