@@ -18,8 +18,12 @@ import casadi as ca
 #: A float or a CasADi expression.
 Num = Any
 
-#: Width [rad/s] of every rounding in a speed: 0.1 rpm, so 100 rpm is met to 5e-7.
+#: Width [rad/s] of every rounding in a magnitude of speed: 0.1 rpm, so 100 rpm is met to 5e-7.
 SPEED_WIDTH = 1e-2
+
+#: Width [rad/s] of the sign of friction, much narrower: a shaft held by friction creeps at a fraction of it, 1e-4 rpm
+#: under 0.7 of its breakaway torque, 7e-4 rpm under 0.99 of it.
+SIGN_WIDTH = 1e-5
 
 
 def smooth_abs(x: Num, width: float = SPEED_WIDTH) -> Num:
@@ -27,8 +31,8 @@ def smooth_abs(x: Num, width: float = SPEED_WIDTH) -> Num:
     return ca.sqrt(x * x + width * width)
 
 
-def smooth_sign(x: Num, width: float = SPEED_WIDTH) -> Num:
-    """The slope of `smooth_abs`: odd, zero at x = 0, between -1 and 1; x * smooth_sign(x) is never negative."""
+def smooth_sign(x: Num, width: float = SIGN_WIDTH) -> Num:
+    """The slope of `smooth_abs` of that width: odd, zero at x = 0, in -1..1; x * smooth_sign(x) is never negative."""
     return x / smooth_abs(x, width)
 
 
@@ -55,6 +59,20 @@ def smooth_max(a: Num, b: Num, width: float) -> Num:
 def smooth_min(a: Num, b: Num, width: float) -> Num:
     """The smaller of two, in their unit: never above either, below it by at most width/2, where they are equal."""
     return 0.5 * (a + b - smooth_abs(a - b, width))
+
+
+def smooth_cap(x: Num, limit: Num, sharpness: float = 8.0) -> Num:
+    r""":math:`x (1 + (x/limit)^s)^{-1/s}`, in the unit of x: x far below the limit, the limit far above it.
+
+    For positive quantities that span decades: the relative deviation is (x/limit)^s / s below the limit, and rises
+    to 1 - 2^(-1/s) at it. Rising in x and in the limit, never above either.
+
+    Args:
+        x: the quantity, not negative
+        limit: what it does not exceed, above 0
+        sharpness: exponent s; the cap takes hold within a factor of about 10^(1/s) of the limit
+    """
+    return x * (1 + (x / limit) ** sharpness) ** (-1 / sharpness)
 
 
 def to_rpm(w: Num) -> Num:
