@@ -5,7 +5,7 @@ deviation falls as (width/x)^2, so a width of a thousandth of the nominal value 
 
 - under a power below 1 take `smooth_abs`, which is never zero, so value and slope stay finite at x = 0;
 - where a loss must vanish with x take `smooth_magnitude` or `smooth_power`, or multiply a magnitude by
-  `smooth_sign(w)`: the power w * smooth_sign(w) is never negative.
+  `friction_sign(w)`: the power w * friction_sign(w) is never negative, and a shaft at rest is held.
 """
 
 from __future__ import annotations
@@ -21,9 +21,9 @@ Num = Any
 #: Width [rad/s] of every rounding in a magnitude of speed: 0.1 rpm, so 100 rpm is met to 5e-7.
 SPEED_WIDTH = 1e-2
 
-#: Width [rad/s] of the sign of friction, much narrower: a shaft held by friction creeps at a fraction of it, 1e-4 rpm
-#: under 0.7 of its breakaway torque, 7e-4 rpm under 0.99 of it.
-SIGN_WIDTH = 1e-5
+#: Speed [rad/s] at which friction holds against its full torque: what a shaft at rest creeps with at most, 5e-4 rpm.
+#: Not far below the error that a solver tolerates in a speed: much narrower, it oscillates about rest in tiny steps.
+HOLD_WIDTH = 5e-5
 
 
 def smooth_abs(x: Num, width: float = SPEED_WIDTH) -> Num:
@@ -31,9 +31,24 @@ def smooth_abs(x: Num, width: float = SPEED_WIDTH) -> Num:
     return ca.sqrt(x * x + width * width)
 
 
-def smooth_sign(x: Num, width: float = SIGN_WIDTH) -> Num:
-    """The slope of `smooth_abs` of that width: odd, zero at x = 0, in -1..1; x * smooth_sign(x) is never negative."""
+def smooth_sign(x: Num, width: float = SPEED_WIDTH) -> Num:
+    """The slope of `smooth_abs`: odd, zero at x = 0, between -1 and 1; x * smooth_sign(x) is never negative."""
     return x / smooth_abs(x, width)
+
+
+def friction_sign(w: Num, width: float = HOLD_WIDTH, sharpness: int = 8) -> Num:
+    r""":math:`(w/width) (1 + (w/width)^s)^{-1/s}`: the share of its torque with which friction opposes a rotation.
+
+    Odd, between -1 and 1, and all but linear within the width, so that a shaft under less than its breakaway torque
+    stays at rest but for a creep below the width: a rounded sign like `smooth_sign` lets it creep at several widths.
+
+    Args:
+        w: speed of the shaft, either direction [rad/s]
+        width: speed at which the full torque is all but reached [rad/s]
+        sharpness: exponent s, even
+    """
+    x = w / width
+    return x * (1 + x**sharpness) ** (-1 / sharpness)
 
 
 def smooth_magnitude(x: Num, width: float = SPEED_WIDTH) -> Num:
