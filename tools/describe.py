@@ -7,12 +7,15 @@ from typing import Any
 
 from ..model.core.declare import Choice, Parameter, declared
 from ..model.core.flat import FlatModel, Quantity
+from ..model.errors import SolveError
+from ..model.run.steady import steady
 from ..model.sources import LawInfo, sources
 from ..model.units import from_si, shown, text
 from ..scenarios.entries import FILES, catalogue
 from ..scenarios.load import list_rigs
 from ..scenarios.scenario import Scenario
 from .console import answer, table
+from .points import conditions, outside_of, tell_outside
 from .rigs import load
 from .settings import flat_of
 
@@ -47,9 +50,18 @@ def show_command(rig: str, errata: bool, json: str | None) -> None:
         "outputs": [_output(q) for q in flat.outputs if q.name not in flat.derived],
         "sensors": dict(scenario.sensors),
         "laws": laws(flat),
+        **_at_the_operating_point(scenario, flat),
         "errata": errata_of(scenario),
     }
     answer(found, json, lambda: _print_errata(found) if errata else _print(found))
+
+
+def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> dict[str, Any]:
+    """The laws outside their range where the rig is at rest with its surroundings, or why there is no such point."""
+    try:
+        return {"outside": outside_of(steady(flat, conditions(scenario, flat))), "no_steady_state": []}
+    except SolveError as error:
+        return {"outside": [], "no_steady_state": list(error.problems)}
 
 
 def source_of(scenario: Scenario, path: str) -> str:
@@ -154,6 +166,9 @@ def _print(found: dict[str, Any]) -> None:
     table("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")))
     keys = ("law", "where", "valid", "verified", "source")
     table("Laws", keys, _rows(found["laws"], keys))
+    tell_outside(found["outside"])
+    for problem in found["no_steady_state"]:
+        print(f"no steady state at the operating point: {problem}")
     if found["errata"]:
         print(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
 

@@ -168,7 +168,7 @@ def parameter_of(spec: Spec, path: str) -> Parameter | None:
     """The declaration of the parameter of a path, None where there is none."""
     part, _, key = path.rpartition(".")
     kinds = [p.type for p in spec.parts if p.name == part]
-    return declared(PARTS[kinds[0]], Parameter).get(key) if kinds else None
+    return declared(spec.types[kinds[0]], Parameter).get(key) if kinds else None
 
 
 def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], list[str]]:

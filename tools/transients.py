@@ -17,7 +17,7 @@ from ..scenarios.duty import duty_names, read_duty
 from ..scenarios.scenario import Scenario
 from .console import answer, file_of, writable, write
 from .playing import series
-from .points import outside_of
+from .points import outside_of, tell_outside
 from .rigs import load
 from .settings import adjusted, flat_of
 
@@ -39,7 +39,12 @@ def simulate_command(rig: str, duty: Path, out: Path, assignments: Sequence[str]
         "outside": outside_of(result),
         "laws": list(result.laws),
     }
-    answer(found, json, lambda: print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s"))
+
+    def human() -> None:
+        print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s")
+        tell_outside(found["outside"])
+
+    answer(found, json, human)
 
 
 def first_temperatures(scenario: Scenario, flat: FlatModel, schedule: Schedule | None) -> dict[str, float]:

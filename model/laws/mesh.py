@@ -7,13 +7,17 @@ import math
 import casadi as ca
 
 from ..sources import law
-from .smooth import Num, smooth_abs
+from .smooth import Num, smooth_abs, smooth_cap
+
+#: Viscosity [mPa.s] beyond which thicker oil lowers the friction of the teeth no more: they are on a full film then.
+FULL_FILM_VISCOSITY = 1000.0
 
 
 @law(
     source="Schlenk1994",
     where="mean friction coefficient of the mesh",
-    valid="boundary and mixed friction, transferable with X_L to other oils",
+    valid="boundary and mixed friction, pitch line up to 50 m/s, oils up to 1 Pa.s, with X_L also others than mineral",
+    ranges={"v_sum": (-34.0, 34.0), "eta_oil": (0.0, 1.0)},
 )
 def friction_schlenk(
     F_n_l: Num,
@@ -42,7 +46,8 @@ def friction_schlenk(
     """
     F, v = smooth_abs(F_n_l, F_width), smooth_abs(v_sum, v_width)
     F_N_mm, R_mm, eta_mPas, Ra_um = 1e-3 * F, 1e3 * R, 1e3 * eta_oil, 1e6 * Ra
-    return 0.048 * (F_N_mm / (v * R_mm)) ** 0.2 * eta_mPas**-0.05 * Ra_um**0.25 * X_L
+    eta_eff = smooth_cap(eta_mPas, FULL_FILM_VISCOSITY)
+    return 0.048 * (F_N_mm / (v * R_mm)) ** 0.2 * eta_eff**-0.05 * Ra_um**0.25 * X_L
 
 
 @law(

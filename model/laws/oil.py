@@ -10,6 +10,8 @@ from ..sources import law
 from .smooth import Num
 
 T_40, T_100, T_15, T_0 = 313.15, 373.15, 288.15, 273.15
+#: Viscosity [mm2/s] at which the charts of ASTM D341 end; the line is held there, far below any pour point.
+LARGEST_VISCOSITY = 2e7
 
 
 @law(source="ASTMD341", where="two-point constants", valid="mineral oils and base oils from -70 to 370 degC")
@@ -32,24 +34,30 @@ def walther_constants(nu_40: Num, nu_100: Num) -> tuple[Num, Num]:
 @law(
     source="ASTMD341",
     where="two-point line",
-    valid="mineral oils and base oils; synthetic oils with a few percent between the points",
-    ranges={"T": (233.15, 423.15)},
+    valid="mineral and base oils that flow; synthetic oils with a few percent between the points",
+    ranges={"T": (233.15, 423.15), "T - T_pour": (0.0, 2000.0)},
 )
-def kinematic_viscosity(T: Num, nu_40: Num, nu_100: Num) -> Num:
+def kinematic_viscosity(T: Num, nu_40: Num, nu_100: Num, T_pour: Num = 0.0, *, sharpness: float = 100.0) -> Num:
     r"""Kinematic viscosity [m2/s] on the Walther line through two points, written with natural logarithms.
 
     .. math:: \nu = \exp(\exp(W)) - 0.7,\quad
         W = W_{40} + (W_{100} - W_{40}) \frac{\ln (T/313.15)}{\ln (373.15/313.15)},\quad W = \ln\ln(\nu + 0.7)
 
+    Where it leaves the source's charts, at 2e7 mm2/s, the viscosity stays what it is.
+
     Args:
         T: temperature [K]
         nu_40: kinematic viscosity at 40 degC [m2/s]
         nu_100: kinematic viscosity at 100 degC [m2/s]
+        T_pour: pour point; bounds the range alone: below it the line goes on for oil that does not flow [K]
+        sharpness: of the bend at the largest viscosity; it is felt within 5 K of it
     """
     nu_40_cSt, nu_100_cSt = 1e6 * nu_40, 1e6 * nu_100
     W_40, W_100 = ca.log(ca.log(nu_40_cSt + 0.7)), ca.log(ca.log(nu_100_cSt + 0.7))
     share = ca.log(T / T_40) / math.log(T_100 / T_40)
-    return 1e-6 * (ca.exp(ca.exp(W_40 + (W_100 - W_40) * share)) - 0.7)
+    reciprocal = ca.exp(-W_40 - (W_100 - W_40) * share)  # of ln(nu + 0.7); its largest power keeps the limit
+    held = (reciprocal**sharpness + math.log(LARGEST_VISCOSITY) ** -sharpness) ** (1 / sharpness)
+    return 1e-6 * (ca.exp(1 / held) - 0.7)
 
 
 @law(source="Dias2014", where="oil properties, density", verified=False)

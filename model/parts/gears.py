@@ -27,7 +27,7 @@ from ..laws.gears import (
     working_pressure_angle,
 )
 from ..laws.mesh import friction_schlenk, mesh_loss, tooth_loss_factor
-from ..laws.smooth import Num, smooth_abs, smooth_sign
+from ..laws.smooth import Num, friction_sign, smooth_abs
 from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading, ToothForce
 
 #: Share of a_w that the base circles may take; at 1 the flanks would have no line of action.
@@ -198,7 +198,7 @@ class HelicalGearPair(ToothedPart):
     def equations(self) -> Iterator[Equation]:
         """The gear that drives brings the loss; what is left arrives at the other."""
         w, ratio, r = self.pinion.w, self.z_2 / self.z_1, self.radius(self.z_1)
-        sign = smooth_sign(w)
+        sign = friction_sign(w)
         tau_mean = smooth_abs(self.pinion.tau - sign * self.tau_loss / 2, self.tau_width)
         mu, Lambda = self.friction(self.contact(self.eps_alpha, self.z_1, self.z_2), self.force.F_t, w)
         alpha_t = transverse_pressure_angle(self.alpha_n, self.beta)
@@ -300,7 +300,7 @@ class PlanetarySet(ToothedPart):
     def equations(self) -> Iterator[Equation]:
         """Kinematics, torques, and the two kinds of meshes."""
         w = self.sun.w - self.carrier.w
-        i_0, sign = self.z_3 / self.z_1, smooth_sign(w)
+        i_0, sign = self.z_3 / self.z_1, friction_sign(w)
         losses = sign * (self.tau_loss_sp + self.tau_loss_pr)
         yield equation("Willis", self.sun.w + i_0 * self.ring.w, (1 + i_0) * self.carrier.w)
         yield equation("planets roll on the sun", self.planet.w, -w * self.z_1 / self.z_2)
