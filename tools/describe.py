@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from typing import Any
 
+from ..fmu.effective import effective
 from ..model.core.declare import Choice, Parameter, declared
 from ..model.core.flat import FlatModel, Quantity
 from ..model.parts import PARTS
 from ..model.sources import LawInfo, sources
 from ..model.units import from_si, shown, text
-from ..scenarios.entries import FILES, catalogue
+from ..scenarios.entries import FILES, Entry, catalogue
 from ..scenarios.load import list_rigs, load
 from ..scenarios.scenario import Scenario
 from .console import answer, table
@@ -20,12 +21,19 @@ from .settings import flat_of
 def list_command(json: str | None) -> None:
     """Rigs and catalogue entries that can be named."""
     entries = {kind: {name: entry.doc for name, entry in catalogue(kind).items()} for kind in FILES}
-    found: dict[str, Any] = {"schema": "gearheat.list/1", "rigs": list_rigs(), "catalogues": entries}
+    checked = {kind: {name: _comparison(entry) for name, entry in catalogue(kind).items()} for kind in FILES}
+    found: dict[str, Any] = {
+        "schema": "gearheat.list/1",
+        "rigs": list_rigs(),
+        "catalogues": entries,
+        "checked": checked,
+    }
 
     def human() -> None:
         table("Rigs", ("name", "what it is"), found["rigs"].items())
         for kind, docs in entries.items():
-            table(f"Catalogue: {kind}", ("name", "what it is"), docs.items())
+            rows = [(name, doc, checked[kind][name]) for name, doc in docs.items()]
+            table(f"Catalogue: {kind}", ("name", "what it is", "checked"), rows)
 
     answer(found, json, human)
 
@@ -47,9 +55,40 @@ def show_command(rig: str, errata: bool, json: str | None) -> None:
         "outputs": [{"name": q.name, "unit": shown(q.unit), "doc": q.doc} for q in flat.outputs],
         "sensors": dict(scenario.sensors),
         "laws": laws(flat),
+        "unchecked": unchecked(scenario, flat),
         "errata": errata_of(scenario),
     }
     answer(found, json, lambda: _print_errata(found) if errata else _print(found))
+
+
+def _comparison(entry: Entry) -> str:
+    """Whether the values of a catalogue entry were compared with a print: "all", "none", or which were not."""
+    missing = [key for key in entry.values if key not in entry.checked]
+    return "all" if not missing else f"not {', '.join(missing)}" if entry.checked else "none"
+
+
+def unchecked(scenario: Scenario, flat: FlatModel, filled: Iterable[tuple[str, str]] = ()) -> list[dict[str, Any]]:
+    """Catalogue entries in use with values that were compared with no print, without those that have no effect.
+
+    Args:
+        scenario: the rig as set
+        flat: its model
+        filled: part and name of further entries that a run fills parts with, such as the oils of a campaign
+    """
+    acting = {q.name for q in effective(flat).parameters}
+    found = {entry: [p for p in paths if p in acting] for entry, paths in scenario.unchecked(filled).items()}
+    return [{"catalogue": kind, "entry": name, "values": paths} for (kind, name), paths in found.items() if paths]
+
+
+def unchecked_lines(found: Iterable[Mapping[str, Any]]) -> list[str]:
+    """Unchecked entries as a person reads them, a line each."""
+    return [f'{e["catalogue"]} "{e["entry"]}": {", ".join(e["values"])}' for e in found]
+
+
+def print_unchecked(found: Iterable[Mapping[str, Any]]) -> None:
+    """Say which values of the catalogue were compared with no print."""
+    for line in unchecked_lines(found):
+        print(f"catalogue values not checked against a print: {line}")
 
 
 def source_of(scenario: Scenario, path: str) -> str:
@@ -130,6 +169,7 @@ def _print(found: dict[str, Any]) -> None:
     table("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")))
     keys = ("law", "where", "valid", "verified", "source")
     table("Laws", keys, _rows(found["laws"], keys))
+    print_unchecked(found["unchecked"])
     if found["errata"]:
         print(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
 

@@ -17,6 +17,7 @@ from ..scenarios.duty import duty_names, read_duty
 from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
 from .console import answer, file_of, writable, write
+from .describe import print_unchecked, unchecked
 from .playing import series
 from .points import outside_of
 from .settings import adjusted, flat_of
@@ -38,8 +39,14 @@ def simulate_command(rig: str, duty: Path, out: Path, assignments: Sequence[str]
         "energy_residual": result.audit.residual,
         "outside": outside_of(result),
         "laws": list(result.laws),
+        "unchecked": unchecked(scenario, flat),
     }
-    answer(found, json, lambda: print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s"))
+
+    def human() -> None:
+        print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s")
+        print_unchecked(found["unchecked"])
+
+    answer(found, json, human)
 
 
 def first_temperatures(scenario: Scenario, flat: FlatModel, schedule: Schedule | None) -> dict[str, float]:
