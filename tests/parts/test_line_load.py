@@ -31,9 +31,14 @@ def friction(part: Any, line_load: str, eps_alpha: float) -> list[float]:
 def test_every_rig_states_its_line_load_and_what_its_factor_belongs_to(rig: str) -> None:
     sources = load(rig).value_sources
     for part in toothed(rig):
-        assert part.values["line_load"] == "F_bn/l"
+        assert part.values["line_load"] in ("F_bt/b", "F_bn/l")
         assert "line_load" in sources[f"{part.name}.k_mu"]
         assert sources[f"{part.name}.line_load"]
+
+
+@pytest.mark.parametrize("rig", ["planetary", "helical_two_stage"])
+def test_published_numbers_are_those_of_the_load_per_contact_length(rig: str) -> None:
+    assert {part.values["line_load"] for part in toothed(rig)} == {"F_bn/l"}
 
 
 @pytest.mark.parametrize("rig", list_rigs())
