@@ -10,7 +10,7 @@ from ..model.core.declare import Input, declared
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.machines.spec import Spec
-from .entries import FILES, catalogue
+from .entries import FILES, Entry, catalogue, unchecked_entry
 from .measured import Campaign, Protocol
 from .values import Override, entry_values, in_range, settable
 
@@ -109,13 +109,44 @@ class Scenario:
         Raises:
             ScenarioError: unknown name, with suggestions
         """
+        found = entry_values(self._entry(part, name), settable(self.spec.types[self.spec.part(part).type]))
+        return {f"{part}.{key}": value for key, value in found.items()}
+
+    def entry_sources(self, part: str, name: str, source: str) -> dict[str, str]:
+        """A source for each value that an entry gives a part, with a remark where the value is unchecked.
+
+        Args:
+            part: name of a part
+            name: of an entry of its catalogue
+            source: of the entry, in words
+
+        Raises:
+            ScenarioError: unknown name, with suggestions
+        """
+        found = self._entry(part, name)
+        return {path: found.told(path.rpartition(".")[2], source) for path in self.entry_values(part, name)}
+
+    def _entry(self, part: str, name: str) -> Entry:
         declarations = settable(self.spec.types[self.spec.part(part).type])
         kinds = self.entries.get(part) or FILES
         known = {n: e for kind in kinds for n, e in catalogue(kind).items() if entry_values(e, declarations)}
         if name not in known:
             close = suggestion(name, known) or f" Known: {', '.join(known) or 'none'}."
             raise ScenarioError(f'{part} = {name}: unknown {" or ".join(kinds)} "{name}".{close}')
-        return {f"{part}.{key}": value for key, value in entry_values(known[name], declarations).items()}
+        return known[name]
+
+    def unchecked(self, filled: Iterable[tuple[str, str]] = ()) -> dict[tuple[str, str], tuple[str, ...]]:
+        """Catalogue entries in use, by kind and name -> paths of their values that were compared with no print.
+
+        Args:
+            filled: part and name of further entries that a run fills parts with, such as the oils of a campaign
+        """
+        others = [self.entry_sources(part, name, "") for part, name in filled]
+        found: dict[tuple[str, str], dict[str, None]] = {}
+        for path, source in (pair for sources in (self.value_sources, *others) for pair in sources.items()):
+            if (entry := unchecked_entry(source)) is not None:
+                found.setdefault(entry, {})[path] = None
+        return {entry: tuple(paths) for entry, paths in found.items()}
 
 
 def parse_assignments(target: Scenario | FlatModel, texts: Iterable[str]) -> dict[str, float]:

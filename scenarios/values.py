@@ -152,7 +152,7 @@ class _PartReader:
             )
             return False
         self.result.values.update(values)
-        self.result.sources.update({key: found.sources[key] for key in values})
+        self.result.sources.update({key: found.told(key, found.sources[key]) for key in values})
         self.result.entries[kind] = found.name
         return True
 

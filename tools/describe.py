@@ -11,24 +11,32 @@ from ..model.errors import SolveError
 from ..model.run.steady import steady
 from ..model.sources import LawInfo, sources
 from ..model.units import from_si, shown, text
-from ..scenarios.entries import FILES, catalogue
+from ..scenarios.entries import FILES, Entry, catalogue
 from ..scenarios.load import list_rigs
 from ..scenarios.scenario import Scenario
 from .console import answer, table
 from .points import conditions, outside_of, tell_outside
 from .rigs import load
 from .settings import flat_of
+from .unchecked import print_unchecked, unchecked
 
 
 def list_command(json: str | None) -> None:
     """Rigs and catalogue entries that can be named."""
     entries = {kind: {name: entry.doc for name, entry in catalogue(kind).items()} for kind in FILES}
-    found: dict[str, Any] = {"schema": "gearheat.list/1", "rigs": list_rigs(), "catalogues": entries}
+    checked = {kind: {name: _comparison(entry) for name, entry in catalogue(kind).items()} for kind in FILES}
+    found: dict[str, Any] = {
+        "schema": "gearheat.list/1",
+        "rigs": list_rigs(),
+        "catalogues": entries,
+        "checked": checked,
+    }
 
     def human() -> None:
         table("Rigs", ("name", "what it is"), found["rigs"].items())
         for kind, docs in entries.items():
-            table(f"Catalogue: {kind}", ("name", "what it is"), docs.items())
+            rows = [(name, doc, checked[kind][name]) for name, doc in docs.items()]
+            table(f"Catalogue: {kind}", ("name", "what it is", "checked"), rows)
 
     answer(found, json, human)
 
@@ -51,6 +59,7 @@ def show_command(rig: str, errata: bool, json: str | None) -> None:
         "sensors": dict(scenario.sensors),
         "laws": laws(flat),
         **_at_the_operating_point(scenario, flat),
+        "unchecked": unchecked(scenario, flat),
         "errata": errata_of(scenario),
     }
     answer(found, json, lambda: _print_errata(found) if errata else _print(found))
@@ -62,6 +71,12 @@ def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> dict[str, An
         return {"outside": outside_of(steady(flat, conditions(scenario, flat))), "no_steady_state": []}
     except SolveError as error:
         return {"outside": [], "no_steady_state": list(error.problems)}
+
+
+def _comparison(entry: Entry) -> str:
+    """Whether the values of a catalogue entry were compared with a print: "all", "none", or which were not."""
+    missing = [key for key in entry.values if key not in entry.checked]
+    return "all" if not missing else f"not {', '.join(missing)}" if entry.checked else "none"
 
 
 def source_of(scenario: Scenario, path: str) -> str:
@@ -169,6 +184,7 @@ def _print(found: dict[str, Any]) -> None:
     tell_outside(found["outside"])
     for problem in found["no_steady_state"]:
         print(f"no steady state at the operating point: {problem}")
+    print_unchecked(found["unchecked"])
     if found["errata"]:
         print(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
 

@@ -17,6 +17,7 @@ from . import campaign, describe, summary
 from .compare import Comparison, Rows, compare, present
 from .console import answer, as_json, file_of, folder, note, table, writable, write
 from .exporting import write_fmu
+from .losses import oils_of
 from .readings import sources
 from .report import Study, render
 from .rivals import Score, rivals
@@ -59,6 +60,7 @@ def command(
     rows = [_ordered(row) for row in campaign.rows(scenario, found, played)]
     comparison, scores = (compare(rows), rivals(rows)) if present(rows) else (None, ())
     result = _result(scenario, fmu, digest, rows, comparison, scores)
+    result["unchecked"] = describe.unchecked(scenario, flat, oils_of(scenario.campaign))
     study = _study(scenario, flat, found, played, rows, result, kept)
     write(out / "rows.csv", _csv(rows))
     write(out / "result.json", as_json(result))
@@ -115,6 +117,7 @@ def _study(
         laws=describe.cited(flat),
         outside=campaign.outside_of(flat, found, played),
         parameters=describe.parameters(scenario, flat),
+        unchecked=tuple(describe.unchecked_lines(result["unchecked"])),
         errata=tuple((e.place, e.says, e.should_be, e.evidence) for e in scenario.errata),
         energy_residual_max=result["energy_residual_max"],
     )
@@ -161,4 +164,5 @@ def _print(rows: Rows, comparison: Comparison | None, scores: Sequence[Score], r
         table(f"{result['rig']}: operating point", ("name", "value"), [[c, rows[0][c]] for c in columns])
     else:
         summary.show(comparison, scores)
+    describe.print_unchecked(result["unchecked"])
     print(f"{len(rows)} readings; energy balance closed within {result['energy_residual_max']:.1e} of the throughput")

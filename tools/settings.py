@@ -61,7 +61,8 @@ def adjusted(
     if idle := [name for name in ends if name.rpartition(".")[2] not in driven.get(name.rpartition(".")[0], ())]:
         raise ScenarioError([f"{name} is set, but it follows from what drives the rig. Take it out." for name in idle])
     set_up = scenario.with_values(values, SET).driven(driven)
-    set_up = replace(set_up, spec=set_up.spec.with_values(choices))
+    sources = {**set_up.value_sources, **_filled(scenario, assignments)}
+    set_up = replace(set_up, spec=set_up.spec.with_values(choices), value_sources=sources)
     return set_up.with_values(_derived(set_up.spec, named), SET)
 
 
@@ -187,6 +188,17 @@ def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], li
             close = suggestion(written.lower(), options)
             problems.append(f'{path} = "{written}" is not known.{close} Choose one of: {", ".join(options)}.')
     return values, problems
+
+
+def _filled(scenario: Scenario, assignments: Sequence[str]) -> dict[str, str]:
+    """Sources of the values that parts filled from a catalogue have, but for those that are set one by one."""
+    parts = {part.name for part in scenario.spec.parts}
+    single = {_name(text) for text in assignments}
+    found: dict[str, str] = {}
+    for text in assignments:
+        if (part := _name(text)) in parts:
+            found |= scenario.entry_sources(part, text.partition("=")[2].strip(), SET)
+    return {path: source for path, source in found.items() if path not in single}
 
 
 def _doubled(assignments: Iterable[str]) -> list[str]:

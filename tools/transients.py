@@ -20,6 +20,7 @@ from .playing import series
 from .points import outside_of, tell_outside
 from .rigs import load
 from .settings import adjusted, flat_of
+from .unchecked import print_unchecked, unchecked
 
 
 def simulate_command(rig: str, duty: Path, out: Path, assignments: Sequence[str], json: str | None) -> None:
@@ -38,11 +39,13 @@ def simulate_command(rig: str, duty: Path, out: Path, assignments: Sequence[str]
         "energy_residual": result.audit.residual,
         "outside": outside_of(result),
         "laws": list(result.laws),
+        "unchecked": unchecked(scenario, flat),
     }
 
     def human() -> None:
         print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s")
         tell_outside(found["outside"])
+        print_unchecked(found["unchecked"])
 
     answer(found, json, human)
 

@@ -26,7 +26,13 @@ from ..laws.gears import (
     undercut_shift,
     working_pressure_angle,
 )
-from ..laws.mesh import friction_schlenk, mesh_loss, tooth_loss_factor
+from ..laws.mesh import (
+    friction_schlenk,
+    load_per_contact_length,
+    load_per_face_width,
+    mesh_loss,
+    tooth_loss_factor,
+)
 from ..laws.smooth import Num, friction_sign, smooth_abs
 from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading, ToothForce
 
@@ -45,17 +51,23 @@ class Contact:
     """One tooth contact at its pitch point: what does not depend on speed and load.
 
     `rho` radius of curvature of the first gear [m], `R` reduced radius normal to the teeth [m], `l` length of the
-    lines of contact [m], `normal` normal over tangential force [1].
+    lines of contact [m], `base` and `normal` base tangential and normal force over tangential force [1].
     """
 
     rho: Num
     R: Num
     l: Num  # noqa: E741
+    base: Num
     normal: Num
 
 
 class ToothedPart(Component):
-    """Base of everything with teeth: geometry, roughness and material of its gears, and the friction of a contact."""
+    """Base of everything with teeth: geometry, roughness and material of its gears, and the friction of a contact.
+
+    The friction formula is printed with the base tangential force per face width, F_bt/b; some authors use it with
+    the normal force per length of the contact lines, F_bn/l, which is eps_alpha times less. `line_load` says which,
+    and `k_mu` belongs to it: a factor that was fitted with one is wrong with the other by eps_alpha^0.2.
+    """
 
     gears = HeatPort()
     lubricant = Lubricant()
@@ -69,6 +81,7 @@ class ToothedPart(Component):
     a_w = Parameter("m", "working centre distance", nominal=0.1, above=0.0)
     Ra = Parameter("m", "roughness Ra of each flank", nominal=1e-6, above=0.0)
     k_mu = Parameter("1", "factor on the tooth friction", at_least=0.0)
+    line_load = Choice(("F_bt/b", "F_bn/l"), "line load of the friction formula: per face width, or per contact length")
     E = Parameter("Pa", "modulus of elasticity of the gears", nominal=1e11, above=0.0)
     poisson = Parameter("1", "Poisson's ratio of the gears", at_least=0.0, below=0.5)
     tau_width = Parameter("N.m", "torque below which the direction of load is blurred", default=0.1, above=0.0)
@@ -105,7 +118,8 @@ class ToothedPart(Component):
         beta_b = base_helix_angle(self.alpha_n, self.beta)
         rho_a, rho_b = (curvature_radius(base_diameter(2 * self.radius(z), alpha_t), alpha_wt) for z in (z_a, z_b))
         R, length = reduced_radius(rho_a, rho_b, beta_b), contact_length(self.b, eps_alpha, beta_b)
-        return Contact(rho_a, R, length, 1 / (ca.cos(alpha_t) * ca.cos(beta_b)))
+        base = 1 / ca.cos(alpha_t)
+        return Contact(rho_a, R, length, base, base / ca.cos(beta_b))
 
     def friction(self, contact: Contact, F_t: Num, w: Num) -> tuple[Num, Num]:
         """Friction coefficient and specific film thickness of a contact.
@@ -116,10 +130,11 @@ class ToothedPart(Component):
             w: speed of the first gear against the line of centres [rad/s]
         """
         oil = self.lubricant
-        F_n_l = F_t * contact.normal / contact.l
+        F_n_l = load_per_contact_length(F_t * contact.normal, contact.l)
+        load = F_n_l if self.line_load == "F_bn/l" else load_per_face_width(F_t * contact.base, self.b)
         u_sum = 2 * smooth_abs(w) * contact.rho
         eta = oil.nu * oil.rho
-        mu = self.k_mu * friction_schlenk(F_n_l, u_sum, contact.R, eta, self.Ra, oil.X_L)
+        mu = self.k_mu * friction_schlenk(load, u_sum, contact.R, eta, self.Ra, oil.X_L)
         E_eff = self.E / (2 * (1 - self.poisson**2))
         h = film_thickness(eta, u_sum, oil.alpha_p, F_n_l, contact.R, E_eff)
         reduction = thermal_film_reduction(oil.beta_T, eta, u_sum, oil.k, 0.0)

@@ -24,6 +24,7 @@ NOMINAL = {
     **{"a": 0.0731, "a_w": 0.073, "m_n": 0.002, "z": 36.0, "d": 0.085, "D": 0.15, "x": 0.1},
     **{"d_a": 0.077, "d_b": 0.0686, "p_et": 0.006, "b": 0.042, "eps_alpha": 1.6, "rho_1": 0.0126, "rho_2": 0.02},
     **{"z_1": 36.0, "u": 2.0, "eps_1": 0.8, "eps_2": 0.9},
+    **{"F_bt": 6e3, "F_bn": 6.1e3, "line_load": 8e4},
     **{"F_n_l": 8e4, "v_sum": 2.0, "u_sum": 2.0, "R": 0.0064, "eta_oil": 0.05, "eta_0": 0.05, "Ra": 0.6e-6, "X_L": 0.7},
     **{"P_a": 16e3, "mu": 0.035, "H_v": 0.17, "alpha_p": 15e-9, "E_star_eff": 113e9},
     **{"beta_T": 0.03, "k": 0.13, "slide_roll": 0.3, "h": 5e-7, "sigma": 8e-7},
@@ -49,7 +50,7 @@ OWN = {
 }
 ZERO = {
     **{"w": "w_width", "v_sum": "v_width", "u_sum": "u_width", "slide_roll": "slide_width", "v": "v_width"},
-    **{"F_n_l": "F_width", "F_r": "F_width", "F_a": "F_width", "P_1": "F_width"},
+    **{"line_load": "F_width", "F_n_l": "F_width", "F_r": "F_width", "F_a": "F_width", "P_1": "F_width"},
 }
 #: Arguments that may be zero but not negative.
 NOT_NEGATIVE = {"h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c", "T_pour"}

@@ -39,6 +39,7 @@ CHAINED = {
     "gears.reduced_radius",
     "gears.contact_length",
     "mesh.friction_schlenk",
+    "mesh.load_per_contact_length",
     "film.film_thickness",
     "film.specific_film_thickness",
 }

@@ -52,7 +52,7 @@ def contact(point: dict[str, Any], mesh_name: str) -> tuple[float, float, float]
     F_t = point["T_carrier_Nm"] / (6 * A_REF)
     F_bn = F_t / math.cos(gears.transverse_pressure_angle(math.radians(20), math.radians(10))) / math.cos(BETA_B)
     line = gears.contact_length(0.042, eps, BETA_B)
-    return F_bn / line, 2 * 3 * w_4 * RHO, gears.reduced_radius(RHO, rho_2, BETA_B)
+    return mesh.load_per_contact_length(F_bn, line), 2 * 3 * w_4 * RHO, gears.reduced_radius(RHO, rho_2, BETA_B)
 
 
 def friction(point: dict[str, Any], mesh_name: str) -> float:
@@ -175,6 +175,27 @@ def test_printed_friction_ranking() -> None:
         assert found == sorted(found)
         assert found == pytest.approx(expected, abs=0.00005)
     assert all(friction(p, "PR") < friction(p, "SP") for p in points.values())
+
+
+def test_printed_coefficients_of_the_gear_program_tell_the_line_load() -> None:
+    """The second sheet of appendix D prints 0.058 and 0.047: their ratio is that of a load per face width."""
+    point = nominal()
+    per_length = friction(point, "SP") / friction(point, "PR")
+    per_width = per_length * (MESHES["SP"][1] / MESHES["PR"][1]) ** 0.2
+    low, high = 0.0575 / 0.0475, 0.0585 / 0.0465
+    assert low < per_width < high
+    assert not low < per_length < high
+
+
+def test_factor_on_the_friction_belongs_to_the_line_load() -> None:
+    """1.044 with the load per contact length is 0.943 (sun) and 0.920 (ring) with that per face width."""
+    point = nominal()
+    _, eta = viscosity(point["oil"], point["T_oil_C"] + 273.15)
+    F_bt = 2500 / (6 * A_REF) / math.cos(gears.transverse_pressure_angle(math.radians(20), math.radians(10)))
+    for name, k_mu in (("SP", 0.943), ("PR", 0.920)):
+        _, v, R = contact(point, name)
+        printed = mesh.friction_schlenk(mesh.load_per_face_width(F_bt, 0.042), v, R, eta, RA, OILS["PAOR"][4])
+        assert k_mu * printed == pytest.approx(1.044 * friction(point, name), rel=1e-3)
 
 
 # ------------------------------------------------------------------------------------------------- film thickness

@@ -25,7 +25,7 @@ FRICTION = dict(count=2.0, inner_share=0.4)
 BEARING = FRICTION | dict(d_m=0.14, F_r_0=100.0, F_a_0=50.0)
 SKF = BEARING | dict(d=0.11, D=0.17, K_Z=6.0, K_rs=6e-8, mu_bl=0.1, mu_EHL=0.002, H=0.03)
 TEETH = dict(z_1=36.0, z_2=36.0, m_n=0.002, alpha_n=math.radians(20), beta=math.radians(10), b=0.042, a_w=0.073035)
-TEETH |= dict(Ra=6e-7, k_mu=1.044, E=2.06e11, poisson=0.3)
+TEETH |= dict(Ra=6e-7, k_mu=1.044, line_load="F_bn/l", E=2.06e11, poisson=0.3)
 SURFACE = dict(A=0.8, emissivity=0.9)
 BOX = SURFACE | dict(height=0.3, length=0.4, width=0.2, share_top=0.2, share_bottom=0.2)
 EXTRA = dict(P_ref=50.0, w_ref=20.0, nu_ref=7e-5, tau_ref=2000.0, a=2.0, b=0.2, c=0.5, forward=1.0, backward=0.5)
@@ -98,7 +98,7 @@ def source(port: Port, name: str) -> Component:
 
 
 def between_sources(kind: str, **choices):
-    part = PARTS[kind]("part", **EXAMPLES[kind], **choices)
+    part = PARTS[kind]("part", **EXAMPLES[kind] | choices)
     if kind == "ShaftEnd":
         load = PARTS["FanLoad"]("load", k=0.1)
         end = PARTS[kind]("part", given=("w",))
@@ -122,6 +122,7 @@ LOSSES = ("part.P_loss", "part.P_loss_sp", "part.P_loss_pr", "part.P")
 
 #: Each kind once, gears and bearings under each of their choices.
 CASES = [(kind, {}) for kind in PARTS] + [("PlanetarySet", {"power_flow": "ideal"}), ("Inertia", {"dynamic": False})]
+CASES += [("PlanetarySet", {"line_load": "F_bt/b"}), ("HelicalGearPair", {"line_load": "F_bt/b"})]
 CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath")]
 CASES += [("TaperedRollerBearing", {"oil_bath": False})]
 _flat: dict = {}

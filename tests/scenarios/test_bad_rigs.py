@@ -53,6 +53,17 @@ FACE = 'b = "42 mm"'
             'power_flow = "idael"',
             GEARS + ": power_flow = 'idael' is not known. Choose one of: successive, ideal.",
         ),
+        (
+            'line_load = "F_bn/l"',
+            'line_load = "F_bt/l"',
+            GEARS + ": line_load = 'F_bt/l' is not known. Choose one of: F_bt/b, F_bn/l.",
+        ),
+        (
+            'line_load = "F_bn/l"\n',
+            "",
+            GEARS + ": line_load is missing (line load of the friction formula: per face width, or per contact length)."
+            " Choose one of: F_bt/b, F_bn/l.",
+        ),
         # keys
         (FACE, "", GEARS + ": b is missing (face width). Give it in m."),
         (FACE, 'bb = "42 mm"', GEARS + ': unknown key "bb". Did you mean "b" (face width)?'),
