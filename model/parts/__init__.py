@@ -7,7 +7,7 @@ from .extra import ExtraConductor, ExtraHeat, ExtraLoss
 from .gears import HelicalGearPair, PlanetarySet, ShaftSupport, TwoGearSupport
 from .lubrication import Grease, OilBath
 from .sealing import LipSeal
-from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, ShaftEnd
+from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit
 from .thermal import (
     BoxCooling,
     CylinderCooling,
@@ -26,6 +26,8 @@ PARTS: dict[str, type[Component]] = {
         FixedFlange,
         FanLoad,
         Inertia,
+        LoadingClutch,
+        TorqueSplit,
         Efficiency,
         PlanetarySet,
         HelicalGearPair,

@@ -35,6 +35,8 @@ EXAMPLES: dict[str, dict] = {
     "FixedFlange": {},
     "FanLoad": dict(k=0.1),
     "Inertia": dict(J=0.01),
+    "LoadingClutch": {},
+    "TorqueSplit": dict(share=0.4),
     "Efficiency": {},
     "PlanetarySet": TEETH
     | dict(N=3.0, z_3=108.0, eps_alpha_sp=1.666, eps_alpha_pr=1.883, H_v_sp=0.168, H_v_pr=0.062)
@@ -72,7 +74,10 @@ GIVEN = {
     "PlanetarySet": {"carrier": ("w", "tau"), "sun": (), "ring": ("w",), "planet": ("tau",)},
     "Inertia": {"flange": ("tau",)},
     "FixedFlange": {"flange": ("tau",)},
+    "TorqueSplit": {"flange": ("w", "tau"), "a": ()},
 }
+#: Flanges that turn alike, because the rest of the closed loop couples them: here they meet on one shaft.
+COUPLED = {("LoadingClutch", "b"): "a", ("TorqueSplit", "b"): "a"}
 
 
 def heater(port: Port, name: str) -> Component:
@@ -103,7 +108,9 @@ def between_sources(kind: str, **choices):
     for key, port in part.ports.items():
         if f"{kind}.{key}" in GIVES:
             continue
-        if isinstance(port, Flange):
+        if (twin := COUPLED.get((kind, key))) is not None:
+            nets.append((port.name, f"part.{twin}"))
+        elif isinstance(port, Flange):
             given_here = ("w",) if choices.get("dynamic") is False else GIVEN.get(kind, {}).get(key, ("w",))
             parts.append(PARTS["ShaftEnd"](key, given=given_here))
             nets.append((port.name, f"{key}.flange"))
