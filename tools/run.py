@@ -129,9 +129,14 @@ def _telling(rows: Rows) -> list[int]:
     """Tests whose course is drawn: the lightest and the heaviest of each of the first three oils."""
     chosen: list[int] = []
     for oil in list(dict.fromkeys(row["oil"] for row in rows))[:3]:
-        mine = sorted((row for row in rows if row["oil"] == oil), key=lambda row: row["P_loss_W"])
+        mine = sorted((row for row in rows if row["oil"] == oil), key=_lost)
         chosen += [mine[0]["test"], mine[-1]["test"]]
     return list(dict.fromkeys(chosen))
+
+
+def _lost(row: Mapping[str, Any]) -> float:
+    """Loss power of a row; a rig without an efficiency, such as a closed loop, has only that of its losses table."""
+    return float(row.get("P_loss_W", row.get("P_total_W", 0.0)))
 
 
 def _curve(path: Path, columns: Mapping[str, str], flat: FlatModel) -> dict[str, np.ndarray]:

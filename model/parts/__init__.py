@@ -1,7 +1,7 @@
 """Components: declarations followed by named equations. `PARTS` holds every type a rig file can name."""
 
 from ..core.component import Component
-from .bearings import DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
+from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
 from .extra import ExtraConductor, ExtraHeat, ExtraLoss
 from .gears import HelicalGearPair, PlanetarySet, ShaftSupport, TwoGearSupport
@@ -15,6 +15,7 @@ from .thermal import (
     FinnedBoxCooling,
     HeatCapacity,
     PlaneWall,
+    PrescribedTemperature,
     Room,
     ThermalConductor,
 )
@@ -35,6 +36,7 @@ PARTS: dict[str, type[Component]] = {
         TwoGearSupport,
         TaperedRollerBearing,
         DeepGrooveBallBearing,
+        CylindricalRollerBearing,
         NeedleBearing,
         LipSeal,
         Churning,
@@ -48,6 +50,7 @@ PARTS: dict[str, type[Component]] = {
         CylinderCooling,
         FinnedBoxCooling,
         Room,
+        PrescribedTemperature,
         ExtraHeat,
         ExtraLoss,
         ExtraConductor,

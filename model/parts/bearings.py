@@ -8,6 +8,8 @@ from ..core.component import Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.rolling import (
     boundary_share,
+    crb_rolling_variable,
+    crb_sliding_variable,
     dgb_rolling_variable,
     dgb_sliding_variable,
     dgb_sliding_variable_radial,
@@ -133,6 +135,35 @@ class TaperedRollerBearing(SkfBearing):
         F_r, F_a = self.loads()
         rolling = trb_rolling_variable(F_r, F_a, self.d_m, self.R_1, self.R_2, self.Y)
         return rolling, trb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.Y)
+
+
+class CylindricalRollerBearing(SkfBearing):
+    """Cylindrical roller bearing with a cage, single row."""
+
+    B = Parameter("m", "width", nominal=0.03, above=0.0)
+    K_L = Parameter("1", "geometry constant of the roller bearing type", above=0.0)
+    V_M = Parameter(
+        "1",
+        "drag loss factor of the oil level",
+        nominal=1e-4,
+        at_least=0.0,
+        derived=lambda v: float(drag_loss_factor(v["H"] / v["d_m"], roller=True)),
+    )
+
+    def has(self, name: str) -> bool:
+        """One rolling constant; width and roller constant count in an oil bath only."""
+        return super().has(name) and name != "R_2" and (self.oil_bath or name not in ("B", "K_L"))
+
+    def drag(self) -> Num:
+        """Drag of rollers."""
+        w, nu = self.shaft.w, self.lubricant.nu
+        return drag_torque_roller(w, nu, self.d, self.D, self.B, self.H, self.V_M, self.K_Z, self.K_L)
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Cylindrical roller bearing."""
+        F_r, F_a = self.loads()
+        rolling = crb_rolling_variable(F_r, self.d_m, self.R_1)
+        return rolling, crb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2)
 
 
 class DeepGrooveBallBearing(SkfBearing):

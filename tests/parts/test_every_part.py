@@ -46,6 +46,7 @@ EXAMPLES: dict[str, dict] = {
     "TwoGearSupport": SUPPORT | dict(x_2=0.07, r_2=0.03, phi=2.5),
     "TaperedRollerBearing": SKF | dict(R_1=2.38e-6, R_2=10.9, S_1=0.014, S_2=2.0, Y=1.4, B=0.038, K_L=0.7),
     "DeepGrooveBallBearing": SKF | dict(R_1=3.9e-7, R_2=1.7, S_1=3.23e-3, S_2=36.5, C_0=64e3),
+    "CylindricalRollerBearing": SKF | dict(R_1=1e-6, S_1=0.16, S_2=1.5e-3, B=0.038, K_L=0.65),
     "NeedleBearing": BEARING | dict(d_m=0.044, f_0=7.0, f_1=2e-4),
     "LipSeal": FRICTION | dict(d_sh=0.14, c_sh=73.4),
     "Churning": FRICTION | dict(c=100.0, a=2.0, b=0.2),
@@ -59,6 +60,7 @@ EXAMPLES: dict[str, dict] = {
     "CylinderCooling": SURFACE | dict(D=0.3, share_ends=0.33),
     "FinnedBoxCooling": BOX | dict(A_fins=0.5, fin_height=0.03, fin_thickness=0.004, k_fin=50.0),
     "Room": {},
+    "PrescribedTemperature": {},
     "ExtraLoss": EXTRA,
     "ExtraHeat": EXTRA | dict(wall_share=0.3, inside_share=0.2),
     "ExtraConductor": dict(G_ref=2.0, dT_ref=35.0, e=0.3, w_ref=20.0, c=0.5, T_on=330.0, T_side=1.0, T_width=1.5)
@@ -115,7 +117,7 @@ def between_sources(kind: str, **choices):
             parts.append(PARTS["ShaftEnd"](key, given=given_here))
             nets.append((port.name, f"{key}.flange"))
         else:
-            parts.append((heater if kind == "Room" else source)(port, key))
+            parts.append((heater if kind in ("Room", "PrescribedTemperature") else source)(port, key))
             nets.append((port.name, f"{key}.port"))
     return flatten(Assembly(kind, "", tuple(parts), tuple(nets)))
 
@@ -126,7 +128,7 @@ LOSSES = ("part.P_loss", "part.P_loss_sp", "part.P_loss_pr", "part.P")
 #: Each kind once, gears and bearings under each of their choices.
 CASES = [(kind, {}) for kind in PARTS] + [("PlanetarySet", {"power_flow": "ideal"}), ("Inertia", {"dynamic": False})]
 CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath", "axially_loaded")]
-CASES += [("TaperedRollerBearing", {"oil_bath": False})]
+CASES += [(kind, {"oil_bath": False}) for kind in ("TaperedRollerBearing", "CylindricalRollerBearing")]
 _flat: dict = {}
 
 
