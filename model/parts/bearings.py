@@ -6,10 +6,9 @@ from collections.abc import Iterator
 
 from ..core.component import Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
+from ..laws.cylindrical import crb_rolling_variable, crb_sliding_variable
 from ..laws.rolling import (
     boundary_share,
-    crb_rolling_variable,
-    crb_sliding_variable,
     dgb_rolling_variable,
     dgb_sliding_variable,
     dgb_sliding_variable_radial,
@@ -107,11 +106,10 @@ class SkfBearing(RollingBearing):
         yield from super().equations()
 
 
-class TaperedRollerBearing(SkfBearing):
-    """Tapered roller bearing, single row."""
+class RollerBearing(SkfBearing):
+    """Base of the roller bearings: their drag in an oil bath."""
 
-    B = Parameter("m", "width over both rings", nominal=0.03, above=0.0)
-    Y = Parameter("1", "axial load factor of the catalogue", above=0.0, below=10.0)
+    B = Parameter("m", "width, over both rings", nominal=0.03, above=0.0)
     K_L = Parameter("1", "geometry constant of the roller bearing type", above=0.0)
     V_M = Parameter(
         "1",
@@ -130,6 +128,12 @@ class TaperedRollerBearing(SkfBearing):
         w, nu = self.shaft.w, self.lubricant.nu
         return drag_torque_roller(w, nu, self.d, self.D, self.B, self.H, self.V_M, self.K_Z, self.K_L)
 
+
+class TaperedRollerBearing(RollerBearing):
+    """Tapered roller bearing, single row."""
+
+    Y = Parameter("1", "axial load factor of the catalogue", above=0.0, below=10.0)
+
     def geometric_variables(self) -> tuple[Num, Num]:
         """Tapered roller bearing."""
         F_r, F_a = self.loads()
@@ -137,27 +141,12 @@ class TaperedRollerBearing(SkfBearing):
         return rolling, trb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.Y)
 
 
-class CylindricalRollerBearing(SkfBearing):
+class CylindricalRollerBearing(RollerBearing):
     """Cylindrical roller bearing with a cage, single row."""
 
-    B = Parameter("m", "width", nominal=0.03, above=0.0)
-    K_L = Parameter("1", "geometry constant of the roller bearing type", above=0.0)
-    V_M = Parameter(
-        "1",
-        "drag loss factor of the oil level",
-        nominal=1e-4,
-        at_least=0.0,
-        derived=lambda v: float(drag_loss_factor(v["H"] / v["d_m"], roller=True)),
-    )
-
     def has(self, name: str) -> bool:
-        """One rolling constant; width and roller constant count in an oil bath only."""
-        return super().has(name) and name != "R_2" and (self.oil_bath or name not in ("B", "K_L"))
-
-    def drag(self) -> Num:
-        """Drag of rollers."""
-        w, nu = self.shaft.w, self.lubricant.nu
-        return drag_torque_roller(w, nu, self.d, self.D, self.B, self.H, self.V_M, self.K_Z, self.K_L)
+        """It has one rolling constant."""
+        return super().has(name) and name != "R_2"
 
     def geometric_variables(self) -> tuple[Num, Num]:
         """Cylindrical roller bearing."""

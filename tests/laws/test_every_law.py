@@ -53,7 +53,7 @@ ZERO = {
 #: Arguments that may be zero but not negative.
 NOT_NEGATIVE = {"h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c"}
 #: Torques and losses: magnitudes, never negative.
-MAGNITUDES = ("rolling.", "sealing.", "churning.", "mesh.", "film.")
+MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.")
 
 
 def every_function() -> dict[str, Callable[..., Any]]:
@@ -116,6 +116,7 @@ def test_all_laws_of_the_source_folder_are_covered() -> None:
         "mesh",
         "film",
         "rolling",
+        "cylindrical",
         "sealing",
         "churning",
         "convection",

@@ -105,6 +105,7 @@ MODULES = {
     "mesh",
     "film",
     "rolling",
+    "cylindrical",
     "sealing",
     "churning",
     "convection",

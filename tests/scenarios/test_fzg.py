@@ -128,10 +128,10 @@ class TestLosses:
 
 
 class TestRefused:
-    """One tooth more on the slave wheel, and the loop does not close."""
+    """Slave gears of another ratio at the same centre distance, and the loop does not close."""
 
-    given = {"slave_gears.z_2": 25.0}
-    says = r"clutch: the loop does not close: its halves turn at -2175 rpm and -2265\.6\d* rpm"
+    given = {"slave_gears.z_1": 15.0, "slave_gears.z_2": 25.0}
+    says = r"clutch: the loop does not close: its halves turn at -2175 rpm and -2416\.67 rpm"
 
     def test_by_steady_simulate_and_design(self, flat: FlatModel) -> None:
         with pytest.raises(SolveError, match=self.says):
@@ -143,7 +143,7 @@ class TestRefused:
 
     def test_by_a_sweep_row_by_row(self, flat: FlatModel) -> None:
         batch = Batch(flat)
-        teeth = batch.vectors({"slave_gears.z_2": np.array([24.0, 25.0])})
+        teeth = batch.vectors({"slave_gears.z_1": np.array([16.0, 15.0]), "slave_gears.z_2": np.array([24.0, 25.0])})
         duty = stepped([(600.0, {"clutch.tau": 183.4})])
         for rows in (batch.steady(*teeth), batch.warmup(duty, *teeth)):
             assert rows.status.tolist() == [Status.OK, Status.OUT_OF_RANGE]

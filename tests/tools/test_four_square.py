@@ -63,6 +63,6 @@ def test_what_needs_measured_data_says_so(gearheat, command):
 
 
 def test_ratios_that_do_not_fit_are_refused(gearheat):
-    answer = gearheat("steady", RIG, "--set", "slave_gears.z_2=25")
+    answer = gearheat("steady", RIG, "--set", "slave_gears.z_1=15", "--set", "slave_gears.z_2=25")
     assert answer.code == 2
     assert "clutch: the loop does not close" in answer.err and "Traceback" not in answer.err
