@@ -95,7 +95,7 @@ def at_readings(scenario: Scenario, campaign: Campaign, temperature: str) -> lis
         name = {"point": reading.point, "test": reading.test, "direction": reading.direction, "oil": reading.oil}
         found = {c: float(sum(columns[p][i] for p in paths)) for c, paths in scenario.losses.items()}
         T_oil = reading.si("T_oil_C") if temperature == "measured" else float(columns[scenario.sensors["T_oil_C"]][i])
-        total = float(columns["efficiency.P_loss"][i])
+        total = float(columns["efficiency.P_loss"][i]) if "efficiency.P_loss" in columns else found["P_total_W"]
         rows.append({**name, **found, "alphaA_W_K": total / (T_oil - reading.si("T_amb_C"))})
     return rows
 

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from ..core.component import Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
+from ..laws.cylindrical import crb_rolling_variable, crb_sliding_variable
 from ..laws.rolling import (
     boundary_share,
     dgb_rolling_variable,
@@ -106,11 +107,10 @@ class SkfBearing(RollingBearing):
         yield from super().equations()
 
 
-class TaperedRollerBearing(SkfBearing):
-    """Tapered roller bearing, single row."""
+class RollerBearing(SkfBearing):
+    """Base of the roller bearings: their drag in an oil bath."""
 
-    B = Parameter("m", "width over both rings", nominal=0.03, above=0.0)
-    Y = Parameter("1", "axial load factor of the catalogue", above=0.0, below=10.0)
+    B = Parameter("m", "width, over both rings", nominal=0.03, above=0.0)
     K_L = Parameter("1", "geometry constant of the roller bearing type", above=0.0)
     V_M = Parameter(
         "1",
@@ -129,11 +129,31 @@ class TaperedRollerBearing(SkfBearing):
         w, nu = self.shaft.w, self.lubricant.nu
         return drag_torque_roller(w, nu, self.d, self.D, self.B, self.H, self.V_M, self.K_Z, self.K_L)
 
+
+class TaperedRollerBearing(RollerBearing):
+    """Tapered roller bearing, single row."""
+
+    Y = Parameter("1", "axial load factor of the catalogue", above=0.0, below=10.0)
+
     def geometric_variables(self) -> tuple[Num, Num]:
         """Tapered roller bearing."""
         F_r, F_a = self.loads()
         rolling = trb_rolling_variable(F_r, F_a, self.d_m, self.R_1, self.R_2, self.Y)
         return rolling, trb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.Y)
+
+
+class CylindricalRollerBearing(RollerBearing):
+    """Cylindrical roller bearing with a cage, single row."""
+
+    def has(self, name: str) -> bool:
+        """It has one rolling constant."""
+        return super().has(name) and name != "R_2"
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Cylindrical roller bearing."""
+        F_r, F_a = self.loads()
+        rolling = crb_rolling_variable(F_r, self.d_m, self.R_1)
+        return rolling, crb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2)
 
 
 class DeepGrooveBallBearing(SkfBearing):

@@ -125,6 +125,24 @@ class Room(Component):
         return (-self.Q_flow,)
 
 
+class PrescribedTemperature(Component):
+    """Something that keeps its temperature whatever heat it takes or gives, e.g. a thermostat or cooling water."""
+
+    heat = HeatPort()
+
+    T = Input("K", "temperature", nominal=10.0, above=0.0, start=298.15)
+    Q_flow = Output("W", "heat flow rate it takes", nominal=100.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """The temperature is given, the heat follows."""
+        yield equation("temperature kept", self.heat.T, self.T)
+        yield equation("heat taken", self.Q_flow, self.heat.Q_flow)
+
+    def supplied_power(self) -> Iterable[Num]:
+        """What it takes, counted as supply."""
+        return (-self.Q_flow,)
+
+
 class SurfaceCooling(Component):
     """Base of warm surfaces in a room: free and forced convection and radiation, over one effective area."""
 

@@ -55,7 +55,7 @@ ZERO = {
 #: Arguments that may be zero but not negative.
 NOT_NEGATIVE = {"h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c", "T_pour"}
 #: Torques and losses: magnitudes, never negative.
-MAGNITUDES = ("rolling.", "sealing.", "churning.", "mesh.", "film.")
+MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.")
 
 
 def every_function() -> dict[str, Callable[..., Any]]:
