@@ -7,11 +7,23 @@ static void refresh_constants(Instance *m)
     m->constants_known = 1;
 }
 
+/* What calculation leaves beside the end of a range by round-off lies on it. */
+static void settle(double *y)
+{
+    int i;
+    for (i = 0; i < NY; i++) {
+        double low = model_low[FIRST_Y + i], high = model_high[FIRST_Y + i], slack = 1e-9 * model_nominal[FIRST_Y + i];
+        if (y[i] < low && y[i] >= low - slack) y[i] = low;
+        if (y[i] > high && y[i] <= high + slack) y[i] = high;
+    }
+}
+
 static void refresh_outputs(Instance *m)
 {
     if (m->outputs_known) return;
     refresh_constants(m);
     model_outputs(m->s.x, m->s.u, m->s.p, m->c, m->y, m->dx);
+    settle(m->y);
     m->outputs_known = 1;
 }
 
@@ -43,6 +55,16 @@ static fmi2Status refuse_value(const Instance *m, const char *function, fmi2Valu
     if (!isfinite(value)) return refuse(m, "%s: %s = %g is not finite.", function, model_names[r], value);
     return refuse(m, "%s: %s = %.10g %s is out of range. It must be %s %s.", function, model_names[r], value,
                   model_units[r], model_ranges[r], model_units[r]);
+}
+
+/* The first output or derivative outside its declared range or not finite; N_VARIABLES when all are well. */
+static int wrong_result(Instance *m)
+{
+    int r;
+    refresh_outputs(m);
+    for (r = FIRST_Y; r < N_VARIABLES; r = r + 1 == FIRST_P ? FIRST_DX : r + 1)
+        if (!in_range(r, value_of(m, r))) return r;
+    return N_VARIABLES;
 }
 
 /* Law arguments outside the range of their source are told once each. */
