@@ -69,15 +69,16 @@ static fmi2Status stuck(const Instance *m, double time, double step, const Walk 
     const Effort *e = &w->effort;
     const char *name = model_names[FIRST_X + w->worst];
     if (e->accepted == 0)
-        return refuse(m, "fmi2DoStep: no step from %.10g s: %s becomes infinite or leaves its range (%s). Nothing has "
-                      "changed; check the inputs.", time, name, model_ranges[FIRST_X + w->worst]);
+        return refuse(m, "fmi2DoStep: no step from %.10g s: %s becomes infinite or leaves its range (%s %s). Nothing "
+                      "has changed; check the inputs.", time, name, model_ranges[FIRST_X + w->worst],
+                      model_units[FIRST_X + w->worst]);
     if (e->accepted + e->rejected >= MAX_STEPS)
-        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %ld internal steps lead to %.10g s only, limited "
-                       "by %s. Nothing has changed; retry with a shorter step.", time, time + step,
+        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %ld internal steps lead to %.10g s only, "
+                       "limited by %s. Nothing has changed; retry with a shorter step.", time, time + step,
                        e->accepted + e->rejected, time + w->reached, name);
-    return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s becomes infinite or leaves its range (%s) behind "
-                   "%.10g s. Nothing has changed; retry with a shorter step.", time, time + step, name,
-                   model_ranges[FIRST_X + w->worst], time + w->reached);
+    return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s becomes infinite or leaves its range (%s %s) "
+                   "behind %.10g s. Nothing has changed; retry with a shorter step.", time, time + step, name,
+                   model_ranges[FIRST_X + w->worst], model_units[FIRST_X + w->worst], time + w->reached);
 }
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_return)
@@ -94,8 +95,9 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
                       "since. Take a shorter step, or other inputs.", step, time, model_names[m->refused_by]);
     if ((r = input_astray(m, step)) != N_VARIABLES) {
         remember_refusal(m, step, r);
-        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: its slope leads %s out of its range (%s). Nothing "
-                       "has changed; retry with a shorter step.", time, time + step, model_names[r], model_ranges[r]);
+        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: its slope leads %s out of its range (%s %s). "
+                       "Nothing has changed; retry with a shorter step.", time, time + step, model_names[r],
+                       model_ranges[r], model_units[r]);
     }
     before = m->s;
     if (!walk(m, step, &w)) {
@@ -111,9 +113,9 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
         m->s = before;
         m->outputs_known = 0;
         remember_refusal(m, step, r);
-        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s would be %.10g %s, but must be %s. Nothing has "
-                       "changed; check the inputs.", time, time + step, model_names[r], value, model_units[r],
-                       model_ranges[r]);
+        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s would be %.10g %s, but must be %s. "
+                       "Nothing has changed; check the inputs.", time, time + step, model_names[r], value,
+                       model_units[r], model_ranges[r]);
     }
     note(m, fmi2OK, LOG_SOLVER, "t = %.10g s: %ld steps, %ld rejected, next %.3g s, limited by %s.", m->s.time,
          w.effort.accepted, w.effort.rejected, m->s.h_last, model_names[FIRST_X + w.worst]);

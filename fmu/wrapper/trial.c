@@ -1,7 +1,8 @@
 /* Adaptive steps of the Rosenbrock method from one communication point to the next. */
 
-/* What one communication step may cost. Counts, not clocks, so that a run ends alike on every machine; 10000 trials take
-   less than a second for models of some hundred equations, and a step that a stiff machine needs takes some hundred. */
+/* What one communication step may cost. Counts, not clocks, so that a run ends alike on every machine. 10000
+   trials take less than a second for models of some hundred equations; a long step of a stiff machine takes some
+   hundred. */
 #ifndef MAX_STEPS
 #define MAX_STEPS 10000L       /* trials */
 #endif

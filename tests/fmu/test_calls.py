@@ -115,7 +115,7 @@ def test_a_slope_that_leads_an_input_out_of_its_range_is_refused(opened: Open, h
     one.fmu.doStep(0, 200)
     before = one.everything()
     status, text = one.refused(lambda: one.fmu.doStep(200, 100))
-    assert (status, "leads room.T out of its range (above 0)" in text) == (DISCARD, True)
+    assert (status, "leads room.T out of its range (above 0 K)" in text) == (DISCARD, True)
     assert one.refused(lambda: one.fmu.doStep(200, 100))[0] == ERROR
     assert one.everything() == before
     one.fmu.doStep(200, 50)
