@@ -7,25 +7,36 @@ from typing import Any
 
 from ..model.core.declare import Choice, Parameter, declared
 from ..model.core.flat import FlatModel, Quantity
-from ..model.parts import PARTS
+from ..model.errors import SolveError
+from ..model.run.steady import steady
 from ..model.sources import LawInfo, sources
 from ..model.units import from_si, shown, text
-from ..scenarios.entries import FILES, catalogue
-from ..scenarios.load import list_rigs, load
+from ..scenarios.entries import FILES, Entry, catalogue
+from ..scenarios.load import list_rigs
 from ..scenarios.scenario import Scenario
 from .console import answer, table
+from .points import conditions, outside_of, tell_outside
+from .rigs import load
 from .settings import flat_of
+from .unchecked import print_unchecked, unchecked
 
 
 def list_command(json: str | None) -> None:
     """Rigs and catalogue entries that can be named."""
     entries = {kind: {name: entry.doc for name, entry in catalogue(kind).items()} for kind in FILES}
-    found: dict[str, Any] = {"schema": "gearheat.list/1", "rigs": list_rigs(), "catalogues": entries}
+    checked = {kind: {name: _comparison(entry) for name, entry in catalogue(kind).items()} for kind in FILES}
+    found: dict[str, Any] = {
+        "schema": "gearheat.list/1",
+        "rigs": list_rigs(),
+        "catalogues": entries,
+        "checked": checked,
+    }
 
     def human() -> None:
         table("Rigs", ("name", "what it is"), found["rigs"].items())
         for kind, docs in entries.items():
-            table(f"Catalogue: {kind}", ("name", "what it is"), docs.items())
+            rows = [(name, doc, checked[kind][name]) for name, doc in docs.items()]
+            table(f"Catalogue: {kind}", ("name", "what it is", "checked"), rows)
 
     answer(found, json, human)
 
@@ -33,13 +44,13 @@ def list_command(json: str | None) -> None:
 def show_command(rig: str, errata: bool, json: str | None) -> None:
     """Everything a rig file says, in SI where unit and value stand apart and as shown to a person otherwise."""
     scenario = load(rig)
-    flat = flat_of(scenario)
+    flat, types = flat_of(scenario), scenario.spec.types
     found = {
         "schema": "gearheat.show/1",
         "rig": scenario.name,
         "doc": scenario.doc,
         "kind": scenario.kind,
-        "parts": [{"name": p.name, "type": p.type, "doc": _doc(PARTS[p.type])} for p in scenario.spec.parts],
+        "parts": [{"name": p.name, "type": p.type, "doc": _doc(types[p.type])} for p in scenario.spec.parts],
         "parameters": [_parameter(scenario, flat, q) for q in every_parameter(scenario, flat)],
         "choices": choices(scenario),
         "inputs": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.inputs],
@@ -47,9 +58,25 @@ def show_command(rig: str, errata: bool, json: str | None) -> None:
         "outputs": [_output(q) for q in flat.outputs if q.name not in flat.derived],
         "sensors": dict(scenario.sensors),
         "laws": laws(flat),
+        **_at_the_operating_point(scenario, flat),
+        "unchecked": unchecked(scenario, flat),
         "errata": errata_of(scenario),
     }
     answer(found, json, lambda: _print_errata(found) if errata else _print(found))
+
+
+def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> dict[str, Any]:
+    """The laws outside their range where the rig is at rest with its surroundings, or why there is no such point."""
+    try:
+        return {"outside": outside_of(steady(flat, conditions(scenario, flat))), "no_steady_state": []}
+    except SolveError as error:
+        return {"outside": [], "no_steady_state": list(error.problems)}
+
+
+def _comparison(entry: Entry) -> str:
+    """Whether the values of a catalogue entry were compared with a print: "all", "none", or which were not."""
+    missing = [key for key in entry.values if key not in entry.checked]
+    return "all" if not missing else f"not {', '.join(missing)}" if entry.checked else "none"
 
 
 def source_of(scenario: Scenario, path: str) -> str:
@@ -57,7 +84,7 @@ def source_of(scenario: Scenario, path: str) -> str:
     if path in scenario.value_sources:
         return scenario.value_sources[path]
     part, _, key = path.rpartition(".")
-    parameter = declared(PARTS[scenario.spec.part(part).type], Parameter).get(key)
+    parameter = declared(scenario.spec.types[scenario.spec.part(part).type], Parameter).get(key)
     return "follows from the other values" if parameter is not None and parameter.derived else "default"
 
 
@@ -78,7 +105,7 @@ def choices(scenario: Scenario) -> list[dict[str, Any]]:
     """The structural choices of all parts, with what is chosen."""
     found = []
     for part in scenario.spec.parts:
-        for key, choice in declared(PARTS[part.type], Choice).items():
+        for key, choice in declared(scenario.spec.types[part.type], Choice).items():
             value = part.values.get(key, choice.default)
             found.append({"name": f"{part.name}.{key}", "value": value, "options": choice.options, "doc": choice.doc})
     return found
@@ -154,6 +181,10 @@ def _print(found: dict[str, Any]) -> None:
     table("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")))
     keys = ("law", "where", "valid", "verified", "source")
     table("Laws", keys, _rows(found["laws"], keys))
+    tell_outside(found["outside"])
+    for problem in found["no_steady_state"]:
+        print(f"no steady state at the operating point: {problem}")
+    print_unchecked(found["unchecked"])
     if found["errata"]:
         print(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
 

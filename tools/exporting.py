@@ -16,13 +16,14 @@ from ..model.core.flat import FlatModel
 from ..model.machines.spec import assemble
 from ..model.run.point import point
 from ..model.run.rows import evaluate_at
-from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
 from .console import answer, file_of, folder, writable
 from .extras import checked, reference_duty, write_extras
 from .network import network_svg
+from .rigs import load
 from .settings import Drive, adjusted, driven_at, flat_of, given_paths
 from .transients import first_temperatures
+from .unchecked import print_unchecked, unchecked
 
 #: Source of what no file gives.
 _DEFAULT = "inferred: follows from the other values, or a numerical default"
@@ -63,6 +64,7 @@ def export_command(
         "parameters": [q.name for q in kept.parameters],
         "without_effect": [q.name for q in flat.parameters if q.name not in named],
         "extras": [str(path) for path in written],
+        "unchecked": unchecked(setting, flat),
     }
     answer(found, json, lambda: _print(found))
 
@@ -72,6 +74,7 @@ def _print(found: Mapping[str, Any]) -> None:
     print(f"{found['fmu']}: {words}, for {', '.join(found['platforms'])}")
     if found["extras"]:
         print(f"{len(found['extras'])} files beside it, from {found['extras'][0]}")
+    print_unchecked(found["unchecked"])
 
 
 def write_fmu(scenario: Scenario, flat: FlatModel, out: Path, **options: Any) -> Path:

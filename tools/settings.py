@@ -12,10 +12,9 @@ from ..model.core.flat import FlatModel
 from ..model.core.flatten import flatten
 from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
 from ..model.machines.spec import Spec, assemble
-from ..model.parts import PARTS
-from ..scenarios.load import load
 from ..scenarios.measured import read_measured
 from ..scenarios.scenario import Scenario, parse_assignments
+from .rigs import load
 
 Drive = Mapping[str, tuple[str, ...]]
 
@@ -62,7 +61,8 @@ def adjusted(
     if idle := [name for name in ends if name.rpartition(".")[2] not in driven.get(name.rpartition(".")[0], ())]:
         raise ScenarioError([f"{name} is set, but it follows from what drives the rig. Take it out." for name in idle])
     set_up = scenario.with_values(values, SET).driven(driven)
-    set_up = replace(set_up, spec=set_up.spec.with_values(choices))
+    sources = {**set_up.value_sources, **_filled(scenario, assignments)}
+    set_up = replace(set_up, spec=set_up.spec.with_values(choices), value_sources=sources)
     return set_up.with_values(_derived(set_up.spec, named), SET)
 
 
@@ -146,12 +146,12 @@ def driven_at(scenario: Scenario, shaft: str | None, given: str) -> dict[str, tu
 
 def given_paths(spec: Spec) -> set[str]:
     """Paths of the quantities that may be given at the shaft ends."""
-    return {f"{part.name}.{key}" for part in spec.parts for key in declared(PARTS[part.type], Given)}
+    return {f"{part.name}.{key}" for part in spec.parts for key in declared(spec.types[part.type], Given)}
 
 
 def choice_paths(spec: Spec) -> dict[str, Choice]:
     """Choices of all parts by path; those without options follow from the drive."""
-    found = {f"{p.name}.{key}": c for p in spec.parts for key, c in declared(PARTS[p.type], Choice).items()}
+    found = {f"{p.name}.{key}": c for p in spec.parts for key, c in declared(spec.types[p.type], Choice).items()}
     return {path: choice for path, choice in found.items() if choice.options}
 
 
@@ -169,7 +169,7 @@ def parameter_of(spec: Spec, path: str) -> Parameter | None:
     """The declaration of the parameter of a path, None where there is none."""
     part, _, key = path.rpartition(".")
     kinds = [p.type for p in spec.parts if p.name == part]
-    return declared(PARTS[kinds[0]], Parameter).get(key) if kinds else None
+    return declared(spec.types[kinds[0]], Parameter).get(key) if kinds else None
 
 
 def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], list[str]]:
@@ -188,6 +188,17 @@ def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], li
             close = suggestion(written.lower(), options)
             problems.append(f'{path} = "{written}" is not known.{close} Choose one of: {", ".join(options)}.')
     return values, problems
+
+
+def _filled(scenario: Scenario, assignments: Sequence[str]) -> dict[str, str]:
+    """Sources of the values that parts filled from a catalogue have, but for those that are set one by one."""
+    parts = {part.name for part in scenario.spec.parts}
+    single = {_name(text) for text in assignments}
+    found: dict[str, str] = {}
+    for text in assignments:
+        if (part := _name(text)) in parts:
+            found |= scenario.entry_sources(part, text.partition("=")[2].strip(), SET)
+    return {path: source for path, source in found.items() if path not in single}
 
 
 def _doubled(assignments: Iterable[str]) -> list[str]:

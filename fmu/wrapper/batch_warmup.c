@@ -159,7 +159,7 @@ static int start_out(Runner *r, const Course *course, double *energy)
 /* Take or refuse the trial step in a lane, as walk() does. */
 static int conclude(Runner *r, const Beside *b, int lane, const Course *course, double *energy)
 {
-    double x_new[NX + N_CONTROLLED], z_new[AT_LEAST_1(NZ)], error;
+    double x_new[NX + N_CONTROLLED], z_new[AT_LEAST_1(NZ)] = {0.0}, error;
     int worst, i;
     for (i = 0; i < NX; i++) x_new[i] = b->x_new[i][lane];
     for (i = 0; i < N_CONTROLLED; i++) x_new[NX + i] = b->error[i][lane];

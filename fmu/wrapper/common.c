@@ -16,7 +16,7 @@ static void start(Instance *m)
     m->s.mode = INSTANTIATED;
     m->s.tolerance = TOLERANCE;
     for (i = 0; i < NX; i++) m->s.x[i] = model_start[FIRST_X + i];
-    for (i = 0; i < NZ; i++) m->s.z[i] = model_z_start[i];
+    for (i = 0; i < NZ; i++) m->s.z_from[i] = model_z_start[i];
     for (i = 0; i < NU; i++) m->s.u[i] = model_start[FIRST_U + i];
     for (i = 0; i < NP; i++) m->s.p[i] = model_start[FIRST_P + i];
     m->constants_known = m->outputs_known = 0;
@@ -122,6 +122,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c)
         if (!isfinite(m->dx[i]))
             return refuse(m, "fmi2ExitInitializationMode: %s is %g. Check start values, inputs and parameters.",
                           model_names[FIRST_DX + i], m->dx[i]);
+    accept_algebra(m);
     m->s.mode = m->s.type == fmi2ModelExchange ? EVENT : STEP_COMPLETE;
     warn_validity(m);
     return fmi2OK;

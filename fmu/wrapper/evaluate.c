@@ -15,6 +15,7 @@ static int refresh_algebra(Instance *m)
     int failed;
     if (m->s.consistent) return -1;
     refresh_constants(m);
+    memcpy(m->s.z, m->s.z_from, sizeof m->s.z);
     failed = implicit_solve(m->s.x, m->s.z, m->s.u, m->s.p, m->c);
     m->s.consistent = failed < 0;
     return failed;
@@ -59,6 +60,12 @@ static const char *unsolved(Instance *m)
 {
     int failed = refresh_algebra(m);
     return failed < 0 ? NULL : model_blocks[failed];
+}
+
+/* From here on iterations begin at the present solution. */
+static void accept_algebra(Instance *m)
+{
+    if (m->s.consistent) memcpy(m->s.z_from, m->s.z, sizeof m->s.z);
 }
 
 /* Something the outputs depend on has changed. */

@@ -50,6 +50,7 @@ typedef struct {
     double h_last;         /* step proposed after the last one */
     double x[AT_LEAST_1(NX)];
     double z[AT_LEAST_1(NZ)];
+    double z_from[AT_LEAST_1(NZ)];   /* at the last accepted step: where an iteration begins, whatever was asked since */
     double u[AT_LEAST_1(NU)];
     double slope[AT_LEAST_1(NU)];
     double p[AT_LEAST_1(NP)];

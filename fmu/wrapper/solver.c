@@ -5,7 +5,7 @@ static int walk(Instance *m, double length, Walk *w)
 {
     State *s = &m->s;
     State before = *s;
-    double x[AT_LEAST_1(NX)], x_new[AT_LEAST_1(NX)], u[AT_LEAST_1(NU)], z[AT_LEAST_1(NZ)], z_new[AT_LEAST_1(NZ)];
+    double x[AT_LEAST_1(NX)], x_new[AT_LEAST_1(NX)], u[AT_LEAST_1(NU)], z[AT_LEAST_1(NZ)], z_new[AT_LEAST_1(NZ)] = {0.0};
     double t = 0.0, first = 0.0, h = s->jumped ? s->h_first : s->h_last;
     int in_a_row = 0, i;
     memset(w, 0, sizeof *w);
@@ -38,14 +38,15 @@ static int walk(Instance *m, double length, Walk *w)
         w->reached = t;
     }
     memcpy(s->x, x, sizeof x);
-    memcpy(s->z, z, sizeof z);
+    memcpy(s->z_from, z, sizeof z);
     memcpy(s->u, u, sizeof u);
     if (length > 0.0) changed(m);
     if ((w->block = unsolved(m)) != NULL) {
         *s = before;
-        changed(m);
+        m->outputs_known = 0;
         return 0;
     }
+    accept_algebra(m);
     s->h_first = first;
     s->h_last = h;
     s->jumped = 0;

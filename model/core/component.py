@@ -84,7 +84,10 @@ class Component:
         for key, c in declared(type(self), Choice).items():
             if c.options and self.choices[key] not in c.options:
                 options = ", ".join(str(o) for o in c.options)
-                found.append(f"{where}: {key} = {self.choices[key]!r} is not known. Choose one of: {options}.")
+                wrong = (
+                    f"is missing ({c.doc})" if self.choices[key] is None else f"= {self.choices[key]!r} is not known"
+                )
+                found.append(f"{where}: {key} {wrong}. Choose one of: {options}.")
         return sorted(found) or [f"{where}: {problem}" for problem in self._contradictions()]
 
     def _derive(self) -> None:

@@ -1,9 +1,8 @@
-"""Components: declarations followed by named equations. `PARTS` holds every type a rig file can name."""
+"""Components: declarations followed by named equations. `PARTS` holds every type of the physics."""
 
 from ..core.component import Component
 from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
-from .extra import ExtraConductor, ExtraHeat, ExtraLoss
 from .gears import HelicalGearPair, PlanetarySet, ShaftSupport, TwoGearSupport
 from .lubrication import Grease, OilBath
 from .sealing import LipSeal
@@ -51,8 +50,5 @@ PARTS: dict[str, type[Component]] = {
         FinnedBoxCooling,
         Room,
         PrescribedTemperature,
-        ExtraHeat,
-        ExtraLoss,
-        ExtraConductor,
     )
 }

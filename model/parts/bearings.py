@@ -11,7 +11,6 @@ from ..laws.rolling import (
     boundary_share,
     dgb_rolling_variable,
     dgb_sliding_variable,
-    dgb_sliding_variable_radial,
     drag_loss_factor,
     drag_torque_ball,
     drag_torque_roller,
@@ -22,6 +21,7 @@ from ..laws.rolling import (
     sliding_friction,
     sliding_torque,
     starvation,
+    starvation_exponent,
     trb_rolling_variable,
     trb_sliding_variable,
 )
@@ -96,11 +96,12 @@ class SkfBearing(RollingBearing):
         """The moments, then what every friction does."""
         w, nu = self.shaft.w, self.lubricant.nu
         G_rr, G_sl = self.geometric_variables()
-        phi = shear_heating(w, nu, self.d_m) * starvation(w, nu, self.d, self.D, self.K_rs, self.K_Z)
+        phi_ish = shear_heating(w, nu, self.d_m)
+        phi_rs = starvation(starvation_exponent(w, nu, self.d, self.D, self.K_rs, self.K_Z), phi_ish)
         mu_sl = self.mu_EHL
         if self.mixed_friction:
             mu_sl = sliding_friction(boundary_share(w, nu, self.d_m), self.mu_bl, self.mu_EHL)
-        yield equation("rolling moment", self.tau_rr, rolling_torque(G_rr, w, nu, phi))
+        yield equation("rolling moment", self.tau_rr, rolling_torque(G_rr, w, nu, phi_ish * phi_rs))
         yield equation("sliding friction", self.mu_sl, mu_sl)
         yield equation("sliding moment", self.tau_sl, sliding_torque(G_sl, self.mu_sl))
         yield from super().equations()
@@ -166,7 +167,6 @@ class DeepGrooveBallBearing(SkfBearing):
         at_least=0.0,
         derived=lambda p: drag_loss_factor(p.H / p.d_m),
     )
-    axially_loaded = Choice((True, False), "which of the catalogue's two sliding formulas holds", default=True)
 
     def drag(self) -> Num:
         """Drag of balls."""
@@ -176,8 +176,6 @@ class DeepGrooveBallBearing(SkfBearing):
         """Deep groove ball bearing."""
         F_r, F_a = self.loads()
         rolling = dgb_rolling_variable(F_r, F_a, self.d_m, self.R_1, self.R_2, self.C_0)
-        if not self.axially_loaded:
-            return rolling, dgb_sliding_variable_radial(F_r, self.d_m, self.S_1)
         return rolling, dgb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.C_0)
 
 

@@ -26,8 +26,14 @@ from ..laws.gears import (
     undercut_shift,
     working_pressure_angle,
 )
-from ..laws.mesh import friction_schlenk, tooth_loss_factor
-from ..laws.smooth import Num, smooth_abs, smooth_sign
+from ..laws.mesh import (
+    friction_schlenk,
+    load_per_contact_length,
+    load_per_face_width,
+    mesh_loss,
+    tooth_loss_factor,
+)
+from ..laws.smooth import Num, friction_sign, smooth_abs
 from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading, ToothForce
 
 #: Share of a_w that the base circles may take; at 1 the flanks would have no line of action.
@@ -45,17 +51,23 @@ class Contact:
     """One tooth contact at its pitch point: what does not depend on speed and load.
 
     `rho` radius of curvature of the first gear [m], `R` reduced radius normal to the teeth [m], `l` length of the
-    lines of contact [m], `normal` normal over tangential force [1].
+    lines of contact [m], `base` and `normal` base tangential and normal force over tangential force [1].
     """
 
     rho: Num
     R: Num
     l: Num  # noqa: E741
+    base: Num
     normal: Num
 
 
 class ToothedPart(Component):
-    """Base of everything with teeth: geometry, roughness and material of its gears, and the friction of a contact."""
+    """Base of everything with teeth: geometry, roughness and material of its gears, and the friction of a contact.
+
+    The friction formula is printed with the base tangential force per face width, F_bt/b; some authors use it with
+    the normal force per length of the contact lines, F_bn/l, which is eps_alpha times less. `line_load` says which,
+    and `k_mu` belongs to it: a factor that was fitted with one is wrong with the other by eps_alpha^0.2.
+    """
 
     gears = HeatPort()
     lubricant = Lubricant()
@@ -69,6 +81,7 @@ class ToothedPart(Component):
     a_w = Parameter("m", "working centre distance", nominal=0.1, above=0.0)
     Ra = Parameter("m", "roughness Ra of each flank", nominal=1e-6, above=0.0)
     k_mu = Parameter("1", "factor on the tooth friction", at_least=0.0)
+    line_load = Choice(("F_bt/b", "F_bn/l"), "line load of the friction formula: per face width, or per contact length")
     E = Parameter("Pa", "modulus of elasticity of the gears", nominal=1e11, above=0.0)
     poisson = Parameter("1", "Poisson's ratio of the gears", at_least=0.0, below=0.5)
     tau_width = Parameter("N.m", "torque below which the direction of load is blurred", default=0.1, above=0.0)
@@ -105,7 +118,8 @@ class ToothedPart(Component):
         beta_b = base_helix_angle(self.alpha_n, self.beta)
         rho_a, rho_b = (curvature_radius(base_diameter(2 * self.radius(z), alpha_t), alpha_wt) for z in (z_a, z_b))
         R, length = reduced_radius(rho_a, rho_b, beta_b), contact_length(self.b, eps_alpha, beta_b)
-        return Contact(rho_a, R, length, 1 / (ca.cos(alpha_t) * ca.cos(beta_b)))
+        base = 1 / ca.cos(alpha_t)
+        return Contact(rho_a, R, length, base, base / ca.cos(beta_b))
 
     def friction(self, contact: Contact, F_t: Num, w: Num) -> tuple[Num, Num]:
         """Friction coefficient and specific film thickness of a contact.
@@ -116,10 +130,11 @@ class ToothedPart(Component):
             w: speed of the first gear against the line of centres [rad/s]
         """
         oil = self.lubricant
-        F_n_l = F_t * contact.normal / contact.l
+        F_n_l = load_per_contact_length(F_t * contact.normal, contact.l)
+        load = F_n_l if self.line_load == "F_bn/l" else load_per_face_width(F_t * contact.base, self.b)
         u_sum = 2 * smooth_abs(w) * contact.rho
         eta = oil.nu * oil.rho
-        mu = self.k_mu * friction_schlenk(F_n_l, u_sum, contact.R, eta, self.Ra, oil.X_L)
+        mu = self.k_mu * friction_schlenk(load, u_sum, contact.R, eta, self.Ra, oil.X_L)
         E_eff = self.E / (2 * (1 - self.poisson**2))
         h = film_thickness(eta, u_sum, oil.alpha_p, F_n_l, contact.R, E_eff)
         reduction = thermal_film_reduction(oil.beta_T, eta, u_sum, oil.k, 0.0)
@@ -198,13 +213,13 @@ class HelicalGearPair(ToothedPart):
     def equations(self) -> Iterator[Equation]:
         """The gear that drives brings the loss; what is left arrives at the other."""
         w, ratio, r = self.pinion.w, self.z_2 / self.z_1, self.radius(self.z_1)
-        sign = smooth_sign(w)
+        sign = friction_sign(w)
         tau_mean = smooth_abs(self.pinion.tau - sign * self.tau_loss / 2, self.tau_width)
         mu, Lambda = self.friction(self.contact(self.eps_alpha, self.z_1, self.z_2), self.force.F_t, w)
         alpha_t = transverse_pressure_angle(self.alpha_n, self.beta)
         yield equation("gears roll on each other", self.wheel.w, -w / ratio)
         yield equation("torque less loss", self.wheel.tau / ratio, self.pinion.tau - sign * self.tau_loss)
-        yield equation("mesh loss", self.tau_loss, self.mu * self.H_v * (tau_mean + self.tau_loss / 2))
+        yield equation("mesh loss", self.tau_loss, mesh_loss(tau_mean + self.tau_loss / 2, self.mu, self.H_v))
         yield equation("mesh power", self.P_loss, self.tau_loss * sign * w)
         yield equation("tooth friction", self.mu, mu)
         yield equation("film", self.Lambda, Lambda)
@@ -231,7 +246,11 @@ class PlanetarySet(ToothedPart):
     planet_load = BearingLoad()
     reading = ShaftReading()
 
-    power_flow = Choice(("successive", "ideal"), "whether losses reduce what is passed on", default="successive")
+    power_flow = Choice(
+        ("successive", "ideal"),
+        "ideal: mesh forces from the input torque; successive: each stage sees upstream losses",
+        default="successive",
+    )
     N = Parameter("1", "number of planets", above=0.0, whole=True)
     z_3 = Parameter("1", "number of teeth of the ring", above=0.0, whole=True)
     eps_alpha_sp = Parameter("1", "transverse contact ratio sun-planet", above=0.0)
@@ -296,7 +315,7 @@ class PlanetarySet(ToothedPart):
     def equations(self) -> Iterator[Equation]:
         """Kinematics, torques, and the two kinds of meshes."""
         w = self.sun.w - self.carrier.w
-        i_0, sign = self.z_3 / self.z_1, smooth_sign(w)
+        i_0, sign = self.z_3 / self.z_1, friction_sign(w)
         losses = sign * (self.tau_loss_sp + self.tau_loss_pr)
         yield equation("Willis", self.sun.w + i_0 * self.ring.w, (1 + i_0) * self.carrier.w)
         yield equation("planets roll on the sun", self.planet.w, -w * self.z_1 / self.z_2)
@@ -322,8 +341,10 @@ class PlanetarySet(ToothedPart):
         yield equation("film sun-planet", self.Lambda_sp, Lambda_sp)
         yield equation("film planet-ring", self.Lambda_pr, Lambda_pr)
         half = 0.5 if self.power_flow == "successive" else 0.0
-        yield equation("loss sun-planet", self.tau_loss_sp, self.mu_sp * self.H_v_sp * (sp + half * self.tau_loss_sp))
-        yield equation("loss planet-ring", self.tau_loss_pr, self.mu_pr * self.H_v_pr * (pr + half * self.tau_loss_pr))
+        loss_sp = mesh_loss(sp + half * self.tau_loss_sp, self.mu_sp, self.H_v_sp)
+        loss_pr = mesh_loss(pr + half * self.tau_loss_pr, self.mu_pr, self.H_v_pr)
+        yield equation("loss sun-planet", self.tau_loss_sp, loss_sp)
+        yield equation("loss planet-ring", self.tau_loss_pr, loss_pr)
         yield equation("power sun-planet", self.P_loss_sp, self.tau_loss_sp * sign * w)
         yield equation("power planet-ring", self.P_loss_pr, self.tau_loss_pr * sign * w)
 

@@ -10,18 +10,22 @@ from gearheat.model.core.component import Component, equation
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.declare import Input, Port, declared
 from gearheat.model.core.flatten import flatten
-from gearheat.model.parts import PARTS
+from gearheat.model.parts import PARTS as PHYSICS
 from gearheat.model.parts.ports import Flange, HeatPort
 from gearheat.model.run.rows import evaluate_at
+from gearheat.tools.effects.parts import FIT_PARTS
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+#: Every class of component: the physics, and the fit terms of the diagnosis.
+PARTS = PHYSICS | FIT_PARTS
 
 OIL = dict(nu_40=3.2438e-4, nu_100=3.527e-5, rho_15=859.0, alpha_T=-5.6e-4, s_p=7.382, t_p=0.1335, X_L=0.666)
 FRICTION = dict(count=2.0, inner_share=0.4)
 BEARING = FRICTION | dict(d_m=0.14, F_r_0=100.0, F_a_0=50.0)
 SKF = BEARING | dict(d=0.11, D=0.17, K_Z=6.0, K_rs=6e-8, mu_bl=0.1, mu_EHL=0.002, H=0.03)
 TEETH = dict(z_1=36.0, z_2=36.0, m_n=0.002, alpha_n=math.radians(20), beta=math.radians(10), b=0.042, a_w=0.073035)
-TEETH |= dict(Ra=6e-7, k_mu=1.044, E=2.06e11, poisson=0.3)
+TEETH |= dict(Ra=6e-7, k_mu=1.044, line_load="F_bn/l", E=2.06e11, poisson=0.3)
 SURFACE = dict(A=0.8, emissivity=0.9)
 BOX = SURFACE | dict(height=0.3, length=0.4, width=0.2, share_top=0.2, share_bottom=0.2)
 EXTRA = dict(P_ref=50.0, w_ref=20.0, nu_ref=7e-5, tau_ref=2000.0, a=2.0, b=0.2, c=0.5, forward=1.0, backward=0.5)
@@ -101,7 +105,7 @@ def source(port: Port, name: str) -> Component:
 
 
 def between_sources(kind: str, **choices):
-    part = PARTS[kind]("part", **EXAMPLES[kind], **choices)
+    part = PARTS[kind]("part", **EXAMPLES[kind] | choices)
     if kind == "ShaftEnd":
         load = PARTS["FanLoad"]("load", k=0.1)
         end = PARTS[kind]("part", given=("w",))
@@ -127,7 +131,8 @@ LOSSES = ("part.P_loss", "part.P_loss_sp", "part.P_loss_pr", "part.P")
 
 #: Each kind once, gears and bearings under each of their choices.
 CASES = [(kind, {}) for kind in PARTS] + [("PlanetarySet", {"power_flow": "ideal"}), ("Inertia", {"dynamic": False})]
-CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath", "axially_loaded")]
+CASES += [("PlanetarySet", {"line_load": "F_bt/b"}), ("HelicalGearPair", {"line_load": "F_bt/b"})]
+CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath")]
 CASES += [(kind, {"oil_bath": False}) for kind in ("TaperedRollerBearing", "CylindricalRollerBearing")]
 _flat: dict = {}
 

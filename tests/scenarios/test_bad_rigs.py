@@ -53,6 +53,17 @@ FACE = 'b = "42 mm"'
             'power_flow = "idael"',
             GEARS + ": power_flow = 'idael' is not known. Choose one of: successive, ideal.",
         ),
+        (
+            'line_load = "F_bn/l"',
+            'line_load = "F_bt/l"',
+            GEARS + ": line_load = 'F_bt/l' is not known. Choose one of: F_bt/b, F_bn/l.",
+        ),
+        (
+            'line_load = "F_bn/l"\n',
+            "",
+            GEARS + ": line_load is missing (line load of the friction formula: per face width, or per contact length)."
+            " Choose one of: F_bt/b, F_bn/l.",
+        ),
         # keys
         (FACE, "", GEARS + ": b is missing (face width). Give it in m."),
         (FACE, 'bb = "42 mm"', GEARS + ': unknown key "bb". Did you mean "b" (face width)?'),
@@ -287,5 +298,5 @@ def test_a_folder_without_a_rig(tmp_path: Path) -> None:
 
 def test_a_file_that_is_no_text(tmp_path: Path) -> None:
     (path := tmp_path / "rig.toml").write_bytes(b"\xff\x00")
-    with pytest.raises(ScenarioError, match="is no text in UTF-8"):
+    with pytest.raises(ScenarioError, match="is not UTF-8 text"):
         load(path)

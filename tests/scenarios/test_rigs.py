@@ -31,7 +31,7 @@ def planetary() -> Scenario:
 
 @pytest.fixture(scope="module")
 def ideal(planetary: Scenario) -> FlatModel:
-    """The planetary rig as its source computes it: no loss reduces what is passed on."""
+    """The planetary rig as its source computes it: mesh forces from the input torque."""
     return flatten(assemble(planetary.spec.with_values({"gear_set.power_flow": "ideal"})))
 
 
