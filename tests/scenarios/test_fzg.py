@@ -10,6 +10,7 @@ from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import SolveError
 from gearheat.model.laws import gears
+from gearheat.model.laws.mesh import tooth_loss_factor
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
 from gearheat.model.run.result import Result
@@ -34,11 +35,6 @@ SEALS = ("test_pinion_seal.P_loss", "slave_pinion_seal.P_loss", "wheel_seals.P_l
 @pytest.fixture(scope="module")
 def flat() -> FlatModel:
     return flatten(assemble(load("fzg_four_square").spec))
-
-
-def ohlendorf(z_1: int, u: float, eps_1: float, eps_2: float) -> float:
-    """Tooth loss factor of a spur pair of a contact ratio between 1 and 2."""
-    return math.pi * (u + 1) / (z_1 * u) * (1 - eps_1 - eps_2 + eps_1**2 + eps_2**2)
 
 
 def motor_speed(n_pinion: float) -> float:
@@ -82,7 +78,7 @@ class TestGeometry:
             for d, z in zip(tips, (16, 24), strict=True)
         ]
         assert values["eps_alpha"] == pytest.approx(sum(eps), rel=1e-5)
-        assert values["H_v"] == pytest.approx(ohlendorf(16, 1.5, *eps), rel=1e-5)
+        assert values["H_v"] == pytest.approx(float(tooth_loss_factor(16, 1.5, 0.0, *eps)), rel=1e-5)
 
     def test_test_and_slave_gears_are_the_same(self) -> None:
         spec = load("fzg_four_square").spec
