@@ -87,7 +87,7 @@ def test_show_tells_which_law_is_outside_its_range_at_the_operating_point(gearhe
 def test_simulate_and_design_tell_which_law_is_outside_its_range(gearheat, tmp_path):
     duty = tmp_path / "duty.csv"
     duty.write_text("time [s],room.T [degC]\n0,-25\n600,-25\n", encoding="utf-8")
-    out = gearheat("simulate", "helical_two_stage", duty, "-o", tmp_path / "run.csv").out
+    out = gearheat("simulate", "helical_two_stage", "--duty", duty, "-o", tmp_path / "run.csv").out
     assert "outside its range: oil: kinematic_viscosity, T - T_pour = -7 to " in out
     made = ("--free", "cooling.A", "--target", "oil.T=0 degC", "--set", "room.T=-40 degC")
     out = gearheat("design", "helical_two_stage", *made, "--among", "oil=ISO VG 220 mineral,ISO VG 220 PAO").out
