@@ -96,7 +96,7 @@ def description(
         fmiVersion="2.0",
         modelName=flat.name,
         guid=guid,
-        description=flat.doc,
+        description="; ".join(filter(None, (flat.doc, *flat.joined))),
         generationTool=tool(),
         license="BSD-3-Clause",
         variableNamingConvention="structured",

@@ -11,6 +11,7 @@ import casadi as ca
 import numpy as np
 from gearheat.model.core.flat import FlatModel, Quantity
 from gearheat.model.errors import FmuError, suggestion
+from gearheat.model.run.point import follows
 
 SUPPLIED, THROUGHPUT, STORED, RESIDUAL = "energy.supplied", "energy.throughput", "energy.stored", "energy.residual"
 VALIDITY, IMPLICIT = "validity.count", "implicit.residual"
@@ -136,7 +137,8 @@ def _started(flat: FlatModel, start: dict[str, float]) -> tuple[Group, Group, Gr
     problems = []
     for name in sorted(start.keys() - settable):
         what = "is calculated by the model" if name in flat.index else f"is unknown.{suggestion(name, settable)}"
-        problems.append(f'{flat.name}: start value "{name}" {what}')
+        told = follows(flat, name) if name in flat.derived else f'"{name}" {what}'
+        problems.append(f"{flat.name}: start value {told}")
     groups = [tuple(replace(q, start=float(start.get(q.name, q.start))) for q in group) for group in groups]
     problems += [f"{flat.name}: start value {p}" for group in groups for q in group if (p := q.problem(q.start))]
     return (*groups[0], *_audit_states(flat)), groups[1], groups[2], problems
@@ -162,7 +164,14 @@ def _outputs(flat: FlatModel) -> Group:
     ]
     if flat.residual_names:
         audit.append(Quantity(IMPLICIT, "1", "largest scaled residual of the implicit equations", low=0.0))
-    return (*flat.outputs, *audit)
+    return (*(replace(q, doc=_doc(flat, q)) for q in flat.outputs), *audit)
+
+
+def _doc(flat: FlatModel, q: Quantity) -> str:
+    """What an output is; of a parameter that follows from others also from which."""
+    own = q.name.rpartition(".")[0] + "."
+    known = ", ".join(path.removeprefix(own) for path in flat.derived.get(q.name, ()))
+    return f"{q.doc}, follows from {known}" if known else q.doc
 
 
 def _derivative(q: Quantity) -> Quantity:

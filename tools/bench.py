@@ -144,7 +144,7 @@ def _integration(rig: str, tests: str | None) -> dict[str, Any]:
     courses = campaign.courses(scenario, flat, tests)
     states = [q.name for q in flat.states]
     note(f"{len(courses)} tests: reference")
-    exact = _simulated(flat, courses, "cvodes", REFERENCE)
+    exact = _simulated(flat, courses, "idas", REFERENCE)
     fmu_s: list[float] = []
     lsoda: list[dict[str, float]] = []
     with tempfile.TemporaryDirectory() as folder, Player(export(flat, Path(folder) / "rig.fmu")) as player:

@@ -48,7 +48,7 @@ def command(
     rig: str, grid: str, free: Sequence[str], bounds: Sequence[str], assignments: Sequence[str], json: str | None
 ) -> None:
     """Print the fitted values."""
-    scenario = adjusted(load(rig), assignments)
+    scenario = adjusted(load(rig), assignments, named=free)
     protocol = scenario.campaign.protocol if scenario.campaign else None
     if protocol is None:
         raise DataError(f"{scenario.name}: there are no measured data to fit to. Give the rig file a table [campaign].")

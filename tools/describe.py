@@ -48,11 +48,11 @@ def show_command(rig: str, errata: bool, json: str | None) -> None:
         "doc": scenario.doc,
         "kind": scenario.kind,
         "parts": [{"name": p.name, "type": p.type, "doc": _doc(PARTS[p.type])} for p in scenario.spec.parts],
-        "parameters": [_parameter(scenario, q) for q in flat.parameters],
+        "parameters": [_parameter(scenario, flat, q) for q in every_parameter(scenario, flat)],
         "choices": choices(scenario),
         "inputs": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.inputs],
         "states": [_line(q) for q in flat.states],
-        "outputs": [{"name": q.name, "unit": shown(q.unit), "doc": q.doc} for q in flat.outputs],
+        "outputs": [_output(q) for q in flat.outputs if q.name not in flat.derived],
         "sensors": dict(scenario.sensors),
         "laws": laws(flat),
         "unchecked": unchecked(scenario, flat),
@@ -102,7 +102,15 @@ def source_of(scenario: Scenario, path: str) -> str:
 
 def parameters(scenario: Scenario, flat: FlatModel) -> tuple[tuple[str, str, str], ...]:
     """Name, value with unit and source of every parameter."""
-    return tuple((q.name, text(q.start, q.unit), source_of(scenario, q.name)) for q in flat.parameters)
+    every = every_parameter(scenario, flat)
+    return tuple((q.name, text(q.start, q.unit), source_of(scenario, q.name)) for q in every)
+
+
+def every_parameter(scenario: Scenario, flat: FlatModel) -> list[Quantity]:
+    """All parameters, those that follow from others among them, part by part."""
+    order = {part.name: i for i, part in enumerate(scenario.spec.parts)}
+    every = (*flat.parameters, *(flat.quantity(name) for name in flat.derived))
+    return sorted(every, key=lambda q: order[q.name.rpartition(".")[0]])
 
 
 def choices(scenario: Scenario) -> list[dict[str, Any]]:
@@ -146,11 +154,27 @@ def _line(q: Quantity) -> dict[str, Any]:
     return {"name": q.name, "value": from_si(q.start, q.unit), "unit": shown(q.unit), "doc": q.doc}
 
 
-def _parameter(scenario: Scenario, q: Quantity) -> dict[str, Any]:
+def _output(q: Quantity) -> dict[str, Any]:
+    return {"name": q.name, "unit": shown(q.unit), "doc": q.doc}
+
+
+def _kind(scenario: Scenario, flat: FlatModel, path: str) -> str:
+    """Whether a value is given, derived from others, or a default of the numerics."""
+    if path in flat.derived:
+        return "derived"
+    part, _, key = path.rpartition(".")
+    return "given" if key in scenario.spec.part(part).values else "default"
+
+
+def _parameter(scenario: Scenario, flat: FlatModel, q: Quantity) -> dict[str, Any]:
     """A parameter with its standard uncertainty, in the unit shown, where the rig states one."""
     sd = scenario.uncertainties.get(q.name)
     known = sd if sd is None or q.unit == "K" else from_si(sd, q.unit)  # degC and K have the same differences
-    return {**_line(q), "uncertainty": known, "source": source_of(scenario, q.name)}
+    kind, source = _kind(scenario, flat, q.name), source_of(scenario, q.name)
+    own = q.name.rpartition(".")[0] + "."
+    if follows := ", ".join(path.removeprefix(own) for path in flat.derived.get(q.name, ())):
+        source = f"follows from {follows}"
+    return {**_line(q), "kind": kind, "uncertainty": known, "source": source}
 
 
 def _doc(cls: type) -> str:
@@ -161,7 +185,7 @@ def _print(found: dict[str, Any]) -> None:
     print(f"{found['rig']}: {found['doc']}\n")
     valued = ("name", "value", "unit", "doc")
     table("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")))
-    known = ("name", "value", "uncertainty", "unit", "doc", "source")
+    known = ("name", "value", "kind", "uncertainty", "unit", "doc", "source")
     table("Parameters", known, _rows(found["parameters"], known))
     table("Choices", ("name", "value", "doc"), _rows(found["choices"], ("name", "value", "doc")))
     table("Inputs", (*valued, "source"), _rows(found["inputs"], (*valued, "source")))

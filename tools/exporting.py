@@ -15,6 +15,7 @@ from ..fmu.export import export
 from ..model.core.flat import FlatModel
 from ..model.machines.spec import assemble
 from ..model.run.point import point
+from ..model.run.rows import evaluate_at
 from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
 from .console import answer, file_of, folder, writable
@@ -128,7 +129,7 @@ def operating_start(
 def _evaluated(flat: FlatModel, states: Mapping[str, float]) -> dict[str, float]:
     """Inputs and outputs of a model at its start values."""
     here = point(flat, None, states, who="export")
-    y = np.array(flat.output_function(here.x, here.u, here.p)[0]).ravel()
+    y = evaluate_at(flat, here.x, here.u, here.p)["y"]
     return {q.name: float(v) for q, v in (*zip(flat.inputs, here.u, strict=True), *zip(flat.outputs, y, strict=True))}
 
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..model.core.declare import Choice, Given, declared
+from ..model.core.declare import Choice, Given, Parameter, declared
 from ..model.core.flat import FlatModel
 from ..model.core.flatten import flatten
 from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
@@ -34,13 +34,14 @@ def adjusted(
 ) -> Scenario:
     """The scenario with values set by the user, driven at the shaft ends as the names say.
 
-    A shaft speed that is set or named takes the place of the rig's given speed, a torque that of its given torque.
+    A shaft speed that is set or named takes the place of the rig's given speed, a torque that of its given torque. A
+    parameter that follows from others and is set or named has a value of its own from then on, at first the one it had.
 
     Args:
         scenario: the rig
         assignments: texts "NAME=VALUE": parameters, inputs, start values of states, choices
             ("gear_set.power_flow=ideal"), and parts filled from a catalogue ("oil=MINR")
-        named: further inputs that come from outside: sought by a design, or given by a duty
+        named: further values that come from outside: sought by a design, varied by a sweep, or given by a duty
         drive: quantities given per shaft end, where that is known
 
     Raises:
@@ -62,7 +63,8 @@ def adjusted(
         raise ScenarioError([f"{name} is set, but it follows from what drives the rig. Take it out." for name in idle])
     set_up = scenario.with_values(values, SET).driven(driven)
     sources = {**set_up.value_sources, **_filled(scenario, assignments)}
-    return replace(set_up, spec=set_up.spec.with_values(choices), value_sources=sources)
+    set_up = replace(set_up, spec=set_up.spec.with_values(choices), value_sources=sources)
+    return set_up.with_values(_derived(set_up.spec, named), SET)
 
 
 def loaded(rig: str, extended: Path | None = None, data: Path | None = None, card: Path | None = None) -> Scenario:
@@ -152,6 +154,23 @@ def choice_paths(spec: Spec) -> dict[str, Choice]:
     """Choices of all parts by path; those without options follow from the drive."""
     found = {f"{p.name}.{key}": c for p in spec.parts for key, c in declared(PARTS[p.type], Choice).items()}
     return {path: choice for path, choice in found.items() if choice.options}
+
+
+def _derived(spec: Spec, named: Iterable[str]) -> dict[str, float]:
+    """The values that named parameters have which follow from others."""
+    following = [name for name in named if (d := parameter_of(spec, name)) is not None and d.derived is not None]
+    if not following:
+        return {}
+    parts = {part.name: part for part in assemble(spec).parts}
+    split = [(name, *name.rpartition(".")[::2]) for name in following]
+    return {name: parts[part].values[key] for name, part, key in split if key in parts[part].derived}
+
+
+def parameter_of(spec: Spec, path: str) -> Parameter | None:
+    """The declaration of the parameter of a path, None where there is none."""
+    part, _, key = path.rpartition(".")
+    kinds = [p.type for p in spec.parts if p.name == part]
+    return declared(PARTS[kinds[0]], Parameter).get(key) if kinds else None
 
 
 def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], list[str]]:

@@ -16,6 +16,7 @@ static void start(Instance *m)
     m->s.mode = INSTANTIATED;
     m->s.tolerance = TOLERANCE;
     for (i = 0; i < NX; i++) m->s.x[i] = model_start[FIRST_X + i];
+    for (i = 0; i < NZ; i++) m->s.z[i] = model_z_start[i];
     for (i = 0; i < NU; i++) m->s.u[i] = model_start[FIRST_U + i];
     for (i = 0; i < NP; i++) m->s.p[i] = model_start[FIRST_P + i];
     m->constants_known = m->outputs_known = 0;
@@ -109,8 +110,13 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c)
 fmi2Status fmi2ExitInitializationMode(fmi2Component c)
 {
     Instance *m = c;
+    const char *block;
     int i;
     if (!allowed(m, INITIALIZATION, "fmi2ExitInitializationMode")) return fmi2Error;
+    if (!check_relations(m, "fmi2ExitInitializationMode")) return fmi2Error;
+    if ((block = unsolved(m)) != NULL)
+        return refuse(m, "fmi2ExitInitializationMode: the equation \"%s\" has no solution. Check start values, inputs and "
+                      "parameters.", block);
     refresh_outputs(m);
     for (i = 0; i < NX; i++)
         if (!isfinite(m->dx[i]))
@@ -159,7 +165,8 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, 
     for (i = 0; i < n; i++) {
         value[i] = value_of(m, r[i]);
         if (!isfinite(value[i]))
-            status = discard(m, "fmi2GetReal: %s is %g at t = %.10g s.", model_names[r[i]], value[i], m->s.time);
+            status = discard(m, "fmi2GetReal: %s is %g at t = %.10g s%s%s.", model_names[r[i]], value[i], m->s.time,
+                             unsolved(m) ? ": no solution of " : "", unsolved(m) ? unsolved(m) : "");
     }
     return status;
 }
@@ -195,7 +202,7 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, 
             m->s.jumped = m->s.states_touched = 1;
         if (r[i] >= FIRST_P) m->constants_known = 0;
         *place = value[i];
-        m->outputs_known = 0;
+        changed(m);
     }
     return fmi2OK;
 }

@@ -38,9 +38,14 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
         return refuse(m, "fmi2DoStep: the step starts at %.10g s, but the instance is at %.10g s.", time, m->s.time);
     if (m->s.stop_defined && step > 0 && time >= m->s.stop + round_off)
         return refuse(m, "fmi2DoStep: the step starts at %.10g s, behind the stop time %.10g s.", time, m->s.stop);
+    if (!check_relations(m, "fmi2DoStep")) return fmi2Error;
     if (!walk(m, step, &w)) {
         const char *name = model_names[FIRST_X + w.worst];
         m->s.mode = STEP_FAILED;
+        if (w.block)
+            return refuse(m, "fmi2DoStep: no step from %.10g s: the equation \"%s\" has no solution at %s. Nothing has "
+                          "changed; check speeds, torques and temperatures.", time, w.block,
+                          w.accepted ? "its end" : "its begin");
         if (w.accepted > 0)
             return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s cannot be continued behind %.10g s. "
                            "Nothing has changed; retry with a shorter step.", time, time + step, name,
@@ -50,7 +55,6 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     }
     m->s.mode = STEP_COMPLETE;
     m->s.time = time + step;
-    if (step > 0) m->outputs_known = 0;
     note(m, fmi2OK, LOG_SOLVER, "t = %.10g s: %ld steps, %ld rejected, next %.3g s, limited by %s.", m->s.time,
          w.accepted, w.rejected, m->s.h_last, model_names[FIRST_X + w.worst]);
     warn_validity(m);

@@ -5,14 +5,66 @@ static void refresh_constants(Instance *m)
     if (m->constants_known) return;
     model_constants(m->s.p, m->c);
     m->constants_known = 1;
+    m->relations_hold = 0;
 }
 
+/* Solve the implicit equations where states, inputs or parameters have changed; -1, or the number of the one without a
+   solution. */
+static int refresh_algebra(Instance *m)
+{
+    int failed;
+    if (m->s.consistent) return -1;
+    refresh_constants(m);
+    failed = implicit_solve(m->s.x, m->s.z, m->s.u, m->s.p, m->c);
+    m->s.consistent = failed < 0;
+    return failed;
+}
+
+/* Whether the parameters fit each other; asked when all of them are set, as one by one they pass through states that
+   do not. All relations that do not hold are told, those without a value only where nothing else is wrong. */
+static int check_relations(Instance *m, const char *function)
+{
+    double value[AT_LEAST_1(NR)];
+    int i, undefined;
+    refresh_constants(m);
+    if (NR == 0 || m->relations_hold) return 1;
+    model_relations_of(m->s.p, value);
+    m->relations_hold = 1;
+    for (undefined = 0; undefined < 2 && m->relations_hold; undefined++)
+        for (i = 0; i < NR; i++) {
+            if (value[i] >= model_relation_low[i] && value[i] <= model_relation_high[i]) continue;
+            if (isfinite(value[i]) == (undefined != 0)) continue;
+            m->relations_hold = 0;
+            refuse(m, "%s: %s %.6g, %s", function, model_relations[i], value[i], model_remedies[i]);
+        }
+    return m->relations_hold;
+}
+
+/* Parameters that contradict each other have no outputs, nor has what has no solution. */
 static void refresh_outputs(Instance *m)
 {
+    int i;
     if (m->outputs_known) return;
-    refresh_constants(m);
-    model_outputs(m->s.x, m->s.u, m->s.p, m->c, m->y, m->dx);
+    if (check_relations(m, "outputs") && refresh_algebra(m) < 0)
+        model_outputs(m->s.x, m->s.z, m->s.u, m->s.p, m->c, m->y, m->dx);
+    else {
+        for (i = 0; i < NY; i++) m->y[i] = NAN;
+        for (i = 0; i < NX; i++) m->dx[i] = NAN;
+    }
     m->outputs_known = 1;
+}
+
+/* The name of the implicit equation that has no solution here, or NULL. */
+static const char *unsolved(Instance *m)
+{
+    int failed = refresh_algebra(m);
+    return failed < 0 ? NULL : model_blocks[failed];
+}
+
+/* Something the outputs depend on has changed. */
+static void changed(Instance *m)
+{
+    m->outputs_known = m->s.consistent = 0;
 }
 
 /* Where a value lies: NULL for a value the model calculates. */
@@ -52,7 +104,8 @@ static void warn_validity(Instance *m)
     int i;
     if (NK == 0 || !(m->log_mask & (1u << LOG_WARNING))) return;
     refresh_constants(m);
-    model_arguments(m->s.x, m->s.u, m->s.p, m->c, argument);
+    if (refresh_algebra(m) >= 0) return;
+    model_arguments(m->s.x, m->s.z, m->s.u, m->s.p, m->c, argument);
     for (i = 0; i < NK; i++) {
         if (m->warned[i] || !(argument[i] < model_check_low[i] || argument[i] > model_check_high[i])) continue;
         m->warned[i] = 1;

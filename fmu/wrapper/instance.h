@@ -42,13 +42,14 @@ typedef struct {
     int stop_defined;
     int jumped;            /* an input or a parameter has jumped since the last step */
     int states_touched;    /* ModelExchange: the integrator has to restart at the end of event mode */
-    int spare;             /* keeps the doubles aligned without hidden bytes */
+    int consistent;        /* z belongs to x, u and p */
     double time;
     double stop;
     double tolerance;
     double h_first;        /* step proposed after the first accepted step of the last communication step */
     double h_last;         /* step proposed after the last one */
     double x[AT_LEAST_1(NX)];
+    double z[AT_LEAST_1(NZ)];
     double u[AT_LEAST_1(NU)];
     double slope[AT_LEAST_1(NU)];
     double p[AT_LEAST_1(NP)];
@@ -57,6 +58,7 @@ typedef struct {
 typedef struct {
     State s;
     int constants_known;   /* c belongs to s.p */
+    int relations_hold;    /* all relations between the parameters hold at s.p */
     int outputs_known;     /* y and dx belong to s */
     unsigned log_mask;
     unsigned log_mask_at_start;

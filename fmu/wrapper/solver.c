@@ -4,19 +4,22 @@
 static int walk(Instance *m, double length, Walk *w)
 {
     State *s = &m->s;
-    double x[AT_LEAST_1(NX)], x_new[AT_LEAST_1(NX)], u[AT_LEAST_1(NU)];
+    State before = *s;
+    double x[AT_LEAST_1(NX)], x_new[AT_LEAST_1(NX)], u[AT_LEAST_1(NU)], z[AT_LEAST_1(NZ)], z_new[AT_LEAST_1(NZ)];
     double t = 0.0, first = 0.0, h = s->jumped ? s->h_first : s->h_last;
     int in_a_row = 0, i;
     memset(w, 0, sizeof *w);
     refresh_constants(m);
+    if ((w->block = unsolved(m)) != NULL) return 0;
     memcpy(x, s->x, sizeof x);
+    memcpy(z, s->z, sizeof z);
     memcpy(u, s->u, sizeof u);
     if (!(h > 0.0)) h = length;
     while (t < length) {
         double left = length - t;
         int last = h * (1 + 1e-9) >= left;
         double size = last ? left : 2 * h > left ? left / 2 : h;
-        double error = trial(m, x, u, size, x_new, &w->worst);
+        double error = trial(m, x, z, u, size, x_new, z_new, &w->worst);
         if (w->accepted + w->rejected > MAX_STEPS) return 0;
         if (!(error <= 1.0)) {
             w->rejected++;
@@ -27,6 +30,7 @@ static int walk(Instance *m, double length, Walk *w)
         w->accepted++;
         t = last ? length : t + size;
         memcpy(x, x_new, sizeof x);
+        memcpy(z, z_new, sizeof z);
         for (i = 0; i < NU; i++) u[i] = s->u[i] + s->slope[i] * t;
         h = fmax(size < h ? h : 0.0, size * (in_a_row ? fmin(factor(error), 1.0) : factor(error)));
         if (first == 0.0) first = h;
@@ -34,7 +38,14 @@ static int walk(Instance *m, double length, Walk *w)
         w->reached = t;
     }
     memcpy(s->x, x, sizeof x);
+    memcpy(s->z, z, sizeof z);
     memcpy(s->u, u, sizeof u);
+    if (length > 0.0) changed(m);
+    if ((w->block = unsolved(m)) != NULL) {
+        *s = before;
+        changed(m);
+        return 0;
+    }
     s->h_first = first;
     s->h_last = h;
     s->jumped = 0;

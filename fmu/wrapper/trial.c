@@ -12,6 +12,7 @@ typedef struct {
     double reached;            /* time from the communication point that was reached */
     long accepted, rejected;
     int worst;                 /* state that limited the last trial */
+    const char *block;         /* implicit equation without a solution at the begin or the end, or NULL */
 } Walk;
 
 /* What an error of a state is measured by. The supplied energy is measured by the energy that has crossed the boundary:
@@ -23,11 +24,14 @@ static double scale(const double *x, int i)
 }
 
 /* One trial step; its error in units of the tolerance, INFINITY when the result cannot be used. */
-static double trial(const Instance *m, const double *x, const double *u, double h, double *x_new, int *worst)
+static double trial(const Instance *m, const double *x, const double *z, const double *u, double h, double *x_new,
+                    double *z_new, int *worst)
 {
     double error[N_CONTROLLED], norm = 0.0;
     int i;
-    model_step(x, u, m->s.slope, m->s.p, m->c, &h, x_new, error);
+    model_step(x, z, u, m->s.slope, m->s.p, m->c, &h, x_new, z_new, error);
+    for (i = 0; i < NZ; i++)
+        if (!isfinite(z_new[i])) return INFINITY;
     for (i = 0; i < NX; i++)
         if (!in_range(FIRST_X + i, x_new[i])) {
             *worst = i;

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 from ..errors import StructureError, suggestion
 from .component import Component
 from .declare import Port
+from .ports_check import open_ports
 
 Connection = tuple[str, ...]
 
@@ -29,13 +30,25 @@ class Assembly:
 def nets(assembly: Assembly) -> list[list[Port]]:
     """The groups of ports that meet, single ports included, in the order of the parts.
 
+    Connections that share a port are one net: so a machine is extended without a word about what it has. Where that
+    would make one body of two that are written apart, it is more likely a slip, and refused.
+
     Raises:
-        StructureError: all connections to ports that do not exist or of different types, and doubled part names
+        StructureError: all connections to ports that do not exist or of different types, and doubled part names; or
+            else all ports and parts that have to be connected and are not
     """
     ports = assembly.ports()
     problems = _problems(assembly, ports)
     if problems:
         raise StructureError(problems)
+    found = _merged(assembly, ports)
+    if problems := open_ports(assembly.name, assembly.parts, found):
+        raise StructureError(problems)
+    return found
+
+
+def _merged(assembly: Assembly, ports: dict[str, Port]) -> list[list[Port]]:
+    """The ports of each net, connections that share one joined."""
     net_of = {path: [port] for path, port in ports.items()}
     for connection in assembly.connections:
         first = net_of[connection[0]]
@@ -50,23 +63,55 @@ def nets(assembly: Assembly) -> list[list[Port]]:
     return [sorted(net, key=lambda port: order[port.name]) for net in unique.values()]
 
 
-def _problems(assembly: Assembly, ports: dict[str, Port]) -> Iterable[str]:
+def _problems(assembly: Assembly, ports: dict[str, Port]) -> list[str]:
     names = [part.name for part in assembly.parts]
     problems = [
         f'{assembly.name}: two parts are called "{n}". Rename one.'
         for n in sorted({n for n in names if names.count(n) > 1})
     ]
     for connection in assembly.connections:
-        written = ", ".join(connection)
-        missing = [path for path in connection if path not in ports]
-        problems += [
-            f'{assembly.name}: connect [{written}]: there is no port "{p}".{suggestion(p, ports)}' for p in missing
-        ]
-        kinds = {type(ports[path]).__name__ for path in connection if path in ports}
-        if len(kinds) > 1:
-            problems.append(
-                f"{assembly.name}: connect [{written}] joins ports of different kinds ({', '.join(sorted(kinds))})."
-            )
-        if len(connection) < 2:
-            problems.append(f"{assembly.name}: connect [{written}] names one port only. Name at least two.")
+        problems += [f"{assembly.name}: connect [{', '.join(connection)}] {p}" for p in _wrong(connection, ports)]
+    return problems or _short_circuits(assembly)
+
+
+def _wrong(connection: Connection, ports: Mapping[str, Port]) -> Iterator[str]:
+    """What is wrong with one connection."""
+    missing = [path for path in dict.fromkeys(connection) if path not in ports]
+    for path in missing:
+        owner = path.rpartition(".")[0]
+        of_part = [known for known in ports if known.rpartition(".")[0] == owner]
+        has = f" {owner} has {', '.join(of_part)}." if of_part else ""
+        yield f'names "{path}", and there is no such port.{suggestion(path, ports) or has}'
+    kinds: dict[str, str] = {}
+    for path in connection:
+        if path in ports:
+            kinds.setdefault(type(ports[path]).__name__, path)
+    if len(kinds) > 1:
+        written = " and ".join(f"{path} is a {kind}" for kind, path in kinds.items())
+        yield f"joins ports of different kinds: {written}. Connect ports of one kind."
+    if len(connection) < 2:
+        yield "names one port only. Name at least two that meet."
+    for path in {path for path in connection if connection.count(path) > 1}:
+        yield f"names {path} twice. Name it once."
+
+
+def _short_circuits(assembly: Assembly) -> list[str]:
+    """Ports named in two connections that hold different storages: one body would be made of two."""
+    stores = {part.name for part in assembly.parts if part.states}
+    seen: dict[str, Connection] = {}
+    problems = []
+    for connection in assembly.connections:
+        here = _owners(connection) & stores
+        for path in connection:
+            before = _owners(seen.setdefault(path, connection)) & stores
+            if (one := sorted(before - here)) and (other := sorted(here - before)):
+                problems.append(
+                    f"{assembly.name}: {path} is named in two connections, one with {one[0]} and one with {other[0]}: "
+                    f"they would be one net. Name {path} in one of them. To join {one[0]} and {other[0]} on purpose, "
+                    "name a port of each in one connection."
+                )
     return problems
+
+
+def _owners(connection: Connection) -> set[str]:
+    return {path.rpartition(".")[0] for path in connection}

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
-from typing import Any
+from typing import Any, ClassVar
 
 import casadi as ca
 import numpy as np
@@ -64,12 +64,14 @@ class Flow(Declaration):
 class Parameter(Declaration):
     """A number that stays a symbol until a model is run.
 
-    `default` is only for numerics, never for physics; `derived` computes the value from the component's other values
-    where it is not given (a contact ratio from the geometry).
+    `default` is only for numerics, never for physics. `derived` makes of the component an expression in its other
+    parameters (a contact ratio from the geometry), which holds wherever no value is given. `whole` asks for a whole
+    number.
     """
 
     default: float | None = None
-    derived: Callable[[Mapping[str, float]], float] | None = None
+    derived: Callable[[Any], Any] | None = None
+    whole: bool = False
 
 
 @dataclass(eq=False)
@@ -121,13 +123,26 @@ class Port:
     """A place where a component meets others: one or more potentials, with or without a flow.
 
     A port type without a flow carries information only. `power` says which product of its quantities is the power
-    that enters the component, for the energy audit.
+    that enters the component, for the energy audit. The other attributes are words for what may be wrong with it.
+
+    Attributes:
+        must_meet: whether a port that meets no other is a fault, unless it is `optional`
+        missing: what is wrong then, or where the part needs what the port should bring
+        source: what to connect it to
+        instead: what else to do where two things prescribe the same potential
+        levels: potentials that only differ by what connects them, with what gives them their level
     """
 
     doc: str = ""
+    must_meet: ClassVar[bool] = False
+    missing: ClassVar[str] = "nothing says what it should read"
+    source: ClassVar[str] = "a port of its kind"
+    instead: ClassVar[str] = ""
+    levels: ClassVar[Mapping[str, str]] = {}
 
-    def __init__(self, doc: str = "") -> None:
+    def __init__(self, doc: str = "", optional: bool = False) -> None:
         self.doc = doc
+        self.optional = optional
         self.name = ""
         self.symbols: dict[str, Any] = {}
 
@@ -139,7 +154,7 @@ class Port:
 
     def bound(self, path: str) -> Port:
         """This port as one of a component: the same declarations with symbols of their own."""
-        port = type(self)(self.doc)
+        port = type(self)(self.doc, self.optional)
         port.name = path
         port.symbols = {name: ca.SX.sym(f"{path}.{name}") for name in (*self.potentials(), *self.flows())}
         return port

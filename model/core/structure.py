@@ -2,59 +2,60 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
-
-import numpy as np
-from scipy.sparse import csr_matrix
-from scipy.sparse.csgraph import maximum_bipartite_matching
+from collections.abc import Iterable, Mapping, Sequence
 
 from ..errors import StructureError
+from .connect import Assembly
+from .faults import Faults
+from .matching import Matching, columns_of
+from .ports_check import floating
+from .solve import Row, Unknown, incidence
 
-SHOWN = 5
+#: Problems told at once: what is wrong at one place shows at several.
+MOST = 5
 
 
-def check_structure(model: str, incidence: Any, equations: Sequence[str], unknowns: Sequence[str]) -> None:
-    """Raise StructureError, naming the equations and unknowns at fault, unless a perfect matching exists.
+def check_structure(
+    assembly: Assembly, rows: Sequence[Row], unknowns: Sequence[Unknown], typical: Mapping[int, float]
+) -> None:
+    """Raise StructureError unless every unknown has an equation of its own and every temperature a level.
+
+    The message names the smallest sets that do not come out even. What is said twice of potentials is missing for
+    flows, and the other way round: then the potentials are told.
 
     Args:
-        model: name of the model, for the message
-        incidence: casadi.Sparsity, a row per equation, a column per unknown
-        equations: names of the rows
-        unknowns: names of the columns
+        assembly: the parts
+        rows: all equations, rigid couplings reduced
+        unknowns: all unknowns
+        typical: typical value of every symbol by its hash
     """
-    rows, columns = incidence.get_triplet()
-    matrix = csr_matrix((np.ones(len(rows)), (rows, columns)), shape=incidence.shape)
-    column_of_row = maximum_bipartite_matching(matrix, perm_type="column")
-    row_of_column = np.full(len(unknowns), -1)
-    matched = np.flatnonzero(column_of_row >= 0)
-    row_of_column[column_of_row[matched]] = matched
-    if (column_of_row >= 0).all() and (row_of_column >= 0).all():
+    columns = columns_of(incidence(rows, unknowns))
+    if problems := floating(assembly.name, assembly.ports(), rows, unknowns, columns):
+        raise StructureError(problems)
+    matching = Matching(columns, len(unknowns))
+    if not matching.spare_rows and not matching.free_columns:
         return
-    problem = f"{model}: {len(equations)} equations for {len(unknowns)} unknowns."
-    if free := _at_fault(matrix.T.tocsr(), row_of_column, column_of_row):
-        problem += f"\nNothing determines {_some(unknowns, free)}: give a value, connect a source or a storage."
-    if spare := _at_fault(matrix, column_of_row, row_of_column):
-        problem += f"\nToo much is said in {_some(equations, spare)}: take one away, for example a second source."
-    raise StructureError(problem)
+    faults = Faults(assembly, rows, unknowns, columns, typical)
+    much = [faults.too_much(c) for c in _apart(sorted(map(matching.too_many, matching.spare_rows), key=len))]
+    little = [faults.too_little(c) for c in _joined(map(matching.too_few, matching.free_columns))]
+    found = [*much, *little]
+    told = [fault for fault in found if fault.potentials] or found
+    raise StructureError(list(dict.fromkeys(problem for fault in told for problem in fault.problems))[:MOST])
 
 
-def _at_fault(adjacent: csr_matrix, partner: np.ndarray, partner_back: np.ndarray) -> list[int]:
-    """Nodes of one side without a partner, and those that alternating paths from them could rob of theirs."""
-    todo = np.flatnonzero(partner < 0).tolist()
-    seen = set(todo)
-    while todo:
-        node = todo.pop()
-        for other in adjacent.indices[adjacent.indptr[node] : adjacent.indptr[node + 1]]:
-            rival = int(partner_back[other])
-            if rival >= 0 and rival not in seen:
-                seen.add(rival)
-                todo.append(rival)
-    return sorted(seen)
+def _apart(sets: Iterable[list[int]]) -> list[list[int]]:
+    """Those of the sets that share nothing with one before: each is a fault of its own."""
+    kept: list[list[int]] = []
+    for chosen in sets:
+        if not any(set(chosen) & set(other) for other in kept):
+            kept.append(chosen)
+    return kept
 
 
-def _some(names: Sequence[str], chosen: Sequence[int]) -> str:
-    """The first few names, those nearest to a user (of parts, not of their ports) first."""
-    sorted_names = sorted((names[i] for i in chosen), key=lambda name: name.count("."))
-    more = f" and {len(chosen) - SHOWN} more" if len(chosen) > SHOWN else ""
-    return ", ".join(sorted_names[:SHOWN]) + more
+def _joined(sets: Iterable[list[int]]) -> list[list[int]]:
+    """The sets, those that share something as one."""
+    kept: list[set[int]] = []
+    for chosen in sets:
+        near = [other for other in kept if not other.isdisjoint(chosen)]
+        kept = [other for other in kept if other not in near] + [set(chosen).union(*near)]
+    return [sorted(chosen) for chosen in kept]

@@ -78,7 +78,7 @@ def friction_schlenk(
     valid="load shared equally by the tooth pairs in contact",
     ranges={"eps_1": (1e-9, 5.0), "eps_2": (1e-9, 5.0)},
 )
-def tooth_loss_factor(z_1: Num, u: Num, beta_b: Num, eps_1: float, eps_2: float, *, printed_a2: bool = False) -> Num:
+def tooth_loss_factor(z_1: Num, u: Num, beta_b: Num, eps_1: Num, eps_2: Num, *, printed_a2: bool = False) -> Num:
     r"""Tooth loss factor for any contact ratio above 1 [1], equal load on all pairs in contact.
 
     .. math:: H_V = \frac{\pi (u + 1)}{z_1 u \cos\beta_b}
@@ -93,11 +93,11 @@ def tooth_loss_factor(z_1: Num, u: Num, beta_b: Num, eps_1: float, eps_2: float,
         z_1: number of teeth of the first gear [1]
         u: teeth ratio z_2/z_1, negative for an internal second gear [1]
         beta_b: helix angle at the base cylinder [rad]
-        eps_1: addendum contact ratio of the first gear, a number: it decides the number of pairs [1]
-        eps_2: addendum contact ratio of the second gear, a number [1]
+        eps_1: addendum contact ratio of the first gear; it decides the number of pairs [1]
+        eps_2: addendum contact ratio of the second gear [1]
         printed_a2: whether to reproduce the misprint of a_2 in the source, which has m in the place of l
     """
-    l, m, n = math.ceil(eps_1), math.ceil(eps_2), math.ceil(eps_1 + eps_2)  # noqa: E741 the source's letters
+    l, m, n = ca.ceil(eps_1), ca.ceil(eps_2), ca.ceil(eps_1 + eps_2)  # noqa: E741 the source's letters
     N = n * (n - 1)
     a_0 = (N * (2 * n - 1) - l * (l - 1) * (2 * l - 1) - m * (m - 1) * (2 * m - 1)) / (3 * N)
     a_1, a_2 = 2 * l * (l - 1) / N - 1, 2 * m * (m - 1) / N - 1

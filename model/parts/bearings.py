@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..core.component import Equation, equation
+from ..core.component import Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.rolling import (
     boundary_share,
@@ -49,6 +49,7 @@ class SkfBearing(RollingBearing):
 
     d = Parameter("m", "bore diameter", nominal=0.1, above=0.0)
     D = Parameter("m", "outside diameter", nominal=0.1, above=0.0)
+    d_m = Parameter("m", "mean diameter, (d + D)/2", nominal=0.1, above=0.0, derived=lambda p: 0.5 * (p.d + p.D))
     R_1 = Parameter("1", "first rolling constant of the catalogue", nominal=1e-6, above=0.0)
     R_2 = Parameter("1", "second rolling constant of the catalogue", above=0.0)
     S_1 = Parameter("1", "first sliding constant of the catalogue", nominal=1e-2, above=0.0)
@@ -71,6 +72,16 @@ class SkfBearing(RollingBearing):
     def has(self, name: str) -> bool:
         """The oil level counts in an oil bath, boundary friction where films may be thin."""
         return bool({"H": self.oil_bath, "V_M": self.oil_bath, "mu_bl": self.mixed_friction}.get(name, True))
+
+    def relations(self) -> Iterator[Related]:
+        """The rings lie inside each other, the rolling elements between them, and the oil not above the bearing."""
+        remedy = "Give bore, outside and mean diameter of one bearing."
+        yield self.relation("D is larger than d", "D / d", self.D / self.d, 1.02, remedy=remedy)
+        middle = (self.d_m - self.d) / (self.D - self.d)
+        yield self.relation("d_m lies between d and D", "(d_m - d) / (D - d)", middle, 0.3, 0.7, remedy=remedy)
+        if self.oil_bath:
+            remedy = "Give the oil level above the lowest point of the outer raceway."
+            yield self.relation("H is below D", "H / D", self.H / self.D, 0.0, 1.0, remedy=remedy)
 
     def torque(self) -> Num:
         """Sum of the moments of one bearing [N.m]."""
@@ -98,14 +109,14 @@ class TaperedRollerBearing(SkfBearing):
     """Tapered roller bearing, single row."""
 
     B = Parameter("m", "width over both rings", nominal=0.03, above=0.0)
-    Y = Parameter("1", "axial load factor of the catalogue", above=0.0)
+    Y = Parameter("1", "axial load factor of the catalogue", above=0.0, below=10.0)
     K_L = Parameter("1", "geometry constant of the roller bearing type", above=0.0)
     V_M = Parameter(
         "1",
         "drag loss factor of the oil level",
         nominal=1e-4,
         at_least=0.0,
-        derived=lambda v: float(drag_loss_factor(v["H"] / v["d_m"], roller=True)),
+        derived=lambda p: drag_loss_factor(p.H / p.d_m, roller=True),
     )
 
     def has(self, name: str) -> bool:
@@ -133,7 +144,7 @@ class DeepGrooveBallBearing(SkfBearing):
         "drag loss factor of the oil level",
         nominal=1e-4,
         at_least=0.0,
-        derived=lambda v: float(drag_loss_factor(v["H"] / v["d_m"])),
+        derived=lambda p: drag_loss_factor(p.H / p.d_m),
     )
     axially_loaded = Choice((True, False), "which of the catalogue's two sliding formulas holds", default=True)
 

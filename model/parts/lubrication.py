@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from ..core.component import Component, Equation, equation
+from ..core.component import Component, Equation, Related, equation
 from ..core.declare import Input, Output, Parameter, State
 from ..laws.oil import (
     conductivity,
@@ -32,6 +32,11 @@ class LubricantProperties(Component):
     t_p = Parameter("1", "exponent of viscosity in the pressure-viscosity coefficient")
     X_L = Parameter("1", "lubricant factor of the tooth friction", above=0.0)
     nu = Output("m2/s", "kinematic viscosity", nominal=1e-4)
+
+    def relations(self) -> Iterator[Related]:
+        """A lubricant thins as it warms."""
+        ratio, remedy = self.nu_40 / self.nu_100, "Give the viscosity at 40 degC as nu_40, that at 100 degC as nu_100."
+        yield self.relation("nu_40 is above nu_100", "nu_40 / nu_100", ratio, 1.01, remedy=remedy)
 
     def properties(self) -> Iterator[Equation]:
         """What the users of the lubricant read."""

@@ -10,6 +10,12 @@ from ..core.declare import Flow, Port, Potential
 class HeatPort(Port):
     """Where heat crosses a boundary. Positive Q_flow enters the component that owns the port."""
 
+    must_meet = True
+    missing = "its heat has no way out"
+    source = "the heat port of a body, a conductor or a room"
+    instead = "put a ThermalConductor between them"
+    levels = {"T": "a storage of heat (HeatCapacity, OilBath) or a Room"}
+
     T = Potential("K", "temperature", nominal=350.0)
     Q_flow = Flow("W", "heat flow rate", nominal=100.0)
 
@@ -21,11 +27,17 @@ class HeatPort(Port):
 class AirPort(HeatPort):
     """A heat port to moving air: its temperature and speed are those far from the surface."""
 
+    source = "the air of a Room"
+
     v = Potential("m/s", "speed of the air", nominal=1.0)
 
 
 class Flange(Port):
     """End of a shaft. Positive tau acts on the component that owns the flange, in the direction of positive w."""
+
+    missing = "no shaft turns it"
+    source = "the flange of a shaft end, a gear or an inertia"
+    instead = "give a torque in place of a speed"
 
     w = Potential("rad/s", "angular velocity", nominal=10.0)
     tau = Flow("N.m", "torque", nominal=100.0)
@@ -38,12 +50,18 @@ class Flange(Port):
 class BearingLoad(Port):
     """What a bearing has to carry: information, not power."""
 
+    missing = "nothing says which load it carries"
+    source = "the load of a gear set or of a shaft support"
+
     F_r = Potential("N", "radial load", nominal=1000.0)
     F_a = Potential("N", "axial load", nominal=1000.0)
 
 
 class ToothForce(Port):
     """The force between two gears at the pitch point, magnitudes: information, not power."""
+
+    missing = "nothing says which tooth force acts"
+    source = "the force of a gear pair"
 
     F_t = Potential("N", "tangential force", nominal=1000.0)
     F_r = Potential("N", "radial force", nominal=1000.0)
@@ -52,6 +70,9 @@ class ToothForce(Port):
 
 class Lubricant(Port):
     """State of a lubricant where it is used: information, not power."""
+
+    missing = "it has no lubricant"
+    source = "the lubricant of an OilBath or a Grease"
 
     T = Potential("K", "temperature", nominal=350.0)
     nu = Potential("m2/s", "kinematic viscosity", nominal=1e-4)
@@ -64,6 +85,9 @@ class Lubricant(Port):
 
 class ShaftReading(Port):
     """Speed and torque read at a shaft end: information, not power."""
+
+    missing = "nothing is read"
+    source = "the reading of a shaft end"
 
     w = Potential("rad/s", "angular velocity", nominal=10.0)
     tau = Potential("N.m", "torque into the gearbox", nominal=100.0)

@@ -9,6 +9,9 @@ from ..core.declare import Choice, Given, Output, Parameter, State
 from ..laws.smooth import Num, smooth_abs
 from .ports import Flange, ShaftReading
 
+#: Speed below which the loss torque of the gearbox fades [rad/s]: far below any speed that is read.
+W_REST = 1e-5
+
 
 class ShaftEnd(Component):
     """A shaft that leaves the gearbox. What `given` names ("w", "tau") is an input, the rest follows."""
@@ -90,12 +93,14 @@ class Inertia(Component):
 
 
 class Efficiency(Component):
-    """Efficiency and loss of the gearbox between two shaft ends, whichever drives."""
+    """Efficiency and loss of the gearbox between two shaft ends, whichever drives.
+
+    The loss torque follows from the powers, so no ratio has to agree with that of the gears.
+    """
 
     a = ShaftReading()
     b = ShaftReading()
 
-    ratio = Parameter("1", "speed of b over speed of a")
     P_width = Parameter("W", "power below which the efficiency is blurred", default=1e-3, above=0.0)
     P_loss = Output("W", "power in less power out", nominal=100.0)
     tau_loss = Output("N.m", "loss torque, on the side of a", nominal=10.0)
@@ -106,5 +111,5 @@ class Efficiency(Component):
         P_a, P_b = self.a.w * self.a.tau, self.b.w * self.b.tau
         P_in = sum(smooth_abs(P, self.P_width) for P in (P_a, P_b, self.P_loss)) / 2
         yield equation("loss", self.P_loss, P_a + P_b)
-        yield equation("loss torque", self.tau_loss, self.a.tau + self.ratio * self.b.tau)
+        yield equation("loss torque", self.tau_loss, self.P_loss * self.a.w / (self.a.w**2 + W_REST**2))
         yield equation("efficiency", self.eta, 1 - self.P_loss / P_in)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from ..core.component import Component, Equation, equation
+from ..core.component import Component, Equation, Related, equation
 from ..core.declare import Input, Output, Parameter, State
 from ..laws.conduction import cylinder_wall, fin_efficiency, plane_wall
 from ..laws.convection import (
@@ -93,6 +93,11 @@ class CylinderWall(Conductor):
     r_i = Parameter("m", "inner radius", nominal=0.1, above=0.0)
     r_o = Parameter("m", "outer radius", nominal=0.1, above=0.0)
 
+    def relations(self) -> Iterator[Related]:
+        """The wall has a thickness."""
+        remedy = "Give the outer radius as r_o, the inner as r_i."
+        yield self.relation("r_o is larger than r_i", "r_o / r_i", self.r_o / self.r_i, 1 + 1e-6, remedy=remedy)
+
     def conductance(self) -> Num:
         """Of a cylindrical wall."""
         return cylinder_wall(self.k, self.L, self.r_i, self.r_o)
@@ -101,8 +106,8 @@ class CylinderWall(Conductor):
 class Room(Component):
     """The surroundings: air of a given temperature and speed, and a floor of the same temperature."""
 
-    air = AirPort()
-    floor = HeatPort()
+    air = AirPort(optional=True)
+    floor = HeatPort(optional=True)
 
     T = Input("K", "temperature of the room", nominal=10.0, above=0.0, start=298.15)
     air_speed = Input("m/s", "speed of the air along the housing", at_least=0.0)
@@ -162,6 +167,11 @@ class BoxCooling(SurfaceCooling):
     width = Parameter("m", "width of the box", above=0.0)
     share_top = Parameter("1", "share of the area that faces upwards", at_least=0.0, at_most=1.0)
     share_bottom = Parameter("1", "share of the area that faces downwards", at_least=0.0, at_most=1.0)
+
+    def relations(self) -> Iterator[Related]:
+        """Faces have no more than the whole area; the rest is vertical."""
+        both, remedy = self.share_top + self.share_bottom, "Give smaller shares; the vertical faces have what is left."
+        yield self.relation("the shares fit into one area", "share_top + share_bottom", both, 0.0, 1.0, remedy=remedy)
 
     def natural(self) -> Num:
         """Mean of vertical, upward and downward faces by area."""

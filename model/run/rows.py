@@ -8,29 +8,50 @@ import numpy as np
 
 from ..core.flat import FlatModel
 from ..sources import LawInfo
+from .algebra import algebra
 from .result import Audit, Outside, Result
 
 #: Round-off allowed at the ends of a law's range, relative.
 SLACK = 1e-9
 
 
-def evaluate(flat: FlatModel, x: np.ndarray, u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
-    """All output expressions, a column per row of the result.
+def evaluate(
+    flat: FlatModel, x: np.ndarray, u: np.ndarray, p: np.ndarray, warm: np.ndarray | None = None
+) -> dict[str, np.ndarray]:
+    """All output expressions, a column per row of the result, the implicit blocks solved.
 
     Args:
         flat: the model
         x: states, n_x by rows
         u: inputs, n_u by rows
-        p: parameters, n_p, or n_p by rows
+        p: parameters, n_p by rows, or n_p
+        warm: algebraic variables to begin with, n_z by rows
 
     Returns:
-        "y", "residual", "supply", "throughput", "stored", "checked", each with one column per row
+        "ode", "y", "residual", "supply", "throughput", "stored", "checked", each with one column per row
+
+    Raises:
+        SolveError: an implicit block has no solution
     """
-    function = flat.output_function
-    rows = x.shape[1]
+    function, rows = flat.function, x.shape[1]
     p = p if p.ndim == 2 else np.tile(p[:, None], (1, rows))
-    values = function(x, u, p) if rows > 1 else function(x[:, 0], u[:, 0], p[:, 0])
+    point = (x, algebra(flat).solve_rows(x, u, p, warm), u, p)
+    values = function(*point) if rows > 1 else function(*(v[:, 0] for v in point))
     return {name: np.array(value) for name, value in zip(function.name_out(), values, strict=True)}
+
+
+def evaluate_at(flat: FlatModel, x: np.ndarray, u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
+    """The same at one point, each a vector.
+
+    Args:
+        flat: the model
+        x, u, p: states, inputs and parameters, SI
+
+    Raises:
+        SolveError: an implicit block has no solution
+    """
+    values = evaluate(flat, *(np.asarray(v, dtype=float)[:, None] for v in (x, u, p)))
+    return {name: value[:, 0] for name, value in values.items()}
 
 
 def result(

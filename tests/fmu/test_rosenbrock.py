@@ -1,11 +1,10 @@
-"""The solver's step as an expression: order, error estimate, damping, and the elimination inside."""
+"""The solver's step as an expression: order, error estimate and damping."""
 
 from collections.abc import Callable
 
 import casadi as ca
 import numpy as np
 import pytest
-from gearheat.fmu.elimination import SparseLU, min_fill_order
 from gearheat.fmu.rosenbrock import RODAS3, RODAS4, Tableau, step
 from scipy.integrate import solve_ivp
 
@@ -55,20 +54,3 @@ def test_a_step_of_no_length_changes_nothing() -> None:
     z, error = compiled(u - x**3, x, u, RODAS3)(0.7, 2.0, 1.0, 0.0)
     assert z.tolist() == [0.7]
     assert error.tolist() == [0.0]
-
-
-def test_elimination_solves_sparse_systems() -> None:
-    rng = np.random.default_rng(1)
-    for n in (1, 2, 7, 12):
-        dense = np.where(rng.random((n, n)) < 0.3, rng.normal(size=(n, n)), 0) + 5 * np.eye(n)
-        matrix, right = ca.SX.sym("a", ca.DM(dense).sparsity() + ca.Sparsity.diag(n)), ca.SX.sym("b", n)
-        solve = ca.Function("solve", [matrix, right], [SparseLU(matrix).solve(right)])
-        b = rng.normal(size=n)
-        assert np.array(solve(dense, b)).ravel() == pytest.approx(np.linalg.solve(dense, b), rel=1e-12, abs=1e-14)
-
-
-def test_min_fill_takes_the_hub_of_a_star_last() -> None:
-    star = [{0, 1, 2, 3, 4}, {0, 1}, {0, 2}, {0, 3}, {0, 4}]
-    order = min_fill_order(star)
-    assert order.index(0) >= 3
-    assert sorted(order) == [0, 1, 2, 3, 4]

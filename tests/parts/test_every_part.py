@@ -12,6 +12,7 @@ from gearheat.model.core.declare import Input, Port, declared
 from gearheat.model.core.flatten import flatten
 from gearheat.model.parts import PARTS
 from gearheat.model.parts.ports import Flange, HeatPort
+from gearheat.model.run.rows import evaluate_at
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -34,7 +35,7 @@ EXAMPLES: dict[str, dict] = {
     "FixedFlange": {},
     "FanLoad": dict(k=0.1),
     "Inertia": dict(J=0.01),
-    "Efficiency": dict(ratio=4.0),
+    "Efficiency": {},
     "PlanetarySet": TEETH
     | dict(N=3.0, z_3=108.0, eps_alpha_sp=1.666, eps_alpha_pr=1.883, H_v_sp=0.168, H_v_pr=0.062)
     | dict(n_axial_carrier=1.0, n_axial_sun=3.0, s_planet=0.021),
@@ -143,11 +144,11 @@ def at(flat, rng) -> dict[str, float]:
     x = [value(q) for q in flat.states]
     u = [value(q) for q in flat.inputs]
     p = flat.starts("parameter")
-    y, _, supply, throughput, _, _ = flat.output_function(x, u, p)
-    gain = ca.Function("gain", [flat.x, flat.u, flat.p], [ca.jtimes(flat.stored, flat.x, flat.ode)])(x, u, p)
+    found = evaluate_at(flat, x, u, p)
+    gain = ca.Function("gain", [flat.x, flat.p], [ca.jacobian(flat.stored, flat.x)])(x, p) @ found["ode"]
     names = [q.name for q in (*flat.states, *flat.inputs, *flat.outputs)]
-    values = [*x, *u, *np.array(y).ravel()]
-    audit = {"supply": float(supply), "throughput": float(throughput), "gain": float(gain)}
+    values = [*x, *u, *found["y"]]
+    audit = {"supply": float(found["supply"][0]), "throughput": float(found["throughput"][0]), "gain": float(gain)}
     return dict(zip(names, map(float, values), strict=True)) | audit
 
 

@@ -126,21 +126,20 @@ FACE = 'b = "42 mm"'
         ),
         # sources
         (
-            'ratio = 4\nsource = "Dias2014, table 5.2"',
-            "ratio = 4",
-            "rig.toml [part.efficiency]: no source is given for ratio."
+            'V = "1 l"\nsource = "Dias2014, chapter 4"',
+            'V = "1 l"',
+            "rig.toml [part.oil]: no source is given for V."
             ' Add source = "..." (a citation, or "assumed: reason") to the table.',
         ),
         (
-            '"Dias2014, table 5.2"',
+            '"Dias2014, chapter 4"',
             '"assumed:"',
-            'rig.toml [part.efficiency]: source is "assumed:" without a reason. Write "assumed: why".',
+            'rig.toml [part.oil]: source is "assumed:" without a reason. Write "assumed: why".',
         ),
         (
-            '"Dias2014, table 5.2"',
+            '"Dias2014, chapter 4"',
             "3",
-            "rig.toml [part.efficiency]: source is 3."
-            ' Write a citation such as "Dias2014, table 5.7", or "assumed: reason".',
+            'rig.toml [part.oil]: source is 3. Write a citation such as "Dias2014, table 5.7", or "assumed: reason".',
         ),
         (
             "sources = { A = ",
@@ -148,9 +147,9 @@ FACE = 'b = "42 mm"'
             'rig.toml [part.cooling]: sources names "AA", which has no value here. Did you mean "A"?',
         ),
         (
-            'source = "Dias2014, table 5.2"',
+            'source = "Dias2014, chapter 4"',
             'sources = "Dias2014"',
-            "rig.toml [part.efficiency]: sources = 'Dias2014' is no table. Write sources = { ratio = \"...\" }.",
+            "rig.toml [part.oil]: sources = 'Dias2014' is no table. Write sources = { V = \"...\" }.",
         ),
         # the campaign
         ('stop = "5 min"', "stop = 5", "rig.toml [campaign]: stop = 5 does not fit. Expected: time between the halves"),

@@ -8,9 +8,12 @@ from pathlib import Path
 
 import pytest
 import typer
+from broken_assemblies import BROKEN
 from gearheat.fmu.description import description
 from gearheat.fmu.equations import equations
 from gearheat.fmu.variables import table
+from gearheat.model.core.flatten import flatten
+from gearheat.model.errors import StructureError
 from gearheat.tools.cli import app
 from small_parts import rc
 from typer.testing import CliRunner
@@ -94,3 +97,14 @@ def test_the_capability_table_is_what_an_fmu_declares() -> None:
     del declared["modelIdentifier"]
     section = README.partition("### What it declares, and has")[2].partition("\n### ")[0]
     assert dict(re.findall(r"^\| `(\w+)` \| (\w+) \|", section, flags=re.MULTILINE)) == declared
+
+
+def test_the_table_of_broken_assemblies_is_what_the_program_says() -> None:
+    section = README.partition("## When an assembly does not work")[2].partition("\n## ")[0]
+    rows = re.findall(r"^\| (.+?) \| (.+) \|$", section, flags=re.MULTILINE)[1:]
+    slips = {make.__doc__: make for make in BROKEN}
+    assert len(rows) >= 12
+    for what, says in rows:
+        with pytest.raises(StructureError) as caught:
+            flatten(slips[what]())
+        assert " ".join(str(caught.value).split()) == says

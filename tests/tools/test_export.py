@@ -18,6 +18,7 @@ from gearheat.fmu import compiling
 from gearheat.fmu.play import Player
 from gearheat.fmu.related import PARAMETERS
 from gearheat.model.machines.spec import assemble
+from gearheat.model.run.rows import evaluate_at
 from gearheat.scenarios.load import load
 from gearheat.scenarios.write import rig_text
 from gearheat.tools.network import network_svg
@@ -213,7 +214,7 @@ def test_a_set_from_the_folder_moves_the_fmu_as_the_oil_moves_the_rig(exported):
     oil = values((path.with_suffix("") / "oils" / "MINR.ssv").read_bytes())
     flat = flat_of(adjusted(load("planetary"), ["oil=MINR"]))
     vectors = [flat.starts(kind) for kind in ("state", "input", "parameter")]
-    expected = np.array(flat.output_function(*vectors)[0]).ravel()
+    expected = evaluate_at(flat, *vectors)["y"]
     names = [q.name for q in flat.outputs]
     with Player(path) as player:
         ours = player.run({}, 1, 1.0, start=oil, record=names).values[0]

@@ -1,0 +1,128 @@
+"""What too many linear equations say, all together, about the quantities that are not theirs to determine."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import casadi as ca
+
+from .component import Component
+from .connect import Assembly
+from .solve import Row, Unknown, column
+
+#: A coefficient below this share of the largest one in its row is none.
+NOTHING = 1e-12
+
+
+@dataclass(frozen=True)
+class Known:
+    """The quantities that equations do not determine: states, inputs and parameters, by the hash of their symbols.
+
+    `typical` holds a typical value of every symbol of the model.
+    """
+
+    states: Mapping[int, tuple[Component, str]]
+    inputs: Mapping[int, str]
+    parameters: Collection[int]
+    typical: Mapping[int, float]
+
+    @staticmethod
+    def of(assembly: Assembly, typical: Mapping[int, float]) -> Known:
+        """Those of all parts of an assembly."""
+        parts = assembly.parts
+        return Known(
+            {part.symbols[k].element_hash(): (part, k) for part in parts for k in part.states},
+            {
+                part.symbols[k].element_hash(): f"{part.name}.{k}"
+                for part in parts
+                for k in part.inputs
+                if part.is_input(k)
+            },
+            {part.symbols[k].element_hash() for part in parts for k in part.parameters},
+            typical,
+        )
+
+    def constant(self, expression: Any) -> bool:
+        """Whether an expression holds nothing but parameters."""
+        return all(s.element_hash() in self.parameters for s in ca.symvar(expression))
+
+    def values(self, expression: Any) -> Any:
+        """An expression at typical values, as a CasADi matrix of numbers."""
+        free = ca.symvar(expression)
+        point = [self.typical.get(s.element_hash(), 1.0) for s in free]
+        return ca.Function("values", free, [expression])(*point) if free else ca.DM(expression)
+
+
+def constraint(rows: Sequence[Row], unknowns: Sequence[Unknown], known: Known) -> Any:
+    """The one relation, an expression that has to be zero, that is left when all unknowns are eliminated.
+
+    Args:
+        rows: one equation more than unknowns, without other unknowns
+        unknowns: what to eliminate
+        known: the quantities that may be left
+
+    Returns:
+        the relation between states, inputs and parameters; None where the equations are not linear in the unknowns
+        with coefficients of parameters, or do not determine them
+    """
+    z = column([u.symbol for u in unknowns])
+    residual = column([r.residual for r in rows])
+    matrix = ca.jacobian(residual, z)
+    if not known.constant(matrix):
+        return None
+    size = _entries(known.values(matrix), matrix.sparsity())
+    entries = _entries(matrix, matrix.sparsity())
+    rest = ca.vertsplit(ca.substitute(residual, z, ca.SX.zeros(*z.shape)))
+    left = set(range(len(rows)))
+    for j in range(len(unknowns)):
+        candidates = [i for i in left if abs(size.get((i, j), 0.0)) > NOTHING]
+        if not candidates:
+            return None
+        pivot = min(candidates, key=lambda i: (sum((i, c) in size for c in range(len(unknowns))), i))
+        left.discard(pivot)
+        for i in [i for i in left if (i, j) in entries]:
+            factor, ratio = entries.pop((i, j)) / entries[pivot, j], size.pop((i, j)) / size[pivot, j]
+            rest[i] = rest[i] - factor * rest[pivot]
+            for c in [c for c in range(j + 1, len(unknowns)) if (pivot, c) in entries]:
+                entries[i, c] = entries.get((i, c), 0) - factor * entries[pivot, c]
+                size[i, c] = size.get((i, c), 0.0) - ratio * size[pivot, c]
+    return rest[left.pop()]
+
+
+def _entries(matrix: Any, sparsity: Any) -> dict[tuple[int, int], Any]:
+    return {(i, j): matrix[i, j] for i, j in zip(*sparsity.get_triplet(), strict=True)}
+
+
+@dataclass(frozen=True)
+class Relation:
+    """A constraint as sum of coefficient times state, plus what inputs and parameters say."""
+
+    states: tuple[tuple[Component, str], ...]
+    coefficients: tuple[Any, ...]
+    sizes: tuple[float, ...]
+    inputs: tuple[str, ...]
+    rest: Any
+
+    @staticmethod
+    def of(expression: Any, known: Known) -> Relation | None:
+        """A constraint in this form, states in the order of the parts; None where it is not linear in the states.
+
+        States whose coefficient vanishes at the values of the parameters are left out.
+        """
+        held = {s.element_hash(): s for s in ca.symvar(expression)}
+        symbols = [(known.states[h], held[h]) for h in known.states if h in held]
+        x = column([symbol for _, symbol in symbols])
+        slopes = ca.jacobian(expression, x)
+        if not known.constant(slopes):
+            return None
+        sizes = [float(known.values(slopes[0, k])) for k in range(len(symbols))]
+        kept = [k for k, size in enumerate(sizes) if abs(size) > NOTHING]
+        return Relation(
+            tuple(symbols[k][0] for k in kept),
+            tuple(slopes[0, k] for k in kept),
+            tuple(sizes[k] for k in kept),
+            tuple(known.inputs[h] for h in known.inputs if h in held),
+            ca.substitute(expression, x, ca.SX.zeros(*x.shape)),
+        )

@@ -1,0 +1,172 @@
+"""Sets of equations and unknowns that do not come out even, in the words of parts, ports and remedies."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import casadi as ca
+
+from .connect import Assembly, nets
+from .constraint import Known, Relation
+from .declare import Given, Port
+from .reduce import tie
+from .solve import Row, Unknown
+
+#: Names shown of a set.
+SHOWN = 4
+
+
+@dataclass(frozen=True)
+class Fault:
+    """What is wrong with one set, and whether it is about potentials of ports with a flow (speeds, temperatures)."""
+
+    problems: tuple[str, ...]
+    potentials: bool
+
+
+class Faults:
+    """Tells what is wrong with some equations or unknowns of a model.
+
+    Args:
+        assembly: the parts
+        rows: all equations
+        unknowns: all unknowns
+        columns: for each equation the positions of its unknowns
+        typical: typical value of every symbol by its hash
+    """
+
+    def __init__(
+        self,
+        assembly: Assembly,
+        rows: Sequence[Row],
+        unknowns: Sequence[Unknown],
+        columns: Sequence[Sequence[int]],
+        typical: Mapping[int, float],
+    ) -> None:
+        self.model, self.rows, self.unknowns, self.columns = assembly.name, rows, unknowns, columns
+        self.known = Known.of(assembly, typical)
+        self.nets = nets(assembly)
+        inputs = [(f"{part.name}.{k}", d, part.is_input(k)) for part in assembly.parts for k, d in part.inputs.items()]
+        self.givable = [path for path, _, given in inputs if not given]
+        self.chosen = {path for path, d, given in inputs if given and isinstance(d, Given)}
+
+    def too_much(self, chosen: Sequence[int]) -> Fault:
+        """Equations that are one more than their unknowns."""
+        inside = sorted({c for r in chosen for c in self.columns[r]})
+        rows, unknowns = [self.rows[r] for r in chosen], [self.unknowns[c] for c in inside]
+        relation = tie(rows, unknowns, self.known)
+        said = [r for r in rows if not r.name.startswith("sum of ")] or rows
+        if relation is None:  # a long way through losses: what is given at its ends says more than all of it
+            said = [r for r in said if self._inputs_of([r])] or said
+        said.sort(key=lambda r: not self._inputs_of([r]))
+        ports = self._ports_of(unknowns, {_part(r) for r in said})
+        where = f" (at {some([p.name for p in ports])})" if ports else ""
+        what, remedy = self._contradiction(relation, rows, ports)
+        text = f"{self.model}: {what}\nToo much is said in {some([r.name for r in said])}{where}.\n{remedy}."
+        levels = {name for net in self.nets if type(net[0]).flows() for name in _of_net(net)}
+        return Fault((text,), not levels.isdisjoint(u.name for u in unknowns))
+
+    def _contradiction(self, relation: Relation | None, rows: Sequence[Row], ports: Sequence[Port]) -> tuple[str, str]:
+        """What some equations say too much, and what to do about it."""
+        given = self._inputs_of(rows) if relation is None else list(relation.inputs)
+        states = [] if relation is None else [f"{part.name}.{key}" for part, key in relation.states]
+        ways = [self._drop(given)] if given else []
+        if relation is not None and given and states:
+            ways += [f"leave {listed([part.name for part, _ in relation.states])} out"]
+        if relation is not None and len(given) + len(states) > 1:
+            ways += [words for words in dict.fromkeys(type(p).instead for p in ports) if words]
+        if states and given:
+            what = f"{listed(states)} is a state, but tied rigidly to {listed(given)}, which is given."
+        elif states:
+            what = f"{listed(states)} is a state, but what it is tied to holds it at one value."
+            parts = listed([part.name for part, _ in relation.states]) if relation else ""
+            ways = [f"Free {parts} or leave it out; where a loop closes, its ratios have to fit"]
+        elif len(given) > 1:
+            what = f"{listed(given)} are given, but one of them follows from the rest."
+        elif given:
+            what = f"{given[0]} is given, but follows from the rest."
+        else:
+            what, ways = "two equations say the same or contradict each other.", ["Take a part that holds it away"]
+        return what, ", or ".join(ways)
+
+    def _drop(self, given: Sequence[str]) -> str:
+        """How not to give one of some inputs: by the part's choice, or without the part."""
+        free = [path for path in given if path in self.chosen]
+        parts = dict.fromkeys(path.rpartition(".")[0] for path in given if path not in self.chosen)
+        ways = [f"Do not give {listed(free, 'or')}"] if free else []
+        ways += [f"{'t' if free else 'T'}ake {listed(list(parts), 'or')} away"] if parts else []
+        return ", or ".join(ways)
+
+    def _inputs_of(self, rows: Sequence[Row]) -> list[str]:
+        """The inputs that stand in some equations."""
+        held = {s.element_hash() for row in rows for s in ca.symvar(ca.SX(row.residual))}
+        return [path for h, path in self.known.inputs.items() if h in held]
+
+    def _ports_of(self, unknowns: Sequence[Unknown], parts: set[str]) -> list[Port]:
+        """Ports of some parts whose flow, or the potentials of whose net, are among some unknowns.
+
+        Parts that only pass a potential on, from one port to another, are left out where others end it.
+        """
+        names = {u.name for u in unknowns}
+        ports = [
+            port
+            for net in self.nets
+            for port in net
+            if port.name.rpartition(".")[0] in parts
+            and type(port).flows()
+            and not names.isdisjoint((*_of_net(net), *(f"{port.name}.{k}" for k in type(port).flows())))
+        ]
+        owners = [p.name.rpartition(".")[0] for p in ports]
+        ends = [p for p, owner in zip(ports, owners, strict=True) if owners.count(owner) == 1]
+        return ends or ports
+
+    def too_little(self, chosen: Sequence[int]) -> Fault:
+        """Unknowns that have fewer equations than they are."""
+        names = {self.unknowns[c].name: None for c in chosen}
+        if deaf := self._deaf(names):
+            told = [
+                f"{self.model}: {p.name} is connected to nothing: {type(p).missing}. Connect it to {type(p).source}."
+                for p in deaf
+            ]
+            return Fault(tuple(told), True)
+        levels = [name for net in self.nets if type(net[0]).flows() for name in _of_net(net) if name in names]
+        givable = [path for path in self.givable if path in names]
+        remedy = f"Give {listed(givable, 'or')}, or connect" if givable else "Give a value, connect"
+        what = some(levels or givable or sorted(names, key=lambda name: name.count(".")))
+        text = (
+            f"{self.model}: {len(self.rows)} equations for {len(self.unknowns)} unknowns.\n"
+            f"Nothing determines {what}.\n{remedy} a source or a storage."
+        )
+        return Fault((text,), bool(levels))
+
+    def _deaf(self, names: Mapping[str, None]) -> list[Port]:
+        """Ports that meet no other and whose potentials, among some unknowns, their own part only reads."""
+        sides = [side for row in self.rows for side in (row.lhs, row.rhs)]
+        said = {side.element_hash() for side in sides if side.is_symbolic()}
+        found = []
+        for port in (net[0] for net in self.nets if len(net) == 1):
+            potentials = [k for k in type(port).potentials() if f"{port.name}.{k}" in names]
+            if potentials and not any(port.symbols[k].element_hash() in said for k in potentials):
+                found.append(port)
+        return found
+
+
+def _of_net(net: Sequence[Port]) -> list[str]:
+    """The names of the potentials of a net: those of its first port."""
+    return [f"{net[0].name}.{k}" for k in type(net[0]).potentials()]
+
+
+def _part(row: Row) -> str:
+    return row.name.partition(": ")[0]
+
+
+def some(names: Sequence[str]) -> str:
+    """The first few names and how many more there are."""
+    more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
+    return ", ".join(names[:SHOWN]) + more
+
+
+def listed(names: Sequence[str], word: str = "and") -> str:
+    """All names, the last two with a word between them."""
+    return f" {word} ".join(filter(None, (", ".join(names[:-1]), names[-1])))

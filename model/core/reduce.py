@@ -1,0 +1,125 @@
+"""Rigid couplings: states that linear equations tie to each other are fewer states.
+
+Two inertias on one shaft line, two heat capacities at one place, three inertias on a planetary set: the equations then
+say more about the states than they may. The relation between the states is differentiated once, its coefficients being
+parameters, and one of its states becomes an unknown that follows the others (the method of dummy derivatives, Mattsson
+and Soederlind 1993, for linear constraints).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import casadi as ca
+
+from ..errors import StructureError
+from .component import Component
+from .connect import Assembly
+from .constraint import Known, Relation, constraint
+from .matching import Matching, columns_of
+from .solve import Row, Unknown, incidence
+
+#: How well the start values of states that follow each other agree, relative to their size.
+AGREE = 1e-9
+
+
+@dataclass
+class Reduced:
+    """The equations and unknowns without rigid couplings.
+
+    `joined` says of each state that is none any more, by path, which ones it follows.
+    """
+
+    rows: list[Row]
+    unknowns: list[Unknown]
+    joined: dict[str, str] = field(default_factory=dict)
+
+
+def reduce(assembly: Assembly, rows: list[Row], unknowns: list[Unknown], typical: Mapping[int, float]) -> Reduced:
+    """Let states that linear equations tie together follow each other, until as few are left as may be chosen freely.
+
+    What cannot be reduced (a state tied to an input, a relation that is not linear) stays as it is, for
+    `check_structure` to refuse.
+
+    Args:
+        assembly: the parts, whose states, inputs and parameters are looked at
+        rows: all equations, in the symbols of the nets
+        unknowns: all unknowns
+        typical: typical value of every symbol by its hash
+
+    Raises:
+        StructureError: start values given for two states that follow each other do not fit together
+    """
+    reduced = Reduced(list(rows), list(unknowns))
+    known = Known.of(assembly, typical)
+    columns = columns_of(incidence(rows, unknowns))
+    while (found := _coupling(reduced, columns, known)) is not None:
+        relation, k = found
+        _demote(assembly.name, relation, k, known, reduced)
+        # the incidence of what was there gains one column, and one row joins it
+        columns = columns_of(incidence(reduced.rows, reduced.unknowns))
+    return reduced
+
+
+def _coupling(reduced: Reduced, columns: list[list[int]], known: Known) -> tuple[Relation, int] | None:
+    """The first relation between states alone, and which of them is to follow."""
+    matching = Matching(columns, len(reduced.unknowns))
+    for spare in matching.spare_rows:
+        chosen = matching.too_many(spare)
+        inside = sorted({c for r in chosen for c in columns[r]})
+        relation = tie([reduced.rows[r] for r in chosen], [reduced.unknowns[c] for c in inside], known)
+        if relation is not None and not relation.inputs and len(relation.states) > 1:
+            return relation, _follower(relation)
+    return None
+
+
+def tie(rows: list[Row], unknowns: list[Unknown], known: Known) -> Relation | None:
+    """What equations, one more than unknowns, say about states and inputs; None where that is not linear."""
+    expression = constraint(rows, unknowns, known)
+    return None if expression is None else Relation.of(expression, known)
+
+
+def _follower(relation: Relation) -> int:
+    """The last state of those whose start nobody has given, the last of all where each was given."""
+    unasked = [k for k, (part, key) in enumerate(relation.states) if part.values[key] == part.states[key].start]
+    return (unasked or range(len(relation.states)))[-1]
+
+
+def _demote(model: str, relation: Relation, k: int, known: Known, reduced: Reduced) -> None:
+    """Make the k-th state of a relation an unknown, with the relation's derivative to go with its derivative."""
+    (part, key), others = relation.states[k], [i for i in range(len(relation.states)) if i != k]
+    path, leaders = _path(part, key), [_path(*relation.states[i]) for i in others]
+    _check_start(model, relation, k, known)
+    followed = ca.SX(0)
+    for i in others:
+        other, name = relation.states[i]
+        followed = followed - relation.coefficients[i] / relation.coefficients[k] * other.derivatives[name]
+    reduced.rows.append(Row(f"{path} follows", part.derivatives[key], followed))
+    reduced.unknowns.append(Unknown(part.symbols[key], path, part.states[key].nominal))
+    reduced.joined[path] = f"{path} follows {' and '.join(leaders)}"
+
+
+def _check_start(model: str, relation: Relation, k: int, known: Known) -> None:
+    """Raise StructureError where a start that was given is not the one that follows from the others."""
+    part, key = relation.states[k]
+    given, state = part.values[key], part.states[key]
+    if given == state.start:
+        return
+    others = [i for i in range(len(relation.states)) if i != k]
+    total = float(known.values(relation.rest))
+    total += sum(relation.sizes[i] * relation.states[i][0].values[relation.states[i][1]] for i in others)
+    expected = -total / relation.sizes[k]
+    if abs(given - expected) <= AGREE * max(abs(given), abs(expected), state.nominal):
+        return
+    leaders = ", ".join(
+        f"{_path(*relation.states[i])} = {relation.states[i][0].values[relation.states[i][1]]:g}" for i in others
+    )
+    raise StructureError(
+        f"{model}: {_path(part, key)} starts at {given:g} {state.unit}, but it is rigidly coupled and follows from "
+        f"{leaders}: that is {expected:g} {state.unit}. Give one of these starts only, or starts that fit."
+    )
+
+
+def _path(part: Component, key: str) -> str:
+    return f"{part.name}.{key}"

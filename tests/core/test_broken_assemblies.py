@@ -1,0 +1,91 @@
+"""Slips in a gearbox of real parts: each message names the port or equation, the part, and what to do."""
+
+import pytest
+from broken_assemblies import BROKEN, gearbox
+from gearheat.model.core.connect import Assembly
+from gearheat.model.core.flatten import flatten
+from gearheat.model.errors import StructureError
+
+#: What the message of each slip has to say.
+SAYS: dict[str, tuple[str, ...]] = {
+    "open_heat_port": ("bearing_a.inner is connected to nothing", "no way out", "Connect it to the heat port"),
+    "open_load": ("bearing_a.load is connected to nothing", "load it carries", "Connect it to the load"),
+    "no_lubricant": ("gear.lubricant is connected to nothing", "no lubricant", "Connect it to", "OilBath or a Grease"),
+    "part_without_connection": (
+        "hall (Room) is connected to nothing",
+        "Connect hall.air or hall.floor",
+        "take hall out",
+    ),
+    "nothing_given": (
+        "Nothing determines motor.flange.w, gear.wheel.w.",
+        "Give motor.w or motor.tau",
+        "connect a source",
+    ),
+    "no_room": ("nothing gives seal.inner, seal.outer a temperature", "Connect a storage", "Room"),
+    "two_speeds": ("motor.w and fan.w are given", "motor.flange, fan.flange", "Do not give motor.w or fan.w"),
+    "speed_and_torques": (
+        "motor.w, motor.tau and fan.tau are given",
+        "motor.flange, fan.flange",
+        "Do not give motor.w",
+    ),
+    "two_rooms": (
+        "room.T and hall.T are given",
+        "room.floor, hall.floor",
+        "Take room or hall away",
+        "ThermalConductor",
+    ),
+    "inertia_at_given_speed": ("rotor.w is a state", "motor.w, which is given", "rotor.flange", "leave rotor out"),
+    "capacity_in_the_room": (
+        "wall.T is a state",
+        "room.T, which is given",
+        "wall.heat",
+        "put a ThermalConductor between",
+    ),
+    "held_shaft": ("motor.w is given", "mount: held", "motor.flange, mount.flange", "Do not give motor.w"),
+    "loop_of_gears": ("rotor.w is a state", "second: gears roll", "rotor.flange", "its ratios have to fit"),
+    "shared_port": (
+        "bearing_a.inner is named in two connections",
+        "oil and one with wall",
+        "Name bearing_a.inner in one",
+    ),
+    "starts_apart": ("cover.T starts at 300 K", "wall.T = 320: that is 320 K", "Give one of these starts only"),
+    "doubled_name": ('two parts are called "wall"', "Rename one"),
+    "wrong_kinds": ("gear.wheel is a Flange and room.floor is a HeatPort", "Connect ports of one kind"),
+    "one_port": ("connect [room.air] names one port only", "Name at least two"),
+    "unknown_port": ('"gear.forces", and there is no such port', 'Did you mean "gear.force"'),
+    "no_equations": ("brake: Empty has no equations", "Write a method equations()"),
+    "decides_on_a_symbol": ('brake: after equation "becomes heat"', "value of a symbol", "smooth functions", "if_else"),
+    "undeclared_name": ('brake: after equation "becomes heat"', '"tau_mx" is not declared', 'Did you mean "tau_max"'),
+    "wrong_shape": ('brake: after equation "becomes heat"', "neither a number nor a symbol", "Yield one equation for"),
+    "wrong_sizes": ('brake: after equation "becomes heat"', "Dimension mismatch", "Correct the equation that follows"),
+    "column_for_a_number": ('brake: a side of equation "brakes" has the shape 2 x 1', "yield an equation for every"),
+    "strange_symbol": ("brake: brakes:", 'the symbol "mood" is not declared', "Declare it"),
+    "function_of_numbers": ("brake: brakes:", "not a number", "casadi.sqrt, not math.sqrt"),
+}
+
+
+def message(assembly: Assembly) -> str:
+    with pytest.raises(StructureError) as caught:
+        flatten(assembly)
+    assert len(caught.value.problems) == 1, caught.value
+    return str(caught.value)
+
+
+def test_the_sound_gearbox_flattens() -> None:
+    assert [q.name for q in flatten(gearbox()).states] == ["oil.T", "wall.T"]
+
+
+@pytest.mark.parametrize("make", BROKEN, ids=lambda make: make.__name__)
+def test_the_message_names_place_and_remedy(make) -> None:
+    text = message(make())
+    for words in SAYS[make.__name__]:
+        assert words in text
+    assert text.count("\n") < 3
+    assert "Traceback" not in text and "casadi/core" not in text
+
+
+def test_a_fault_far_from_a_large_sound_rest_is_told_alone() -> None:
+    """The set at fault does not grow with what hangs on it."""
+    text = message(gearbox({"hall": ("Room", {})}, {"floor": ("foot.b", "room.floor", "hall.floor")}))
+    assert "more" not in text
+    assert "gear" not in text.removeprefix("gearbox")
