@@ -45,7 +45,7 @@ class Status(IntEnum):
     UNSTABLE = 2  #: the only equilibrium found is one the machine leaves by itself
     NOT_FINITE = 3  #: the model cannot be evaluated at the start
     STOPPED = 4  #: a warm-up cannot go on: a state leaves its range or changes without bound
-    OUT_OF_RANGE = 5  #: an input, a parameter or a start value is not finite or out of its range
+    OUT_OF_RANGE = 5  #: an input, a parameter or a start value is not finite or out of its range, or an output
     NO_SOLUTION = 6  #: an implicit equation has no solution at the start, or on the way of a warm-up
     CONTRADICTION = 7  #: a relation between parameters does not hold
 
@@ -204,9 +204,8 @@ class Batch:
         shared(block, n, STEADY_BLOCK, threads)
         k = len(self.outputs)
         supply, throughput, outside = y[:, k], y[:, k + 1], y[:, k + 2]
-        return _marked(
-            Rows(self.columns, x, y[:, :k], status, iterations, supply, np.zeros(n), throughput, outside), verdict
-        )
+        rows = Rows(self.columns, x, y[:, :k], status, iterations, supply, np.zeros(n), throughput, outside)
+        return _marked(rows, verdict, self.outputs)
 
     def warmup(
         self,
@@ -250,7 +249,7 @@ class Batch:
         shared(block, n, WARMUP_BLOCK, threads)
         supplied, gained, throughput, outside = energy.T
         rows = Rows(self.columns, x, y, status, steps, supplied, gained, throughput, outside, points.row_time)
-        return _marked(rows, verdict)
+        return _marked(rows, verdict, self.outputs)
 
     def prepared(
         self,
@@ -330,9 +329,15 @@ def _in_range(limits: tuple[np.ndarray, ...], vector: np.ndarray) -> Any:
     return (np.isfinite(vector) & above & below).all(axis=-1)
 
 
-def _marked(rows: Rows, verdict: np.ndarray) -> Rows:
-    """The rows, without those whose values are out of range or contradict each other."""
+def _marked(rows: Rows, verdict: np.ndarray, outputs: Sequence[Quantity]) -> Rows:
+    """The rows, without those whose values or outputs are out of range or whose values contradict each other."""
     rows.status[:] = np.where(verdict == Status.OK, rows.status, verdict)
+    for i, q in enumerate(outputs):
+        if np.isfinite([q.low, q.high]).any():
+            y = rows.y[..., i].reshape(len(rows.status), -1)
+            slack = 1e-9 * (q.nominal + np.abs(y))
+            wrong = ((y < q.low - slack) | (y > q.high + slack)).any(axis=1)
+            rows.status[wrong & (rows.status == int(Status.OK))] = Status.OUT_OF_RANGE
     failed = rows.status != int(Status.OK)
     if failed.any():
         for array in (rows.x, rows.y, rows.supplied, rows.gained, rows.throughput, rows.outside):

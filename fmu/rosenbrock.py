@@ -122,7 +122,7 @@ def step(ode: Any, residual: Any, x: Any, z: Any, u: Any, tableau: Tableau = ROD
             rates[key] = ca.substitute([whole], [w, u], moved)[0] if any(a) or alpha else whole
         right = rates[key] + d * h * slopes
         past = _combine(c, stages)
-        upper = gamma_h * right[:n] + (tableau.gamma * past[:n] if any(c) else 0.0)
-        stages.append(factors.solve(ca.vertcat(upper, -right[n:])))
+        upper = gamma_h * right[:n, :] + (tableau.gamma * past[:n, :] if any(c) else 0.0)
+        stages.append(factors.solve(ca.vertcat(upper, -right[n:, :])))
     w_new, error = w + _combine(tableau.m, stages), ca.densify(ca.SX(_combine(tableau.e, stages)))
-    return w_new[:n], w_new[n:], error[:n], slope, h
+    return w_new[:n, :], w_new[n:, :], error[:n, :], slope, h

@@ -78,7 +78,15 @@ def catalogue(kind: str) -> Mapping[str, Entry]:
 
 
 def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
-    """The entries in a catalogue file, a table each. Raises ScenarioError with all problems at once."""
+    """The entries in a catalogue file, a table each.
+
+    Args:
+        kind: of its entries, a key of `FILES`
+        path: the TOML file
+
+    Raises:
+        ScenarioError: all problems of the file at once
+    """
     units = {**_taken_by_parts(), **DESCRIPTIVE.get(kind, {})}
     entries: dict[str, Entry] = {}
     problems: list[str] = []
@@ -125,7 +133,15 @@ def _taken_by_parts() -> dict[str, str]:
 
 
 def entry(kind: str, name: str) -> Entry:
-    """One entry. Raises ScenarioError with suggestions for an unknown name."""
+    """One entry of a catalogue.
+
+    Args:
+        kind: of the entry, a key of `FILES`
+        name: of the entry
+
+    Raises:
+        ScenarioError: unknown kind or name, with suggestions
+    """
     known = catalogue(kind)
     if name not in known:
         close = suggestion(name, known) or f" Known: {', '.join(known)}."

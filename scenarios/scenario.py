@@ -10,7 +10,6 @@ from ..model.core.declare import Input, declared
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.machines.spec import Spec
-from ..model.parts import PARTS
 from .entries import FILES, Entry, catalogue, unchecked_entry
 from .measured import Campaign, Protocol
 from .values import Override, entry_values, in_range, settable
@@ -64,7 +63,7 @@ class Scenario:
         return {
             f"{part.name}.{key}": d.quantity(f"{part.name}.{key}")
             for part in self.spec.parts
-            for key, d in settable(PARTS[part.type]).items()
+            for key, d in settable(self.spec.types[part.type]).items()
         }
 
     def inputs(self) -> dict[str, Quantity]:
@@ -73,11 +72,19 @@ class Scenario:
         return {
             path: known[path]
             for part in self.spec.parts
-            for path in (f"{part.name}.{key}" for key in declared(PARTS[part.type], Input))
+            for path in (f"{part.name}.{key}" for key in declared(self.spec.types[part.type], Input))
         }
 
     def with_values(self, values: Mapping[str, float], source: str = "given by the user") -> Scenario:
-        """The scenario with values replaced, by path, in SI. Raises ScenarioError for parts that do not exist."""
+        """The scenario with values replaced.
+
+        Args:
+            values: path -> value in SI
+            source: where the values are from
+
+        Raises:
+            ScenarioError: parts that do not exist
+        """
         moved = {path: values[path] for path in self.inputs() if path in values}
         return replace(
             self,
@@ -93,17 +100,34 @@ class Scenario:
         return replace(self, spec=self.spec.driven(fixed), given=fixed)
 
     def entry_values(self, part: str, name: str) -> dict[str, float]:
-        """Values by path that a catalogue entry gives a part ("oil", "MINR"). Raises ScenarioError with suggestions."""
-        found = entry_values(self._entry(part, name), settable(PARTS[self.spec.part(part).type]))
+        """Values in SI by path that a catalogue entry gives a part.
+
+        Args:
+            part: name of a part ("oil")
+            name: of an entry of its catalogue ("MINR")
+
+        Raises:
+            ScenarioError: unknown name, with suggestions
+        """
+        found = entry_values(self._entry(part, name), settable(self.spec.types[self.spec.part(part).type]))
         return {f"{part}.{key}": value for key, value in found.items()}
 
     def entry_sources(self, part: str, name: str, source: str) -> dict[str, str]:
-        """A source for each value that an entry gives a part, with a remark where the value is unchecked."""
+        """A source for each value that an entry gives a part, with a remark where the value is unchecked.
+
+        Args:
+            part: name of a part
+            name: of an entry of its catalogue
+            source: of the entry, in words
+
+        Raises:
+            ScenarioError: unknown name, with suggestions
+        """
         found = self._entry(part, name)
         return {path: found.told(path.rpartition(".")[2], source) for path in self.entry_values(part, name)}
 
     def _entry(self, part: str, name: str) -> Entry:
-        declarations = settable(PARTS[self.spec.part(part).type])
+        declarations = settable(self.spec.types[self.spec.part(part).type])
         kinds = self.entries.get(part) or FILES
         known = {n: e for kind in kinds for n, e in catalogue(kind).items() if entry_values(e, declarations)}
         if name not in known:

@@ -30,8 +30,8 @@ from ..model.run.algebra import algebra
 from ..model.run.fast import Fast
 from ..model.run.schedule import Schedule, stepped
 from ..model.run.simulate import simulate
-from ..scenarios.load import load
 from .bench_costs import from_c, growth, growth_rows
+from .rigs import load
 from .settings import flat_of
 
 #: The warm-up: five stages of 66 min at these parts of the speed; the same as in `importer/measure.c`.

@@ -2,20 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from typing import Any
 
-from ..fmu.effective import effective
 from ..model.core.declare import Choice, Parameter, declared
 from ..model.core.flat import FlatModel, Quantity
-from ..model.parts import PARTS
+from ..model.errors import SolveError
+from ..model.run.steady import steady
 from ..model.sources import LawInfo, sources
 from ..model.units import from_si, shown, text
 from ..scenarios.entries import FILES, Entry, catalogue
-from ..scenarios.load import list_rigs, load
+from ..scenarios.load import list_rigs
 from ..scenarios.scenario import Scenario
 from .console import answer, table
+from .points import conditions, outside_of, tell_outside
+from .rigs import load
 from .settings import flat_of
+from .unchecked import print_unchecked, unchecked
 
 
 def list_command(json: str | None) -> None:
@@ -41,13 +44,13 @@ def list_command(json: str | None) -> None:
 def show_command(rig: str, errata: bool, json: str | None) -> None:
     """Everything a rig file says, in SI where unit and value stand apart and as shown to a person otherwise."""
     scenario = load(rig)
-    flat = flat_of(scenario)
+    flat, types = flat_of(scenario), scenario.spec.types
     found = {
         "schema": "gearheat.show/1",
         "rig": scenario.name,
         "doc": scenario.doc,
         "kind": scenario.kind,
-        "parts": [{"name": p.name, "type": p.type, "doc": _doc(PARTS[p.type])} for p in scenario.spec.parts],
+        "parts": [{"name": p.name, "type": p.type, "doc": _doc(types[p.type])} for p in scenario.spec.parts],
         "parameters": [_parameter(scenario, flat, q) for q in every_parameter(scenario, flat)],
         "choices": choices(scenario),
         "inputs": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.inputs],
@@ -55,10 +58,19 @@ def show_command(rig: str, errata: bool, json: str | None) -> None:
         "outputs": [_output(q) for q in flat.outputs if q.name not in flat.derived],
         "sensors": dict(scenario.sensors),
         "laws": laws(flat),
+        **_at_the_operating_point(scenario, flat),
         "unchecked": unchecked(scenario, flat),
         "errata": errata_of(scenario),
     }
     answer(found, json, lambda: _print_errata(found) if errata else _print(found))
+
+
+def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> dict[str, Any]:
+    """The laws outside their range where the rig is at rest with its surroundings, or why there is no such point."""
+    try:
+        return {"outside": outside_of(steady(flat, conditions(scenario, flat))), "no_steady_state": []}
+    except SolveError as error:
+        return {"outside": [], "no_steady_state": list(error.problems)}
 
 
 def _comparison(entry: Entry) -> str:
@@ -67,36 +79,12 @@ def _comparison(entry: Entry) -> str:
     return "all" if not missing else f"not {', '.join(missing)}" if entry.checked else "none"
 
 
-def unchecked(scenario: Scenario, flat: FlatModel, filled: Iterable[tuple[str, str]] = ()) -> list[dict[str, Any]]:
-    """Catalogue entries in use with values that were compared with no print, without those that have no effect.
-
-    Args:
-        scenario: the rig as set
-        flat: its model
-        filled: part and name of further entries that a run fills parts with, such as the oils of a campaign
-    """
-    acting = {q.name for q in effective(flat).parameters}
-    found = {entry: [p for p in paths if p in acting] for entry, paths in scenario.unchecked(filled).items()}
-    return [{"catalogue": kind, "entry": name, "values": paths} for (kind, name), paths in found.items() if paths]
-
-
-def unchecked_lines(found: Iterable[Mapping[str, Any]]) -> list[str]:
-    """Unchecked entries as a person reads them, a line each."""
-    return [f'{e["catalogue"]} "{e["entry"]}": {", ".join(e["values"])}' for e in found]
-
-
-def print_unchecked(found: Iterable[Mapping[str, Any]]) -> None:
-    """Say which values of the catalogue were compared with no print."""
-    for line in unchecked_lines(found):
-        print(f"catalogue values not checked against a print: {line}")
-
-
 def source_of(scenario: Scenario, path: str) -> str:
     """Where the value of a path is from: a source, or what the part itself says where no file gives it."""
     if path in scenario.value_sources:
         return scenario.value_sources[path]
     part, _, key = path.rpartition(".")
-    parameter = declared(PARTS[scenario.spec.part(part).type], Parameter).get(key)
+    parameter = declared(scenario.spec.types[scenario.spec.part(part).type], Parameter).get(key)
     return "follows from the other values" if parameter is not None and parameter.derived else "default"
 
 
@@ -117,7 +105,7 @@ def choices(scenario: Scenario) -> list[dict[str, Any]]:
     """The structural choices of all parts, with what is chosen."""
     found = []
     for part in scenario.spec.parts:
-        for key, choice in declared(PARTS[part.type], Choice).items():
+        for key, choice in declared(scenario.spec.types[part.type], Choice).items():
             value = part.values.get(key, choice.default)
             found.append({"name": f"{part.name}.{key}", "value": value, "options": choice.options, "doc": choice.doc})
     return found
@@ -193,6 +181,9 @@ def _print(found: dict[str, Any]) -> None:
     table("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")))
     keys = ("law", "where", "valid", "verified", "source")
     table("Laws", keys, _rows(found["laws"], keys))
+    tell_outside(found["outside"])
+    for problem in found["no_steady_state"]:
+        print(f"no steady state at the operating point: {problem}")
     print_unchecked(found["unchecked"])
     if found["errata"]:
         print(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")

@@ -14,13 +14,13 @@ from ..model.run.point import point
 from ..model.run.rows import evaluate
 from ..model.run.steady import steady, steady_table
 from ..scenarios.entries import catalogue
-from ..scenarios.load import load
 from ..scenarios.measured import Campaign, Protocol, Reading, read_measured
 from ..scenarios.scenario import Scenario
 from .console import answer, table
-from .describe import print_unchecked, unchecked
 from .points import conditions
+from .rigs import load
 from .settings import DIAGNOSED, SET, adjusted, choice_paths, driven_by, flat_of
+from .unchecked import print_unchecked, unchecked
 
 
 def command(
@@ -95,7 +95,7 @@ def at_readings(scenario: Scenario, campaign: Campaign, temperature: str) -> lis
         name = {"point": reading.point, "test": reading.test, "direction": reading.direction, "oil": reading.oil}
         found = {c: float(sum(columns[p][i] for p in paths)) for c, paths in scenario.losses.items()}
         T_oil = reading.si("T_oil_C") if temperature == "measured" else float(columns[scenario.sensors["T_oil_C"]][i])
-        total = float(columns["efficiency.P_loss"][i])
+        total = float(columns["efficiency.P_loss"][i]) if "efficiency.P_loss" in columns else found["P_total_W"]
         rows.append({**name, **found, "alphaA_W_K": total / (T_oil - reading.si("T_amb_C"))})
     return rows
 

@@ -11,11 +11,11 @@ from ..model.run.design import Design, design
 from ..model.run.result import Result
 from ..model.run.steady import steady
 from ..model.units import from_si, shown
-from ..scenarios.load import load
 from ..scenarios.scenario import Scenario, parse_assignments
 from .console import answer, table
-from .describe import print_unchecked, unchecked
+from .rigs import load
 from .settings import adjusted, flat_of
+from .unchecked import print_unchecked, unchecked
 
 #: Words of a table of values.
 HEAD = ("name", "value", "unit", "meaning")
@@ -161,10 +161,16 @@ def _print(title: str, flat: FlatModel, found: Mapping[str, Any]) -> None:
     body = [[n, v, found["units"][n], flat.quantity(n).doc] for n, v in found["values"].items()]
     table(title, HEAD, body)
     print(f"power balance closed within {found['energy_residual']:.1e} of the throughput")
-    for o in found["outside"]:
-        met, (low, high) = o["met"][0], o["range"]
-        print(f"outside its range: {o['part']}: {o['law']}, {o['argument']} = {met:.4g} (valid {low:g} to {high:g})")
+    tell_outside(found["outside"])
     print_unchecked(found["unchecked"])
+
+
+def tell_outside(outside: Sequence[Mapping[str, Any]]) -> None:
+    """Print a line for each law that was used outside its range, as `outside_of` lists them."""
+    for o in outside:
+        (least, most), (low, high) = o["met"], o["range"]
+        met = f"{least:.4g}" if least == most else f"{least:.4g} to {most:.4g}"
+        print(f"outside its range: {o['part']}: {o['law']}, {o['argument']} = {met} (valid {low:g} to {high:g})")
 
 
 def _print_design(flat: FlatModel, found: Mapping[str, Any]) -> None:
@@ -191,6 +197,10 @@ def _print_alternatives(found: Mapping[str, Any]) -> None:
         head,
         [[a[part], *(a["values"].get(n, a["free"].get(n)) for n in names)] for a in solved],
     )
+    for alternative in solved:
+        if alternative["outside"]:
+            print(f"{part} = {alternative[part]}:")
+            tell_outside(alternative["outside"])
     for alternative in found["alternatives"]:
         for problem in alternative.get("problems", ()):
             print(f"{part} = {alternative[part]}: {problem}")

@@ -12,10 +12,9 @@ from ..model.core.flat import FlatModel
 from ..model.core.flatten import flatten
 from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
 from ..model.machines.spec import Spec, assemble
-from ..model.parts import PARTS
-from ..scenarios.load import load
 from ..scenarios.measured import read_measured
 from ..scenarios.scenario import Scenario, parse_assignments
+from .rigs import load
 
 Drive = Mapping[str, tuple[str, ...]]
 
@@ -147,12 +146,12 @@ def driven_at(scenario: Scenario, shaft: str | None, given: str) -> dict[str, tu
 
 def given_paths(spec: Spec) -> set[str]:
     """Paths of the quantities that may be given at the shaft ends."""
-    return {f"{part.name}.{key}" for part in spec.parts for key in declared(PARTS[part.type], Given)}
+    return {f"{part.name}.{key}" for part in spec.parts for key in declared(spec.types[part.type], Given)}
 
 
 def choice_paths(spec: Spec) -> dict[str, Choice]:
     """Choices of all parts by path; those without options follow from the drive."""
-    found = {f"{p.name}.{key}": c for p in spec.parts for key, c in declared(PARTS[p.type], Choice).items()}
+    found = {f"{p.name}.{key}": c for p in spec.parts for key, c in declared(spec.types[p.type], Choice).items()}
     return {path: choice for path, choice in found.items() if choice.options}
 
 
@@ -170,7 +169,7 @@ def parameter_of(spec: Spec, path: str) -> Parameter | None:
     """The declaration of the parameter of a path, None where there is none."""
     part, _, key = path.rpartition(".")
     kinds = [p.type for p in spec.parts if p.name == part]
-    return declared(PARTS[kinds[0]], Parameter).get(key) if kinds else None
+    return declared(spec.types[kinds[0]], Parameter).get(key) if kinds else None
 
 
 def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], list[str]]:

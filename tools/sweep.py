@@ -18,15 +18,15 @@ from ..model.run.point import problem_of
 from ..model.run.schedule import Schedule
 from ..model.units import from_si, shown, to_si
 from ..scenarios.duty import duty_names, read_duty
-from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
 from . import sampling
 from .console import answer, file_of, note, table, writable
-from .describe import print_unchecked, unchecked
+from .rigs import load
 from .settings import adjusted, flat_of
 from .sweep_file import SUFFIXES, Column, Store, parquet_missing, work_file, write_table
 from .sweep_rows import TELLING, Block, Job, clustered, dask_missing, local
 from .transients import first_temperatures
+from .unchecked import print_unchecked, unchecked
 
 #: Rows of a block: what an interruption may cost, and what a worker of a cluster gets at a time.
 BLOCKS = {"steady": 8192, "warmup": 256}

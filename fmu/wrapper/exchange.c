@@ -41,6 +41,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_return, f
     if (missing(m, enter_event_mode, 1, f) || missing(m, terminate, 1, f)) return fmi2Error;
     *enter_event_mode = fmi2False;
     *terminate = fmi2False;
+    accept_algebra(m);
     warn_validity(m);
     return fmi2OK;
 }

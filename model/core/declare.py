@@ -18,7 +18,11 @@ from .flat import Quantity
 
 @dataclass(eq=False)
 class Declaration:
-    """Common part: unit, meaning, typical size and range of one scalar."""
+    """Common part: unit, meaning, typical size and range of one scalar.
+
+    `refusal` says what a value outside the range means and what to do; "{name}" in it stands for the value of that
+    output of the same part.
+    """
 
     unit: str
     doc: str
@@ -27,6 +31,7 @@ class Declaration:
     at_least: float | None = None
     below: float | None = None
     at_most: float | None = None
+    refusal: str = ""
     name: str = field(default="", init=False)
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -49,6 +54,7 @@ class Declaration:
             np.inf if high is None else high,
             self.above is not None,
             self.below is not None,
+            self.refusal,
         )
 
 

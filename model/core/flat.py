@@ -17,7 +17,10 @@ from ..units import text
 
 @dataclass(frozen=True)
 class Quantity:
-    """One scalar of a model: path, SI unit, meaning, typical size, value when nothing else is given, and range."""
+    """One scalar of a model: path, SI unit, meaning, typical size, value when nothing else is given, and range.
+
+    `refusal` says what a value outside the range means, see `Declaration`.
+    """
 
     name: str
     unit: str
@@ -28,6 +31,7 @@ class Quantity:
     high: float = np.inf
     low_open: bool = False
     high_open: bool = False
+    refusal: str = ""
 
     def problem(self, value: float) -> str | None:
         """What is wrong with a value, or None."""

@@ -123,20 +123,6 @@ def addendum_contact_ratio(d_a: Num, d_b: Num, alpha_wt: Num, p_et: Num) -> Num:
     return d_b * (ca.sqrt((d_a / d_b) ** 2 - 1) - ca.tan(alpha_wt)) / (2 * p_et)
 
 
-@law(source="ISO21771", where="overlap ratio")
-def overlap_ratio(b: Num, beta: Num, m_n: Num) -> Num:
-    r"""Overlap ratio [1].
-
-    .. math:: \varepsilon_\beta = \frac{b \sin\beta}{\pi m_n}
-
-    Args:
-        b: face width [m]
-        beta: helix angle at the reference cylinder [rad]
-        m_n: normal module [m]
-    """
-    return b * ca.sin(beta) / (math.pi * m_n)
-
-
 @law(source="ISO21771", where="radius of curvature at the pitch point")
 def curvature_radius(d_b: Num, alpha_wt: Num) -> Num:
     r"""Transverse radius of curvature of a flank at the pitch point [m], negative for an internal gear.

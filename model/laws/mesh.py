@@ -7,7 +7,10 @@ import math
 import casadi as ca
 
 from ..sources import law
-from .smooth import Num, smooth_abs, smooth_magnitude
+from .smooth import Num, smooth_abs, smooth_cap
+
+#: Viscosity [mPa.s] beyond which thicker oil lowers the friction of the teeth no more: they are on a full film then.
+FULL_FILM_VISCOSITY = 1000.0
 
 
 @law(source="Schlenk1994", where="line load of the mean friction coefficient, as in ISO/TR 14179-2", verified=False)
@@ -39,7 +42,8 @@ def load_per_contact_length(F_bn: Num, length: Num) -> Num:
 @law(
     source="Schlenk1994",
     where="mean friction coefficient of the mesh",
-    valid="boundary and mixed friction, transferable with X_L to other oils",
+    valid="boundary and mixed friction, pitch line up to 50 m/s, oils up to 1 Pa.s, with X_L also others than mineral",
+    ranges={"v_sum": (-34.0, 34.0), "eta_oil": (0.0, 1.0)},
 )
 def friction_schlenk(
     line_load: Num,
@@ -69,7 +73,8 @@ def friction_schlenk(
     """
     F, v = smooth_abs(line_load, F_width), smooth_abs(v_sum, v_width)
     F_N_mm, R_mm, eta_mPas, Ra_um = 1e-3 * F, 1e3 * R, 1e3 * eta_oil, 1e6 * Ra
-    return 0.048 * (F_N_mm / (v * R_mm)) ** 0.2 * eta_mPas**-0.05 * Ra_um**0.25 * X_L
+    eta_eff = smooth_cap(eta_mPas, FULL_FILM_VISCOSITY)
+    return 0.048 * (F_N_mm / (v * R_mm)) ** 0.2 * eta_eff**-0.05 * Ra_um**0.25 * X_L
 
 
 @law(
@@ -108,37 +113,15 @@ def tooth_loss_factor(z_1: Num, u: Num, beta_b: Num, eps_1: Num, eps_2: Num, *, 
     return math.pi * (u + 1) / (z_1 * u * ca.cos(beta_b)) * polynomial
 
 
-@law(
-    source="Ohlendorf1958",
-    where="tooth loss factor",
-    valid="1 <= eps_1 + eps_2 <= 2, both below 1",
-    ranges={"eps_1": (0.0, 1.0), "eps_2": (0.0, 1.0)},
-)
-def tooth_loss_factor_ohlendorf(z_1: Num, u: Num, beta_b: Num, eps_1: Num, eps_2: Num) -> Num:
-    r"""Tooth loss factor for a transverse contact ratio between 1 and 2 [1].
-
-    .. math:: H_V = \frac{\pi (u + 1)}{z_1 u \cos\beta_b} (1 - \varepsilon_\alpha + \varepsilon_1^2 + \varepsilon_2^2)
-
-    Args:
-        z_1: number of teeth of the first gear [1]
-        u: teeth ratio z_2/z_1, negative for an internal second gear [1]
-        beta_b: helix angle at the base cylinder [rad]
-        eps_1: addendum contact ratio of the first gear [1]
-        eps_2: addendum contact ratio of the second gear [1]
-    """
-    return math.pi * (u + 1) / (z_1 * u * ca.cos(beta_b)) * (1 - eps_1 - eps_2 + eps_1**2 + eps_2**2)
-
-
 @law(source="Ohlendorf1958", where="mesh loss power")
-def mesh_loss(P_a: Num, mu: Num, H_v: Num, *, P_width: float = 0.1) -> Num:
-    r"""Friction power of one mesh [W], never negative.
+def mesh_loss(P_a: Num, mu: Num, H_v: Num) -> Num:
+    r"""Friction power of a mesh [W]; of a torque on one shaft its part that is lost there [N.m].
 
-    .. math:: P_{VZP} = |P_a| \mu H_V
+    .. math:: P_{VZP} = P_a \mu H_V
 
     Args:
-        P_a: power through the mesh in the frame of the axles, either direction [W]
+        P_a: magnitude of the power [W], or of the torque [N.m], through the mesh in the frame of the axles
         mu: mean friction coefficient [1]
         H_v: tooth loss factor [1]
-        P_width: rounding at zero power [W]
     """
-    return smooth_magnitude(P_a, P_width) * mu * H_v
+    return mu * H_v * P_a

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ..core.component import Component, Equation, equation
 from ..core.declare import Output, Parameter
-from ..laws.smooth import Num, smooth_sign
+from ..laws.smooth import Num, friction_sign
 from .ports import Flange, HeatPort
 
 
@@ -30,7 +30,7 @@ class Friction(Component):
         """All friction becomes heat."""
         w = self.shaft.w
         yield equation("friction torque", self.tau_loss, self.count * self.torque())
-        yield equation("friction opposes rotation", self.shaft.tau, self.tau_loss * smooth_sign(w))
+        yield equation("friction opposes rotation", self.shaft.tau, self.tau_loss * friction_sign(w))
         yield equation("friction power", self.P_loss, self.shaft.tau * w)
         yield equation("heat to the inner body", self.inner.Q_flow, -self.inner_share * self.P_loss)
         yield equation("heat to the outer body", self.outer.Q_flow, -(1 - self.inner_share) * self.P_loss)

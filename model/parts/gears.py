@@ -26,8 +26,14 @@ from ..laws.gears import (
     undercut_shift,
     working_pressure_angle,
 )
-from ..laws.mesh import friction_schlenk, load_per_contact_length, load_per_face_width, tooth_loss_factor
-from ..laws.smooth import Num, smooth_abs, smooth_sign
+from ..laws.mesh import (
+    friction_schlenk,
+    load_per_contact_length,
+    load_per_face_width,
+    mesh_loss,
+    tooth_loss_factor,
+)
+from ..laws.smooth import Num, friction_sign, smooth_abs
 from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading, ToothForce
 
 #: Share of a_w that the base circles may take; at 1 the flanks would have no line of action.
@@ -207,13 +213,13 @@ class HelicalGearPair(ToothedPart):
     def equations(self) -> Iterator[Equation]:
         """The gear that drives brings the loss; what is left arrives at the other."""
         w, ratio, r = self.pinion.w, self.z_2 / self.z_1, self.radius(self.z_1)
-        sign = smooth_sign(w)
+        sign = friction_sign(w)
         tau_mean = smooth_abs(self.pinion.tau - sign * self.tau_loss / 2, self.tau_width)
         mu, Lambda = self.friction(self.contact(self.eps_alpha, self.z_1, self.z_2), self.force.F_t, w)
         alpha_t = transverse_pressure_angle(self.alpha_n, self.beta)
         yield equation("gears roll on each other", self.wheel.w, -w / ratio)
         yield equation("torque less loss", self.wheel.tau / ratio, self.pinion.tau - sign * self.tau_loss)
-        yield equation("mesh loss", self.tau_loss, self.mu * self.H_v * (tau_mean + self.tau_loss / 2))
+        yield equation("mesh loss", self.tau_loss, mesh_loss(tau_mean + self.tau_loss / 2, self.mu, self.H_v))
         yield equation("mesh power", self.P_loss, self.tau_loss * sign * w)
         yield equation("tooth friction", self.mu, mu)
         yield equation("film", self.Lambda, Lambda)
@@ -240,7 +246,11 @@ class PlanetarySet(ToothedPart):
     planet_load = BearingLoad()
     reading = ShaftReading()
 
-    power_flow = Choice(("successive", "ideal"), "whether losses reduce what is passed on", default="successive")
+    power_flow = Choice(
+        ("successive", "ideal"),
+        "ideal: mesh forces from the input torque; successive: each stage sees upstream losses",
+        default="successive",
+    )
     N = Parameter("1", "number of planets", above=0.0, whole=True)
     z_3 = Parameter("1", "number of teeth of the ring", above=0.0, whole=True)
     eps_alpha_sp = Parameter("1", "transverse contact ratio sun-planet", above=0.0)
@@ -305,7 +315,7 @@ class PlanetarySet(ToothedPart):
     def equations(self) -> Iterator[Equation]:
         """Kinematics, torques, and the two kinds of meshes."""
         w = self.sun.w - self.carrier.w
-        i_0, sign = self.z_3 / self.z_1, smooth_sign(w)
+        i_0, sign = self.z_3 / self.z_1, friction_sign(w)
         losses = sign * (self.tau_loss_sp + self.tau_loss_pr)
         yield equation("Willis", self.sun.w + i_0 * self.ring.w, (1 + i_0) * self.carrier.w)
         yield equation("planets roll on the sun", self.planet.w, -w * self.z_1 / self.z_2)
@@ -331,8 +341,10 @@ class PlanetarySet(ToothedPart):
         yield equation("film sun-planet", self.Lambda_sp, Lambda_sp)
         yield equation("film planet-ring", self.Lambda_pr, Lambda_pr)
         half = 0.5 if self.power_flow == "successive" else 0.0
-        yield equation("loss sun-planet", self.tau_loss_sp, self.mu_sp * self.H_v_sp * (sp + half * self.tau_loss_sp))
-        yield equation("loss planet-ring", self.tau_loss_pr, self.mu_pr * self.H_v_pr * (pr + half * self.tau_loss_pr))
+        loss_sp = mesh_loss(sp + half * self.tau_loss_sp, self.mu_sp, self.H_v_sp)
+        loss_pr = mesh_loss(pr + half * self.tau_loss_pr, self.mu_pr, self.H_v_pr)
+        yield equation("loss sun-planet", self.tau_loss_sp, loss_sp)
+        yield equation("loss planet-ring", self.tau_loss_pr, loss_pr)
         yield equation("power sun-planet", self.P_loss_sp, self.tau_loss_sp * sign * w)
         yield equation("power planet-ring", self.P_loss_pr, self.tau_loss_pr * sign * w)
 

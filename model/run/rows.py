@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
 from ..core.flat import FlatModel
+from ..errors import SolveError
 from ..sources import LawInfo
+from ..units import text
 from .algebra import algebra
 from .result import Audit, Outside, Result
 
@@ -66,6 +68,8 @@ def result(
     """One result from states, inputs and what `evaluate` made of them."""
     groups = ((flat.states, x), (flat.inputs, u), (flat.outputs, evaluated["y"]))
     columns = {q.name: row for quantities, values in groups for q, row in zip(quantities, values, strict=True)}
+    if problems := list(out_of_range(flat, columns)):
+        raise SolveError([f"{kind}: {problem}" for problem in problems])
     return Result(
         model=flat.name,
         kind=kind,
@@ -77,6 +81,24 @@ def result(
         laws=cited(flat.laws),
         implicit=left(flat, evaluated["residual"]),
     )
+
+
+def out_of_range(flat: FlatModel, columns: Mapping[str, np.ndarray]) -> Iterator[str]:
+    """What is wrong with the outputs that leave their declared range, the worst row of each, in words."""
+    for q in flat.outputs:
+        values = columns[q.name]
+        slack = SLACK * (q.nominal + np.abs(values))
+        excess = np.maximum(q.low - values, values - q.high)
+        row = int(np.argmax(np.where(np.isnan(excess), np.inf, excess)))
+        if excess[row] <= slack[row]:
+            continue
+        part = q.name.rpartition(".")[0]
+        if q.refusal:
+            of_part = {o.name.removeprefix(f"{part}."): o for o in flat.outputs if o.name.startswith(f"{part}.")}
+            shown = {key: text(float(columns[o.name][row]), o.unit) for key, o in of_part.items()}
+            yield f"{part}: {q.refusal.format(**shown)}"
+        else:
+            yield str(q.problem(float(values[row])))
 
 
 def outside(flat: FlatModel, checked: np.ndarray) -> tuple[Outside, ...]:

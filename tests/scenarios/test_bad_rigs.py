@@ -41,7 +41,7 @@ FACE = 'b = "42 mm"'
         (
             'room.T = "25 degC"',
             'room.T = "-300 degC"',
-            'rig.toml [operating_point]: room.T = "-300 degC" is out of range. It must be above 0 K.',
+            'rig.toml [operating_point]: room.T = "-300 degC" is out of range. It must be at least 213.15 K.',
         ),
         (
             'room.T = "25 degC"',
@@ -298,5 +298,5 @@ def test_a_folder_without_a_rig(tmp_path: Path) -> None:
 
 def test_a_file_that_is_no_text(tmp_path: Path) -> None:
     (path := tmp_path / "rig.toml").write_bytes(b"\xff\x00")
-    with pytest.raises(ScenarioError, match="is no text in UTF-8"):
+    with pytest.raises(ScenarioError, match="is not UTF-8 text"):
         load(path)

@@ -16,9 +16,11 @@ ENTRIES = [found for kind in FILES for found in catalogue(kind).values()]
 NEEDED = {
     "TaperedRollerBearing": {"d", "D", "d_m", "R_1", "R_2", "S_1", "S_2", "Y", "K_Z"},
     "DeepGrooveBallBearing": {"d", "D", "d_m", "R_1", "R_2", "S_1", "S_2", "C_0", "K_Z"},
+    "CylindricalRollerBearing": {"d", "D", "d_m", "B", "R_1", "S_1", "S_2", "K_Z", "K_L"},
     "NeedleBearing": {"d_m"},
 }
 WORDS = {"tapered": "TaperedRollerBearing", "deep groove": "DeepGrooveBallBearing", "needle": "NeedleBearing"}
+WORDS |= {"cylindrical": "CylindricalRollerBearing"}
 
 
 def problems(tmp_path: Path, text: str, kind: str = "bearing") -> tuple[str, ...]:

@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 from gearheat.scenarios.load import load
 from gearheat.scenarios.write import rig_text
-from gearheat.tools import describe
 from gearheat.tools.losses import oils_of
 from gearheat.tools.settings import adjusted, flat_of
+from gearheat.tools.unchecked import unchecked
 
 OIL = {
     "catalogue": "oil",
@@ -22,7 +22,7 @@ LINE = (
 
 def found(rig: str, *assignments: str) -> list[dict]:
     scenario = adjusted(load(rig), assignments)
-    return describe.unchecked(scenario, flat_of(scenario))
+    return unchecked(scenario, flat_of(scenario))
 
 
 def test_what_is_unchecked_and_acts_is_named() -> None:
@@ -55,7 +55,7 @@ def test_written_rig_still_says_it(tmp_path) -> None:
 def test_oils_of_a_campaign_count() -> None:
     """Each test runs with its own oil: two of the four lack a printed value."""
     scenario = load("planetary")
-    told = describe.unchecked(scenario, flat_of(scenario), oils_of(scenario.campaign))
+    told = unchecked(scenario, flat_of(scenario), oils_of(scenario.campaign))
     assert [(e["entry"], e["values"]) for e in told] == [("MINE", ["oil.s_p", "oil.t_p"]), ("PAGD", ["oil.c_p"])]
 
 
