@@ -167,3 +167,10 @@ def test_bearing_has_the_printed_friction_constants_of_its_series(name: str) -> 
     printed = SERIES[number[:2] if len(number.partition("-")[0]) == 4 else number[:3]]
     entry = entries("bearings.toml")[name]
     assert tuple(entry.get(key) for key in ("R_1", "R_2", "S_1", "S_2", "K_Z", "K_L")) == printed
+
+
+def test_cylindrical_roller_bearing_is_the_printed_one() -> None:
+    """SKF2017, tables 3c (series 4, with a cage) and 5; general catalogue 6000, page 524."""
+    entry = entries("bearings.toml")["NJ 406"]
+    assert [entry[k] for k in ("d", "D", "B")] == ["30 mm", "90 mm", "23 mm"]
+    assert [entry[k] for k in ("R_1", "S_1", "S_2", "K_Z", "K_L")] == [1.0e-6, 0.16, 0.0015, 5.1, 0.65]
