@@ -56,7 +56,7 @@ def test_all_bearings_are_checked() -> None:
 def test_an_oil_gives_all_that_a_lubricant_needs(found: Entry) -> None:
     given = set(entry_values(found, settable(PARTS["OilBath"])))
     needed = {"nu_40", "nu_100", "rho_15", "alpha_T", "s_p", "t_p", "X_L"}
-    assert given == (needed if "grease" in found.name else needed | {"c_p"})
+    assert given == (needed if "grease" in found.name else needed | {"c_p", "T_pour"})
     values = entry_values(found, settable(PARTS["OilBath"]))
     assert values["nu_40"] > values["nu_100"]
     assert 800 < values["rho_15"] < 1100
