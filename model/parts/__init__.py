@@ -4,10 +4,11 @@ from ..core.component import Component
 from .bearings import DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
 from .extra import ExtraConductor, ExtraHeat, ExtraLoss
-from .gears import HelicalGearPair, PlanetarySet, ShaftSupport, TwoGearSupport
+from .gears import HelicalGearPair, PlanetarySet
 from .lubrication import Grease, OilBath
 from .sealing import LipSeal
 from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, ShaftEnd
+from .supports import ShaftSupport, TwoGearSupport
 from .thermal import (
     BoxCooling,
     CylinderCooling,
