@@ -159,8 +159,9 @@ def _flat_model(
 
 
 def _shown(part: Component, joined: Mapping[str, str]) -> dict[str, Declaration]:
-    """The outputs of a part, and those of its states that follow others."""
-    return {k: d for k, d in part.states.items() if f"{part.name}.{k}" in joined} | part.outputs()
+    """The outputs of a part, behind those of its states that follow others."""
+    following: dict[str, Declaration] = {k: d for k, d in part.states.items() if f"{part.name}.{k}" in joined}
+    return {**following, **part.outputs()}
 
 
 def _output(path: str, declaration: Declaration, joined: Mapping[str, str]) -> Quantity:

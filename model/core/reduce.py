@@ -52,14 +52,30 @@ def reduce(assembly: Assembly, rows: list[Row], unknowns: list[Unknown], typical
         StructureError: start values given for two states that follow each other do not fit together
     """
     reduced = Reduced(list(rows), list(unknowns))
-    known = Known.of(assembly, typical)
     columns = columns_of(incidence(rows, unknowns))
+    if not Matching(columns, len(unknowns)).spare_rows:
+        return reduced
+    known = Known.of(assembly, typical)
+    standing = _standing(rows, known)
+    place = {u.symbol.element_hash(): i for i, u in enumerate(unknowns)}
     while (found := _coupling(reduced, columns, known)) is not None:
         relation, k = found
+        follower = relation.states[k]
+        for row in standing[_path(*follower)]:
+            columns[row].append(len(reduced.unknowns))
+        columns.append([place[part.derivatives[key].element_hash()] for part, key in relation.states])
         _demote(assembly.name, relation, k, known, reduced)
-        # the incidence of what was there gains one column, and one row joins it
-        columns = columns_of(incidence(reduced.rows, reduced.unknowns))
     return reduced
+
+
+def _standing(rows: list[Row], known: Known) -> dict[str, list[int]]:
+    """In which equations each state stands, by its path."""
+    states = [Unknown(part.symbols[key], _path(part, key)) for part, key in known.states.values()]
+    found: dict[str, list[int]] = {state.name: [] for state in states}
+    for row, columns in enumerate(columns_of(incidence(rows, states))):
+        for column in columns:
+            found[states[column].name].append(row)
+    return found
 
 
 def _coupling(reduced: Reduced, columns: list[list[int]], known: Known) -> tuple[Relation, int] | None:

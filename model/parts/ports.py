@@ -35,7 +35,7 @@ class AirPort(HeatPort):
 class Flange(Port):
     """End of a shaft. Positive tau acts on the component that owns the flange, in the direction of positive w."""
 
-    missing = "no shaft turns it"
+    missing = "no shaft is there"
     source = "the flange of a shaft end, a gear or an inertia"
     instead = "give a torque in place of a speed"
 
@@ -71,7 +71,7 @@ class ToothForce(Port):
 class Lubricant(Port):
     """State of a lubricant where it is used: information, not power."""
 
-    missing = "it has no lubricant"
+    missing = "there is no lubricant"
     source = "the lubricant of an OilBath or a Grease"
 
     T = Potential("K", "temperature", nominal=350.0)

@@ -13,7 +13,7 @@ from .ports import Flange, ShaftReading
 class ShaftEnd(Component):
     """A shaft that leaves the gearbox. What `given` names ("w", "tau") is an input, the rest follows."""
 
-    flange = Flange()
+    flange = Flange(must_meet=True)
     reading = ShaftReading()
 
     given = Choice((), "which of w and tau are given from outside", default=())

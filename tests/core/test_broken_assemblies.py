@@ -1,7 +1,7 @@
 """Slips in a gearbox of real parts: each message names the port or equation, the part, and what to do."""
 
 import pytest
-from broken_assemblies import BROKEN, gearbox
+from broken_assemblies import BROKEN, gearbox, without
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import StructureError
@@ -10,7 +10,12 @@ from gearheat.model.errors import StructureError
 SAYS: dict[str, tuple[str, ...]] = {
     "open_heat_port": ("bearing_a.inner is connected to nothing", "no way out", "Connect it to the heat port"),
     "open_load": ("bearing_a.load is connected to nothing", "load it carries", "Connect it to the load"),
-    "no_lubricant": ("gear.lubricant is connected to nothing", "no lubricant", "Connect it to", "OilBath or a Grease"),
+    "no_lubricant": (
+        "gear.lubricant is connected to nothing",
+        "there is no lubricant",
+        "Connect it to",
+        "OilBath or a Grease",
+    ),
     "part_without_connection": (
         "hall (Room) is connected to nothing",
         "Connect hall.air or hall.floor",
@@ -42,7 +47,7 @@ SAYS: dict[str, tuple[str, ...]] = {
         "put a ThermalConductor between",
     ),
     "held_shaft": ("motor.w is given", "mount: held", "motor.flange, mount.flange", "Do not give motor.w"),
-    "loop_of_gears": ("rotor.w is a state", "second: gears roll", "rotor.flange", "its ratios have to fit"),
+    "loop_of_gears": ("rotor.w is a state", "second: gears roll", "gear.wheel, second.wheel", "its ratios have to fit"),
     "shared_port": (
         "bearing_a.inner is named in two connections",
         "oil and one with wall",
@@ -89,3 +94,39 @@ def test_a_fault_far_from_a_large_sound_rest_is_told_alone() -> None:
     text = message(gearbox({"hall": ("Room", {})}, {"floor": ("foot.b", "room.floor", "hall.floor")}))
     assert "more" not in text
     assert "gear" not in text.removeprefix("gearbox")
+
+
+def test_readers_without_a_giver_are_told_together() -> None:
+    text = message(gearbox(nets={"lubricant": ("gear.lubricant", "bearing_a.lubricant", "bearing_b.lubricant")}))
+    assert "gear.lubricant, bearing_a.lubricant, bearing_b.lubricant meet readers only: there is no lubricant." in text
+    assert "Connect them to the lubricant of an OilBath or a Grease." in text
+
+
+def test_an_information_given_twice_names_its_ports() -> None:
+    text = message(
+        gearbox(
+            nets={
+                "load_a": ("support.load_a", "support.load_b", "bearing_a.load"),
+                "load_b": ("bearing_b.load", "support.load_b"),
+            }
+        )
+    )
+    assert "support: bearing a axially, support: bearing b axially" in text
+    assert "Connect support.load_a or support.load_b elsewhere." in text
+
+
+@pytest.mark.parametrize("port", ["bearing_a.shaft", "motor.flange"])
+def test_a_brake_or_a_shaft_end_needs_a_shaft(port: str) -> None:
+    """Without a shaft a bearing would stand still, and a given speed would turn nothing."""
+    read = {"reading": ("motor.reading", "efficiency.a", "efficiency.b")}  # the motor alone would be told as a part
+    text = message(gearbox({"efficiency": ("Efficiency", dict(ratio=2.0))}, without("pinion", port) | read))
+    assert f"{port} is connected to nothing: no shaft is there. Connect it to the flange of" in text
+
+
+def test_ports_that_may_stay_open() -> None:
+    """Air of a room, force and wheel of a gear: nothing flows there, or nobody reads it."""
+    flat = flatten(gearbox(nets={"force": ("gear.force", "support.mesh"), "wheel": ("fan.flange", "gear.wheel")}))
+    assert flat.index["room.Q_flow"][0] == "output"
+    idle = [part for part in gearbox().parts if part.name != "fan"]
+    connections = tuple(c for c in gearbox().connections if "fan.flange" not in c)
+    assert flatten(Assembly("idle", "", tuple(idle), connections)).index["gear.P_loss"][0] == "output"
