@@ -76,23 +76,26 @@ class Faults:
 
     def _contradiction(self, relation: Relation | None, given: Sequence[str], ports: Sequence[Port]) -> tuple[str, str]:
         """What some equations say too much, and what to do about it."""
-        states = [] if relation is None else [f"{part.name}.{key}" for part, key in relation.states]
+        held = [] if relation is None else [relation.states[k] for k in relation.acting]
+        states, owners = [f"{part.name}.{key}" for part, key in held], listed([part.name for part, _ in held])
         ways = [self._drop(given)] if given else []
         if relation is not None and given and states:
-            ways += [f"leave {listed([part.name for part, _ in relation.states])} out"]
+            ways += [f"leave {owners} out"]
         if relation is not None and len(given) + len(states) > 1:
             ways += [words for words in dict.fromkeys(type(p).instead for p in ports) if words]
         if states and given:
             what = f"{listed(states)} is a state, but tied rigidly to {listed(given)}, which is given."
         elif states:
             what = f"{listed(states)} is a state, but what it is tied to holds it at one value."
-            parts = listed([part.name for part, _ in relation.states]) if relation else ""
-            ways = [f"Free {parts} or leave it out; where a loop closes, its ratios have to fit"]
+            ways = [f"Free {owners} or leave it out; where a loop closes, its ratios have to fit"]
         elif len(given) > 1:
             what = f"{listed(given)} are given, but one of them follows from the rest."
         elif given:
             what = f"{given[0]} is given, but what it is tied to holds it at one value."
             ways += ["free what holds it; where a loop closes, its ratios have to fit"]
+        elif relation is not None and any(type(p).flows() for p in ports):
+            what = "two equations say the same, so nothing says what flows on either way."
+            ways = [f"Take {listed(list(dict.fromkeys(map(_owner, ports))), 'or')} away"]
         else:
             what = "two equations say the same or contradict each other."
             ways = [f"Connect {listed([p.name for p in ports], 'or')} elsewhere" if ports else "Take one of them away"]
@@ -199,4 +202,4 @@ def some(names: Sequence[str]) -> str:
 
 def listed(names: Sequence[str], word: str = "and") -> str:
     """All names, the last two with a word between them."""
-    return f" {word} ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+    return f" {word} ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))

@@ -85,7 +85,7 @@ def _coupling(reduced: Reduced, columns: list[list[int]], known: Known) -> tuple
         chosen = matching.too_many(spare)
         inside = sorted({c for r in chosen for c in columns[r]})
         relation = tie([reduced.rows[r] for r in chosen], [reduced.unknowns[c] for c in inside], known)
-        if relation is not None and not relation.inputs and len(relation.states) > 1:
+        if relation is not None and known.constant(relation.rest) and len(relation.acting) > 1:
             return relation, _follower(relation)
     return None
 
@@ -98,8 +98,9 @@ def tie(rows: list[Row], unknowns: list[Unknown], known: Known) -> Relation | No
 
 def _follower(relation: Relation) -> int:
     """The last state of those whose start nobody has given, the last of all where each was given."""
-    unasked = [k for k, (part, key) in enumerate(relation.states) if part.values[key] == part.states[key].start]
-    return (unasked or range(len(relation.states)))[-1]
+    starts = [(part.values[key], part.states[key].start) for part, key in relation.states]
+    unasked = [k for k in relation.acting if starts[k][0] == starts[k][1]]
+    return (unasked or relation.acting)[-1]
 
 
 def _demote(model: str, relation: Relation, k: int, known: Known, reduced: Reduced) -> None:

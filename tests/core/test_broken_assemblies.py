@@ -1,10 +1,16 @@
 """Slips in a gearbox of real parts: each message names the port or equation, the part, and what to do."""
 
+from collections.abc import Iterator
+
 import pytest
 from broken_assemblies import BROKEN, gearbox, without
+from gearheat.model.core.component import Component, Equation, equation
 from gearheat.model.core.connect import Assembly
+from gearheat.model.core.declare import Parameter, Variable
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import StructureError
+from gearheat.model.parts import PARTS
+from gearheat.model.parts.ports import HeatPort
 
 #: What the message of each slip has to say.
 SAYS: dict[str, tuple[str, ...]] = {
@@ -48,6 +54,7 @@ SAYS: dict[str, tuple[str, ...]] = {
     ),
     "held_shaft": ("motor.w is given", "mount: held", "motor.flange, mount.flange", "Do not give motor.w"),
     "loop_of_gears": ("rotor.w is a state", "second: gears roll", "gear.wheel, second.wheel", "its ratios have to fit"),
+    "parallel_gears": ("two equations say the same", "gear.wheel, second.wheel", "Take gear or second away"),
     "shared_port": (
         "bearing_a.inner is named in two connections",
         "oil and one with wall",
@@ -130,3 +137,21 @@ def test_ports_that_may_stay_open() -> None:
     idle = [part for part in gearbox().parts if part.name != "fan"]
     connections = tuple(c for c in gearbox().connections if "fan.flange" not in c)
     assert flatten(Assembly("idle", "", tuple(idle), connections)).index["gear.P_loss"][0] == "output"
+
+
+def test_a_temperature_held_by_a_controller_is_a_level() -> None:
+    """What gives a temperature need not be a storage or a room: only what gives none is refused."""
+
+    class Thermostat(Component):
+        heat = HeatPort()
+
+        T = Variable("K", "temperature kept", nominal=300.0)
+        dT = Parameter("K (difference)", "above 300 K", default=20.0)
+
+        def equations(self) -> Iterator[Equation]:
+            yield equation("temperature wanted", self.T, 300.0 + self.dT)
+            yield equation("kept", self.heat.T - self.T, 0.0)
+
+    parts = (Thermostat("bath"), *(PARTS["ThermalConductor"](name, G=2.0) for name in ("film", "pin")))
+    flat = flatten(Assembly("rod", "", parts, (("bath.heat", "film.a"), ("film.b", "pin.a", "pin.b"))))
+    assert [q.name for q in flat.outputs] == ["film.Q_flow", "pin.Q_flow"]
