@@ -148,7 +148,11 @@ class Faults:
             return Fault(tuple(self._told(net) for net in deaf), True)
         levels = [name for net in self.nets if type(net[0]).flows() for name in _of_net(net) if name in names]
         givable = [path for path in self.givable if path in names]
-        remedy = f"Give {listed(givable, 'or')}, or connect" if givable else "Give a value, connect"
+        inside = set(chosen)
+        missing = len(inside) - sum(1 for row in self.columns if not inside.isdisjoint(row))
+        several = f"{missing} of " if 1 < missing < len(givable) else ""
+        which = f"{several}{listed(givable, 'and' if missing == len(givable) else 'or')}"
+        remedy = f"Give {which}, or connect" if givable else "Give a value, connect"
         what = some(levels or givable or sorted(names, key=lambda name: name.count(".")))
         text = (
             f"{self.model}: {len(self.rows)} equations for {len(self.unknowns)} unknowns.\n"

@@ -12,7 +12,7 @@ from ..sources import LawInfo, LawUse, recording
 from .component import Component
 from .connect import Assembly, nets
 from .declare import Declaration
-from .equations import check_symbols, rows_of
+from .equations import check_symbols, energies_of, rows_of
 from .flat import Check, FlatModel, Quantity
 from .reduce import reduce
 from .solve import NEWTON_STEPS, Row, Solution, Unknown, column, inline, solve
@@ -117,14 +117,15 @@ def _flat_model(
     parameters = [(part, k) for part in parts for k in part.parameters]
     outputs = [(part, k, d) for part in parts for k, d in _shown(part, joined).items()]
     x = column([part.symbols[k] for part, k in states])
-    supplies = [aliased(power) for part in parts for power in part.supplied_power()]
+    energies = [energies_of(part) for part in parts]
+    supplies = [aliased(power) for powers, _ in energies for power in powers]
     expressions = [
         column([part.derivatives[k] for part, k in states]),
         column([part.symbols[k] for part, k, _ in outputs]),
         column([residual for _, residual in solution.residuals]),
         sum(supplies, ca.SX(0)),
         sum((ca.fabs(power) for power in supplies), ca.SX(0)),
-        sum((aliased(part.stored_energy()) for part in parts), ca.SX(0)),
+        sum((aliased(stored) for _, stored in energies), ca.SX(0)),
         column([aliased(value) for _, value in checks]),
     ]
     sizes = [e.numel() for e in expressions]

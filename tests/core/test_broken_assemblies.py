@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 import pytest
-from broken_assemblies import BROKEN, gearbox, without
+from broken_assemblies import BROKEN, NETS, Brake, gearbox, without
 from gearheat.model.core.component import Component, Equation, equation
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.declare import Parameter, Variable
@@ -69,7 +69,7 @@ SAYS: dict[str, tuple[str, ...]] = {
     "decides_on_a_symbol": ('brake: after equation "becomes heat"', "value of a symbol", "smooth functions", "if_else"),
     "undeclared_name": ('brake: after equation "becomes heat"', '"tau_mx" is not declared', 'Did you mean "tau_max"'),
     "wrong_shape": ('brake: after equation "becomes heat"', "neither a number nor a symbol", "Yield one equation for"),
-    "wrong_sizes": ('brake: after equation "becomes heat"', "Dimension mismatch", "Correct the equation that follows"),
+    "wrong_sizes": ('brake: after equation "becomes heat"', "Dimension mismatch", "Correct what follows"),
     "column_for_a_number": ('brake: a side of equation "brakes" has the shape 2 x 1', "yield an equation for every"),
     "strange_symbol": ("brake: brakes:", 'the symbol "mood" is not declared', "Declare it"),
     "function_of_numbers": ("brake: brakes:", "not a number", "casadi.sqrt, not math.sqrt"),
@@ -101,6 +101,22 @@ def test_a_fault_far_from_a_large_sound_rest_is_told_alone() -> None:
     text = message(gearbox({"hall": ("Room", {})}, {"floor": ("foot.b", "room.floor", "hall.floor")}))
     assert "more" not in text
     assert "gear" not in text.removeprefix("gearbox")
+
+
+def test_an_error_in_the_energies_of_a_part() -> None:
+    class Leaky(Brake):
+        def stored_energy(self):
+            return self.J * self.shaft.w**2 / 2
+
+    nets = {"wheel": (*NETS["wheel"], "brake.shaft"), "inside": (*NETS["inside"], "brake.heat")}
+    text = message(gearbox({"brake": Leaky}, nets))
+    assert 'brake: supplied_power or stored_energy of Leaky: "J" is not declared' in text
+
+
+def test_how_many_values_are_missing() -> None:
+    text = message(gearbox({"motor": ("ShaftEnd", {}), "fan": ("ShaftEnd", {})}))
+    assert "Nothing determines motor.flange.w, gear.wheel.w." in text
+    assert "Give 2 of motor.w, motor.tau, fan.w or fan.tau, or connect a source or a storage." in text
 
 
 def test_readers_without_a_giver_are_told_together() -> None:
