@@ -23,6 +23,7 @@ from gearheat.model.errors import ScenarioError, suggestion
 from gearheat.model.run.schedule import Schedule
 
 from .batch_library import Course, address, driver, instructions, rows_from, shared, widened
+from .batch_relations import broken_relations, relations_source
 from .batch_source import EXTRA, steady_source, warmup_source
 from .grid import Grid, grid
 
@@ -40,11 +41,13 @@ class Status(IntEnum):
     """What became of a row; its numbers are NaN unless it is OK."""
 
     OK = 0
-    NO_BALANCE = 1  #: no steady state was found
-    UNSTABLE = 2  #: the only balance found is one the machine leaves by itself
+    NO_EQUILIBRIUM = 1  #: no steady state was found
+    UNSTABLE = 2  #: the only equilibrium found is one the machine leaves by itself
     NOT_FINITE = 3  #: the model cannot be evaluated at the start
     STOPPED = 4  #: a warm-up cannot go on: a state leaves its range or changes without bound
-    OUT_OF_RANGE = 5  #: an input, a parameter or a start value is not finite or out of its range
+    OUT_OF_RANGE = 5  #: an input, a parameter or a start value is not finite or out of its range, or an output
+    NO_SOLUTION = 6  #: an implicit equation has no solution at the start, or on the way of a warm-up
+    CONTRADICTION = 7  #: a relation between parameters does not hold
 
 
 @dataclass(frozen=True)
@@ -107,7 +110,7 @@ class Batch:
     def __init__(self, flat: FlatModel, most_steps: int = MOST_STEPS) -> None:
         self.name = flat.name
         self.states, self.inputs, self.parameters = flat.states, flat.inputs, flat.parameters
-        self.outputs = flat.outputs
+        self.outputs, self.relations = flat.outputs, flat.relations
         self._flat, self._most_steps = flat, most_steps
         self._limits = [_limits(group) for group in (self.inputs, self.parameters, self.states)]
 
@@ -121,9 +124,21 @@ class Batch:
         """The C text for warm-ups."""
         return warmup_source(self._flat, self._most_steps)
 
+    @cached_property
+    def relations_source(self) -> str:
+        """The C text for the relations between parameters."""
+        return relations_source(self._flat)
+
+    def contradictions(self, p: np.ndarray | None = None) -> list[str | None]:
+        """Per row of parameters, or for one vector, the first relation that does not hold; None where all do."""
+        places = broken_relations(self.relations_source, self._checked(None, p, None)[1][1])
+        names = [f'{r.component}: "{r.name}"' for r in self.relations]
+        return [names[i] if i >= 0 else None for i in places]
+
     def __getstate__(self) -> dict[str, Any]:
         """All but the symbols, which cannot be pickled and are in the C text."""
-        texts = {"steady_source": self.steady_source, "warmup_source": self.warmup_source}
+        names = ("steady_source", "warmup_source", "relations_source")
+        texts = {name: getattr(self, name) for name in names}
         return {name: value for name, value in self.__dict__.items() if name != "_flat"} | texts
 
     @property
@@ -176,7 +191,7 @@ class Batch:
             ScenarioError: arrays of the wrong shape
             FmuError: the model has no C code, or the compiler fails
         """
-        n, vectors, sound = self._checked(u, p, start)
+        n, vectors, verdict = self._checked(u, p, start)
         home = np.array([q.start for q in self.inputs])
         x, y = np.empty((n, len(self.states))), np.empty((n, len(self.outputs) + EXTRA))
         status, iterations = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
@@ -189,9 +204,8 @@ class Batch:
         shared(block, n, STEADY_BLOCK, threads)
         k = len(self.outputs)
         supply, throughput, outside = y[:, k], y[:, k + 1], y[:, k + 2]
-        return _marked(
-            Rows(self.columns, x, y[:, :k], status, iterations, supply, np.zeros(n), throughput, outside), sound
-        )
+        rows = Rows(self.columns, x, y[:, :k], status, iterations, supply, np.zeros(n), throughput, outside)
+        return _marked(rows, verdict, self.outputs)
 
     def warmup(
         self,
@@ -220,7 +234,7 @@ class Batch:
             ScenarioError: arrays of the wrong shape, names or values of the schedule that do not fit the model
             FmuError: times outside the schedule, the model has no C code, or the compiler fails
         """
-        n, vectors, sound = self._checked(u, p, start)
+        n, vectors, verdict = self._checked(u, p, start)
         prepared = schedule if isinstance(schedule, Prepared) else self.prepared(schedule, times, tolerance)
         points, course = prepared.points, prepared.course
         m = len(points.row_time)
@@ -235,7 +249,7 @@ class Batch:
         shared(block, n, WARMUP_BLOCK, threads)
         supplied, gained, throughput, outside = energy.T
         rows = Rows(self.columns, x, y, status, steps, supplied, gained, throughput, outside, points.row_time)
-        return _marked(rows, sound)
+        return _marked(rows, verdict, self.outputs)
 
     def prepared(
         self,
@@ -254,7 +268,7 @@ class Batch:
     def _checked(
         self, u: np.ndarray | None, p: np.ndarray | None, start: np.ndarray | None
     ) -> tuple[int, tuple[np.ndarray, ...], np.ndarray]:
-        """Number of rows, their arrays as C takes them, and which rows have all values in range."""
+        """Number of rows, their arrays as C takes them, and what is wrong with the values of each row."""
         named = (("inputs", self.inputs, u), ("parameters", self.parameters, p), ("states", self.states, start))
         vectors, problems, counts = [], [], set()
         for word, group, given in named:
@@ -269,10 +283,11 @@ class Batch:
         if problems:
             raise ScenarioError(problems)
         n = counts.pop() if counts else 1
-        sound = np.ones(n, dtype=bool)
+        broken = broken_relations(self.relations_source, vectors[1])
+        verdict = np.where(broken < 0, Status.OK, Status.CONTRADICTION)
         for limits, vector in zip(self._limits, vectors, strict=True):
-            sound &= _in_range(limits, vector)
-        return n, tuple(vectors), sound
+            verdict = np.where(_in_range(limits, vector), verdict, Status.OUT_OF_RANGE)
+        return n, tuple(vectors), np.broadcast_to(verdict, n)
 
     def _schedule_problems(self, schedule: Schedule, tolerance: float) -> list[str]:
         known = {q.name: q for q in self.inputs}
@@ -314,9 +329,15 @@ def _in_range(limits: tuple[np.ndarray, ...], vector: np.ndarray) -> Any:
     return (np.isfinite(vector) & above & below).all(axis=-1)
 
 
-def _marked(rows: Rows, sound: np.ndarray) -> Rows:
-    """The rows, without those that were given values out of range."""
-    rows.status[~sound] = Status.OUT_OF_RANGE
+def _marked(rows: Rows, verdict: np.ndarray, outputs: Sequence[Quantity]) -> Rows:
+    """The rows, without those whose values or outputs are out of range or whose values contradict each other."""
+    rows.status[:] = np.where(verdict == Status.OK, rows.status, verdict)
+    for i, q in enumerate(outputs):
+        if np.isfinite([q.low, q.high]).any():
+            y = rows.y[..., i].reshape(len(rows.status), -1)
+            slack = 1e-9 * (q.nominal + np.abs(y))
+            wrong = ((y < q.low - slack) | (y > q.high + slack)).any(axis=1)
+            rows.status[wrong & (rows.status == int(Status.OK))] = Status.OUT_OF_RANGE
     failed = rows.status != int(Status.OK)
     if failed.any():
         for array in (rows.x, rows.y, rows.supplied, rows.gained, rows.throughput, rows.outside):

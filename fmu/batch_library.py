@@ -24,6 +24,7 @@ from .grid import Grid
 _POINTER, _COUNT = ctypes.c_void_p, ctypes.c_int64
 _SIGNATURES = {
     "batch_steady": [_COUNT, *[_POINTER, _COUNT] * 3, *[_POINTER] * 5],
+    "batch_relations": [_COUNT, _POINTER, _COUNT, _POINTER],
     "batch_warmup": [_COUNT, _POINTER, *[_POINTER, _COUNT] * 3, _COUNT, *[_POINTER] * 5],
 }
 #: Vector instructions beyond those every processor of a kind has -> rows side by side, the best first. They change how

@@ -12,7 +12,8 @@ from gearheat.model.core.flat import FlatModel
 
 from . import emit, rosenbrock
 from .equations import equations
-from .variables import Table, table
+from .source import defined, newton_constants
+from .variables import table
 
 #: What a steady row holds behind the model's outputs: supply [W], throughput [W], law arguments outside their range,
 #: largest residual of the implicit equations.
@@ -25,34 +26,39 @@ METHOD = rosenbrock.RODAS4
 def steady_source(flat: FlatModel) -> str:
     """The C text for steady states.
 
-    The equations come in three stages, each computed when what it depends on changes: `fixed` (p) -> k, `given`
-    (u, p, k) -> c, and `rates`, `balance` (with the Jacobian's entries that are not zero) and `outputs` of
-    (x, u, p, k, c).
+    The equations come in three stages, each computed when what it depends on changes: `fixed` (p) -> first part of c,
+    `given` (u, p, first part) -> second part, and `rates`, `equations` (with the Jacobian's entries that are not zero),
+    `algebra` (the implicit ones and their Jacobian in z) and `outputs` of (x, z, u, p, c).
 
     Raises:
         FmuError: an operation has no C text
     """
     outside = sum((ca.logic_or(flat.checked[i] < c.low, flat.checked[i] > c.high) for i, c in enumerate(flat.checks)))
     implicit = ca.mmax(ca.fabs(ca.SX(flat.residual))) if flat.residual_names else 0
-    jacobian = ca.jacobian(flat.ode, flat.x)
+    whole = ca.vertcat(flat.ode, flat.residual)
+    jacobian = ca.jacobian(whole, ca.vertcat(flat.x, flat.z))
     places = jacobian.sparsity().get_triplet()
-    parts = [flat.ode, jacobian.nz[:], ca.vertcat(flat.y, flat.supply, flat.throughput, outside, implicit)]
-    (ode, entries, y), c, c_values = _hoisted(parts, ca.vertcat(flat.u, flat.p))
-    (c_values,), k, k_values = _hoisted([c_values], flat.p)
-    place, names = [flat.x, flat.u, flat.p, k, c], list("xupkc")
+    inner = ca.densify(ca.jacobian(flat.residual, flat.z))
+    y = ca.vertcat(flat.y, flat.supply, flat.throughput, outside, implicit)
+    parts, given, c_values = _hoisted([whole, jacobian.nz[:], y, flat.residual, inner[:]], ca.vertcat(flat.u, flat.p))
+    whole, entries, y, residual, inner = parts
+    (c_values,), fixed, k_values = _hoisted([c_values], flat.p)
+    place, names = [flat.x, flat.z, flat.u, flat.p, ca.vertcat(fixed, given)], list("xzupc")
     functions = [
         _function("fixed", [flat.p], ["p"], [k_values], ["k"]),
-        _function("given", place[1:4], names[1:4], [c_values], ["c"]),
-        _function("rates", place, names, [ode], ["dx"]),
-        _function("balance", place, names, [ode, entries], ["dx", "entries"]),
+        _function("given", [flat.u, flat.p, fixed], ["u", "p", "k"], [c_values], ["c"]),
+        _function("rates", place, names, [whole], ["r"]),
+        _function("equations", place, names, [whole, entries], ["r", "entries"]),
+        _function("algebra", place, names, [residual, inner], ["r", "J"]),
         _function("outputs", place, names, [y], ["y"]),
     ]
-    sizes = {**_sizes(flat), "NYR": y.numel(), "NK": k.numel(), "NC": c.numel(), "NJ": entries.numel()}
+    nk = fixed.numel()
+    sizes = {**_sizes(flat), "NYR": y.numel(), "NK": nk, "NC": nk + given.numel(), "NJ": entries.numel()}
     pattern = [
         _array("int", f"model_{name}", map(str, place)) for name, place in zip(("row", "column"), places, strict=True)
     ]
-    tables = [*_ranges(table(flat)), *pattern]
-    return _text(sizes, ["batch.h"], [*tables, *map(emit.function, functions)], ["batch_steady.c"])
+    tables = [*_ranges(flat), *pattern]
+    return _text(sizes, ["batch.h"], [*tables, *map(emit.function, functions)], ["newton.c", "batch_steady.c"])
 
 
 def warmup_source(flat: FlatModel, most_steps: int) -> str:
@@ -64,21 +70,28 @@ def warmup_source(flat: FlatModel, most_steps: int) -> str:
         FmuError: an operation has no C text, or the stored energy depends on an input
     """
     model = equations(flat)
-    x_new, error, slope, h = rosenbrock.step(model.ode, model.x, model.u, METHOD)
-    (x_new, error, y, ode), c, c_values = _hoisted([x_new, error[:-1], model.y, model.ode], model.p)
-    place = [model.x, model.u, slope, model.p, c, h]
-    step = _function("step", place, ["x", "u", "slope", "p", "c", "h"], [x_new, error], ["x_new", "error"])
+    x_new, z_new, error, slope, h = rosenbrock.step(model.ode, model.residual, model.x, model.z, model.u, METHOD)
+    inner = ca.densify(ca.jacobian(model.residual, model.z))
+    parts, c, c_values = _hoisted([x_new, z_new, error[:-1], model.y, model.ode, model.residual, inner[:]], model.p)
+    x_new, z_new, error, y, ode, residual, inner = parts
+    place, names = [model.x, model.z, model.u, model.p, c], list("xzupc")
+    step = _function(
+        "step",
+        [model.x, model.z, model.u, slope, model.p, c, h],
+        ["x", "z", "u", "slope", "p", "c", "h"],
+        [x_new, z_new, error],
+        ["x_new", "z_new", "error"],
+    )
     functions = [
         emit.function(_function("constants", [model.p], ["p"], [c_values], ["c"])),
         emit.function(step, "lanes_", "lanes"),
-        emit.function(
-            _function("outputs", [model.x, model.u, model.p, c], ["x", "u", "p", "c"], [y, ode], ["y", "dx"])
-        ),
+        emit.function(_function("algebra", place, names, [residual, inner], ["r", "J"])),
+        emit.function(_function("outputs", place, names, [y, ode], ["y", "dx"])),
     ]
     sizes = {**_sizes(flat), "NX": ode.numel(), "NY": y.numel(), "NC": c.numel()}
     sizes |= {"ORDER": METHOD.order, "MAX_STEPS": most_steps}
-    drivers = ["batch_instance.h", "trial.c", "batch_warmup.c"]
-    return _text(sizes, ["batch.h", "lanes.h"], [*_ranges(table(flat)), *functions], drivers)
+    drivers = ["newton.c", "batch_instance.h", "trial.c", "batch_warmup.c"]
+    return _text(sizes, ["batch.h", "lanes.h"], [*_ranges(flat), *functions], drivers)
 
 
 def _hoisted(parts: Sequence[Any], given: Any) -> tuple[list[Any], Any, Any]:
@@ -100,29 +113,32 @@ def _function(name: str, inputs: list[Any], names_in: list[str], outputs: list[A
 def _sizes(flat: FlatModel) -> dict[str, int]:
     return {
         "N": len(flat.states),
+        "NZ": len(flat.algebraic),
         "NU": len(flat.inputs),
         "NP": len(flat.parameters),
         "N_OUTPUTS": len(flat.outputs),
     }
 
 
-def _text(sizes: Mapping[str, int], above: Sequence[str], generated: Sequence[str], below: Sequence[str]) -> str:
+def _text(sizes: Mapping[str, Any], above: Sequence[str], generated: Sequence[str], below: Sequence[str]) -> str:
     """Sizes, the fixed text above the generated tables and functions, these, and the fixed text below them."""
-    defined = "".join(f"#define {name} {value}\n" for name, value in sizes.items())
-    return "\n".join([defined, *map(_fixed, above), *generated, *map(_fixed, below)])
+    return "\n".join([defined({**sizes, **newton_constants()}), *map(_fixed, above), *generated, *map(_fixed, below)])
 
 
 def _fixed(name: str) -> str:
     return (files("gearheat.fmu") / "wrapper" / name).read_text(encoding="utf-8")
 
 
-def _ranges(variables: Table) -> list[str]:
-    """Nominals and ranges of the states, those of the audit included, and of the inputs."""
+def _ranges(flat: FlatModel) -> list[str]:
+    """Nominals and ranges of the states, those of the audit included, and of the inputs; algebraic variables."""
+    variables = table(flat)
     rows = [*variables.of("state"), *variables.of("input")]
     columns = {
         "nominal": [v.quantity.nominal for v in rows],
         "low": [v.bounds[0] for v in rows],
         "high": [v.bounds[1] for v in rows],
+        "z_start": [q.start for q in flat.algebraic],
+        "z_nominal": [q.nominal for q in flat.algebraic],
     }
     return [_array("double", f"model_{name}", map(emit.number, column)) for name, column in columns.items()]
 

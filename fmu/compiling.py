@@ -13,6 +13,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 from gearheat.model.errors import FmuError, suggestion
+from gearheat.model.files import replacing
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,11 @@ def cache_folder() -> Path:
 def binary(source: str, platform: Platform, *, optimise: str = "-O2") -> bytes:
     """The shared library of a C source; the same source is compiled once only.
 
+    Args:
+        source: the C text
+        platform: the platform of FMI to compile for
+        optimise: option of the compiler
+
     Raises:
         FmuError: the compiler is missing or fails, or the cache cannot be written
     """
@@ -98,30 +104,21 @@ def binary(source: str, platform: Platform, *, optimise: str = "-O2") -> bytes:
 def store(path: Path, content: bytes) -> None:
     """Write a file so that nobody ever sees half of it.
 
+    Args:
+        path: the file; its folder is made
+        content: what it is to hold
+
     Raises:
         FmuError: the folder or the file cannot be written
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(dir=path.parent, prefix=f".{path.name}.")
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(content)
-            os.chmod(name, 0o666 & ~_umask())
-            os.replace(name, path)
-        except BaseException:
-            Path(name).unlink(missing_ok=True)
-            raise
+        with replacing(path) as beside:
+            beside.write_bytes(content)
     except OSError as error:
         raise FmuError(
             f"{path}: cannot be written ({error.strerror}). Choose a file in a folder you may write to."
         ) from error
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def _compile(source: str, target: str, optimise: str) -> bytes:

@@ -8,6 +8,7 @@ from typing import Any
 
 import casadi as ca
 from gearheat.model.core.flat import FlatModel
+from gearheat.model.run.fast import once
 
 #: Operations through which a parameter acts although the derivative is zero: it decides when something happens.
 _SWITCHES = frozenset(
@@ -17,7 +18,7 @@ _SWITCHES = frozenset(
 
 
 def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> FlatModel:
-    """The model without the parameters that cannot move any rate, output or checked argument, whatever all else is.
+    """The model without the parameters that cannot move any rate, output, checked argument or relation.
 
     A parameter goes where the model does not hold it, or where its derivative is zero as an expression, as that of a
     share of heat whose two ways end in one body. One that has no effect only at the present values stays.
@@ -26,11 +27,9 @@ def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> Flat
         flat: the model
         start: values that replace those of the model; a parameter that goes is replaced by its value
     """
-    parts = [flat.ode, flat.y, flat.residual, flat.supply, flat.throughput, flat.stored, flat.checked]
-    column = ca.vertcat(ca.SX(0, 1), *(ca.SX(part) for part in parts))
-    if "effective" not in flat.prepared:
-        flat.prepared["effective"] = _moving(column, flat.p)
-    kept = [i for i in range(len(flat.parameters)) if i in flat.prepared["effective"]]
+    parts, column = _parts(flat)
+    moving = _moving(flat)
+    kept = [i for i in range(len(flat.parameters)) if i in moving]
     if len(kept) == len(flat.parameters):
         return flat
     values = {q.name: q.start for q in flat.parameters} | dict(start or {})
@@ -41,18 +40,26 @@ def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> Flat
     sizes = [0]
     for part in parts:
         sizes.append(sizes[-1] + ca.SX(part).numel())
-    ode, y, residual, supply, throughput, stored, checked = ca.vertsplit(column, sizes)
+    ode, y, residual, supply, throughput, stored, checked, related = ca.vertsplit(column, sizes)
     return replace(
         flat,
         parameters=tuple(flat.parameters[i] for i in kept),
         p=ca.vertcat(ca.SX(0, 1), *symbols.values()),
         **{"ode": ode, "y": y, "residual": residual, "supply": supply},
-        **{"throughput": throughput, "stored": stored, "checked": checked},
+        **{"throughput": throughput, "stored": stored, "checked": checked, "related": related},
     )
 
 
-def _moving(column: Any, p: Any) -> set[int]:
+def _parts(flat: FlatModel) -> tuple[list[Any], Any]:
+    """All expressions of a model, and one column of them."""
+    parts = [flat.ode, flat.y, flat.residual, flat.supply, flat.throughput, flat.stored, flat.checked, flat.related]
+    return parts, ca.vertcat(ca.SX(0, 1), *(ca.SX(part) for part in parts))
+
+
+@once
+def _moving(flat: FlatModel) -> set[int]:
     """Positions of the parameters with an effect."""
+    p, (_, column) = flat.p, _parts(flat)
     held = _columns(ca.jacobian_sparsity(column, p))
     moving = _columns(ca.sparsify(ca.jacobian(ca.cse(column), p)).sparsity())
     return moving | _switching(column, p) if held - moving else moving

@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 import casadi as ca
+from gearheat.model.core.eliminate import Factors
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.errors import FmuError
 
@@ -16,35 +17,46 @@ from . import rosenbrock
 
 @dataclass(frozen=True)
 class Equations:
-    """The model of an FMU: dx/dt = ode(x, u, p), y = y(x, u, p), with audit states and outputs appended.
+    """The model of an FMU: dx/dt = ode, 0 = residual, y with audit states and outputs appended.
 
     Attributes:
-        x, u, p: SX symbols
-        ode, y: SX columns in the order of the variable table
+        x, z, u, p: SX symbols
+        ode, residual, y: SX columns in the order of the variable table, functions of x, z, u, p
         checked: the law arguments with a range
+        related: what the relations between parameters are told by, of p alone
     """
 
     x: Any
+    z: Any
     u: Any
     p: Any
     ode: Any
+    residual: Any
     y: Any
     checked: Any
+    related: Any
 
     @cached_property
-    def _hoisted(self) -> tuple[list[Any], Any, Any, Any]:
-        """ode, y, checked, step and error without what depends on parameters alone; that; the symbols it is put in."""
-        ode, y, checked = ca.cse([self.ode, self.y, self.checked])
-        x_new, error, slope, h = rosenbrock.step(ode, self.x, self.u)
-        parts = [ode, y, checked, x_new, error[:-1]]
+    def _hoisted(self) -> tuple[dict[str, Any], Any, Any, Any]:
+        """All results without what depends on parameters alone; that; the symbols it is put in; slope and h."""
+        ode, residual, y, checked = ca.cse([self.ode, self.residual, self.y, self.checked])
+        x_new, z_new, error, slope, h = rosenbrock.step(ode, residual, self.x, self.z, self.u)
+        parts = {"ode": ode, "residual": residual, "jacobian": ca.densify(ca.jacobian(residual, self.z))[:], "y": y}
+        parts |= {"checked": checked, "x_new": x_new, "z_new": z_new, "error": error[:-1]}
         sizes = [0]
-        for part in parts:
+        for part in parts.values():
             sizes.append(sizes[-1] + part.shape[0])
-        whole = ca.cse(ca.densify(ca.vertcat(*parts)))
+        whole = ca.cse(ca.densify(ca.vertcat(*parts.values())))
         whole, symbols, constants = ca.extract_parametric(whole, self.p)
         whole = ca.cse(whole)
-        parts = [whole[a:b] for a, b in pairwise(sizes)]
-        return parts, ca.vertcat(ca.SX(0, 1), *symbols), ca.vertcat(ca.SX(0, 1), *constants), (slope, h)
+        found = {name: whole[a:b] for name, (a, b) in zip(parts, pairwise(sizes), strict=True)}
+        return found, ca.vertcat(ca.SX(0, 1), *symbols), ca.vertcat(ca.SX(0, 1), *constants), (slope, h)
+
+    def _of_point(self, name: str, results: dict[str, str]) -> Any:
+        """(x, z, u, p, c) -> some of the results, by the names they get."""
+        found, c, _, _ = self._hoisted
+        point = [self.x, self.z, self.u, self.p, c]
+        return _function(name, point, [found[r] for r in results], ["x", "z", "u", "p", "c"], list(results.values()))
 
     @cached_property
     def constants(self) -> Any:
@@ -54,39 +66,47 @@ class Equations:
 
     @cached_property
     def step(self) -> Any:
-        """(x, u, slope, p, c, h) -> (x_new, error): one step of the solver; the last state has no error estimate."""
-        (_, _, _, x_new, error), c, _, (slope, h) = self._hoisted
-        inputs = [self.x, self.u, slope, self.p, c, h]
-        return _function("step", inputs, [x_new, error], ["x", "u", "slope", "p", "c", "h"], ["x_new", "error"])
+        """(x, z, u, slope, p, c, h) -> (x_new, z_new, error): one step of the solver; no error of the last state."""
+        found, c, _, (slope, h) = self._hoisted
+        inputs = [self.x, self.z, self.u, slope, self.p, c, h]
+        results = ["x_new", "z_new", "error"]
+        return _function("step", inputs, [found[r] for r in results], ["x", "z", "u", "slope", "p", "c", "h"], results)
+
+    @cached_property
+    def algebra(self) -> Any:
+        """(x, z, u, p, c) -> (r, J): the implicit equations and their Jacobian in z, by columns."""
+        return self._of_point("algebra", {"residual": "r", "jacobian": "J"})
 
     @cached_property
     def outputs(self) -> Any:
-        """(x, u, p, c) -> (y, dx)."""
-        (ode, y, *_), c, _, _ = self._hoisted
-        return _function("outputs", [self.x, self.u, self.p, c], [y, ode], ["x", "u", "p", "c"], ["y", "dx"])
+        """(x, z, u, p, c) -> (y, dx)."""
+        return self._of_point("outputs", {"y": "y", "ode": "dx"})
 
     @cached_property
     def rates(self) -> Any:
-        """(x, u, p, c) -> dx, for ModelExchange, whose integrator asks for nothing else."""
-        (ode, *_), c, _, _ = self._hoisted
-        return _function("rates", [self.x, self.u, self.p, c], [ode], ["x", "u", "p", "c"], ["dx"])
+        """(x, z, u, p, c) -> dx, for ModelExchange, whose integrator asks for nothing else."""
+        return self._of_point("rates", {"ode": "dx"})
 
     @cached_property
     def arguments(self) -> Any:
-        """(x, u, p, c) -> the law arguments that have a range."""
-        (_, _, checked, *_), c, _, _ = self._hoisted
-        return _function("arguments", [self.x, self.u, self.p, c], [checked], ["x", "u", "p", "c"], ["checked"])
+        """(x, z, u, p, c) -> the law arguments that have a range."""
+        return self._of_point("arguments", {"checked": "checked"})
 
     @cached_property
     def directional(self) -> Any:
-        """(x, u, p, c, x_dot, u_dot, p_dot, c_dot) -> (y_dot, dx_dot): derivative in a direction."""
-        (ode, y, *_), c, _, _ = self._hoisted
-        point = [self.x, self.u, self.p, c]
-        dots = [ca.SX.sym(f"{n}_dot", v.shape[0]) for n, v in zip("xupc", point, strict=True)]
-        both = ca.jtimes(ca.vertcat(y, ode), ca.vertcat(*point), ca.vertcat(*dots))
-        ny = y.shape[0]
-        names = ["x", "u", "p", "c", "x_dot", "u_dot", "p_dot", "c_dot"]
-        return _function("directional", point + dots, [both[:ny], both[ny:]], names, ["y_dot", "dx_dot"])
+        """(x, z, u, p, c, x_dot, u_dot, p_dot, c_dot) -> (y_dot, dx_dot): derivative in a direction, z following."""
+        found, c, _, _ = self._hoisted
+        given = {"x": self.x, "u": self.u, "p": self.p, "c": c}
+        dots = {f"{name}_dot": ca.SX.sym(f"{name}_dot", v.shape[0]) for name, v in given.items()}
+        moved = ca.vertcat(*given.values())
+        z_dot = -Factors(ca.jacobian(found["residual"], self.z)).solve(
+            ca.jtimes(found["residual"], moved, ca.vertcat(*dots.values()))
+        )
+        whole = ca.vertcat(found["y"], found["ode"])
+        both = ca.jtimes(whole, ca.vertcat(moved, self.z), ca.vertcat(*dots.values(), z_dot))
+        ny = found["y"].shape[0]
+        point = {"x": self.x, "z": self.z, "u": self.u, "p": self.p, "c": c} | dots
+        return _function("directional", list(point.values()), [both[:ny], both[ny:]], list(point), ["y_dot", "dx_dot"])
 
     @cached_property
     def constants_directional(self) -> Any:
@@ -96,11 +116,16 @@ class Equations:
         dot = ca.jtimes(values, self.p, p_dot)
         return _function("constants_directional", [self.p, p_dot], [dot], ["p", "p_dot"], ["c_dot"])
 
+    @cached_property
+    def relations(self) -> Any:
+        """(p) -> the values by which the relations between parameters are told."""
+        return _function("relations_of", [self.p], [self.related], ["p"], ["related"])
+
     @property
     def functions(self) -> tuple[Any, ...]:
         """All functions the C code needs."""
-        own = (self.constants, self.step, self.outputs, self.rates, self.arguments)
-        return (*own, self.directional, self.constants_directional)
+        own = (self.constants, self.step, self.algebra, self.outputs, self.rates, self.arguments)
+        return (*own, self.directional, self.constants_directional, self.relations)
 
 
 def _function(name: str, inputs: list[Any], outputs: list[Any], names_in: list[str], names_out: list[str]) -> Any:
@@ -112,21 +137,24 @@ def equations(flat: FlatModel) -> Equations:
     """The model an FMU computes, from a flat model.
 
     Raises:
-        FmuError: the stored energy depends on an input, so it is no energy of the states
+        FmuError: the stored energy depends on more than the states
     """
-    if ca.depends_on(ca.SX(flat.stored), flat.u):
-        raise FmuError(f"{flat.name}: the stored energy depends on an input. It must be a function of the states.")
+    if ca.depends_on(ca.SX(flat.stored), ca.vertcat(flat.u, flat.z)):
+        raise FmuError(f"{flat.name}: the stored energy must be a function of the states and parameters alone.")
     rate = ca.mtimes(ca.jacobian(flat.stored, flat.x), flat.ode)
     outputs = [flat.y, flat.stored, flat.supply - rate, _outside(flat)]
     if flat.residual_names:
         outputs.append(ca.mmax(ca.fabs(ca.SX(flat.residual))))
     return Equations(
         x=ca.vertcat(flat.x, ca.SX.sym("supplied"), ca.SX.sym("throughput")),
+        z=flat.z,
         u=flat.u,
         p=flat.p,
         ode=ca.densify(ca.vertcat(flat.ode, flat.supply, flat.throughput)),
+        residual=ca.densify(flat.residual),
         y=ca.densify(ca.vertcat(*outputs)),
         checked=ca.densify(ca.vertcat(ca.SX(0, 1), flat.checked)),
+        related=ca.densify(ca.vertcat(ca.SX(0, 1), flat.related)),
     )
 
 

@@ -117,9 +117,9 @@ def _code(flat: FlatModel, variables: Table) -> tuple[str, bytes]:
     """The C source and the description, with the identification that follows from both."""
     model = equations(flat)
     code = source(flat, model, variables)
-    unnamed = description(flat, model, variables, GUID_MARK, dependencies(model, variables))
-    guid = _guid(code.encode() + unnamed)
-    return code.replace(GUID_MARK, guid), unnamed.replace(GUID_MARK.encode(), guid.encode())
+    without_guid = description(flat, model, variables, GUID_MARK, dependencies(model, variables))
+    guid = _guid(code.encode() + without_guid)
+    return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode())
 
 
 def _extra(flat: FlatModel, variables: Table, about: About) -> dict[str, bytes]:

@@ -38,6 +38,14 @@ def grid(
 ) -> Grid:
     """Lay out a run; communication points stand every `step`, on every row and on every point of the inputs.
 
+    Args:
+        inputs: name -> (times [s], values in SI), linear between the points, a time given twice is a jump
+        begin: start of the run [s]
+        stop: its end [s]
+        step: communication step [s]
+        output_times: times of the rows [s], not decreasing; when None every communication point, and both sides of
+            every jump
+
     Raises:
         FmuError: times or values that make no sense
     """
@@ -63,8 +71,10 @@ def _problems(
     columns: Inputs, begin: float, stop: float, step: float, output_times: Sequence[float] | np.ndarray | None
 ) -> list[str]:
     problems = []
-    if not (np.isfinite([begin, stop, step]).all() and stop > begin and step > 0):
-        problems.append(f"a run from {begin:g} s to {stop:g} s in steps of {step:g} s makes no sense.")
+    if not (np.isfinite([begin, stop]).all() and stop > begin):
+        problems.append(f"the run goes from {begin:g} s to {stop:g} s. Its end must lie after its start.")
+    if not (np.isfinite(step) and step > 0):
+        problems.append(f"the communication step is {step:g} s. It must be above 0 s.")
     for name, (time, values) in columns.items():
         if len(time) != len(values) or not len(time):
             problems.append(f'input "{name}": {len(time)} times and {len(values)} values.')

@@ -48,7 +48,22 @@ def play(
     output_times: Sequence[float] | np.ndarray | None = None,
     tolerance: float | None = None,
 ) -> Played:
-    """Load an FMU and run it once; see Player.run."""
+    """Load an FMU and run it once; `Player.run` says more of the arguments.
+
+    Args:
+        path: the FMU
+        inputs: name -> (times [s], values in SI)
+        stop: end of the run [s]
+        step: communication step [s]
+        begin: start of the run [s]
+        start: start values of inputs, parameters and states (SI)
+        record: variables to record; all outputs and inputs when not given
+        output_times: times of the rows [s]; every communication step when not given
+        tolerance: relative, of the FMU's solver; its own when not given
+
+    Raises:
+        FmuError: as `Player` and `Player.run`
+    """
     with Player(path) as player:
         return player.run(
             inputs,
@@ -115,7 +130,9 @@ class Player:
         Args:
             inputs: name -> (times, values), linear between the points, a time given twice is a jump; beyond its points
                 an input keeps its first or last value, and inputs not named keep their start value
+            stop: end of the run [s]
             step: communication step [s]
+            begin: start of the run [s]
             start: start values of inputs, parameters and states (SI)
             record: variables to record; all outputs and inputs when not given
             output_times: times of the rows, not decreasing; a row at a jump shows the inputs behind it, a time given

@@ -27,6 +27,7 @@ def write_reference(
     """Play an FMU at a tight tolerance and write inputs, result and options beside it, for whoever imports it.
 
     Args:
+        fmu: the FMU to play
         inputs: name -> (times [s], values), linear between the points, a time given twice is a jump
         stop: end [s]; the run begins at 0
         step: time between the rows of the result [s]

@@ -10,16 +10,16 @@ from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
-
-from .elimination import SparseLU
+from gearheat.model.core.eliminate import Factors
 
 
 @dataclass(frozen=True)
 class Tableau:
     """Coefficients of a Rosenbrock method in the form that needs no product with the Jacobian.
 
-    (I - h gamma J) U_i = h gamma (f(x + sum a_ij U_j, t + alpha_i h) + h d_i df/dt) + gamma sum c_ij U_j,
-    x_new = x + sum m_i U_i, error = sum e_i U_i (Hairer and Wanner 1996, section IV.7).
+    (M - h gamma J) U_i = h gamma (f(x + sum a_ij U_j, t + alpha_i h) + h d_i df/dt) + gamma M sum c_ij U_j,
+    x_new = x + sum m_i U_i, error = sum e_i U_i (Hairer and Wanner 1996, sections IV.7 and VI.4). M is the identity,
+    with zeros for algebraic equations.
 
     Attributes:
         order: order of the result; that of the error estimate's companion is one less
@@ -92,28 +92,37 @@ def _combine(weights: tuple[float, ...], stages: list[Any]) -> Any:
     return total
 
 
-def step(ode: Any, x: Any, u: Any, tableau: Tableau = RODAS3) -> tuple[Any, Any, Any, Any]:
-    """One step of size h of dx/dt = ode(x, u) with inputs u + slope t.
+def step(ode: Any, residual: Any, x: Any, z: Any, u: Any, tableau: Tableau = RODAS3) -> tuple[Any, Any, Any, Any, Any]:
+    """One step of size h of dx/dt = ode(x, z, u), 0 = residual(x, z, u) with inputs u + slope t.
 
     Args:
         ode: SX column (n); may hold further symbols, which stay constant within the step
-        x: SX symbols of the states (n)
+        residual: SX column (k), solvable for z
+        x, z: SX symbols of the states (n) and of the algebraic variables (k)
         u: SX symbols of the inputs at the step's beginning (m)
 
     Returns:
-        the new states (n), the error estimate (n), and the symbols slope (m) and h (1) it is written in
+        the new states (n) and algebraic variables (k), the error estimate of the states (n), and the symbols slope (m)
+        and h (1) they are written in
     """
+    n, k = x.shape[0], z.shape[0]
     slope, h = ca.SX.sym("slope", u.shape[0]), ca.SX.sym("h")
     gamma_h = tableau.gamma * h
-    factors = SparseLU(ca.SX.eye(x.shape[0]) - gamma_h * ca.jacobian(ode, x))
-    ode_t = ca.jtimes(ode, u, slope)
+    w, whole = ca.vertcat(x, z), ca.vertcat(ode, residual)
+    jacobian = ca.jacobian(whole, w)
+    # algebraic rows are divided by -gamma h, so that h alone scales the others
+    factors = Factors(ca.vertcat(ca.horzcat(ca.SX.eye(n), ca.SX(n, k)) - gamma_h * jacobian[:n, :], jacobian[n:, :]))
+    slopes = ca.jtimes(whole, u, slope)
     rates: dict[tuple[tuple[float, ...], float], Any] = {}
     stages: list[Any] = []
     for a, c, alpha, d in zip(tableau.a, tableau.c, tableau.alpha, tableau.d, strict=True):
         key = (a if any(a) else (), alpha)
         if key not in rates:
-            moved = [x + _combine(a, stages), u + alpha * h * slope]
-            rates[key] = ca.substitute([ode], [x, u], moved)[0] if any(a) or alpha else ode
-        right = gamma_h * (rates[key] + d * h * ode_t) + tableau.gamma * _combine(c, stages)
-        stages.append(factors.solve(right))
-    return x + _combine(tableau.m, stages), ca.densify(ca.SX(_combine(tableau.e, stages))), slope, h
+            moved = [w + _combine(a, stages), u + alpha * h * slope]
+            rates[key] = ca.substitute([whole], [w, u], moved)[0] if any(a) or alpha else whole
+        right = rates[key] + d * h * slopes
+        past = _combine(c, stages)
+        upper = gamma_h * right[:n, :] + (tableau.gamma * past[:n, :] if any(c) else 0.0)
+        stages.append(factors.solve(ca.vertcat(upper, -right[n:, :])))
+    w_new, error = w + _combine(tableau.m, stages), ca.densify(ca.SX(_combine(tableau.e, stages)))
+    return w_new[:n, :], w_new[n:, :], error[:n, :], slope, h

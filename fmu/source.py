@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from importlib.resources import files
+from typing import Any
 
 from gearheat.model.core.flat import FlatModel
+from gearheat.model.run import newton
+from gearheat.model.run.algebra import GUESSES
 
 from . import emit
 from .description import TOLERANCE
@@ -19,6 +22,7 @@ _HEADERS = ("fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h")
 _WRAPPER = (
     "instance.h",
     "messages.c",
+    "newton.c",
     "evaluate.c",
     "trial.c",
     "solver.c",
@@ -56,36 +60,58 @@ def _wrapper_file(name: str) -> str:
 def _sizes(flat: FlatModel, model: Equations, table: Table) -> str:
     sizes = {
         "NX": len(table.of("state")),
+        "NZ": len(flat.algebraic),
         "NU": len(table.of("input")),
         "NY": len(table.of("output")),
         "NP": len(table.of("parameter")),
         "NC": model.constants.numel_out(0),
         "NK": len(flat.checks),
+        "NR": len(flat.relations),
         "ORDER": RODAS3.order,
         "TOLERANCE": TOLERANCE,
         "MODEL_NAME": _string(flat.name),
         "MODEL_GUID": _string(GUID_MARK),
     }
-    return "#include <math.h>\n\n" + "".join(f"#define {name} {value}\n" for name, value in sizes.items())
+    return "#include <math.h>\n\n" + defined(sizes | newton_constants())
+
+
+def defined(values: Mapping[str, Any]) -> str:
+    """Definitions for the preprocessor."""
+    return "".join(f"#define {name} {value}\n" for name, value in values.items())
+
+
+def newton_constants() -> dict[str, str]:
+    """The numbers of `gearheat.model.run.newton` and `algebra`, for the same methods in C."""
+    numbers = {name: value for name, value in vars(newton).items() if name.isupper() and isinstance(value, int | float)}
+    guesses = ", ".join(emit.number(factor) for factor in GUESSES)
+    written = {name: str(v) if isinstance(v, int) else emit.number(v) for name, v in numbers.items()}
+    return written | {"GUESSES": f"{{{guesses}}}", "N_GUESSES": str(len(GUESSES))}
 
 
 def _tables(flat: FlatModel, table: Table) -> str:
-    checks = flat.checks
+    checks, relations = flat.checks, flat.relations
     strings = {
         "model_names": [v.name for v in table],
         "model_units": [fmi_unit(v.quantity.unit) for v in table],
         "model_ranges": [v.range_text for v in table],
+        "model_blocks": flat.residual_names,
         "model_checks": [
             f"{c.component}: {c.argument} of {c.law.name} ({c.law.source}, {c.law.where})" for c in checks
         ],
+        "model_relations": [f'{r.component}: "{r.name}" does not hold: {r.value} is' for r in relations],
+        "model_remedies": [f"expected {r.bounds}. {r.remedy}" for r in relations],
     }
     numbers = {
         "model_start": [v.start or 0.0 for v in table],
         "model_low": [v.bounds[0] for v in table],
         "model_high": [v.bounds[1] for v in table],
         "model_nominal": [v.quantity.nominal for v in table],
+        "model_z_start": [q.start for q in flat.algebraic],
+        "model_z_nominal": [q.nominal for q in flat.algebraic],
         "model_check_low": [c.low for c in checks],
         "model_check_high": [c.high for c in checks],
+        "model_relation_low": [r.low for r in relations],
+        "model_relation_high": [r.high for r in relations],
     }
     texts = [_array("const char *const", name, map(_string, values)) for name, values in strings.items()]
     texts += [_array("const double", name, map(emit.number, values)) for name, values in numbers.items()]

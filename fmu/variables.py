@@ -11,9 +11,15 @@ import casadi as ca
 import numpy as np
 from gearheat.model.core.flat import FlatModel, Quantity
 from gearheat.model.errors import FmuError, suggestion
+from gearheat.model.run.point import follows
 
 SUPPLIED, THROUGHPUT, STORED, RESIDUAL = "energy.supplied", "energy.throughput", "energy.stored", "energy.residual"
 VALIDITY, IMPLICIT = "validity.count", "implicit.residual"
+
+
+#: Smallest number an end at zero leaves open: far below all sizes, and far from the denormal numbers that std::stod and
+#: other readers of the description refuse.
+LEAST = 1e-300
 
 
 @dataclass(frozen=True)
@@ -59,8 +65,8 @@ class Variable:
     def bounds(self) -> tuple[float, float]:
         """Lowest and highest value allowed; an open end is the next number inside."""
         q = self.quantity
-        low = math.nextafter(q.low, math.inf) if q.low_open else q.low
-        high = math.nextafter(q.high, -math.inf) if q.high_open else q.high
+        low = _inside(q.low, 1.0) if q.low_open else q.low
+        high = _inside(q.high, -1.0) if q.high_open else q.high
         return float(low), float(high)
 
     @property
@@ -126,6 +132,11 @@ def table(flat: FlatModel, start: Mapping[str, float] | None = None) -> Table:
     return Table(tuple(variables))
 
 
+def _inside(end: float, direction: float) -> float:
+    """The next number beside an open end."""
+    return direction * LEAST if end == 0 else math.nextafter(end, direction * math.inf)
+
+
 Group = tuple[Quantity, ...]
 
 
@@ -136,7 +147,8 @@ def _started(flat: FlatModel, start: dict[str, float]) -> tuple[Group, Group, Gr
     problems = []
     for name in sorted(start.keys() - settable):
         what = "is calculated by the model" if name in flat.index else f"is unknown.{suggestion(name, settable)}"
-        problems.append(f'{flat.name}: start value "{name}" {what}')
+        told = follows(flat, name) if name in flat.derived else f'"{name}" {what}'
+        problems.append(f"{flat.name}: start value {told}")
     groups = [tuple(replace(q, start=float(start.get(q.name, q.start))) for q in group) for group in groups]
     problems += [f"{flat.name}: start value {p}" for group in groups for q in group if (p := q.problem(q.start))]
     return (*groups[0], *_audit_states(flat)), groups[1], groups[2], problems
@@ -162,7 +174,14 @@ def _outputs(flat: FlatModel) -> Group:
     ]
     if flat.residual_names:
         audit.append(Quantity(IMPLICIT, "1", "largest scaled residual of the implicit equations", low=0.0))
-    return (*flat.outputs, *audit)
+    return (*(replace(q, doc=_doc(flat, q)) for q in flat.outputs), *audit)
+
+
+def _doc(flat: FlatModel, q: Quantity) -> str:
+    """What an output is; of a parameter that follows from others also from which."""
+    own = q.name.rpartition(".")[0] + "."
+    known = ", ".join(path.removeprefix(own) for path in flat.derived.get(q.name, ()))
+    return f"{q.doc}, follows from {known}" if known else q.doc
 
 
 def _derivative(q: Quantity) -> Quantity:

@@ -35,7 +35,12 @@ class DataError(GearheatError):
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:
-    """' Did you mean "x"?' for a misspelt name, or an empty text."""
+    """' Did you mean "x"?' for a misspelt name, or an empty text.
+
+    Args:
+        name: what was written
+        known: all names that would be right
+    """
     close = difflib.get_close_matches(name, list(known), n=3, cutoff=0.6)
     quoted = " or ".join(f'"{c}"' for c in close)
     return f" Did you mean {quoted}?" if close else ""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import functools
 import inspect
+import operator
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -32,9 +33,16 @@ class Source:
     where: str = ""
 
 
+#: What may stand between two arguments of a law in the name of a range: "F_a / C_0".
+_BETWEEN: Mapping[str, Callable[[Any, Any], Any]] = {"-": operator.sub, "/": operator.truediv}
+
+
 @dataclass(frozen=True, eq=False)
 class LawInfo:
-    """What a law declares: source key, place in the source, validity in words and as ranges of its arguments (SI)."""
+    """What a law declares: source key, place in the source, validity in words and as ranges (SI).
+
+    A range belongs to an argument, "nu", or to the difference or quotient of two, "T - T_pour", "F_a / C_0".
+    """
 
     name: str
     source: str
@@ -46,7 +54,7 @@ class LawInfo:
 
 @dataclass(frozen=True, eq=False)
 class LawUse:
-    """One call of a law inside a model: the law and the expressions of the arguments that have a range."""
+    """One call of a law inside a model: the law and the expressions of what has a range."""
 
     law: LawInfo
     arguments: Mapping[str, Any]
@@ -80,7 +88,8 @@ def law(
         source: key of sources.toml
         where: equation, table or section of the source
         valid: range of validity in words
-        ranges: argument name -> (low, high) in SI, checked by every run that uses the law
+        ranges: argument, or two of them as "a - b" or "a / b" -> (low, high) in SI, checked by every run that uses
+            the law; a range of an argument that a call leaves out does not count
         verified: False for a law without a golden row from print; reports list it as unverified
     """
     limits = dict(ranges or {})
@@ -88,7 +97,8 @@ def law(
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
         info = LawInfo(function.__name__, source, where, valid, limits, verified)
         signature = inspect.signature(function)
-        if unknown := limits.keys() - signature.parameters.keys():
+        operands = {operand for name in limits for operand in name.split(" ")[::2]}
+        if unknown := operands - signature.parameters.keys():
             raise TypeError(f"law {function.__name__}: ranges name unknown arguments {sorted(unknown)}")
 
         @functools.wraps(function)
@@ -96,13 +106,24 @@ def law(
             uses = _uses.get()
             if uses is not None:
                 bound = signature.bind(*args, **kwargs).arguments
-                uses.append(LawUse(info, {name: bound[name] for name in limits if name in bound}))
+                uses.append(LawUse(info, {name: _ranged(name, bound) for name in limits if _given(name, bound)}))
             return function(*args, **kwargs)
 
         called.law = info  # type: ignore[attr-defined]
         return called
 
     return decorate
+
+
+def _given(name: str, bound: Mapping[str, Any]) -> bool:
+    """Whether a call gives all arguments that a range names."""
+    return all(operand in bound for operand in name.split(" ")[::2])
+
+
+def _ranged(name: str, bound: Mapping[str, Any]) -> Any:
+    """What a range limits: an argument, or two of them joined."""
+    first, *rest = name.split(" ")
+    return _BETWEEN[rest[0]](bound[first], bound[rest[1]]) if rest else bound[first]
 
 
 @functools.cache

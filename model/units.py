@@ -100,7 +100,12 @@ def shown(unit: str) -> str:
 
 
 def from_si(number: float, unit: str) -> float:
-    """An SI number in the unit it is shown in: K -> degC, rad/s -> rpm, else unchanged."""
+    """An SI number in the unit it is shown in: K -> degC, rad/s -> rpm, else unchanged.
+
+    Args:
+        number: a value in SI
+        unit: its SI unit, such as "K"
+    """
     if unit == "K":
         return number - 273.15
     if unit == "rad/s":
@@ -109,7 +114,13 @@ def from_si(number: float, unit: str) -> float:
 
 
 def text(number: float, unit: str, digits: int = 6) -> str:
-    """A number with the unit it is shown in."""
+    """A number with the unit it is shown in.
+
+    Args:
+        number: a value in SI
+        unit: its SI unit, such as "K"
+        digits: significant digits to write
+    """
     written = f"{from_si(number, unit):.{digits}g}"
     return written if unit == "1" else f"{written} {shown(unit)}"
 

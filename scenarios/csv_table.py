@@ -12,6 +12,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 from ..model.errors import DataError, suggestion
+from .document import read_text
 
 #: Most problems that one message lists; the rest are counted.
 SHOWN = 30
@@ -47,7 +48,15 @@ class Table:
 
 
 def raise_all(problems: Sequence[str], name: str) -> None:
-    """Raise DataError if there are problems; beyond a page of them the rest are counted."""
+    """Refuse a file that has problems; beyond a page of them the rest are counted.
+
+    Args:
+        problems: what is wrong with a file, one text each
+        name: of the file
+
+    Raises:
+        DataError: there are problems
+    """
     if len(problems) > SHOWN:
         rest = len(problems) - SHOWN
         problems = [
@@ -91,14 +100,7 @@ def read_cells(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
 
 
 def _lines(path: Path) -> list[tuple[int, list[str]]]:
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        raise DataError(f"{path}: there is no such file. Check the path.") from None
-    except UnicodeDecodeError:
-        raise DataError(f"{path.name}: is no text in UTF-8. Export the table as CSV.") from None
-    except OSError as error:
-        raise DataError(f"{path}: cannot be read ({error.strerror}). Give a CSV file.") from None
+    text = read_text(path, "CSV", DataError)
     reader = csv.reader(text.replace("\x00", "\ufffd").splitlines())
     try:
         cells = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
@@ -122,6 +124,10 @@ def number(cell: str) -> float:
 
 def parse(path: Path, columns: Iterable[Column]) -> tuple[Table, list[str]]:
     """The table in a file and all that is wrong with its columns and cells; unknown columns only warn.
+
+    Args:
+        path: the CSV file
+        columns: the columns that are known, with unit and range
 
     Raises:
         DataError: what `read_cells` finds, since nothing can be read beyond it

@@ -8,7 +8,7 @@ from collections.abc import Container, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
-from ..model.errors import ScenarioError, suggestion
+from ..model.errors import GearheatError, ScenarioError, suggestion
 
 #: Kinds of source beside a citation ("Dias2014, table 5.7"): they need a reason behind the colon.
 SOURCE_KINDS = ("assumed", "inferred", "calibrated")
@@ -17,16 +17,30 @@ SOURCE_KINDS = ("assumed", "inferred", "calibrated")
 ABOUT = ("doc", "source", "sources")
 
 
+def read_text(path: Path, kind: str, refused: type[GearheatError]) -> str:
+    """The text of a file, without the mark some programs put before UTF-8.
+
+    Args:
+        path: the file
+        kind: what it should be, for messages: "TOML", "CSV"
+        refused: class of the error
+
+    Raises:
+        GearheatError: of that class: there is no such file, it is not UTF-8 text, or it cannot be read
+    """
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        raise refused(f"{path}: there is no such file. Check the path.") from None
+    except UnicodeDecodeError:
+        raise refused(f"{path.name}: is not UTF-8 text. Save it as a {kind} file.") from None
+    except OSError as error:
+        raise refused(f"{path}: cannot be read ({error.strerror}). Give a {kind} file.") from None
+
+
 def read_toml(path: Path) -> dict[str, Any]:
     """The tables of a file. Raises ScenarioError naming the line of a syntax error."""
-    try:
-        text = path.read_text(encoding="utf-8")
-    except FileNotFoundError:
-        raise ScenarioError(f"{path}: there is no such file. Check the path.") from None
-    except UnicodeDecodeError:
-        raise ScenarioError(f"{path.name}: is no text in UTF-8. Save it as a TOML file.") from None
-    except OSError as error:
-        raise ScenarioError(f"{path}: cannot be read ({error.strerror}). Give a TOML file.") from None
+    text = read_text(path, "TOML", ScenarioError)
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:

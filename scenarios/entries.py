@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import re
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.resources import files
@@ -33,15 +34,35 @@ DESCRIPTIVE: Mapping[str, Mapping[str, str]] = {
 }
 
 
+#: Key of what the values of an entry were compared with.
+CHECKED = "checked"
+
+_UNCHECKED = re.compile(r', unchecked \((\w+) "(.*)"\)$')
+
+
 @dataclass(frozen=True)
 class Entry:
-    """One entry: its values as written (text with units), and the source of each."""
+    """One entry: its values as written (text with units), the source of each, and the print it was compared with.
+
+    A value that `checked` does not name was compared with nothing.
+    """
 
     kind: str
     name: str
     doc: str
     values: Mapping[str, Any]
     sources: Mapping[str, str]
+    checked: Mapping[str, str]
+
+    def told(self, key: str, source: str) -> str:
+        """A source of one of the values, with a remark where the value was not compared with a print."""
+        return source if key in self.checked else f'{source}, unchecked ({self.kind} "{self.name}")'
+
+
+def unchecked_entry(source: str) -> tuple[str, str] | None:
+    """Kind and name of the entry that a source remarks on (`Entry.told`); none for any other source."""
+    found = _UNCHECKED.search(source)
+    return (found[1], found[2]) if found else None
 
 
 @functools.cache
@@ -57,7 +78,15 @@ def catalogue(kind: str) -> Mapping[str, Entry]:
 
 
 def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
-    """The entries in a catalogue file, a table each. Raises ScenarioError with all problems at once."""
+    """The entries in a catalogue file, a table each.
+
+    Args:
+        kind: of its entries, a key of `FILES`
+        path: the TOML file
+
+    Raises:
+        ScenarioError: all problems of the file at once
+    """
     units = {**_taken_by_parts(), **DESCRIPTIVE.get(kind, {})}
     entries: dict[str, Entry] = {}
     problems: list[str] = []
@@ -66,9 +95,11 @@ def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
         if not isinstance(table, Mapping):
             problems.append(f"{where}: is no table. Write the values of the entry below [{name}].")
             continue
-        sources, wrong = sources_of(where, table)
+        values = {key: value for key, value in table.items() if key not in (*ABOUT, CHECKED)}
+        sources, wrong = sources_of(where, {key: value for key, value in table.items() if key != CHECKED})
         problems += wrong
-        values = {key: value for key, value in table.items() if key not in ABOUT}
+        checked, wrong = _checked(where, table.get(CHECKED), values)
+        problems += wrong
         for key, value in values.items():
             if key not in units:
                 problems.append(f'{where}: no part takes "{key}".{suggestion(key, units)}')
@@ -77,10 +108,23 @@ def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
                 to_si(value, units[key], name=f"{where}: {key}")
             except GearheatError as error:
                 problems += error.problems
-        entries[name] = Entry(kind, name, str(table.get("doc", "")), values, sources)
+        entries[name] = Entry(kind, name, str(table.get("doc", "")), values, sources, checked)
     if problems:
         raise ScenarioError(problems)
     return entries
+
+
+def _checked(where: str, given: object, values: Mapping[str, Any]) -> tuple[dict[str, str], list[str]]:
+    """What each value was compared with, from a text for all of them, a table of texts, or false; and what is wrong."""
+    told = dict.fromkeys(values, given) if isinstance(given, str) else {} if given is False else given
+    if not isinstance(told, Mapping) or not all(isinstance(text, str) and text.strip() for text in told.values()):
+        found = f"{CHECKED} is missing" if given is None else f"{CHECKED} = {given!r} names no print"
+        remedy = "Write the print that the values were compared with, a table of such texts by value, or false."
+        return {}, [f"{where}: {found}. {remedy}"]
+    strange = [
+        f'{where}: {CHECKED} names "{k}", which has no value.{suggestion(k, values)}' for k in told if k not in values
+    ]
+    return dict(told), strange
 
 
 def _taken_by_parts() -> dict[str, str]:
@@ -89,7 +133,15 @@ def _taken_by_parts() -> dict[str, str]:
 
 
 def entry(kind: str, name: str) -> Entry:
-    """One entry. Raises ScenarioError with suggestions for an unknown name."""
+    """One entry of a catalogue.
+
+    Args:
+        kind: of the entry, a key of `FILES`
+        name: of the entry
+
+    Raises:
+        ScenarioError: unknown kind or name, with suggestions
+    """
     known = catalogue(kind)
     if name not in known:
         close = suggestion(name, known) or f" Known: {', '.join(known)}."

@@ -72,17 +72,18 @@ def list_rigs() -> dict[str, str]:
     return {path.parent.name: str(read_toml(path).get("doc", "")) for path in found}
 
 
-def load(name_or_path: str | Path) -> Scenario:
+def load(name_or_path: str | Path, types: Mapping[str, type[Component]] = PARTS) -> Scenario:
     """The scenario of a shipped rig, or of a rig file.
 
     Args:
         name_or_path: a name of `list_rigs`, a TOML file, or a folder with a `rig.toml`
+        types: name -> class of every type a part of the rig may have
 
     Raises:
         ScenarioError: everything wrong with the file at once
     """
     path = _find(name_or_path)
-    return _Loader(path, read_toml(path)).scenario()
+    return _Loader(path, read_toml(path), types).scenario()
 
 
 def _find(name_or_path: str | Path) -> Path:
@@ -102,8 +103,9 @@ def _find(name_or_path: str | Path) -> Path:
 class _Loader:
     """Reads one file, collecting problems all the way; nothing of it outlives the reading."""
 
-    def __init__(self, path: Path, raw: Mapping[str, Any]) -> None:
+    def __init__(self, path: Path, raw: Mapping[str, Any], known: Mapping[str, type[Component]]) -> None:
         self.path = path
+        self.known = known
         self.file = path.name
         self.name = path.parent.name if path.name == "rig.toml" else path.stem
         self.table: RigTable
@@ -121,7 +123,7 @@ class _Loader:
 
     def _types(self) -> dict[str, type[Component]]:
         """Part -> its class, for the parts whose type is known."""
-        types = {name: PARTS[kind] for name, kind in self.layout.items()}
+        types = {name: self.known[kind] for name, kind in self.layout.items()}
         for name, table in self.table.part.items():
             where = f"{self.file} [part.{name}]"
             kind = str(table.get("type", self.layout.get(name, "")))
@@ -131,14 +133,14 @@ class _Loader:
                     f'{where}: the machine has no part "{name}".{close} A part of your own needs a type.'
                 )
             elif not kind:
-                self.problems.append(f'{where}: "type" is missing. Give one of: {", ".join(PARTS)}.')
-            elif kind not in PARTS:
-                close = suggestion(kind, PARTS) or f" Types: {', '.join(PARTS)}."
+                self.problems.append(f'{where}: "type" is missing. Give one of: {", ".join(self.known)}.')
+            elif kind not in self.known:
+                close = suggestion(kind, self.known) or f" Types: {', '.join(self.known)}."
                 self.problems.append(f'{where}: there is no part type "{kind}".{close}')
             elif not name.isidentifier():
                 self.problems.append(f"{where}: the name of a part is one word of letters, digits and _. Rename it.")
             else:
-                types[name] = PARTS[kind]
+                types[name] = self.known[kind]
         return types
 
     def scenario(self) -> Scenario:
@@ -218,7 +220,7 @@ class _Loader:
         self.problems += self._one_body_of_two()
         specs = tuple(PartSpec(name, cls.__name__, parts[name].values) for name, cls in self.types.items())
         own = tuple(tuple(members) for members in self.table.connect.values())
-        return Spec(self.name, self.table.doc, specs, (*self.connections, *own))
+        return Spec(self.name, self.table.doc, specs, (*self.connections, *own), self.known)
 
     def _one_body_of_two(self) -> list[str]:
         """Nets of the file that share a port, which makes one of them, and that hold different storages."""

@@ -165,7 +165,12 @@ class TestRun:
 
 
 def column_si(name: str, value: float) -> float:
-    """A value of a column whose name ends in its unit ("T_oil_C"), in SI; unchanged without such an ending."""
+    """A value of a column whose name ends in its unit ("T_oil_C"), in SI; unchanged without such an ending.
+
+    Args:
+        name: of the column
+        value: as it stands in the table
+    """
     for suffix, (unit, si) in SUFFIXES.items():
         if name.endswith(suffix):
             return to_si(f"{float(value)!r} {unit}", si, name=name)
@@ -269,6 +274,10 @@ def _readings(table: Table) -> tuple[Reading, ...]:
 
 def schedule_of(campaign: Campaign, test: Test) -> TestRun:
     """The duty of one test: each point held for its dwell, a stop without load between them, the room as read.
+
+    Args:
+        campaign: the readings, with the protocol they were taken by
+        test: one of its tests
 
     Raises:
         DataError: the campaign was read without a protocol, or lacks a column that the protocol needs

@@ -10,8 +10,7 @@ from ..model.core.declare import Input, declared
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.machines.spec import Spec
-from ..model.parts import PARTS
-from .entries import FILES, catalogue
+from .entries import FILES, Entry, catalogue, unchecked_entry
 from .measured import Campaign, Protocol
 from .values import Override, entry_values, in_range, settable
 
@@ -64,7 +63,7 @@ class Scenario:
         return {
             f"{part.name}.{key}": d.quantity(f"{part.name}.{key}")
             for part in self.spec.parts
-            for key, d in settable(PARTS[part.type]).items()
+            for key, d in settable(self.spec.types[part.type]).items()
         }
 
     def inputs(self) -> dict[str, Quantity]:
@@ -73,11 +72,19 @@ class Scenario:
         return {
             path: known[path]
             for part in self.spec.parts
-            for path in (f"{part.name}.{key}" for key in declared(PARTS[part.type], Input))
+            for path in (f"{part.name}.{key}" for key in declared(self.spec.types[part.type], Input))
         }
 
     def with_values(self, values: Mapping[str, float], source: str = "given by the user") -> Scenario:
-        """The scenario with values replaced, by path, in SI. Raises ScenarioError for parts that do not exist."""
+        """The scenario with values replaced.
+
+        Args:
+            values: path -> value in SI
+            source: where the values are from
+
+        Raises:
+            ScenarioError: parts that do not exist
+        """
         moved = {path: values[path] for path in self.inputs() if path in values}
         return replace(
             self,
@@ -93,14 +100,53 @@ class Scenario:
         return replace(self, spec=self.spec.driven(fixed), given=fixed)
 
     def entry_values(self, part: str, name: str) -> dict[str, float]:
-        """Values by path that a catalogue entry gives a part ("oil", "MINR"). Raises ScenarioError with suggestions."""
-        declarations = settable(PARTS[self.spec.part(part).type])
+        """Values in SI by path that a catalogue entry gives a part.
+
+        Args:
+            part: name of a part ("oil")
+            name: of an entry of its catalogue ("MINR")
+
+        Raises:
+            ScenarioError: unknown name, with suggestions
+        """
+        found = entry_values(self._entry(part, name), settable(self.spec.types[self.spec.part(part).type]))
+        return {f"{part}.{key}": value for key, value in found.items()}
+
+    def entry_sources(self, part: str, name: str, source: str) -> dict[str, str]:
+        """A source for each value that an entry gives a part, with a remark where the value is unchecked.
+
+        Args:
+            part: name of a part
+            name: of an entry of its catalogue
+            source: of the entry, in words
+
+        Raises:
+            ScenarioError: unknown name, with suggestions
+        """
+        found = self._entry(part, name)
+        return {path: found.told(path.rpartition(".")[2], source) for path in self.entry_values(part, name)}
+
+    def _entry(self, part: str, name: str) -> Entry:
+        declarations = settable(self.spec.types[self.spec.part(part).type])
         kinds = self.entries.get(part) or FILES
         known = {n: e for kind in kinds for n, e in catalogue(kind).items() if entry_values(e, declarations)}
         if name not in known:
             close = suggestion(name, known) or f" Known: {', '.join(known) or 'none'}."
             raise ScenarioError(f'{part} = {name}: unknown {" or ".join(kinds)} "{name}".{close}')
-        return {f"{part}.{key}": value for key, value in entry_values(known[name], declarations).items()}
+        return known[name]
+
+    def unchecked(self, filled: Iterable[tuple[str, str]] = ()) -> dict[tuple[str, str], tuple[str, ...]]:
+        """Catalogue entries in use, by kind and name -> paths of their values that were compared with no print.
+
+        Args:
+            filled: part and name of further entries that a run fills parts with, such as the oils of a campaign
+        """
+        others = [self.entry_sources(part, name, "") for part, name in filled]
+        found: dict[tuple[str, str], dict[str, None]] = {}
+        for path, source in (pair for sources in (self.value_sources, *others) for pair in sources.items()):
+            if (entry := unchecked_entry(source)) is not None:
+                found.setdefault(entry, {})[path] = None
+        return {entry: tuple(paths) for entry, paths in found.items()}
 
 
 def parse_assignments(target: Scenario | FlatModel, texts: Iterable[str]) -> dict[str, float]:

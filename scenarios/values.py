@@ -56,7 +56,16 @@ def readable(cls: type[Component]) -> dict[str, Declaration]:
 
 
 def in_range(where: str, raw: object, quantity: Quantity) -> float:
-    """A value as a number in the quantity's SI unit. Raises ScenarioError if it is none, or out of range."""
+    """A value as a number in the quantity's SI unit.
+
+    Args:
+        where: place of the value, for messages
+        raw: a number, or text with a unit ("62 mm")
+        quantity: what it is a value of: unit and range
+
+    Raises:
+        ScenarioError: it is no number with a fitting unit, or out of range
+    """
     name = f"{where}{quantity.name}"
     value = to_si(raw, quantity.unit, name=name)
     if (problem := quantity.problem(value)) is not None:
@@ -81,7 +90,12 @@ def meant(key: str, known: Mapping[str, str]) -> str | None:
 
 
 def entry_values(found: Entry, declarations: Mapping[str, Declaration]) -> dict[str, float]:
-    """The values of a catalogue entry that a part declares, in SI; the others describe the thing to a reader."""
+    """The values of a catalogue entry that a part declares, in SI; the others describe the thing to a reader.
+
+    Args:
+        found: the entry
+        declarations: of the part, by key
+    """
     where = f"{FILES[found.kind]} [{found.name}] "
     known = {key: raw for key, raw in found.values.items() if key in declarations}
     return {key: in_range(where, raw, declarations[key].quantity(key)) for key, raw in known.items()}
@@ -138,7 +152,7 @@ class _PartReader:
             )
             return False
         self.result.values.update(values)
-        self.result.sources.update({key: found.sources[key] for key in values})
+        self.result.sources.update({key: found.told(key, found.sources[key]) for key in values})
         self.result.entries[kind] = found.name
         return True
 

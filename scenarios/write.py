@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+from ..model.core.component import Component
 from ..model.core.declare import Choice, declared
 from ..model.machines.spec import PartSpec
-from ..model.parts import PARTS
 from .scenario import Scenario
 from .values import UNCERTAINTIES, settable
 
@@ -27,14 +27,16 @@ def rig_text(scenario: Scenario) -> str:
 def _lines(scenario: Scenario) -> Iterator[str]:
     yield 'kind = "network"'
     yield f"doc = {_toml(scenario.doc)}"
-    yield from _table("drive", scenario.given)
+    yield from _table("drive", scenario.given) or ["", "[drive]"]  # a rig file has these two, even empty
     known = scenario.settable()
     point = {path: _value(value, known[path].unit) for path, value in scenario.operating_point.items()}
-    yield from _table("operating_point", point, sources={path: _source(scenario, path) for path in point})
+    sources = {path: _source(scenario, path) for path in point}
+    yield from _table("operating_point", point, sources=sources) or ["", "[operating_point]"]
     for part in scenario.spec.parts:
-        values = _part_values(part)
+        cls = scenario.spec.types[part.type]
+        values = _part_values(part, cls)
         sources = {key: _source(scenario, f"{part.name}.{key}") for key in values}
-        uncertainties = _uncertainties(scenario, part)
+        uncertainties = _uncertainties(scenario, part, cls)
         yield from _table(f"part.{part.name}", {"type": part.type} | values, sources=sources, more=uncertainties)
     yield from _table("connect", {f"net_{i}": ports for i, ports in enumerate(scenario.spec.connections, 1)})
     yield from _table("sensors", scenario.sensors)
@@ -48,16 +50,16 @@ def _lines(scenario: Scenario) -> Iterator[str]:
         yield from _table("[errata]", vars(erratum))
 
 
-def _part_values(part: PartSpec) -> dict[str, Any]:
+def _part_values(part: PartSpec, cls: type[Component]) -> dict[str, Any]:
     """Values with units and choices of a part."""
-    declarations, choices = settable(PARTS[part.type]), declared(PARTS[part.type], Choice)
+    declarations, choices = settable(cls), declared(cls, Choice)
     values = {k: _value(v, declarations[k].unit) for k, v in part.values.items() if k in declarations}
     return values | {k: v for k, v in part.values.items() if k in choices and k not in _DRIVEN}
 
 
-def _uncertainties(scenario: Scenario, part: PartSpec) -> dict[str, Any]:
+def _uncertainties(scenario: Scenario, part: PartSpec, cls: type[Component]) -> dict[str, Any]:
     """Standard uncertainties of a part with units, as an inline table of the rig file."""
-    declarations = settable(PARTS[part.type])
+    declarations = settable(cls)
     known = {key: scenario.uncertainties.get(f"{part.name}.{key}") for key in part.values if key in declarations}
     found = {key: _value(u, declarations[key].unit) for key, u in known.items() if u is not None}
     return {UNCERTAINTIES: found} if found else {}
@@ -77,7 +79,7 @@ def _table(
     *,
     sources: Mapping[str, str] | None = None,
     more: Mapping[str, Mapping[str, Any]] | None = None,
-) -> Iterable[str]:
+) -> list[str]:
     """A table, with the sources of its values and whatever else is known of them as inline tables; none if empty."""
     if not entries:
         return []

@@ -20,9 +20,9 @@ from ..fmu.export import export
 from ..fmu.play import Player
 from ..model.core.flat import FlatModel
 from ..model.run.simulate import simulate
-from ..scenarios.load import load
 from . import bench_fmu, campaign, throughput
 from .console import answer, note, table
+from .rigs import load
 from .settings import driven_by, flat_of
 
 #: Tolerances at which LSODA runs; the cheapest one that is as accurate as the FMU is what the FMU is compared with.
@@ -141,27 +141,27 @@ def _integration(rig: str, tests: str | None) -> dict[str, Any]:
     protocol = scenario.campaign.protocol if scenario.campaign else None
     scenario = driven_by(scenario, protocol.inputs) if protocol else scenario
     flat = flat_of(scenario)
-    courses = campaign.courses(scenario, flat, tests)
+    runs = campaign.runs_of(scenario, flat, tests)
     states = [q.name for q in flat.states]
-    note(f"{len(courses)} tests: reference")
-    exact = _simulated(flat, courses, "cvodes", REFERENCE)
+    note(f"{len(runs)} tests: reference")
+    exact = _simulated(flat, runs, "idas", REFERENCE)
     fmu_s: list[float] = []
     lsoda: list[dict[str, float]] = []
     with tempfile.TemporaryDirectory() as folder, Player(export(flat, Path(folder) / "rig.fmu")) as player:
-        values = _played(player, courses, states)
+        values = _played(player, runs, states)
         fmu_error = _apart(values, exact)
         for tolerance in TOLERANCES:  # both by turns, so that a busy moment of the machine meets both
             note(f"FMU, then LSODA with tolerance {tolerance:g}")
-            fmu_s += [_timed(lambda: _played(player, courses, states), time.process_time)[0] for _ in range(3)]
+            fmu_s += [_timed(lambda: _played(player, runs, states), time.process_time)[0] for _ in range(3)]
             began = time.process_time()
-            values = _simulated(flat, courses, "lsoda", tolerance)
+            values = _simulated(flat, runs, "lsoda", tolerance)
             took = time.process_time() - began
             lsoda.append({"tolerance": tolerance, "s": took, "error_K": _apart(values, exact)})
     equal = [run for run in lsoda if run["error_K"] <= fmu_error] or lsoda[-1:]
     best = min(equal, key=lambda run: run["s"])
     middle = float(np.median(fmu_s))
     return {
-        "tests": len(courses),
+        "tests": len(runs),
         "fmu_s": middle,
         "fmu_error_K": fmu_error,
         "lsoda": lsoda,
@@ -171,43 +171,42 @@ def _integration(rig: str, tests: str | None) -> dict[str, Any]:
     }
 
 
-def _simulated(flat: FlatModel, courses: Sequence[campaign.Course], method: str, tolerance: float) -> np.ndarray:
+def _simulated(flat: FlatModel, runs: Sequence[campaign.Run], method: str, tolerance: float) -> np.ndarray:
     """States at all readings."""
     names = {q.name for q in flat.states}
     found = []
-    for course in courses:
+    for run in runs:
         result = simulate(
             flat,
-            course.schedule,
-            start={n: v for n, v in course.start.items() if n in names},
-            values={n: v for n, v in course.start.items() if n not in names},
+            run.schedule,
+            start={n: v for n, v in run.start.items() if n in names},
+            values={n: v for n, v in run.start.items() if n not in names},
             times=[
-                course.schedule.start,
-                *(m for m in course.moments for _ in range(2 if m < course.schedule.stop else 1)),
+                run.schedule.start,
+                *(m for m in run.moments for _ in range(2 if m < run.schedule.stop else 1)),
             ],
             tolerance=tolerance,
             method=method,
         )
-        rows = [int(np.flatnonzero(result.index == moment)[0]) for moment in course.moments]
+        rows = [int(np.flatnonzero(result.index == moment)[0]) for moment in run.moments]
         found.append([[result[name][row] for name in sorted(names)] for row in rows])
     return np.concatenate(found)
 
 
-def _played(player: Player, courses: Sequence[campaign.Course], states: Sequence[str]) -> np.ndarray:
+def _played(player: Player, runs: Sequence[campaign.Run], states: Sequence[str]) -> np.ndarray:
     """States at all readings."""
     found = []
-    for course in courses:
-        inputs = {name: (course.schedule.time, values) for name, values in course.schedule.values.items()}
-        times, stop = _both_sides(course), course.schedule.stop
-        played = player.run(inputs, stop, STEP, start=course.start, record=sorted(states), output_times=times)
-        rows = [int(np.flatnonzero(played.time == moment)[0]) for moment in course.moments]
+    for run in runs:
+        times, stop = _both_sides(run), run.schedule.stop
+        played = player.run(run.inputs, stop, STEP, start=run.start, record=sorted(states), output_times=times)
+        rows = [int(np.flatnonzero(played.time == moment)[0]) for moment in run.moments]
         found.append(played.values[rows])
     return np.concatenate(found)
 
 
-def _both_sides(course: campaign.Course) -> list[float]:
+def _both_sides(run: campaign.Run) -> list[float]:
     """Times of the readings; twice where a jump follows, so that the first row shows the state before it."""
-    return [m for m in course.moments for _ in range(2 if m < course.schedule.stop else 1)]
+    return [m for m in run.moments for _ in range(2 if m < run.schedule.stop else 1)]
 
 
 def _apart(values: np.ndarray, exact: np.ndarray) -> float:

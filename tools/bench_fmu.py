@@ -26,11 +26,12 @@ from scipy.integrate import solve_ivp
 from ..fmu.export import export
 from ..fmu.play import Player
 from ..model.core.flat import FlatModel
+from ..model.run.algebra import algebra
 from ..model.run.fast import Fast
 from ..model.run.schedule import Schedule, stepped
 from ..model.run.simulate import simulate
-from ..scenarios.load import load
 from .bench_costs import from_c, growth, growth_rows
+from .rigs import load
 from .settings import flat_of
 
 #: The warm-up: five stages of 66 min at these parts of the speed; the same as in `importer/measure.c`.
@@ -124,7 +125,7 @@ def _peers(
     inputs = {name: (duty.time, values) for name, values in duty.values.items()}
     names = [q.name for q in flat.states]
 
-    def cvodes(tolerance: float) -> np.ndarray:
+    def idas(tolerance: float) -> np.ndarray:
         found = simulate(flat, duty, times=ends, tolerance=tolerance)
         return np.stack([found[q.name] for q in flat.states], axis=1)
 
@@ -138,7 +139,7 @@ def _peers(
         peers = {"this project's Player, this FMU, 60 s": Peer(*_clocked(played, truth), 1e-5)}
     peers["FMPy, this FMU, 60 s"] = Peer(*_clocked(lambda: fmpy("CoSimulation")(1e-5), truth), 1e-5)
     peers["FMPy, model exchange, its CVode"] = _as_accurate(fmpy("ModelExchange"), truth, error)
-    peers["CasADi cvodes from Python"] = _as_accurate(cvodes, truth, error)
+    peers["CasADi IDAS from Python"] = _as_accurate(idas, truth, error)
     peers["SciPy LSODA"] = _as_accurate(_scipy(flat, ends, speed, "LSODA"), truth, error)
     peers["SciPy BDF"] = _as_accurate(_scipy(flat, ends, speed, "BDF"), truth, error)
     return peers
@@ -147,8 +148,9 @@ def _peers(
 def _scipy(flat: FlatModel, ends: list[float], speed: str, method: str) -> Run:
     """The warm-up by a solver of SciPy on compiled expressions, with the exact Jacobian."""
     p, place = flat.starts("parameter"), flat.locate(speed)[1]
-    symbols = [flat.x, flat.u, flat.p]
-    rates, slopes = Fast("rates", symbols, [flat.ode]), Fast("slopes", symbols, [ca.jacobian(flat.ode, flat.x)])
+    ode, symbols = _explicit(flat)
+    value = ode(*symbols)
+    rates, slopes = Fast("rates", symbols, [value]), Fast("slopes", symbols, [ca.jacobian(value, symbols[0])])
     nominal = np.array([q.nominal for q in flat.states])
 
     def run(tolerance: float) -> np.ndarray:
@@ -170,6 +172,18 @@ def _scipy(flat: FlatModel, ends: list[float], speed: str, method: str) -> Run:
         return np.stack(rows)
 
     return run
+
+
+def _explicit(flat: FlatModel) -> tuple[Any, list[Any]]:
+    """The rates as a function of x, u, p, and symbols for these; CasADi's Newton solves the implicit equations."""
+    x, u, p = symbols = [ca.MX.sym(name, v.shape[0]) for name, v in zip("xup", (flat.x, flat.u, flat.p), strict=True)]
+    given = ca.vertcat(flat.x, flat.u, flat.p)
+    z = ca.DM(flat.starts("algebraic"))
+    if flat.algebraic:
+        root = ca.rootfinder("z", "fast_newton", {"x": flat.z, "p": given, "g": flat.residual})
+        start = algebra(flat).solve(*map(flat.starts, ("state", "input", "parameter")))
+        z = root(x0=start, p=ca.vertcat(*symbols))["x"]
+    return ca.Function("ode", symbols, [flat.function(x, z, u, p)[0]]), symbols
 
 
 def _fmpy(
@@ -238,7 +252,7 @@ def _pythonfmu(
     """The same warm-up by PythonFMU in FMPy, both in an environment of their own."""
     place, n = flat.locate(next(iter(duty.values)))[1], len(flat.states)
     u, speed = flat.starts("input"), float(flat.starts("input")[place])
-    flat.ode_function.save(str(folder / "ode.casadi"))
+    _explicit(flat)[0].save(str(folder / "ode.casadi"))
     text = SLAVE.format(
         ode=str(folder / "ode.casadi"),
         x=flat.starts("state").tolist(),

@@ -16,10 +16,10 @@ from ..fmu.play import Player
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import DataError, GearheatError, ScenarioError, SolveError
 from ..model.units import from_si, shown, to_si
-from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
 from . import campaign
 from .console import answer, note, table
+from .rigs import load
 from .settings import adjusted, driven_by, flat_of
 
 #: Relative step of the difference quotients; well above what the FMU's own tolerance leaves.
@@ -48,14 +48,14 @@ def command(
     rig: str, grid: str, free: Sequence[str], bounds: Sequence[str], assignments: Sequence[str], json: str | None
 ) -> None:
     """Print the fitted values."""
-    scenario = adjusted(load(rig), assignments)
+    scenario = adjusted(load(rig), assignments, named=free)
     protocol = scenario.campaign.protocol if scenario.campaign else None
     if protocol is None:
         raise DataError(f"{scenario.name}: there are no measured data to fit to. Give the rig file a table [campaign].")
     scenario = driven_by(scenario, protocol.inputs)
     flat = flat_of(scenario)
     quantities = _bounded(_checked(flat, free), bounds)
-    chosen = _of_grid(campaign.courses(scenario, flat), grid)
+    chosen = _of_grid(campaign.runs_of(scenario, flat), grid)
     fit = fitted(scenario, flat, quantities, chosen)
     found = {
         "schema": "gearheat.calibrate/1",
@@ -121,29 +121,27 @@ def _bounded(quantities: Sequence[Quantity], bounds: Sequence[str]) -> list[Quan
     return list(found.values())
 
 
-def _of_grid(courses: Sequence[campaign.Course], grid: str) -> list[campaign.Course]:
-    grids = list(dict.fromkeys(r.texts.get("grid", "") for c in courses for r in c.readings))
-    found = [c for c in courses if c.readings[0].texts.get("grid") == grid]
+def _of_grid(runs: Sequence[campaign.Run], grid: str) -> list[campaign.Run]:
+    grids = list(dict.fromkeys(r.texts.get("grid", "") for c in runs for r in c.readings))
+    found = [c for c in runs if c.readings[0].texts.get("grid") == grid]
     if not found:
         raise DataError(f'There is no grid "{grid}". Grids: {", ".join(grids)}.')
     return found
 
 
-def fitted(
-    scenario: Scenario, flat: FlatModel, quantities: Sequence[Quantity], courses: Sequence[campaign.Course]
-) -> Fit:
-    """Least squares on T_oil_C over the readings of the courses.
+def fitted(scenario: Scenario, flat: FlatModel, quantities: Sequence[Quantity], runs: Sequence[campaign.Run]) -> Fit:
+    """Least squares on T_oil_C over the readings of the tests.
 
     Raises:
         SolveError: the readings do not determine the parameters
     """
     start = np.array([q.start for q in quantities])
     scale = np.where(start != 0, np.abs(start), [q.nominal for q in quantities])
-    measured = np.array([r.si("T_oil_C") for c in courses for r in c.readings])
+    measured = np.array([r.si("T_oil_C") for c in runs for r in c.readings])
     if len(measured) <= len(start):
         raise SolveError(f"{len(measured)} readings cannot determine {len(start)} parameters. Free fewer.")
     with tempfile.TemporaryDirectory() as folder, Player(export(flat, Path(folder) / "rig.fmu")) as player:
-        simulated = _simulated(player, courses, scenario.sensors["T_oil_C"])
+        simulated = _simulated(player, runs, scenario.sensors["T_oil_C"])
 
         def errors(z: np.ndarray) -> np.ndarray:
             values = {q.name: float(v) for q, v in zip(quantities, z * scale, strict=True)}
@@ -153,7 +151,7 @@ def fitted(
         first = errors(start / scale)
         begin = np.clip(start / scale, low + 1e-6 * (1 + np.abs(low)), high)
         found = least_squares(errors, begin, bounds=(low, high), diff_step=STEP, xtol=1e-6, ftol=1e-9)
-    note(f"{found.nfev} evaluations of {len(courses)} tests: {found.message}")
+    note(f"{found.nfev} evaluations of {len(runs)} tests: {found.message}")
     inside = found.active_mask == 0
     _, sizes, _ = np.linalg.svd(found.jac[:, inside])
     if sizes.size and sizes[-1] < 1e-8 * sizes[0]:
@@ -174,22 +172,19 @@ def fitted(
     )
 
 
-def _simulated(
-    player: Player, courses: Sequence[campaign.Course], path: str
-) -> Callable[[Mapping[str, float]], np.ndarray]:
+def _simulated(player: Player, runs: Sequence[campaign.Run], path: str) -> Callable[[Mapping[str, float]], np.ndarray]:
     """Parameter values -> the oil temperature at every reading [K]."""
 
     def readings(values: Mapping[str, float]) -> np.ndarray:
         found: list[float] = []
-        for course in courses:
-            inputs = {n: (course.schedule.time, v) for n, v in course.schedule.values.items()}
+        for run in runs:
             played = player.run(
-                inputs,
-                course.schedule.stop,
+                run.inputs,
+                run.schedule.stop,
                 60.0,
-                start={**course.start, **values},
+                start={**run.start, **values},
                 record=[path],
-                output_times=list(course.moments),
+                output_times=list(run.moments),
             )
             found += played.values[:, 0].tolist()
         return np.array(found)

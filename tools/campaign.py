@@ -37,7 +37,7 @@ AUDIT = (SUPPLIED, THROUGHPUT, STORED)
 
 
 @dataclass(frozen=True)
-class Course:
+class Run:
     """One test of a campaign, or the operating point of a rig without one: what drives the model, what was read."""
 
     test: int
@@ -47,8 +47,13 @@ class Course:
     moments: tuple[float, ...]
     readings: tuple[Reading, ...]
 
+    @property
+    def inputs(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """What drives the model: name -> (times [s], values in SI)."""
+        return {name: (self.schedule.time, values) for name, values in self.schedule.values.items()}
 
-def courses(scenario: Scenario, flat: FlatModel, tests: str | None = None) -> tuple[Course, ...]:
+
+def runs_of(scenario: Scenario, flat: FlatModel, tests: str | None = None) -> tuple[Run, ...]:
     """What is to be played.
 
     Args:
@@ -63,24 +68,24 @@ def courses(scenario: Scenario, flat: FlatModel, tests: str | None = None) -> tu
         return (_held(scenario, flat),)
     wanted = _wanted(tests, campaign)
     played = effective(flat)  # the FMU lacks what has no effect
-    return tuple(_course(scenario, played, campaign, test) for test in campaign.tests() if test.number in wanted)
+    return tuple(_run_of(scenario, played, campaign, test) for test in campaign.tests() if test.number in wanted)
 
 
-def _course(scenario: Scenario, flat: FlatModel, campaign: Campaign, test: Any) -> Course:
+def _run_of(scenario: Scenario, flat: FlatModel, campaign: Campaign, test: Any) -> Run:
     run = schedule_of(campaign, test)
     assert campaign.protocol is not None  # schedule_of has refused it
     oil = oil_values(scenario, campaign.protocol, test.oil)
     start = run.start(flat) | {name: value for name, value in oil.items() if name in flat.index}
-    return Course(test.number, test.oil, run.schedule, start, run.moments, test.halves)
+    return Run(test.number, test.oil, run.schedule, start, run.moments, test.halves)
 
 
-def _held(scenario: Scenario, flat: FlatModel) -> Course:
+def _held(scenario: Scenario, flat: FlatModel) -> Run:
     """The operating point held from a start at room temperature."""
     from .transients import first_temperatures
 
     inputs = {q.name: q.start for q in flat.inputs if q.name in scenario.operating_point}
     oil = next((entry for kinds in scenario.entries.values() for kind, entry in kinds.items() if kind == "oil"), "")
-    return Course(1, oil, stepped([(HOLD, inputs)]), first_temperatures(scenario, flat, None), (HOLD,), ())
+    return Run(1, oil, stepped([(HOLD, inputs)]), first_temperatures(scenario, flat, None), (HOLD,), ())
 
 
 def _wanted(tests: str | None, campaign: Campaign) -> set[int]:
@@ -116,23 +121,23 @@ def _inputs(scenario: Scenario) -> tuple[str, ...]:
 
 
 def jobs(
-    found: Iterable[Course], fmu: Path, digest: str, step: float, record: Mapping[str, str], folder: Path | None
+    found: Iterable[Run], fmu: Path, digest: str, step: float, record: Mapping[str, str], folder: Path | None
 ) -> tuple[Job, ...]:
     """The jobs of the worker processes."""
     return tuple(
         Job(
-            test=course.test,
+            test=run.test,
             fmu=fmu,
             digest=digest,
-            inputs={name: (course.schedule.time, values) for name, values in course.schedule.values.items()},
-            start=course.start,
-            moments=course.moments,
+            inputs=run.inputs,
+            start=run.start,
+            moments=run.moments,
             step=step,
             record=record,
             audit=AUDIT,
             folder=folder,
         )
-        for course in found
+        for run in found
     )
 
 
@@ -181,31 +186,31 @@ def _played(left: Sequence[Job], pool: ProcessPoolExecutor | None) -> Iterator[t
 
 
 def rows(
-    scenario: Scenario, found: Sequence[Course], played: Mapping[int, list[dict[str, float]]]
+    scenario: Scenario, found: Sequence[Run], played: Mapping[int, list[dict[str, float]]]
 ) -> list[dict[str, Any]]:
     """One row per reading, in the order of the measured table, simulated and measured."""
     made = []
-    for course in found:
-        for k, (moment, values) in enumerate(zip(course.moments, played[course.test], strict=True)):
+    for run in found:
+        for k, (moment, values) in enumerate(zip(run.moments, played[run.test], strict=True)):
             result = readings.simulated(scenario, values)
             result |= {"time_s": moment, "energy_residual": values["energy_residual"]}
-            if course.readings:
-                made.append(readings.row(course.readings[k], result))
+            if run.readings:
+                made.append(readings.row(run.readings[k], result))
             else:
-                made.append({"point": k + 1, "test": course.test, "direction": 1, "oil": course.oil, **result})
+                made.append({"point": k + 1, "test": run.test, "direction": 1, "oil": run.oil, **result})
     return sorted(made, key=lambda row: row["point"])
 
 
 def outside_of(
-    flat: FlatModel, found: Sequence[Course], played: Mapping[int, list[dict[str, float]]]
+    flat: FlatModel, found: Sequence[Run], played: Mapping[int, list[dict[str, float]]]
 ) -> tuple[Outside, ...]:
     """The laws that were used outside their range at any of the readings."""
     states = {q.name for q in flat.states}
     given = {q.name for q in flat.inputs}
     points = []
-    for course in found:
-        settings = {name: value for name, value in course.start.items() if name not in states}
-        for values in played[course.test]:
+    for run in found:
+        settings = {name: value for name, value in run.start.items() if name not in states}
+        for values in played[run.test]:
             inputs = {name: value for name, value in values.items() if name in given}
             points.append(
                 point(flat, settings | inputs, {n: v for n, v in values.items() if n in states}, who="readings")

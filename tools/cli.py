@@ -64,7 +64,8 @@ def losses(
         typer.Option(help="At the measured oil temperature, or the one the model reaches."),
     ] = "measured",
     power_flow: Annotated[
-        Literal["ideal", "successive"] | None, typer.Option(help="Whether losses reduce what is passed on.")
+        Literal["ideal", "successive"] | None,
+        typer.Option(help="ideal: mesh forces from the input torque; successive: each stage sees upstream losses."),
     ] = None,
     set_: Set = None,
     json: Json = None,
@@ -88,10 +89,8 @@ def steady(rig: Rig, set_: Set = None, extended: Extended = None, json: Json = N
 @console.guarded
 def design(
     rig: Rig,
-    target: Annotated[list[str], typer.Option(help="NAME=VALUE that shall be reached. Repeatable.")],
-    free: Annotated[
-        list[str] | None, typer.Option(help="Parameter or input that is sought, one for each target. Repeatable.")
-    ] = None,
+    target: Annotated[list[str], typer.Option(help="Value to reach, NAME=VALUE. Repeatable.")],
+    free: Annotated[list[str] | None, typer.Option(help="Unknown to solve for (one per target). Repeatable.")] = None,
     among: Annotated[
         list[str] | None, typer.Option(help="Alternatives from a catalogue, for example oil=PAOR,MINR; each is solved.")
     ] = None,
@@ -179,8 +178,8 @@ def compare(
 @console.guarded
 def calibrate(
     rig: Rig,
-    grid: Annotated[str, typer.Option(help="Grid whose readings are used.")],
-    free: Annotated[list[str], typer.Option(help="Parameter that is fitted. Repeatable.")],
+    grid: Annotated[str, typer.Option(help="Value of the CSV's `grid` column to fit.")],
+    free: Annotated[list[str], typer.Option(help="Parameter to fit. Repeatable.")],
     bounds: Annotated[
         list[str] | None, typer.Option(help='Range of a free parameter, "cooling.A=0.4 m2..1.2 m2". Repeatable.')
     ] = None,
@@ -206,7 +205,7 @@ def diagnose(
     reference_series: Annotated[Path | None, typer.Option(help="Logged samples of the reference's tests: CSV.")] = None,
     predict: Annotated[Path | None, typer.Option(help="Points whose oil temperature is predicted: CSV.")] = None,
     predictions: Annotated[Path | None, typer.Option(help="CSV to write with the predictions.")] = None,
-    causes: Annotated[int, typer.Option(help="Most causes that may act together.")] = 2,
+    causes: Annotated[int, typer.Option(help="Largest number of simultaneous causes.")] = 2,
     repeatability: Annotated[
         str, typer.Option(help="Scatter of a reading: of the card, or what repeated points show where that is more.")
     ] = "card",
@@ -314,7 +313,7 @@ def sweep(
     output: Annotated[
         list[str] | None, typer.Option(help="Outputs to keep, for example oil.T,efficiency.eta; all if left out.")
     ] = None,
-    kind: Annotated[Literal["steady", "warmup"], typer.Option(help="Steady states, or courses over time.")] = "steady",
+    kind: Annotated[Literal["steady", "warmup"], typer.Option(help="Steady states, or warm-ups over time.")] = "steady",
     duty: Annotated[Path | None, typer.Option(help="Warm-up: CSV with time and inputs, the same for all rows.")] = None,
     duration: Annotated[
         str | None, typer.Option(help='Warm-up at constant inputs: how long, such as "330 min".')

@@ -16,6 +16,7 @@ from pathlib import Path
 from typing import Any, ParamSpec
 
 from ..model.errors import DataError, GearheatError
+from ..model.files import replacing
 
 P = ParamSpec("P")
 
@@ -89,15 +90,8 @@ def write(path: Path, content: str | bytes) -> None:
     """
     data = content.encode() if isinstance(content, str) else content
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
-        try:
-            with os.fdopen(handle, "wb") as file:
-                file.write(data)
-            os.chmod(name, 0o666 & ~_umask())
-            os.replace(name, path)
-        except BaseException:
-            Path(name).unlink(missing_ok=True)
-            raise
+        with replacing(path) as beside:
+            beside.write_bytes(data)
     except OSError as error:
         raise DataError(_cannot_write(path, error)) from None
 
@@ -137,12 +131,6 @@ def folder(path: Path) -> Path:
 
 def _cannot_write(path: Path, error: OSError) -> str:
     return f"{path}: cannot be written ({error.strerror or error}). Give a folder that exists and may be written."
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
 
 
 def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:

@@ -7,25 +7,36 @@ from typing import Any
 
 from ..model.core.declare import Choice, Parameter, declared
 from ..model.core.flat import FlatModel, Quantity
-from ..model.parts import PARTS
+from ..model.errors import SolveError
+from ..model.run.steady import steady
 from ..model.sources import LawInfo, sources
 from ..model.units import from_si, shown, text
-from ..scenarios.entries import FILES, catalogue
-from ..scenarios.load import list_rigs, load
+from ..scenarios.entries import FILES, Entry, catalogue
+from ..scenarios.load import list_rigs
 from ..scenarios.scenario import Scenario
 from .console import answer, table
+from .points import conditions, outside_of, tell_outside
+from .rigs import load
 from .settings import flat_of
+from .unchecked import print_unchecked, unchecked
 
 
 def list_command(json: str | None) -> None:
     """Rigs and catalogue entries that can be named."""
     entries = {kind: {name: entry.doc for name, entry in catalogue(kind).items()} for kind in FILES}
-    found: dict[str, Any] = {"schema": "gearheat.list/1", "rigs": list_rigs(), "catalogues": entries}
+    checked = {kind: {name: _comparison(entry) for name, entry in catalogue(kind).items()} for kind in FILES}
+    found: dict[str, Any] = {
+        "schema": "gearheat.list/1",
+        "rigs": list_rigs(),
+        "catalogues": entries,
+        "checked": checked,
+    }
 
     def human() -> None:
         table("Rigs", ("name", "what it is"), found["rigs"].items())
         for kind, docs in entries.items():
-            table(f"Catalogue: {kind}", ("name", "what it is"), docs.items())
+            rows = [(name, doc, checked[kind][name]) for name, doc in docs.items()]
+            table(f"Catalogue: {kind}", ("name", "what it is", "checked"), rows)
 
     answer(found, json, human)
 
@@ -33,23 +44,39 @@ def list_command(json: str | None) -> None:
 def show_command(rig: str, errata: bool, json: str | None) -> None:
     """Everything a rig file says, in SI where unit and value stand apart and as shown to a person otherwise."""
     scenario = load(rig)
-    flat = flat_of(scenario)
+    flat, types = flat_of(scenario), scenario.spec.types
     found = {
         "schema": "gearheat.show/1",
         "rig": scenario.name,
         "doc": scenario.doc,
         "kind": scenario.kind,
-        "parts": [{"name": p.name, "type": p.type, "doc": _doc(PARTS[p.type])} for p in scenario.spec.parts],
-        "parameters": [_parameter(scenario, q) for q in flat.parameters],
+        "parts": [{"name": p.name, "type": p.type, "doc": _doc(types[p.type])} for p in scenario.spec.parts],
+        "parameters": [_parameter(scenario, flat, q) for q in every_parameter(scenario, flat)],
         "choices": choices(scenario),
         "inputs": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.inputs],
         "states": [_line(q) for q in flat.states],
-        "outputs": [{"name": q.name, "unit": shown(q.unit), "doc": q.doc} for q in flat.outputs],
+        "outputs": [_output(q) for q in flat.outputs if q.name not in flat.derived],
         "sensors": dict(scenario.sensors),
         "laws": laws(flat),
+        **_at_the_operating_point(scenario, flat),
+        "unchecked": unchecked(scenario, flat),
         "errata": errata_of(scenario),
     }
     answer(found, json, lambda: _print_errata(found) if errata else _print(found))
+
+
+def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> dict[str, Any]:
+    """The laws outside their range where the rig is at rest with its surroundings, or why there is no such point."""
+    try:
+        return {"outside": outside_of(steady(flat, conditions(scenario, flat))), "no_steady_state": []}
+    except SolveError as error:
+        return {"outside": [], "no_steady_state": list(error.problems)}
+
+
+def _comparison(entry: Entry) -> str:
+    """Whether the values of a catalogue entry were compared with a print: "all", "none", or which were not."""
+    missing = [key for key in entry.values if key not in entry.checked]
+    return "all" if not missing else f"not {', '.join(missing)}" if entry.checked else "none"
 
 
 def source_of(scenario: Scenario, path: str) -> str:
@@ -57,20 +84,28 @@ def source_of(scenario: Scenario, path: str) -> str:
     if path in scenario.value_sources:
         return scenario.value_sources[path]
     part, _, key = path.rpartition(".")
-    parameter = declared(PARTS[scenario.spec.part(part).type], Parameter).get(key)
+    parameter = declared(scenario.spec.types[scenario.spec.part(part).type], Parameter).get(key)
     return "follows from the other values" if parameter is not None and parameter.derived else "default"
 
 
 def parameters(scenario: Scenario, flat: FlatModel) -> tuple[tuple[str, str, str], ...]:
     """Name, value with unit and source of every parameter."""
-    return tuple((q.name, text(q.start, q.unit), source_of(scenario, q.name)) for q in flat.parameters)
+    every = every_parameter(scenario, flat)
+    return tuple((q.name, text(q.start, q.unit), source_of(scenario, q.name)) for q in every)
+
+
+def every_parameter(scenario: Scenario, flat: FlatModel) -> list[Quantity]:
+    """All parameters, those that follow from others among them, part by part."""
+    order = {part.name: i for i, part in enumerate(scenario.spec.parts)}
+    every = (*flat.parameters, *(flat.quantity(name) for name in flat.derived))
+    return sorted(every, key=lambda q: order[q.name.rpartition(".")[0]])
 
 
 def choices(scenario: Scenario) -> list[dict[str, Any]]:
     """The structural choices of all parts, with what is chosen."""
     found = []
     for part in scenario.spec.parts:
-        for key, choice in declared(PARTS[part.type], Choice).items():
+        for key, choice in declared(scenario.spec.types[part.type], Choice).items():
             value = part.values.get(key, choice.default)
             found.append({"name": f"{part.name}.{key}", "value": value, "options": choice.options, "doc": choice.doc})
     return found
@@ -107,11 +142,27 @@ def _line(q: Quantity) -> dict[str, Any]:
     return {"name": q.name, "value": from_si(q.start, q.unit), "unit": shown(q.unit), "doc": q.doc}
 
 
-def _parameter(scenario: Scenario, q: Quantity) -> dict[str, Any]:
+def _output(q: Quantity) -> dict[str, Any]:
+    return {"name": q.name, "unit": shown(q.unit), "doc": q.doc}
+
+
+def _kind(scenario: Scenario, flat: FlatModel, path: str) -> str:
+    """Whether a value is given, derived from others, or a default of the numerics."""
+    if path in flat.derived:
+        return "derived"
+    part, _, key = path.rpartition(".")
+    return "given" if key in scenario.spec.part(part).values else "default"
+
+
+def _parameter(scenario: Scenario, flat: FlatModel, q: Quantity) -> dict[str, Any]:
     """A parameter with its standard uncertainty, in the unit shown, where the rig states one."""
     sd = scenario.uncertainties.get(q.name)
     known = sd if sd is None or q.unit == "K" else from_si(sd, q.unit)  # degC and K have the same differences
-    return {**_line(q), "uncertainty": known, "source": source_of(scenario, q.name)}
+    kind, source = _kind(scenario, flat, q.name), source_of(scenario, q.name)
+    own = q.name.rpartition(".")[0] + "."
+    if follows := ", ".join(path.removeprefix(own) for path in flat.derived.get(q.name, ())):
+        source = f"follows from {follows}"
+    return {**_line(q), "kind": kind, "uncertainty": known, "source": source}
 
 
 def _doc(cls: type) -> str:
@@ -122,7 +173,7 @@ def _print(found: dict[str, Any]) -> None:
     print(f"{found['rig']}: {found['doc']}\n")
     valued = ("name", "value", "unit", "doc")
     table("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")))
-    known = ("name", "value", "uncertainty", "unit", "doc", "source")
+    known = ("name", "value", "kind", "uncertainty", "unit", "doc", "source")
     table("Parameters", known, _rows(found["parameters"], known))
     table("Choices", ("name", "value", "doc"), _rows(found["choices"], ("name", "value", "doc")))
     table("Inputs", (*valued, "source"), _rows(found["inputs"], (*valued, "source")))
@@ -130,6 +181,10 @@ def _print(found: dict[str, Any]) -> None:
     table("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")))
     keys = ("law", "where", "valid", "verified", "source")
     table("Laws", keys, _rows(found["laws"], keys))
+    tell_outside(found["outside"])
+    for problem in found["no_steady_state"]:
+        print(f"no steady state at the operating point: {problem}")
+    print_unchecked(found["unchecked"])
     if found["errata"]:
         print(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
 

@@ -14,12 +14,13 @@ from ..model.run.point import point
 from ..model.run.rows import evaluate
 from ..model.run.steady import steady, steady_table
 from ..scenarios.entries import catalogue
-from ..scenarios.load import load
 from ..scenarios.measured import Campaign, Protocol, Reading, read_measured
 from ..scenarios.scenario import Scenario
 from .console import answer, table
 from .points import conditions
+from .rigs import load
 from .settings import DIAGNOSED, SET, adjusted, choice_paths, driven_by, flat_of
+from .unchecked import print_unchecked, unchecked
 
 
 def command(
@@ -42,7 +43,7 @@ def command(
     if data is not None:
         campaign = read_measured(data, campaign.protocol if campaign else None)
     rows = at_readings(scenario, campaign, temperature) if campaign else [at_operating_point(scenario)]
-    found = {
+    found: dict[str, Any] = {
         "schema": "gearheat.losses/1",
         "rig": scenario.name,
         "temperature": temperature if campaign else "model",
@@ -50,9 +51,23 @@ def command(
             p: scenario.spec.part(p.rpartition(".")[0]).values.get(p.rpartition(".")[2]) for p in _flow_paths(scenario)
         },
         "rows": rows,
+        "unchecked": unchecked(scenario, flat_of(scenario), oils_of(campaign)),
     }
     columns = list(rows[0])
-    answer(found, json, lambda: table(f"{scenario.name}: losses", columns, [[r[c] for c in columns] for r in rows]))
+
+    def human() -> None:
+        table(f"{scenario.name}: losses", columns, [[r[c] for c in columns] for r in rows])
+        print_unchecked(found["unchecked"])
+
+    answer(found, json, human)
+
+
+def oils_of(campaign: Campaign | None) -> list[tuple[str, str]]:
+    """The part that holds the oil and each oil of the catalogue that a campaign fills it with."""
+    if campaign is None or campaign.protocol is None:
+        return []
+    used = dict.fromkeys(reading.oil for reading in campaign.readings)
+    return [(campaign.protocol.oil, oil) for oil in used if oil in catalogue("oil")]
 
 
 def at_readings(scenario: Scenario, campaign: Campaign, temperature: str) -> list[dict[str, Any]]:
@@ -80,7 +95,7 @@ def at_readings(scenario: Scenario, campaign: Campaign, temperature: str) -> lis
         name = {"point": reading.point, "test": reading.test, "direction": reading.direction, "oil": reading.oil}
         found = {c: float(sum(columns[p][i] for p in paths)) for c, paths in scenario.losses.items()}
         T_oil = reading.si("T_oil_C") if temperature == "measured" else float(columns[scenario.sensors["T_oil_C"]][i])
-        total = float(columns["efficiency.P_loss"][i])
+        total = float(columns["efficiency.P_loss"][i]) if "efficiency.P_loss" in columns else found["P_total_W"]
         rows.append({**name, **found, "alphaA_W_K": total / (T_oil - reading.si("T_amb_C"))})
     return rows
 

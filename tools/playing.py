@@ -78,13 +78,13 @@ def finished(job: Job) -> list[dict[str, float]] | None:
 
 
 def play(job: Job) -> list[dict[str, float]]:
-    """Play a test and keep it: the course as CSV first, then the readings with their key as JSON.
+    """Play a test and keep it: the time series as CSV first, then the readings with their key as JSON.
 
     Returns:
         one mapping per reading: path -> value, SI, and "energy_residual": what the time since the reading before (or
         the start) leaves of the energy balance, relative to the throughput
     """
-    time, columns = course(job)
+    time, columns = time_series(job)
     readings = [at(time, columns, moment) for moment in job.moments]
     before = at(time, columns, float(time[0]))
     for reading in readings:
@@ -97,7 +97,7 @@ def play(job: Job) -> list[dict[str, float]]:
     return readings
 
 
-def course(job: Job) -> tuple[np.ndarray, dict[str, np.ndarray]]:
+def time_series(job: Job) -> tuple[np.ndarray, dict[str, np.ndarray]]:
     """The recorded variables of a test over time [s], SI; a time given twice is a jump."""
     stop = max(float(time[-1]) for time, _ in job.inputs.values())
     played = _player(job.fmu, job.digest).run(job.inputs, stop, job.step, start=job.start, record=list(job.record))

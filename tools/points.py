@@ -11,10 +11,11 @@ from ..model.run.design import Design, design
 from ..model.run.result import Result
 from ..model.run.steady import steady
 from ..model.units import from_si, shown
-from ..scenarios.load import load
 from ..scenarios.scenario import Scenario, parse_assignments
 from .console import answer, table
+from .rigs import load
 from .settings import adjusted, flat_of
+from .unchecked import print_unchecked, unchecked
 
 #: Words of a table of values.
 HEAD = ("name", "value", "unit", "meaning")
@@ -25,7 +26,8 @@ def steady_command(rig: str, assignments: Sequence[str], json: str | None) -> No
     scenario = adjusted(load(rig), assignments)
     flat = flat_of(scenario)
     result = steady(flat, conditions(scenario, flat))
-    found = {"schema": "gearheat.steady/1", "rig": scenario.name, **point_of(flat, result)}
+    told = unchecked(scenario, flat)
+    found = {"schema": "gearheat.steady/1", "rig": scenario.name, **point_of(flat, result), "unchecked": told}
     answer(found, json, lambda: _print(f"{scenario.name}: steady state", flat, found))
 
 
@@ -74,15 +76,16 @@ def design_command(
     part, names = _alternatives(among)
     found: dict[str, Any] = {"schema": "gearheat.design/1", "rig": scenario.name}
     if part is None:
-        flat, solution = _design(scenario, free, targets, assignments)
-        found |= _solution(flat, solution)
+        setting, flat, solution = _design(scenario, free, targets, assignments)
+        found |= {**_solution(flat, solution), "unchecked": unchecked(setting, flat)}
         answer(found, json, lambda: _print_design(flat, found))
         return
     found |= {"among": part, "alternatives": []}
     for name in names:
         try:
-            flat, solution = _design(scenario, free, targets, [*assignments, f"{part}={name}"])
-            found["alternatives"].append({part: name, **_solution(flat, solution)})
+            setting, flat, solution = _design(scenario, free, targets, [*assignments, f"{part}={name}"])
+            told = unchecked(setting, flat)
+            found["alternatives"].append({part: name, **_solution(flat, solution), "unchecked": told})
         except SolveError as error:
             found["alternatives"].append({part: name, "problems": list(error.problems)})
     if all("problems" in a for a in found["alternatives"]):
@@ -105,8 +108,8 @@ def _alternatives(among: Sequence[str]) -> tuple[str | None, list[str]]:
 
 def _design(
     scenario: Scenario, free: Sequence[str], targets: Sequence[str], assignments: Sequence[str]
-) -> tuple[FlatModel, Design]:
-    """Solve one design, with the problems of everything given at once."""
+) -> tuple[Scenario, FlatModel, Design]:
+    """The scenario of one design, its model and the solution, with the problems of everything given at once."""
     problems: list[str] = []
     setting = scenario
     try:
@@ -126,7 +129,7 @@ def _design(
             problems += error.problems
     if problems:
         raise ScenarioError(problems)
-    return flat, design(flat, free, aims, conditions(setting, flat))
+    return setting, flat, design(flat, free, aims, conditions(setting, flat))
 
 
 def _solution(flat: FlatModel, solution: Design) -> dict[str, Any]:
@@ -158,9 +161,16 @@ def _print(title: str, flat: FlatModel, found: Mapping[str, Any]) -> None:
     body = [[n, v, found["units"][n], flat.quantity(n).doc] for n, v in found["values"].items()]
     table(title, HEAD, body)
     print(f"power balance closed within {found['energy_residual']:.1e} of the throughput")
-    for o in found["outside"]:
-        met, (low, high) = o["met"][0], o["range"]
-        print(f"outside its range: {o['part']}: {o['law']}, {o['argument']} = {met:.4g} (valid {low:g} to {high:g})")
+    tell_outside(found["outside"])
+    print_unchecked(found["unchecked"])
+
+
+def tell_outside(outside: Sequence[Mapping[str, Any]]) -> None:
+    """Print a line for each law that was used outside its range, as `outside_of` lists them."""
+    for o in outside:
+        (least, most), (low, high) = o["met"], o["range"]
+        met = f"{least:.4g}" if least == most else f"{least:.4g} to {most:.4g}"
+        print(f"outside its range: {o['part']}: {o['law']}, {o['argument']} = {met} (valid {low:g} to {high:g})")
 
 
 def _print_design(flat: FlatModel, found: Mapping[str, Any]) -> None:
@@ -187,6 +197,11 @@ def _print_alternatives(found: Mapping[str, Any]) -> None:
         head,
         [[a[part], *(a["values"].get(n, a["free"].get(n)) for n in names)] for a in solved],
     )
+    for alternative in solved:
+        if alternative["outside"]:
+            print(f"{part} = {alternative[part]}:")
+            tell_outside(alternative["outside"])
     for alternative in found["alternatives"]:
         for problem in alternative.get("problems", ()):
             print(f"{part} = {alternative[part]}: {problem}")
+    print_unchecked({line["entry"]: line for a in solved for line in a["unchecked"]}.values())

@@ -32,6 +32,7 @@ class Study:
         loss_columns: columns of `rows` that are the single losses
         laws, outside: what the model cites, and what it used outside its range
         parameters: (name, value with unit, source)
+        unchecked: catalogue entries in use, and which of their values were compared with no print
         errata: (source and place, what it says, what it should be, evidence)
         energy_residual_max: largest violation of the energy balance over the throughput
     """
@@ -45,6 +46,7 @@ class Study:
     laws: tuple[LawInfo, ...]
     outside: tuple[Outside, ...]
     parameters: tuple[tuple[str, str, str], ...]
+    unchecked: tuple[str, ...]
     errata: tuple[tuple[str, str, str, str], ...]
     energy_residual_max: float
 

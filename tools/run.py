@@ -13,10 +13,11 @@ import numpy as np
 from ..model.core.flat import FlatModel
 from ..model.units import shown, to_si
 from ..scenarios.scenario import Scenario
-from . import campaign, describe, summary
+from . import campaign, describe, summary, unchecked
 from .compare import Comparison, Rows, compare, present
 from .console import answer, as_json, file_of, folder, note, table, writable, write
 from .exporting import write_fmu
+from .losses import oils_of
 from .readings import sources
 from .report import Study, render
 from .rivals import Score, rivals
@@ -49,7 +50,7 @@ def command(
         protocol = scenario.campaign.protocol if scenario.campaign else None
         scenario = driven_by(scenario, protocol.inputs) if protocol else scenario
         flat = flat_of(scenario)
-        found = campaign.courses(scenario, flat, tests)
+        found = campaign.runs_of(scenario, flat, tests)
         fmu = write_fmu(scenario, flat, out / f"{scenario.name}.fmu")
         note(f"exported {fmu}")
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()
@@ -59,6 +60,7 @@ def command(
     rows = [_ordered(row) for row in campaign.rows(scenario, found, played)]
     comparison, scores = (compare(rows), rivals(rows)) if present(rows) else (None, ())
     result = _result(scenario, fmu, digest, rows, comparison, scores)
+    result["unchecked"] = unchecked.unchecked(scenario, flat, oils_of(scenario.campaign))
     study = _study(scenario, flat, found, played, rows, result, kept)
     write(out / "rows.csv", _csv(rows))
     write(out / "result.json", as_json(result))
@@ -95,7 +97,7 @@ def _result(
 def _study(
     scenario: Scenario,
     flat: FlatModel,
-    found: Sequence[campaign.Course],
+    found: Sequence[campaign.Run],
     played: Mapping[int, list[dict[str, float]]],
     rows: Rows,
     result: Mapping[str, Any],
@@ -115,6 +117,7 @@ def _study(
         laws=describe.cited(flat),
         outside=campaign.outside_of(flat, found, played),
         parameters=describe.parameters(scenario, flat),
+        unchecked=tuple(unchecked.unchecked_lines(result["unchecked"])),
         errata=tuple((e.place, e.says, e.should_be, e.evidence) for e in scenario.errata),
         energy_residual_max=result["energy_residual_max"],
     )
@@ -126,12 +129,17 @@ def _room(scenario: Scenario) -> str:
 
 
 def _telling(rows: Rows) -> list[int]:
-    """Tests whose course is drawn: the lightest and the heaviest of each of the first three oils."""
+    """Tests whose time series is drawn: the lightest and the heaviest of each of the first three oils."""
     chosen: list[int] = []
     for oil in list(dict.fromkeys(row["oil"] for row in rows))[:3]:
-        mine = sorted((row for row in rows if row["oil"] == oil), key=lambda row: row["P_loss_W"])
+        mine = sorted((row for row in rows if row["oil"] == oil), key=_lost)
         chosen += [mine[0]["test"], mine[-1]["test"]]
     return list(dict.fromkeys(chosen))
+
+
+def _lost(row: Mapping[str, Any]) -> float:
+    """Loss power of a row; a rig without an efficiency, such as a closed loop, has only that of its losses table."""
+    return float(row.get("P_loss_W", row.get("P_total_W", 0.0)))
 
 
 def _curve(path: Path, columns: Mapping[str, str], flat: FlatModel) -> dict[str, np.ndarray]:
@@ -161,4 +169,5 @@ def _print(rows: Rows, comparison: Comparison | None, scores: Sequence[Score], r
         table(f"{result['rig']}: operating point", ("name", "value"), [[c, rows[0][c]] for c in columns])
     else:
         summary.show(comparison, scores)
+    unchecked.print_unchecked(result["unchecked"])
     print(f"{len(rows)} readings; energy balance closed within {result['energy_residual_max']:.1e} of the throughput")

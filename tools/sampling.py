@@ -131,7 +131,7 @@ def sampled(axes: Sequence[Axis], rows: int, method: str, seed: int) -> np.ndarr
             "monte-carlo"
 
     Raises:
-        ScenarioError: a number of rows that makes no sense
+        ScenarioError: the number of rows or the seed is out of range
     """
     _check(rows, "--sample")
     if seed < 0:

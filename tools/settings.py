@@ -7,15 +7,14 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..model.core.declare import Choice, Given, declared
+from ..model.core.declare import Choice, Given, Parameter, declared
 from ..model.core.flat import FlatModel
 from ..model.core.flatten import flatten
 from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
 from ..model.machines.spec import Spec, assemble
-from ..model.parts import PARTS
-from ..scenarios.load import load
 from ..scenarios.measured import read_measured
 from ..scenarios.scenario import Scenario, parse_assignments
+from .rigs import load
 
 Drive = Mapping[str, tuple[str, ...]]
 
@@ -34,13 +33,14 @@ def adjusted(
 ) -> Scenario:
     """The scenario with values set by the user, driven at the shaft ends as the names say.
 
-    A shaft speed that is set or named takes the place of the rig's given speed, a torque that of its given torque.
+    A shaft speed that is set or named takes the place of the rig's given speed, a torque that of its given torque. A
+    parameter that follows from others and is set or named has a value of its own from then on, at first the one it had.
 
     Args:
         scenario: the rig
         assignments: texts "NAME=VALUE": parameters, inputs, start values of states, choices
             ("gear_set.power_flow=ideal"), and parts filled from a catalogue ("oil=MINR")
-        named: further inputs that come from outside: sought by a design, or given by a duty
+        named: further values that come from outside: sought by a design, varied by a sweep, or given by a duty
         drive: quantities given per shaft end, where that is known
 
     Raises:
@@ -61,7 +61,9 @@ def adjusted(
     if idle := [name for name in ends if name.rpartition(".")[2] not in driven.get(name.rpartition(".")[0], ())]:
         raise ScenarioError([f"{name} is set, but it follows from what drives the rig. Take it out." for name in idle])
     set_up = scenario.with_values(values, SET).driven(driven)
-    return replace(set_up, spec=set_up.spec.with_values(choices))
+    sources = {**set_up.value_sources, **_filled(scenario, assignments)}
+    set_up = replace(set_up, spec=set_up.spec.with_values(choices), value_sources=sources)
+    return set_up.with_values(_derived(set_up.spec, named), SET)
 
 
 def loaded(rig: str, extended: Path | None = None, data: Path | None = None, card: Path | None = None) -> Scenario:
@@ -144,13 +146,30 @@ def driven_at(scenario: Scenario, shaft: str | None, given: str) -> dict[str, tu
 
 def given_paths(spec: Spec) -> set[str]:
     """Paths of the quantities that may be given at the shaft ends."""
-    return {f"{part.name}.{key}" for part in spec.parts for key in declared(PARTS[part.type], Given)}
+    return {f"{part.name}.{key}" for part in spec.parts for key in declared(spec.types[part.type], Given)}
 
 
 def choice_paths(spec: Spec) -> dict[str, Choice]:
     """Choices of all parts by path; those without options follow from the drive."""
-    found = {f"{p.name}.{key}": c for p in spec.parts for key, c in declared(PARTS[p.type], Choice).items()}
+    found = {f"{p.name}.{key}": c for p in spec.parts for key, c in declared(spec.types[p.type], Choice).items()}
     return {path: choice for path, choice in found.items() if choice.options}
+
+
+def _derived(spec: Spec, named: Iterable[str]) -> dict[str, float]:
+    """The values that named parameters have which follow from others."""
+    following = [name for name in named if (d := parameter_of(spec, name)) is not None and d.derived is not None]
+    if not following:
+        return {}
+    parts = {part.name: part for part in assemble(spec).parts}
+    split = [(name, *name.rpartition(".")[::2]) for name in following]
+    return {name: parts[part].values[key] for name, part, key in split if key in parts[part].derived}
+
+
+def parameter_of(spec: Spec, path: str) -> Parameter | None:
+    """The declaration of the parameter of a path, None where there is none."""
+    part, _, key = path.rpartition(".")
+    kinds = [p.type for p in spec.parts if p.name == part]
+    return declared(spec.types[kinds[0]], Parameter).get(key) if kinds else None
 
 
 def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], list[str]]:
@@ -169,6 +188,17 @@ def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], li
             close = suggestion(written.lower(), options)
             problems.append(f'{path} = "{written}" is not known.{close} Choose one of: {", ".join(options)}.')
     return values, problems
+
+
+def _filled(scenario: Scenario, assignments: Sequence[str]) -> dict[str, str]:
+    """Sources of the values that parts filled from a catalogue have, but for those that are set one by one."""
+    parts = {part.name for part in scenario.spec.parts}
+    single = {_name(text) for text in assignments}
+    found: dict[str, str] = {}
+    for text in assignments:
+        if (part := _name(text)) in parts:
+            found |= scenario.entry_sources(part, text.partition("=")[2].strip(), SET)
+    return {path: source for path, source in found.items() if path not in single}
 
 
 def _doubled(assignments: Iterable[str]) -> list[str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -18,14 +18,15 @@ from ..model.run.point import problem_of
 from ..model.run.schedule import Schedule
 from ..model.units import from_si, shown, to_si
 from ..scenarios.duty import duty_names, read_duty
-from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
 from . import sampling
 from .console import answer, file_of, note, table, writable
+from .rigs import load
 from .settings import adjusted, flat_of
 from .sweep_file import SUFFIXES, Column, Store, parquet_missing, work_file, write_table
 from .sweep_rows import TELLING, Block, Job, clustered, dask_missing, local
 from .transients import first_temperatures
+from .unchecked import print_unchecked, unchecked
 
 #: Rows of a block: what an interruption may cost, and what a worker of a cluster gets at a time.
 BLOCKS = {"steady": 8192, "warmup": 256}
@@ -55,7 +56,10 @@ class Request:
 
 @dataclass(frozen=True)
 class Plan:
-    """A sweep, ready to run: the values of its rows (rows, axes) and what is done with them."""
+    """A sweep, ready to run: the values of its rows (rows, axes) and what is done with them.
+
+    `unchecked` holds the catalogue entries in use with values that were compared with no print.
+    """
 
     rig: str
     kind: str
@@ -63,6 +67,7 @@ class Plan:
     values: np.ndarray
     job: Job
     flat: FlatModel
+    unchecked: Sequence[Mapping[str, Any]]
 
     @property
     def columns(self) -> list[Column]:
@@ -161,7 +166,8 @@ def planned(request: Request) -> Plan:
         values = sampling.gridded(axes, request.grid)
     else:
         values = sampling.sampled(axes, request.sample or 0, request.method, request.seed)
-    return Plan(scenario.name, request.kind, axes, values, _job(request, scenario, flat, tuple(names)), flat)
+    job = _job(request, scenario, flat, tuple(names))
+    return Plan(scenario.name, request.kind, axes, values, job, flat, unchecked(scenario, flat))
 
 
 def _problems(request: Request) -> list[str]:
@@ -288,6 +294,7 @@ class _Summary:
             },
             "energy_residual": self.residual,
             "rows_outside": self.outside,
+            "unchecked": plan.unchecked,
         }
 
 
@@ -302,4 +309,5 @@ def _print(summary: _Summary, out: Path, seconds: float, worked: bool) -> None:
         print("rows without a result: " + ", ".join(f"{name} {n}" for name, n in failed.items()))
     if summary.outside:
         print(f"rows with a law outside the range of its source: {summary.outside}")
+    print_unchecked(summary.plan.unchecked)
     print(f"{out}" + (f" after {seconds:.1f} s" if worked else ""))

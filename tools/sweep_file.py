@@ -4,10 +4,8 @@ from __future__ import annotations
 
 import os
 import struct
-import tempfile
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
@@ -17,6 +15,7 @@ import numpy as np
 
 from ..fmu.batch import Status
 from ..model.errors import DataError
+from ..model.files import replacing
 from ..model.units import from_si, shown
 from .console import note
 
@@ -170,23 +169,9 @@ def write_table(out: Path, columns: Sequence[Column], blocks: Iterator[Sequence[
     Raises:
         DataError: it cannot be written
     """
-    with _moved(out) as path:
-        (_write_parquet if out.suffix == ".parquet" else _write_csv)(path, columns, blocks)
-
-
-@contextmanager
-def _moved(out: Path) -> Iterator[Path]:
     try:
-        handle, name = tempfile.mkstemp(prefix=f".{out.name}.", dir=out.parent)
-        os.close(handle)
-        try:
-            yield Path(name)
-            mask = os.umask(0)
-            os.umask(mask)
-            os.chmod(name, 0o666 & ~mask)
-            os.replace(name, out)
-        finally:
-            Path(name).unlink(missing_ok=True)
+        with replacing(out) as path:
+            (_write_parquet if out.suffix == ".parquet" else _write_csv)(path, columns, blocks)
     except OSError as error:
         raise DataError(f"{out}: cannot be written ({error.strerror}). The finished rows are kept.") from None
 

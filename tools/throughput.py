@@ -16,8 +16,8 @@ from ..fmu.batch import Batch
 from ..model.core.flat import FlatModel
 from ..model.run.schedule import Schedule, stepped
 from ..model.run.simulate import simulate
-from ..scenarios.load import load
 from . import sweep
+from .rigs import load
 from .settings import adjusted, flat_of
 
 #: What varies from row to row: the load by this much of its value, the room by this much [K].
@@ -67,9 +67,9 @@ def measure(
     few = tuple(a[:warmups] if a.ndim == 2 else a for a in arrays)
     duty = _duty(flat)
     steady = _timed(lambda n: batch.steady(*arrays, threads=n), rows, threads, repeats)
-    course = _timed(lambda n: batch.warmup(duty, *few, threads=n), warmups, threads, repeats)
-    course["error_K"] = _error(batch, flat, duty)
-    found = {"rig": scenario.name, "steady": steady, "warmup_330_min": course}
+    warmup = _timed(lambda n: batch.warmup(duty, *few, threads=n), warmups, threads, repeats)
+    warmup["error_K"] = _error(batch, flat, duty)
+    found = {"rig": scenario.name, "steady": steady, "warmup_330_min": warmup}
     return found if not swept else {**found, "sweep": _sweep(rig, load_name, room, values, swept)}
 
 

@@ -1,4 +1,4 @@
-"""The commands `simulate` and `play`: courses over time, from the model itself or from its FMU."""
+"""The commands `simulate` and `play`: time series from the model itself or from its FMU."""
 
 from __future__ import annotations
 
@@ -14,12 +14,13 @@ from ..model.run.schedule import Schedule
 from ..model.run.simulate import simulate
 from ..model.units import from_si, shown, to_si
 from ..scenarios.duty import duty_names, read_duty
-from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
 from .console import answer, file_of, writable, write
 from .playing import series
-from .points import outside_of
+from .points import outside_of, tell_outside
+from .rigs import load
 from .settings import adjusted, flat_of
+from .unchecked import print_unchecked, unchecked
 
 
 def simulate_command(rig: str, duty: Path, out: Path, assignments: Sequence[str], json: str | None) -> None:
@@ -34,12 +35,19 @@ def simulate_command(rig: str, duty: Path, out: Path, assignments: Sequence[str]
         "schema": "gearheat.simulate/1",
         "rig": scenario.name,
         "out": str(out),
-        **_course(result.index, result.columns, result.units),
+        **_summary(result.index, result.columns, result.units),
         "energy_residual": result.audit.residual,
         "outside": outside_of(result),
         "laws": list(result.laws),
+        "unchecked": unchecked(scenario, flat),
     }
-    answer(found, json, lambda: print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s"))
+
+    def human() -> None:
+        print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s")
+        tell_outside(found["outside"])
+        print_unchecked(found["unchecked"])
+
+    answer(found, json, human)
 
 
 def first_temperatures(scenario: Scenario, flat: FlatModel, schedule: Schedule | None) -> dict[str, float]:
@@ -73,7 +81,7 @@ def play_command(fmu: Path, duty: Path, out: Path, step: str, assignments: Seque
         "schema": "gearheat.play/1",
         "fmu": str(fmu),
         "out": str(out),
-        **_course(played.time, columns, units),
+        **_summary(played.time, columns, units),
     }
     answer(found, json, lambda: print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s"))
 
@@ -98,8 +106,8 @@ def _start(known: dict[str, Quantity], assignments: Sequence[str], fmu: Path) ->
     return values
 
 
-def _course(time: np.ndarray, columns: Any, units: Any) -> dict[str, Any]:
-    """How long a course is, and where it ends, in the units shown to a person."""
+def _summary(time: np.ndarray, columns: Any, units: Any) -> dict[str, Any]:
+    """How long a time series is, and where it ends, in the units shown to a person."""
     return {
         "rows": len(time),
         "stop_s": float(time[-1]),

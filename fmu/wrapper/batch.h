@@ -17,7 +17,8 @@
 #define AT_LEAST_1(n) ((n) > 0 ? (n) : 1)
 
 /* What became of a row; the same numbers as gearheat.fmu.batch.Status. */
-enum { ROW_OK, ROW_NO_BALANCE, ROW_UNSTABLE, ROW_NOT_FINITE, ROW_STOPPED };
+enum { ROW_OK, ROW_NO_EQUILIBRIUM, ROW_UNSTABLE, ROW_NOT_FINITE, ROW_STOPPED, ROW_OUT_OF_RANGE, ROW_NO_SOLUTION,
+       ROW_CONTRADICTION };
 
 static int all_finite(const double *v, int n)
 {

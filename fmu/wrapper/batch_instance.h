@@ -4,8 +4,9 @@ enum { FIRST_X = 0, FIRST_U = NX, SUPPLIED = NX - 2, THROUGHPUT = NX - 1, N_CONT
 
 typedef struct {
     int jumped;                /* an input has jumped since the last step */
+    int consistent;            /* z belongs to x, u and p */
     double tolerance, h_first, h_last;
-    double x[NX], u[AT_LEAST_1(NU)], slope[AT_LEAST_1(NU)], p[AT_LEAST_1(NP)];
+    double x[NX], z[AT_LEAST_1(NZ)], u[AT_LEAST_1(NU)], slope[AT_LEAST_1(NU)], p[AT_LEAST_1(NP)];
 } State;
 
 typedef struct {
@@ -22,12 +23,29 @@ static void refresh_constants(Instance *m)
     m->constants_known = 1;
 }
 
-static void refresh_outputs(Instance *m)
+/* Whether the implicit equations have a solution; solves them where something has changed. */
+static int refresh_algebra(Instance *m)
 {
-    if (m->outputs_known) return;
+    if (m->s.consistent) return 1;
     refresh_constants(m);
-    model_outputs(m->s.x, m->s.u, m->s.p, m->c, m->y, m->dx);
+    m->s.consistent = implicit_solve(m->s.x, m->s.z, m->s.u, m->s.p, m->c) < 0;
+    return m->s.consistent;
+}
+
+/* Outputs and rates; 0 where an implicit equation has no solution. */
+static int refresh_outputs(Instance *m)
+{
+    if (m->outputs_known) return 1;
+    if (!refresh_algebra(m)) return 0;
+    refresh_constants(m);
+    model_outputs(m->s.x, m->s.z, m->s.u, m->s.p, m->c, m->y, m->dx);
     m->outputs_known = 1;
+    return 1;
+}
+
+static void changed(Instance *m)
+{
+    m->outputs_known = m->s.consistent = 0;
 }
 
 static int in_range(int r, double value)
@@ -35,10 +53,10 @@ static int in_range(int r, double value)
     return isfinite(value) && value >= model_low[r] && value <= model_high[r];
 }
 
-/* The step was made in a lane: trial() finds x_new filled, and the error behind it. */
-static void model_step(const double *x, const double *u, const double *slope, const double *p, const double *c,
-                       const double *h, double *x_new, double *error)
+/* The step was made in a lane: trial() finds x_new and z_new filled, and the error behind x_new. */
+static void model_step(const double *x, const double *z, const double *u, const double *slope, const double *p,
+                       const double *c, const double *h, double *x_new, double *z_new, double *error)
 {
-    (void)x, (void)u, (void)slope, (void)p, (void)c, (void)h;
+    (void)x, (void)z, (void)u, (void)slope, (void)p, (void)c, (void)h, (void)z_new;
     memcpy(error, x_new + NX, N_CONTROLLED * sizeof(double));
 }

@@ -1,52 +1,51 @@
-/* Steady states, sought as one would by hand: Newton's method, then following the machine to rest, then leading the
-   inputs there (Deuflhard 2004, section 3.3). */
+/* Steady states, as gearheat.model.run.steady finds them: Newton's method on states and algebraic variables together, then
+   a pseudo-transient, then a continuation of the inputs (Deuflhard 2004, section 3.3). */
 
-enum { N1 = AT_LEAST_1(N) };
+enum { N1 = AT_LEAST_1(N), NW = N + NZ, W1 = AT_LEAST_1(N + NZ) };
 
-/* Sizes of steps are counted in nominals of the states. */
-#define CONVERGED 1e-10        /* a root is found when the next correction is below this */
-#define ROUND_OFF 1e-7         /* corrections below this that no longer shrink are round-off */
+/* Sizes of steps are counted in nominals. The numbers in capitals not given here come from gearheat.model.run.newton. */
 #define CHORD 0.1              /* corrections below this keep the Jacobian ... */
 #define CHORD_GAIN 0.2         /* ... as long as the next one is shorter by this */
 #define NEAR 1.0               /* a way shorter than this is not watched */
-#define LEAST_DAMPING 1e-5
-#define CAUTION 0.3            /* a relaxation step is at most this share of the time in which a deviation grows by e */
-#define FAR 5.0                /* and this many nominals long */
-#define LONGEST 1e9            /* relaxation ends where steps this long [s] change nothing */
-#define SHORTEST 1e-12
-#define LEAST_STRIDE 1e-3      /* of the inputs' way */
-enum { MOST_NEWTON = 50, MOST_CHORDS = 8, MOST_EULER = 8, MOST_RELAX = 300, MOST_LED = 15, MOST_ROTATIONS = 60 };
+enum { MOST_CHORDS = 8, MOST_ROTATIONS = 60 };
 
 typedef struct {
     const double *u, *p, *home;
-    double k[AT_LEAST_1(NK)], c[AT_LEAST_1(NC)];
-    double r[N1], r_new[N1], d[N1], d_new[N1], trial[N1], before[N1];
-    double entries[AT_LEAST_1(NJ)], J[N1 * N1], J_new[N1 * N1], lu[N1 * N1];
-    double taken[MOST_CHORDS][N1];
+    double c[AT_LEAST_1(NC)];  /* what depends on parameters alone, then what depends on inputs too */
+    double r[W1], r_new[W1], d[W1], d_new[W1], trial[W1], before[W1];
+    double entries[AT_LEAST_1(NJ)], J[W1 * W1], J_new[W1 * W1], lu[W1 * W1];
+    double taken[MOST_CHORDS][W1];
+    double R[N1 * N1], a[N1 * N1];
     double complex h[N1 * N1];
-    double led[AT_LEAST_1(NU)];
-    int pivot[N1];
+    double between[AT_LEAST_1(NU)];
+    int pivot[W1];
     double euler;              /* length of an implicit Euler step [s], 0 for the steady equations */
     int watched, quiet, heat;  /* see watch */
     int steps;
 } Row;
 
-static double size(const double *d)
+static double nominal(int i)
+{
+    return i < N ? model_nominal[i] : model_z_nominal[i - N];
+}
+
+/* Largest of the first n components in nominals. */
+static double size(const double *d, int n)
 {
     double most = 0.0;
     int i;
-    for (i = 0; i < N; i++) most = fmax(most, fabs(d[i]) / model_nominal[i]);
+    for (i = 0; i < n; i++) most = fmax(most, fabs(d[i]) / nominal(i));
     return most;
 }
 
-/* Largest part of a step that stays inside the states' ranges and is not wild: ten nominals and half the value. */
-static double share(const double *z, const double *d)
+/* Largest part of a step that stays inside the states' ranges and is not wild. */
+static double share(const double *w, const double *d)
 {
     double least = 1.0;
     int i;
     for (i = 0; i < N; i++) {
-        double room = d[i] > 0 ? model_high[i] - z[i] : z[i] - model_low[i];
-        double most = fmin(0.9 * room, 10 * model_nominal[i] + 0.5 * fabs(z[i]));
+        double room = d[i] > 0 ? model_high[i] - w[i] : w[i] - model_low[i];
+        double most = fmin(0.9 * room, STRIDE * model_nominal[i] + 0.5 * fabs(w[i]));
         if (d[i] != 0) least = fmin(least, most / fabs(d[i]));
     }
     return least;
@@ -57,73 +56,64 @@ static void evaluate(Row *w, const double *z, double *r, double *J)
 {
     int i;
     if (J) {
-        model_balance(z, w->u, w->p, w->k, w->c, r, w->entries);
+        model_equations(z, z + N, w->u, w->p, w->c, r, w->entries);
         memset(J, 0, sizeof w->J);
-        for (i = 0; i < NJ; i++) J[model_row[i] + model_column[i] * N] = w->entries[i];
+        for (i = 0; i < NJ; i++) J[model_row[i] + model_column[i] * NW] = w->entries[i];
     } else {
-        model_rates(z, w->u, w->p, w->k, w->c, r);
+        model_rates(z, z + N, w->u, w->p, w->c, r);
     }
     if (w->euler == 0.0) return;
-    for (i = 0; i < N; i++) r[i] = (z[i] - w->before[i]) / w->euler - r[i];
+    for (i = 0; i < NW; i++) r[i] = (i < N ? (z[i] - w->before[i]) / w->euler : 0.0) - r[i];
     if (!J) return;
-    for (i = 0; i < N * N; i++) J[i] = (i % (N1 + 1) == 0 ? 1 / w->euler : 0.0) - J[i];
+    for (i = 0; i < NW * NW; i++) J[i] = -J[i];
+    for (i = 0; i < N; i++) J[i * (NW + 1)] += 1 / w->euler;
 }
 
 /* LU of w->J with row exchanges into w->lu; 0 where it is singular or not finite. */
 static int factor_matrix(Row *w)
 {
-    double *a = w->lu;
-    int i, j, k;
-    if (!all_finite(w->J, N * N)) return 0;
-    memcpy(a, w->J, sizeof w->lu);
-    for (k = 0; k < N; k++) {
-        int best = k;
-        for (i = k + 1; i < N; i++)
-            if (fabs(a[i + k * N]) > fabs(a[best + k * N])) best = i;
-        if (a[best + k * N] == 0.0) return 0;
-        w->pivot[k] = best;
-        if (best != k)
-            for (j = 0; j < N; j++) {
-                double swap = a[k + j * N];
-                a[k + j * N] = a[best + j * N];
-                a[best + j * N] = swap;
-            }
-        for (i = k + 1; i < N; i++) a[i + k * N] /= a[k + k * N];
-        for (j = k + 1; j < N; j++)
-            for (i = k + 1; i < N; i++) a[i + j * N] -= a[i + k * N] * a[k + j * N];
-    }
-    return 1;
+    memcpy(w->lu, w->J, sizeof w->lu);
+    return lu_factor(w->lu, w->pivot, NW);
 }
 
 /* d = -J^-1 r with the factors at hand; 0 where it is not finite. */
 static int correction(const Row *w, const double *r, double *d)
 {
-    const double *a = w->lu;
-    int i, k;
-    for (i = 0; i < N; i++) d[i] = -r[i];
-    for (k = 0; k < N; k++) {
-        double swap = d[w->pivot[k]];
-        d[w->pivot[k]] = d[k];
-        d[k] = swap;
+    int i;
+    for (i = 0; i < NW; i++) d[i] = -r[i];
+    return lu_solve(w->lu, w->pivot, d, NW);
+}
+
+/* The Jacobian of the states' rates where the algebraic variables follow, from that of all equations, to w->R; 0 where
+   there is none. */
+static int reduce(Row *w, const double *J)
+{
+    double inner[AT_LEAST_1(NZ * NZ)], column[AT_LEAST_1(NZ)];
+    int pivot[AT_LEAST_1(NZ)], i, j, k;
+    for (j = 0; j < NZ; j++)
+        for (i = 0; i < NZ; i++) inner[i + j * NZ] = J[N + i + (N + j) * NW];
+    if (NZ > 0 && !lu_factor(inner, pivot, NZ)) return 0;
+    for (j = 0; j < N; j++) {
+        for (i = 0; i < NZ; i++) column[i] = J[N + i + j * NW];
+        if (NZ > 0 && !lu_solve(inner, pivot, column, NZ)) return 0;
+        for (i = 0; i < N; i++) {
+            double sum = J[i + j * NW];
+            for (k = 0; k < NZ; k++) sum -= J[i + (N + k) * NW] * column[k];
+            w->R[i + j * N] = sum;
+        }
     }
-    for (k = 0; k < N; k++)
-        for (i = k + 1; i < N; i++) d[i] -= a[i + k * N] * d[k];
-    for (k = N - 1; k >= 0; k--) {
-        d[k] /= a[k + k * N];
-        for (i = 0; i < k; i++) d[i] -= a[i + k * N] * d[k];
-    }
-    return all_finite(d, N);
+    return all_finite(w->R, N * N);
 }
 
 /* A matrix without negative terms off its diagonal is stable if and only if its negative has positive pivots; heat that
-   flows through conductors makes such a one. 1 where this shows that J is stable. */
-static int heat_holds(Row *w, const double *J)
+   flows through conductors makes such a one. 1 where this shows that w->R is stable. */
+static int heat_holds(Row *w)
 {
-    double *a = w->lu;
+    double *a = w->a;
     int i, j, k;
     for (i = 0; i < N * N; i++) {
-        if (i % (N1 + 1) != 0 && J[i] < 0.0) return 0;
-        a[i] = -J[i];
+        if (i % (N1 + 1) != 0 && w->R[i] < 0.0) return 0;
+        a[i] = -w->R[i];
     }
     for (k = 0; k < N; k++) {
         if (!(a[k + k * N] > 0.0)) return 0;
@@ -197,14 +187,14 @@ static double complex shift_of(const double complex *h, int high)
     return far == 0.0 ? d : d - b * c / far;
 }
 
-/* Rate [1/s] at which a small deviation grows fastest for a Jacobian J; 0 below round-off. */
-static double growth(Row *w, const double *J)
+/* Rate [1/s] at which a small deviation grows fastest for w->R; 0 below round-off. */
+static double growth(Row *w)
 {
     double complex *h = w->h;
     double fastest = -INFINITY, largest = 0.0;
     int high = N - 1, tried = 0, i;
-    if (N == 0 || !all_finite(J, N * N) || heat_holds(w, J)) return 0.0;
-    hessenberg(J, h);
+    if (N == 0 || heat_holds(w)) return 0.0;
+    hessenberg(w->R, h);
     while (high > 0) {
         int low = high;
         while (low > 0 && cabs(h[low + (low - 1) * N]) > 1e-16 * (cabs(h[low + low * N]) + cabs(h[low - 1 + (low - 1) * N])))
@@ -224,17 +214,17 @@ static double growth(Row *w, const double *J)
     return fastest > 1e-10 * largest ? fastest : 0.0;
 }
 
-/* Whether a machine stays at a balance with a Jacobian. */
+/* Whether a machine stays at an equilibrium with a Jacobian of all equations. */
 static int stable(Row *w, const double *J)
 {
-    return all_finite(J, N * N) && growth(w, J) == 0.0;
+    return reduce(w, J) && growth(w) == 0.0;
 }
 
 static double product(const double *a, const double *b)
 {
     double sum = 0.0;
     int i;
-    for (i = 0; i < N; i++) sum += a[i] / model_nominal[i] * (b[i] / model_nominal[i]);
+    for (i = 0; i < NW; i++) sum += a[i] / nominal(i) * (b[i] / nominal(i));
     return sum;
 }
 
@@ -242,28 +232,28 @@ static double product(const double *a, const double *b)
    1995, section 7.3). 1 at a root, 0 where a new Jacobian is due, taken at z. On entry w->d is the correction at z. */
 static int chord(Row *w, double *z)
 {
-    double square[MOST_CHORDS], length = size(w->d);
+    double square[MOST_CHORDS], length = size(w->d, NW);
     int n, i, j;
     memcpy(w->taken[0], w->d, sizeof w->d);
     for (n = 0; n < MOST_CHORDS; n++) {
         const double *last = w->taken[n];
         double *d = w->d_new, pull;
-        for (i = 0; i < N; i++) w->trial[i] = z[i] + last[i];
+        for (i = 0; i < NW; i++) w->trial[i] = z[i] + last[i];
         evaluate(w, w->trial, w->r_new, NULL);
         if (!correction(w, w->r_new, d)) return 0;
         square[n] = product(last, last);
         for (j = 0; j < n; j++) {
             pull = product(w->taken[j], d) / square[j];
-            for (i = 0; i < N; i++) d[i] += pull * w->taken[j + 1][i];
+            for (i = 0; i < NW; i++) d[i] += pull * w->taken[j + 1][i];
         }
         pull = product(last, d) / square[n];
-        if (!(size(d) <= CHORD_GAIN * length)) return 0;
-        for (i = 0; i < N; i++) d[i] /= 1 - pull;
+        if (!(size(d, NW) <= CHORD_GAIN * length)) return 0;
+        for (i = 0; i < NW; i++) d[i] /= 1 - pull;
         w->steps++;
-        length = size(d);
+        length = size(d, NW);
         memcpy(z, w->trial, sizeof w->trial);
         if (length <= CONVERGED) {
-            for (i = 0; i < N; i++) z[i] += d[i];
+            for (i = 0; i < NW; i++) z[i] += d[i];
             return 1;
         }
         if (n + 1 < MOST_CHORDS) memcpy(w->taken[n + 1], d, sizeof w->d_new);
@@ -271,13 +261,13 @@ static int chord(Row *w, double *z)
     return 0;
 }
 
-/* Note whether a machine would stay calm at a Jacobian met on the way, and whether heat alone sees to that. */
+/* Note whether a machine would stay where a Jacobian was met, and whether heat alone sees to that. */
 static void watch(Row *w)
 {
-    if (!all_finite(w->J, N * N)) w->quiet = 0;
-    else if (!heat_holds(w, w->J)) {
+    if (!reduce(w, w->J)) w->quiet = 0;
+    else if (!heat_holds(w)) {
         w->heat = 0;
-        w->quiet = w->quiet && growth(w, w->J) == 0.0;
+        w->quiet = w->quiet && growth(w) == 0.0;
     }
 }
 
@@ -290,30 +280,30 @@ static int newton(Row *w, double *z, int most)
     for (step = 0; step < most; step++) {
         double length;
         if (w->watched) watch(w);
-        if (!all_finite(w->r, N) || !factor_matrix(w) || !correction(w, w->r, w->d)) return 0;
-        length = size(w->d);
+        if (!all_finite(w->r, NW) || !factor_matrix(w) || !correction(w, w->r, w->d)) return 0;
+        length = size(w->d, NW);
         if (length <= CONVERGED) {
-            for (i = 0; i < N; i++) z[i] += w->d[i];
+            for (i = 0; i < NW; i++) z[i] += w->d[i];
             return 1;
         }
         damping = fmin(damping, share(z, w->d));
         if (damping == 1.0 && length <= CHORD) {
             if (chord(w, z)) return 1;
             evaluate(w, z, w->r, w->J);
-            if (!all_finite(w->r, N) || !factor_matrix(w) || !correction(w, w->r, w->d)) return 0;
-            length = size(w->d);
+            if (!all_finite(w->r, NW) || !factor_matrix(w) || !correction(w, w->r, w->d)) return 0;
+            length = size(w->d, NW);
             if (length <= CONVERGED) continue;
         }
         if (w->watched && step == 0 && length > NEAR) damping = fmin(damping, 0.5);
         for (;;) {
             int sound;
-            for (i = 0; i < N; i++) w->trial[i] = z[i] + damping * w->d[i];
+            for (i = 0; i < NW; i++) w->trial[i] = z[i] + damping * w->d[i];
             evaluate(w, w->trial, w->r_new, w->J_new);
             sound = correction(w, w->r_new, w->d_new);
-            if (sound && size(w->d_new) <= (1 - damping / 4) * length) break;
+            if (sound && size(w->d_new, NW) <= (1 - (1 - CONTRACTION) * damping) * length) break;
             if (length <= ROUND_OFF) return 1;
             damping /= sound ? 2 : 8;
-            if (damping < LEAST_DAMPING) return 0;
+            if (damping < LEAST_STEP) return 0;
         }
         w->steps++;
         memcpy(z, w->trial, sizeof w->trial);
@@ -329,22 +319,22 @@ static int went_far(const Row *w, const double *z)
 {
     int i;
     for (i = 0; i < N; i++) {
-        double nominal = model_nominal[i], from = w->before[i];
-        if (fabs(z[i] - from) / (1 + fabs(from) / (10 * nominal)) > FAR * nominal) return 1;
+        double scale = model_nominal[i], from = w->before[i];
+        if (fabs(z[i] - from) / (1 + fabs(from) / (STRIDE * scale)) > FAR * scale) return 1;
     }
     return 0;
 }
 
-/* Follow the machine to rest from z by implicit Euler steps that grow as long as they are easy, short where the machine
-   runs away from itself; 1 at a root. */
-static int relax(Row *w, double *z)
+/* Follow the machine from z by implicit Euler steps that grow as long as they are easy, short where the machine runs away
+   from itself; 1 at an equilibrium. */
+static int pseudo_transient(Row *w, double *z)
 {
     double step, runs, moved;
     int taken = 0;
     evaluate(w, z, w->r, w->J);
-    if (!all_finite(w->r, N)) return 0;
-    step = fmin(fmax(1 / fmax(size(w->r), 1e-12), 1e-6), 1e3);
-    runs = growth(w, w->J);
+    if (!all_finite(w->r, NW)) return 0;
+    step = fmin(fmax(1 / fmax(size(w->r, N), 1e-12), 1e-6), 1e3);
+    runs = reduce(w, w->J) ? growth(w) : 0.0;
     while (taken < MOST_RELAX && step > SHORTEST) {
         int began = w->steps, found, i;
         memcpy(w->before, z, sizeof w->before);
@@ -359,33 +349,33 @@ static int relax(Row *w, double *z)
             continue;
         }
         for (i = 0; i < N; i++) w->d[i] = z[i] - w->before[i];
-        moved = size(w->d);
+        moved = size(w->d, N);
         if (step >= LONGEST && moved < 1.0) return newton(w, z, MOST_NEWTON);
         evaluate(w, z, w->r, w->J);
-        runs = growth(w, w->J);
+        runs = reduce(w, w->J) ? growth(w) : 0.0;
         step = fmin(step * (w->steps - began <= 4 ? 5 : 2), 10 * LONGEST);
     }
     return 0;
 }
 
-/* Lead the inputs from the model's own to those given, in strides that adapt; 1 at a root. */
-static int led(Row *w, double *z)
+/* Continue from the model's own inputs to those given, in strides that adapt; 1 at a root. */
+static int continued(Row *w, double *z)
 {
     const double *asked = w->u;
-    double way = 0.0, stride = 0.25, kept[N1];
+    double way = 0.0, stride = FIRST_STRIDE, kept[W1];
     int found, i, same = 1;
     for (i = 0; i < NU; i++) same = same && asked[i] == w->home[i];
     if (same) return 0;
-    memcpy(w->led, w->home, sizeof w->led);
-    w->u = w->led;
-    model_given(w->u, w->p, w->k, w->c);
-    found = relax(w, z);
+    memcpy(w->between, w->home, sizeof w->between);
+    w->u = w->between;
+    model_given(w->u, w->p, w->c, w->c + NK);
+    found = pseudo_transient(w, z);
     while (found && way < 1.0 && stride > LEAST_STRIDE) {
         double aim = fmin(1.0, way + stride);
         memcpy(kept, z, sizeof kept);
-        for (i = 0; i < NU; i++) w->led[i] = aim < 1.0 ? w->home[i] + aim * (asked[i] - w->home[i]) : asked[i];
-        model_given(w->u, w->p, w->k, w->c);
-        if (newton(w, z, MOST_LED)) {
+        for (i = 0; i < NU; i++) w->between[i] = aim < 1.0 ? w->home[i] + aim * (asked[i] - w->home[i]) : asked[i];
+        model_given(w->u, w->p, w->c, w->c + NK);
+        if (newton(w, z, MOST_STRIDE)) {
             way = aim;
             stride *= 2;
         } else {
@@ -394,7 +384,7 @@ static int led(Row *w, double *z)
         }
     }
     w->u = asked;
-    model_given(w->u, w->p, w->k, w->c);
+    model_given(w->u, w->p, w->c, w->c + NK);
     return found && way >= 1.0;
 }
 
@@ -406,40 +396,43 @@ static int accepted(Row *w, int found, int *unstable)
     return 0;
 }
 
-/* Whether nothing on the straight way from a start to a balance would run away. */
-static int calm(Row *w, const double *start, const double *z)
+/* Whether nothing between a start and an equilibrium would run away. */
+static int steady_between(Row *w, const double *start, const double *z)
 {
     int quarter, i;
     for (quarter = 1; quarter < 4; quarter++) {
-        for (i = 0; i < N; i++) w->trial[i] = start[i] + 0.25 * quarter * (z[i] - start[i]);
+        for (i = 0; i < NW; i++) w->trial[i] = start[i] + 0.25 * quarter * (z[i] - start[i]);
         evaluate(w, w->trial, w->r_new, w->J_new);
         if (!stable(w, w->J_new)) return 0;
     }
     return 1;
 }
 
-/* The balance a row comes to rest in, to z. Where a machine would run away on the way there, it decides by itself where
-   it comes to rest. Newton's method meets enough of the way where heat flows through conductors only. */
-static int settle(Row *w, const double *start, double *z)
+/* The equilibrium a row settles in, to z. Where a machine would run away on the way there, it decides by itself where it
+   settles. Newton's method meets enough of the way where heat flows through conductors only. */
+static int settle(Row *w, const double *from, double *z)
 {
-    double found[N1];
+    double start[W1], found[W1];
     int unstable = 0, reached;
     w->steps = 0;
     w->euler = 0.0;
     w->watched = w->quiet = w->heat = 1;
-    memcpy(z, start, N * sizeof *z);
+    memcpy(start, from, N * sizeof *start);
+    memcpy(start + N, model_z_start, NZ * sizeof *start);
+    if (implicit_solve(start, start + N, w->u, w->p, w->c) >= 0) return ROW_NO_SOLUTION;
+    memcpy(z, start, NW * sizeof *z);
     reached = accepted(w, newton(w, z, MOST_NEWTON), &unstable);
     w->watched = 0;
-    if (reached && w->quiet && (w->heat || calm(w, start, z))) return ROW_OK;
-    memcpy(found, z, N * sizeof *z);
-    memcpy(z, start, N * sizeof *z);
-    if (accepted(w, relax(w, z), &unstable)) return ROW_OK;
-    memcpy(z, reached ? found : start, N * sizeof *z);
-    if (reached || accepted(w, led(w, z), &unstable)) return ROW_OK;
+    if (reached && w->quiet && (w->heat || steady_between(w, start, z))) return ROW_OK;
+    memcpy(found, z, NW * sizeof *z);
+    memcpy(z, start, NW * sizeof *z);
+    if (accepted(w, pseudo_transient(w, z), &unstable)) return ROW_OK;
+    memcpy(z, reached ? found : start, NW * sizeof *z);
+    if (reached || accepted(w, continued(w, z), &unstable)) return ROW_OK;
     if (unstable) return ROW_UNSTABLE;
     w->euler = 0.0;
     evaluate(w, start, w->r, NULL);
-    return all_finite(w->r, N) ? ROW_NO_BALANCE : ROW_NOT_FINITE;
+    return all_finite(w->r, NW) ? ROW_NO_EQUILIBRIUM : ROW_NOT_FINITE;
 }
 
 /* Steady states of n rows. A stride of 0 says that all rows share one vector. x takes N numbers a row, y NYR. */
@@ -448,22 +441,24 @@ BATCH_EXPORT int batch_steady(int64_t n, const double *u, int64_t u_stride, cons
                               int32_t *status, int32_t *iterations)
 {
     Row *w = calloc(1, sizeof *w);
+    double z[W1];
     int64_t row;
     if (!w) return 0;
     w->home = home;
     for (row = 0; row < n; row++) {
-        double *z = x + row * N, *out = y + row * NYR;
+        double *out = y + row * NYR;
         w->u = u + row * u_stride;
         if (row == 0 || p_stride) {
             w->p = p + row * p_stride;
-            model_fixed(w->p, w->k);
+            model_fixed(w->p, w->c);
         }
-        if (row == 0 || p_stride || u_stride) model_given(w->u, w->p, w->k, w->c);
+        if (row == 0 || p_stride || u_stride) model_given(w->u, w->p, w->c, w->c + NK);
         status[row] = settle(w, start + row * start_stride, z);
         iterations[row] = w->steps;
-        if (status[row] == ROW_OK) model_outputs(z, w->u, w->p, w->k, w->c, out);
-        if (status[row] == ROW_OK && all_finite(z, N)) continue;
-        nothing(z, N);
+        memcpy(x + row * N, z, N * sizeof *z);
+        if (status[row] == ROW_OK) model_outputs(z, z + N, w->u, w->p, w->c, out);
+        if (status[row] == ROW_OK && all_finite(z, NW)) continue;
+        nothing(x + row * N, N);
         nothing(out, NYR);
     }
     free(w);

@@ -20,16 +20,18 @@ typedef struct {
     double outside;            /* largest number of law arguments out of range */
 } Kept;
 
-static void keep(Instance *m, int count, Kept *kept)
+/* Keep a row some times; 0 where an implicit equation has no solution there. */
+static int keep(Instance *m, int count, Kept *kept)
 {
     for (; count > 0; count--) {
-        refresh_outputs(m);
+        if (!refresh_outputs(m)) return 0;
         memcpy(kept->x, m->s.x, N * sizeof(double));
         memcpy(kept->y, m->y, N_OUTPUTS * sizeof(double));
         kept->outside = fmax(kept->outside, m->y[OUTSIDE]);
         kept->x += N;
         kept->y += N_OUTPUTS;
     }
+    return 1;
 }
 
 static void set_inputs(Instance *m, const Course *course, int64_t k)
@@ -42,7 +44,7 @@ static void set_inputs(Instance *m, const Course *course, int64_t k)
         if (fabs(value - m->s.u[i]) > 1e-6 * (fabs(m->s.u[i]) + model_nominal[FIRST_U + i])) m->s.jumped = 1;
         m->s.u[i] = value;
     }
-    m->outputs_known = 0;
+    changed(m);
 }
 
 /* A row on its way. */
@@ -51,10 +53,10 @@ typedef struct {
     Kept kept;
     int64_t row, piece;        /* which row; the piece of the course it is in, m when it is done */
     double begin;              /* stored energy at the start */
-    double x[NX], u[AT_LEAST_1(NU)];   /* where the next trial begins */
+    double x[NX], z[AT_LEAST_1(NZ)], u[AT_LEAST_1(NU)];   /* where the next trial begins */
     double t, h, first, size;  /* in the piece: time, step proposed, the one proposed first, the one tried */
-    int last, in_a_row;        /* the trial leads to the end of the piece; rejections in a row */
-    long in_piece;             /* steps in the piece */
+    int last;                  /* the trial leads to the end of the piece */
+    Effort effort;             /* in the piece */
     int32_t steps;
     int fresh;                 /* its parameters are not in its lane yet */
 } Runner;
@@ -76,8 +78,8 @@ typedef struct {
 
 /* What lanes_step takes and gives. */
 typedef struct {
-    lanes x[NX], u[AT_LEAST_1(NU)], slope[AT_LEAST_1(NU)], p[AT_LEAST_1(NP)], c[AT_LEAST_1(NC)], h;
-    lanes x_new[NX], error[N_CONTROLLED];
+    lanes x[NX], z[AT_LEAST_1(NZ)], u[AT_LEAST_1(NU)], slope[AT_LEAST_1(NU)], p[AT_LEAST_1(NP)], c[AT_LEAST_1(NC)], h;
+    lanes x_new[NX], z_new[AT_LEAST_1(NZ)], error[N_CONTROLLED];
 } Beside;
 
 /* What becomes of a row that is not done. */
@@ -88,23 +90,24 @@ static void depart(Runner *r, double length)
 {
     State *s = &r->m.s;
     memcpy(r->x, s->x, sizeof r->x);
+    memcpy(r->z, s->z, sizeof r->z);
     memcpy(r->u, s->u, sizeof r->u);
     r->t = r->first = 0.0;
     r->h = s->jumped ? s->h_first : s->h_last;
     if (!(r->h > 0.0)) r->h = length;
-    r->in_a_row = 0;
-    r->in_piece = 0;
+    memset(&r->effort, 0, sizeof r->effort);
 }
 
 static void arrive(Runner *r)
 {
     State *s = &r->m.s;
     memcpy(s->x, r->x, sizeof r->x);
+    memcpy(s->z, r->z, sizeof r->z);
     memcpy(s->u, r->u, sizeof r->u);
     s->h_first = r->first;
     s->h_last = r->h;
     s->jumped = 0;
-    r->m.outputs_known = 0;
+    changed(&r->m);
 }
 
 /* To the next trial step, through the ends of pieces; or to the end of the course, where the energy that came in, that
@@ -116,16 +119,16 @@ static int proceed(Runner *r, const Course *course, double *energy)
     while (length = course->length[r->piece], !(r->t < length)) {
         arrive(r);
         r->piece++;
-        keep(m, course->before[r->piece], &r->kept);
+        if (!keep(m, course->before[r->piece], &r->kept)) return ROW_NO_SOLUTION;
         if (r->piece == course->m) {
-            refresh_outputs(m);
+            if (!refresh_outputs(m)) return ROW_NO_SOLUTION;
             energy[0] = m->s.x[SUPPLIED];
             energy[1] = m->y[STORED] - r->begin;
             energy[2] = m->s.x[THROUGHPUT];
             return ROW_OK;
         }
         set_inputs(m, course, r->piece);
-        keep(m, course->after[r->piece], &r->kept);
+        if (!keep(m, course->after[r->piece], &r->kept) || !refresh_algebra(m)) return ROW_NO_SOLUTION;
         depart(r, course->length[r->piece]);
     }
     left = length - r->t;
@@ -142,7 +145,9 @@ static int start_out(Runner *r, const Course *course, double *energy)
     r->piece = 0;
     set_inputs(m, course, 0);
     m->s.jumped = 1;
-    refresh_outputs(m);
+    memcpy(m->s.z, model_z_start, NZ * sizeof(double));
+    changed(m);
+    if (!refresh_outputs(m)) return ROW_NO_SOLUTION;
     r->begin = m->y[STORED];
     if (!all_finite(m->dx, NX)) return ROW_NOT_FINITE;
     keep(m, course->before[0] + course->after[0], &r->kept);
@@ -153,25 +158,22 @@ static int start_out(Runner *r, const Course *course, double *energy)
 /* Take or refuse the trial step in a lane, as walk() does. */
 static int conclude(Runner *r, const Beside *b, int lane, const Course *course, double *energy)
 {
-    double x_new[NX + N_CONTROLLED], error;
+    double x_new[NX + N_CONTROLLED], z_new[AT_LEAST_1(NZ)] = {0.0}, length = course->length[r->piece], error;
     int worst, i;
     for (i = 0; i < NX; i++) x_new[i] = b->x_new[i][lane];
     for (i = 0; i < N_CONTROLLED; i++) x_new[NX + i] = b->error[i][lane];
-    error = trial(&r->m, r->x, r->u, r->size, x_new, &worst);
-    if (r->in_piece++ > MAX_STEPS) return ROW_STOPPED;
+    for (i = 0; i < NZ; i++) z_new[i] = b->z_new[i][lane];
+    error = trial(&r->m, r->x, r->z, r->u, r->size, x_new, z_new, &worst);
     r->steps++;
-    if (!(error <= 1.0)) {
-        r->h = r->size * (isfinite(error) ? factor(error) : 0.2);
-        if (++r->in_a_row > MAX_REJECTIONS || r->t + r->h == r->t) return ROW_STOPPED;
-        return proceed(r, course, energy);
+    r->h = next_size(&r->effort, error, r->size, r->h, length);
+    if (error <= 1.0) {
+        r->t = r->last ? length : r->t + r->size;
+        memcpy(r->x, x_new, sizeof r->x);
+        memcpy(r->z, z_new, sizeof r->z);
+        for (i = 0; i < NU; i++) r->u[i] = r->m.s.u[i] + r->m.s.slope[i] * r->t;
+        if (r->first == 0.0) r->first = r->h;
     }
-    r->t = r->last ? course->length[r->piece] : r->t + r->size;
-    memcpy(r->x, x_new, sizeof r->x);
-    for (i = 0; i < NU; i++) r->u[i] = r->m.s.u[i] + r->m.s.slope[i] * r->t;
-    r->h = fmax(r->size < r->h ? r->h : 0.0, r->size * (r->in_a_row ? fmin(factor(error), 1.0) : factor(error)));
-    if (r->first == 0.0) r->first = r->h;
-    r->in_a_row = 0;
-    return proceed(r, course, energy);
+    return r->h == 0.0 && r->t < length ? ROW_STOPPED : proceed(r, course, energy);
 }
 
 static void put(Beside *b, int lane, const Runner *r)
@@ -179,6 +181,7 @@ static void put(Beside *b, int lane, const Runner *r)
     const State *s = &r->m.s;
     int i;
     for (i = 0; i < NX; i++) b->x[i][lane] = r->x[i];
+    for (i = 0; i < NZ; i++) b->z[i][lane] = r->z[i];
     for (i = 0; i < NU; i++) b->u[i][lane] = r->u[i];
     for (i = 0; i < NU; i++) b->slope[i][lane] = s->slope[i];
     b->h[lane] = r->size;
@@ -236,7 +239,7 @@ static void run_rows(Rows *rows, Runner *runner)
         /* A lane that never had a row mirrors the first one: zeros might take long. */
         for (lane = 0; lane < LANES; lane++) put(&b, lane, &runner[lane < rows->n ? lane : 0]);
         for (lane = 0; lane < LANES; lane++) runner[lane].fresh = 0;
-        lanes_step(b.x, b.u, b.slope, b.p, b.c, &b.h, b.x_new, b.error);
+        lanes_step(b.x, b.z, b.u, b.slope, b.p, b.c, &b.h, b.x_new, b.z_new, b.error);
         for (lane = 0; lane < LANES; lane++) {
             Runner *r = &runner[lane];
             if (!busy[lane]) continue;

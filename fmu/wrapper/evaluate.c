@@ -5,14 +5,85 @@ static void refresh_constants(Instance *m)
     if (m->constants_known) return;
     model_constants(m->s.p, m->c);
     m->constants_known = 1;
+    m->relations_hold = 0;
 }
 
+/* Solve the implicit equations where states, inputs or parameters have changed; -1, or the number of the one without a
+   solution. */
+static int refresh_algebra(Instance *m)
+{
+    int failed;
+    if (m->s.consistent) return -1;
+    refresh_constants(m);
+    memcpy(m->s.z, m->s.z_from, sizeof m->s.z);
+    failed = implicit_solve(m->s.x, m->s.z, m->s.u, m->s.p, m->c);
+    m->s.consistent = failed < 0;
+    return failed;
+}
+
+/* Whether the parameters fit each other; asked when all of them are set, as one by one they pass through states that
+   do not. All relations that do not hold are told, those without a value only where nothing else is wrong. */
+static int check_relations(Instance *m, const char *function)
+{
+    double value[AT_LEAST_1(NR)];
+    int i, undefined;
+    refresh_constants(m);
+    if (NR == 0 || m->relations_hold) return 1;
+    model_relations_of(m->s.p, value);
+    m->relations_hold = 1;
+    for (undefined = 0; undefined < 2 && m->relations_hold; undefined++)
+        for (i = 0; i < NR; i++) {
+            if (value[i] >= model_relation_low[i] && value[i] <= model_relation_high[i]) continue;
+            if (isfinite(value[i]) == (undefined != 0)) continue;
+            m->relations_hold = 0;
+            refuse(m, "%s: %s %.6g, %s", function, model_relations[i], value[i], model_remedies[i]);
+        }
+    return m->relations_hold;
+}
+
+/* What calculation leaves beside the end of a range by round-off lies on it. */
+static void settle(double *y)
+{
+    int i;
+    for (i = 0; i < NY; i++) {
+        double low = model_low[FIRST_Y + i], high = model_high[FIRST_Y + i], slack = 1e-9 * model_nominal[FIRST_Y + i];
+        if (y[i] < low && y[i] >= low - slack) y[i] = low;
+        if (y[i] > high && y[i] <= high + slack) y[i] = high;
+    }
+}
+
+/* Parameters that contradict each other have no outputs, nor has what has no solution. */
 static void refresh_outputs(Instance *m)
 {
+    int i;
     if (m->outputs_known) return;
-    refresh_constants(m);
-    model_outputs(m->s.x, m->s.u, m->s.p, m->c, m->y, m->dx);
+    if (check_relations(m, "outputs") && refresh_algebra(m) < 0) {
+        model_outputs(m->s.x, m->s.z, m->s.u, m->s.p, m->c, m->y, m->dx);
+        settle(m->y);
+    } else {
+        for (i = 0; i < NY; i++) m->y[i] = NAN;
+        for (i = 0; i < NX; i++) m->dx[i] = NAN;
+    }
     m->outputs_known = 1;
+}
+
+/* The name of the implicit equation that has no solution here, or NULL. */
+static const char *unsolved(Instance *m)
+{
+    int failed = refresh_algebra(m);
+    return failed < 0 ? NULL : model_blocks[failed];
+}
+
+/* From here on iterations begin at the present solution. */
+static void accept_algebra(Instance *m)
+{
+    if (m->s.consistent) memcpy(m->s.z_from, m->s.z, sizeof m->s.z);
+}
+
+/* Something the outputs depend on has changed. */
+static void changed(Instance *m)
+{
+    m->outputs_known = m->s.consistent = 0;
 }
 
 /* Where a value lies: NULL for a value the model calculates. */
@@ -45,6 +116,16 @@ static fmi2Status refuse_value(const Instance *m, const char *function, fmi2Valu
                   model_units[r], model_ranges[r], model_units[r]);
 }
 
+/* The first output or derivative outside its declared range or not finite; N_VARIABLES when all are well. */
+static int wrong_result(Instance *m)
+{
+    int r;
+    refresh_outputs(m);
+    for (r = FIRST_Y; r < N_VARIABLES; r = r + 1 == FIRST_P ? FIRST_DX : r + 1)
+        if (!in_range(r, value_of(m, r))) return r;
+    return N_VARIABLES;
+}
+
 /* Law arguments outside the range of their source are told once each. */
 static void warn_validity(Instance *m)
 {
@@ -52,7 +133,8 @@ static void warn_validity(Instance *m)
     int i;
     if (NK == 0 || !(m->log_mask & (1u << LOG_WARNING))) return;
     refresh_constants(m);
-    model_arguments(m->s.x, m->s.u, m->s.p, m->c, argument);
+    if (refresh_algebra(m) >= 0) return;
+    model_arguments(m->s.x, m->s.z, m->s.u, m->s.p, m->c, argument);
     for (i = 0; i < NK; i++) {
         if (m->warned[i] || !(argument[i] < model_check_low[i] || argument[i] > model_check_high[i])) continue;
         m->warned[i] = 1;

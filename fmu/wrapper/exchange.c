@@ -26,6 +26,7 @@ fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)
 {
     Instance *m = c;
     if (!allowed_for(m, fmi2ModelExchange, EVENT, "fmi2EnterContinuousTimeMode")) return fmi2Error;
+    if (!check_relations(m, "fmi2EnterContinuousTimeMode")) return fmi2Error;
     m->s.mode = CONTINUOUS_TIME;
     return fmi2OK;
 }
@@ -40,6 +41,7 @@ fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_return, f
     if (missing(m, enter_event_mode, 1, f) || missing(m, terminate, 1, f)) return fmi2Error;
     *enter_event_mode = fmi2False;
     *terminate = fmi2False;
+    accept_algebra(m);
     warn_validity(m);
     return fmi2OK;
 }
@@ -71,7 +73,7 @@ fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n
         if (!in_range(FIRST_X + i, x[i])) /* the integrator tried too far and may step back */
             return discard(m, "fmi2SetContinuousStates: %s = %g is out of range.", model_names[FIRST_X + i], x[i]);
     memcpy(m->s.x, x, sizeof m->s.x);
-    m->outputs_known = 0;
+    changed(m);
     return fmi2OK;
 }
 
@@ -87,12 +89,15 @@ fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n)
 fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real dx[], size_t n)
 {
     Instance *m = c;
+    const char *block;
     int i;
     if (!allowed_for(m, fmi2ModelExchange, GETTABLE, "fmi2GetDerivatives")) return fmi2Error;
     if (wrong_size(m, dx, n, NX, "fmi2GetDerivatives")) return fmi2Error;
+    if ((block = unsolved(m)) != NULL)
+        return discard(m, "fmi2GetDerivatives: the equation \"%s\" has no solution at t = %.10g s.", block, m->s.time);
     refresh_constants(m);
     if (m->outputs_known) memcpy(dx, m->dx, sizeof m->dx);
-    else model_rates(m->s.x, m->s.u, m->s.p, m->c, dx);
+    else model_rates(m->s.x, m->s.z, m->s.u, m->s.p, m->c, dx);
     for (i = 0; i < NX; i++)
         if (!isfinite(dx[i]))
             return discard(m, "fmi2GetDerivatives: %s is %g at t = %.10g s.", model_names[FIRST_DX + i], dx[i],

@@ -42,6 +42,8 @@ typedef struct {
     int stop_defined;
     int jumped;            /* an input or a parameter has jumped since the last step */
     int states_touched;    /* ModelExchange: the integrator has to restart at the end of event mode */
+    int stepped;           /* a communication step has been done */
+    int consistent;        /* z belongs to x, u and p */
     int spare;             /* keeps the doubles aligned without hidden bytes */
     double time;
     double stop;
@@ -49,6 +51,8 @@ typedef struct {
     double h_first;        /* step proposed after the first accepted step of the last communication step */
     double h_last;         /* step proposed after the last one */
     double x[AT_LEAST_1(NX)];
+    double z[AT_LEAST_1(NZ)];
+    double z_from[AT_LEAST_1(NZ)];   /* at the last accepted step: where an iteration begins, whatever was asked since */
     double u[AT_LEAST_1(NU)];
     double slope[AT_LEAST_1(NU)];
     double p[AT_LEAST_1(NP)];
@@ -57,6 +61,7 @@ typedef struct {
 typedef struct {
     State s;
     int constants_known;   /* c belongs to s.p */
+    int relations_hold;    /* all relations between the parameters hold at s.p */
     int outputs_known;     /* y and dx belong to s */
     unsigned log_mask;
     unsigned log_mask_at_start;
@@ -66,6 +71,10 @@ typedef struct {
     double y[AT_LEAST_1(NY)];
     double dx[AT_LEAST_1(NX)];
     unsigned char warned[AT_LEAST_1(NK)];
+    unsigned char kept[AT_LEAST_1(NU)];    /* it was told that an input keeps its value */
+    State refused;         /* the last step that was refused: where it began, */
+    double refused_step;   /* its length, NAN when there is none, */
+    const char *refused_by;   /* and the name of what ended it */
 } Instance;
 
 /* Log categories, in the order of the model description. */

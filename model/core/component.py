@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from contextlib import suppress
 from dataclasses import dataclass
+from math import inf, nextafter
 from typing import Any
 
 import casadi as ca
 
 from ..errors import ScenarioError, suggestion
+from ..sources import recording
+from ..units import text
 from .declare import Choice, Declaration, Given, Input, Output, Parameter, Port, State, Variable, declared
+from .flat import Relation, broken
 
 
 @dataclass(frozen=True)
@@ -20,6 +23,10 @@ class Equation:
     name: str
     lhs: Any
     rhs: Any
+
+
+#: A relation and the expression of the value that tells whether it holds.
+Related = tuple[Relation, Any]
 
 
 def equation(name: str, lhs: Any, rhs: Any) -> Equation:
@@ -43,17 +50,20 @@ class Component:
         cls = type(self)
         self.choices = {k: values.pop(k, d.default) for k, d in declared(cls, Choice).items()}
         self.ports = {k: d.bound(f"{name}.{k}") for k, d in declared(cls, Port).items()}
-        self.parameters: dict[str, Parameter] = {k: d for k, d in declared(cls, Parameter).items() if self.has(k)}
+        parameters: dict[str, Parameter] = {k: d for k, d in declared(cls, Parameter).items() if self.has(k)}
+        self.derived = {k: d for k, d in parameters.items() if d.derived is not None and k not in values}
+        self.parameters = {k: d for k, d in parameters.items() if k not in self.derived}
         self.states: dict[str, State] = {k: d for k, d in declared(cls, State).items() if self.has(k)}
         self.variables: dict[str, Variable] = declared(cls, Variable)
         self.inputs: dict[str, Input] = declared(cls, Input)
-        names = (*self.parameters, *self.states, *self.variables, *self.inputs)
+        names = (*parameters, *self.states, *self.variables, *self.inputs)
         self.symbols = {k: ca.SX.sym(f"{name}.{k}") for k in names}
         self.derivatives = {k: ca.SX.sym(f"der({name}.{k})") for k in self.states}
         self.values: dict[str, float] = {k: d.default for k, d in self.parameters.items() if d.default is not None}
         self.values |= {k: d.start for k, d in self.states.items()} | {k: d.start for k, d in self.inputs.items()}
         self.values |= {k: v for k, v in values.items() if k in self.values or k in self.parameters}
-        self._derive()
+        with recording() as self.uses:
+            self._derive()
         if problems := self._problems(values):
             raise ScenarioError(problems)
 
@@ -67,21 +77,91 @@ class Component:
         for key, d in self.parameters.items():
             if key not in self.values:
                 found.append(f"{where}: {key} is missing ({d.doc}). Give it in {d.unit}.")
-        for key, value in self.values.items():
+        for key in self.values.keys() - self.derived.keys():
+            value = self.values[key]
             if (problem := settable[key].quantity(f"{self.name}.{key}").problem(value)) is not None:
                 found.append(f"{where}: {problem}")
         for key, c in declared(type(self), Choice).items():
             if c.options and self.choices[key] not in c.options:
                 options = ", ".join(str(o) for o in c.options)
-                found.append(f"{where}: {key} = {self.choices[key]!r} is not known. Choose one of: {options}.")
-        return sorted(found)
+                wrong = (
+                    f"is missing ({c.doc})" if self.choices[key] is None else f"= {self.choices[key]!r} is not known"
+                )
+                found.append(f"{where}: {key} {wrong}. Choose one of: {options}.")
+        return sorted(found) or [f"{where}: {problem}" for problem in self._contradictions()]
 
     def _derive(self) -> None:
-        """Values of parameters that follow from the others and are not given."""
+        """Put expressions in the place of the parameters that follow from others."""
+        own = [self.symbols[key] for key in self.derived]
+        found = [ca.SX(d.derived(self)) for d in self.derived.values() if d.derived is not None]
+        for _ in own[1:]:  # one may follow from another, whatever their order
+            found = ca.substitute(found, own, found)
+        for key, expression in zip(tuple(self.derived), found, strict=True):
+            if ca.depends_on(expression, ca.vertcat(*own)):  # they follow from each other: missing
+                self.parameters[key] = self.derived.pop(key)
+                continue
+            self.symbols[key] = expression
+            if (value := self._number(expression)) is not None:
+                self.values[key] = value
+
+    def _number(self, expression: Any) -> float | None:
+        """Value of an expression of the parameters, None where the value of one of them is missing."""
+        symbols = ca.symvar(expression)
+        keys = [symbol.name().removeprefix(f"{self.name}.") for symbol in symbols]
+        if any(key not in self.values for key in keys):
+            return None
+        return float(ca.Function("number", symbols, [expression])(*(float(self.values[key]) for key in keys)))
+
+    def _contradictions(self) -> Iterator[str]:
+        """The relations that do not hold between the values given."""
+        found = [(relation, self._number(value)) for relation, value in self.all_relations()]
+        known = [(relation, value) for relation, value in found if value is not None]
+        for relation, value in broken([r for r, _ in known], [v for _, v in known]):
+            keys = [path.removeprefix(f"{self.name}.") for path in relation.parameters]
+            given = ", ".join(f"{key} = {text(self.values[key], self.parameters[key].unit, 6)}" for key in keys)
+            yield relation.problem(value, given)
+
+    def relation(
+        self, name: str, value: str, number: Any, low: float = -inf, high: float = inf, *, remedy: str, unit: str = "1"
+    ) -> Related:
+        """What must hold between parameters, with the expression of the value that tells it.
+
+        Args:
+            name: the relation in words
+            value: what the number is
+            number: expression of the component's parameters
+            low, high: where it must lie [unit]
+            remedy: what to do where it does not
+            unit: of the number
+        """
+        number = ca.SX(number)
+        return Relation(self.name, name, value, low, high, remedy, unit, self.follows_from(number)), number
+
+    def follows_from(self, expression: Any) -> tuple[str, ...]:
+        """Paths of the parameters in an expression."""
+        held = {symbol.element_hash() for symbol in ca.symvar(ca.SX(expression))}
+        return tuple(f"{self.name}.{k}" for k in self.parameters if self.symbols[k].element_hash() in held)
+
+    def all_relations(self) -> Iterator[Related]:
+        """Whole numbers, the declared relations, and the ranges of what follows from other parameters."""
         for key, d in self.parameters.items():
-            if d.derived is not None and key not in self.values:
-                with suppress(KeyError):  # a missing value it needs is reported under its own name
-                    self.values[key] = float(d.derived(self.values))
+            if d.whole:
+                away, remedy = self.symbols[key] - ca.floor(self.symbols[key] + 0.5), "Give a whole number."
+                yield self.relation(f"{key} is whole", "its distance to a whole number", away, 0.0, 0.0, remedy=remedy)
+        yield from self.relations()
+        for key, d in self.derived.items():
+            q = d.quantity(f"{self.name}.{key}")
+            remedy = f"Change what it follows from, or give {key} a value of its own."
+            low, high = (
+                nextafter(q.low, inf) if q.low_open else q.low,
+                nextafter(q.high, -inf) if q.high_open else q.high,
+            )
+            number = self.symbols[key]
+            yield self.relation(f"{key} can be derived", d.doc, number, low, high, remedy=remedy, unit=d.unit)
+
+    def relations(self) -> Iterable[Related]:
+        """What must hold between the parameters, each made by `relation`."""
+        return ()
 
     def has(self, name: str) -> bool:
         """Whether a declared state or parameter exists under the component's choices."""
@@ -95,10 +175,11 @@ class Component:
         """Whether a declared `Input` is given from outside under the component's choices."""
         return not isinstance(self.inputs[name], Given) or name in self.choices["given"]
 
-    def outputs(self) -> dict[str, Output | Given]:
+    def outputs(self) -> dict[str, Output | Given | Parameter]:
         """What results and FMUs show of this component."""
         shown: dict[str, Any] = {k: d for k, d in self.inputs.items() if not self.is_input(k)}
-        return shown | {k: d for k, d in self.variables.items() if isinstance(d, Output)}
+        shown |= {k: d for k, d in self.variables.items() if isinstance(d, Output)}
+        return shown | self.derived
 
     def equations(self) -> Iterator[Equation]:
         """The equations of the component."""

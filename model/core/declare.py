@@ -18,7 +18,11 @@ from .flat import Quantity
 
 @dataclass(eq=False)
 class Declaration:
-    """Common part: unit, meaning, typical size and range of one scalar."""
+    """Common part: unit, meaning, typical size and range of one scalar.
+
+    `refusal` says what a value outside the range means and what to do; "{name}" in it stands for the value of that
+    output of the same part.
+    """
 
     unit: str
     doc: str
@@ -27,6 +31,7 @@ class Declaration:
     at_least: float | None = None
     below: float | None = None
     at_most: float | None = None
+    refusal: str = ""
     name: str = field(default="", init=False)
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -49,6 +54,7 @@ class Declaration:
             np.inf if high is None else high,
             self.above is not None,
             self.below is not None,
+            self.refusal,
         )
 
 
@@ -64,12 +70,14 @@ class Flow(Declaration):
 class Parameter(Declaration):
     """A number that stays a symbol until a model is run.
 
-    `default` is only for numerics, never for physics; `derived` computes the value from the component's other values
-    where it is not given (a contact ratio from the geometry).
+    `default` is only for numerics, never for physics. `derived` makes of the component an expression in its other
+    parameters (a contact ratio from the geometry), which holds wherever no value is given. `whole` asks for a whole
+    number.
     """
 
     default: float | None = None
-    derived: Callable[[Mapping[str, float]], float] | None = None
+    derived: Callable[[Any], Any] | None = None
+    whole: bool = False
 
 
 @dataclass(eq=False)

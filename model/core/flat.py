@@ -1,9 +1,9 @@
-"""The flat model: an explicit ordinary differential equation with named quantities, and nothing of gears in it."""
+"""The flat model: a differential-algebraic system of index 1 with named quantities, and nothing of gears in it."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -12,11 +12,15 @@ import numpy as np
 
 from ..errors import ScenarioError, suggestion
 from ..sources import LawInfo
+from ..units import text
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """One scalar of a model: path, SI unit, meaning, typical size, value when nothing else is given, and range."""
+    """One scalar of a model: path, SI unit, meaning, typical size, value when nothing else is given, and range.
+
+    `refusal` says what a value outside the range means, see `Declaration`.
+    """
 
     name: str
     unit: str
@@ -27,6 +31,7 @@ class Quantity:
     high: float = np.inf
     low_open: bool = False
     high_open: bool = False
+    refusal: str = ""
 
     def problem(self, value: float) -> str | None:
         """What is wrong with a value, or None."""
@@ -53,13 +58,64 @@ class Check:
 
 
 @dataclass(frozen=True)
-class FlatModel:
-    """dx/dt = ode(x, u, p), y = y(x, u, p); all vectors are CasADi SX columns in the order of their quantities.
+class Relation:
+    """What must hold between the parameters of a part: a value that follows from them, and where it must lie.
 
-    `residual` holds what the implicit blocks leave after their Newton steps (scaled by nominals), named in
-    `residual_names`. `supply` [W] is the power that crosses the model's boundary inwards, `throughput` [W] the sum of
-    its magnitudes, `stored` [J] the energy of the states: `supply` is the time derivative of `stored`, always. `joined`
-    says which quantities are outputs because rigid couplings tie them to states ("rotor_2.w follows rotor_1.w").
+    Attributes:
+        component: path of the part
+        name: the relation in words, "a_w fits z_1, z_2, m_n, beta, x_1, x_2"
+        value: what the value is, "clearance of neighbouring planets"
+        remedy: what to do about it
+        unit: of the value
+        parameters: paths of the parameters it follows from
+    """
+
+    component: str
+    name: str
+    value: str
+    low: float
+    high: float
+    remedy: str
+    unit: str
+    parameters: tuple[str, ...]
+
+    def holds(self, value: float) -> bool:
+        """Whether a value lies where it must; one that is not finite does not."""
+        return bool(np.isfinite(value) and self.low <= value <= self.high)
+
+    @property
+    def bounds(self) -> str:
+        """Where the value must lie, in words."""
+        low, high = text(self.low, self.unit, 4), text(self.high, self.unit, 4)
+        if not np.isfinite(self.high):
+            return f"at least {low}"
+        return f"from {low} to {high}" if np.isfinite(self.low) else f"at most {high}"
+
+    def problem(self, value: float, given: str) -> str:
+        """What is wrong with a value. `given` is what it follows from, in words."""
+        found = text(value, self.unit, 4) if np.isfinite(value) else "not defined"
+        return f'"{self.name}" does not hold: {self.value} is {found}, expected {self.bounds} ({given}).\n{self.remedy}'
+
+
+def broken(relations: Sequence[Relation], values: Sequence[float]) -> list[tuple[Relation, float]]:
+    """The relations that do not hold; of a part where one has a value, not those that merely have none."""
+    found = [(r, float(v)) for r, v in zip(relations, values, strict=True) if not r.holds(float(v))]
+    told = {r.component for r, v in found if np.isfinite(v)}
+    return [(r, v) for r, v in found if np.isfinite(v) or r.component not in told]
+
+
+@dataclass(frozen=True, eq=False)
+class FlatModel:
+    """dx/dt = ode(x, z, u, p), 0 = residual(x, z, u, p), y = y(x, z, u, p); all are CasADi SX columns.
+
+    `algebraic` are the torn unknowns z of the implicit blocks, their `start` where an iteration begins. As many
+    equations, named in `residual_names` and scaled to the size of z, hold at every moment. `supply` [W] is the power
+    that crosses the model's boundary inwards, `throughput` [W] the sum of its magnitudes, `stored` [J] the energy of
+    the states: `supply` is the time derivative of `stored`, always.
+
+    A parameter that follows from others is none of `parameters` but an output; `derived` says what it follows from.
+    `related` holds the values of the `relations` between parameters, a function of p alone. `joined` says which
+    quantities are outputs because rigid couplings tie them to states ("rotor_2.w follows rotor_1.w").
     """
 
     name: str
@@ -81,7 +137,12 @@ class FlatModel:
     checks: tuple[Check, ...]
     checked: Any
     laws: tuple[LawInfo, ...]
+    algebraic: tuple[Quantity, ...] = ()
+    z: Any = field(default_factory=lambda: ca.SX(0, 1))
     joined: tuple[str, ...] = ()
+    derived: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
+    relations: tuple[Relation, ...] = ()
+    related: Any = field(default_factory=lambda: ca.SX(0, 1))
 
     @cached_property
     def index(self) -> Mapping[str, tuple[str, int]]:
@@ -103,29 +164,37 @@ class FlatModel:
         except KeyError:
             raise ScenarioError(f'{self.name}: unknown name "{name}".{suggestion(name, self.index)}') from None
 
-    @cached_property
-    def ode_function(self) -> Any:
-        """CasADi function (x, u, p) -> (ode,)."""
-        return ca.Function("ode", [self.x, self.u, self.p], [self.ode], ["x", "u", "p"], ["ode"], {"cse": True})
+    @property
+    def point(self) -> list[Any]:
+        """What every expression is a function of: x, z, u, p."""
+        return [self.x, self.z, self.u, self.p]
 
     @cached_property
-    def output_function(self) -> Any:
-        """CasADi function (x, u, p) -> (y, residual, supply, throughput, stored, checked)."""
-        return ca.Function(
-            "outputs",
-            [self.x, self.u, self.p],
-            [self.y, self.residual, self.supply, self.throughput, self.stored, self.checked],
-            ["x", "u", "p"],
-            ["y", "residual", "supply", "throughput", "stored", "checked"],
-            {"cse": True},
-        )
+    def function(self) -> Any:
+        """CasADi function (x, z, u, p) -> (ode, y, residual, supply, throughput, stored, checked)."""
+        names = ["ode", "y", "residual", "supply", "throughput", "stored", "checked"]
+        results = [getattr(self, name) for name in names]
+        return ca.Function("model", self.point, results, ["x", "z", "u", "p"], names, {"cse": True})
 
     @cached_property
-    def prepared(self) -> dict[str, Any]:
-        """What runs have compiled of this model, by name, so that it is compiled once."""
-        return {}
+    def relation_function(self) -> Any:
+        """CasADi function (p) -> (related,)."""
+        return ca.Function("relations", [self.p], [ca.densify(ca.SX(self.related))], ["p"], ["related"], {"cse": True})
+
+    def contradictions(self, p: np.ndarray) -> dict[Relation, str]:
+        """The relations that do not hold between the values of all parameters, each with what is wrong."""
+        if not self.relations:
+            return {}
+        values = [float(v) for v in self.relation_function(p).full().ravel()]
+        return {r: f"{r.component}: {r.problem(v, self._given(r, p))}" for r, v in broken(self.relations, values)}
+
+    def _given(self, relation: Relation, p: np.ndarray) -> str:
+        places = [(name, self.index[name][1]) for name in relation.parameters if name in self.index]
+        own = f"{relation.component}."
+        return ", ".join(f"{n.removeprefix(own)} = {text(p[i], self.parameters[i].unit, 6)}" for n, i in places)
 
     def starts(self, kind: str) -> np.ndarray:
-        """Default values of all states, inputs or parameters, in order."""
-        group = {"state": self.states, "input": self.inputs, "parameter": self.parameters}[kind]
+        """Default values of all states, algebraic variables, inputs or parameters, in order."""
+        groups = {"state": self.states, "algebraic": self.algebraic, "input": self.inputs, "parameter": self.parameters}
+        group = groups[kind]
         return np.array([q.start for q in group])

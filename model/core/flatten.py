@@ -1,4 +1,4 @@
-"""From parts and connections to an explicit flat model."""
+"""From parts and connections to a flat model: explicit but for the algebraic variables of its implicit blocks."""
 
 from __future__ import annotations
 
@@ -11,20 +11,19 @@ import casadi as ca
 from ..sources import LawInfo, LawUse, recording
 from .component import Component
 from .connect import Assembly, nets
-from .declare import Declaration
+from .declare import Declaration, Variable
 from .equations import check_symbols, energies_of, rows_of
 from .flat import Check, FlatModel, Quantity
 from .reduce import reduce
-from .solve import NEWTON_STEPS, Row, Solution, Unknown, column, inline, solve
+from .solve import Row, Solution, Unknown, column, inline, scaled_residual, solve, start_of
 from .structure import check_structure
 
 
-def flatten(assembly: Assembly, newton_steps: int = NEWTON_STEPS) -> FlatModel:
+def flatten(assembly: Assembly) -> FlatModel:
     """Alias the potentials of each net, balance its flows, sort all equations and solve them block by block.
 
     Args:
         assembly: parts and their connections
-        newton_steps: of implicit blocks, from their guesses
 
     Raises:
         StructureError: ports that do not exist, too few or too many equations, a singular or unsolvable block
@@ -35,29 +34,35 @@ def flatten(assembly: Assembly, newton_steps: int = NEWTON_STEPS) -> FlatModel:
     for part in assembly.parts:
         with recording() as uses:
             rows += rows_of(part)
+        uses = [*part.uses, *uses]
         checks += _checks(part, uses)
         laws |= dict.fromkeys(use.law for use in uses)
         unknowns += _unknowns(part)
     aliased = _Alias(alias)
-    rows = [Row(r.name, aliased(r.lhs), aliased(r.rhs)) for r in rows]
+    lefts, rights = aliased([r.lhs for r in rows]), aliased([r.rhs for r in rows])
+    rows = [Row(r.name, lhs, rhs) for r, lhs, rhs in zip(rows, lefts, rights, strict=True)]
     check_symbols(rows, unknowns, assembly.parts)
     typical = _typical(assembly, unknowns)
     reduced = reduce(assembly, rows, unknowns, typical)
     check_structure(assembly, reduced.rows, reduced.unknowns, typical)
-    solution = Solution(typical, newton_steps)
+    solution = Solution(typical)
     solve(assembly.name, reduced.rows, reduced.unknowns, solution)
     return _flat_model(assembly, solution, aliased, checks, tuple(laws), reduced.joined)
 
 
 class _Alias:
-    """Replaces the potential of every port by the one symbol of its net."""
+    """Replaces the potential of every port by the one symbol of its net.
+
+    Scalars are replaced in one call: its cost grows with the number of ports, whatever it is given.
+    """
 
     def __init__(self, pairs: list[tuple[Any, Any]]) -> None:
         self.old = column([old for old, _ in pairs])
         self.new = column([new for _, new in pairs])
 
-    def __call__(self, expression: Any) -> Any:
-        return ca.substitute(ca.SX(expression), self.old, self.new) if self.old.numel() else ca.SX(expression)
+    def __call__(self, expressions: list[Any]) -> list[Any]:
+        (replaced,) = ca.substitute([ca.densify(column(expressions))], [self.old], [self.new])
+        return list(replaced.nonzeros())
 
 
 def _nets(assembly: Assembly) -> tuple[list[Row], list[Unknown], list[tuple[Any, Any]]]:
@@ -66,10 +71,12 @@ def _nets(assembly: Assembly) -> tuple[list[Row], list[Unknown], list[tuple[Any,
     for net in nets(assembly):
         first = net[0]
         for name, d in type(first).potentials().items():
-            unknowns.append(Unknown(first.symbols[name], f"{first.name}.{name}", d.nominal))
+            unknowns.append(Unknown(first.symbols[name], f"{first.name}.{name}", d.nominal, unit=d.unit))
             alias += [(port.symbols[name], first.symbols[name]) for port in net[1:]]
         for name, flow in type(first).flows().items():
-            unknowns += [Unknown(port.symbols[name], f"{port.name}.{name}", flow.nominal) for port in net]
+            unknowns += [
+                Unknown(port.symbols[name], f"{port.name}.{name}", flow.nominal, unit=flow.unit) for port in net
+            ]
             total = sum((port.symbols[name] for port in net), ca.SX(0))
             rows.append(Row(f"sum of {name} at {first.name}", total, ca.SX(0)))
     return rows, unknowns, alias
@@ -88,10 +95,10 @@ def _typical(assembly: Assembly, unknowns: list[Unknown]) -> dict[int, float]:
 
 def _unknowns(part: Component) -> list[Unknown]:
     found = [Unknown(part.derivatives[k], f"der({part.name}.{k})", d.nominal) for k, d in part.states.items()]
-    found += [Unknown(part.symbols[k], f"{part.name}.{k}", d.nominal, d.guess) for k, d in part.variables.items()]
-    found += [
-        Unknown(part.symbols[k], f"{part.name}.{k}", d.nominal) for k, d in part.inputs.items() if not part.is_input(k)
-    ]
+    declared = [*part.variables.items(), *((k, d) for k, d in part.inputs.items() if not part.is_input(k))]
+    for k, d in declared:
+        guess = d.guess if isinstance(d, Variable) else None
+        found.append(Unknown(part.symbols[k], f"{part.name}.{k}", d.nominal, guess, d.unit))
     return found
 
 
@@ -116,21 +123,23 @@ def _flat_model(
     inputs = [(part, k) for part in parts for k in part.inputs if part.is_input(k)]
     parameters = [(part, k) for part in parts for k in part.parameters]
     outputs = [(part, k, d) for part in parts for k, d in _shown(part, joined).items()]
+    related = [pair for part in parts for pair in part.all_relations()]
     x = column([part.symbols[k] for part, k in states])
     energies = [energies_of(part) for part in parts]
-    supplies = [aliased(power) for powers, _ in energies for power in powers]
+    supplies = aliased([power for powers, _ in energies for power in powers])
     expressions = [
         column([part.derivatives[k] for part, k in states]),
         column([part.symbols[k] for part, k, _ in outputs]),
-        column([residual for _, residual in solution.residuals]),
+        column([test.residual for test in solution.tests]),
         sum(supplies, ca.SX(0)),
         sum((ca.fabs(power) for power in supplies), ca.SX(0)),
-        sum((aliased(stored) for _, stored in energies), ca.SX(0)),
-        column([aliased(value) for _, value in checks]),
+        sum(aliased([stored for _, stored in energies]), ca.SX(0)),
+        column(aliased([value for _, value in checks])),
     ]
     sizes = [e.numel() for e in expressions]
     together = inline(ca.vertcat(*expressions), solution)
     ode, y, residual, supply, throughput, stored, checked = ca.vertsplit(together, [0, *_cumulative(sizes)])
+    residual, names = scaled_residual(solution, residual)
 
     def quantities(items: list[tuple[Component, str]], kind: str) -> tuple[Quantity, ...]:
         return tuple(getattr(part, kind)[k].quantity(f"{part.name}.{k}", part.values[k]) for part, k in items)
@@ -141,14 +150,16 @@ def _flat_model(
         states=quantities(states, "states"),
         inputs=quantities(inputs, "inputs"),
         parameters=quantities(parameters, "parameters"),
-        outputs=tuple(_output(f"{part.name}.{k}", d, joined) for part, k, d in outputs),
+        outputs=tuple(_output(part, k, d, joined) for part, k, d in outputs),
         x=x,
+        algebraic=tuple(Quantity(u.name, u.unit, "", u.nominal, start_of(u)) for u in solution.torn),
+        z=column([u.symbol for u in solution.torn]),
         u=column([part.symbols[k] for part, k in inputs]),
         p=column([part.symbols[k] for part, k in parameters]),
         ode=ode,
         y=y,
         residual=residual,
-        residual_names=tuple(name for name, _ in solution.residuals),
+        residual_names=names,
         supply=supply,
         throughput=throughput,
         stored=stored,
@@ -156,6 +167,9 @@ def _flat_model(
         checked=checked,
         laws=laws,
         joined=tuple(joined.values()),
+        derived={f"{part.name}.{k}": part.follows_from(part.symbols[k]) for part in parts for k in part.derived},
+        relations=tuple(relation for relation, _ in related),
+        related=column([value for _, value in related]),
     )
 
 
@@ -165,8 +179,9 @@ def _shown(part: Component, joined: Mapping[str, str]) -> dict[str, Declaration]
     return {**following, **part.outputs()}
 
 
-def _output(path: str, declaration: Declaration, joined: Mapping[str, str]) -> Quantity:
-    quantity = declaration.quantity(path)
+def _output(part: Component, key: str, declaration: Declaration, joined: Mapping[str, str]) -> Quantity:
+    path = f"{part.name}.{key}"
+    quantity = declaration.quantity(path, part.values[key] if key in part.derived else 0.0)
     return replace(quantity, doc=f"{quantity.doc}; {joined[path]}") if path in joined else quantity
 
 

@@ -1,8 +1,8 @@
 """Symbolic solution of a square system of residuals, block by block.
 
 The block-triangular form sorts the system. A block of one unknown that enters linearly is solved by hand; a larger
-linear block by sparse elimination; a block that stays implicit is torn at the unknowns that carry a guess (losses,
-which start at zero) and solved by a few unrolled Newton steps.
+linear block by sparse elimination. A block that stays implicit is torn: some of its unknowns stay algebraic variables,
+tested by as many of its equations, and define the rest.
 """
 
 from __future__ import annotations
@@ -13,20 +13,27 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
+from scipy.optimize import linear_sum_assignment
+from scipy.sparse import csr_matrix
+from scipy.sparse.csgraph import min_weight_full_bipartite_matching
 
 from ..errors import StructureError
+from .eliminate import Factors, Singular, typical_sizes
 
-NEWTON_STEPS = 3
+#: What it costs to let an equation determine an unknown: given by one side, linear in it, nonlinear; and on top of
+#: these where it gives a torn unknown, which it is to test.
+EXPLICIT, LINEAR, NONLINEAR, DEFINES_TORN = 1.0, 2.0, 100.0, 1e4
 
 
 @dataclass(frozen=True, eq=False)
 class Unknown:
-    """One unknown: symbol, name, typical size, and where Newton may start (None: never torn)."""
+    """One unknown: symbol, name, typical size, and where an iteration may start (None: from the typical size)."""
 
     symbol: Any
     name: str
     nominal: float = 1.0
     guess: float | None = None
+    unit: str = "1"
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,17 +52,21 @@ class Row:
 
 @dataclass
 class Solution:
-    """Definitions in the order in which they can be evaluated, and the residuals that implicit blocks leave.
+    """Definitions in the order in which they can be evaluated; torn unknowns and the equations that test them.
 
-    `typical` holds a typical value of every symbol by its hash: it only steers the choice of pivots. Implicit blocks
-    take `newton_steps` steps.
+    `typical` holds a typical value of every symbol by its hash: it only steers the choice of pivots.
     """
 
     typical: Mapping[int, float]
-    newton_steps: int = NEWTON_STEPS
     symbols: list[Any] = field(default_factory=list)
     definitions: list[Any] = field(default_factory=list)
-    residuals: list[tuple[str, Any]] = field(default_factory=list)
+    torn: list[Unknown] = field(default_factory=list)
+    tests: list[Row] = field(default_factory=list)
+
+    def keep(self, unknowns: Sequence[Unknown], tests: Sequence[Row]) -> None:
+        """Leave unknowns implicit, with as many equations."""
+        self.torn += unknowns
+        self.tests += tests
 
     def define(self, symbol: Any, definition: Any) -> None:
         """Append one definition; it may use known symbols and those defined before."""
@@ -77,7 +88,7 @@ def solve(model: str, rows: Sequence[Row], unknowns: Sequence[Unknown], solution
     """Add the definitions of all unknowns to a solution. The system must be structurally sound.
 
     Raises:
-        StructureError: an implicit block has no unknown with a guess
+        StructureError: a linear block is singular
     """
     _, row_order, column_order, row_blocks, column_blocks, _, _ = incidence(rows, unknowns).btf()
     for first, last, left, right in zip(row_blocks, row_blocks[1:], column_blocks, column_blocks[1:], strict=False):
@@ -96,7 +107,7 @@ def _solve_block(model: str, rows: list[Row], unknowns: list[Unknown], solution:
     if not ca.depends_on(matrix, z):
         _eliminate(model, matrix, ca.substitute(residual, z, ca.SX.zeros(*z.shape)), unknowns, solution)
     else:
-        _newton(model, rows, unknowns, solution)
+        _tear(model, rows, unknowns, solution)
 
 
 def _explicit(row: Row, z: Any) -> Any:
@@ -108,98 +119,77 @@ def _explicit(row: Row, z: Any) -> Any:
 
 
 def _eliminate(model: str, matrix: Any, constant: Any, unknowns: list[Unknown], solution: Solution) -> None:
-    """Solve matrix z + constant = 0 by Gauss elimination, rows and columns in the order of least fill."""
-    n = len(unknowns)
-    a = {(i, j): matrix[i, j] for i, j in zip(*matrix.sparsity().get_triplet(), strict=True)}
-    b = [-constant[i] for i in range(n)]
-    size = _sizes(matrix, solution.typical)
-    open_rows, open_columns, order = set(range(n)), set(range(n)), []
-    while open_rows:
-        pivot = _pivot(a, size, open_rows, open_columns)
-        if pivot is None:
-            names = ", ".join(unknowns[c].name for c in sorted(open_columns)[:5])
-            raise StructureError(f"{model}: the equations for {names} say the same twice. Give one of these a value.")
-        i, j = pivot
-        open_rows.discard(i)
-        open_columns.discard(j)
-        order.append((i, j))
-        others = [c for c in open_columns if (i, c) in a]
-        for r in sorted(r for r in open_rows if (r, j) in a):
-            factor = a.pop((r, j)) / a[i, j]
-            ratio = size.pop((r, j)) / size[i, j]
-            b[r] = b[r] - factor * b[i]
-            for c in others:
-                a[r, c] = a.get((r, c), 0) - factor * a[i, c]
-                size[r, c] = size.get((r, c), 0.0) - ratio * size[i, c]
-    for i, j in reversed(order):
-        known = sum((a[i, c] * unknowns[c].symbol for r, c in a if r == i and c != j), ca.SX(0))
-        solution.define(unknowns[j].symbol, (b[i] - known) / a[i, j])
+    """Solve matrix z + constant = 0."""
+    try:
+        z = Factors(matrix, typical_sizes(matrix, solution.typical)).solve(-constant)
+    except Singular as error:
+        names = ", ".join(unknowns[c].name for c in error.columns[:5])
+        raise StructureError(
+            f"{model}: the equations for {names} say the same twice. Give one of these a value."
+        ) from None
+    for unknown, value in zip(unknowns, z.nonzeros(), strict=True):
+        solution.define(unknown.symbol, value)
 
 
-def _sizes(matrix: Any, typical: Mapping[int, float]) -> dict[tuple[int, int], float]:
-    """Typical values of the entries: they only steer the choice of pivots, so one that cannot be had counts as 1."""
+def _at_typical(matrix: Any, typical: Mapping[int, float]) -> np.ndarray:
+    """A symbolic matrix where every symbol has its typical value."""
     free = ca.symvar(matrix)
     point = [typical.get(symbol.element_hash(), 1.0) for symbol in free]
     values = ca.Function("sizes", free, [matrix])(*point) if free else ca.DM(matrix)
-    entries = {(i, j): float(values[i, j]) for i, j in zip(*matrix.sparsity().get_triplet(), strict=True)}
-    return {entry: value if np.isfinite(value) else 1.0 for entry, value in entries.items()}
+    return np.array(ca.DM(values).full())
 
 
-def _pivot(
-    a: Mapping[Any, Any], size: Mapping[Any, float], rows: set[int], columns: set[int]
-) -> tuple[int, int] | None:
-    """Markowitz: least fill among entries that are not small in their row; None where a row has nothing left."""
-    entries = [(i, j) for i, j in a if i in rows and j in columns]
-    in_row = {i: [c for r, c in entries if r == i] for i in rows}
-    in_column = {j: [r for r, c in entries if c == j] for j in columns}
-    sound = [(i, j) for i, j in entries if abs(size[i, j]) > max(1e-3 * max(abs(size[i, c]) for c in in_row[i]), 1e-12)]
-    return min(sound, key=lambda e: ((len(in_row[e[0]]) - 1) * (len(in_column[e[1]]) - 1), e), default=None)
+def _tear(model: str, rows: list[Row], unknowns: list[Unknown], solution: Solution) -> None:
+    """Keep some unknowns of a block as algebraic variables, define the rest by them, and test what is left.
 
-
-def _newton(model: str, rows: list[Row], unknowns: list[Unknown], solution: Solution) -> None:
-    """Tear the block at its unknowns with a guess, sort the rest, and iterate on the torn ones."""
-    torn, tests, rest_rows, rest = _tear(model, rows, unknowns)
-    inner = Solution(solution.typical, solution.newton_steps)
-    if rest:
-        solve(model, rest_rows, rest, inner)
-    z = column([u.symbol for u in torn])
-    (residual,) = _inline([r.residual for r in tests], inner)
-    outer = column([s for s in ca.symvar(residual) if not ca.depends_on(s, z)])
-    jacobian = ca.jacobian(residual, z)
-    step = ca.Function("step", [z, outer], [residual, jacobian], {"cse": True})
-    value = ca.SX([u.guess for u in torn])
-    for _ in range(solution.newton_steps):
-        r, j = step(value, outer)
-        value = value - _linear_solve(model, j, r, torn, solution.typical)
-    left, _ = step(value, outer)
-    scale = [u.nominal for u in torn]
-    solution.residuals += [(row.name, left[k] / scale[k]) for k, row in enumerate(tests)]
-    for k, unknown in enumerate(torn):
-        solution.define(unknown.symbol, value[k])
-    for symbol, definition in zip(inner.symbols, inner.definitions, strict=True):
-        solution.define(symbol, definition)
-    solution.residuals += inner.residuals
-
-
-def _tear(
-    model: str, rows: list[Row], unknowns: list[Unknown]
-) -> tuple[list[Unknown], list[Row], list[Row], list[Unknown]]:
-    """Torn unknowns with the equations that define them (lhs is the unknown), and what remains of the block.
-
-    A block of one unknown is torn at it, from its guess or its nominal.
+    Torn are the unknowns with a guess; without any, the one that enters most equations in a nonlinear way. What is
+    still implicit after that is torn again.
     """
     if len(rows) == 1:
-        u = unknowns[0]
-        return [Unknown(u.symbol, u.name, u.nominal, u.nominal if u.guess is None else u.guess)], rows, [], []
-    defining = {r.lhs.element_hash(): r for r in rows if r.lhs.is_symbolic()}
-    torn = [u for u in unknowns if u.guess is not None and u.symbol.element_hash() in defining]
-    if not torn:
-        names = ", ".join(r.name for r in rows[:5])
-        raise StructureError(
-            f"{model}: the equations {names} are implicit and nonlinear. Give one of their unknowns a guess."
-        )
-    tests = [defining[u.symbol.element_hash()] for u in torn]
-    return torn, tests, [r for r in rows if r not in tests], [u for u in unknowns if u not in torn]
+        solution.keep(unknowns, rows)
+        return
+    torn = [u for u in unknowns if u.guess is not None] or [_most_nonlinear(rows, unknowns)]
+    rest = [u for u in unknowns if u not in torn]
+    tests = _tests(rows, torn, rest)
+    solution.keep(torn, tests)
+    if rest:
+        solve(model, [r for r in rows if r not in tests], rest, solution)
+
+
+def _most_nonlinear(rows: list[Row], unknowns: list[Unknown]) -> Unknown:
+    """The unknown on which most derivatives of the residuals depend; the first of equals."""
+    z = column([u.symbol for u in unknowns])
+    curved = ca.jacobian_sparsity(_entries(rows, z).nz[:], z)
+    counts = np.bincount(curved.get_triplet()[1], minlength=len(unknowns))
+    return unknowns[int(np.argmax(counts))]
+
+
+def _tests(rows: list[Row], torn: list[Unknown], rest: list[Unknown]) -> list[Row]:
+    """The equations that are left over when each remaining unknown has got one, best one that gives it explicitly."""
+    if not rest:
+        return list(rows)
+    z = column([u.symbol for u in rest])
+    entries = _entries(rows, z)
+    places = list(zip(*entries.sparsity().get_triplet(), strict=True))
+    curved = set(zip(*ca.jacobian_sparsity(entries.nz[:], z).get_triplet(), strict=True))
+    own, kept = ({u.symbol.element_hash(): j for j, u in enumerate(group)} for group in (rest, torn))
+    costs = np.empty(len(places))
+    for k, (i, j) in enumerate(places):
+        sides = [side.element_hash() for side in (rows[i].lhs, rows[i].rhs) if side.is_symbolic()]
+        costs[k] = NONLINEAR if (k, j) in curved else LINEAR
+        if any(own.get(side) == j for side in sides):
+            costs[k] = EXPLICIT
+        if any(side in kept for side in sides):
+            costs[k] += DEFINES_TORN
+    row, col = np.array(places, dtype=int).reshape(-1, 2).T
+    graph = csr_matrix((costs, (col, row)), shape=(len(rest), len(rows)))
+    _, taken = min_weight_full_bipartite_matching(graph)
+    return [row for i, row in enumerate(rows) if i not in set(taken.tolist())]
+
+
+def _entries(rows: list[Row], z: Any) -> Any:
+    """Derivatives of the residuals of some equations."""
+    return ca.jacobian(column([r.residual for r in rows]), z)
 
 
 def _inline(expressions: list[Any], solution: Solution) -> list[Any]:
@@ -211,14 +201,31 @@ def _inline(expressions: list[Any], solution: Solution) -> list[Any]:
     return [result]
 
 
-def _linear_solve(model: str, matrix: Any, right: Any, unknowns: list[Unknown], typical: Mapping[int, float]) -> Any:
-    """z of matrix z = right, with the same elimination as a linear block."""
-    stand_in = [Unknown(ca.SX.sym(u.name), u.name) for u in unknowns]
-    solution = Solution(typical)
-    _eliminate(model, matrix, -right, stand_in, solution)
-    return _inline([u.symbol for u in stand_in], solution)[0]
-
-
 def inline(expression: Any, solution: Solution) -> Any:
     """An expression column with all definitions of a solution put in."""
     return _inline([expression], solution)[0]
+
+
+def scaled_residual(solution: Solution, residual: Any) -> tuple[Any, tuple[str, ...]]:
+    """Residuals of the tests in units of what typical deviations of the torn unknowns make of them, and their names.
+
+    They are put in the order in which each depends on its own torn unknown, so that the diagonal of their Jacobian is
+    where elimination may begin.
+    """
+    if not solution.torn:
+        return residual, ()
+    nominals = np.array([u.nominal for u in solution.torn])
+    matrix = ca.jacobian(residual, column([u.symbol for u in solution.torn]))
+    typical = dict(solution.typical) | {u.symbol.element_hash(): start_of(u) for u in solution.torn}
+    entries = np.abs(_at_typical(matrix, typical)) * nominals
+    entries = np.where(np.isfinite(entries), entries, 1.0)
+    size = entries.sum(axis=1)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        cost = -np.log(entries / size[:, None])
+    row, _ = linear_sum_assignment(np.where(np.isfinite(cost), cost, 1e6).T)[::-1]
+    return residual[row.tolist()] / ca.DM(size[row]), tuple(solution.tests[i].name for i in row)
+
+
+def start_of(unknown: Unknown) -> float:
+    """Where an iteration for an unknown starts: its guess, or its typical size."""
+    return unknown.nominal if unknown.guess is None else unknown.guess

@@ -88,7 +88,7 @@ def nusselt_plate_unstable(Ra: Num, *, sharpness: float = 20.0) -> Num:
 
     Args:
         Ra: Rayleigh number, above 0 [1]
-        sharpness: exponent of the mean that joins the branches; they meet at 3.5 % above both for 20
+        sharpness: exponent of the mean that joins the branches; they meet at 3.5 % above both for 20 [1]
     """
     laminar, turbulent = 0.54 * Ra**0.25, 0.15 * Ra ** (1 / 3)
     return turbulent * (1 + (laminar / turbulent) ** sharpness) ** (1 / sharpness)

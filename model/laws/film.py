@@ -35,7 +35,7 @@ def film_thickness(
         F_n_l: normal load per length of contact line, either sign [N/m]
         R: reduced radius of curvature, 1/R = 1/r_1 + 1/r_2 [m]
         E_star_eff: E / (2 (1 - nu^2)) of two equal steels [Pa]
-        radius_factor: R_x/R; only 2 makes the formula Grubin's
+        radius_factor: R_x/R; only 2 makes the formula Grubin's [1]
         u_width: rounding at standstill [m/s]
         F_width: rounding at zero load [N/m]
     """
@@ -68,7 +68,7 @@ def thermal_film_reduction(
         u_sum: sum of the speeds of the two surfaces, either sign [m/s]
         k: thermal conductivity of the oil [W/(m.K)]
         slide_roll: slide-to-roll ratio, either sign [1]
-        coefficient: 14.8; the source prints 1.48
+        coefficient: 14.8; the source prints 1.48 [1]
         u_width: rounding at standstill [m/s]
         slide_width: rounding at pure rolling [1]
     """

@@ -123,20 +123,6 @@ def addendum_contact_ratio(d_a: Num, d_b: Num, alpha_wt: Num, p_et: Num) -> Num:
     return d_b * (ca.sqrt((d_a / d_b) ** 2 - 1) - ca.tan(alpha_wt)) / (2 * p_et)
 
 
-@law(source="ISO21771", where="overlap ratio")
-def overlap_ratio(b: Num, beta: Num, m_n: Num) -> Num:
-    r"""Overlap ratio [1].
-
-    .. math:: \varepsilon_\beta = \frac{b \sin\beta}{\pi m_n}
-
-    Args:
-        b: face width [m]
-        beta: helix angle at the reference cylinder [rad]
-        m_n: normal module [m]
-    """
-    return b * ca.sin(beta) / (math.pi * m_n)
-
-
 @law(source="ISO21771", where="radius of curvature at the pitch point")
 def curvature_radius(d_b: Num, alpha_wt: Num) -> Num:
     r"""Transverse radius of curvature of a flank at the pitch point [m], negative for an internal gear.
@@ -176,3 +162,60 @@ def contact_length(b: Num, eps_alpha: Num, beta_b: Num) -> Num:
         beta_b: helix angle at the base cylinder [rad]
     """
     return b * eps_alpha / ca.cos(beta_b)
+
+
+def involute(alpha: Num) -> Num:
+    r"""Involute function :math:`\mathrm{inv}\,\alpha = \tan\alpha - \alpha` [rad].
+
+    Args:
+        alpha: profile angle [rad]
+    """
+    return ca.tan(alpha) - alpha
+
+
+@law(source="ISO21771", where="sum of the profile shift coefficients, no backlash", verified=False)
+def profile_shift_sum(alpha_wt: Num, alpha_t: Num, alpha_n: Num, z_sum: Num) -> Num:
+    r"""Sum of the profile shift coefficients with which two gears mesh without backlash [1].
+
+    .. math:: x_1 + x_2 = \frac{(z_1 + z_2)(\mathrm{inv}\,\alpha_{wt} - \mathrm{inv}\,\alpha_t)}{2\tan\alpha_n}
+
+    Args:
+        alpha_wt: working transverse pressure angle [rad]
+        alpha_t: transverse pressure angle [rad]
+        alpha_n: normal pressure angle [rad]
+        z_sum: sum of the numbers of teeth [1]
+    """
+    return z_sum * (involute(alpha_wt) - involute(alpha_t)) / (2 * ca.tan(alpha_n))
+
+
+@law(source="ISO21771", where="transverse tooth thickness at the tip cylinder", verified=False)
+def tip_thickness(z: Num, x: Num, alpha_n: Num, alpha_t: Num, d_a: Num, d_b: Num) -> Num:
+    r"""Transverse tooth thickness at the tip of an external gear [m].
+
+    .. math:: s_a = d_a \left(\frac{\pi/2 + 2x\tan\alpha_n}{z} + \mathrm{inv}\,\alpha_t
+        - \mathrm{inv}\,\alpha_{at}\right),\quad \cos\alpha_{at} = d_b/d_a
+
+    Args:
+        z: number of teeth [1]
+        x: profile shift coefficient [1]
+        alpha_n: normal pressure angle [rad]
+        alpha_t: transverse pressure angle [rad]
+        d_a: tip diameter [m]
+        d_b: base diameter [m]
+    """
+    alpha_at = ca.acos(d_b / d_a)
+    return d_a * ((math.pi / 2 + 2 * x * ca.tan(alpha_n)) / z + involute(alpha_t) - involute(alpha_at))
+
+
+@law(source="ISO21771", where="profile shift at the limit of undercut, rack of one module addendum", verified=False)
+def undercut_shift(z: Num, alpha_t: Num, beta: Num) -> Num:
+    r"""Profile shift below which the teeth of an external gear are undercut [1].
+
+    .. math:: x_{min} = 1 - \frac{z \sin^2\alpha_t}{2\cos\beta}
+
+    Args:
+        z: number of teeth [1]
+        alpha_t: transverse pressure angle [rad]
+        beta: helix angle at the reference cylinder [rad]
+    """
+    return 1 - z * ca.sin(alpha_t) ** 2 / (2 * ca.cos(beta))

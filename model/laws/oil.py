@@ -1,4 +1,4 @@
-"""Oil and grease: viscosity, density, specific heat, conductivity, and the slopes of viscosity that films need."""
+"""Oil and grease: viscosity, density, conductivity, and the slopes of viscosity that films need."""
 
 from __future__ import annotations
 
@@ -10,6 +10,8 @@ from ..sources import law
 from .smooth import Num
 
 T_40, T_100, T_15, T_0 = 313.15, 373.15, 288.15, 273.15
+#: Viscosity [mm2/s] at which the charts of ASTM D341 end; the line is held there, far below any pour point.
+LARGEST_VISCOSITY = 2e7
 
 
 @law(source="ASTMD341", where="two-point constants", valid="mineral oils and base oils from -70 to 370 degC")
@@ -32,39 +34,30 @@ def walther_constants(nu_40: Num, nu_100: Num) -> tuple[Num, Num]:
 @law(
     source="ASTMD341",
     where="two-point line",
-    valid="mineral oils and base oils; synthetic oils with a few percent between the points",
-    ranges={"T": (233.15, 423.15)},
+    valid="mineral and base oils that flow; synthetic oils with a few percent between the points",
+    ranges={"T": (233.15, 423.15), "T - T_pour": (0.0, 2000.0)},
 )
-def kinematic_viscosity(T: Num, nu_40: Num, nu_100: Num) -> Num:
+def kinematic_viscosity(T: Num, nu_40: Num, nu_100: Num, T_pour: Num = 0.0, *, sharpness: float = 100.0) -> Num:
     r"""Kinematic viscosity [m2/s] on the Walther line through two points, written with natural logarithms.
 
     .. math:: \nu = \exp(\exp(W)) - 0.7,\quad
         W = W_{40} + (W_{100} - W_{40}) \frac{\ln (T/313.15)}{\ln (373.15/313.15)},\quad W = \ln\ln(\nu + 0.7)
 
+    Where it leaves the source's charts, at 2e7 mm2/s, the viscosity stays what it is.
+
     Args:
         T: temperature [K]
         nu_40: kinematic viscosity at 40 degC [m2/s]
         nu_100: kinematic viscosity at 100 degC [m2/s]
+        T_pour: pour point; bounds the range alone: below it the line goes on for oil that does not flow [K]
+        sharpness: of the bend at the largest viscosity; it is felt within 5 K of it
     """
     nu_40_cSt, nu_100_cSt = 1e6 * nu_40, 1e6 * nu_100
     W_40, W_100 = ca.log(ca.log(nu_40_cSt + 0.7)), ca.log(ca.log(nu_100_cSt + 0.7))
     share = ca.log(T / T_40) / math.log(T_100 / T_40)
-    return 1e-6 * (ca.exp(ca.exp(W_40 + (W_100 - W_40) * share)) - 0.7)
-
-
-@law(source="ASTMD341", where="Walther equation", valid="within the points the constants come from")
-def kinematic_viscosity_walther(T: Num, m: Num, n: Num) -> Num:
-    r"""Kinematic viscosity [m2/s] from explicit Walther constants.
-
-    .. math:: \nu = 10^{10^{m - n \lg T}} - 0.7
-
-    Args:
-        T: temperature [K]
-        m: intercept, for decimal logarithms and cSt [1]
-        n: slope [1]
-    """
-    inner = ca.exp(math.log(10) * m - n * ca.log(T))  # 10^(m - n lg T)
-    return 1e-6 * (ca.exp(math.log(10) * inner) - 0.7)
+    reciprocal = ca.exp(-W_40 - (W_100 - W_40) * share)  # of ln(nu + 0.7); its largest power keeps the limit
+    held = (reciprocal**sharpness + math.log(LARGEST_VISCOSITY) ** -sharpness) ** (1 / sharpness)
+    return 1e-6 * (ca.exp(1 / held) - 0.7)
 
 
 @law(source="Dias2014", where="oil properties, density", verified=False)
@@ -79,19 +72,6 @@ def density(T: Num, rho_15: Num, alpha_T: Num) -> Num:
         alpha_T: relative change of density with temperature, negative [1/K]
     """
     return rho_15 * (1 + alpha_T * (T - T_15))
-
-
-@law(source="ASTMD341", where="definition of kinematic viscosity", verified=False)
-def dynamic_viscosity(nu: Num, rho: Num) -> Num:
-    r"""Dynamic viscosity [Pa.s].
-
-    .. math:: \eta = \nu \rho
-
-    Args:
-        nu: kinematic viscosity [m2/s]
-        rho: density [kg/m3]
-    """
-    return nu * rho
 
 
 @law(source="Gold2001", where="pressure-viscosity coefficient up to 0.2 GPa", valid="base oils of the constants' type")
@@ -143,22 +123,3 @@ def conductivity(T: Num, rho_15: Num) -> Num:
     """
     T_C = T - T_0
     return 120 * (1 - 0.0005 / 3 * T_C) / rho_15
-
-
-@law(
-    source="Cragoe1929",
-    where="specific heat of liquids",
-    valid="petroleum products; PAG: take a measured value",
-    verified=False,
-)
-def specific_heat(T: Num, rho_15: Num) -> Num:
-    r"""Specific heat [J/(kg.K)].
-
-    .. math:: c_p = \frac{1685 + 3.4 (T - 273.15)}{\sqrt{\rho_{15}/999}}
-
-    Args:
-        T: temperature [K]
-        rho_15: density at 15 degC [kg/m3]
-    """
-    T_C = T - T_0
-    return (1685 + 3.4 * T_C) / ca.sqrt(rho_15 / 999)

@@ -2,6 +2,9 @@
 
 The geometric variables G_rr and G_sl are catalogue variables: numbers for millimetres and newtons that make torques in
 N.mm. They stay in those units; the laws that make torques of them return N.m.
+
+Two things fall with rising viscosity and are meant to: the share of boundary friction (Stribeck), and with rising speed
+the rolling torque of a bearing whose inlet heats up. Beyond the ranges of the formulas, thicker oil never drags less.
 """
 
 from __future__ import annotations
@@ -11,7 +14,17 @@ import math
 import casadi as ca
 
 from ..sources import law
-from .smooth import SPEED_WIDTH, Num, smooth_abs, smooth_magnitude, smooth_max, smooth_min, smooth_power, to_rpm
+from .smooth import (
+    SPEED_WIDTH,
+    Num,
+    smooth_abs,
+    smooth_cap,
+    smooth_magnitude,
+    smooth_max,
+    smooth_min,
+    smooth_power,
+    to_rpm,
+)
 
 
 @law(source="SKF2018", where="friction, inlet shear heating reduction factor")
@@ -27,14 +40,15 @@ def shear_heating(w: Num, nu: Num, d_m: Num, *, w_width: float = SPEED_WIDTH) ->
         w_width: rounding at standstill [rad/s]
     """
     n, nu_cSt, d_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d_m
-    return 1 / (1 + 1.84e-9 * (n * d_mm) ** 1.28 * nu_cSt**0.64)
+    heating = 1.84e-9 * (n * d_mm) ** 1.28 * nu_cSt**0.64
+    return 1 / (1 + smooth_cap(heating, 10.0))  # from 15 on nu^0.6 phi_ish would fall with nu
 
 
 @law(source="SKF2018", where="friction, kinematic replenishment/starvation reduction factor", verified=False)
-def starvation(w: Num, nu: Num, d: Num, D: Num, K_rs: Num, K_Z: Num, *, w_width: float = SPEED_WIDTH) -> Num:
-    r"""Reduction of the rolling torque by lack of oil in the track [1].
+def starvation_exponent(w: Num, nu: Num, d: Num, D: Num, K_rs: Num, K_Z: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+    r"""How fast oil is thrown out of the track, as the exponent of the starvation factor [1].
 
-    .. math:: \phi_{rs} = \exp\left(-K_{rs} \nu n (d + D) \sqrt{\frac{K_Z}{2 (D - d)}}\right)
+    .. math:: s = K_{rs} \nu n (d + D) \sqrt{\frac{K_Z}{2 (D - d)}}
 
     Args:
         w: speed of one ring against the other, either direction [rad/s]
@@ -47,7 +61,29 @@ def starvation(w: Num, nu: Num, d: Num, D: Num, K_rs: Num, K_Z: Num, *, w_width:
     """
     n, nu_cSt, d_mm, D_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d, 1e3 * D
     # Dias2014 prints the exponent without the speed n, which its text lists
-    return ca.exp(-K_rs * nu_cSt * n * (d_mm + D_mm) * ca.sqrt(K_Z / (2 * (D_mm - d_mm))))
+    return K_rs * nu_cSt * n * (d_mm + D_mm) * ca.sqrt(K_Z / (2 * (D_mm - d_mm)))
+
+
+@law(
+    source="SKF2018",
+    where="friction, kinematic replenishment/starvation reduction factor",
+    valid="as long as the rolling torque rises with viscosity, s below 0.6",
+    ranges={"s": (0.0, 0.6)},
+    verified=False,
+)
+def starvation(s: Num, phi_ish: Num) -> Num:
+    r"""Reduction of the rolling torque by lack of oil in the track [1].
+
+    .. math:: \phi_{rs} = e^{-\min(s, q)},\quad q = 0.64 \phi_{ish} - 0.04
+
+    The source has no minimum and lets the torque of a cold bearing fall to zero; the rest of the torque rises at least
+    as nu^q, so that with it the torque never falls.
+
+    Args:
+        s: exponent, see `starvation_exponent` [1]
+        phi_ish: shear heating factor, above 1/16 [1]
+    """
+    return ca.exp(-smooth_cap(s, 0.64 * phi_ish - 0.04))
 
 
 @law(source="SKF2018", where="friction, rolling frictional moment")
@@ -68,11 +104,16 @@ def rolling_torque(G_rr: Num, w: Num, nu: Num, phi: Num, *, w_width: float = SPE
 
 
 def _contact_sine(F_a: Num, C_0: Num, F_width: float) -> Num:
-    """Sine of the contact angle under axial load; Dias2014 prints it without the factor 24.6 deg."""
-    return ca.sin(math.radians(24.6) * (smooth_abs(F_a, F_width) / C_0) ** 0.24)
+    """Sine of the contact angle under axial load, at most 24.6 deg; Dias2014 prints it without that factor."""
+    return ca.sin(math.radians(24.6) * smooth_cap(smooth_abs(F_a, F_width) / C_0, 1.0, 16.0) ** 0.24)
 
 
-@law(source="SKF2018", where="friction, Table 1a, deep groove ball bearings")
+@law(
+    source="SKF2018",
+    where="friction, Table 1a, deep groove ball bearings",
+    valid="F_a up to half of C_0",
+    ranges={"F_a / C_0": (-0.5, 0.5)},
+)
 def dgb_rolling_variable(F_r: Num, F_a: Num, d_m: Num, R_1: Num, R_2: Num, C_0: Num, *, F_width: float = 1.0) -> Num:
     r"""Rolling variable of a deep groove ball bearing, in the catalogue's units.
 
@@ -93,13 +134,20 @@ def dgb_rolling_variable(F_r: Num, F_a: Num, d_m: Num, R_1: Num, R_2: Num, C_0: 
     return R_1 * d_mm**1.96 * smooth_power(smooth_magnitude(F_r, F_width) + axial, 0.54, F_width)
 
 
-@law(source="SKF2018", where="friction, Table 1a, deep groove ball bearings", valid="axial load; see the radial law")
+@law(
+    source="SKF2018",
+    where="friction, Table 1a, deep groove ball bearings",
+    valid="F_a up to half of C_0; between the formulas with and without axial load about F_a = 0.22 F_r",
+    ranges={"F_a / C_0": (-0.5, 0.5)},
+)
 def dgb_sliding_variable(F_r: Num, F_a: Num, d_m: Num, S_1: Num, S_2: Num, C_0: Num, *, F_width: float = 1.0) -> Num:
-    r"""Sliding variable of a deep groove ball bearing that carries an axial load, in the catalogue's units.
+    r"""Sliding variable of a deep groove ball bearing, in the catalogue's units.
 
-    .. math:: G_{sl} = S_1 d_m^{-0.145} \left(F_r^5 + \frac{S_2 d_m^{1.5} F_a^4}{\sin\alpha_F}\right)^{1/3}
+    .. math:: G_{sl} = S_1 d_m^{-0.26 + 0.115 \chi} \left(F_r^5 + \frac{S_2 d_m^{1.5} F_a^4}{\sin\alpha_F}\right)^{1/3},
+        \quad \chi = \frac{F_a^4}{F_a^4 + (0.22 F_r)^4}
 
-    At F_a = 0 the catalogue jumps to another formula, `dgb_sliding_variable_radial`.
+    The catalogue has an exponent of -0.26 at F_a = 0 and of -0.145 elsewhere, a jump by half. Here it goes from one to
+    the other where ISO 281 begins to count an axial load, and is the catalogue's at both ends.
 
     Args:
         F_r: radial load [N]
@@ -112,28 +160,8 @@ def dgb_sliding_variable(F_r: Num, F_a: Num, d_m: Num, S_1: Num, S_2: Num, C_0: 
     """
     d_mm = 1e3 * d_m
     axial = S_2 * d_mm**1.5 * F_a**4 / _contact_sine(F_a, C_0, F_width)
-    return S_1 * d_mm**-0.145 * smooth_power(smooth_power(F_r, 5, F_width) + axial, 1 / 3, F_width**5)
-
-
-@law(
-    source="SKF2018",
-    where="friction, Table 1a, deep groove ball bearings",
-    valid="no axial load at all",
-    verified=False,
-)
-def dgb_sliding_variable_radial(F_r: Num, d_m: Num, S_1: Num, *, F_width: float = 1.0) -> Num:
-    r"""Sliding variable of a deep groove ball bearing without axial load, in the catalogue's units.
-
-    .. math:: G_{sl} = S_1 d_m^{-0.26} F_r^{5/3}
-
-    Args:
-        F_r: radial load [N]
-        d_m: mean diameter, (d + D)/2 [m]
-        S_1: first sliding constant of the catalogue [1]
-        F_width: rounding at zero load [N]
-    """
-    d_mm = 1e3 * d_m
-    return S_1 * d_mm**-0.26 * smooth_power(F_r, 5 / 3, F_width)
+    share = F_a**4 / (F_a**4 + (0.22 * F_r) ** 4 + F_width**4)
+    return S_1 * d_mm ** (0.115 * share - 0.26) * smooth_power(smooth_power(F_r, 5, F_width) + axial, 1 / 3, F_width**5)
 
 
 @law(source="SKF2018", where="friction, Table 1a, tapered roller bearings")
@@ -218,7 +246,13 @@ def sliding_torque(G_sl: Num, mu_sl: Num) -> Num:
     return 1e-3 * G_sl * mu_sl
 
 
-@law(source="SKF2018", where="friction, drag losses, diagram of V_M", valid="read off a diagram, 25 %", verified=False)
+@law(
+    source="SKF2018",
+    where="friction, drag losses, diagram of V_M",
+    valid="read off a diagram, 25 %",
+    ranges={"level": (0.0, 1.2)},
+    verified=False,
+)
 def drag_loss_factor(level: Num, *, roller: bool = False) -> Num:
     r"""Drag loss factor of an oil level [1], a smooth curve through the diagram.
 
@@ -239,26 +273,19 @@ def _splash(n: Num, nu_cSt: Num, d_mm: Num, D_mm: Num, H_mm: Num, K_Z: Num, roun
     t = 2 * ca.acos(cosine)
     f_t = ca.sqrt(1 - smooth_max(cosine, 0.0, rounding) ** 2)  # sin(t/2) below half, 1 above
     R_s = 0.36 * d_m**2 * (t - ca.sin(t)) * 0.05 * K_Z * (D_mm + d_mm) / (D_mm - d_mm)
-    return 1.093e-7 * n**2 * d_m**3 * (n * d_m**2 * f_t / nu_cSt) ** -1.379 * R_s
+    nu_power = nu_cSt * smooth_cap(nu_cSt, 500.0) ** 0.379  # nu^1.379 in the range; creeping flow, nu, beyond it
+    return 1.093e-7 * n**2 * d_m**3 * (n * d_m**2 * f_t) ** -1.379 * nu_power * R_s
 
 
 @law(
     source="SKF2018",
     where="friction, drag losses, ball bearings",
-    valid="oil bath, horizontal shaft, inner ring turns",
+    valid="oil bath, horizontal shaft, inner ring turns; 250 mm2/s where more than half is submerged",
+    ranges={"nu": (0.0, 500e-6)},
     verified=False,
 )
 def drag_torque_ball(
-    w: Num,
-    nu: Num,
-    d: Num,
-    D: Num,
-    H: Num,
-    V_M: Num,
-    K_Z: Num,
-    *,
-    w_width: float = SPEED_WIDTH,
-    rounding: float = 1e-3,
+    w: Num, nu: Num, d: Num, D: Num, H: Num, V_M: Num, K_Z: Num, *, w_width: float = SPEED_WIDTH, rounding: float = 1e-3
 ) -> Num:
     r"""Drag torque of a ball bearing in an oil bath [N.m].
 
@@ -287,7 +314,8 @@ def drag_torque_ball(
 @law(
     source="SKF2018",
     where="friction, drag losses, roller bearings",
-    valid="oil bath, horizontal shaft, inner ring turns",
+    valid="oil bath, horizontal shaft, inner ring turns; 250 mm2/s where more than half is submerged",
+    ranges={"nu": (0.0, 500e-6)},
     verified=False,
 )
 def drag_torque_roller(

@@ -5,7 +5,7 @@ deviation falls as (width/x)^2, so a width of a thousandth of the nominal value 
 
 - under a power below 1 take `smooth_abs`, which is never zero, so value and slope stay finite at x = 0;
 - where a loss must vanish with x take `smooth_magnitude` or `smooth_power`, or multiply a magnitude by
-  `smooth_sign(w)`: the power w * smooth_sign(w) is never negative.
+  `friction_sign(w)`: the power w * friction_sign(w) is never negative, and a shaft at rest is held.
 """
 
 from __future__ import annotations
@@ -18,8 +18,12 @@ import casadi as ca
 #: A float or a CasADi expression.
 Num = Any
 
-#: Width [rad/s] of every rounding in a speed: 0.1 rpm, so 100 rpm is met to 5e-7.
+#: Width [rad/s] of every rounding in a magnitude of speed: 0.1 rpm, so 100 rpm is met to 5e-7.
 SPEED_WIDTH = 1e-2
+
+#: Speed [rad/s] at which friction holds against its full torque: what a shaft at rest creeps with at most, 5e-4 rpm.
+#: Not far below the error that a solver tolerates in a speed: much narrower, it oscillates about rest in tiny steps.
+HOLD_WIDTH = 5e-5
 
 
 def smooth_abs(x: Num, width: float = SPEED_WIDTH) -> Num:
@@ -32,6 +36,21 @@ def smooth_sign(x: Num, width: float = SPEED_WIDTH) -> Num:
     return x / smooth_abs(x, width)
 
 
+def friction_sign(w: Num, width: float = HOLD_WIDTH, sharpness: int = 8) -> Num:
+    r""":math:`(w/width) (1 + (w/width)^s)^{-1/s}`: the share of its torque with which friction opposes a rotation.
+
+    Odd, between -1 and 1, and all but linear within the width, so that a shaft under less than its breakaway torque
+    stays at rest but for a creep below the width: a rounded sign like `smooth_sign` lets it creep at several widths.
+
+    Args:
+        w: speed of the shaft, either direction [rad/s]
+        width: speed at which the full torque is all but reached [rad/s]
+        sharpness: exponent s, even
+    """
+    x = w / width
+    return x * (1 + x**sharpness) ** (-1 / sharpness)
+
+
 def smooth_magnitude(x: Num, width: float = SPEED_WIDTH) -> Num:
     """x * smooth_sign(x), in the unit of x: zero at x = 0, even, never above |x|."""
     return x * smooth_sign(x, width)
@@ -42,11 +61,6 @@ def smooth_power(x: Num, exponent: Num, width: float = SPEED_WIDTH) -> Num:
     return x * x * (x * x + width * width) ** (0.5 * exponent - 1)
 
 
-def smooth_positive(x: Num, width: float) -> Num:
-    """The positive part of x, in the unit of x: never negative, width/2 at x = 0."""
-    return 0.5 * (x + smooth_abs(x, width))
-
-
 def smooth_max(a: Num, b: Num, width: float) -> Num:
     """The larger of two, in their unit: never below either, above it by at most width/2, where they are equal."""
     return 0.5 * (a + b + smooth_abs(a - b, width))
@@ -55,6 +69,20 @@ def smooth_max(a: Num, b: Num, width: float) -> Num:
 def smooth_min(a: Num, b: Num, width: float) -> Num:
     """The smaller of two, in their unit: never above either, below it by at most width/2, where they are equal."""
     return 0.5 * (a + b - smooth_abs(a - b, width))
+
+
+def smooth_cap(x: Num, limit: Num, sharpness: float = 8.0) -> Num:
+    r""":math:`x (1 + (x/limit)^s)^{-1/s}`, in the unit of x: x far below the limit, the limit far above it.
+
+    For positive quantities that span decades: the relative deviation is (x/limit)^s / s below the limit, and rises
+    to 1 - 2^(-1/s) at it. Rising in x and in the limit, never above either.
+
+    Args:
+        x: the quantity, not negative
+        limit: what it does not exceed, above 0
+        sharpness: exponent s; the cap takes hold within a factor of about 10^(1/s) of the limit
+    """
+    return x * (1 + (x / limit) ** sharpness) ** (-1 / sharpness)
 
 
 def to_rpm(w: Num) -> Num:

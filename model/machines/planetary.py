@@ -77,6 +77,11 @@ CONNECTIONS: tuple[tuple[str, ...], ...] = (
 def planetary(name: str, doc: str, values: Mapping[str, Mapping[str, Any]]) -> Spec:
     """The planetary gearbox with values per part (SI numbers and choices).
 
+    Args:
+        name: of the machine
+        doc: what it is, in a line
+        values: part -> key -> SI number or choice
+
     Raises:
         ScenarioError: values for parts that the machine does not have
     """

@@ -14,7 +14,7 @@ from ..parts import PARTS
 
 @dataclass(frozen=True)
 class PartSpec:
-    """One part: its name, its type (a name in `gearheat.model.parts.PARTS`), its SI values and choices by key."""
+    """One part: its name, its type (a name in the `types` of its `Spec`), its SI values and choices by key."""
 
     name: str
     type: str
@@ -23,12 +23,16 @@ class PartSpec:
 
 @dataclass(frozen=True)
 class Spec:
-    """One machine: its parts in the order to show them, and the groups of ports that meet."""
+    """One machine: its parts in the order to show them, and the groups of ports that meet.
+
+    `types` says which class a part's type names: a floor above may add classes of its own.
+    """
 
     name: str
     doc: str
     parts: tuple[PartSpec, ...]
     connections: tuple[tuple[str, ...], ...]
+    types: Mapping[str, type[Component]] = field(default_factory=lambda: PARTS, repr=False)
 
     def part(self, name: str) -> PartSpec:
         """The part of a name. Raises ScenarioError with suggestions for an unknown one."""
@@ -43,7 +47,11 @@ class Spec:
         return tuple(part.name for part in self.parts if part.type in types)
 
     def with_values(self, values: Mapping[str, Any]) -> Spec:
-        """The spec with values replaced, by path ("oil.nu_40"). Unknown parts are reported all at once."""
+        """The spec with values replaced, by path ("oil.nu_40").
+
+        Raises:
+            ScenarioError: values for parts that the spec does not have, all at once
+        """
         by_part: dict[str, dict[str, Any]] = {}
         for path, value in values.items():
             name, _, key = path.rpartition(".")
@@ -55,14 +63,33 @@ class Spec:
             self, parts=tuple(replace(p, values={**p.values, **by_part.get(p.name, {})}) for p in self.parts)
         )
 
-    def with_parts(self, parts: Iterable[PartSpec], connections: Iterable[tuple[str, ...]]) -> Spec:
-        """The spec with parts and connections added."""
-        return replace(self, parts=(*self.parts, *parts), connections=(*self.connections, *connections))
+    def with_parts(
+        self,
+        parts: Iterable[PartSpec],
+        connections: Iterable[tuple[str, ...]],
+        types: Mapping[str, type[Component]] | None = None,
+    ) -> Spec:
+        """The spec with parts and connections added.
+
+        Args:
+            parts: the parts
+            connections: groups of ports that meet, each a path ("cooler.a")
+            types: classes of the added parts that the spec does not know yet, by the name of the type
+        """
+        return replace(
+            self,
+            parts=(*self.parts, *parts),
+            connections=(*self.connections, *connections),
+            types={**self.types, **(types or {})},
+        )
 
     def driven(self, given: Mapping[str, Iterable[str]]) -> Spec:
         """The spec with the quantities ("w", "tau") that are given at each shaft end; none at those not named.
 
         A shaft whose speed is given nowhere keeps its inertia as a state; otherwise inertias are left out.
+
+        Raises:
+            ScenarioError: names that are no shaft end
         """
         choices: dict[str, Any] = {f"{end}.given": tuple(given.get(end, ())) for end in self.of_type("ShaftEnd")}
         unknown = [end for end in given if f"{end}.given" not in choices]
@@ -83,11 +110,11 @@ def assemble(spec: Spec) -> Assembly:
     parts: list[Component] = []
     problems: list[str] = []
     for part in spec.parts:
-        if part.type not in PARTS:
-            problems.append(f'{part.name}: there is no part type "{part.type}".{suggestion(part.type, PARTS)}')
+        if part.type not in spec.types:
+            problems.append(f'{part.name}: there is no part type "{part.type}".{suggestion(part.type, spec.types)}')
             continue
         try:
-            parts.append(PARTS[part.type](part.name, **part.values))
+            parts.append(spec.types[part.type](part.name, **part.values))
         except GearheatError as error:
             problems += error.problems
     if problems:

@@ -1,13 +1,12 @@
-"""Components: declarations followed by named equations. `PARTS` holds every type a rig file can name."""
+"""Components: declarations followed by named equations. `PARTS` holds every type of the physics."""
 
 from ..core.component import Component
-from .bearings import DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
+from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
-from .extra import ExtraConductor, ExtraHeat, ExtraLoss
 from .gears import HelicalGearPair, PlanetarySet, ShaftSupport, TwoGearSupport
 from .lubrication import Grease, OilBath
 from .sealing import LipSeal
-from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, ShaftEnd
+from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit
 from .thermal import (
     BoxCooling,
     CylinderCooling,
@@ -15,6 +14,7 @@ from .thermal import (
     FinnedBoxCooling,
     HeatCapacity,
     PlaneWall,
+    PrescribedTemperature,
     Room,
     ThermalConductor,
 )
@@ -26,6 +26,8 @@ PARTS: dict[str, type[Component]] = {
         FixedFlange,
         FanLoad,
         Inertia,
+        LoadingClutch,
+        TorqueSplit,
         Efficiency,
         PlanetarySet,
         HelicalGearPair,
@@ -33,6 +35,7 @@ PARTS: dict[str, type[Component]] = {
         TwoGearSupport,
         TaperedRollerBearing,
         DeepGrooveBallBearing,
+        CylindricalRollerBearing,
         NeedleBearing,
         LipSeal,
         Churning,
@@ -46,8 +49,6 @@ PARTS: dict[str, type[Component]] = {
         CylinderCooling,
         FinnedBoxCooling,
         Room,
-        ExtraHeat,
-        ExtraLoss,
-        ExtraConductor,
+        PrescribedTemperature,
     )
 }

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from ..core.component import Equation, equation
+from ..core.component import Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
+from ..laws.cylindrical import crb_rolling_variable, crb_sliding_variable
 from ..laws.rolling import (
     boundary_share,
     dgb_rolling_variable,
     dgb_sliding_variable,
-    dgb_sliding_variable_radial,
     drag_loss_factor,
     drag_torque_ball,
     drag_torque_roller,
@@ -21,6 +21,7 @@ from ..laws.rolling import (
     sliding_friction,
     sliding_torque,
     starvation,
+    starvation_exponent,
     trb_rolling_variable,
     trb_sliding_variable,
 )
@@ -49,6 +50,7 @@ class SkfBearing(RollingBearing):
 
     d = Parameter("m", "bore diameter", nominal=0.1, above=0.0)
     D = Parameter("m", "outside diameter", nominal=0.1, above=0.0)
+    d_m = Parameter("m", "mean diameter, (d + D)/2", nominal=0.1, above=0.0, derived=lambda p: 0.5 * (p.d + p.D))
     R_1 = Parameter("1", "first rolling constant of the catalogue", nominal=1e-6, above=0.0)
     R_2 = Parameter("1", "second rolling constant of the catalogue", above=0.0)
     S_1 = Parameter("1", "first sliding constant of the catalogue", nominal=1e-2, above=0.0)
@@ -72,6 +74,16 @@ class SkfBearing(RollingBearing):
         """The oil level counts in an oil bath, boundary friction where films may be thin."""
         return bool({"H": self.oil_bath, "V_M": self.oil_bath, "mu_bl": self.mixed_friction}.get(name, True))
 
+    def relations(self) -> Iterator[Related]:
+        """The rings lie inside each other, the rolling elements between them, and the oil not above the bearing."""
+        remedy = "Give bore, outside and mean diameter of one bearing."
+        yield self.relation("D is larger than d", "D / d", self.D / self.d, 1.02, remedy=remedy)
+        middle = (self.d_m - self.d) / (self.D - self.d)
+        yield self.relation("d_m lies between d and D", "(d_m - d) / (D - d)", middle, 0.3, 0.7, remedy=remedy)
+        if self.oil_bath:
+            remedy = "Give the oil level above the lowest point of the outer raceway."
+            yield self.relation("H is below D", "H / D", self.H / self.D, 0.0, 1.0, remedy=remedy)
+
     def torque(self) -> Num:
         """Sum of the moments of one bearing [N.m]."""
         return self.tau_rr + self.tau_sl + (self.drag() if self.oil_bath else 0.0)
@@ -84,28 +96,28 @@ class SkfBearing(RollingBearing):
         """The moments, then what every friction does."""
         w, nu = self.shaft.w, self.lubricant.nu
         G_rr, G_sl = self.geometric_variables()
-        phi = shear_heating(w, nu, self.d_m) * starvation(w, nu, self.d, self.D, self.K_rs, self.K_Z)
+        phi_ish = shear_heating(w, nu, self.d_m)
+        phi_rs = starvation(starvation_exponent(w, nu, self.d, self.D, self.K_rs, self.K_Z), phi_ish)
         mu_sl = self.mu_EHL
         if self.mixed_friction:
             mu_sl = sliding_friction(boundary_share(w, nu, self.d_m), self.mu_bl, self.mu_EHL)
-        yield equation("rolling moment", self.tau_rr, rolling_torque(G_rr, w, nu, phi))
+        yield equation("rolling moment", self.tau_rr, rolling_torque(G_rr, w, nu, phi_ish * phi_rs))
         yield equation("sliding friction", self.mu_sl, mu_sl)
         yield equation("sliding moment", self.tau_sl, sliding_torque(G_sl, self.mu_sl))
         yield from super().equations()
 
 
-class TaperedRollerBearing(SkfBearing):
-    """Tapered roller bearing, single row."""
+class RollerBearing(SkfBearing):
+    """Base of the roller bearings: their drag in an oil bath."""
 
-    B = Parameter("m", "width over both rings", nominal=0.03, above=0.0)
-    Y = Parameter("1", "axial load factor of the catalogue", above=0.0)
+    B = Parameter("m", "width, over both rings", nominal=0.03, above=0.0)
     K_L = Parameter("1", "geometry constant of the roller bearing type", above=0.0)
     V_M = Parameter(
         "1",
         "drag loss factor of the oil level",
         nominal=1e-4,
         at_least=0.0,
-        derived=lambda v: float(drag_loss_factor(v["H"] / v["d_m"], roller=True)),
+        derived=lambda p: drag_loss_factor(p.H / p.d_m, roller=True),
     )
 
     def has(self, name: str) -> bool:
@@ -117,11 +129,31 @@ class TaperedRollerBearing(SkfBearing):
         w, nu = self.shaft.w, self.lubricant.nu
         return drag_torque_roller(w, nu, self.d, self.D, self.B, self.H, self.V_M, self.K_Z, self.K_L)
 
+
+class TaperedRollerBearing(RollerBearing):
+    """Tapered roller bearing, single row."""
+
+    Y = Parameter("1", "axial load factor of the catalogue", above=0.0, below=10.0)
+
     def geometric_variables(self) -> tuple[Num, Num]:
         """Tapered roller bearing."""
         F_r, F_a = self.loads()
         rolling = trb_rolling_variable(F_r, F_a, self.d_m, self.R_1, self.R_2, self.Y)
         return rolling, trb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.Y)
+
+
+class CylindricalRollerBearing(RollerBearing):
+    """Cylindrical roller bearing with a cage, single row."""
+
+    def has(self, name: str) -> bool:
+        """It has one rolling constant."""
+        return super().has(name) and name != "R_2"
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Cylindrical roller bearing."""
+        F_r, F_a = self.loads()
+        rolling = crb_rolling_variable(F_r, self.d_m, self.R_1)
+        return rolling, crb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2)
 
 
 class DeepGrooveBallBearing(SkfBearing):
@@ -133,9 +165,8 @@ class DeepGrooveBallBearing(SkfBearing):
         "drag loss factor of the oil level",
         nominal=1e-4,
         at_least=0.0,
-        derived=lambda v: float(drag_loss_factor(v["H"] / v["d_m"])),
+        derived=lambda p: drag_loss_factor(p.H / p.d_m),
     )
-    axially_loaded = Choice((True, False), "which of the catalogue's two sliding formulas holds", default=True)
 
     def drag(self) -> Num:
         """Drag of balls."""
@@ -145,8 +176,6 @@ class DeepGrooveBallBearing(SkfBearing):
         """Deep groove ball bearing."""
         F_r, F_a = self.loads()
         rolling = dgb_rolling_variable(F_r, F_a, self.d_m, self.R_1, self.R_2, self.C_0)
-        if not self.axially_loaded:
-            return rolling, dgb_sliding_variable_radial(F_r, self.d_m, self.S_1)
         return rolling, dgb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.C_0)
 
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ..core.component import Component, Equation, equation
 from ..core.declare import Output, Parameter
-from ..laws.smooth import Num, smooth_sign
+from ..laws.smooth import Num, friction_sign
 from .ports import Flange, HeatPort
 
 
@@ -17,7 +17,7 @@ class Friction(Component):
     inner = HeatPort()
     outer = HeatPort()
 
-    count = Parameter("1", "number of equal pieces", above=0.0)
+    count = Parameter("1", "number of equal pieces", above=0.0, whole=True)
     inner_share = Parameter("1", "share of the heat that goes to the inner body", at_least=0.0, at_most=1.0)
     tau_loss = Output("N.m", "friction torque of all pieces", nominal=1.0, guess=0.0)
     P_loss = Output("W", "friction power of all pieces", nominal=100.0)
@@ -30,7 +30,7 @@ class Friction(Component):
         """All friction becomes heat."""
         w = self.shaft.w
         yield equation("friction torque", self.tau_loss, self.count * self.torque())
-        yield equation("friction opposes rotation", self.shaft.tau, self.tau_loss * smooth_sign(w))
+        yield equation("friction opposes rotation", self.shaft.tau, self.tau_loss * friction_sign(w))
         yield equation("friction power", self.P_loss, self.shaft.tau * w)
         yield equation("heat to the inner body", self.inner.Q_flow, -self.inner_share * self.P_loss)
         yield equation("heat to the outer body", self.outer.Q_flow, -(1 - self.inner_share) * self.P_loss)

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import casadi as ca
 
-from ..core.component import Component, Equation, equation
+from ..core.component import Component, Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.film import film_thickness, specific_film_thickness, thermal_film_reduction
 from ..laws.gears import (
@@ -16,17 +16,32 @@ from ..laws.gears import (
     base_helix_angle,
     contact_length,
     curvature_radius,
+    profile_shift_sum,
     reduced_radius,
     reference_diameter,
     tip_diameter,
+    tip_thickness,
     transverse_base_pitch,
     transverse_pressure_angle,
+    undercut_shift,
     working_pressure_angle,
 )
-from ..laws.mesh import friction_schlenk, tooth_loss_factor
-from ..laws.smooth import Num, smooth_abs, smooth_sign
+from ..laws.mesh import (
+    friction_schlenk,
+    load_per_contact_length,
+    load_per_face_width,
+    mesh_loss,
+    tooth_loss_factor,
+)
+from ..laws.smooth import Num, friction_sign, smooth_abs
 from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading, ToothForce
 
+#: Share of a_w that the base circles may take; at 1 the flanks would have no line of action.
+ANGLE_LEFT = 0.9999
+#: Profile shift left between what a_w asks for and x_1 + x_2: tolerances and backlash, 5 % of a module.
+SHIFT_LEFT = 0.05
+#: Profile shift by which teeth may be undercut: beyond it no tooth is left to carry.
+UNDERCUT_LEFT = 0.5
 #: Force below which the direction of a bearing load is blurred [N].
 FORCE_WIDTH = 1.0
 
@@ -36,23 +51,29 @@ class Contact:
     """One tooth contact at its pitch point: what does not depend on speed and load.
 
     `rho` radius of curvature of the first gear [m], `R` reduced radius normal to the teeth [m], `l` length of the
-    lines of contact [m], `normal` normal over tangential force [1].
+    lines of contact [m], `base` and `normal` base tangential and normal force over tangential force [1].
     """
 
     rho: Num
     R: Num
     l: Num  # noqa: E741
+    base: Num
     normal: Num
 
 
 class ToothedPart(Component):
-    """Base of everything with teeth: geometry, roughness and material of its gears, and the friction of a contact."""
+    """Base of everything with teeth: geometry, roughness and material of its gears, and the friction of a contact.
+
+    The friction formula is printed with the base tangential force per face width, F_bt/b; some authors use it with
+    the normal force per length of the contact lines, F_bn/l, which is eps_alpha times less. `line_load` says which,
+    and `k_mu` belongs to it: a factor that was fitted with one is wrong with the other by eps_alpha^0.2.
+    """
 
     gears = HeatPort()
     lubricant = Lubricant()
 
-    z_1 = Parameter("1", "number of teeth of the first gear (pinion, sun)", above=0.0)
-    z_2 = Parameter("1", "number of teeth of the second gear (wheel, planet)", above=0.0)
+    z_1 = Parameter("1", "number of teeth of the first gear (pinion, sun)", above=0.0, whole=True)
+    z_2 = Parameter("1", "number of teeth of the second gear (wheel, planet)", above=0.0, whole=True)
     m_n = Parameter("m", "normal module", nominal=1e-3, above=0.0)
     alpha_n = Parameter("rad", "normal pressure angle", above=0.0, below=1.0)
     beta = Parameter("rad", "helix angle at the reference diameter", at_least=0.0, below=1.2)
@@ -60,6 +81,7 @@ class ToothedPart(Component):
     a_w = Parameter("m", "working centre distance", nominal=0.1, above=0.0)
     Ra = Parameter("m", "roughness Ra of each flank", nominal=1e-6, above=0.0)
     k_mu = Parameter("1", "factor on the tooth friction", at_least=0.0)
+    line_load = Choice(("F_bt/b", "F_bn/l"), "line load of the friction formula: per face width, or per contact length")
     E = Parameter("Pa", "modulus of elasticity of the gears", nominal=1e11, above=0.0)
     poisson = Parameter("1", "Poisson's ratio of the gears", at_least=0.0, below=0.5)
     tau_width = Parameter("N.m", "torque below which the direction of load is blurred", default=0.1, above=0.0)
@@ -68,13 +90,36 @@ class ToothedPart(Component):
         """Reference radius of a gear of z teeth [m]."""
         return reference_diameter(self.m_n, z, self.beta) / 2
 
+    def working_angle(self) -> tuple[Num, Num]:
+        """Transverse pressure angle of the first two gears, at the reference and the working centre distance [rad]."""
+        alpha_t = transverse_pressure_angle(self.alpha_n, self.beta)
+        return alpha_t, working_pressure_angle(alpha_t, self.radius(self.z_1 + self.z_2), self.a_w)
+
+    def shift_sum(self) -> Num:
+        """Sum of the profile shifts of the first two gears that the working centre distance asks for [1]."""
+        alpha_t, alpha_wt = self.working_angle()
+        return profile_shift_sum(alpha_wt, alpha_t, self.alpha_n, self.z_1 + self.z_2)
+
+    def relations(self) -> Iterator[Related]:
+        """The base circles of the first two gears leave room for a line of action."""
+        alpha_t, _ = self.working_angle()
+        least = self.radius(self.z_1 + self.z_2) * ca.cos(alpha_t)
+        yield self.relation(
+            "a_w is more than the base circles need",
+            "sum of the base radii over a_w",
+            least / self.a_w,
+            high=ANGLE_LEFT,
+            remedy="Give a larger a_w, fewer teeth, or a smaller m_n or beta.",
+        )
+
     def contact(self, eps_alpha: Num, z_a: Num, z_b: Num) -> Contact:
         """The contact of a gear of z_a teeth with one of z_b teeth, negative for an internal gear."""
-        alpha_t, beta_b = transverse_pressure_angle(self.alpha_n, self.beta), base_helix_angle(self.alpha_n, self.beta)
-        alpha_wt = working_pressure_angle(alpha_t, self.radius(self.z_1 + self.z_2), self.a_w)
+        alpha_t, alpha_wt = self.working_angle()
+        beta_b = base_helix_angle(self.alpha_n, self.beta)
         rho_a, rho_b = (curvature_radius(base_diameter(2 * self.radius(z), alpha_t), alpha_wt) for z in (z_a, z_b))
         R, length = reduced_radius(rho_a, rho_b, beta_b), contact_length(self.b, eps_alpha, beta_b)
-        return Contact(rho_a, R, length, 1 / (ca.cos(alpha_t) * ca.cos(beta_b)))
+        base = 1 / ca.cos(alpha_t)
+        return Contact(rho_a, R, length, base, base / ca.cos(beta_b))
 
     def friction(self, contact: Contact, F_t: Num, w: Num) -> tuple[Num, Num]:
         """Friction coefficient and specific film thickness of a contact.
@@ -85,34 +130,15 @@ class ToothedPart(Component):
             w: speed of the first gear against the line of centres [rad/s]
         """
         oil = self.lubricant
-        F_n_l = F_t * contact.normal / contact.l
+        F_n_l = load_per_contact_length(F_t * contact.normal, contact.l)
+        load = F_n_l if self.line_load == "F_bn/l" else load_per_face_width(F_t * contact.base, self.b)
         u_sum = 2 * smooth_abs(w) * contact.rho
         eta = oil.nu * oil.rho
-        mu = self.k_mu * friction_schlenk(F_n_l, u_sum, contact.R, eta, self.Ra, oil.X_L)
+        mu = self.k_mu * friction_schlenk(load, u_sum, contact.R, eta, self.Ra, oil.X_L)
         E_eff = self.E / (2 * (1 - self.poisson**2))
         h = film_thickness(eta, u_sum, oil.alpha_p, F_n_l, contact.R, E_eff)
         reduction = thermal_film_reduction(oil.beta_T, eta, u_sum, oil.k, 0.0)
         return mu, specific_film_thickness(reduction * h, ca.sqrt(2.0) * self.Ra)
-
-
-def _addendum_ratios(v: Mapping[str, float]) -> list[float]:
-    """Addendum contact ratios of pinion and wheel from the geometry of an external pair."""
-    alpha_t = transverse_pressure_angle(v["alpha_n"], v["beta"])
-    a = reference_diameter(v["m_n"], v["z_1"] + v["z_2"], v["beta"]) / 2
-    alpha_wt = working_pressure_angle(alpha_t, a, v["a_w"])
-    p_et = transverse_base_pitch(v["m_n"], v["beta"], alpha_t)
-    ratios = []
-    for z, x in ((v["z_1"], v["x_1"]), (v["z_2"], v["x_2"])):
-        d = reference_diameter(v["m_n"], z, v["beta"])
-        tip, base = tip_diameter(d, v["m_n"], x), base_diameter(d, alpha_t)
-        ratios.append(float(addendum_contact_ratio(tip, base, alpha_wt, p_et)))
-    return ratios
-
-
-def _loss_factor(v: Mapping[str, float]) -> float:
-    """Tooth loss factor of an external pair from its geometry."""
-    beta_b = base_helix_angle(v["alpha_n"], v["beta"])
-    return float(tooth_loss_factor(v["z_1"], v["z_2"] / v["z_1"], beta_b, *_addendum_ratios(v)))
 
 
 class HelicalGearPair(ToothedPart):
@@ -124,23 +150,76 @@ class HelicalGearPair(ToothedPart):
 
     x_1 = Parameter("1", "profile shift of the pinion")
     x_2 = Parameter("1", "profile shift of the wheel")
-    eps_alpha = Parameter("1", "transverse contact ratio", above=0.0, derived=lambda v: sum(_addendum_ratios(v)))
-    H_v = Parameter("1", "tooth loss factor", at_least=0.0, derived=_loss_factor)
+    eps_alpha = Parameter("1", "transverse contact ratio", above=0.0, derived=lambda p: sum(p.addendum_ratios()))
+    H_v = Parameter("1", "tooth loss factor", at_least=0.0, derived=lambda p: p.loss_factor())
     tau_loss = Output("N.m", "friction torque of the mesh, on the pinion", nominal=1.0, guess=0.0)
     P_loss = Output("W", "mesh loss", nominal=100.0)
     mu = Output("1", "tooth friction coefficient", nominal=0.1)
     Lambda = Output("1", "specific film thickness")
 
+    def addendum_ratios(self) -> list[Num]:
+        """Addendum contact ratios of pinion and wheel [1]."""
+        alpha_t, alpha_wt = self.working_angle()
+        p_et = transverse_base_pitch(self.m_n, self.beta, alpha_t)
+        ratios = []
+        for z, x in ((self.z_1, self.x_1), (self.z_2, self.x_2)):
+            d = 2 * self.radius(z)
+            tip, base = tip_diameter(d, self.m_n, x), base_diameter(d, alpha_t)
+            ratios.append(addendum_contact_ratio(tip, base, alpha_wt, p_et))
+        return ratios
+
+    def relations(self) -> Iterator[Related]:
+        """What makes two gears mesh at their centre distance, and teeth that can be cut."""
+        yield from super().relations()
+        yield self.relation(
+            "a_w fits z_1, z_2, m_n, beta, x_1, x_2",
+            "profile shift that a_w asks for beyond x_1 + x_2",
+            self.shift_sum() - self.x_1 - self.x_2,
+            -SHIFT_LEFT,
+            SHIFT_LEFT,
+            remedy="Give the a_w, beta or profile shifts that belong to these teeth.",
+        )
+        yield self.relation(
+            "the teeth overlap",
+            "transverse contact ratio",
+            self.eps_alpha,
+            1.0,
+            remedy="Give more teeth, less profile shift, or a smaller alpha_n.",
+        )
+        alpha_t, _ = self.working_angle()
+        for z, x, key in ((self.z_1, self.x_1, "1"), (self.z_2, self.x_2, "2")):
+            d = 2 * self.radius(z)
+            tip, base = tip_diameter(d, self.m_n, x), base_diameter(d, alpha_t)
+            yield self.relation(
+                f"x_{key} is above undercut",
+                f"x_{key} over the limit of undercut",
+                x - undercut_shift(z, alpha_t, self.beta),
+                -UNDERCUT_LEFT,
+                remedy=f"Give a larger x_{key} or more teeth.",
+            )
+            yield self.relation(
+                f"the teeth of gear {key} are not pointed",
+                "tooth thickness at the tip",
+                tip_thickness(z, x, self.alpha_n, alpha_t, tip, base) / self.m_n,
+                0.0,
+                remedy=f"Give a smaller x_{key}.",
+            )
+
+    def loss_factor(self) -> Num:
+        """Tooth loss factor from the geometry [1]."""
+        beta_b = base_helix_angle(self.alpha_n, self.beta)
+        return tooth_loss_factor(self.z_1, self.z_2 / self.z_1, beta_b, *self.addendum_ratios())
+
     def equations(self) -> Iterator[Equation]:
         """The gear that drives brings the loss; what is left arrives at the other."""
         w, ratio, r = self.pinion.w, self.z_2 / self.z_1, self.radius(self.z_1)
-        sign = smooth_sign(w)
+        sign = friction_sign(w)
         tau_mean = smooth_abs(self.pinion.tau - sign * self.tau_loss / 2, self.tau_width)
         mu, Lambda = self.friction(self.contact(self.eps_alpha, self.z_1, self.z_2), self.force.F_t, w)
         alpha_t = transverse_pressure_angle(self.alpha_n, self.beta)
         yield equation("gears roll on each other", self.wheel.w, -w / ratio)
         yield equation("torque less loss", self.wheel.tau / ratio, self.pinion.tau - sign * self.tau_loss)
-        yield equation("mesh loss", self.tau_loss, self.mu * self.H_v * (tau_mean + self.tau_loss / 2))
+        yield equation("mesh loss", self.tau_loss, mesh_loss(tau_mean + self.tau_loss / 2, self.mu, self.H_v))
         yield equation("mesh power", self.P_loss, self.tau_loss * sign * w)
         yield equation("tooth friction", self.mu, mu)
         yield equation("film", self.Lambda, Lambda)
@@ -167,9 +246,13 @@ class PlanetarySet(ToothedPart):
     planet_load = BearingLoad()
     reading = ShaftReading()
 
-    power_flow = Choice(("successive", "ideal"), "whether losses reduce what is passed on", default="successive")
-    N = Parameter("1", "number of planets", above=0.0)
-    z_3 = Parameter("1", "number of teeth of the ring", above=0.0)
+    power_flow = Choice(
+        ("successive", "ideal"),
+        "ideal: mesh forces from the input torque; successive: each stage sees upstream losses",
+        default="successive",
+    )
+    N = Parameter("1", "number of planets", above=0.0, whole=True)
+    z_3 = Parameter("1", "number of teeth of the ring", above=0.0, whole=True)
     eps_alpha_sp = Parameter("1", "transverse contact ratio sun-planet", above=0.0)
     eps_alpha_pr = Parameter("1", "transverse contact ratio planet-ring", above=0.0)
     H_v_sp = Parameter("1", "tooth loss factor sun-planet", nominal=0.1, at_least=0.0)
@@ -188,10 +271,51 @@ class PlanetarySet(ToothedPart):
     Lambda_sp = Output("1", "specific film thickness sun-planet")
     Lambda_pr = Output("1", "specific film thickness planet-ring")
 
+    def relations(self) -> Iterator[Related]:
+        """Sun, planets and ring fit into each other, and the planets beside each other."""
+        yield from super().relations()
+        yield self.relation(
+            "a_w lies near the reference distance",
+            "sum of profile shifts of sun and planet that a_w asks for",
+            self.shift_sum(),
+            -1.5,
+            2.5,
+            remedy="Give the a_w that belongs to z_1, z_2, m_n and beta.",
+        )
+        yield self.relation(
+            "z_3 fits z_1 + 2 z_2",
+            "z_3 - z_1 - 2 z_2",
+            self.z_3 - self.z_1 - 2 * self.z_2,
+            -4.0,
+            4.0,
+            remedy="Give the number of teeth of the ring that encloses sun and planets.",
+        )
+        places = (self.z_1 + self.z_3) / self.N
+        yield self.relation(
+            "the planets stand at equal angles",
+            "(z_1 + z_3) / N less the next whole number",
+            places - ca.floor(places + 0.5),
+            -1e-6,
+            1e-6,
+            remedy="Choose z_1 + z_3 as a multiple of the number of planets.",
+        )
+        tip = tip_diameter(2 * self.radius(self.z_2), self.m_n, 0.0)
+        yield self.relation(
+            "neighbouring planets do not touch",
+            "clearance of the tips of two planets",
+            2 * self.a_w * ca.sin(ca.pi / ca.fmax(self.N, 2)) - tip,
+            0.0,
+            unit="m",
+            remedy="Give fewer planets, or planets with fewer teeth.",
+        )
+        for key in ("n_axial_carrier", "n_axial_sun"):
+            remedy = "Give at most the number of planets."
+            yield self.relation(f"{key} fits N", f"{key} / N", getattr(self, key) / self.N, 0.0, 1.0, remedy=remedy)
+
     def equations(self) -> Iterator[Equation]:
         """Kinematics, torques, and the two kinds of meshes."""
         w = self.sun.w - self.carrier.w
-        i_0, sign = self.z_3 / self.z_1, smooth_sign(w)
+        i_0, sign = self.z_3 / self.z_1, friction_sign(w)
         losses = sign * (self.tau_loss_sp + self.tau_loss_pr)
         yield equation("Willis", self.sun.w + i_0 * self.ring.w, (1 + i_0) * self.carrier.w)
         yield equation("planets roll on the sun", self.planet.w, -w * self.z_1 / self.z_2)
@@ -217,8 +341,10 @@ class PlanetarySet(ToothedPart):
         yield equation("film sun-planet", self.Lambda_sp, Lambda_sp)
         yield equation("film planet-ring", self.Lambda_pr, Lambda_pr)
         half = 0.5 if self.power_flow == "successive" else 0.0
-        yield equation("loss sun-planet", self.tau_loss_sp, self.mu_sp * self.H_v_sp * (sp + half * self.tau_loss_sp))
-        yield equation("loss planet-ring", self.tau_loss_pr, self.mu_pr * self.H_v_pr * (pr + half * self.tau_loss_pr))
+        loss_sp = mesh_loss(sp + half * self.tau_loss_sp, self.mu_sp, self.H_v_sp)
+        loss_pr = mesh_loss(pr + half * self.tau_loss_pr, self.mu_pr, self.H_v_pr)
+        yield equation("loss sun-planet", self.tau_loss_sp, loss_sp)
+        yield equation("loss planet-ring", self.tau_loss_pr, loss_pr)
         yield equation("power sun-planet", self.P_loss_sp, self.tau_loss_sp * sign * w)
         yield equation("power planet-ring", self.P_loss_pr, self.tau_loss_pr * sign * w)
 
@@ -257,6 +383,22 @@ class ShaftSupport(Component):
     r = Parameter("m", "radius at which the axial force of the gear acts", nominal=0.05, at_least=0.0)
     axial_share_a = Parameter("1", "share of the axial force that bearing a takes", at_least=0.0, at_most=1.0)
 
+    def positions(self) -> dict[str, Num]:
+        """Positions of the gears from bearing a, by key [m]."""
+        return {"x": self.x}
+
+    def relations(self) -> Iterator[Related]:
+        """A gear sits between the bearings, or overhangs by no more than their distance."""
+        for key, position in self.positions().items():
+            yield self.relation(
+                f"{key} fits span",
+                f"{key} / span",
+                position / self.span,
+                -1.0,
+                2.0,
+                remedy="Give the position of the gear from bearing a, and the distance of the bearings.",
+            )
+
     def forces(self) -> tuple[list[tuple[Num, Num, Num, Num]], Num]:
         """Per gear: tangential and radial force [N], position [m], tilting moment [N.m]; and the axial force [N]."""
         mesh = self.mesh
@@ -282,6 +424,10 @@ class TwoGearSupport(ShaftSupport):
     x_2 = Parameter("m", "position of the second gear, from bearing a", nominal=0.1)
     r_2 = Parameter("m", "radius at which the axial force of the second gear acts", nominal=0.05, at_least=0.0)
     phi = Parameter("rad", "angle between the two lines of centres")
+
+    def positions(self) -> dict[str, Num]:
+        """Both gears."""
+        return {"x": self.x, "x_2": self.x_2}
 
     def forces(self) -> tuple[list[tuple[Num, Num, Num, Num]], Num]:
         """The pinion's forces are turned into the wheel's planes; the axial forces oppose each other."""

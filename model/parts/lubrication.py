@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from ..core.component import Component, Equation, equation
+from ..core.component import Component, Equation, Related, equation
 from ..core.declare import Input, Output, Parameter, State
 from ..laws.oil import (
     conductivity,
@@ -15,7 +15,7 @@ from ..laws.oil import (
     walther_constants,
 )
 from ..laws.smooth import Num
-from .ports import HeatPort, Lubricant
+from .ports import COLDEST, HOTTEST, HeatPort, Lubricant
 
 
 class LubricantProperties(Component):
@@ -33,10 +33,19 @@ class LubricantProperties(Component):
     X_L = Parameter("1", "lubricant factor of the tooth friction", above=0.0)
     nu = Output("m2/s", "kinematic viscosity", nominal=1e-4)
 
+    def relations(self) -> Iterator[Related]:
+        """A lubricant thins as it warms."""
+        ratio, remedy = self.nu_40 / self.nu_100, "Give the viscosity at 40 degC as nu_40, that at 100 degC as nu_100."
+        yield self.relation("nu_40 is above nu_100", "nu_40 / nu_100", ratio, 1.01, remedy=remedy)
+
+    def viscosity(self, T: Num) -> Num:
+        """Kinematic viscosity [m2/s] at a temperature [K]."""
+        return kinematic_viscosity(T, self.nu_40, self.nu_100)
+
     def properties(self) -> Iterator[Equation]:
         """What the users of the lubricant read."""
         T, out = self.heat.T, self.lubricant
-        yield equation("viscosity", self.nu, kinematic_viscosity(T, self.nu_40, self.nu_100))
+        yield equation("viscosity", self.nu, self.viscosity(T))
         yield equation("temperature read", out.T, T)
         yield equation("viscosity read", out.nu, self.nu)
         yield equation("density", out.rho, density(T, self.rho_15, self.alpha_T))
@@ -50,10 +59,15 @@ class LubricantProperties(Component):
 class OilBath(LubricantProperties):
     """The oil of a gearbox: a body of one temperature that lubricates."""
 
-    T = State("K", "temperature of the oil", nominal=10.0, above=0.0, at_most=2000.0, start=298.15)
+    T = State("K", "temperature of the oil", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
     V = Parameter("m3", "volume of oil at 15 degC", nominal=1e-3, above=0.0)
     c_p = Parameter("J/(kg.K)", "specific heat", nominal=2000.0, above=0.0)
+    T_pour = Parameter("K", "pour point, below it the oil does not flow; 0 K: not known", default=0.0, at_least=0.0)
     Q_flow_external = Input("W", "heat flow rate from outside the model, e.g. a cooler (negative)", nominal=100.0)
+
+    def viscosity(self, T: Num) -> Num:
+        """Of an oil that flows."""
+        return kinematic_viscosity(T, self.nu_40, self.nu_100, self.T_pour)
 
     def equations(self) -> Iterator[Equation]:
         """Heat that enters warms the oil."""
@@ -72,7 +86,10 @@ class OilBath(LubricantProperties):
 
 
 class Grease(LubricantProperties):
-    """Grease that takes the temperature of the body it is in; its own heat capacity is neglected."""
+    """Grease that takes the temperature of the body it is in; its own heat capacity is neglected.
+
+    It has no pour point: the thickener holds it in place at any temperature, and its cold limit is a torque.
+    """
 
     def equations(self) -> Iterator[Equation]:
         """The body is sensed, not heated."""

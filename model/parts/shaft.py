@@ -5,9 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 
 from ..core.component import Component, Equation, equation
-from ..core.declare import Choice, Given, Output, Parameter, State
+from ..core.declare import Choice, Given, Input, Output, Parameter, State
 from ..laws.smooth import Num, smooth_abs
 from .ports import Flange, ShaftReading
+
+#: Speed below which the loss torque of the gearbox fades [rad/s]: far below any speed that is read.
+W_REST = 1e-5
+
+#: Largest speed difference that counts as round-off of a closed loop [rad/s].
+SLIP = 1e-6
+
+#: What a larger one means.
+OPEN_LOOP = (
+    "the loop does not close: its halves turn at {w_a} and {w_b}. "
+    "The product of the ratios round the loop must be 1: check the tooth counts of its gears."
+)
 
 
 class ShaftEnd(Component):
@@ -89,13 +101,72 @@ class Inertia(Component):
         return self.J * self.w**2 / 2 if self.dynamic else 0.0
 
 
+def _slip() -> Output:
+    """Speed difference of two shafts that the rest of a closed loop couples: zero where the ratios fit."""
+    doc = "speed of a over that of b; zero where the ratios of the closed loop fit"
+    return Output("rad/s", doc, nominal=1e-3, at_least=-SLIP, at_most=SLIP, refusal=OPEN_LOOP)
+
+
+class LoadingClutch(Component):
+    """Closes a mechanical loop and twists it: the torque it passes is given, its speed the loop's.
+
+    The gears of a closed loop fix the speeds of both halves, so the clutch adds no equation for them: that the halves
+    turn alike is checked. In a back-to-back rig it carries the load torque while a motor covers the losses; of two
+    parallel paths it says what one of them carries.
+    """
+
+    a = Flange()
+    b = Flange()
+
+    tau = Input("N.m", "torque passed from a to b; positive power flows from a to b where both turn forwards", 100.0)
+    slip = _slip()
+    w_a = Output("rad/s", "angular velocity of half a", nominal=10.0)
+    w_b = Output("rad/s", "angular velocity of half b", nominal=10.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """What enters one half leaves the other."""
+        yield equation("torque of half a", self.a.tau, self.tau)
+        yield equation("torque of half b", self.b.tau, -self.tau)
+        yield equation("speed of half a", self.w_a, self.a.w)
+        yield equation("speed of half b", self.w_b, self.b.w)
+        yield equation("slip", self.slip, self.w_a - self.w_b)
+
+
+class TorqueSplit(Component):
+    """Where power splits into two parallel paths: a carries a given share of the torque, b the rest.
+
+    Two rigid paths between the same shafts are statically indeterminate: the stiffness of the paths decides the
+    share, and this model has none. The paths fix the speed of b, so that it turns with the others is checked.
+    """
+
+    flange = Flange()
+    a = Flange()
+    b = Flange()
+
+    share = Parameter("1", "share of the torque that a carries", at_least=0.0, at_most=1.0)
+    slip = _slip()
+    w_a = Output("rad/s", "angular velocity of branch a", nominal=10.0)
+    w_b = Output("rad/s", "angular velocity of branch b", nominal=10.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """One speed, two shares."""
+        yield equation("one speed", self.a.w, self.flange.w)
+        yield equation("share of a", self.a.tau, -self.share * self.flange.tau)
+        yield equation("share of b", self.b.tau, -(1 - self.share) * self.flange.tau)
+        yield equation("speed of branch a", self.w_a, self.a.w)
+        yield equation("speed of branch b", self.w_b, self.b.w)
+        yield equation("slip", self.slip, self.w_a - self.w_b)
+
+
 class Efficiency(Component):
-    """Efficiency and loss of the gearbox between two shaft ends, whichever drives."""
+    """Efficiency and loss of the gearbox between two shaft ends, whichever drives.
+
+    The loss torque follows from the powers, so no ratio has to agree with that of the gears.
+    """
 
     a = ShaftReading()
     b = ShaftReading()
 
-    ratio = Parameter("1", "speed of b over speed of a")
     P_width = Parameter("W", "power below which the efficiency is blurred", default=1e-3, above=0.0)
     P_loss = Output("W", "power in less power out", nominal=100.0)
     tau_loss = Output("N.m", "loss torque, on the side of a", nominal=10.0)
@@ -106,5 +177,5 @@ class Efficiency(Component):
         P_a, P_b = self.a.w * self.a.tau, self.b.w * self.b.tau
         P_in = sum(smooth_abs(P, self.P_width) for P in (P_a, P_b, self.P_loss)) / 2
         yield equation("loss", self.P_loss, P_a + P_b)
-        yield equation("loss torque", self.tau_loss, self.a.tau + self.ratio * self.b.tau)
+        yield equation("loss torque", self.tau_loss, self.P_loss * self.a.w / (self.a.w**2 + W_REST**2))
         yield equation("efficiency", self.eta, 1 - self.P_loss / P_in)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from ..core.component import Component, Equation, equation
+from ..core.component import Component, Equation, Related, equation
 from ..core.declare import Input, Output, Parameter, State
 from ..laws.conduction import cylinder_wall, fin_efficiency, plane_wall
 from ..laws.convection import (
@@ -18,7 +18,7 @@ from ..laws.convection import (
 )
 from ..laws.radiation import radiated
 from ..laws.smooth import Num
-from .ports import AirPort, HeatPort
+from .ports import COLDEST, HOTTEST, AirPort, HeatPort
 
 
 class HeatCapacity(Component):
@@ -26,7 +26,7 @@ class HeatCapacity(Component):
 
     heat = HeatPort()
 
-    T = State("K", "temperature", nominal=10.0, above=0.0, at_most=2000.0, start=298.15)
+    T = State("K", "temperature", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
     C = Parameter("J/K", "heat capacity", above=0.0)
     Q_flow_external = Input("W", "heat flow rate from outside the model, e.g. a cooler (negative)", nominal=100.0)
 
@@ -93,6 +93,11 @@ class CylinderWall(Conductor):
     r_i = Parameter("m", "inner radius", nominal=0.1, above=0.0)
     r_o = Parameter("m", "outer radius", nominal=0.1, above=0.0)
 
+    def relations(self) -> Iterator[Related]:
+        """The wall has a thickness."""
+        remedy = "Give the outer radius as r_o, the inner as r_i."
+        yield self.relation("r_o is larger than r_i", "r_o / r_i", self.r_o / self.r_i, 1 + 1e-6, remedy=remedy)
+
     def conductance(self) -> Num:
         """Of a cylindrical wall."""
         return cylinder_wall(self.k, self.L, self.r_i, self.r_o)
@@ -104,7 +109,7 @@ class Room(Component):
     air = AirPort(must_meet=False)
     floor = HeatPort(must_meet=False)
 
-    T = Input("K", "temperature of the room", nominal=10.0, above=0.0, start=298.15)
+    T = Input("K", "temperature of the room", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
     air_speed = Input("m/s", "speed of the air along the housing", at_least=0.0)
     Q_flow = Output("W", "heat flow rate into the room", nominal=100.0)
 
@@ -117,6 +122,24 @@ class Room(Component):
 
     def supplied_power(self) -> Iterable[Num]:
         """What the room takes, counted as supply."""
+        return (-self.Q_flow,)
+
+
+class PrescribedTemperature(Component):
+    """Something that keeps its temperature whatever heat it takes or gives, e.g. a thermostat or cooling water."""
+
+    heat = HeatPort()
+
+    T = Input("K", "temperature", nominal=10.0, above=0.0, start=298.15)
+    Q_flow = Output("W", "heat flow rate it takes", nominal=100.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """The temperature is given, the heat follows."""
+        yield equation("temperature kept", self.heat.T, self.T)
+        yield equation("heat taken", self.Q_flow, self.heat.Q_flow)
+
+    def supplied_power(self) -> Iterable[Num]:
+        """What it takes, counted as supply."""
         return (-self.Q_flow,)
 
 
@@ -162,6 +185,11 @@ class BoxCooling(SurfaceCooling):
     width = Parameter("m", "width of the box", above=0.0)
     share_top = Parameter("1", "share of the area that faces upwards", at_least=0.0, at_most=1.0)
     share_bottom = Parameter("1", "share of the area that faces downwards", at_least=0.0, at_most=1.0)
+
+    def relations(self) -> Iterator[Related]:
+        """Faces have no more than the whole area; the rest is vertical."""
+        both, remedy = self.share_top + self.share_bottom, "Give smaller shares; the vertical faces have what is left."
+        yield self.relation("the shares fit into one area", "share_top + share_bottom", both, 0.0, 1.0, remedy=remedy)
 
     def natural(self) -> Num:
         """Mean of vertical, upward and downward faces by area."""

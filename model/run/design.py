@@ -14,7 +14,7 @@ from ..units import text
 from .point import point, problem_of
 from .result import Result
 from .search import Range, Search, Tried
-from .steady import steady, table
+from .steady import Equilibrium, steady, table
 
 #: Points of a scan over one freed name, of its refinement, and starts tried where several are free.
 SCAN, REFINED, STARTS = 25, 12, 32
@@ -72,7 +72,8 @@ def design(
     """Find values of freed parameters and inputs at which outputs or states take given steady values.
 
     States and freed values are solved for at once from the values given. Where that fails, one freed name is scanned
-    over its range for a change of sign; for several the targets are led from where they are, then other starts tried.
+    over its range for a change of sign; for several the targets are continued from where they are, then other starts
+    tried.
 
     Args:
         flat: the model
@@ -91,14 +92,12 @@ def design(
     start = point(flat, values, guess, who="design")
     search = Search(flat, free, targets, start, bounds or {})
     try:
-        x = search.balance(search.f)
+        begin = search.equilibrium(search.f)
     except SolveError:
-        x = start.x
-    if (found := search.newton(x, search.f, search.goal)) is not None:
+        begin = Equilibrium(start.x, flat.starts("algebraic"))
+    if (found := search.newton(begin, search.f, search.goal)) is not None:
         return _design(search, *found)
-    if len(free) == 1:
-        return _by_scan(search, x)
-    return _by_starts(search, x)
+    return _by_scan(search, begin) if len(free) == 1 else _by_starts(search, begin)
 
 
 def choose(
@@ -146,10 +145,10 @@ def _problems(
     return [problem for problem in found if problem]
 
 
-def _design(search: Search, x: np.ndarray, f: np.ndarray, notes: tuple[str, ...] = ()) -> Design:
+def _design(search: Search, found: Equilibrium, f: np.ndarray, notes: tuple[str, ...] = ()) -> Design:
     flat, n, m = search.flat, search.n, len(f)
     here = search.point(f)
-    values, jacobian = search.at(x, f)
+    values, jacobian = search.at(found, f)
     right = np.vstack([np.zeros((n, m)), np.eye(m)])
     sensitivity = np.linalg.solve(jacobian, right)[n:]
     size = np.maximum(np.abs(f), [1e-3 * flat.quantity(name).nominal for name in search.free])
@@ -159,7 +158,7 @@ def _design(search: Search, x: np.ndarray, f: np.ndarray, notes: tuple[str, ...]
         notes = (*notes, f"{alike} do nearly the same to the targets (condition {condition:.1e}): free another one.")
     return Design(
         values=dict(zip(search.free, map(float, f), strict=True)),
-        result=table(flat, x[:, None], here.u[:, None], here.p[:, None]),
+        result=table(flat, [found], here.u[:, None], here.p[:, None]),
         sensitivity=sensitivity,
         targets=search.names,
         residuals=dict(zip(search.names, map(float, values[n:] - search.goal), strict=True)),
@@ -168,15 +167,16 @@ def _design(search: Search, x: np.ndarray, f: np.ndarray, notes: tuple[str, ...]
     )
 
 
-def _by_scan(search: Search, x: np.ndarray) -> Design:
+def _by_scan(search: Search, begin: Equilibrium) -> Design:
     """Look for changes of sign over the range of the only freed name; the one nearest to the start wins."""
     scale, goal = search.ranges[0], float(search.goal[0])
     home = scale.share(float(search.f[0]))
     grid = np.linspace(0.0, 1.0, SCAN)
-    tried = search.scan([s for s in grid if s >= home], x) + search.scan([s for s in grid[::-1] if s < home], x)
+    tried = search.scan([s for s in grid if s >= home], begin)
+    tried += search.scan([s for s in grid[::-1] if s < home], begin)
     tried.sort(key=lambda t: t.share)
     crossings = _crossings(tried, goal)
-    if not crossings and any(t.x is not None for t in tried):
+    if not crossings and any(t.at is not None for t in tried):
         tried = sorted(tried + search.scan(_refined(tried, goal), None), key=lambda t: t.share)
         crossings = _crossings(tried, goal)
     crossings.sort(key=lambda pair: abs(pair[0].share - home))
@@ -189,27 +189,27 @@ def _by_scan(search: Search, x: np.ndarray) -> Design:
 def _crossings(tried: Sequence[Tried], goal: float) -> list[tuple[Tried, Tried]]:
     """Neighbours with the goal between them."""
     return [
-        (a, b) for a, b in pairwise(tried) if a.x is not None and b.x is not None and (a.y - goal) * (b.y - goal) <= 0
+        (a, b) for a, b in pairwise(tried) if a.at is not None and b.at is not None and (a.y - goal) * (b.y - goal) <= 0
     ]
 
 
 def _refined(tried: Sequence[Tried], goal: float) -> list[float]:
     """More points around the one that comes nearest."""
-    best = min((i for i, t in enumerate(tried) if t.x is not None), key=lambda i: abs(tried[i].y - goal))
+    best = min((i for i, t in enumerate(tried) if t.at is not None), key=lambda i: abs(tried[i].y - goal))
     low, high = tried[max(best - 1, 0)].share, tried[min(best + 1, len(tried) - 1)].share
     return [float(s) for s in np.linspace(low, high, REFINED + 2)[1:-1]]
 
 
-def _between(search: Search, a: Tried, b: Tried) -> tuple[np.ndarray, np.ndarray] | None:
+def _between(search: Search, a: Tried, b: Tried) -> tuple[Equilibrium, np.ndarray] | None:
     """Close in on a change of sign, then solve from there; None for a jump."""
     from scipy.optimize import brentq
 
-    warm, goal = a.x, float(search.goal[0])
+    warm, goal = a.at, float(search.goal[0])
 
     def miss(share: float) -> float:
         nonlocal warm
         f = np.array([search.ranges[0].at(share)])
-        warm = search.balance(f, warm)
+        warm = search.equilibrium(f, warm)
         return float(search.aims(warm, f)[0]) - goal
 
     try:
@@ -235,10 +235,11 @@ def _out_of_reach(search: Search, scale: Range, tried: Sequence[Tried]) -> str:
     flat, name, target = search.flat, search.free[0], search.names[0]
     unit, aim = flat.quantity(name).unit, flat.quantity(target).unit
     ends = f"{text(scale.low, unit, 4)} to {text(scale.high, unit, 4)}"
-    solved = [t for t in tried if t.x is not None]
+    solved = [t for t in tried if t.at is not None]
     if not solved:
         return (
             f"design: there is no steady state at any {name} from {ends}. Check the loads, the cooling and the bounds."
+            + _limits(search)
         )
     low, high = min(t.y for t in solved), max(t.y for t in solved)
     if high - low <= UNMOVED * search.size[0]:
@@ -252,21 +253,27 @@ def _out_of_reach(search: Search, scale: Range, tried: Sequence[Tried]) -> str:
     return (
         f"design: {target} reaches {text(low, aim)} ... {text(high, aim)} while {name} goes from {ends}{some}: "
         f"the target {text(float(search.goal[0]), aim)} is out of reach.\nWiden the bounds or free something else."
+        + _limits(search)
     )
 
 
-def _by_starts(search: Search, x: np.ndarray) -> Design:
-    """Lead the targets from where they are, then try starts all over the ranges."""
-    if (found := search.led(x, search.f)) is not None:
+def _limits(search: Search) -> str:
+    """The relations between parameters that freed values ran into, in words."""
+    return f"\nThe search was limited by {', '.join(search.limits)}." if search.limits else ""
+
+
+def _by_starts(search: Search, begin: Equilibrium) -> Design:
+    """Continue the targets from where they are, then try starts all over the ranges."""
+    if (found := search.continued(begin, search.f)) is not None:
         return _design(search, *found)
     reached = []
     for f in search.spread(STARTS):
         try:
-            x = search.balance(f)
+            begin = search.equilibrium(f)
         except SolveError:
             continue
-        reached.append(search.aims(x, f))
-        if (found := search.newton(x, f, search.goal)) is not None:
+        reached.append(search.aims(begin, f))
+        if (found := search.newton(begin, f, search.goal)) is not None:
             return _design(search, *found)
     raise SolveError(_no_values(search, reached))
 
@@ -278,7 +285,8 @@ def _no_values(search: Search, reached: Sequence[np.ndarray]) -> str:
     wanted = ", ".join(f"{name} = {text(float(value), unit)}" for name, value, unit in aims)
     head = f"design: no values of {', '.join(search.free)} found that give {wanted}.\n"
     if not reached:
-        return head + "There is no steady state anywhere in their ranges: check the loads, the cooling and the bounds."
+        nowhere = "There is no steady state anywhere in their ranges: check the loads, the cooling and the bounds."
+        return head + nowhere + _limits(search)
     extremes = zip(search.names, np.min(reached, axis=0), np.max(reached, axis=0), units, strict=True)
     seen = [
         f"{name} stays at {text(float(a), unit)}"
@@ -286,4 +294,5 @@ def _no_values(search: Search, reached: Sequence[np.ndarray]) -> str:
         else f"{name} reaches {text(float(a), unit)} ... {text(float(b), unit)}"
         for name, a, b, unit in extremes
     ]
-    return head + f"Over their ranges {', '.join(seen)}: change the targets or the bounds, or free something else."
+    advice = "change the targets or the bounds, or free something else."
+    return head + f"Over their ranges {', '.join(seen)}: {advice}" + _limits(search)

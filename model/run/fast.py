@@ -1,12 +1,19 @@
-"""Calls of CasADi functions on numpy vectors, without the conversion that costs more than the function itself."""
+"""Calls of CasADi functions on numpy vectors, without the conversion that costs more than the function itself.
+
+What is compiled of a model is compiled once.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from functools import wraps
+from typing import Any, Concatenate, ParamSpec, TypeVar
+from weakref import WeakKeyDictionary
 
 import casadi as ca
 import numpy as np
+
+from ..core.flat import FlatModel
 
 
 class Fast:
@@ -37,3 +44,22 @@ class Fast:
             array[:] = value
         self._evaluate()
         return [r[:, 0].copy() if r.shape[1] == 1 else r.copy() for r in self._results]
+
+
+Made = TypeVar("Made")
+Arguments = ParamSpec("Arguments")
+
+
+def once(make: Callable[Concatenate[FlatModel, Arguments], Made]) -> Callable[Concatenate[FlatModel, Arguments], Made]:
+    """What is compiled of a model, made once per model and further arguments, and gone with the model."""
+    made: WeakKeyDictionary[FlatModel, dict[Any, Made]] = WeakKeyDictionary()
+
+    @wraps(make)
+    def kept(flat: FlatModel, *arguments: Arguments.args, **named: Arguments.kwargs) -> Made:
+        own = made.setdefault(flat, {})
+        key = (arguments, tuple(named.items()))
+        if key not in own:
+            own[key] = make(flat, *arguments, **named)
+        return own[key]
+
+    return kept

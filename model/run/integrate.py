@@ -1,8 +1,9 @@
-"""Integration of a flat model over one stretch without jumps, by CVODES through CasADi or by SciPy's LSODA."""
+"""Integration of a flat model over one stretch without jumps, by IDAS through CasADi or by SciPy's LSODA."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
@@ -10,10 +11,15 @@ import casadi as ca
 import numpy as np
 
 from ..core.flat import FlatModel
-from .fast import Fast
+from ..errors import SolveError
+from .algebra import algebra
+from .fast import Fast, once
 
-#: Steps between two output times before CVODES gives up.
+#: Steps between two output times before IDAS gives up.
 MOST_STEPS = 100_000
+
+#: First step of IDAS over its tolerance [s].
+FIRST_STEP = 1e-3
 
 #: Steps in search of the moment where an integration fails, and the size of a scaled state that is beyond all reason.
 MOST_TRIAL_STEPS, BLOWN_UP = 20_000, 1e9
@@ -22,12 +28,13 @@ MOST_TRIAL_STEPS, BLOWN_UP = 20_000, 1e9
 class Failure(Exception):
     """An integration that cannot go on: time reached [s], states there and their derivatives.
 
-    `passable` where only the method failed: small steps get through.
+    `passable` where only the method failed: small steps get through. `block` says which implicit block has no solution
+    behind that time, where that is the reason.
     """
 
-    def __init__(self, time: float, x: np.ndarray, rate: np.ndarray, passable: bool) -> None:
+    def __init__(self, time: float, x: np.ndarray, rate: np.ndarray, passable: bool, block: str = "") -> None:
         super().__init__(f"stopped at {time} s")
-        self.time, self.x, self.rate, self.passable = time, x, rate, passable
+        self.time, self.x, self.rate, self.passable, self.block = time, x, rate, passable, block
 
 
 @dataclass(frozen=True)
@@ -75,36 +82,47 @@ class Transient:
     def __init__(self, flat: FlatModel, x: np.ndarray, p: np.ndarray, tolerance: float) -> None:
         self.flat, self.origin, self.p, self.tolerance = flat, x, p, tolerance
         self.nominal = np.array([q.nominal for q in flat.states])
-        n = len(flat.inputs)
-        z, line, time = ca.SX.sym("z", max(len(x), 1)), ca.SX.sym("line", 2 * n + 1), ca.SX.sym("time")
-        states = ca.DM(self.origin) + ca.DM(self.nominal) * z if len(x) else ca.SX(0, 1)
+        self.z_nominal = np.array([q.nominal for q in flat.algebraic])
+        self.algebra = algebra(flat)
+        n, nz = len(flat.inputs), len(flat.algebraic)
+        sizes = {"s": max(len(x), 1), "z": nz, "line": 2 * n + 1, "t": 1}
+        s, z, line, time = (ca.SX.sym(name, size) for name, size in sizes.items())
+        states = ca.DM(self.origin) + ca.DM(self.nominal) * s if len(x) else ca.SX(0, 1)
         inputs = line[:n] + line[n : 2 * n] * (time - line[2 * n])
-        rate, *power = _rates(flat)(states, inputs, ca.SX(ca.DM(p)))
+        rate, residual, *power = _rates(flat)(states, ca.DM(self.z_nominal) * z, inputs, ca.SX(ca.DM(p)))
         rate = rate / ca.DM(self.nominal) if len(x) else ca.SX(1, 1)
-        self._dae = {"x": z, "u": line, "t": time, "ode": ca.densify(rate), "quad": ca.densify(ca.vertcat(*power))}
+        self._dae = {"x": s, "z": z, "u": line, "t": time, "ode": ca.densify(rate), "alg": ca.densify(residual)}
+        self._dae["quad"] = ca.densify(ca.vertcat(*power))
         self._made: dict[bytes, Any] = {}
 
-    def cvodes(self, stretch: Stretch, grid: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """States at the times of a grid (first and last are the stretch's ends), and supply and throughput [J].
+    def idas(self, stretch: Stretch, grid: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """States at the times of a grid (first and last are the stretch's ends), algebraic variables, and integrals.
+
+        Returns:
+            states and algebraic variables, a column per time; supply and throughput [J]
 
         Raises:
-            Failure: CVODES gave up
+            Failure: IDAS gave up
+            SolveError: an implicit block has no solution at the begin
         """
         run = self._integrator(grid[1:] - stretch.begin)
+        z = self.algebra.solve(x, stretch.inputs(grid[:1])[:, 0], self.p)
         try:
-            done = run(x0=self._scaled(x), u=stretch.lines(grid[:-1]))
+            done = run(x0=self._scaled(x), z0=z / self.z_nominal, u=stretch.lines(grid[:-1]))
         except RuntimeError:
             raise self._failure(stretch, x) from None
         path = self._states(np.column_stack([self._scaled(x), np.array(done["xf"])]))
-        if not np.isfinite(path).all():
+        algebraic = np.column_stack([z, self.z_nominal[:, None] * np.array(done["zf"]).reshape(len(z), len(grid) - 1)])
+        if not (np.isfinite(path).all() and np.isfinite(algebraic).all()):
             raise self._failure(stretch, x)
-        return path, np.array(done["qf"])[:, -1]
+        return path, algebraic, np.array(done["qf"])[:, -1]
 
-    def lsoda(self, stretch: Stretch, grid: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """The same by SciPy's LSODA, restarted at every kink of the inputs.
+    def lsoda(self, stretch: Stretch, grid: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """The same by SciPy's LSODA, restarted at every kink of the inputs, the implicit blocks solved at every call.
 
         Raises:
             Failure: LSODA gave up
+            SolveError: an implicit block has no solution at the begin
         """
         from scipy.integrate import solve_ivp
 
@@ -114,15 +132,20 @@ class Transient:
             inside = grid[(grid > begin) & (grid <= end)]
             rates = self._rates(stretch, begin)
             times = np.union1d(inside, [end])
-            done = solve_ivp(rates, (begin, end), state, "LSODA", times, rtol=self.tolerance, atol=self.tolerance)
+            try:
+                done = solve_ivp(rates, (begin, end), state, "LSODA", times, rtol=self.tolerance, atol=self.tolerance)
+            except SolveError:
+                raise self._failure(stretch, x) from None
             if not done.success or not np.isfinite(done.y).all():
                 raise self._failure(stretch, x)
             path += list(done.y.T[: len(inside)])
             state = done.y[:, -1]
-        return self._states(np.array(path).T[:-2]), state[-2:]
+        states = self._states(np.array(path).T[:-2])
+        u, p = stretch.inputs(grid), np.tile(self.p[:, None], (1, len(grid)))
+        return states, self.algebra.solve_rows(states, u, p), state[-2:]
 
     def _integrator(self, times: np.ndarray) -> Any:
-        """CVODES with outputs at given times after the begin of a stretch; one per grid of times."""
+        """IDAS with outputs at given times after the begin of a stretch; one per grid of times."""
         key = times.tobytes()
         if key not in self._made:
             options = {
@@ -130,11 +153,13 @@ class Transient:
                 "abstol": self.tolerance,
                 "max_num_steps": MOST_STEPS,
                 "quad_err_con": True,
+                "calc_ic": False,  # the begin is consistent but for its slopes, hence a tiny first step
+                "step0": FIRST_STEP * self.tolerance,
                 "linear_solver": "csparse",  # pivots; the default squares entries and loses those that underflow
                 "disable_internal_warnings": True,
                 "show_eval_warnings": False,
             }
-            self._made[key] = ca.integrator("transient", "cvodes", self._dae, 0.0, list(times), options)
+            self._made[key] = ca.integrator("transient", "idas", self._dae, 0.0, list(times), options)
         return self._made[key]
 
     def _scaled(self, x: np.ndarray) -> np.ndarray:
@@ -145,15 +170,23 @@ class Transient:
         states: np.ndarray = self.origin[:, None] + self.nominal[:, None] * z[:n]
         return states
 
+    @cached_property
+    def _scaled_rates(self) -> Fast:
+        """(scaled states, scaled algebraic variables, line, time) -> derivatives with those of the integrals."""
+        d = self._dae
+        return Fast("rates", [d["x"], d["z"], d["u"], d["t"]], [ca.vertcat(d["ode"], d["quad"])])
+
     def _rates(self, stretch: Stretch, begin: float) -> Any:
         """(time [s], scaled states with integrals) -> derivatives, for SciPy, on the piece that starts at `begin`."""
-        d = self._dae
-        function = Fast("rates", [d["x"], d["u"], d["t"]], [ca.vertcat(d["ode"], d["quad"])])
         line = stretch.lines(np.array([begin]))[:, 0]
-        n = d["x"].numel()
+        m, n = len(stretch.table), self._dae["x"].numel()
+        warm: np.ndarray | None = None
 
         def rates(now: float, state: np.ndarray) -> np.ndarray:
-            return function(state[:n], line, np.array([now - stretch.begin]))[0]
+            nonlocal warm
+            u = line[:m] + line[m : 2 * m] * (now - stretch.begin - line[2 * m])
+            warm = self.algebra.solve(self._states(state[:n, None])[:, 0], u, self.p, warm)
+            return self._scaled_rates(state[:n], warm / self.z_nominal, line, np.array([now - stretch.begin]))[0]
 
         return rates
 
@@ -161,28 +194,30 @@ class Transient:
         """How far a stretch can be followed, step by step."""
         from scipy.integrate import LSODA
 
-        state, now, passable = np.concatenate([self._scaled(x), [0.0, 0.0]]), stretch.begin, True
+        state, now, passable, block = np.concatenate([self._scaled(x), [0.0, 0.0]]), stretch.begin, True, ""
         rates = self._rates(stretch, now)
-        for begin, end in pairwise(stretch.time):
-            rates = self._rates(stretch, begin)
-            solver = LSODA(rates, begin, state, end, rtol=self.tolerance, atol=self.tolerance)
-            steps = 0
-            while solver.status == "running" and steps < MOST_TRIAL_STEPS:
-                solver.step()
-                steps += 1
-                if not np.isfinite(solver.y).all() or np.abs(solver.y[:-2]).max() > BLOWN_UP:
+        try:
+            for begin, end in pairwise(stretch.time):
+                rates = self._rates(stretch, begin)
+                solver = LSODA(rates, begin, state, end, rtol=self.tolerance, atol=self.tolerance)
+                steps = 0
+                while solver.status == "running" and steps < MOST_TRIAL_STEPS:
+                    solver.step()
+                    steps += 1
+                    if not np.isfinite(solver.y).all() or np.abs(solver.y[:-2]).max() > BLOWN_UP:
+                        break
+                    state, now = solver.y.copy(), float(solver.t)
+                passable = solver.status == "finished"
+                if not passable:
                     break
-                state, now = solver.y.copy(), float(solver.t)
-            passable = solver.status == "finished"
-            if not passable:
-                break
+        except SolveError as error:
+            passable, block = False, str(error)
         last, rate = self._states(state[:-2, None])[:, 0], rates(now, state)[:-2][: len(x)] * self.nominal
-        return Failure(now, last, rate, passable)
+        return Failure(now, last, rate, passable, block)
 
 
+@once
 def _rates(flat: FlatModel) -> Any:
-    """CasADi function (x, u, p) -> derivatives, supply and throughput."""
-    if "powers" not in flat.prepared:
-        results = [flat.ode, flat.supply, flat.throughput]
-        flat.prepared["powers"] = ca.Function("powers", [flat.x, flat.u, flat.p], results, {"cse": True})
-    return flat.prepared["powers"]
+    """CasADi function (x, z, u, p) -> derivatives, algebraic residuals, supply and throughput."""
+    results = [flat.ode, flat.residual, flat.supply, flat.throughput]
+    return ca.Function("powers", flat.point, results, {"cse": True})

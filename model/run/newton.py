@@ -1,4 +1,7 @@
-"""Roots of small dense systems: Newton's method damped by its own contraction, and relaxation along the dynamics."""
+"""Roots of small dense systems: damped Newton, homotopy, and pseudo-transient continuation along the dynamics.
+
+The C code of FMU and batch holds the same methods and takes the numbers in capitals from here.
+"""
 
 from __future__ import annotations
 
@@ -11,33 +14,49 @@ import numpy as np
 System = Callable[[np.ndarray], tuple[np.ndarray, np.ndarray]]
 
 #: A root is found when the next correction is below this, in scales.
-TOLERANCE = 1e-10
+CONVERGED = 1e-10
+
+#: Least shortening of the next correction by a full step.
+CONTRACTION = 0.75
 
 #: Corrections below this that no longer shrink are round-off.
 ROUND_OFF = 1e-7
 
+#: Longest step of a state in Newton's method, in scales on top of half its value.
+STRIDE = 10.0
+
 #: Least damping factor before Newton gives up.
 LEAST_STEP = 1e-5
 
-#: Longest step of the relaxation: as a share of the time in which a deviation grows by e, and in scales.
+#: Corrections before Newton gives up: alone, inside an implicit Euler step, and behind a stride of a homotopy.
+MOST_NEWTON, MOST_EULER, MOST_STRIDE = 50, 8, 15
+
+#: A stride of a homotopy: the first, and the least before it gives up.
+FIRST_STRIDE, LEAST_STRIDE = 0.25, 1e-3
+
+#: Longest pseudo-transient step: as a share of the time in which a deviation grows by e, and in scales.
 CAUTION, FAR = 0.3, 5.0
 
-#: Relaxation ends where steps this long [s] change nothing, and gives up below the shortest.
-LONGEST, SHORTEST = 1e9, 1e-12
+#: The pseudo-transient ends where steps this long [s] change nothing, and gives up below the shortest.
+LONGEST, SHORTEST, MOST_RELAX = 1e9, 1e-12, 300
 
 
 @dataclass(frozen=True)
 class Box:
-    """Where unknowns may be (both ends excluded where they are finite) and how large they typically are."""
+    """Where unknowns may be (both ends excluded where they are finite) and how large they typically are.
+
+    A step longer than `stride` scales and half the value is wild.
+    """
 
     low: np.ndarray
     high: np.ndarray
     scale: np.ndarray
+    stride: np.ndarray | float = STRIDE
 
     def share(self, z: np.ndarray, d: np.ndarray) -> float:
-        """Largest part of a step that stays inside and is not wild: a tenfold scale and half the value at most."""
+        """Largest part of a step that stays inside and is not wild."""
         room = np.where(d > 0, self.high - z, z - self.low)
-        most = np.minimum(0.9 * room, 10 * self.scale + 0.5 * np.abs(z))
+        most = np.minimum(0.9 * room, self.stride * self.scale + 0.5 * np.abs(z))
         with np.errstate(divide="ignore", invalid="ignore"):
             shares = np.where(d == 0, 1.0, most / np.abs(d))
         return float(min(1.0, shares.min(initial=1.0)))
@@ -49,14 +68,15 @@ class Box:
 
 @dataclass(frozen=True)
 class Root:
-    """Where a search ended, whether that is a root, and how many steps it took."""
+    """Where a search ended, whether that is a root, how many steps it took, and how far a homotopy got."""
 
     z: np.ndarray
     found: bool
     steps: int
+    share: float = 0.0
 
 
-def newton(system: System, z: np.ndarray, box: Box, most: int = 50) -> Root:
+def newton(system: System, z: np.ndarray, box: Box, most: int = MOST_NEWTON) -> Root:
     """Newton's method with the natural monotonicity test (Deuflhard 2004, section 3.3), blind to scales of residuals.
 
     Args:
@@ -72,14 +92,14 @@ def newton(system: System, z: np.ndarray, box: Box, most: int = 50) -> Root:
         if d is None:
             return Root(z, False, step)
         length = box.size(d)
-        if length <= TOLERANCE:
+        if length <= CONVERGED:
             return Root(z + d, True, step)
         damping = min(damping, box.share(z, d))
         while True:
             trial = z + damping * d
             new_residual, new_jacobian = system(trial)
             again = _correction(jacobian, new_residual)
-            if again is not None and box.size(again) <= (1 - damping / 4) * length:
+            if again is not None and box.size(again) <= (1 - (1 - CONTRACTION) * damping) * length:
                 break
             if length <= ROUND_OFF:
                 return Root(z, True, step)
@@ -102,31 +122,75 @@ def _correction(jacobian: np.ndarray, residual: np.ndarray) -> np.ndarray | None
     return d if np.isfinite(d).all() else None
 
 
-def relax(system: System, z: np.ndarray, box: Box, most: int = 300) -> Root:
-    """Follow dz/dt = residual to rest by implicit Euler with steps that grow as long as they are easy.
+def homotopy(at: Callable[[float], System], z: np.ndarray, box: Box) -> Root:
+    """Follow the root of a system that changes with a share from 0, where z is its root, to 1, in strides that adapt.
+
+    Args:
+        at: share -> the system there
+        z: the root at share 0
+        box: bounds and scales
+
+    Returns:
+        the root at share 1; the last one reached where it is not found
+    """
+    share, stride, steps = 0.0, FIRST_STRIDE, 0
+    while share < 1.0 and stride > LEAST_STRIDE:
+        aim = min(1.0, share + stride)
+        root = newton(at(aim), z, box, MOST_STRIDE)
+        steps += root.steps
+        if root.found:
+            z, share, stride = root.z, aim, 2 * stride
+        else:
+            stride /= 2
+    return Root(z, share >= 1.0, steps, share)
+
+
+def pseudo_transient(system: System, z: np.ndarray, box: Box, n: int, most: int = MOST_RELAX) -> Root:
+    """Follow dz/dt = residual to equilibrium by implicit Euler with steps that grow as long as they are easy.
 
     It goes where the machine would go, also where Newton's method finds no way: shafts that come to rest, the stable
-    one of several balances. Steps are short where the machine runs away from itself and never far.
+    one of several equilibria. Steps are short where the machine runs away from itself and never far.
+
+    Args:
+        system: residual and Jacobian at z; the first n residuals are derivatives of the first n unknowns, the others
+            are zero at every moment
+        z: where to start, inside the box
+        box: bounds and scales
+        n: number of unknowns with a derivative
+        most: corrections before giving up
     """
     residual, jacobian = system(z)
     if not np.isfinite(residual).all():
         return Root(z, False, 0)
-    step = float(np.clip(1 / max(box.size(residual), 1e-12), 1e-6, 1e3))
+    states = Box(box.low[:n], box.high[:n], box.scale[:n])
+    step = float(np.clip(1 / max(states.size(residual[:n]), 1e-12), 1e-6, 1e3))
     taken = 0
     while taken < most and step > SHORTEST:
-        step = min(step, CAUTION / max(growth(jacobian), 1e-300))
-        inner = newton(_euler(system, z, step), z, box, most=8)
+        step = min(step, CAUTION / max(growth(reduced(jacobian, n)), 1e-300))
+        inner = newton(_euler(system, z, step, n), z, box, MOST_EULER)
         taken += max(inner.steps, 1)
-        if not inner.found or box.size((inner.z - z) / (1 + np.abs(z) / (10 * box.scale))) > FAR:
+        if not inner.found or states.size(((inner.z - z) / (1 + np.abs(z) / (STRIDE * box.scale)))[:n]) > FAR:
             step /= 4
             continue
-        moved, z = box.size(inner.z - z), inner.z
+        moved, z = states.size((inner.z - z)[:n]), inner.z
         _, jacobian = system(z)
         if step >= LONGEST and moved < 1.0:
             last = newton(system, z, box)
             return Root(last.z, last.found, taken + last.steps)
         step = min(step * (5 if inner.steps <= 4 else 2), 10 * LONGEST)
     return Root(z, False, taken)
+
+
+def reduced(jacobian: np.ndarray, n: int) -> np.ndarray:
+    """Jacobian of the first n residuals in the first n unknowns where the others keep theirs at zero; NaN if none."""
+    if len(jacobian) == n:
+        return jacobian
+    try:
+        answer = np.linalg.solve(jacobian[n:, n:], jacobian[n:, :n])
+    except np.linalg.LinAlgError:
+        return np.full((n, n), np.nan)
+    whole: np.ndarray = jacobian[:n, :n] - jacobian[:n, n:] @ answer
+    return whole
 
 
 def growth(jacobian: np.ndarray) -> float:
@@ -138,12 +202,17 @@ def growth(jacobian: np.ndarray) -> float:
     return rate if rate > 1e-10 * float(np.abs(values).max()) else 0.0
 
 
-def _euler(system: System, before: np.ndarray, step: float) -> System:
+def stable(jacobian: np.ndarray) -> bool:
+    """Whether a machine stays at an equilibrium of this (reduced) Jacobian."""
+    return bool(np.isfinite(jacobian).all()) and growth(jacobian) == 0.0
+
+
+def _euler(system: System, before: np.ndarray, step: float, n: int) -> System:
     """The equations of one implicit Euler step."""
-    identity = np.eye(len(before))
+    mass = np.diag(np.arange(len(before)) < n) / step
 
     def equations(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         rate, jacobian = system(z)
-        return (z - before) / step - rate, identity / step - jacobian
+        return mass @ (z - before) - rate, mass - jacobian
 
     return equations

@@ -41,7 +41,8 @@ def point(
         taken: inputs that are given elsewhere
 
     Raises:
-        ScenarioError: all unknown names, names of the wrong kind, doubled and out-of-range values at once
+        ScenarioError: all unknown names, names of the wrong kind, doubled and out-of-range values at once; all
+            relations between parameters that do not hold
     """
     vectors = {kind: flat.starts(kind) for kind in ("state", "input", "parameter")}
     taken = set(taken)
@@ -55,6 +56,7 @@ def point(
             else:
                 kind, i = flat.index[name]
                 vectors[kind][i] = value
+    problems = problems or [f"{who}: {told}" for told in flat.contradictions(vectors["parameter"]).values()]
     if problems:
         raise ScenarioError(problems)
     return Point(vectors["state"], vectors["input"], vectors["parameter"])
@@ -68,6 +70,8 @@ def problem_of(
         known = [n for n, (kind, _) in flat.index.items() if kind in allowed]
         return f'{who}: unknown name "{name}".{suggestion(name, known)}'
     kind, _ = flat.index[name]
+    if name in flat.derived and kind not in allowed:
+        return f"{who}: {follows(flat, name)}"
     if kind not in allowed:
         expected = " or ".join(WORDS[k] for k in allowed)
         joined = next((f" ({text})" for text in flat.joined if text.startswith(f"{name} ")), "")
@@ -76,3 +80,10 @@ def problem_of(
         return None
     problem = flat.quantity(name).problem(value)
     return problem and f"{who}: {problem}"
+
+
+def follows(flat: FlatModel, name: str) -> str:
+    """What a user reads who sets a parameter that follows from others."""
+    own = name.rpartition(".")[0] + "."
+    known = ", ".join(path.removeprefix(own) for path in flat.derived[name])
+    return f"{name} follows from {known}. Change these, or give {name} a value of its own in the rig file."

@@ -2,35 +2,58 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator, Mapping
 
 import numpy as np
 
 from ..core.flat import FlatModel
+from ..errors import SolveError
 from ..sources import LawInfo
+from ..units import text
+from .algebra import algebra
 from .result import Audit, Outside, Result
 
 #: Round-off allowed at the ends of a law's range, relative.
 SLACK = 1e-9
 
 
-def evaluate(flat: FlatModel, x: np.ndarray, u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
-    """All output expressions, a column per row of the result.
+def evaluate(
+    flat: FlatModel, x: np.ndarray, u: np.ndarray, p: np.ndarray, warm: np.ndarray | None = None
+) -> dict[str, np.ndarray]:
+    """All output expressions, a column per row of the result, the implicit blocks solved.
 
     Args:
         flat: the model
         x: states, n_x by rows
         u: inputs, n_u by rows
-        p: parameters, n_p, or n_p by rows
+        p: parameters, n_p by rows, or n_p
+        warm: algebraic variables to begin with, n_z by rows
 
     Returns:
-        "y", "residual", "supply", "throughput", "stored", "checked", each with one column per row
+        "ode", "y", "residual", "supply", "throughput", "stored", "checked", each with one column per row
+
+    Raises:
+        SolveError: an implicit block has no solution
     """
-    function = flat.output_function
-    rows = x.shape[1]
+    function, rows = flat.function, x.shape[1]
     p = p if p.ndim == 2 else np.tile(p[:, None], (1, rows))
-    values = function(x, u, p) if rows > 1 else function(x[:, 0], u[:, 0], p[:, 0])
+    point = (x, algebra(flat).solve_rows(x, u, p, warm), u, p)
+    values = function(*point) if rows > 1 else function(*(v[:, 0] for v in point))
     return {name: np.array(value) for name, value in zip(function.name_out(), values, strict=True)}
+
+
+def evaluate_at(flat: FlatModel, x: np.ndarray, u: np.ndarray, p: np.ndarray) -> dict[str, np.ndarray]:
+    """The same at one point, each a vector.
+
+    Args:
+        flat: the model
+        x, u, p: states, inputs and parameters, SI
+
+    Raises:
+        SolveError: an implicit block has no solution
+    """
+    values = evaluate(flat, *(np.asarray(v, dtype=float)[:, None] for v in (x, u, p)))
+    return {name: value[:, 0] for name, value in values.items()}
 
 
 def result(
@@ -45,6 +68,8 @@ def result(
     """One result from states, inputs and what `evaluate` made of them."""
     groups = ((flat.states, x), (flat.inputs, u), (flat.outputs, evaluated["y"]))
     columns = {q.name: row for quantities, values in groups for q, row in zip(quantities, values, strict=True)}
+    if problems := list(out_of_range(flat, columns)):
+        raise SolveError([f"{kind}: {problem}" for problem in problems])
     return Result(
         model=flat.name,
         kind=kind,
@@ -56,6 +81,24 @@ def result(
         laws=cited(flat.laws),
         implicit=left(flat, evaluated["residual"]),
     )
+
+
+def out_of_range(flat: FlatModel, columns: Mapping[str, np.ndarray]) -> Iterator[str]:
+    """What is wrong with the outputs that leave their declared range, the worst row of each, in words."""
+    for q in flat.outputs:
+        values = columns[q.name]
+        slack = SLACK * (q.nominal + np.abs(values))
+        excess = np.maximum(q.low - values, values - q.high)
+        row = int(np.argmax(np.where(np.isnan(excess), np.inf, excess)))
+        if excess[row] <= slack[row]:
+            continue
+        part = q.name.rpartition(".")[0]
+        if q.refusal:
+            of_part = {o.name.removeprefix(f"{part}."): o for o in flat.outputs if o.name.startswith(f"{part}.")}
+            shown = {key: text(float(columns[o.name][row]), o.unit) for key, o in of_part.items()}
+            yield f"{part}: {q.refusal.format(**shown)}"
+        else:
+            yield str(q.problem(float(values[row])))
 
 
 def outside(flat: FlatModel, checked: np.ndarray) -> tuple[Outside, ...]:

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import cast
 
 import casadi as ca
 import numpy as np
 
 from ..core.flat import FlatModel, Quantity
 from ..errors import SolveError
-from .fast import Fast
-from .newton import Box, System, newton
+from .fast import Fast, once
+from .newton import FIRST_STRIDE, LEAST_STRIDE, STRIDE, Box, System, newton, reduced, stable
 from .point import Point
-from .steady import balance, rates, stable, state_box
+from .steady import Equilibrium, equilibrium, rates, unknowns_box
 
 #: How well a target is met, relative to its size or its nominal.
 MET = 1e-8
@@ -76,10 +75,10 @@ def span(q: Quantity, value: float, given: tuple[float, float] | None) -> Range:
 
 @dataclass(frozen=True)
 class Tried:
-    """One value of the freed name: the states and the target there, none where there is no steady state."""
+    """One value of the freed name: the equilibrium and the target there, none where there is no steady state."""
 
     share: float
-    x: np.ndarray | None
+    at: Equilibrium | None
     y: float
 
 
@@ -105,21 +104,24 @@ class Search:
         self.flat, self.free, self.names = flat, tuple(free), tuple(targets)
         self.goal = np.array(list(targets.values()), dtype=float)
         self.size = np.array([max(abs(v), flat.quantity(n).nominal) for n, v in targets.items()])
-        self.n = len(flat.states)
+        self.n = len(flat.states) + len(flat.algebraic)
         self.where = [flat.locate(name) for name in self.free]
         quantities = [flat.quantity(name) for name in self.free]
         own = [float({"input": start.u, "parameter": start.p}[kind][i]) for kind, i in self.where]
         self.ranges = [span(q, f, bounds.get(q.name)) for q, f in zip(quantities, own, strict=True)]
         self.f = np.array([self._inside(f, q, bounds) for f, q in zip(own, quantities, strict=True)])
         self.start = start
-        states = state_box(flat)
+        own_box = unknowns_box(flat)
+        scales = [0.1 * max(abs(f), 0.1 * q.nominal) for f, q in zip(own, quantities, strict=True)]
         ends = [bounds.get(q.name, (q.low, q.high)) for q in quantities]
         self.box = Box(
-            np.append(states.low, [max(a, q.low) for (a, _), q in zip(ends, quantities, strict=True)]),
-            np.append(states.high, [min(b, q.high) for (_, b), q in zip(ends, quantities, strict=True)]),
-            np.append(states.scale, [0.1 * max(abs(f), 0.1 * q.nominal) for f, q in zip(own, quantities, strict=True)]),
+            np.append(own_box.low, [max(a, q.low) for (a, _), q in zip(ends, quantities, strict=True)]),
+            np.append(own_box.high, [min(b, q.high) for (_, b), q in zip(ends, quantities, strict=True)]),
+            np.append(own_box.scale, scales),
+            np.append(own_box.stride, [STRIDE] * len(own)),
         )
-        self.compiled = self._compiled()
+        self.compiled = _compiled(flat, self.free, self.names)
+        self.limits: dict[str, None] = {}
 
     def _inside(self, value: float, q: Quantity, bounds: Mapping[str, tuple[float, float]]) -> float:
         """A start inside the range, away from its ends."""
@@ -128,18 +130,6 @@ class Search:
         a, b = bounds[q.name]
         return float(np.clip(value, a + 0.01 * (b - a), b - 0.01 * (b - a)))
 
-    def _compiled(self) -> Fast:
-        """(x, u, p) -> derivatives and targets, and their Jacobian in states and freed values."""
-        flat, key = self.flat, f"design {self.free} {self.names}"
-        if key not in flat.prepared:
-            vectors = {"state": flat.x, "output": flat.y, "input": flat.u, "parameter": flat.p}
-            aims = [vectors[kind][i] for kind, i in map(flat.locate, self.names)]
-            freed = [vectors[kind][i] for kind, i in self.where]
-            equations = ca.vertcat(flat.ode, *aims)
-            jacobian = ca.jacobian(equations, ca.vertcat(flat.x, *freed))
-            flat.prepared[key] = Fast("design", [flat.x, flat.u, flat.p], [equations, jacobian])
-        return cast(Fast, flat.prepared[key])
-
     def point(self, f: np.ndarray) -> Point:
         """Inputs and parameters with freed values put in."""
         u, p = self.start.u.copy(), self.start.p.copy()
@@ -147,59 +137,72 @@ class Search:
             (u if kind == "input" else p)[i] = value
         return replace(self.start, u=u, p=p)
 
-    def at(self, x: np.ndarray, f: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives and targets, and their Jacobian in states and freed values."""
+    def at(self, found: Equilibrium, f: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Derivatives, algebraic residuals and targets, and their Jacobian in x, z and freed values."""
         here = self.point(f)
-        values, jacobian = self.compiled(x, here.u, here.p)
+        values, jacobian = self.compiled(found.x, found.z, here.u, here.p)
         return values, jacobian.reshape(len(values), -1)
 
-    def aims(self, x: np.ndarray, f: np.ndarray) -> np.ndarray:
+    def aims(self, found: Equilibrium, f: np.ndarray) -> np.ndarray:
         """The targets' quantities."""
-        return self.at(x, f)[0][self.n :]
+        return self.at(found, f)[0][self.n :]
 
-    def balance(self, f: np.ndarray, warm: np.ndarray | None = None) -> np.ndarray:
-        """Steady states at freed values. Raises SolveError where there are none."""
-        return balance(self.flat, self.point(f), warm, self.free, "design", lead=False)
-
-    def newton(self, x: np.ndarray, f: np.ndarray, goal: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-        """States and freed values at once by Newton's method; None if that ends nowhere a machine would stay."""
-        root = newton(self._system(goal), np.append(x, f), self.box)
-        x, f = root.z[: self.n], root.z[self.n :]
+    def equilibrium(self, f: np.ndarray, warm: Equilibrium | None = None) -> Equilibrium:
+        """The steady state at freed values. Raises SolveError where there is none, or where parameters contradict."""
         here = self.point(f)
-        if not root.found or (np.abs(self.aims(x, f) - goal) > MET * self.size).any():
+        if not self.allowed(here.p):
+            raise SolveError("design: the parameters contradict each other.")
+        return equilibrium(self.flat, here, warm, self.free, "design", continued=False)
+
+    def allowed(self, p: np.ndarray) -> bool:
+        """Whether all relations between parameters hold; those that do not are remembered for the message."""
+        broken = self.flat.contradictions(p)
+        self.limits |= dict.fromkeys(f'{r.component}: "{r.name}"' for r in broken)
+        return not broken
+
+    def newton(self, start: Equilibrium, f: np.ndarray, goal: np.ndarray) -> tuple[Equilibrium, np.ndarray] | None:
+        """Steady state and freed values at once by Newton's method; None if that ends nowhere a machine would stay."""
+        root = newton(self._system(goal), np.append(start.w, f), self.box)
+        found, f = self._split(root.z)
+        here = self.point(f)
+        if not root.found or (np.abs(self.aims(found, f) - goal) > MET * self.size).any() or not self.allowed(here.p):
             return None
-        jacobian = rates(self.flat)(x, here.u, here.p)[1].reshape(self.n, self.n)
-        return (x, f) if stable(jacobian) else None
+        jacobian = rates(self.flat)(found.x, found.z, here.u, here.p)[1].reshape(self.n, self.n)
+        return (found, f) if stable(reduced(jacobian, len(found.x))) else None
+
+    def _split(self, z: np.ndarray) -> tuple[Equilibrium, np.ndarray]:
+        n = len(self.flat.states)
+        return Equilibrium(z[:n], z[n : self.n]), z[self.n :]
 
     def _system(self, goal: np.ndarray) -> System:
         aim = np.append(np.zeros(self.n), goal)
 
         def equations(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-            values, jacobian = self.at(z[: self.n], z[self.n :])
+            values, jacobian = self.at(*self._split(z))
             return values - aim, jacobian
 
         return equations
 
-    def led(self, x: np.ndarray, f: np.ndarray) -> tuple[np.ndarray, np.ndarray] | None:
-        """Lead the targets from their values at a steady state to those asked for."""
-        begin = self.aims(x, f)
-        share, stride = 0.0, 0.25
-        while share < 1.0 and stride > 1e-3:
+    def continued(self, start: Equilibrium, f: np.ndarray) -> tuple[Equilibrium, np.ndarray] | None:
+        """Continue the targets from their values at a steady state to those asked for."""
+        begin, found = self.aims(start, f), (start, f)
+        share, stride = 0.0, FIRST_STRIDE
+        while share < 1.0 and stride > LEAST_STRIDE:
             aim = min(1.0, share + stride)
-            found = self.newton(x, f, begin + aim * (self.goal - begin))
-            if found is None:
+            there = self.newton(*found, begin + aim * (self.goal - begin))
+            if there is None:
                 stride /= 2
             else:
-                (x, f), share, stride = found, aim, 2 * stride
-        return (x, f) if share >= 1.0 else None
+                found, share, stride = there, aim, 2 * stride
+        return found if share >= 1.0 else None
 
-    def scan(self, shares: Sequence[float], warm: np.ndarray | None) -> list[Tried]:
+    def scan(self, shares: Sequence[float], warm: Equilibrium | None) -> list[Tried]:
         """Steady states at some values of the only freed name, each from the one before, in the order given."""
         found = []
         for share in shares:
             f = np.array([self.ranges[0].at(share)])
             try:
-                warm = self.balance(f, warm)
+                warm = self.equilibrium(f, warm)
                 found.append(Tried(share, warm, float(self.aims(warm, f)[0])))
             except SolveError:
                 found.append(Tried(share, None, float("nan")))
@@ -210,6 +213,15 @@ class Search:
         bases = _primes(len(self.free))
         for k in range(1, count + 1):
             yield np.array([r.at(_reversed_digits(k, b)) for r, b in zip(self.ranges, bases, strict=True)])
+
+
+@once
+def _compiled(flat: FlatModel, free: tuple[str, ...], targets: tuple[str, ...]) -> Fast:
+    """(x, z, u, p) -> derivatives, algebraic residuals and targets, and their Jacobian in x, z and freed values."""
+    vectors = {"state": flat.x, "output": flat.y, "input": flat.u, "parameter": flat.p}
+    aims, freed = ([vectors[kind][i] for kind, i in map(flat.locate, names)] for names in (targets, free))
+    equations = ca.vertcat(flat.ode, flat.residual, *aims)
+    return Fast("design", flat.point, [equations, ca.jacobian(equations, ca.vertcat(flat.x, flat.z, *freed))])
 
 
 def _primes(count: int) -> list[int]:

@@ -10,9 +10,9 @@ import numpy as np
 
 from ..core.flat import FlatModel
 from ..errors import ScenarioError
-from .fast import Fast
+from .fast import Fast, once
 from .point import point, problem_of
-from .steady import balance
+from .steady import equilibrium
 
 
 def sensitivities(
@@ -41,20 +41,19 @@ def sensitivities(
     if found := [problem for problem in problems if problem]:
         raise ScenarioError(found)
     here = point(flat, values, guess, who="sensitivities")
-    x = balance(flat, here, None, tuple(values), "sensitivities")
-    n, m = len(flat.states), len(outputs)
-    jacobian = _compiled(flat, tuple(outputs), tuple(names))(x, here.u, here.p)[0].reshape(n + m, n + len(names))
+    found = equilibrium(flat, here, None, tuple(values), "sensitivities")
+    n, m = len(found.w), len(outputs)
+    compiled = _compiled(flat, tuple(outputs), tuple(names))
+    jacobian = compiled(found.x, found.z, here.u, here.p)[0].reshape(n + m, n + len(names))
     answer = np.linalg.solve(jacobian[:n, :n], -jacobian[:n, n:])
     return cast(np.ndarray, jacobian[n:, n:] + jacobian[n:, :n] @ answer)
 
 
+@once
 def _compiled(flat: FlatModel, outputs: tuple[str, ...], names: tuple[str, ...]) -> Fast:
-    """(x, u, p) -> Jacobian of derivatives and outputs in the states and the names."""
-    key = f"sensitivities {outputs} {names}"
-    if key not in flat.prepared:
-        vectors = {"state": flat.x, "output": flat.y, "input": flat.u, "parameter": flat.p}
-        rows = [vectors[kind][i] for kind, i in map(flat.locate, outputs)]
-        columns = [vectors[kind][i] for kind, i in map(flat.locate, names)]
-        jacobian = ca.jacobian(ca.vertcat(flat.ode, *rows), ca.vertcat(flat.x, *columns))
-        flat.prepared[key] = Fast("sensitivities", [flat.x, flat.u, flat.p], [jacobian])
-    return cast(Fast, flat.prepared[key])
+    """(x, z, u, p) -> Jacobian of derivatives, algebraic residuals and outputs in x, z and the names."""
+    vectors = {"state": flat.x, "output": flat.y, "input": flat.u, "parameter": flat.p}
+    rows = [vectors[kind][i] for kind, i in map(flat.locate, outputs)]
+    columns = [vectors[kind][i] for kind, i in map(flat.locate, names)]
+    jacobian = ca.jacobian(ca.vertcat(flat.ode, flat.residual, *rows), ca.vertcat(flat.x, flat.z, *columns))
+    return Fast("sensitivities", flat.point, [jacobian])

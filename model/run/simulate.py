@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
 
 from ..core.flat import FlatModel
@@ -20,7 +21,7 @@ from .schedule import Schedule
 OUTPUT_STEP = 60.0
 
 #: Methods by name.
-METHODS = ("cvodes", "lsoda")
+METHODS = ("idas", "lsoda")
 
 
 def simulate(
@@ -31,7 +32,7 @@ def simulate(
     values: Mapping[str, float] | None = None,
     times: Sequence[float] | np.ndarray | None = None,
     tolerance: float = 1e-8,
-    method: str = "cvodes",
+    method: str = "idas",
 ) -> Result:
     """Run a model through a duty.
 
@@ -43,7 +44,8 @@ def simulate(
         times: output times [s], not decreasing; a row at a jump shows the inputs after it, a time given twice both
             sides. Without it: every 60 s, and both sides of every jump
         tolerance: of the local error, relative to each state's nominal and its distance from the start
-        method: "cvodes" (SUNDIALS BDF through CasADi) or "lsoda" (SciPy, one Python call per right-hand side)
+        method: "idas" (SUNDIALS BDF for differential-algebraic systems, through CasADi) or "lsoda" (SciPy, one Python
+            call per right-hand side)
 
     Returns:
         all states, inputs and outputs, with the energy audit from integrated powers
@@ -59,22 +61,26 @@ def simulate(
     stretches = _stretches(flat, schedule, begin.u)
     rows = _rows(schedule, stretches) if times is None else _asked(np.asarray(times, dtype=float), stretches)
     transient = Transient(flat, begin.x, begin.p, tolerance)
-    run: Callable[..., tuple[np.ndarray, np.ndarray]] = getattr(transient, method)
+    run: Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]] = getattr(transient, method)
     x = np.empty((len(flat.states), len(rows.time)))
+    z = np.empty((len(flat.algebraic), len(rows.time)))
     u = np.empty((len(flat.inputs), len(rows.time)))
     now, energy = begin.x, np.zeros(2)
     for k, stretch in enumerate(stretches):
         here = np.flatnonzero(rows.stretch == k)
         grid = _merged(stretch.time, rows.time[here])
         try:
-            path, gained = run(stretch, grid, now)
+            path, algebraic, gained = run(stretch, grid, now)
         except Failure as failure:
             raise SolveError(_message(flat, failure, begin, stretch, method)) from None
+        except SolveError as error:
+            raise SolveError(f"simulate: at {stretch.begin:.6g} s {error}") from None
         _check_ranges(flat, grid, path)
-        x[:, here] = path[:, _nearest(grid, rows.time[here])]
+        shown = _nearest(grid, rows.time[here])
+        x[:, here], z[:, here] = path[:, shown], algebraic[:, shown]
         u[:, here] = stretch.inputs(rows.time[here])
         now, energy = path[:, -1], energy + gained
-    return _result(flat, rows.time, x, u, begin, now, energy)
+    return _result(flat, rows.time, x, z, u, begin, now, energy)
 
 
 @dataclass(frozen=True)
@@ -158,13 +164,20 @@ def _nearest(grid: np.ndarray, times: np.ndarray) -> np.ndarray:
 
 
 def _result(
-    flat: FlatModel, time: np.ndarray, x: np.ndarray, u: np.ndarray, begin: Point, last: np.ndarray, energy: np.ndarray
+    flat: FlatModel,
+    time: np.ndarray,
+    x: np.ndarray,
+    z: np.ndarray,
+    u: np.ndarray,
+    begin: Point,
+    last: np.ndarray,
+    energy: np.ndarray,
 ) -> Result:
-    evaluated = evaluate(flat, x, u, begin.p)
-    ends = evaluate(flat, np.column_stack([begin.x, last]), u[:, [0, -1]], begin.p)["stored"][0]
-    gained = float(ends[1] - ends[0])
-    held = float(max(np.abs(evaluated["stored"]).max(), np.abs(ends).max()))
-    audit = Audit(float(energy[0]), gained, float(energy[1]), held)
+    evaluated = evaluate(flat, x, u, begin.p, z)
+    stored = ca.Function("stored", [flat.x, flat.u, flat.p], [flat.stored])
+    ends = [float(stored(state, u[:, k], begin.p)) for state, k in ((begin.x, 0), (last, -1))]
+    held = float(max(np.abs(evaluated["stored"]).max(), *map(abs, ends)))
+    audit = Audit(float(energy[0]), ends[1] - ends[0], float(energy[1]), held)
     return result(flat, "transient", time, x, u, evaluated, audit)
 
 
@@ -190,6 +203,8 @@ def _message(flat: FlatModel, failure: Failure, begin: Point, stretch: Stretch, 
             f"simulate: {method} gives up between {stretch.begin:g} and {stretch.end:g} s, though small steps get "
             f'through. Use the method "{other}" or a looser tolerance.'
         )
+    if failure.block:
+        return f"simulate: the run stops at {failure.time:.6g} s: behind that {failure.block}"
     if not flat.states:
         return f"simulate: {flat.name} cannot be evaluated at {failure.time:g} s."
     nominal = np.array([q.nominal for q in flat.states])

@@ -142,7 +142,7 @@ def test_an_information_given_twice_names_its_ports() -> None:
 def test_a_brake_or_a_shaft_end_needs_a_shaft(port: str) -> None:
     """Without a shaft a bearing would stand still, and a given speed would turn nothing."""
     read = {"reading": ("motor.reading", "efficiency.a", "efficiency.b")}  # the motor alone would be told as a part
-    text = message(gearbox({"efficiency": ("Efficiency", dict(ratio=2.0))}, without("pinion", port) | read))
+    text = message(gearbox({"efficiency": ("Efficiency", {})}, without("pinion", port) | read))
     assert f"{port} is connected to nothing: no shaft is there. Connect it to the flange of" in text
 
 

@@ -3,13 +3,14 @@
 import numpy as np
 import pytest
 from gearheat.model.core.flat import FlatModel
+from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.schedule import stepped
 from gearheat.model.run.simulate import simulate
 from small_parts import Battery, Capacitor, Ground, Inductor, Resistor, model, rc, rl
 
 
 def derivative(flat: FlatModel, x: list[float], u: list[float]) -> np.ndarray:
-    return np.array(flat.ode_function(x, u, flat.starts("parameter")))[:, 0]
+    return evaluate_at(flat, x, u, flat.starts("parameter"))["ode"]
 
 
 @pytest.mark.parametrize(("u", "V"), [(0.0, 5.0), (3.0, 5.0), (7.0, -2.0)])
@@ -51,7 +52,7 @@ def test_parallel_resistors_share_the_current() -> None:
     parts = (Battery("e"), Resistor("r1", R=3.0), Resistor("r2", R=6.0), Inductor("l", L=1.0), Ground("g"))
     flat = model(*parts, nets=[("e.a", "r1.a", "r2.a"), ("r1.b", "r2.b", "l.a"), ("l.b", "e.b", "g.pin")])
     assert derivative(flat, [0.5], [4.0]) == pytest.approx([4.0 - 2.0 * 0.5], rel=1e-13)
-    y = np.array(flat.output_function([0.5], [4.0], flat.starts("parameter"))[0])[:, 0]
+    y = evaluate_at(flat, [0.5], [4.0], flat.starts("parameter"))["y"]
     powers = dict(zip([q.name for q in flat.outputs], y, strict=True))
     assert powers["r1.P"] == pytest.approx(1.0**2 / 3.0)
     assert powers["r2.P"] == pytest.approx(1.0**2 / 6.0)

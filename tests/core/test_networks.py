@@ -7,6 +7,7 @@ import pytest
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
+from gearheat.model.run.rows import evaluate_at
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from small_parts import Ambient, Conductor, Heater, Thermometer
@@ -54,7 +55,7 @@ def networks(draw: st.DrawFn) -> Net:
 
 
 def outputs(flat: FlatModel) -> dict[str, float]:
-    y = np.array(flat.output_function([], flat.starts("input"), flat.starts("parameter"))[0])[:, 0]
+    y = evaluate_at(flat, [], flat.starts("input"), flat.starts("parameter"))["y"]
     return dict(zip([q.name for q in flat.outputs], y, strict=True))
 
 

@@ -88,7 +88,7 @@ def test_a_row_is_the_steady_state_of_the_model(
                 guess={n: v for n, v in here.items() if n in starts},
             )
         except SolveError:
-            assert rows.status[k] in (Status.NO_BALANCE, Status.UNSTABLE)
+            assert rows.status[k] in (Status.NO_EQUILIBRIUM, Status.UNSTABLE)
             assert np.isnan(rows.x[k]).all()
             continue
         solved += 1
@@ -182,7 +182,7 @@ def test_rows_that_cannot_be_solved_leave_the_others_alone() -> None:
     values = {"drive.w": speeds, "foot.G": np.array([5.0, 5.0, 5.0, -1.0, 5.0])}
     rows = batch.steady(*batch.vectors(values))
     assert rows.status[[0, 2, 3, 4]].tolist() == [Status.OK, Status.OUT_OF_RANGE, Status.OUT_OF_RANGE, Status.OK]
-    assert rows.status[1] in (Status.NO_BALANCE, Status.UNSTABLE)
+    assert rows.status[1] in (Status.NO_EQUILIBRIUM, Status.UNSTABLE)
     assert np.isnan(rows.x[1:4]).all()
     assert np.isnan(rows.y[1:4]).all()
     assert np.isnan(rows.residual[1:4]).all()

@@ -31,8 +31,7 @@ def at(points: tuple[np.ndarray, np.ndarray], t: float, middle: float) -> float:
 def reference(flat: FlatModel, duty: dict, times: np.ndarray) -> np.ndarray:
     """States at the times, by an independent integrator at a tolerance of 1e-10, restarted at every kink."""
     p = flat.starts("parameter")
-    rate: Callable = flat.ode_function
-    jacobian = ca.Function("jacobian", [flat.x, flat.u, flat.p], [ca.jacobian(flat.ode, flat.x)])
+    jacobian = ca.Function("jacobian", flat.point, [ca.jacobian(flat.ode, flat.x)])
     kinks = np.unique(np.concatenate([t for t, _ in duty.values()]))
     x, rows = flat.starts("state"), [flat.starts("state")]
     for a, b in pairwise(kinks):
@@ -40,14 +39,14 @@ def reference(flat: FlatModel, duty: dict, times: np.ndarray) -> np.ndarray:
         u = lambda t, m=middle: [at(duty[q.name], t, m) for q in flat.inputs]  # noqa: E731
         inside = times[(times > a) & (times <= b)]
         solution = solve_ivp(
-            lambda t, z, u=u: np.array(rate(z, u(t), p)).ravel(),
+            lambda t, z, u=u: np.array(flat.function(z, [], u(t), p)[0]).ravel(),
             (a, b),
             x,
             method="Radau",
             rtol=1e-10,
             atol=1e-10,
             t_eval=np.append(inside[inside < b], b),
-            jac=lambda t, z, u=u: np.array(jacobian(z, u(t), p)),
+            jac=lambda t, z, u=u: np.array(jacobian(z, [], u(t), p)),
         )
         x = solution.y[:, -1]
         rows += list(solution.y.T[: len(inside)])

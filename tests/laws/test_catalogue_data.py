@@ -1,18 +1,18 @@
 """The catalogue files: every value has a source and a unit that fits, and agrees with the others of its entry."""
 
+import csv
 import math
 import tomllib
 from pathlib import Path
 from typing import Any
 
 import pytest
-from gearheat.model.laws.oil import specific_heat
 from gearheat.model.parts import PARTS
 from gearheat.model.sources import sources
 from gearheat.model.units import to_si
 
 FOLDER = Path(__file__).parents[2] / "scenarios" / "catalogue"
-ABOUT = {"doc", "source", "sources"}
+ABOUT = {"doc", "source", "sources", "checked"}
 UNITS = {
     **dict.fromkeys(("nu", "nu_40", "nu_100"), "m2/s"),
     **dict.fromkeys(("rho", "rho_15"), "kg/m3"),
@@ -102,7 +102,7 @@ def test_oil(name: str) -> None:
     assert values.keys() >= LUBRICANT
     assert name == "bearing grease" or "c_p" in values
     if entry.get("sources", {}).get("c_p", "").startswith("Cragoe1929"):
-        assert values["c_p"] == pytest.approx(specific_heat(333.15, values["rho_15"]), abs=0.5)
+        assert values["c_p"] == pytest.approx((1685 + 3.4 * 60) / math.sqrt(values["rho_15"] / 999), abs=0.5)
 
 
 @pytest.mark.parametrize("name", entries("bearings.toml"))
@@ -124,3 +124,46 @@ def test_bearings_of_a_series_share_their_constants() -> None:
             by_series.setdefault(series, set()).add(tuple(entry[k] for k in ("R_1", "R_2", "S_1", "S_2", "K_Z")))
     assert set(by_series) == {"62", "63", "302", "320", "322"}
     assert all(len(constants) == 1 for constants in by_series.values())
+
+
+PRINTED = [
+    row
+    for row in csv.DictReader(
+        line
+        for line in (FOLDER.parents[1] / "tests" / "golden" / "bearing_catalogue.csv").read_text("utf-8").splitlines()
+        if not line.startswith("#")
+    )
+]
+#: Printed friction constants by series: SKF2017, tables 3a and 3d (R_1, R_2, S_1, S_2) and 5 (K_Z, K_L).
+SERIES = {
+    "62": (3.9e-7, 1.7, 3.23e-3, 36.5, 3.1, None),
+    "63": (3.7e-7, 1.7, 2.84e-3, 92.8, 3.1, None),
+    "302": (1.76e-6, 10.9, 0.017, 2.0, 6.0, 0.7),
+    "320": (2.38e-6, 10.9, 0.014, 2.0, 6.0, 0.7),
+    "322": (2.27e-6, 10.9, 0.018, 2.0, 6.0, 0.7),
+}
+
+
+@pytest.mark.parametrize("row", PRINTED, ids=lambda row: row["name"])
+def test_bearing_is_the_printed_one(row: dict[str, str]) -> None:
+    """Sizes, static load rating and axial factor as the maker's general catalogue prints them."""
+    values = si(entries("bearings.toml")[row["name"]])
+    for key in ("d", "D", "B"):
+        assert 1e3 * values[key] == pytest.approx(float(row[key]), abs=1e-9), key
+    if row["Y"]:
+        assert values["Y"] == float(row["Y"])
+    else:
+        assert 1e-3 * values["C_0"] == pytest.approx(float(row["C_0"]), abs=1e-9)
+
+
+def test_every_bearing_of_the_maker_is_compared_with_print() -> None:
+    names = {name.removesuffix("-2Z") for name in entries("bearings.toml") if name.startswith("SKF")}
+    assert names == {row["name"] for row in PRINTED}
+
+
+@pytest.mark.parametrize("name", [n for n in entries("bearings.toml") if n.startswith("SKF")])
+def test_bearing_has_the_printed_friction_constants_of_its_series(name: str) -> None:
+    number = name.split()[1]
+    printed = SERIES[number[:2] if len(number.partition("-")[0]) == 4 else number[:3]]
+    entry = entries("bearings.toml")[name]
+    assert tuple(entry.get(key) for key in ("R_1", "R_2", "S_1", "S_2", "K_Z", "K_L")) == printed

@@ -42,7 +42,7 @@ def viscosity(name: str, T: float) -> tuple[float, float]:
     """Kinematic and dynamic viscosity of an oil."""
     nu_40, nu_100, rho_15, alpha_T, *_ = OILS[name]
     nu = oil.kinematic_viscosity(T, 1e-6 * nu_40, 1e-6 * nu_100)
-    return nu, oil.dynamic_viscosity(nu, oil.density(T, rho_15, alpha_T))
+    return nu, nu * oil.density(T, rho_15, alpha_T)
 
 
 def contact(point: dict[str, Any], mesh_name: str) -> tuple[float, float, float]:
@@ -52,7 +52,7 @@ def contact(point: dict[str, Any], mesh_name: str) -> tuple[float, float, float]
     F_t = point["T_carrier_Nm"] / (6 * A_REF)
     F_bn = F_t / math.cos(gears.transverse_pressure_angle(math.radians(20), math.radians(10))) / math.cos(BETA_B)
     line = gears.contact_length(0.042, eps, BETA_B)
-    return F_bn / line, 2 * 3 * w_4 * RHO, gears.reduced_radius(RHO, rho_2, BETA_B)
+    return mesh.load_per_contact_length(F_bn, line), 2 * 3 * w_4 * RHO, gears.reduced_radius(RHO, rho_2, BETA_B)
 
 
 def friction(point: dict[str, Any], mesh_name: str) -> float:
@@ -177,6 +177,27 @@ def test_printed_friction_ranking() -> None:
     assert all(friction(p, "PR") < friction(p, "SP") for p in points.values())
 
 
+def test_printed_coefficients_of_the_gear_program_tell_the_line_load() -> None:
+    """The second sheet of appendix D prints 0.058 and 0.047: their ratio is that of a load per face width."""
+    point = nominal()
+    per_length = friction(point, "SP") / friction(point, "PR")
+    per_width = per_length * (MESHES["SP"][1] / MESHES["PR"][1]) ** 0.2
+    low, high = 0.0575 / 0.0475, 0.0585 / 0.0465
+    assert low < per_width < high
+    assert not low < per_length < high
+
+
+def test_factor_on_the_friction_belongs_to_the_line_load() -> None:
+    """1.044 with the load per contact length is 0.943 (sun) and 0.920 (ring) with that per face width."""
+    point = nominal()
+    _, eta = viscosity(point["oil"], point["T_oil_C"] + 273.15)
+    F_bt = 2500 / (6 * A_REF) / math.cos(gears.transverse_pressure_angle(math.radians(20), math.radians(10)))
+    for name, k_mu in (("SP", 0.943), ("PR", 0.920)):
+        _, v, R = contact(point, name)
+        printed = mesh.friction_schlenk(mesh.load_per_face_width(F_bt, 0.042), v, R, eta, RA, OILS["PAOR"][4])
+        assert k_mu * printed == pytest.approx(1.044 * friction(point, name), rel=1e-3)
+
+
 # ------------------------------------------------------------------------------------------------- film thickness
 
 FIRST_GRID = range(1, 17)
@@ -261,21 +282,27 @@ def test_tooth_loss_factor_is_the_integral_over_equally_loaded_pairs(eps: tuple[
 
 def test_tooth_loss_factor_is_ohlendorfs_below_two() -> None:
     found = mesh.tooth_loss_factor(20, 2.5, 0.2, 0.7, 0.8)
-    assert found == pytest.approx(mesh.tooth_loss_factor_ohlendorf(20, 2.5, 0.2, 0.7, 0.8), rel=1e-12)
+    expected = math.pi * 3.5 / (20 * 2.5 * math.cos(0.2)) * (1 - 1.5 + 0.7**2 + 0.8**2)
+    assert found == pytest.approx(expected, rel=1e-12)
 
 
 # ------------------------------------------------------------------------------------------------- viscosity
 
 
+def walther(T: float, m: float, n: float) -> float:
+    """Kinematic viscosity [cSt] by the Walther equation in its printed form."""
+    return 10**10 ** (m - n * math.log10(T)) - 0.7
+
+
 def test_grease_through_explicit_constants_meets_the_printed_moments() -> None:
     """Viscosity at 85 degC from the two printed rolling moments: 15.2562 and 15.2550 cSt."""
     m, n = oil.walther_constants(100e-6, 10e-6)
-    assert 1e6 * oil.kinematic_viscosity_walther(358.15, m, n) == pytest.approx(15.2556, abs=0.001)
+    assert walther(358.15, m, n) == pytest.approx(15.2556, abs=0.001)
 
 
 @pytest.mark.parametrize("name", OILS)
 @pytest.mark.parametrize("T", [253.15, 313.15, 343.15, 373.15, 413.15])
 def test_both_forms_of_the_walther_line_agree(name: str, T: float) -> None:
     nu_40, nu_100 = 1e-6 * OILS[name][0], 1e-6 * OILS[name][1]
-    explicit = oil.kinematic_viscosity_walther(T, *oil.walther_constants(nu_40, nu_100))
-    assert oil.kinematic_viscosity(T, nu_40, nu_100) == pytest.approx(explicit, rel=1e-10)
+    explicit = walther(T, *oil.walther_constants(nu_40, nu_100))
+    assert 1e6 * oil.kinematic_viscosity(T, nu_40, nu_100) == pytest.approx(explicit, rel=1e-10)

@@ -7,7 +7,6 @@ from gearheat.model.laws.smooth import (
     smooth_magnitude,
     smooth_max,
     smooth_min,
-    smooth_positive,
     smooth_power,
     smooth_sign,
     to_rpm,
@@ -26,7 +25,6 @@ def test_sides(x: float, w: float) -> None:
     assert 0 <= smooth_magnitude(x, w) <= abs(x)
     assert -1 <= smooth_sign(x, w) <= 1
     assert x * smooth_sign(x, w) >= 0
-    assert smooth_positive(x, w) >= max(x, 0)
     assert smooth_power(x, 0.6, w) >= 0
 
 

@@ -10,17 +10,22 @@ from gearheat.model.core.component import Component, equation
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.declare import Input, Port, declared
 from gearheat.model.core.flatten import flatten
-from gearheat.model.parts import PARTS
+from gearheat.model.parts import PARTS as PHYSICS
 from gearheat.model.parts.ports import Flange, HeatPort
+from gearheat.model.run.rows import evaluate_at
+from gearheat.tools.effects.parts import FIT_PARTS
 from hypothesis import given, settings
 from hypothesis import strategies as st
+
+#: Every class of component: the physics, and the fit terms of the diagnosis.
+PARTS = PHYSICS | FIT_PARTS
 
 OIL = dict(nu_40=3.2438e-4, nu_100=3.527e-5, rho_15=859.0, alpha_T=-5.6e-4, s_p=7.382, t_p=0.1335, X_L=0.666)
 FRICTION = dict(count=2.0, inner_share=0.4)
 BEARING = FRICTION | dict(d_m=0.14, F_r_0=100.0, F_a_0=50.0)
 SKF = BEARING | dict(d=0.11, D=0.17, K_Z=6.0, K_rs=6e-8, mu_bl=0.1, mu_EHL=0.002, H=0.03)
 TEETH = dict(z_1=36.0, z_2=36.0, m_n=0.002, alpha_n=math.radians(20), beta=math.radians(10), b=0.042, a_w=0.073035)
-TEETH |= dict(Ra=6e-7, k_mu=1.044, E=2.06e11, poisson=0.3)
+TEETH |= dict(Ra=6e-7, k_mu=1.044, line_load="F_bn/l", E=2.06e11, poisson=0.3)
 SURFACE = dict(A=0.8, emissivity=0.9)
 BOX = SURFACE | dict(height=0.3, length=0.4, width=0.2, share_top=0.2, share_bottom=0.2)
 EXTRA = dict(P_ref=50.0, w_ref=20.0, nu_ref=7e-5, tau_ref=2000.0, a=2.0, b=0.2, c=0.5, forward=1.0, backward=0.5)
@@ -34,7 +39,9 @@ EXAMPLES: dict[str, dict] = {
     "FixedFlange": {},
     "FanLoad": dict(k=0.1),
     "Inertia": dict(J=0.01),
-    "Efficiency": dict(ratio=4.0),
+    "LoadingClutch": {},
+    "TorqueSplit": dict(share=0.4),
+    "Efficiency": {},
     "PlanetarySet": TEETH
     | dict(N=3.0, z_3=108.0, eps_alpha_sp=1.666, eps_alpha_pr=1.883, H_v_sp=0.168, H_v_pr=0.062)
     | dict(n_axial_carrier=1.0, n_axial_sun=3.0, s_planet=0.021),
@@ -43,6 +50,7 @@ EXAMPLES: dict[str, dict] = {
     "TwoGearSupport": SUPPORT | dict(x_2=0.07, r_2=0.03, phi=2.5),
     "TaperedRollerBearing": SKF | dict(R_1=2.38e-6, R_2=10.9, S_1=0.014, S_2=2.0, Y=1.4, B=0.038, K_L=0.7),
     "DeepGrooveBallBearing": SKF | dict(R_1=3.9e-7, R_2=1.7, S_1=3.23e-3, S_2=36.5, C_0=64e3),
+    "CylindricalRollerBearing": SKF | dict(R_1=1e-6, S_1=0.16, S_2=1.5e-3, B=0.038, K_L=0.65),
     "NeedleBearing": BEARING | dict(d_m=0.044, f_0=7.0, f_1=2e-4),
     "LipSeal": FRICTION | dict(d_sh=0.14, c_sh=73.4),
     "Churning": FRICTION | dict(c=100.0, a=2.0, b=0.2),
@@ -56,6 +64,7 @@ EXAMPLES: dict[str, dict] = {
     "CylinderCooling": SURFACE | dict(D=0.3, share_ends=0.33),
     "FinnedBoxCooling": BOX | dict(A_fins=0.5, fin_height=0.03, fin_thickness=0.004, k_fin=50.0),
     "Room": {},
+    "PrescribedTemperature": {},
     "ExtraLoss": EXTRA,
     "ExtraHeat": EXTRA | dict(wall_share=0.3, inside_share=0.2),
     "ExtraConductor": dict(G_ref=2.0, dT_ref=35.0, e=0.3, w_ref=20.0, c=0.5, T_on=330.0, T_side=1.0, T_width=1.5)
@@ -71,7 +80,10 @@ GIVEN = {
     "PlanetarySet": {"carrier": ("w", "tau"), "sun": (), "ring": ("w",), "planet": ("tau",)},
     "Inertia": {"flange": ("tau",)},
     "FixedFlange": {"flange": ("tau",)},
+    "TorqueSplit": {"flange": ("w", "tau"), "a": ()},
 }
+#: Flanges that turn alike, because the rest of the closed loop couples them: here they meet on one shaft.
+COUPLED = {("LoadingClutch", "b"): "a", ("TorqueSplit", "b"): "a"}
 
 
 def heater(port: Port, name: str) -> Component:
@@ -93,7 +105,7 @@ def source(port: Port, name: str) -> Component:
 
 
 def between_sources(kind: str, **choices):
-    part = PARTS[kind]("part", **EXAMPLES[kind], **choices)
+    part = PARTS[kind]("part", **EXAMPLES[kind] | choices)
     if kind == "ShaftEnd":
         load = PARTS["FanLoad"]("load", k=0.1)
         end = PARTS[kind]("part", given=("w",))
@@ -102,12 +114,14 @@ def between_sources(kind: str, **choices):
     for key, port in part.ports.items():
         if f"{kind}.{key}" in GIVES:
             continue
-        if isinstance(port, Flange):
+        if (twin := COUPLED.get((kind, key))) is not None:
+            nets.append((port.name, f"part.{twin}"))
+        elif isinstance(port, Flange):
             given_here = ("w",) if choices.get("dynamic") is False else GIVEN.get(kind, {}).get(key, ("w",))
             parts.append(PARTS["ShaftEnd"](key, given=given_here))
             nets.append((port.name, f"{key}.flange"))
         else:
-            parts.append((heater if kind == "Room" else source)(port, key))
+            parts.append((heater if kind in ("Room", "PrescribedTemperature") else source)(port, key))
             nets.append((port.name, f"{key}.port"))
     return flatten(Assembly(kind, "", tuple(parts), tuple(nets)))
 
@@ -117,8 +131,9 @@ LOSSES = ("part.P_loss", "part.P_loss_sp", "part.P_loss_pr", "part.P")
 
 #: Each kind once, gears and bearings under each of their choices.
 CASES = [(kind, {}) for kind in PARTS] + [("PlanetarySet", {"power_flow": "ideal"}), ("Inertia", {"dynamic": False})]
-CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath", "axially_loaded")]
-CASES += [("TaperedRollerBearing", {"oil_bath": False})]
+CASES += [("PlanetarySet", {"line_load": "F_bt/b"}), ("HelicalGearPair", {"line_load": "F_bt/b"})]
+CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath")]
+CASES += [(kind, {"oil_bath": False}) for kind in ("TaperedRollerBearing", "CylindricalRollerBearing")]
 _flat: dict = {}
 
 
@@ -142,11 +157,11 @@ def at(flat, rng) -> dict[str, float]:
     x = [value(q) for q in flat.states]
     u = [value(q) for q in flat.inputs]
     p = flat.starts("parameter")
-    y, _, supply, throughput, _, _ = flat.output_function(x, u, p)
-    gain = ca.Function("gain", [flat.x, flat.u, flat.p], [ca.jtimes(flat.stored, flat.x, flat.ode)])(x, u, p)
+    found = evaluate_at(flat, x, u, p)
+    gain = ca.Function("gain", [flat.x, flat.p], [ca.jacobian(flat.stored, flat.x)])(x, p) @ found["ode"]
     names = [q.name for q in (*flat.states, *flat.inputs, *flat.outputs)]
-    values = [*x, *u, *np.array(y).ravel()]
-    audit = {"supply": float(supply), "throughput": float(throughput), "gain": float(gain)}
+    values = [*x, *u, *found["y"]]
+    audit = {"supply": float(found["supply"][0]), "throughput": float(found["throughput"][0]), "gain": float(gain)}
     return dict(zip(names, map(float, values), strict=True)) | audit
 
 

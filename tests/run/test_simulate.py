@@ -26,7 +26,7 @@ def closed_form(t: np.ndarray, k: float = 10.0) -> np.ndarray:
     return np.select([t <= 0.1, t <= 0.3 + 1e-12], pieces[:2], pieces[2])
 
 
-@pytest.mark.parametrize("method", ["cvodes", "lsoda"])
+@pytest.mark.parametrize("method", ["idas", "lsoda"])
 def test_ramps_and_jumps_as_in_closed_form(method: str) -> None:
     run = simulate(rc(), DUTY, times=TIMES, method=method)
     assert run["capacitor.u"] == pytest.approx(closed_form(TIMES), abs=2e-6)
@@ -46,7 +46,7 @@ def test_error_follows_the_tolerance() -> None:
 
 def test_methods_agree_on_a_motor_that_warms_up() -> None:
     duty = stepped([(600.0, {"drive.tau": 5.0}), (1200.0, {"drive.tau": (5.0, 3.0)}), (600.0, {"drive.tau": 0.0})])
-    one, other = (simulate(motor(), duty, method=m) for m in ("cvodes", "lsoda"))
+    one, other = (simulate(motor(), duty, method=m) for m in ("idas", "lsoda"))
     assert one["body.T"] == pytest.approx(other["body.T"], abs=1e-5)
     assert one["rotor.w"] == pytest.approx(other["rotor.w"], abs=1e-4)
     assert max(one.audit.residual, other.audit.residual) < 1e-6
@@ -183,7 +183,7 @@ def test_a_state_that_leaves_its_range() -> None:
         simulate(motor(thinning=0.2), stepped([(3600.0, {"drive.tau": 100.0})]))
 
 
-@pytest.mark.parametrize("method", ["cvodes", "lsoda"])
+@pytest.mark.parametrize("method", ["idas", "lsoda"])
 def test_a_blow_up_names_time_and_state(method: str) -> None:
     """Friction that grows with its own heat runs away within a minute."""
     with pytest.raises(SolveError) as caught:
@@ -198,7 +198,7 @@ def test_a_blow_up_names_time_and_state(method: str) -> None:
 
 def test_a_method_that_gives_up_alone_names_the_other(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("gearheat.model.run.integrate.MOST_STEPS", 3)
-    with pytest.raises(SolveError, match=r"cvodes gives up between 0 and 0\.1 s.*Use the method \"lsoda\""):
+    with pytest.raises(SolveError, match=r"idas gives up between 0 and 0\.1 s.*Use the method \"lsoda\""):
         simulate(rc(), DUTY, times=[0.4])
 
 

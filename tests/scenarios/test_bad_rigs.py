@@ -41,7 +41,7 @@ FACE = 'b = "42 mm"'
         (
             'room.T = "25 degC"',
             'room.T = "-300 degC"',
-            'rig.toml [operating_point]: room.T = "-300 degC" is out of range. It must be above 0 K.',
+            'rig.toml [operating_point]: room.T = "-300 degC" is out of range. It must be at least 213.15 K.',
         ),
         (
             'room.T = "25 degC"',
@@ -52,6 +52,17 @@ FACE = 'b = "42 mm"'
             'power_flow = "successive"',
             'power_flow = "idael"',
             GEARS + ": power_flow = 'idael' is not known. Choose one of: successive, ideal.",
+        ),
+        (
+            'line_load = "F_bn/l"',
+            'line_load = "F_bt/l"',
+            GEARS + ": line_load = 'F_bt/l' is not known. Choose one of: F_bt/b, F_bn/l.",
+        ),
+        (
+            'line_load = "F_bn/l"\n',
+            "",
+            GEARS + ": line_load is missing (line load of the friction formula: per face width, or per contact length)."
+            " Choose one of: F_bt/b, F_bn/l.",
         ),
         # keys
         (FACE, "", GEARS + ": b is missing (face width). Give it in m."),
@@ -115,21 +126,20 @@ FACE = 'b = "42 mm"'
         ),
         # sources
         (
-            'ratio = 4\nsource = "Dias2014, table 5.2"',
-            "ratio = 4",
-            "rig.toml [part.efficiency]: no source is given for ratio."
+            'V = "1 l"\nsource = "Dias2014, chapter 4"',
+            'V = "1 l"',
+            "rig.toml [part.oil]: no source is given for V."
             ' Add source = "..." (a citation, or "assumed: reason") to the table.',
         ),
         (
-            '"Dias2014, table 5.2"',
+            '"Dias2014, chapter 4"',
             '"assumed:"',
-            'rig.toml [part.efficiency]: source is "assumed:" without a reason. Write "assumed: why".',
+            'rig.toml [part.oil]: source is "assumed:" without a reason. Write "assumed: why".',
         ),
         (
-            '"Dias2014, table 5.2"',
+            '"Dias2014, chapter 4"',
             "3",
-            "rig.toml [part.efficiency]: source is 3."
-            ' Write a citation such as "Dias2014, table 5.7", or "assumed: reason".',
+            'rig.toml [part.oil]: source is 3. Write a citation such as "Dias2014, table 5.7", or "assumed: reason".',
         ),
         (
             "sources = { A = ",
@@ -137,9 +147,9 @@ FACE = 'b = "42 mm"'
             'rig.toml [part.cooling]: sources names "AA", which has no value here. Did you mean "A"?',
         ),
         (
-            'source = "Dias2014, table 5.2"',
+            'source = "Dias2014, chapter 4"',
             'sources = "Dias2014"',
-            "rig.toml [part.efficiency]: sources = 'Dias2014' is no table. Write sources = { ratio = \"...\" }.",
+            "rig.toml [part.oil]: sources = 'Dias2014' is no table. Write sources = { V = \"...\" }.",
         ),
         # the campaign
         ('stop = "5 min"', "stop = 5", "rig.toml [campaign]: stop = 5 does not fit. Expected: time between the halves"),
@@ -288,7 +298,7 @@ def test_a_folder_without_a_rig(tmp_path: Path) -> None:
 
 def test_a_file_that_is_no_text(tmp_path: Path) -> None:
     (path := tmp_path / "rig.toml").write_bytes(b"\xff\x00")
-    with pytest.raises(ScenarioError, match="is no text in UTF-8"):
+    with pytest.raises(ScenarioError, match="is not UTF-8 text"):
         load(path)
 
 

@@ -16,9 +16,11 @@ ENTRIES = [found for kind in FILES for found in catalogue(kind).values()]
 NEEDED = {
     "TaperedRollerBearing": {"d", "D", "d_m", "R_1", "R_2", "S_1", "S_2", "Y", "K_Z"},
     "DeepGrooveBallBearing": {"d", "D", "d_m", "R_1", "R_2", "S_1", "S_2", "C_0", "K_Z"},
+    "CylindricalRollerBearing": {"d", "D", "d_m", "B", "R_1", "S_1", "S_2", "K_Z", "K_L"},
     "NeedleBearing": {"d_m"},
 }
 WORDS = {"tapered": "TaperedRollerBearing", "deep groove": "DeepGrooveBallBearing", "needle": "NeedleBearing"}
+WORDS |= {"cylindrical": "CylindricalRollerBearing"}
 
 
 def problems(tmp_path: Path, text: str, kind: str = "bearing") -> tuple[str, ...]:
@@ -33,6 +35,21 @@ def test_every_value_of_an_entry_has_a_source_that_exists(found: Entry) -> None:
     assert set(found.values) == set(found.sources)
     for text in found.sources.values():
         assert text.split(",")[0] in sources() or text.split(":")[0] in SOURCE_KINDS, text
+
+
+@pytest.mark.parametrize("found", ENTRIES, ids=lambda e: f"{e.kind} {e.name}")
+def test_an_entry_says_what_its_values_were_compared_with(found: Entry) -> None:
+    """A value from memory, typical or assumed for a product that does not exist is never called checked."""
+    assert set(found.checked) <= set(found.values)
+    for key, source in found.sources.items():
+        assert "memory" not in source
+        assert ("unchecked" in found.told(key, source)) == (key not in found.checked)
+        if source.startswith("assumed: typical") and key != "nu_40":
+            assert key not in found.checked
+
+
+def test_all_bearings_are_checked() -> None:
+    assert all(set(found.checked) == set(found.values) for found in catalogue("bearing").values())
 
 
 @pytest.mark.parametrize("found", catalogue("oil").values(), ids=lambda e: e.name)
@@ -92,8 +109,8 @@ class TestNames:
 class TestBadFiles:
     def test_all_mistakes_at_once(self, tmp_path: Path) -> None:
         text = (
-            '["A 1"]\nd_m = 62\nR1 = 3\nsource = "SKF2018"\n'
-            '["A 2"]\nd_m = "62 kg"\nD = "80 mm"\nsources = { d_m = "SKF2018" }\n'
+            '["A 1"]\nchecked = false\nd_m = 62\nR1 = 3\nsource = "SKF2018"\n'
+            '["A 2"]\nchecked = "SKF2018"\nd_m = "62 kg"\nD = "80 mm"\nsources = { d_m = "SKF2018" }\n'
         )
         assert problems(tmp_path, "stray = 3\n" + text) == (
             "own.toml [stray]: is no table. Write the values of the entry below [stray].",
@@ -103,6 +120,25 @@ class TestBadFiles:
             ' Add source = "..." (a citation, or "assumed: reason") to the table.',
             'own.toml [A 2]: d_m = "62 kg": unit "kg" does not fit m. Write for example "62 mm".',
         )
+
+    @pytest.mark.parametrize(
+        ("line", "found"),
+        [
+            ("", "checked is missing"),
+            ("checked = true\n", "checked = True names no print"),
+            ('checked = " "\n', "checked = ' ' names no print"),
+            ("checked = { D = true }\n", "checked = {'D': True} names no print"),
+        ],
+    )
+    def test_not_said_what_it_was_compared_with(self, tmp_path: Path, line: str, found: str) -> None:
+        remedy = "Write the print that the values were compared with, a table of such texts by value, or false."
+        text = f'["A 1"]\n{line}D = "62 mm"\nsource = "SKF2018"\n'
+        assert problems(tmp_path, text) == (f"own.toml [A 1]: {found}. {remedy}",)
+
+    def test_compared_value_that_is_not_there(self, tmp_path: Path) -> None:
+        text = '["A 1"]\nchecked = { d_n = "SKF2018" }\nd_m = "62 mm"\nsource = "SKF2018"\n'
+        (problem,) = problems(tmp_path, text)
+        assert problem == 'own.toml [A 1]: checked names "d_n", which has no value. Did you mean "d_m"?'
 
     def test_the_same_name_twice(self, tmp_path: Path) -> None:
         (problem,) = problems(tmp_path, "[A]\n[A]\n")

@@ -147,7 +147,7 @@ class TestBadTables:
 
     def test_no_text(self, tmp_path: Path) -> None:
         (path := tmp_path / "data.csv").write_bytes(b"\xff\xfe\x00\x81")
-        assert problems(path) == ("data.csv: is no text in UTF-8. Export the table as CSV.",)
+        assert problems(path) == ("data.csv: is not UTF-8 text. Save it as a CSV file.",)
 
     def test_semicolons(self, tmp_path: Path) -> None:
         path = table(tmp_path, ROWS[0].replace(",", ";"), header=HEADER.replace(",", ";"))

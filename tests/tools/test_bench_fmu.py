@@ -13,7 +13,7 @@ def test_figures_of_the_fmu_and_its_peers() -> None:
     assert found["state_bytes"] <= 2048
     assert found["instance_bytes"] < 8192
     peers = found["peers"]
-    for name in ("FMPy, model exchange, its CVode", "CasADi cvodes from Python", "SciPy LSODA", "SciPy BDF"):
+    for name in ("FMPy, model exchange, its CVode", "CasADi IDAS from Python", "SciPy LSODA", "SciPy BDF"):
         assert peers[name]["error_K"] <= found["warmup_60_error_K"], name
         assert peers[name]["over_fmu_from_c"] > 2, name
     assert len(found["goals"]) == 7

@@ -9,7 +9,6 @@ import casadi as ca
 import numpy as np
 import pytest
 from gearheat.model.errors import SolveError
-from gearheat.model.parts.extra import ExtraLoss
 from gearheat.tools.diagnose import refine
 from gearheat.tools.diagnose.card import Card
 from gearheat.tools.diagnose.extension import of_machine
@@ -26,6 +25,7 @@ from gearheat.tools.diagnose.several import fitted_with_days
 from gearheat.tools.diagnose.superset import buildable
 from gearheat.tools.diagnose.weigh import regime_in_columns
 from gearheat.tools.effects.forms import OPEN, THRESHOLDS, USUAL
+from gearheat.tools.effects.parts import ExtraLoss
 from gearheat.tools.effects.taxonomy import CAUSES
 
 #: Readings of the made-up problems.

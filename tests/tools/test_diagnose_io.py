@@ -14,7 +14,6 @@ import pytest
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import DataError, GearheatError
 from gearheat.model.machines.spec import assemble
-from gearheat.scenarios.load import load
 from gearheat.scenarios.measured import schedule_of
 from gearheat.scenarios.write import rig_text
 from gearheat.tools.diagnose import words
@@ -31,6 +30,7 @@ from gearheat.tools.diagnose.superset import superset
 from gearheat.tools.diagnose.weigh import outside, with_outside
 from gearheat.tools.effects.taxonomy import CAUSES
 from gearheat.tools.losses import oil_values
+from gearheat.tools.rigs import load
 from gearheat.tools.settings import loaded
 
 SPEEDS, TORQUES = (100.0, 150.0, 200.0, 250.0), (1500.0, 2500.0)

@@ -2,6 +2,8 @@ from __future__ import annotations
 
 import pytest
 from gearheat.model.errors import ScenarioError
+from gearheat.model.run.design import design
+from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 from gearheat.tools.settings import adjusted, deduced, driven_at, driven_by, flat_of
 
@@ -52,3 +54,36 @@ def test_drives_of_an_fmu():
     assert driven_at(scenario, None, "torque") == {"carrier": ("tau",), "sun": ("tau",)}
     with pytest.raises(ScenarioError, match="shaft end"):
         driven_at(scenario, "room", "speed")
+
+
+class TestDerived:
+    """A parameter that follows from others: set or named by the user, it has a value of its own."""
+
+    def test_set_it_holds(self):
+        flat = flat_of(adjusted(load("helical_two_stage"), ["stage_1.eps_alpha=1.5"]))
+        assert flat.quantity("stage_1.eps_alpha").start == 1.5
+        assert "stage_1.eps_alpha" not in flat.derived
+        assert steady(flat, {})["stage_1.mu"][0] != steady(flat, {"stage_1.eps_alpha": 1.6})["stage_1.mu"][0]
+
+    def test_named_it_begins_with_the_value_it_had(self):
+        scenario = load("helical_two_stage")
+        flat = flat_of(adjusted(scenario, named=["stage_1.H_v", "stage_1.z_1"]))
+        assert flat.index["stage_1.H_v"][0] == "parameter"
+        assert flat.quantity("stage_1.H_v").start == flat_of(scenario).quantity("stage_1.H_v").start
+        found = design(flat, ["stage_1.H_v"], {"stage_1.P_loss": 45.0}, {})
+        assert found.result["stage_1.P_loss"][0] == pytest.approx(45.0)
+
+    def test_a_sweep_varies_it(self, gearheat, tmp_path):
+        out = tmp_path / "table.csv"
+        vary = ["--vary", "stage_1.eps_alpha=1.4..1.8", "--vary", "stage_1.a_w=100 mm..101 mm", "--grid", "2x2"]
+        answer = gearheat("sweep", "helical_two_stage", *vary, "-o", out, "--output", "stage_1.P_loss", "--json", "-")
+        assert answer.code == 0, answer.err
+        assert answer.json["status"] == {"ok": 2, "contradiction": 2}
+
+    def test_shown_with_what_it_follows_from_or_as_given(self, gearheat):
+        shown = {line["name"]: line for line in gearheat("show", "helical_two_stage", "--json", "-").json["parameters"]}
+        assert shown["stage_1.eps_alpha"]["kind"] == "derived"
+        assert shown["stage_1.eps_alpha"]["value"] == pytest.approx(1.6178, abs=1e-4)
+        assert shown["stage_1.eps_alpha"]["source"].startswith("follows from z_1, z_2, ")
+        assert shown["stage_1.z_1"]["kind"] == "given"
+        assert shown["stage_1.tau_width"]["kind"] == "default"

@@ -37,6 +37,8 @@ PARAMETERS: Mapping[str, tuple[str, ...]] = {
 }
 
 #: Place -> body of the model.
+#: Newton's corrections of the implicit losses.
+NEWTON_STEPS = 3
 BODIES: Mapping[str, str] = {
     "oil": "oil",
     "gears": "gears",
@@ -68,7 +70,13 @@ class OwnRig:
             for parameter in parameters:
                 p[flat.locate(parameter)[1]] *= factor
         y = flat.y[flat.locate("sun.tau")[1]]
-        ode, sun = ca.substitute([flat.ode, y], [flat.u, flat.p], [u, p])
+        ode, sun, residual, slope = ca.substitute(
+            [flat.ode, y, flat.residual, ca.jacobian(flat.residual, flat.z)], [flat.u, flat.p], [u, p]
+        )
+        z = ca.SX(flat.starts("algebraic"))
+        for _ in range(NEWTON_STEPS):  # as many as leave round-off at the loads of a campaign
+            z -= ca.solve(*ca.substitute([slope, residual], [flat.z], [z]))
+        ode, sun = ca.substitute([ode, sun], [flat.z], [z])
         given = ca.vertcat(n, tau, room, heat, factors)
         self._rows = given.numel()
         self._function = ca.Function("own", [flat.x, given], [ode, sun], {"cse": True})

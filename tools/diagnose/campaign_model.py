@@ -37,7 +37,7 @@ class Rig:
     """The compiled superset of a machine, for any campaign on it."""
 
     def __init__(self, spec: Spec) -> None:
-        flat = as_read(flatten(assemble(superset(spec)), newton_steps=1))  # losses to 1e-4 N.m
+        flat = as_read(flatten(assemble(superset(spec))))
         place = {q.name: i for i, q in enumerate(flat.outputs)}
         states = {q.name: i for i, q in enumerate(flat.states)}
         shown = [flat.x[states[o]] if o in states else flat.y[place[o]] for o in OUTPUTS.values()]

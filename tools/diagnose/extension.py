@@ -10,6 +10,7 @@ from ...model.machines.spec import PartSpec, Spec
 from ...scenarios.scenario import Scenario
 from ...scenarios.write import rig_text
 from ..effects.cause import Cause, Theta
+from ..effects.parts import FIT_PARTS
 from ..effects.taxonomy import CAUSES
 from ..settings import DIAGNOSED
 from . import words
@@ -137,4 +138,5 @@ def _free(name: str, taken: set[str]) -> str:
 def _with_parts(spec: Spec, cause: Cause, names: Mapping[str, str]) -> Spec:
     """The machine with the parts of a cause under other names."""
     parts = [PartSpec(names[part.name], part.type, part.values) for part in cause.parts]
-    return spec.with_parts(parts, [tuple(_renamed(port, names) for port in net) for net in cause.connections])
+    nets = [tuple(_renamed(port, names) for port in net) for net in cause.connections]
+    return spec.with_parts(parts, nets, FIT_PARTS)

@@ -13,10 +13,10 @@ import numpy as np
 from ...model.errors import DataError, GearheatError
 from ...model.machines.spec import Spec
 from ...scenarios.csv_table import Column
-from ...scenarios.load import load
 from ...scenarios.measured import POINTS, READINGS, Campaign, Protocol, Reading, read_measured
 from ...scenarios.scenario import Scenario
 from ..effects.taxonomy import CAUSES
+from ..rigs import load
 from ..settings import driven_by
 from . import card as cards
 from .card import BY_ROOM, Card, read_card

@@ -10,6 +10,7 @@ import numpy as np
 from scipy.special import ndtr, ndtri
 
 from ...model.machines.spec import PartSpec, Spec
+from .parts import FIT_PARTS
 
 
 @dataclass(frozen=True)
@@ -121,7 +122,7 @@ class Cause:
             rows are None where no campaign is at hand
         readings: (parameters, rows, true readings) -> what the instruments show
         acts: parameters -> where it acts: quantity with its side ("w+", "tau-", "T+") and threshold in SI, or None
-        logged: whether it changes a logged course
+        logged: whether it changes a logged time series
         scatter: whether it makes days differ instead of changing them all
     """
 
@@ -146,7 +147,7 @@ class Cause:
 
     def added_to(self, spec: Spec, theta: Theta | None = None) -> Spec:
         """The machine with the cause in it; neutral where no parameters are given."""
-        extended = spec.with_parts(self.parts, self.connections)
+        extended = spec.with_parts(self.parts, self.connections, FIT_PARTS)
         if theta is None:
             return extended
         base = {f"{p.name}.{k}": v for p in extended.parts for k, v in p.values.items()}

@@ -17,9 +17,9 @@ def changing(base: Mapping[str, float], theta: Theta, rows: Rows | None) -> Mapp
     """The target times 1 + change per test, from the first to the last in running order."""
     if rows is None:
         return {}
-    course = rows.per_test(rows.order) ** theta["power"] - theta["zero"]
+    progress = rows.per_test(rows.order) ** theta["power"] - theta["zero"]
     target = TARGETS[sum(theta["target"] > end for end in ENDS)]
-    return {path: base[path] * (1 + theta["change"] * course).clip(0.05) for path in target}
+    return {path: base[path] * (1 + theta["change"] * progress).clip(0.05) for path in target}
 
 
 CAUSE = Cause(
@@ -29,7 +29,7 @@ CAUSE = Cause(
     shapes=(
         Shape("target", "1", "what changes: cooling, friction of the teeth, or all losses", 0.0, 1.0, ends=ENDS),
         Shape("power", "1", "exponent of the running order", 0.3, 2.0, 0.9, 0.35),
-        Shape("zero", "1", "where in that course the nominal holds", 0.0, 1.0),
+        Shape("zero", "1", "value of the order term at which the nominal holds: 0 first test, 1 last", 0.0, 1.0),
     ),
     exposes="the first point repeated at the end; tests in random order",
     values=changing,

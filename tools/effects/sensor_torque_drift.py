@@ -9,7 +9,7 @@ CAUSE = Cause(
     size=Size("drift", "N.m", "zero at the last test less zero at the first", 8.0, -80, 80),
     shapes=(
         Shape("power", "1", "exponent of the running order", 0.5, 2.0, 1.0, 0.3),
-        Shape("zero", "1", "where in that course the zero is right", 0.0, 1.0),
+        Shape("zero", "1", "value of the order term at which the zero is right: 0 first test, 1 last", 0.0, 1.0),
     ),
     exposes="the first point repeated at the end; a tare before each test",
     readings=lambda theta, rows, r: changed(

@@ -16,7 +16,7 @@ int failures;
 static Fmu m;
 static Random r;
 static unsigned long current;
-static int loud;
+static int verbose;
 static const char *calling = "nothing";
 static double slowest;
 static unsigned long slowest_seed, tally[2][6], steps[2];
@@ -471,7 +471,7 @@ static void one_call(One *one)
     status = calls[k].call(one);
     if ((unsigned)status > fmi2Error) WRONG("status %d", (int)status);
     tally[one->type == fmi2CoSimulation][(unsigned)status > 5 ? 5 : status]++;
-    if (loud) printf("  %s %s: %d  %s\n", one->type ? "CS" : "ME", calling, status,
+    if (verbose) printf("  %s %s: %d  %s\n", one->type ? "CS" : "ME", calling, status,
                      one->heard.count > heard ? one->heard.last : "");
     if (status == fmi2OK || status == fmi2Warning) return;
     if (one->callbacks.logger && one->heard.count == heard) WRONG("status %d without a word", (int)status);
@@ -515,7 +515,7 @@ int main(int n, char **arguments)
     NEEDS(n == 4 || n == 5, "FACTS FIRST COUNT [LIBRARY]");
     load(&m, arguments[1], n == 5 ? arguments[4] : NULL);
     first = strtoul(arguments[2], NULL, 10), count = strtoul(arguments[3], NULL, 10);
-    loud = count == 1;
+    verbose = count == 1;
     signal(SIGALRM, too_slow);
     for (current = first; current < first + count; current++) {
         alarm(60);

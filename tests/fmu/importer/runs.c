@@ -7,7 +7,7 @@
 enum { MOST = 1024, STEPS = 40 };
 
 /* A duty of some steps from a ready instance on, all variables after each. */
-static void course(const Fmu *m, fmi2Component c, double step, double *rows)
+static void trajectory(const Fmu *m, fmi2Component c, double step, double *rows)
 {
     double t = 0.0;
     int k;
@@ -96,7 +96,7 @@ void check_shuffle(const Fmu *m, int n, char **arguments)
         set_shuffled(m, c, &r, count, refs, values);
         MUST(read_all(m, c, round ? seen : begun));
         if (round) EXPECT(memcmp(seen, begun, (size_t)m->n * sizeof *seen) == 0, "order %d begins otherwise", round);
-        course(m, c, 7.0, round ? other : first);
+        trajectory(m, c, 7.0, round ? other : first);
         if (round) EXPECT(equal(m, first, other), "order %d of setting gives another run", round);
         m->f.FreeInstance(c);
     }
@@ -129,7 +129,7 @@ void check_reset(const Fmu *m, int n, char **arguments)
     (void)n, (void)arguments;
     seed(&r, 2);
     c = ready(m, 0.0);
-    course(m, c, 11.0, first);
+    trajectory(m, c, 11.0, first);
     m->f.FreeInstance(c);
     c = instantiate(m, fmi2CoSimulation, NULL);
     for (round = 0; round < 12; round++) { /* left in any mode, by any path */
@@ -144,7 +144,7 @@ void check_reset(const Fmu *m, int n, char **arguments)
         MUST(m->f.SetupExperiment(c, fmi2False, 0.0, 0.0, fmi2False, 0.0));
         MUST(m->f.EnterInitializationMode(c));
         MUST(m->f.ExitInitializationMode(c));
-        course(m, c, 11.0, other);
+        trajectory(m, c, 11.0, other);
         EXPECT(equal(m, first, other), "run %d after a reset differs from a fresh one", round);
         MUST(m->f.Reset(c));
     }
@@ -290,7 +290,7 @@ typedef struct {
     const Fmu *m;
     double *rows;
     int number, rounds;
-    pthread_barrier_t *together;   /* all begin at once; NULL when alone */
+    pthread_barrier_t *gate;       /* all begin at once; NULL when alone */
 } Job;
 
 static void *work(void *job)
@@ -299,7 +299,7 @@ static void *work(void *job)
     const Fmu *m = j->m;
     fmi2Component c = NULL;
     int round, k;
-    if (j->together) pthread_barrier_wait(j->together);
+    if (j->gate) pthread_barrier_wait(j->gate);
     for (round = 0; round < j->rounds; round++) { /* instances come and go while others run */
         double t = 0.0;
         if (c) m->f.FreeInstance(c);
@@ -317,14 +317,14 @@ void check_threads(const Fmu *m, int n, char **arguments)
 {
     enum { MANY = 16 };
     pthread_t threads[MANY];
-    pthread_barrier_t together;
+    pthread_barrier_t gate;
     Job alone[MANY], among[MANY];
     int i, rounds;
     NEEDS(n == 1, "threads ROUNDS");
     rounds = atoi(arguments[0]);
-    pthread_barrier_init(&together, NULL, MANY);
+    pthread_barrier_init(&gate, NULL, MANY);
     for (i = 0; i < MANY; i++) {
-        alone[i] = (Job){m, rows_of(m), i, rounds, NULL}, among[i] = (Job){m, rows_of(m), i, rounds, &together};
+        alone[i] = (Job){m, rows_of(m), i, rounds, NULL}, among[i] = (Job){m, rows_of(m), i, rounds, &gate};
         work(&alone[i]);
     }
     for (i = 0; i < MANY; i++)
@@ -334,7 +334,7 @@ void check_threads(const Fmu *m, int n, char **arguments)
         EXPECT(equal(m, alone[i].rows, among[i].rows), "thread %d differs from the same run alone", i);
         free(alone[i].rows), free(among[i].rows);
     }
-    pthread_barrier_destroy(&together);
+    pthread_barrier_destroy(&gate);
     printf("16 threads\n");
 }
 

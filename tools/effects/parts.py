@@ -1,7 +1,8 @@
-"""What a gearbox may have beyond its model: a loss or heat source of a general form, and a conductance beside another.
+"""Fit terms: a loss or heat source of a general form, and a conductance beside another.
 
-All of them are neutral at zero size, and all their exponents and thresholds are parameters, so one flat model holds
-every hypothesis about what is missing.
+They describe what a gearbox may have beyond its model, not the physics of a part. All of them are neutral at zero size,
+and all their exponents and thresholds are parameters, so one flat model holds every hypothesis about what is missing.
+`FIT_PARTS` holds their types, for rigs that have them.
 """
 
 from __future__ import annotations
@@ -10,10 +11,10 @@ from collections.abc import Iterable, Iterator
 
 import casadi as ca
 
-from ..core.component import Component, Equation, equation
-from ..core.declare import Output, Parameter
-from ..laws.smooth import Num, smooth_abs, smooth_sign
-from .ports import Flange, HeatPort, Lubricant, ShaftReading
+from ...model.core.component import Component, Equation, equation
+from ...model.core.declare import Output, Parameter
+from ...model.laws.smooth import Num, smooth_abs, smooth_sign
+from ...model.parts.ports import Flange, HeatPort, Lubricant, ShaftReading
 
 #: How gradually thin films set in: logarithm of speed times viscosity.
 FILM_STEP = 0.3
@@ -24,7 +25,7 @@ TAU_REST = 0.6
 #: A power that falls with the speed no longer does so below about that [rad/s].
 W_SLOW = 1.5
 #: Speed below which cooling no longer changes with speed [rad/s].
-W_CALM = 4.0
+W_STILL = 4.0
 
 
 class ExtraLoss(Component):
@@ -140,7 +141,7 @@ class ExtraConductor(Component):
         """What enters at a leaves at b."""
         dT = self.a.T - self.b.T
         form = self.e * ca.log(smooth_abs(dT, 0.1) / self.dT_ref)
-        speed = self.c * ca.log(smooth_abs(self.reading.w, W_CALM) / self.w_ref)
+        speed = self.c * ca.log(smooth_abs(self.reading.w, W_STILL) / self.w_ref)
         weight = _by_direction(self.reading, self.forward, self.backward)
         weight *= _step(self.T_side * (self.a.T - self.T_on) / self.T_width)
         flow = self.G_ref * dT * ca.exp(form + speed) * weight
@@ -158,3 +159,7 @@ def _by_direction(reading: ShaftReading, forward: Num, backward: Num) -> Num:
 def _step(x: Num) -> Num:
     """0 far below, 1 far above zero."""
     return (1 + ca.tanh(x)) / 2
+
+
+#: The types of fit terms by name, as `gearheat.model.parts.PARTS` holds those of the physics.
+FIT_PARTS: dict[str, type[Component]] = {part.__name__: part for part in (ExtraHeat, ExtraLoss, ExtraConductor)}
