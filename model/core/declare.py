@@ -136,6 +136,7 @@ class Port:
         missing: what is wrong then, or where the part needs what the port should bring
         source: what to connect it to
         instead: what else to do where two things prescribe the same potential
+        divides: what to put in where two ways between the same places leave open what flows on either
         levels: potentials that only differ by what connects them, with what gives them their level
     """
 
@@ -144,6 +145,7 @@ class Port:
     missing: ClassVar[str] = "nothing says what it should read"
     source: ClassVar[str] = "a port of its kind"
     instead: ClassVar[str] = ""
+    divides: ClassVar[str] = ""
     levels: ClassVar[Mapping[str, str]] = {}
 
     def __init__(self, doc: str = "", must_meet: bool | None = None) -> None:

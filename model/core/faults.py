@@ -96,6 +96,7 @@ class Faults:
         elif relation is not None and any(type(p).flows() for p in ports):
             what = "two equations say the same, so nothing says what flows on either way."
             ways = [f"Take {listed(list(dict.fromkeys(map(_owner, ports))), 'or')} away"]
+            ways += [words for words in dict.fromkeys(type(p).divides for p in ports) if words]
         else:
             what = "two equations say the same or contradict each other."
             ways = [f"Connect {listed([p.name for p in ports], 'or')} elsewhere" if ports else "Take one of them away"]

@@ -42,6 +42,7 @@ class Flange(Port):
     missing = "no shaft is there"
     source = "the flange of a shaft end, a gear or an inertia"
     instead = "give a torque in place of a speed"
+    divides = "put a LoadingClutch or a TorqueSplit into one way"
 
     w = Potential("rad/s", "angular velocity", nominal=10.0)
     tau = Flow("N.m", "torque", nominal=100.0)

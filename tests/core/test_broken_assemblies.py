@@ -54,7 +54,11 @@ SAYS: dict[str, tuple[str, ...]] = {
     ),
     "held_shaft": ("motor.w is given", "mount: held", "motor.flange, mount.flange", "Do not give motor.w"),
     "loop_of_gears": ("rotor.w is a state", "second: gears roll", "gear.wheel, second.wheel", "its ratios have to fit"),
-    "parallel_gears": ("two equations say the same", "gear.wheel, second.wheel", "Take gear or second away"),
+    "parallel_gears": (
+        "two equations say the same",
+        "gear.wheel, second.wheel",
+        "Take gear or second away, or put a LoadingClutch",
+    ),
     "shared_port": (
         "bearing_a.inner is named in two connections",
         "oil and one with wall",
