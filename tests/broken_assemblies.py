@@ -149,14 +149,25 @@ def held_shaft() -> Assembly:
     return gearbox({"mount": ("FixedFlange", {})}, {"wheel": (*NETS["wheel"], "mount.flange")})
 
 
-@broken
-def loop_of_gears() -> Assembly:
-    """two gear pairs of different ratio between the same shafts"""
+def twice_geared(z_1: float, z_2: float) -> Assembly:
+    """Two gear pairs between the same shafts."""
     parts = {"motor": ("ShaftEnd", dict(given=("tau",))), "rotor": ("Inertia", dict(J=0.1))}
-    parts |= {"second": ("HelicalGearPair", GEAR | dict(z_1=35.0, z_2=73.0))}
+    parts |= {"second": ("HelicalGearPair", GEAR | dict(z_1=z_1, z_2=z_2))}
     nets = {"pinion": (*NETS["pinion"], "rotor.flange", "second.pinion"), "wheel": (*NETS["wheel"], "second.wheel")}
     nets |= {"inside": (*NETS["inside"], "second.gears"), "lubricant": (*NETS["lubricant"], "second.lubricant")}
     return gearbox(parts, nets)
+
+
+@broken
+def loop_of_gears() -> Assembly:
+    """two gear pairs of different ratio between the same shafts"""
+    return twice_geared(35.0, 73.0)
+
+
+@broken
+def parallel_gears() -> Assembly:
+    """two gear pairs of the same ratio between the same shafts"""
+    return twice_geared(36.0, 72.0)
 
 
 @broken

@@ -13,7 +13,7 @@ from .ports import Flange, HeatPort
 class Friction(Component):
     """Base of bearings, seals and churning: a torque against the rotation, its heat shared by two bodies."""
 
-    shaft = Flange()
+    shaft = Flange(must_meet=True)
     inner = HeatPort()
     outer = HeatPort()
 
