@@ -17,6 +17,11 @@ SUPPLIED, THROUGHPUT, STORED, RESIDUAL = "energy.supplied", "energy.throughput",
 VALIDITY, IMPLICIT = "validity.count", "implicit.residual"
 
 
+#: Smallest number an end at zero leaves open: far below all sizes, and far from the denormal numbers that std::stod and
+#: other readers of the description refuse.
+LEAST = 1e-300
+
+
 @dataclass(frozen=True)
 class Variable:
     """One scalar variable of an FMU; `reference` is its value reference and its position in the description.
@@ -60,8 +65,8 @@ class Variable:
     def bounds(self) -> tuple[float, float]:
         """Lowest and highest value allowed; an open end is the next number inside."""
         q = self.quantity
-        low = math.nextafter(q.low, math.inf) if q.low_open else q.low
-        high = math.nextafter(q.high, -math.inf) if q.high_open else q.high
+        low = _inside(q.low, 1.0) if q.low_open else q.low
+        high = _inside(q.high, -1.0) if q.high_open else q.high
         return float(low), float(high)
 
     @property
@@ -125,6 +130,11 @@ def table(flat: FlatModel, start: Mapping[str, float] | None = None) -> Table:
     if problems:
         raise FmuError(problems)
     return Table(tuple(variables))
+
+
+def _inside(end: float, direction: float) -> float:
+    """The next number beside an open end."""
+    return direction * LEAST if end == 0 else math.nextafter(end, direction * math.inf)
 
 
 Group = tuple[Quantity, ...]

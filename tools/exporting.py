@@ -13,9 +13,11 @@ from ..fmu.compiling import platforms
 from ..fmu.effective import effective
 from ..fmu.export import export
 from ..model.core.flat import FlatModel
+from ..model.errors import SolveError
 from ..model.machines.spec import assemble
 from ..model.run.point import point
 from ..model.run.rows import evaluate_at
+from ..model.run.steady import steady
 from ..scenarios.scenario import Scenario
 from .console import answer, file_of, folder, writable
 from .extras import checked, reference_duty, write_extras
@@ -25,6 +27,8 @@ from .settings import Drive, adjusted, driven_at, flat_of, given_paths
 from .transients import first_temperatures
 from .unchecked import print_unchecked, unchecked
 
+#: Shares of the operating point's torques at which a machine on torques alone is looked for that holds its speed.
+_SHARES = (1.0, 0.75, 0.5, 0.25, 0.1, 0.0)
 #: Source of what no file gives.
 _DEFAULT = "inferred: follows from the other values, or a numerical default"
 
@@ -104,10 +108,12 @@ def sources_of(scenario: Scenario, flat: FlatModel) -> dict[str, str]:
 def operating_start(
     scenario: Scenario, setting: Scenario, flat: FlatModel, assignments: Sequence[str]
 ) -> dict[str, float]:
-    """Shaft quantities and speeds at the operating point, for a model that is driven otherwise than its rig.
+    """Shaft quantities and states at the operating point, for a model that is driven otherwise than its rig.
 
     What follows at the operating point (the torque that balances, the speed of the other shaft) is what the inputs and
-    the rotating masses of the other drive start with, so that it starts at the same point.
+    the rotating masses of the other drive start with, so that it starts at the same point. With torques alone nothing
+    but friction holds the speed, so there it starts where friction does (see `_holding`), unless the user has set a
+    torque or a speed.
 
     Args:
         scenario: the rig as it is
@@ -120,10 +126,40 @@ def operating_start(
     fixed = {text.partition("=")[0].strip() for text in assignments}
     if {q.name for q in own.inputs} & names == {q.name for q in flat.inputs} & names:
         return {}
+    masses = {q.name for q in flat.states if q.unit == "rad/s"}
+    if masses and not fixed & (names | masses):
+        free = masses | names | first_temperatures(setting, flat, None).keys()
+        return {name: value for name, value in _holding(own, flat, names).items() if name in free - fixed}
     at = _evaluated(own, first_temperatures(setting, own, None))
     shafts = {name: at[name] for name in sorted(names) if name in at}
     start = {q.name: shafts[q.name] for q in flat.inputs if q.name in shafts and q.name not in fixed}
     return start | _speeds(flat, shafts, {q.name for q in flat.states} & fixed)
+
+
+def _holding(own: FlatModel, flat: FlatModel, names: set[str]) -> dict[str, float]:
+    """Torques and states of a balance that the machine does not leave by itself.
+
+    Friction that falls with speed or with its own heat lets a loaded machine run away or stop as long as both torques
+    stay, so the balance may be one of a part of the load. A machine that holds no speed at all starts at rest.
+
+    Args:
+        own: the model driven as its rig
+        flat: the model driven by torques
+        names: paths of what may be given at the shaft ends
+    """
+    torques = [q.name for q in flat.inputs if q.name in names]
+    for share in _SHARES:
+        load = {q.name: share * q.start for q in own.inputs if q.name in names and q.unit == "N.m"}
+        try:
+            at = steady(own, load)
+            balancing = {name: float(at[name][0]) for name in torques}
+            shafts = {name: float(at[name][0]) for name in names & at.columns.keys()}
+            warm = {q.name: float(at[q.name][0]) for q in flat.states if q.name in at.columns}
+            found = steady(flat, balancing, guess=warm | _speeds(flat, shafts, set()))
+        except SolveError:
+            continue
+        return balancing | {q.name: float(found[q.name][0]) for q in flat.states}
+    return dict.fromkeys([*torques, *(q.name for q in flat.states if q.unit == "rad/s")], 0.0)
 
 
 def _evaluated(flat: FlatModel, states: Mapping[str, float]) -> dict[str, float]:

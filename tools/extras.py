@@ -35,14 +35,14 @@ def reference_duty(flat: FlatModel, start: Mapping[str, float], shafts: Containe
     """The duty of the reference result, with every input in it.
 
     With a given speed: two hours at the operating point, then two hours at half of its speed and torque. With torques
-    alone: a minute at the operating point, the middle third with 0.5 % more of one torque. Inputs jump and do not ramp,
-    so that an importer without slopes of inputs gets the same.
+    alone: a minute at the operating point, the middle third with 0.5 % more of the larger torque. Inputs jump and do
+    not ramp, so that an importer without slopes of inputs gets the same.
     """
     values = {q.name: float(start.get(q.name, q.start)) for q in flat.inputs}
     driven = [q for q in flat.inputs if q.name in shafts]
     if any(q.unit == "rad/s" for q in driven) or not driven:
         return stepped([(7200.0, values), (7200.0, {q.name: values[q.name] / 2 for q in driven})])
-    first = driven[0].name
+    first = max((q.name for q in driven), key=lambda name: abs(values[name]))
     return stepped([(20.0, values), (20.0, {first: 1.005 * values[first]}), (20.0, {first: values[first]})])
 
 

@@ -55,8 +55,8 @@ typedef struct {
     double begin;              /* stored energy at the start */
     double x[NX], z[AT_LEAST_1(NZ)], u[AT_LEAST_1(NU)];   /* where the next trial begins */
     double t, h, first, size;  /* in the piece: time, step proposed, the one proposed first, the one tried */
-    int last, in_a_row;        /* the trial leads to the end of the piece; rejections in a row */
-    long in_piece;             /* steps in the piece */
+    int last;                  /* the trial leads to the end of the piece */
+    Effort effort;             /* in the piece */
     int32_t steps;
     int fresh;                 /* its parameters are not in its lane yet */
 } Runner;
@@ -95,8 +95,7 @@ static void depart(Runner *r, double length)
     r->t = r->first = 0.0;
     r->h = s->jumped ? s->h_first : s->h_last;
     if (!(r->h > 0.0)) r->h = length;
-    r->in_a_row = 0;
-    r->in_piece = 0;
+    memset(&r->effort, 0, sizeof r->effort);
 }
 
 static void arrive(Runner *r)
@@ -159,27 +158,22 @@ static int start_out(Runner *r, const Course *course, double *energy)
 /* Take or refuse the trial step in a lane, as walk() does. */
 static int conclude(Runner *r, const Beside *b, int lane, const Course *course, double *energy)
 {
-    double x_new[NX + N_CONTROLLED], z_new[AT_LEAST_1(NZ)] = {0.0}, error;
+    double x_new[NX + N_CONTROLLED], z_new[AT_LEAST_1(NZ)] = {0.0}, length = course->length[r->piece], error;
     int worst, i;
     for (i = 0; i < NX; i++) x_new[i] = b->x_new[i][lane];
     for (i = 0; i < N_CONTROLLED; i++) x_new[NX + i] = b->error[i][lane];
     for (i = 0; i < NZ; i++) z_new[i] = b->z_new[i][lane];
     error = trial(&r->m, r->x, r->z, r->u, r->size, x_new, z_new, &worst);
-    if (r->in_piece++ > MAX_STEPS) return ROW_STOPPED;
     r->steps++;
-    if (!(error <= 1.0)) {
-        r->h = r->size * (isfinite(error) ? factor(error) : 0.2);
-        if (++r->in_a_row > MAX_REJECTIONS || r->t + r->h == r->t) return ROW_STOPPED;
-        return proceed(r, course, energy);
+    r->h = next_size(&r->effort, error, r->size, r->h, length);
+    if (error <= 1.0) {
+        r->t = r->last ? length : r->t + r->size;
+        memcpy(r->x, x_new, sizeof r->x);
+        memcpy(r->z, z_new, sizeof r->z);
+        for (i = 0; i < NU; i++) r->u[i] = r->m.s.u[i] + r->m.s.slope[i] * r->t;
+        if (r->first == 0.0) r->first = r->h;
     }
-    r->t = r->last ? course->length[r->piece] : r->t + r->size;
-    memcpy(r->x, x_new, sizeof r->x);
-    memcpy(r->z, z_new, sizeof r->z);
-    for (i = 0; i < NU; i++) r->u[i] = r->m.s.u[i] + r->m.s.slope[i] * r->t;
-    r->h = fmax(r->size < r->h ? r->h : 0.0, r->size * (r->in_a_row ? fmin(factor(error), 1.0) : factor(error)));
-    if (r->first == 0.0) r->first = r->h;
-    r->in_a_row = 0;
-    return proceed(r, course, energy);
+    return r->h == 0.0 && r->t < length ? ROW_STOPPED : proceed(r, course, energy);
 }
 
 static void put(Beside *b, int lane, const Runner *r)

@@ -22,6 +22,8 @@ static void start(Instance *m)
     m->constants_known = m->outputs_known = 0;
     m->log_mask = m->log_mask_at_start;
     memset(m->warned, 0, sizeof m->warned);
+    memset(m->kept, 0, sizeof m->kept);
+    m->refused_step = NAN;
 }
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
@@ -111,17 +113,15 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c)
 {
     Instance *m = c;
     const char *block;
-    int i;
+    int r;
     if (!allowed(m, INITIALIZATION, "fmi2ExitInitializationMode")) return fmi2Error;
     if (!check_relations(m, "fmi2ExitInitializationMode")) return fmi2Error;
     if ((block = unsolved(m)) != NULL)
         return refuse(m, "fmi2ExitInitializationMode: the equation \"%s\" has no solution. Check start values, inputs and "
                       "parameters.", block);
-    refresh_outputs(m);
-    for (i = 0; i < NX; i++)
-        if (!isfinite(m->dx[i]))
-            return refuse(m, "fmi2ExitInitializationMode: %s is %g. Check start values, inputs and parameters.",
-                          model_names[FIRST_DX + i], m->dx[i]);
+    if ((r = wrong_result(m)) != N_VARIABLES)
+        return refuse(m, "fmi2ExitInitializationMode: %s is %.10g %s, but must be %s. Check start values, inputs and "
+                      "parameters.", model_names[r], value_of(m, r), model_units[r], model_ranges[r]);
     accept_algebra(m);
     m->s.mode = m->s.type == fmi2ModelExchange ? EVENT : STEP_COMPLETE;
     warn_validity(m);
@@ -165,9 +165,10 @@ fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, 
     if (!known_references(m, r, n, "fmi2GetReal")) return fmi2Error;
     for (i = 0; i < n; i++) {
         value[i] = value_of(m, r[i]);
-        if (!isfinite(value[i]))
-            status = discard(m, "fmi2GetReal: %s is %g at t = %.10g s%s%s.", model_names[r[i]], value[i], m->s.time,
-                             unsolved(m) ? ": no solution of " : "", unsolved(m) ? unsolved(m) : "");
+        if (!in_range(r[i], value[i]))
+            status = discard(m, "fmi2GetReal: %s is %g at t = %.10g s, but must be %s%s%s.", model_names[r[i]], value[i],
+                             m->s.time, model_ranges[r[i]], unsolved(m) ? "; no solution of " : "",
+                             unsolved(m) ? unsolved(m) : "");
     }
     return status;
 }
@@ -179,6 +180,25 @@ static int settable(fmi2ValueReference r)
     if (r < FIRST_Y) return SETTABLE;
     if (r >= FIRST_P && r < FIRST_DX) return SETTABLE & ~CONTINUOUS_TIME;
     return 0;
+}
+
+/* Masters fill inputs with zeros before they have values to pass on: some while they initialize, some until their first
+   exchange of values. Such an input keeps its last valid value; the call succeeds, because masters take even a warning
+   for a failure. From then on every value counts. */
+static int stays(const Instance *m, fmi2ValueReference r, double value)
+{
+    int input = r >= FIRST_U && r < FIRST_Y;
+    if (!input || in_range(r, value)) return 0;
+    return m->s.mode & (INSTANTIATED | INITIALIZATION) ||
+           (value == 0.0 && m->s.type == fmi2CoSimulation && !m->s.stepped);
+}
+
+static void tell_kept(Instance *m, fmi2ValueReference r, double value)
+{
+    if (m->kept[r - FIRST_U]) return;
+    m->kept[r - FIRST_U] = 1;
+    warn(m, "fmi2SetReal: %s = %.10g %s is out of range. It must be %s %s; until then it stays at %.10g %s.",
+         model_names[r], value, model_units[r], model_ranges[r], model_units[r], *stored(m, r), model_units[r]);
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Real value[])
@@ -194,11 +214,16 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, 
         if (!(settable(r[i]) & m->s.mode))
             return refuse(m, "fmi2SetReal: %s cannot be set in the mode \"%s\".", model_names[r[i]],
                           mode_name(m->s.mode));
-        if (!in_range(r[i], value[i])) return refuse_value(m, "fmi2SetReal", r[i], value[i]);
+        if (!in_range(r[i], value[i]) && !stays(m, r[i], value[i]))
+            return refuse_value(m, "fmi2SetReal", r[i], value[i]);
     }
     for (i = 0; i < n; i++) {
         double *place = stored(m, r[i]);
         if (*place == value[i]) continue;
+        if (stays(m, r[i], value[i])) {
+            tell_kept(m, r[i], value[i]);
+            continue;
+        }
         if (fabs(value[i] - *place) > 1e-6 * (fabs(*place) + model_nominal[r[i]]) || r[i] >= FIRST_P)
             m->s.jumped = m->s.states_touched = 1;
         if (r[i] >= FIRST_P) m->constants_known = 0;

@@ -22,41 +22,108 @@ fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference
     return fmi2OK;
 }
 
+/* Whether a step may begin at a time of the master's clock; ours follows as long as the difference is round-off. */
+static int timely(const Instance *m, double time, double step)
+{
+    double round_off = 1e-9 * (1 + fabs(m->s.time)) + 1e-6 * step, end = time + step;
+    if (!isfinite(end) || step < 0)
+        return refuse(m, "fmi2DoStep: step of %g s from %.10g s: both must be finite, as must be their sum, and the "
+                      "step not negative.", step, time), 0;
+    if (fabs(time - m->s.time) > round_off)
+        return refuse(m, "fmi2DoStep: the step starts at %.10g s, but the instance is at %.10g s.", time, m->s.time), 0;
+    if (m->s.stop_defined && step > 0 && end > m->s.stop + 1e-9 * (1 + fabs(m->s.stop)) + fmin(1e-6 * step, 1e-6))
+        return refuse(m, "fmi2DoStep: the step from %.10g s to %.10g s passes the stop time %.10g s.", time, end,
+                      m->s.stop), 0;
+    return 1;
+}
+
+/* A refused step is not tried again as long as its time, inputs, parameters and states are the same: a master that only
+   repeats it would never end. */
+static int refused_before(const Instance *m, double step)
+{
+    size_t from = offsetof(State, time);
+    return step == m->refused_step &&
+           memcmp((const char *)&m->refused + from, (const char *)&m->s + from, sizeof m->s - from) == 0;
+}
+
+static void remember_refusal(Instance *m, double step, const char *reason)
+{
+    m->s.mode = STEP_FAILED;
+    m->refused = m->s;
+    m->refused_step = step;
+    m->refused_by = reason;
+}
+
+/* The first input that its slope leads out of its range until the end of a step; N_VARIABLES when there is none. */
+static int input_astray(const Instance *m, double step)
+{
+    int i;
+    for (i = 0; i < NU; i++)
+        if (!in_range(FIRST_U + i, m->s.u[i] + m->s.slope[i] * step)) return FIRST_U + i;
+    return N_VARIABLES;
+}
+
+/* Why a walk did not arrive. */
+static fmi2Status stuck(const Instance *m, double time, double step, const Walk *w)
+{
+    const Effort *e = &w->effort;
+    const char *name = model_names[FIRST_X + w->worst];
+    if (w->block)
+        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: the equation \"%s\" has no solution at its %s. "
+                       "Nothing has changed; check speeds, torques and temperatures.", time, time + step, w->block,
+                       e->accepted ? "end" : "begin");
+    if (e->accepted == 0)
+        return refuse(m, "fmi2DoStep: no step from %.10g s: %s becomes infinite or leaves its range (%s %s). Nothing "
+                      "has changed; check the inputs.", time, name, model_ranges[FIRST_X + w->worst],
+                      model_units[FIRST_X + w->worst]);
+    if (e->accepted + e->rejected >= MAX_STEPS)
+        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %ld internal steps lead to %.10g s only, "
+                       "limited by %s. Nothing has changed; retry with a shorter step.", time, time + step,
+                       e->accepted + e->rejected, time + w->reached, name);
+    return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s becomes infinite or leaves its range (%s %s) "
+                   "behind %.10g s. Nothing has changed; retry with a shorter step.", time, time + step, name,
+                   model_ranges[FIRST_X + w->worst], model_units[FIRST_X + w->worst], time + w->reached);
+}
+
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean no_return)
 {
     Instance *m = c;
+    State before;
     Walk w;
-    double round_off;
+    int r;
     (void)no_return;
     if (!allowed_for(m, fmi2CoSimulation, STEP_COMPLETE | STEP_FAILED, "fmi2DoStep")) return fmi2Error;
-    if (!isfinite(time + step) || step < 0)
-        return refuse(m, "fmi2DoStep: step of %g s from %.10g s: both must be finite, as must be their sum, and the "
-                      "step not negative.", step, time);
-    /* The master adds up its steps: its clock is right, ours follows as long as the difference is round-off. */
-    round_off = 1e-9 * (1 + fabs(m->s.time)) + 1e-6 * step;
-    if (fabs(time - m->s.time) > round_off)
-        return refuse(m, "fmi2DoStep: the step starts at %.10g s, but the instance is at %.10g s.", time, m->s.time);
-    if (m->s.stop_defined && step > 0 && time >= m->s.stop + round_off)
-        return refuse(m, "fmi2DoStep: the step starts at %.10g s, behind the stop time %.10g s.", time, m->s.stop);
+    if (!timely(m, time, step)) return fmi2Error;
     if (!check_relations(m, "fmi2DoStep")) return fmi2Error;
+    if (refused_before(m, step))
+        return refuse(m, "fmi2DoStep: the step of %g s from %.10g s was refused because of %s, and nothing has changed "
+                      "since. Take a shorter step, or other inputs.", step, time, m->refused_by);
+    if ((r = input_astray(m, step)) != N_VARIABLES) {
+        remember_refusal(m, step, model_names[r]);
+        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: its slope leads %s out of its range (%s %s). "
+                       "Nothing has changed; retry with a shorter step.", time, time + step, model_names[r],
+                       model_ranges[r], model_units[r]);
+    }
+    before = m->s;
     if (!walk(m, step, &w)) {
-        const char *name = model_names[FIRST_X + w.worst];
-        m->s.mode = STEP_FAILED;
-        if (w.block)
-            return refuse(m, "fmi2DoStep: no step from %.10g s: the equation \"%s\" has no solution at %s. Nothing has "
-                          "changed; check speeds, torques and temperatures.", time, w.block,
-                          w.accepted ? "its end" : "its begin");
-        if (w.accepted > 0)
-            return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s cannot be continued behind %.10g s. "
-                           "Nothing has changed; retry with a shorter step.", time, time + step, name,
-                           time + w.reached);
-        return refuse(m, "fmi2DoStep: no step from %.10g s: %s becomes infinite or leaves its range. Nothing has "
-                      "changed; check the inputs.", time, name);
+        remember_refusal(m, step, w.block ? w.block : model_names[FIRST_X + w.worst]);
+        return stuck(m, time, step, &w);
     }
     m->s.mode = STEP_COMPLETE;
+    m->s.stepped = 1;
     m->s.time = time + step;
+    m->outputs_known = m->outputs_known && step == 0;
+    if ((r = wrong_result(m)) != N_VARIABLES) {
+        double value = value_of(m, r);
+        m->s = before;
+        m->outputs_known = 0;
+        remember_refusal(m, step, model_names[r]);
+        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s would be %.10g %s, but must be %s. "
+                       "Nothing has changed; check the inputs.", time, time + step, model_names[r], value,
+                       model_units[r], model_ranges[r]);
+    }
     note(m, fmi2OK, LOG_SOLVER, "t = %.10g s: %ld steps, %ld rejected, next %.3g s, limited by %s.", m->s.time,
-         w.accepted, w.rejected, m->s.h_last, model_names[FIRST_X + w.worst]);
+         w.effort.accepted, w.effort.rejected, m->s.h_last, model_names[FIRST_X + w.worst]);
     warn_validity(m);
     return fmi2OK;
 }

@@ -41,14 +41,26 @@ static int check_relations(Instance *m, const char *function)
     return m->relations_hold;
 }
 
+/* What calculation leaves beside the end of a range by round-off lies on it. */
+static void settle(double *y)
+{
+    int i;
+    for (i = 0; i < NY; i++) {
+        double low = model_low[FIRST_Y + i], high = model_high[FIRST_Y + i], slack = 1e-9 * model_nominal[FIRST_Y + i];
+        if (y[i] < low && y[i] >= low - slack) y[i] = low;
+        if (y[i] > high && y[i] <= high + slack) y[i] = high;
+    }
+}
+
 /* Parameters that contradict each other have no outputs, nor has what has no solution. */
 static void refresh_outputs(Instance *m)
 {
     int i;
     if (m->outputs_known) return;
-    if (check_relations(m, "outputs") && refresh_algebra(m) < 0)
+    if (check_relations(m, "outputs") && refresh_algebra(m) < 0) {
         model_outputs(m->s.x, m->s.z, m->s.u, m->s.p, m->c, m->y, m->dx);
-    else {
+        settle(m->y);
+    } else {
         for (i = 0; i < NY; i++) m->y[i] = NAN;
         for (i = 0; i < NX; i++) m->dx[i] = NAN;
     }
@@ -102,6 +114,16 @@ static fmi2Status refuse_value(const Instance *m, const char *function, fmi2Valu
     if (!isfinite(value)) return refuse(m, "%s: %s = %g is not finite.", function, model_names[r], value);
     return refuse(m, "%s: %s = %.10g %s is out of range. It must be %s %s.", function, model_names[r], value,
                   model_units[r], model_ranges[r], model_units[r]);
+}
+
+/* The first output or derivative outside its declared range or not finite; N_VARIABLES when all are well. */
+static int wrong_result(Instance *m)
+{
+    int r;
+    refresh_outputs(m);
+    for (r = FIRST_Y; r < N_VARIABLES; r = r + 1 == FIRST_P ? FIRST_DX : r + 1)
+        if (!in_range(r, value_of(m, r))) return r;
+    return N_VARIABLES;
 }
 
 /* Law arguments outside the range of their source are told once each. */

@@ -42,7 +42,9 @@ typedef struct {
     int stop_defined;
     int jumped;            /* an input or a parameter has jumped since the last step */
     int states_touched;    /* ModelExchange: the integrator has to restart at the end of event mode */
+    int stepped;           /* a communication step has been done */
     int consistent;        /* z belongs to x, u and p */
+    int spare;             /* keeps the doubles aligned without hidden bytes */
     double time;
     double stop;
     double tolerance;
@@ -69,6 +71,10 @@ typedef struct {
     double y[AT_LEAST_1(NY)];
     double dx[AT_LEAST_1(NX)];
     unsigned char warned[AT_LEAST_1(NK)];
+    unsigned char kept[AT_LEAST_1(NU)];    /* it was told that an input keeps its value */
+    State refused;         /* the last step that was refused: where it began, */
+    double refused_step;   /* its length, NAN when there is none, */
+    const char *refused_by;   /* and the name of what ended it */
 } Instance;
 
 /* Log categories, in the order of the model description. */

@@ -34,6 +34,15 @@ static fmi2Status discard(const Instance *m, const char *format, ...)
     return fmi2Discard;
 }
 
+/* What the importer has to know even if it has switched warnings off. */
+static void warn(const Instance *m, const char *format, ...)
+{
+    va_list arguments;
+    va_start(arguments, format);
+    say(m, fmi2Warning, LOG_WARNING, format, arguments);
+    va_end(arguments);
+}
+
 /* A message of a category the importer can switch. */
 static void note(const Instance *m, fmi2Status status, int category, const char *format, ...)
 {

@@ -7,7 +7,7 @@ static int walk(Instance *m, double length, Walk *w)
     State before = *s;
     double x[AT_LEAST_1(NX)], x_new[AT_LEAST_1(NX)], u[AT_LEAST_1(NU)], z[AT_LEAST_1(NZ)], z_new[AT_LEAST_1(NZ)] = {0.0};
     double t = 0.0, first = 0.0, h = s->jumped ? s->h_first : s->h_last;
-    int in_a_row = 0, i;
+    int i;
     memset(w, 0, sizeof *w);
     refresh_constants(m);
     if ((w->block = unsolved(m)) != NULL) return 0;
@@ -20,22 +20,16 @@ static int walk(Instance *m, double length, Walk *w)
         int last = h * (1 + 1e-9) >= left;
         double size = last ? left : 2 * h > left ? left / 2 : h;
         double error = trial(m, x, z, u, size, x_new, z_new, &w->worst);
-        if (w->accepted + w->rejected > MAX_STEPS) return 0;
-        if (!(error <= 1.0)) {
-            w->rejected++;
-            h = size * (isfinite(error) ? factor(error) : 0.2);
-            if (++in_a_row > MAX_REJECTIONS || t + h == t) return 0;
-            continue;
+        h = next_size(&w->effort, error, size, h, length);
+        if (error <= 1.0) {
+            t = last ? length : t + size;
+            memcpy(x, x_new, sizeof x);
+            memcpy(z, z_new, sizeof z);
+            for (i = 0; i < NU; i++) u[i] = s->u[i] + s->slope[i] * t;
+            if (first == 0.0) first = h;
+            w->reached = t;
         }
-        w->accepted++;
-        t = last ? length : t + size;
-        memcpy(x, x_new, sizeof x);
-        memcpy(z, z_new, sizeof z);
-        for (i = 0; i < NU; i++) u[i] = s->u[i] + s->slope[i] * t;
-        h = fmax(size < h ? h : 0.0, size * (in_a_row ? fmin(factor(error), 1.0) : factor(error)));
-        if (first == 0.0) first = h;
-        in_a_row = 0;
-        w->reached = t;
+        if (h == 0.0 && t < length) return 0;
     }
     memcpy(s->x, x, sizeof x);
     memcpy(s->z_from, z, sizeof z);

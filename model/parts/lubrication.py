@@ -15,7 +15,7 @@ from ..laws.oil import (
     walther_constants,
 )
 from ..laws.smooth import Num
-from .ports import HeatPort, Lubricant
+from .ports import COLDEST, HOTTEST, HeatPort, Lubricant
 
 
 class LubricantProperties(Component):
@@ -59,7 +59,7 @@ class LubricantProperties(Component):
 class OilBath(LubricantProperties):
     """The oil of a gearbox: a body of one temperature that lubricates."""
 
-    T = State("K", "temperature of the oil", nominal=10.0, above=0.0, at_most=2000.0, start=298.15)
+    T = State("K", "temperature of the oil", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
     V = Parameter("m3", "volume of oil at 15 degC", nominal=1e-3, above=0.0)
     c_p = Parameter("J/(kg.K)", "specific heat", nominal=2000.0, above=0.0)
     T_pour = Parameter("K", "pour point, below it the oil does not flow; 0 K: not known", default=0.0, at_least=0.0)

@@ -6,6 +6,10 @@ from typing import Any
 
 from ..core.declare import Flow, Port, Potential
 
+#: Temperatures [K] of bodies, oils and rooms. Colder, oils are solid and their viscosity laws explode; hotter, no
+#: lubricant, seal or heat treatment lasts, so that a machine that overheats ends here and not at thousands of kelvins.
+COLDEST, HOTTEST = 213.15, 773.15
+
 
 class HeatPort(Port):
     """Where heat crosses a boundary. Positive Q_flow enters the component that owns the port."""

@@ -18,7 +18,7 @@ from ..laws.convection import (
 )
 from ..laws.radiation import radiated
 from ..laws.smooth import Num
-from .ports import AirPort, HeatPort
+from .ports import COLDEST, HOTTEST, AirPort, HeatPort
 
 
 class HeatCapacity(Component):
@@ -26,7 +26,7 @@ class HeatCapacity(Component):
 
     heat = HeatPort()
 
-    T = State("K", "temperature", nominal=10.0, above=0.0, at_most=2000.0, start=298.15)
+    T = State("K", "temperature", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
     C = Parameter("J/K", "heat capacity", above=0.0)
     Q_flow_external = Input("W", "heat flow rate from outside the model, e.g. a cooler (negative)", nominal=100.0)
 
@@ -109,7 +109,7 @@ class Room(Component):
     air = AirPort(optional=True)
     floor = HeatPort(optional=True)
 
-    T = Input("K", "temperature of the room", nominal=10.0, above=0.0, start=298.15)
+    T = Input("K", "temperature of the room", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
     air_speed = Input("m/s", "speed of the air along the housing", at_least=0.0)
     Q_flow = Output("W", "heat flow rate into the room", nominal=100.0)
 

@@ -1,5 +1,6 @@
 """The interface's rules: what may be called when, what is refused and with which words, and that nothing leaks over."""
 
+import ctypes
 import math
 import random
 import threading
@@ -73,8 +74,51 @@ def test_values_that_are_not_finite_are_refused_by_name(opened: Open, rc_fmu: Pa
 
 def test_values_out_of_range_are_refused_by_name(opened: Open, heat_fmu: Path) -> None:
     one = opened(heat_fmu)
-    assert "room.T = 0 K is out of range. It must be above 0 K." in one.refused(lambda: one.set(room__T=0.0))[1]
     assert "oil.C" in one.refused(lambda: one.set(oil__C=-1.0))[1]
+    assert "oil.T" in one.refused(lambda: one.set(oil__T=0.0))[1]
+    one.start().fmu.doStep(0, 1)
+    assert "room.T = 0 K is out of range. It must be above 0 K." in one.refused(lambda: one.set(room__T=0.0))[1]
+
+
+@pytest.mark.parametrize("value", [0.0, -5.0, math.nan, math.inf])
+def test_an_input_keeps_its_value_while_a_master_initializes(opened: Open, heat_fmu: Path, value: float) -> None:
+    """Masters fill inputs with zeros before they have values, and take any status but fmi2OK for a failure."""
+    expected = run(opened(heat_fmu).start(room__T=280.0), 3)
+    one = opened(heat_fmu)
+    one.set(room__T=280.0)
+    for _ in range(2):
+        reference, number = (ctypes.c_uint * 1)(one.refs["room.T"]), (ctypes.c_double * 1)(value)
+        assert one.fmu.dll.fmi2SetReal(one.fmu.component, reference, ctypes.c_size_t(1), number) == 0
+    one.start(room__T=value)
+    (told,) = one.messages
+    assert told[:2] == (1, "logStatusWarning")
+    assert "room.T" in told[2]
+    assert "stays at 280 K" in told[2]
+    assert one.get("room.T") == [280.0]
+    assert run(one, 3) == expected
+
+
+def test_zero_waits_for_the_first_exchange_of_values_and_no_longer(opened: Open, heat_fmu: Path) -> None:
+    one = opened(heat_fmu).start()
+    assert "room.T" in one.refused(lambda: one.set(room__T=-1.0))[1]
+    one.set(room__T=0.0)
+    assert one.get("room.T") == [293.15]
+    one.fmu.doStep(0, 1)
+    assert one.refused(lambda: one.set(room__T=0.0))[0] == ERROR
+    exchange = opened(heat_fmu, FMU2Model).start()
+    assert exchange.refused(lambda: exchange.set(room__T=0.0))[0] == ERROR
+
+
+def test_a_slope_that_leads_an_input_out_of_its_range_is_refused(opened: Open, heat_fmu: Path) -> None:
+    one = opened(heat_fmu).start()
+    one.fmu.setRealInputDerivatives([one.refs["room.T"]], [1], [-1.0])
+    one.fmu.doStep(0, 200)
+    before = one.everything()
+    status, text = one.refused(lambda: one.fmu.doStep(200, 100))
+    assert (status, "leads room.T out of its range (above 0 K)" in text) == (DISCARD, True)
+    assert one.refused(lambda: one.fmu.doStep(200, 100))[0] == ERROR
+    assert one.everything() == before
+    one.fmu.doStep(200, 50)
 
 
 def test_set_order_does_not_matter(opened: Open, heat_fmu: Path) -> None:
@@ -163,8 +207,11 @@ def test_clock_tolerates_round_off_only(opened: Open, rc_fmu: Path) -> None:
     before = one.get("capacitor.v")
     fmu.doStep(1.0, 0.0)
     assert one.get("capacitor.v") == before
-    fmu.doStep(1.0, 10.0)
-    assert "stop time" in one.refused(lambda: fmu.doStep(11.0, 1.0))[1]
+    for past in (10.0, 9.001):
+        status, text = one.refused(lambda h=past: fmu.doStep(1.0, h))
+        assert (status, "passes the stop time 10 s" in text) == (ERROR, True)
+    fmu.doStep(1.0, 9.0 + 1e-12)
+    assert "stop time" in one.refused(lambda: fmu.doStep(10.0, 1.0))[1]
 
 
 def test_a_million_tenths_of_a_second_add_up(opened: Open, rc_fmu: Path) -> None:

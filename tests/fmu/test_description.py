@@ -6,8 +6,10 @@ from pathlib import Path
 from types import SimpleNamespace
 
 import fmpy
+import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
+from fmu_in_c import planetary
 from gearheat.fmu import units
 from gearheat.fmu.description import identifier
 from gearheat.fmu.export import export
@@ -45,6 +47,28 @@ def test_units_and_what_is_shown(described: SimpleNamespace) -> None:
     assert shown["rpm"][0] == pytest.approx(9.549296585513721, rel=1e-14)
     base = defined["N.m.s/rad"].baseUnit
     assert (base.kg, base.m, base.s, base.rad, base.factor) == (1, 2, -1, -1, 1.0)
+
+
+def test_a_number_of_the_description_reads_back_everywhere(heat_fmu: Path) -> None:
+    """std::stod and others refuse denormal numbers, so an end that is left open may not be written as one."""
+    root = ET.fromstring(zipfile.ZipFile(heat_fmu).read("modelDescription.xml"))
+    low = [float(real.get("min", "-inf")) for real in root.iter("Real")]
+    assert sum(0 < value < 1e-200 for value in low) > 5, "this model has open ends at zero"
+    for real in root.iter("Real"):
+        for key in ("min", "max", "start", "nominal"):
+            value = float(real.get(key, "0"))
+            assert value == 0 or abs(value) >= 1e-300, (key, value)
+
+
+def test_temperatures_of_a_rig_have_the_limits_of_its_laws() -> None:
+    flat = planetary()[0]
+    kelvins = [v for v in table(flat) if v.quantity.unit == "K" and v.kind in ("state", "input")]
+    assert len(kelvins) == 6
+    assert {v.bounds for v in kelvins} == {(213.15, 773.15)}
+    for temperature in (213.15, 773.15):
+        u = [temperature if q.name == "room.T" else q.start for q in flat.inputs]
+        values = flat.output_function([temperature] * len(flat.states), u, flat.starts("parameter"))[0]
+        assert np.isfinite(np.array(values)).all()
 
 
 def test_a_difference_is_marked_so_no_offset_touches_it(heat_fmu: Path) -> None:

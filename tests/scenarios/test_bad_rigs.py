@@ -41,7 +41,7 @@ FACE = 'b = "42 mm"'
         (
             'room.T = "25 degC"',
             'room.T = "-300 degC"',
-            'rig.toml [operating_point]: room.T = "-300 degC" is out of range. It must be above 0 K.',
+            'rig.toml [operating_point]: room.T = "-300 degC" is out of range. It must be at least 213.15 K.',
         ),
         (
             'room.T = "25 degC"',

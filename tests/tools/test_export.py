@@ -91,11 +91,11 @@ def test_each_drive_is_valid_and_has_its_inputs(exported, name):
     assert found["platforms"] == [compiling.host_platform().name]
 
 
-def test_all_drives_start_at_the_same_operating_point_and_stay_near_it(exported):
+def test_both_shafts_with_a_given_speed_start_at_the_same_operating_point_and_stay_near_it(exported):
     names = ["carrier.w", "carrier.tau", "sun.w", "sun.tau", "efficiency.P_loss", "carrier_bearing.P_loss"]
     seen = {}
-    for name, (path, _) in exported.items():
-        with Player(path) as player:
+    for name in ("carrier-speed", "sun-speed"):
+        with Player(exported[name][0]) as player:
             seen[name] = player.run({}, 20, 1.0, record=names)
     first = seen["carrier-speed"]
     assert first["carrier.w"][0] == pytest.approx(250 * np.pi / 30)
@@ -104,6 +104,27 @@ def test_all_drives_start_at_the_same_operating_point_and_stay_near_it(exported)
         for column in names:
             assert played[column][0] == pytest.approx(first[column][0], rel=1e-9), (name, column)
         assert played["carrier.w"][-1] == pytest.approx(first["carrier.w"][-1], rel=0.1)
+
+
+@pytest.mark.parametrize(
+    ("rig", "options"),
+    [("planetary", options) for options, _ in VARIANTS.values()]
+    + [("helical_two_stage", options) for options in ((), ("--drive", "output"), ("--given", "torque"))],
+)
+def test_every_variant_runs_for_hours_at_its_defaults(gearheat, tmp_path, rig, options):
+    """A speed that is given holds while the machine warms up; where torques are given nothing moves from the start."""
+    assert gearheat("export", rig, "-o", tmp_path / "rig.fmu", *options).code == 0
+    with Player(tmp_path / "rig.fmu") as player:
+        told = player.described.quantities("output")
+        played = player.run({}, 8 * 3600.0, 60.0, record=list(told))
+    for name, q in told.items():
+        first, last = played[name][0], played[name][-1]
+        assert np.isfinite(played[name]).all(), name
+        if q.unit == "rad/s":
+            assert last == pytest.approx(first, rel=1e-4), name
+        if q.unit == "K" and "torque" in options:
+            assert last == pytest.approx(first, abs=0.01), name
+    assert "torque" not in options or max(abs(played[name]).max() for name in ("efficiency.P_loss",)) > 1
 
 
 def test_what_is_set_stays_set(gearheat, tmp_path, elsewhere):
