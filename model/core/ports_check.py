@@ -17,6 +17,11 @@ def open_ports(model: str, parts: Sequence[Component], nets: Sequence[Sequence[P
 
     Ports without a flow, flanges (no torque acts there) and those declared `optional` may stay open. A part that is
     the whole model has nothing to meet.
+
+    Args:
+        model: its name, for messages
+        parts: the components
+        nets: groups of ports that meet; a port alone is one as well
     """
     if len(parts) < 2:
         return []
@@ -48,6 +53,13 @@ def floating(
     """Groups of ports that are connected with each other but with nothing that gives their potentials a level.
 
     All temperatures of a group without storage and room could rise together and no equation would notice.
+
+    Args:
+        model: its name, for messages
+        ports: path -> port
+        rows: the equations
+        unknowns: what they are solved for
+        columns: for each equation the places of the unknowns in it
     """
     levels: dict[int, tuple[Port, str]] = {}
     for c, unknown in enumerate(unknowns):

@@ -65,7 +65,20 @@ def result(
     evaluated: dict[str, np.ndarray],
     audit: Audit,
 ) -> Result:
-    """One result from states, inputs and what `evaluate` made of them."""
+    """One result from states, inputs and what `evaluate` made of them.
+
+    Args:
+        flat: the model
+        kind: "steady" or "transient"
+        index: what the n rows stand for: times [s] or numbers
+        x: states, a column a row (states, n), SI
+        u: inputs (inputs, n), SI
+        evaluated: of `evaluate`: arrays with a column a row
+        audit: of energy
+
+    Raises:
+        SolveError: outputs leave their declared range
+    """
     groups = ((flat.states, x), (flat.inputs, u), (flat.outputs, evaluated["y"]))
     columns = {q.name: row for quantities, values in groups for q, row in zip(quantities, values, strict=True)}
     if problems := list(out_of_range(flat, columns)):
@@ -84,7 +97,12 @@ def result(
 
 
 def out_of_range(flat: FlatModel, columns: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """What is wrong with the outputs that leave their declared range, the worst row of each, in words."""
+    """What is wrong with the outputs that leave their declared range, the worst row of each, in words.
+
+    Args:
+        flat: the model
+        columns: path of an output -> its values over the rows, SI
+    """
     for q in flat.outputs:
         values = columns[q.name]
         slack = SLACK * (q.nominal + np.abs(values))
@@ -102,7 +120,12 @@ def out_of_range(flat: FlatModel, columns: Mapping[str, np.ndarray]) -> Iterator
 
 
 def outside(flat: FlatModel, checked: np.ndarray) -> tuple[Outside, ...]:
-    """The arguments of laws that left their range over the rows, uses of one law in one part taken together."""
+    """The arguments of laws that left their range over the rows, uses of one law in one part taken together.
+
+    Args:
+        flat: the model
+        checked: arguments of its laws (checks, n)
+    """
     found: dict[tuple[str, str, str], Outside] = {}
     for check, values in zip(flat.checks, checked, strict=True):
         lowest, highest = float(np.min(values)), float(np.max(values))
@@ -117,7 +140,12 @@ def outside(flat: FlatModel, checked: np.ndarray) -> tuple[Outside, ...]:
 
 
 def left(flat: FlatModel, residual: np.ndarray) -> dict[str, float]:
-    """Largest residual of each implicit equation over the rows."""
+    """Largest residual of each implicit equation over the rows.
+
+    Args:
+        flat: the model
+        residual: of its implicit equations (equations, n), in units of their nominals
+    """
     return {name: float(np.max(np.abs(row))) for name, row in zip(flat.residual_names, residual, strict=True)}
 
 
