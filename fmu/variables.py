@@ -6,7 +6,6 @@ import math
 from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -96,11 +95,6 @@ class Table:
 
     def __iter__(self) -> Iterator[Variable]:
         return iter(self.variables)
-
-    @cached_property
-    def by_name(self) -> Mapping[str, Variable]:
-        """Name -> variable."""
-        return {v.name: v for v in self.variables}
 
     def first(self, kind: str) -> int:
         """Value reference of the first variable of a kind (of the following one when there is none)."""

@@ -30,7 +30,12 @@ class Known:
 
     @staticmethod
     def of(assembly: Assembly, typical: Mapping[int, float]) -> Known:
-        """Those of all parts of an assembly."""
+        """Those of all parts of an assembly.
+
+        Args:
+            assembly: the parts
+            typical: hash of a symbol -> value at which coefficients are judged
+        """
         parts = assembly.parts
         return Known(
             {part.symbols[k].element_hash(): (part, k) for part in parts for k in part.states},
@@ -121,7 +126,14 @@ class Relation:
 
     @staticmethod
     def of(expression: Any, known: Known) -> Relation | None:
-        """A constraint in this form; None where it is not linear in the states and inputs."""
+        """A constraint in this form, states in the order of the parts; None where it is not linear in the states.
+
+        States whose coefficient vanishes at the values of the parameters are left out.
+
+        Args:
+            expression: zero where the constraint holds (SX, 1)
+            known: the symbols of the parts
+        """
         held = {s.element_hash(): s for s in ca.symvar(expression)}
         states, inputs = [h for h in known.states if h in held], [h for h in known.inputs if h in held]
         z = column([held[h] for h in (*states, *inputs)])

@@ -102,9 +102,17 @@ def _undeclared(part: Component, error: KeyError | AttributeError) -> str:
 
 
 def check_symbols(rows: Sequence[Row], unknowns: Sequence[Unknown], parts: Sequence[Component]) -> None:
-    """Raise StructureError where an equation holds a symbol that no part declares, or no number.
+    """Refuse equations that cannot be solved whatever their structure.
 
-    The second comes of functions that take a symbol for a number (`math.sqrt`).
+    No number comes of functions that take a symbol for a number (`math.sqrt`).
+
+    Args:
+        rows: the equations
+        unknowns: what they are solved for
+        parts: the components, with what each declares
+
+    Raises:
+        StructureError: an equation holds a symbol that no part declares, or no number
     """
     known = {u.symbol.element_hash() for u in unknowns}
     known |= {s.element_hash() for part in parts for s in (*part.symbols.values(), *part.derivatives.values())}

@@ -206,5 +206,10 @@ def some(names: Sequence[str]) -> str:
 
 
 def listed(names: Sequence[str], word: str = "and") -> str:
-    """All names, the last two with a word between them."""
+    """All names, the last two with a word between them.
+
+    Args:
+        names: any number
+        word: what stands before the last
+    """
     return f" {word} ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))

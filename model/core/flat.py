@@ -92,13 +92,23 @@ class Relation:
         return f"from {low} to {high}" if np.isfinite(self.low) else f"at most {high}"
 
     def problem(self, value: float, given: str) -> str:
-        """What is wrong with a value. `given` is what it follows from, in words."""
+        """What is wrong with a value.
+
+        Args:
+            value: of the relation's expression (SI)
+            given: what the value follows from, in words
+        """
         found = text(value, self.unit, 4) if np.isfinite(value) else "not defined"
         return f'"{self.name}" does not hold: {self.value} is {found}, expected {self.bounds} ({given}).\n{self.remedy}'
 
 
 def broken(relations: Sequence[Relation], values: Sequence[float]) -> list[tuple[Relation, float]]:
-    """The relations that do not hold; of a part where one has a value, not those that merely have none."""
+    """The relations that do not hold; of a part where one has a value, not those that merely have none.
+
+    Args:
+        relations: the n relations of a model
+        values: of their expressions (n), SI
+    """
     found = [(r, float(v)) for r, v in zip(relations, values, strict=True) if not r.holds(float(v))]
     told = {r.component for r, v in found if np.isfinite(v)}
     return [(r, v) for r, v in found if np.isfinite(v) or r.component not in told]

@@ -15,8 +15,13 @@ from .solve import Row, Unknown, column
 def open_ports(model: str, parts: Sequence[Component], nets: Sequence[Sequence[Port]]) -> list[str]:
     """Parts that are connected to nothing, and ports that have to meet another and do not.
 
-    Which those are, the type of the port says (`must_meet`), or the part: a gear's flange may stay open, there acts no
+        Which those are, the type of the port says (`must_meet`), or the part: a gear's flange may stay open, there acts no
     torque. A part that is the whole model has nothing to meet.
+
+    Args:
+        model: its name, for messages
+        parts: the components
+        nets: groups of ports that meet; a port alone is one as well
     """
     if len(parts) < 2:
         return []
@@ -48,6 +53,13 @@ def floating(
     """Groups of ports that are connected with each other but with nothing that gives their potentials a level.
 
     All temperatures of a group without storage and room could rise together and no equation would notice.
+
+    Args:
+        model: its name, for messages
+        ports: path -> port
+        rows: the equations
+        unknowns: what they are solved for
+        columns: for each equation the places of the unknowns in it
     """
     levels: dict[int, tuple[Port, str]] = {}
     for c, unknown in enumerate(unknowns):

@@ -113,7 +113,13 @@ class ToothedPart(Component):
         )
 
     def contact(self, eps_alpha: Num, z_a: Num, z_b: Num) -> Contact:
-        """The contact of a gear of z_a teeth with one of z_b teeth, negative for an internal gear."""
+        """The contact of two gears.
+
+        Args:
+            eps_alpha: transverse contact ratio [1]
+            z_a: teeth of the first gear [1]
+            z_b: teeth of the second gear, negative for an internal gear [1]
+        """
         alpha_t, alpha_wt = self.working_angle()
         beta_b = base_helix_angle(self.alpha_n, self.beta)
         rho_a, rho_b = (curvature_radius(base_diameter(2 * self.radius(z), alpha_t), alpha_wt) for z in (z_a, z_b))

@@ -21,7 +21,12 @@ LEFT = 1e-6
 
 
 def out_of_range(flat: FlatModel, columns: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """What is wrong with the outputs that leave their declared range, the worst row of each, in words."""
+    """What is wrong with the outputs that leave their declared range, the worst row of each, in words.
+
+    Args:
+        flat: the model
+        columns: path of an output -> its values over the rows, SI
+    """
     for q in flat.outputs:
         values = columns[q.name]
         slack = SLACK * (q.nominal + np.abs(values))

@@ -113,6 +113,13 @@ def choose(
     The distance is the root mean square of the deviations, each relative to the target's size or its nominal. Those
     without a steady state come last.
 
+    Args:
+        flat: the model
+        candidates: name -> path of a parameter -> value in SI
+        targets: path of an output or state -> value in SI
+        values: path of a parameter or input -> value in SI, the same for all candidates
+        guess: path of a state -> value in SI to begin with
+
     Raises:
         ScenarioError: unknown names, names of the wrong kind, values out of range
     """

@@ -97,7 +97,12 @@ def result(
 
 
 def outside(flat: FlatModel, checked: np.ndarray) -> tuple[Outside, ...]:
-    """The arguments of laws that left their range over the rows, uses of one law in one part taken together."""
+    """The arguments of laws that left their range over the rows, uses of one law in one part taken together.
+
+    Args:
+        flat: the model
+        checked: arguments of its laws (checks, n)
+    """
     found: dict[tuple[str, str, str], Outside] = {}
     for check, values in zip(flat.checks, checked, strict=True):
         lowest, highest = float(np.min(values)), float(np.max(values))
@@ -112,7 +117,12 @@ def outside(flat: FlatModel, checked: np.ndarray) -> tuple[Outside, ...]:
 
 
 def left(flat: FlatModel, residual: np.ndarray) -> dict[str, float]:
-    """Largest residual of each implicit equation over the rows."""
+    """Largest residual of each implicit equation over the rows.
+
+    Args:
+        flat: the model
+        residual: of its implicit equations (equations, n), in units of their nominals
+    """
     return {name: float(np.max(np.abs(row))) for name, row in zip(flat.residual_names, residual, strict=True)}
 
 
