@@ -115,7 +115,8 @@ class FlatModel:
 
     A parameter that follows from others is none of `parameters` but an output; `derived` says what it follows from.
     `related` holds the values of the `relations` between parameters, a function of p alone. `joined` says which
-    quantities are outputs because rigid couplings tie them to states ("rotor_2.w follows rotor_1.w").
+    quantities are outputs because rigid couplings tie them to states ("rotor_2.w follows rotor_1.w"). `imbalance` [W]
+    is the power that each of the parts `balanced` takes in and does not account for: zero in a sound part.
     """
 
     name: str
@@ -140,6 +141,8 @@ class FlatModel:
     algebraic: tuple[Quantity, ...] = ()
     z: Any = field(default_factory=lambda: ca.SX(0, 1))
     joined: tuple[str, ...] = ()
+    balanced: tuple[str, ...] = ()
+    imbalance: Any = field(default_factory=lambda: ca.SX(0, 1))
     derived: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     relations: tuple[Relation, ...] = ()
     related: Any = field(default_factory=lambda: ca.SX(0, 1))
@@ -171,8 +174,8 @@ class FlatModel:
 
     @cached_property
     def function(self) -> Any:
-        """CasADi function (x, z, u, p) -> (ode, y, residual, supply, throughput, stored, checked)."""
-        names = ["ode", "y", "residual", "supply", "throughput", "stored", "checked"]
+        """CasADi function (x, z, u, p) -> (ode, y, residual, supply, throughput, stored, checked, imbalance)."""
+        names = ["ode", "y", "residual", "supply", "throughput", "stored", "checked", "imbalance"]
         results = [getattr(self, name) for name in names]
         return ca.Function("model", self.point, results, ["x", "z", "u", "p"], names, {"cse": True})
 

@@ -19,8 +19,8 @@ class Friction(Component):
 
     count = Parameter("1", "number of equal pieces", above=0.0, whole=True)
     inner_share = Parameter("1", "share of the heat that goes to the inner body", at_least=0.0, at_most=1.0)
-    tau_loss = Output("N.m", "friction torque of all pieces", nominal=1.0, guess=0.0)
-    P_loss = Output("W", "friction power of all pieces", nominal=100.0)
+    tau_loss = Output("N.m", "friction torque of all pieces", nominal=1.0, at_least=0.0, guess=0.0)
+    P_loss = Output("W", "friction power of all pieces", nominal=100.0, at_least=0.0)
 
     def torque(self) -> Num:
         """Friction torque of one piece [N.m], not negative."""
