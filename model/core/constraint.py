@@ -30,7 +30,12 @@ class Known:
 
     @staticmethod
     def of(assembly: Assembly, typical: Mapping[int, float]) -> Known:
-        """Those of all parts of an assembly."""
+        """Those of all parts of an assembly.
+
+        Args:
+            assembly: the parts
+            typical: typical value of every symbol by its hash
+        """
         parts = assembly.parts
         return Known(
             {part.symbols[k].element_hash(): (part, k) for part in parts for k in part.states},
@@ -45,11 +50,19 @@ class Known:
         )
 
     def constant(self, expression: Any) -> bool:
-        """Whether an expression holds nothing but parameters."""
+        """Whether an expression holds nothing but parameters.
+
+        Args:
+            expression: CasADi expression of any shape
+        """
         return all(s.element_hash() in self.parameters for s in ca.symvar(expression))
 
     def values(self, expression: Any) -> Any:
-        """An expression at typical values, as a CasADi matrix of numbers."""
+        """An expression at typical values, as a CasADi matrix of numbers.
+
+        Args:
+            expression: CasADi expression of any shape
+        """
         free = ca.symvar(expression)
         point = [self.typical.get(s.element_hash(), 1.0) for s in free]
         return ca.Function("values", free, [expression])(*point) if free else ca.DM(expression)
@@ -121,7 +134,12 @@ class Relation:
 
     @staticmethod
     def of(expression: Any, known: Known) -> Relation | None:
-        """A constraint in this form; None where it is not linear in the states and inputs."""
+        """A constraint in this form; None where it is not linear in the states and inputs.
+
+        Args:
+            expression: scalar that has to be zero
+            known: the quantities that stand in it
+        """
         held = {s.element_hash(): s for s in ca.symvar(expression)}
         states, inputs = [h for h in known.states if h in held], [h for h in known.inputs if h in held]
         z = column([held[h] for h in (*states, *inputs)])

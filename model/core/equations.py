@@ -24,6 +24,9 @@ KIND = "Wrong number or type of arguments"
 def rows_of(part: Component) -> list[Row]:
     """The equations of a part, named "part: equation".
 
+    Args:
+        part: the part
+
     Raises:
         StructureError: the part has no equations, names what it does not declare, decides by the value of a symbol, or
             gives a side that is no scalar; with the equation behind which that happens
@@ -57,7 +60,10 @@ def _row(part: Component, e: Equation) -> Row:
 
 
 def energies_of(part: Component) -> tuple[list[Any], Any]:
-    """Powers that enter the model through a part, and the energy it stores.
+    """Powers that enter the model through a part [W], and the energy it stores [J].
+
+    Args:
+        part: the part
 
     Raises:
         StructureError: as `rows_of`
@@ -102,9 +108,16 @@ def _undeclared(part: Component, error: KeyError | AttributeError) -> str:
 
 
 def check_symbols(rows: Sequence[Row], unknowns: Sequence[Unknown], parts: Sequence[Component]) -> None:
-    """Raise StructureError where an equation holds a symbol that no part declares, or no number.
+    """Make sure that equations hold nothing but symbols that are declared, and numbers.
 
-    The second comes of functions that take a symbol for a number (`math.sqrt`).
+    Args:
+        rows: all equations
+        unknowns: all unknowns
+        parts: all parts
+
+    Raises:
+        StructureError: a symbol that no part declares, or no number, which comes of functions that take a symbol for
+            one (`math.sqrt`)
     """
     known = {u.symbol.element_hash() for u in unknowns}
     known |= {s.element_hash() for part in parts for s in (*part.symbols.values(), *part.derivatives.values())}

@@ -141,15 +141,12 @@ def _flat_model(
     ode, y, residual, supply, throughput, stored, checked = ca.vertsplit(together, [0, *_cumulative(sizes)])
     residual, names = scaled_residual(solution, residual)
 
-    def quantities(items: list[tuple[Component, str]], kind: str) -> tuple[Quantity, ...]:
-        return tuple(getattr(part, kind)[k].quantity(f"{part.name}.{k}", part.values[k]) for part, k in items)
-
     return FlatModel(
         name=assembly.name,
         doc=assembly.doc,
-        states=quantities(states, "states"),
-        inputs=quantities(inputs, "inputs"),
-        parameters=quantities(parameters, "parameters"),
+        states=_quantities(states, "states"),
+        inputs=_quantities(inputs, "inputs"),
+        parameters=_quantities(parameters, "parameters"),
         outputs=tuple(_output(part, k, d, joined) for part, k, d in outputs),
         x=x,
         algebraic=tuple(Quantity(u.name, u.unit, "", u.nominal, start_of(u)) for u in solution.torn),
@@ -171,6 +168,10 @@ def _flat_model(
         relations=tuple(relation for relation, _ in related),
         related=column([value for _, value in related]),
     )
+
+
+def _quantities(items: list[tuple[Component, str]], kind: str) -> tuple[Quantity, ...]:
+    return tuple(getattr(part, kind)[k].quantity(f"{part.name}.{k}", part.values[k]) for part, k in items)
 
 
 def _shown(part: Component, joined: Mapping[str, str]) -> dict[str, Declaration]:

@@ -17,6 +17,11 @@ def open_ports(model: str, parts: Sequence[Component], nets: Sequence[Sequence[P
 
     Which those are, the type of the port says (`must_meet`), or the part: a gear's flange may stay open, there acts no
     torque. A part that is the whole model has nothing to meet.
+
+    Args:
+        model: name of the model, for the messages
+        parts: all parts
+        nets: the groups of ports that meet, single ports included
     """
     if len(parts) < 2:
         return []
@@ -48,6 +53,13 @@ def floating(
     """Groups of ports that are connected with each other but with nothing that gives their potentials a level.
 
     All temperatures of a group without storage and room could rise together and no equation would notice.
+
+    Args:
+        model: name of the model, for the messages
+        ports: all ports by path
+        rows: all equations
+        unknowns: all unknowns
+        columns: for each equation the positions of its unknowns
     """
     levels: dict[int, tuple[Port, str]] = {}
     for c, unknown in enumerate(unknowns):

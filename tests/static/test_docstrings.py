@@ -19,7 +19,6 @@ LEFT = {
     "model/core/component.py",
     "model/core/declare.py",
     "model/core/solve.py",
-    "model/core/structure.py",
     "model/laws/smooth.py",
     "model/parts/gears.py",
     "model/run/design.py",
