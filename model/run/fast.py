@@ -54,12 +54,11 @@ def once(make: Callable[Concatenate[FlatModel, Arguments], Made]) -> Callable[Co
     """What is compiled of a model, made once per model and further arguments, and gone with the model."""
     made: WeakKeyDictionary[FlatModel, dict[Any, Made]] = WeakKeyDictionary()
 
-    @wraps(make)
-    def kept(flat: FlatModel, *arguments: Arguments.args, **named: Arguments.kwargs) -> Made:
+    def kept(flat: FlatModel, /, *arguments: Arguments.args, **named: Arguments.kwargs) -> Made:
         own = made.setdefault(flat, {})
         key = (arguments, tuple(named.items()))
         if key not in own:
             own[key] = make(flat, *arguments, **named)
         return own[key]
 
-    return kept
+    return wraps(make)(kept)
