@@ -44,7 +44,7 @@ from typing import Any
 
 from ..model.core.component import Component
 from ..model.core.connect import nets
-from ..model.core.declare import Port, declared
+from ..model.core.declare import Port, State, declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.machines import planetary
@@ -217,9 +217,26 @@ class _Loader:
             ]
             if len(members) < 2:
                 self.problems.append(f"{where}: names {len(members)} port. Name at least two that meet.")
+        self.problems += self._one_body_of_two()
         specs = tuple(PartSpec(name, cls.__name__, parts[name].values) for name, cls in self.types.items())
         own = tuple(tuple(members) for members in self.table.connect.values())
         return Spec(self.name, self.table.doc, specs, (*self.connections, *own), self.known)
+
+    def _one_body_of_two(self) -> list[str]:
+        """Nets of the file that share a port, which makes one of them, and that hold different storages."""
+        stores = {name for name, cls in self.types.items() if declared(cls, State)}
+        held = {net: {port.partition(".")[0] for port in ports} & stores for net, ports in self.table.connect.items()}
+        first: dict[str, str] = {}
+        problems = []
+        for net, ports in self.table.connect.items():
+            for port in ports:
+                other = first.setdefault(port, net)
+                if held[other] != held[net] and len(bodies := held[other] | held[net]) > 1:
+                    problems.append(
+                        f"{self.file} [connect] {other} and {net} both name {port}: they would be one net, and "
+                        f"{' and '.join(sorted(bodies))} one body. Name {port} in one of them, or write one net."
+                    )
+        return problems
 
     def _check_paths(self) -> None:
         """Sensors and losses name what the model shows."""

@@ -12,6 +12,9 @@ from .ports_check import open_ports
 
 Connection = tuple[str, ...]
 
+#: Ports of a connection that a message shows.
+SHOWN = 4
+
 
 @dataclass(frozen=True)
 class Assembly:
@@ -70,7 +73,8 @@ def _problems(assembly: Assembly, ports: dict[str, Port]) -> list[str]:
         for n in sorted({n for n in names if names.count(n) > 1})
     ]
     for connection in assembly.connections:
-        problems += [f"{assembly.name}: connect [{', '.join(connection)}] {p}" for p in _wrong(connection, ports)]
+        written = ", ".join(connection[:SHOWN]) + (", ..." if len(connection) > SHOWN else "")
+        problems += [f"{assembly.name}: connect [{written}] {p}" for p in _wrong(connection, ports)]
     return problems or _short_circuits(assembly)
 
 

@@ -102,13 +102,27 @@ def _entries(matrix: Any, sparsity: Any) -> dict[tuple[int, int], Any]:
 
 @dataclass(frozen=True)
 class Relation:
-    """A constraint as sum of coefficient times state, plus what inputs and parameters say."""
+    """A constraint as sum of coefficient times state, plus what inputs and parameters say.
+
+    Attributes:
+        states: part and key of each state, in the order of the parts
+        coefficients: theirs, expressions of parameters
+        sizes: the coefficients at the values of the parameters; 0.0 where one vanishes there, as in a closed loop
+            whose ratios fit
+        inputs: paths of the inputs that act at these values
+        rest: what is left without states
+    """
 
     states: tuple[tuple[Component, str], ...]
     coefficients: tuple[Any, ...]
     sizes: tuple[float, ...]
     inputs: tuple[str, ...]
     rest: Any
+
+    @property
+    def acting(self) -> list[int]:
+        """Positions of the states whose coefficient does not vanish."""
+        return [k for k, size in enumerate(self.sizes) if size]
 
     @staticmethod
     def of(expression: Any, known: Known) -> Relation | None:
@@ -121,17 +135,18 @@ class Relation:
             known: the symbols of the parts
         """
         held = {s.element_hash(): s for s in ca.symvar(expression)}
-        symbols = [(known.states[h], held[h]) for h in known.states if h in held]
-        x = column([symbol for _, symbol in symbols])
-        slopes = ca.jacobian(expression, x)
+        states, inputs = [h for h in known.states if h in held], [h for h in known.inputs if h in held]
+        z = column([held[h] for h in (*states, *inputs)])
+        slopes = ca.jacobian(expression, z)
         if not known.constant(slopes):
             return None
-        sizes = [float(known.values(slopes[0, k])) for k in range(len(symbols))]
-        kept = [k for k, size in enumerate(sizes) if abs(size) > NOTHING]
+        found = [float(size) for size in known.values(ca.densify(slopes)).full().ravel()]
+        sizes = [size if abs(size) > NOTHING else 0.0 for size in found]
+        x = z[: len(states)]
         return Relation(
-            tuple(symbols[k][0] for k in kept),
-            tuple(slopes[0, k] for k in kept),
-            tuple(sizes[k] for k in kept),
-            tuple(known.inputs[h] for h in known.inputs if h in held),
+            tuple(known.states[h] for h in states),
+            tuple(slopes[0, k] for k in range(len(states))),
+            tuple(sizes[: len(states)]),
+            tuple(known.inputs[h] for h, size in zip(inputs, sizes[len(states) :], strict=True) if size),
             ca.substitute(expression, x, ca.SX.zeros(*x.shape)),
         )

@@ -137,10 +137,11 @@ class Port:
     that enters the component, for the energy audit. The other attributes are words for what may be wrong with it.
 
     Attributes:
-        must_meet: whether a port that meets no other is a fault, unless it is `optional`
+        must_meet: whether a port that meets no other is a fault; a part may say otherwise of its own
         missing: what is wrong then, or where the part needs what the port should bring
         source: what to connect it to
         instead: what else to do where two things prescribe the same potential
+        divides: what to put in where two ways between the same places leave open what flows on either
         levels: potentials that only differ by what connects them, with what gives them their level
     """
 
@@ -149,11 +150,12 @@ class Port:
     missing: ClassVar[str] = "nothing says what it should read"
     source: ClassVar[str] = "a port of its kind"
     instead: ClassVar[str] = ""
+    divides: ClassVar[str] = ""
     levels: ClassVar[Mapping[str, str]] = {}
 
-    def __init__(self, doc: str = "", optional: bool = False) -> None:
+    def __init__(self, doc: str = "", must_meet: bool | None = None) -> None:
         self.doc = doc
-        self.optional = optional
+        self.needed = self.must_meet if must_meet is None else must_meet
         self.name = ""
         self.symbols: dict[str, Any] = {}
 
@@ -165,7 +167,7 @@ class Port:
 
     def bound(self, path: str) -> Port:
         """This port as one of a component: the same declarations with symbols of their own."""
-        port = type(self)(self.doc, self.optional)
+        port = type(self)(self.doc, self.needed)
         port.name = path
         port.symbols = {name: ca.SX.sym(f"{path}.{name}") for name in (*self.potentials(), *self.flows())}
         return port

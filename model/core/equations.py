@@ -35,7 +35,8 @@ def rows_of(part: Component) -> list[Row]:
     except GearheatError:
         raise
     except Exception as error:  # whatever a part's author got wrong
-        raise StructureError(_told(part, rows, error)) from None
+        after = f'after equation "{rows[-1].name.partition(": ")[2]}" of ' if rows else ""
+        raise StructureError(_told(part, f"{part.name}: {after}{type(part).__name__}", error)) from None
     if not rows and (part.ports or part.symbols):
         raise StructureError(
             f"{part.name}: {type(part).__name__} has no equations. Write a method equations() that yields one for each "
@@ -55,14 +56,23 @@ def _row(part: Component, e: Equation) -> Row:
     return Row(f"{part.name}: {e.name}", e.lhs, e.rhs)
 
 
-def _told(part: Component, rows: Sequence[Row], error: Exception) -> str:
+def energies_of(part: Component) -> tuple[list[Any], Any]:
+    """Powers that enter the model through a part, and the energy it stores.
+
+    Raises:
+        StructureError: as `rows_of`
+    """
+    try:
+        return list(part.supplied_power()), part.stored_energy()
+    except GearheatError:
+        raise
+    except Exception as error:  # whatever a part's author got wrong
+        where = f"{part.name}: supplied_power or stored_energy of {type(part).__name__}"
+        raise StructureError(_told(part, where, error)) from None
+
+
+def _told(part: Component, where: str, error: Exception) -> str:
     """An error inside the equations of a part in words."""
-    name = rows[-1].name.partition(": ")[2] if rows else ""
-    where = (
-        f'{part.name}: after equation "{name}" of {type(part).__name__}'
-        if rows
-        else f"{part.name}: {type(part).__name__}"
-    )
     if isinstance(error, KeyError | AttributeError) and (missing := _undeclared(part, error)):
         if missing == "equations":
             return f"{where} has no equations. Write a method equations() that yields them."
@@ -79,7 +89,7 @@ def _told(part: Component, rows: Sequence[Row], error: Exception) -> str:
     if KIND in str(error):
         return f"{where}: a side or an argument is neither a number nor a symbol. Yield one equation for every number."
     said = PLACE.sub("", str(error).strip()) or type(error).__name__
-    return f"{where}: {' '.join(said.split()).rstrip('.')}. Correct the equation that follows: its sides are scalars."
+    return f"{where}: {' '.join(said.split()).rstrip('.')}. Correct what follows: its sides are scalars."
 
 
 def _undeclared(part: Component, error: KeyError | AttributeError) -> str:

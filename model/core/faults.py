@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
@@ -57,37 +58,48 @@ class Faults:
         rows, unknowns = [self.rows[r] for r in chosen], [self.unknowns[c] for c in inside]
         relation = tie(rows, unknowns, self.known)
         said = [r for r in rows if not r.name.startswith("sum of ")] or rows
-        if relation is None:  # a long way through losses: what is given at its ends says more than all of it
+        given = self._inputs_of(rows) if relation is None else list(relation.inputs)
+        twice, naming = self._twice(unknowns, said)
+        if relation is None and any(not type(net[0]).flows() for net in twice):
+            given, said = [], naming  # everything hangs on what is given, but that is not what is said twice
+        elif relation is None:  # a long way through losses: what is given at its ends says more than all of it
             said = [r for r in said if self._inputs_of([r])] or said
         said.sort(key=lambda r: not self._inputs_of([r]))
-        ports = self._ports_of(unknowns, {_part(r) for r in said})
+        parts = {_part(r) for r in said}
+        ports = [] if given else [port for net in twice for port in _owned(net, parts)]
+        ports = ports or self._ends(unknowns, parts)
         where = f" (at {some([p.name for p in ports])})" if ports else ""
-        what, remedy = self._contradiction(relation, rows, ports)
+        what, remedy = self._contradiction(relation, given, ports)
         text = f"{self.model}: {what}\nToo much is said in {some([r.name for r in said])}{where}.\n{remedy}."
         levels = {name for net in self.nets if type(net[0]).flows() for name in _of_net(net)}
         return Fault((text,), not levels.isdisjoint(u.name for u in unknowns))
 
-    def _contradiction(self, relation: Relation | None, rows: Sequence[Row], ports: Sequence[Port]) -> tuple[str, str]:
+    def _contradiction(self, relation: Relation | None, given: Sequence[str], ports: Sequence[Port]) -> tuple[str, str]:
         """What some equations say too much, and what to do about it."""
-        given = self._inputs_of(rows) if relation is None else list(relation.inputs)
-        states = [] if relation is None else [f"{part.name}.{key}" for part, key in relation.states]
+        held = [] if relation is None else [relation.states[k] for k in relation.acting]
+        states, owners = [f"{part.name}.{key}" for part, key in held], listed([part.name for part, _ in held])
         ways = [self._drop(given)] if given else []
         if relation is not None and given and states:
-            ways += [f"leave {listed([part.name for part, _ in relation.states])} out"]
+            ways += [f"leave {owners} out"]
         if relation is not None and len(given) + len(states) > 1:
             ways += [words for words in dict.fromkeys(type(p).instead for p in ports) if words]
         if states and given:
             what = f"{listed(states)} is a state, but tied rigidly to {listed(given)}, which is given."
         elif states:
             what = f"{listed(states)} is a state, but what it is tied to holds it at one value."
-            parts = listed([part.name for part, _ in relation.states]) if relation else ""
-            ways = [f"Free {parts} or leave it out; where a loop closes, its ratios have to fit"]
+            ways = [f"Free {owners} or leave it out; where a loop closes, its ratios have to fit"]
         elif len(given) > 1:
             what = f"{listed(given)} are given, but one of them follows from the rest."
         elif given:
-            what = f"{given[0]} is given, but follows from the rest."
+            what = f"{given[0]} is given, but what it is tied to holds it at one value."
+            ways += ["free what holds it; where a loop closes, its ratios have to fit"]
+        elif relation is not None and any(type(p).flows() for p in ports):
+            what = "two equations say the same, so nothing says what flows on either way."
+            ways = [f"Take {listed(list(dict.fromkeys(map(_owner, ports))), 'or')} away"]
+            ways += [words for words in dict.fromkeys(type(p).divides for p in ports) if words]
         else:
-            what, ways = "two equations say the same or contradict each other.", ["Take a part that holds it away"]
+            what = "two equations say the same or contradict each other."
+            ways = [f"Connect {listed([p.name for p in ports], 'or')} elsewhere" if ports else "Take one of them away"]
         return what, ", or ".join(ways)
 
     def _drop(self, given: Sequence[str]) -> str:
@@ -103,36 +115,45 @@ class Faults:
         held = {s.element_hash() for row in rows for s in ca.symvar(ca.SX(row.residual))}
         return [path for h, path in self.known.inputs.items() if h in held]
 
-    def _ports_of(self, unknowns: Sequence[Unknown], parts: set[str]) -> list[Port]:
+    def _twice(self, unknowns: Sequence[Unknown], said: Sequence[Row]) -> tuple[list[list[Port]], list[Row]]:
+        """Nets of which two of some equations name a potential as one of their sides, and these equations."""
+        sides = [(side.element_hash(), r) for r in said for side in (r.lhs, r.rhs) if side.is_symbolic()]
+        names = {u.symbol.element_hash(): u.name for u in unknowns}
+        levels = {name for net in self.nets for name in _of_net(net)}
+        count = Counter(symbol for symbol, _ in sides if names.get(symbol) in levels)
+        twice = {symbol for symbol, times in count.items() if times > 1}
+        met = [net for net in self.nets if not {names[symbol] for symbol in twice}.isdisjoint(_of_net(net))]
+        return met, [r for symbol, r in sides if symbol in twice]
+
+    def _ends(self, unknowns: Sequence[Unknown], parts: set[str]) -> list[Port]:
         """Ports of some parts whose flow, or the potentials of whose net, are among some unknowns.
 
-        Parts that only pass a potential on, from one port to another, are left out where others end it.
+        Parts that pass a potential on from one port to another are left out where others end it.
         """
         names = {u.name for u in unknowns}
         ports = [
             port
             for net in self.nets
-            for port in net
-            if port.name.rpartition(".")[0] in parts
-            and type(port).flows()
-            and not names.isdisjoint((*_of_net(net), *(f"{port.name}.{k}" for k in type(port).flows())))
+            for port in _owned(net, parts)
+            if not names.isdisjoint((*_of_net(net), *(f"{port.name}.{k}" for k in type(port).flows())))
         ]
-        owners = [p.name.rpartition(".")[0] for p in ports]
-        ends = [p for p, owner in zip(ports, owners, strict=True) if owners.count(owner) == 1]
+        ports = [port for port in ports if type(port).flows()] or ports
+        owners = [_owner(port) for port in ports]
+        ends = [port for port, owner in zip(ports, owners, strict=True) if owners.count(owner) == 1]
         return ends or ports
 
     def too_little(self, chosen: Sequence[int]) -> Fault:
         """Unknowns that have fewer equations than they are."""
         names = {self.unknowns[c].name: None for c in chosen}
         if deaf := self._deaf(names):
-            told = [
-                f"{self.model}: {p.name} is connected to nothing: {type(p).missing}. Connect it to {type(p).source}."
-                for p in deaf
-            ]
-            return Fault(tuple(told), True)
+            return Fault(tuple(self._told(net) for net in deaf), True)
         levels = [name for net in self.nets if type(net[0]).flows() for name in _of_net(net) if name in names]
         givable = [path for path in self.givable if path in names]
-        remedy = f"Give {listed(givable, 'or')}, or connect" if givable else "Give a value, connect"
+        inside = set(chosen)
+        missing = len(inside) - sum(1 for row in self.columns if not inside.isdisjoint(row))
+        several = f"{missing} of " if 1 < missing < len(givable) else ""
+        which = f"{several}{listed(givable, 'and' if missing == len(givable) else 'or')}"
+        remedy = f"Give {which}, or connect" if givable else "Give a value, connect"
         what = some(levels or givable or sorted(names, key=lambda name: name.count(".")))
         text = (
             f"{self.model}: {len(self.rows)} equations for {len(self.unknowns)} unknowns.\n"
@@ -140,21 +161,38 @@ class Faults:
         )
         return Fault((text,), bool(levels))
 
-    def _deaf(self, names: Mapping[str, None]) -> list[Port]:
-        """Ports that meet no other and whose potentials, among some unknowns, their own part only reads."""
+    def _deaf(self, names: Mapping[str, None]) -> list[list[Port]]:
+        """Nets of one port, or of ports without a flow, whose potentials, among some unknowns, are only read."""
         sides = [side for row in self.rows for side in (row.lhs, row.rhs)]
         said = {side.element_hash() for side in sides if side.is_symbolic()}
         found = []
-        for port in (net[0] for net in self.nets if len(net) == 1):
-            potentials = [k for k in type(port).potentials() if f"{port.name}.{k}" in names]
-            if potentials and not any(port.symbols[k].element_hash() in said for k in potentials):
-                found.append(port)
+        for net in self.nets:
+            open_ended = [k for k in type(net[0]).potentials() if f"{net[0].name}.{k}" in names]
+            if not open_ended or any(net[0].symbols[k].element_hash() in said for k in open_ended):
+                continue
+            if len(net) == 1 or not type(net[0]).flows():
+                found.append(net)
         return found
+
+    def _told(self, net: Sequence[Port]) -> str:
+        kind, names = type(net[0]), [port.name for port in net]
+        if len(net) == 1:
+            return f"{self.model}: {names[0]} is connected to nothing: {kind.missing}. Connect it to {kind.source}."
+        return f"{self.model}: {some(names)} meet readers only: {kind.missing}. Connect them to {kind.source}."
 
 
 def _of_net(net: Sequence[Port]) -> list[str]:
     """The names of the potentials of a net: those of its first port."""
     return [f"{net[0].name}.{k}" for k in type(net[0]).potentials()]
+
+
+def _owner(port: Port) -> str:
+    return port.name.rpartition(".")[0]
+
+
+def _owned(net: Sequence[Port], parts: set[str]) -> list[Port]:
+    """The ports of a net that belong to some parts."""
+    return [port for port in net if _owner(port) in parts]
 
 
 def _part(row: Row) -> str:
@@ -171,7 +209,7 @@ def listed(names: Sequence[str], word: str = "and") -> str:
     """All names, the last two with a word between them.
 
     Args:
-        names: at least one
+        names: any number
         word: what stands before the last
     """
-    return f" {word} ".join(filter(None, (", ".join(names[:-1]), names[-1])))
+    return f" {word} ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))

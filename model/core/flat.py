@@ -86,7 +86,7 @@ class Relation:
     @property
     def bounds(self) -> str:
         """Where the value must lie, in words."""
-        low, high = text(self.low, self.unit, 4), text(self.high, self.unit, 4)
+        low, high = (text(v if abs(v) > 1e-300 else 0.0, self.unit, 4) for v in (self.low, self.high))
         if not np.isfinite(self.high):
             return f"at least {low}"
         return f"from {low} to {high}" if np.isfinite(self.low) else f"at most {high}"

@@ -12,7 +12,7 @@ from ..sources import LawInfo, LawUse, recording
 from .component import Component
 from .connect import Assembly, nets
 from .declare import Declaration, Variable
-from .equations import check_symbols, rows_of
+from .equations import check_symbols, energies_of, rows_of
 from .flat import Check, FlatModel, Quantity
 from .reduce import reduce
 from .solve import Row, Solution, Unknown, column, inline, scaled_residual, solve, start_of
@@ -125,14 +125,15 @@ def _flat_model(
     outputs = [(part, k, d) for part in parts for k, d in _shown(part, joined).items()]
     related = [pair for part in parts for pair in part.all_relations()]
     x = column([part.symbols[k] for part, k in states])
-    supplies = aliased([power for part in parts for power in part.supplied_power()])
+    energies = [energies_of(part) for part in parts]
+    supplies = aliased([power for powers, _ in energies for power in powers])
     expressions = [
         column([part.derivatives[k] for part, k in states]),
         column([part.symbols[k] for part, k, _ in outputs]),
         column([test.residual for test in solution.tests]),
         sum(supplies, ca.SX(0)),
         sum((ca.fabs(power) for power in supplies), ca.SX(0)),
-        sum(aliased([part.stored_energy() for part in parts]), ca.SX(0)),
+        sum(aliased([stored for _, stored in energies]), ca.SX(0)),
         column(aliased([value for _, value in checks])),
         column(aliased([_imbalance(part) for part in parts])),
     ]
@@ -176,8 +177,9 @@ def _flat_model(
 
 
 def _shown(part: Component, joined: Mapping[str, str]) -> dict[str, Declaration]:
-    """The outputs of a part, and those of its states that follow others."""
-    return {k: d for k, d in part.states.items() if f"{part.name}.{k}" in joined} | part.outputs()
+    """The outputs of a part, behind those of its states that follow others."""
+    following: dict[str, Declaration] = {k: d for k, d in part.states.items() if f"{part.name}.{k}" in joined}
+    return {**following, **part.outputs()}
 
 
 def _output(part: Component, key: str, declaration: Declaration, joined: Mapping[str, str]) -> Quantity:

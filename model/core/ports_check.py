@@ -15,8 +15,8 @@ from .solve import Row, Unknown, column
 def open_ports(model: str, parts: Sequence[Component], nets: Sequence[Sequence[Port]]) -> list[str]:
     """Parts that are connected to nothing, and ports that have to meet another and do not.
 
-    Ports without a flow, flanges (no torque acts there) and those declared `optional` may stay open. A part that is
-    the whole model has nothing to meet.
+        Which those are, the type of the port says (`must_meet`), or the part: a gear's flange may stay open, there acts no
+    torque. A part that is the whole model has nothing to meet.
 
     Args:
         model: its name, for messages
@@ -39,7 +39,7 @@ def _open(model: str, part: Component, alone: set[str]) -> Iterator[str]:
         return
     for port in part.ports.values():
         kind = type(port)
-        if kind.must_meet and not port.optional and port.name in alone:
+        if port.needed and port.name in alone:
             yield f"{model}: {port.name} is connected to nothing: {kind.missing}. Connect it to {kind.source}."
 
 

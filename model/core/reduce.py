@@ -52,14 +52,30 @@ def reduce(assembly: Assembly, rows: list[Row], unknowns: list[Unknown], typical
         StructureError: start values given for two states that follow each other do not fit together
     """
     reduced = Reduced(list(rows), list(unknowns))
-    known = Known.of(assembly, typical)
     columns = columns_of(incidence(rows, unknowns))
+    if not Matching(columns, len(unknowns)).spare_rows:
+        return reduced
+    known = Known.of(assembly, typical)
+    standing = _standing(rows, known)
+    place = {u.symbol.element_hash(): i for i, u in enumerate(unknowns)}
     while (found := _coupling(reduced, columns, known)) is not None:
         relation, k = found
+        follower = relation.states[k]
+        for row in standing[_path(*follower)]:
+            columns[row].append(len(reduced.unknowns))
+        columns.append([place[part.derivatives[key].element_hash()] for part, key in relation.states])
         _demote(assembly.name, relation, k, known, reduced)
-        # the incidence of what was there gains one column, and one row joins it
-        columns = columns_of(incidence(reduced.rows, reduced.unknowns))
     return reduced
+
+
+def _standing(rows: list[Row], known: Known) -> dict[str, list[int]]:
+    """In which equations each state stands, by its path."""
+    states = [Unknown(part.symbols[key], _path(part, key)) for part, key in known.states.values()]
+    found: dict[str, list[int]] = {state.name: [] for state in states}
+    for row, columns in enumerate(columns_of(incidence(rows, states))):
+        for column in columns:
+            found[states[column].name].append(row)
+    return found
 
 
 def _coupling(reduced: Reduced, columns: list[list[int]], known: Known) -> tuple[Relation, int] | None:
@@ -69,7 +85,7 @@ def _coupling(reduced: Reduced, columns: list[list[int]], known: Known) -> tuple
         chosen = matching.too_many(spare)
         inside = sorted({c for r in chosen for c in columns[r]})
         relation = tie([reduced.rows[r] for r in chosen], [reduced.unknowns[c] for c in inside], known)
-        if relation is not None and not relation.inputs and len(relation.states) > 1:
+        if relation is not None and known.constant(relation.rest) and len(relation.acting) > 1:
             return relation, _follower(relation)
     return None
 
@@ -88,8 +104,9 @@ def tie(rows: list[Row], unknowns: list[Unknown], known: Known) -> Relation | No
 
 def _follower(relation: Relation) -> int:
     """The last state of those whose start nobody has given, the last of all where each was given."""
-    unasked = [k for k, (part, key) in enumerate(relation.states) if part.values[key] == part.states[key].start]
-    return (unasked or range(len(relation.states)))[-1]
+    starts = [(part.values[key], part.states[key].start) for part, key in relation.states]
+    unasked = [k for k in relation.acting if starts[k][0] == starts[k][1]]
+    return (unasked or relation.acting)[-1]
 
 
 def _demote(model: str, relation: Relation, k: int, known: Known, reduced: Reduced) -> None:

@@ -42,6 +42,8 @@ ANGLE_LEFT = 0.9999
 SHIFT_LEFT = 0.05
 #: Profile shift by which teeth may be undercut: beyond it no tooth is left to carry.
 UNDERCUT_LEFT = 0.5
+#: How far a load may exceed that of all planets, relative: such numbers are inferred from measured losses.
+LOAD_LEFT = 0.05
 
 
 @dataclass(frozen=True)
@@ -313,8 +315,8 @@ class PlanetarySet(ToothedPart):
             remedy="Give fewer planets, or planets with fewer teeth.",
         )
         for key in ("n_axial_carrier", "n_axial_sun"):
-            remedy = "Give at most the number of planets."
-            yield self.relation(f"{key} fits N", f"{key} / N", getattr(self, key) / self.N, 0.0, 1.0, remedy=remedy)
+            remedy, most = "Give at most the number of planets.", 1 + LOAD_LEFT
+            yield self.relation(f"{key} fits N", f"{key} / N", getattr(self, key) / self.N, 0.0, most, remedy=remedy)
 
     def equations(self) -> Iterator[Equation]:
         """Kinematics, torques, and the two kinds of meshes."""

@@ -39,9 +39,10 @@ class AirPort(HeatPort):
 class Flange(Port):
     """End of a shaft. Positive tau acts on the component that owns the flange, in the direction of positive w."""
 
-    missing = "no shaft turns it"
+    missing = "no shaft is there"
     source = "the flange of a shaft end, a gear or an inertia"
     instead = "give a torque in place of a speed"
+    divides = "put a LoadingClutch or a TorqueSplit into one way"
 
     w = Potential("rad/s", "angular velocity", nominal=10.0)
     tau = Flow("N.m", "torque", nominal=100.0)
@@ -75,7 +76,7 @@ class ToothForce(Port):
 class Lubricant(Port):
     """State of a lubricant where it is used: information, not power."""
 
-    missing = "it has no lubricant"
+    missing = "there is no lubricant"
     source = "the lubricant of an OilBath or a Grease"
 
     T = Potential("K", "temperature", nominal=350.0)

@@ -25,7 +25,7 @@ OPEN_LOOP = (
 class ShaftEnd(Component):
     """A shaft that leaves the gearbox. What `given` names ("w", "tau") is an input, the rest follows."""
 
-    flange = Flange()
+    flange = Flange(must_meet=True)
     reading = ShaftReading()
 
     given = Choice((), "which of w and tau are given from outside", default=())

@@ -1,4 +1,4 @@
-"""Statics of the shafts: what the tooth forces ask of the bearings."""
+"""Statics of shafts: what the tooth forces of gears make of the loads of two bearings."""
 
 from __future__ import annotations
 

@@ -106,8 +106,8 @@ class CylinderWall(Conductor):
 class Room(Component):
     """The surroundings: air of a given temperature and speed, and a floor of the same temperature."""
 
-    air = AirPort(optional=True)
-    floor = HeatPort(optional=True)
+    air = AirPort(must_meet=False)
+    floor = HeatPort(must_meet=False)
 
     T = Input("K", "temperature of the room", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
     air_speed = Input("m/s", "speed of the air along the housing", at_least=0.0)

@@ -1,16 +1,27 @@
 """Slips in a gearbox of real parts: each message names the port or equation, the part, and what to do."""
 
+from collections.abc import Iterator
+
 import pytest
-from broken_assemblies import BROKEN, gearbox
+from broken_assemblies import BROKEN, NETS, Brake, gearbox, without
+from gearheat.model.core.component import Component, Equation, equation
 from gearheat.model.core.connect import Assembly
+from gearheat.model.core.declare import Parameter, Variable
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import StructureError
+from gearheat.model.parts import PARTS
+from gearheat.model.parts.ports import HeatPort
 
 #: What the message of each slip has to say.
 SAYS: dict[str, tuple[str, ...]] = {
     "open_heat_port": ("bearing_a.inner is connected to nothing", "no way out", "Connect it to the heat port"),
     "open_load": ("bearing_a.load is connected to nothing", "load it carries", "Connect it to the load"),
-    "no_lubricant": ("gear.lubricant is connected to nothing", "no lubricant", "Connect it to", "OilBath or a Grease"),
+    "no_lubricant": (
+        "gear.lubricant is connected to nothing",
+        "there is no lubricant",
+        "Connect it to",
+        "OilBath or a Grease",
+    ),
     "part_without_connection": (
         "hall (Room) is connected to nothing",
         "Connect hall.air or hall.floor",
@@ -42,7 +53,12 @@ SAYS: dict[str, tuple[str, ...]] = {
         "put a ThermalConductor between",
     ),
     "held_shaft": ("motor.w is given", "mount: held", "motor.flange, mount.flange", "Do not give motor.w"),
-    "loop_of_gears": ("rotor.w is a state", "second: gears roll", "rotor.flange", "its ratios have to fit"),
+    "loop_of_gears": ("rotor.w is a state", "second: gears roll", "gear.wheel, second.wheel", "its ratios have to fit"),
+    "parallel_gears": (
+        "two equations say the same",
+        "gear.wheel, second.wheel",
+        "Take gear or second away, or put a LoadingClutch",
+    ),
     "shared_port": (
         "bearing_a.inner is named in two connections",
         "oil and one with wall",
@@ -57,7 +73,7 @@ SAYS: dict[str, tuple[str, ...]] = {
     "decides_on_a_symbol": ('brake: after equation "becomes heat"', "value of a symbol", "smooth functions", "if_else"),
     "undeclared_name": ('brake: after equation "becomes heat"', '"tau_mx" is not declared', 'Did you mean "tau_max"'),
     "wrong_shape": ('brake: after equation "becomes heat"', "neither a number nor a symbol", "Yield one equation for"),
-    "wrong_sizes": ('brake: after equation "becomes heat"', "Dimension mismatch", "Correct the equation that follows"),
+    "wrong_sizes": ('brake: after equation "becomes heat"', "Dimension mismatch", "Correct what follows"),
     "column_for_a_number": ('brake: a side of equation "brakes" has the shape 2 x 1', "yield an equation for every"),
     "strange_symbol": ("brake: brakes:", 'the symbol "mood" is not declared', "Declare it"),
     "function_of_numbers": ("brake: brakes:", "not a number", "casadi.sqrt, not math.sqrt"),
@@ -89,3 +105,73 @@ def test_a_fault_far_from_a_large_sound_rest_is_told_alone() -> None:
     text = message(gearbox({"hall": ("Room", {})}, {"floor": ("foot.b", "room.floor", "hall.floor")}))
     assert "more" not in text
     assert "gear" not in text.removeprefix("gearbox")
+
+
+def test_an_error_in_the_energies_of_a_part() -> None:
+    class Leaky(Brake):
+        def stored_energy(self):
+            return self.J * self.shaft.w**2 / 2
+
+    nets = {"wheel": (*NETS["wheel"], "brake.shaft"), "inside": (*NETS["inside"], "brake.heat")}
+    text = message(gearbox({"brake": Leaky}, nets))
+    assert 'brake: supplied_power or stored_energy of Leaky: "J" is not declared' in text
+
+
+def test_how_many_values_are_missing() -> None:
+    text = message(gearbox({"motor": ("ShaftEnd", {}), "fan": ("ShaftEnd", {})}))
+    assert "Nothing determines motor.flange.w, gear.wheel.w." in text
+    assert "Give 2 of motor.w, motor.tau, fan.w or fan.tau, or connect a source or a storage." in text
+
+
+def test_readers_without_a_giver_are_told_together() -> None:
+    text = message(gearbox(nets={"lubricant": ("gear.lubricant", "bearing_a.lubricant", "bearing_b.lubricant")}))
+    assert "gear.lubricant, bearing_a.lubricant, bearing_b.lubricant meet readers only: there is no lubricant." in text
+    assert "Connect them to the lubricant of an OilBath or a Grease." in text
+
+
+def test_an_information_given_twice_names_its_ports() -> None:
+    text = message(
+        gearbox(
+            nets={
+                "load_a": ("support.load_a", "support.load_b", "bearing_a.load"),
+                "load_b": ("bearing_b.load", "support.load_b"),
+            }
+        )
+    )
+    assert "support: bearing a axially, support: bearing b axially" in text
+    assert "Connect support.load_a or support.load_b elsewhere." in text
+
+
+@pytest.mark.parametrize("port", ["bearing_a.shaft", "motor.flange"])
+def test_a_brake_or_a_shaft_end_needs_a_shaft(port: str) -> None:
+    """Without a shaft a bearing would stand still, and a given speed would turn nothing."""
+    read = {"reading": ("motor.reading", "efficiency.a", "efficiency.b")}  # the motor alone would be told as a part
+    text = message(gearbox({"efficiency": ("Efficiency", {})}, without("pinion", port) | read))
+    assert f"{port} is connected to nothing: no shaft is there. Connect it to the flange of" in text
+
+
+def test_ports_that_may_stay_open() -> None:
+    """Air of a room, force and wheel of a gear: nothing flows there, or nobody reads it."""
+    flat = flatten(gearbox(nets={"force": ("gear.force", "support.mesh"), "wheel": ("fan.flange", "gear.wheel")}))
+    assert flat.index["room.Q_flow"][0] == "output"
+    idle = [part for part in gearbox().parts if part.name != "fan"]
+    connections = tuple(c for c in gearbox().connections if "fan.flange" not in c)
+    assert flatten(Assembly("idle", "", tuple(idle), connections)).index["gear.P_loss"][0] == "output"
+
+
+def test_a_temperature_held_by_a_controller_is_a_level() -> None:
+    """What gives a temperature need not be a storage or a room: only what gives none is refused."""
+
+    class Thermostat(Component):
+        heat = HeatPort()
+
+        T = Variable("K", "temperature kept", nominal=300.0)
+        dT = Parameter("K (difference)", "above 300 K", default=20.0)
+
+        def equations(self) -> Iterator[Equation]:
+            yield equation("temperature wanted", self.T, 300.0 + self.dT)
+            yield equation("kept", self.heat.T - self.T, 0.0)
+
+    parts = (Thermostat("bath"), *(PARTS["ThermalConductor"](name, G=2.0) for name in ("film", "pin")))
+    flat = flatten(Assembly("rod", "", parts, (("bath.heat", "film.a"), ("film.b", "pin.a", "pin.b"))))
+    assert [q.name for q in flat.outputs] == ["film.Q_flow", "pin.Q_flow"]

@@ -181,3 +181,10 @@ def test_every_oil_has_a_pour_point_and_a_grease_has_none() -> None:
     for oil in oils.values():
         if "T_pour" in oil:
             assert kinematic_viscosity(oil["T_pour"], oil["nu_40"], oil["nu_100"]) > 1.5e-3
+
+
+def test_cylindrical_roller_bearing_is_the_printed_one() -> None:
+    """SKF2017, tables 3c (series 4, with a cage) and 5; general catalogue 6000, page 524."""
+    entry = entries("bearings.toml")["NJ 406"]
+    assert [entry[k] for k in ("d", "D", "B")] == ["30 mm", "90 mm", "23 mm"]
+    assert [entry[k] for k in ("R_1", "S_1", "S_2", "K_Z", "K_L")] == [1.0e-6, 0.16, 0.0015, 5.1, 0.65]

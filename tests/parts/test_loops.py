@@ -15,7 +15,7 @@ from gearheat.model.run.steady import steady
 
 OIL = dict(nu_40=1e-4, nu_100=1.1e-5, rho_15=885.0, alpha_T=-6.2e-4, s_p=9.904, t_p=0.139, X_L=1.0)
 TEETH = dict(z_1=16.0, z_2=24.0, m_n=4.5e-3, alpha_n=math.radians(20), beta=0.0, b=0.014, a_w=0.0915)
-TEETH |= dict(x_1=0.1817, x_2=0.1715, Ra=3e-7, k_mu=1.0, E=2.06e11, poisson=0.3, line_load="F_bn/l")
+TEETH |= dict(x_1=0.1817, x_2=0.1715, Ra=3e-7, k_mu=1.0, line_load="F_bn/l", E=2.06e11, poisson=0.3)
 W = 1450 * math.pi / 30
 
 

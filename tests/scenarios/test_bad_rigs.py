@@ -300,3 +300,26 @@ def test_a_file_that_is_no_text(tmp_path: Path) -> None:
     (path := tmp_path / "rig.toml").write_bytes(b"\xff\x00")
     with pytest.raises(ScenarioError, match="is not UTF-8 text"):
         load(path)
+
+
+@pytest.mark.parametrize("slip", ["oil.heat", "cooling.surface"])
+def test_one_port_in_two_nets_does_not_make_one_body_of_two(tmp_path: Path, slip: str) -> None:
+    text = (RIGS / "helical_two_stage" / "rig.toml").read_text(encoding="utf-8")
+    path = tmp_path / "slip.toml"
+    path.write_text(text.replace("heat_wall = [", f'heat_wall = ["{slip}",'), encoding="utf-8")
+    with pytest.raises(ScenarioError) as caught:
+        load(path)
+    net, body = {"oil.heat": ("heat_oil", "oil"), "cooling.surface": ("heat_surface", "surface")}[slip]
+    nets = sorted([net, "heat_wall"], key=text.index)
+    assert str(caught.value) == (
+        f"slip.toml [connect] {nets[0]} and {nets[1]} both name {slip}: they would be one net, and "
+        f"{' and '.join(sorted([body, 'wall']))} one body. Name {slip} in one of them, or write one net."
+    )
+
+
+def test_a_heat_port_in_no_net_is_refused(tmp_path: Path) -> None:
+    text = (RIGS / "helical_two_stage" / "rig.toml").read_text(encoding="utf-8")
+    path = tmp_path / "slip.toml"
+    path.write_text(text.replace('"oil_gears.b", "gears_shafts.a"', '"gears_shafts.a"'), encoding="utf-8")
+    with pytest.raises(StructureError, match=r"slip: oil_gears\.b is connected to nothing: its heat has no way out"):
+        load(path)

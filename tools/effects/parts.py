@@ -37,7 +37,7 @@ class ExtraLoss(Component):
     above it, -1 below. What needs thin films acts where speed times viscosity is below `film_on`.
     """
 
-    shaft = Flange()
+    shaft = Flange(must_meet=True)
     body = HeatPort()
     oil = HeatPort()
     lubricant = Lubricant()
