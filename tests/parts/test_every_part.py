@@ -244,8 +244,8 @@ def lubricated(flat, T: float, w: float, load: float) -> dict[str, float]:
         return of_oil.get(q.name.split(".")[-1], q.nominal)
 
     u = [value(q) for q in flat.inputs]
-    y = flat.output_function([T for _ in flat.states], u, flat.starts("parameter"))[0]
-    return dict(zip([q.name for q in flat.outputs], np.array(y).ravel().tolist(), strict=True))
+    y = evaluate_at(flat, [T for _ in flat.states], u, flat.starts("parameter"))["y"]
+    return dict(zip([q.name for q in flat.outputs], y.tolist(), strict=True))
 
 
 def loss(values: dict[str, float]) -> float:
