@@ -58,7 +58,7 @@ class Entry:
         """A source of one of the values, with a remark where the value was not compared with a print.
 
         Args:
-                    key: of the value
+            key: of the value
             source: where the value is from
         """
         return source if key in self.checked else f'{source}, unchecked ({self.kind} "{self.name}")'
