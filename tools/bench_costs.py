@@ -78,7 +78,7 @@ def massless(n: int) -> dict[str, float]:
 
 
 def _instructions(flat: FlatModel) -> int:
-    return int(flat.ode_function.n_instructions() + flat.output_function.n_instructions())
+    return int(flat.function.n_instructions())
 
 
 def growth(n: int) -> dict[str, float]:

@@ -55,7 +55,7 @@ def once(make: Callable[Concatenate[FlatModel, Arguments], Made]) -> Callable[Co
     made: WeakKeyDictionary[FlatModel, dict[Any, Made]] = WeakKeyDictionary()
 
     @wraps(make)
-    def kept(flat: FlatModel, *arguments: Arguments.args, **named: Arguments.kwargs) -> Made:
+    def kept(flat: FlatModel, /, *arguments: Arguments.args, **named: Arguments.kwargs) -> Made:
         own = made.setdefault(flat, {})
         key = (arguments, tuple(named.items()))
         if key not in own:
