@@ -38,8 +38,8 @@ def sensitivities(
     """
     problems = [problem_of(flat, name, ("output", "state"), "sensitivities") for name in outputs]
     problems += [problem_of(flat, name, ("parameter", "input"), "sensitivities") for name in names]
-    if found := [problem for problem in problems if problem]:
-        raise ScenarioError(found)
+    if wrong := [problem for problem in problems if problem]:
+        raise ScenarioError(wrong)
     here = point(flat, values, guess, who="sensitivities")
     at = equilibrium(flat, here, None, tuple(values), "sensitivities")
     n, m = len(at.w), len(outputs)
