@@ -257,7 +257,16 @@ class Batch:
         times: Sequence[float] | np.ndarray | None = None,
         tolerance: float = TOLERANCE,
     ) -> Prepared:
-        """A duty laid out once for many calls of `warmup`, which documents arguments and errors."""
+        """A duty laid out once for many calls of `warmup`.
+
+        Args:
+            schedule: inputs over time (SI)
+            times: times of the rows [s]; the end when None
+            tolerance: relative, of the solver
+
+        Raises:
+            ScenarioError: all that is wrong with the duty or the tolerance
+        """
         if problems := self._schedule_problems(schedule, tolerance):
             raise ScenarioError(problems)
         inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}

@@ -37,6 +37,10 @@ _LOCK = threading.Lock()
 def driver(name: str, source: str) -> Any:
     """The C function of a source, compiled and loaded once in a process.
 
+    Args:
+        name: of the function, a key of `_SIGNATURES`
+        source: the whole C text
+
     Raises:
         FmuError: the compiler fails, or what it made does not load
     """
@@ -50,7 +54,12 @@ def driver(name: str, source: str) -> Any:
 
 @cache
 def widened(source: str, instructions: str) -> str:
-    """A C text of wrapper/lanes.h made for processors with one of `WIDER`; as it is without any."""
+    """A C text of wrapper/lanes.h made for processors with one of `WIDER`; as it is without any.
+
+    Args:
+        source: the C text
+        instructions: a key of `WIDER`, or nothing
+    """
     if not instructions:
         return source
     push = f'#pragma clang attribute push(__attribute__((target("{instructions}"))), apply_to=function)'
@@ -120,7 +129,12 @@ def address(array: np.ndarray) -> int:
 
 
 def rows_from(vectors: Sequence[np.ndarray], first: int) -> list[int]:
-    """Address and stride of each array from a row on; a vector serves all rows."""
+    """Address and stride of each array from a row on; a vector serves all rows.
+
+    Args:
+        vectors: arrays of doubles, a row each or (n, width)
+        first: number of the first row
+    """
     pairs = [(v[first:] if v.ndim == 2 else v, v.shape[1] if v.ndim == 2 else 0) for v in vectors]
     return [number for array, stride in pairs for number in (address(array), stride)]
 
@@ -133,6 +147,9 @@ def shared(block: Callable[[int, int], int], n: int, size: int, threads: int) ->
         n: number of rows
         size: rows of a block, fewer where a thread would have none
         threads: 0 for one per core
+
+    Raises:
+        FmuError: memory runs out
     """
     workers = threads or cores()
     size = max(min(size, -(-n // workers)), 1)

@@ -64,7 +64,9 @@ def steady_source(flat: FlatModel) -> str:
 def warmup_source(flat: FlatModel, most_steps: int) -> str:
     """The C text for warm-ups: the equations of the FMU with its audit, and its solver.
 
-    `most_steps` is where it gives up between two points of the schedule or the output.
+    Args:
+        flat: the model
+        most_steps: steps after which it gives up between two points of the schedule or the output
 
     Raises:
         FmuError: an operation has no C text, or the stored energy depends on an input

@@ -66,7 +66,12 @@ class Dependencies:
 
 
 def dependencies(model: Equations, table: Table) -> Dependencies:
-    """Exact dependencies of the outputs (behind the states) and then the derivatives, from the sparsity."""
+    """Exact dependencies of the outputs (behind the states) and then the derivatives, from the sparsity.
+
+    Args:
+        model: the equations, for their sparsity
+        table: the variables, for their value references
+    """
     unknowns = ca.vertcat(model.y, model.ode)
     firsts = [table.first("state"), table.first("input"), table.first("parameter")]
     found: list[list[tuple[int, ...]]] = []
@@ -87,6 +92,8 @@ def description(
 
     Args:
         flat: the model, for its name and meaning
+        model: its equations
+        table: its variables
         guid: unique identification, "" while it is still to be computed
         dependent: the result of `dependencies`, computed when not given
     """

@@ -47,6 +47,8 @@ def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> Flat
         p=ca.vertcat(ca.SX(0, 1), *symbols.values()),
         **{"ode": ode, "y": y, "residual": residual, "supply": supply},
         **{"throughput": throughput, "stored": stored, "checked": checked, "related": related},
+        balanced=(),
+        imbalance=ca.SX(0, 1),
     )
 
 

@@ -1,11 +1,11 @@
-"""A scalar CasADi function as one straight-line C function over plain arrays."""
+"""A scalar CasADi function as straight-line C over plain arrays: one function, or some pieces of a long one."""
 
 from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
-from typing import Any
+from collections.abc import Mapping, Sequence
+from typing import Any, NamedTuple
 
 import casadi as ca
 from gearheat.model.errors import FmuError
@@ -73,6 +73,20 @@ _OF_LANES = {
     "SIGN": "lanes_true({0}>0)-lanes_true({0}<0)",
     "IF_ELSE_ZERO": "lanes_only({0}!=0,{1})",
 }
+#: Statements up to which a function stays whole, and those of a piece of a longer one. The work of a compiler on one
+#: function grows faster than its length, above all the search for operations that vector instructions can do at once.
+WHOLE, PIECE = 15_000, 250
+#: Keeps a function from being put into the one that calls it.
+_APART = """#ifndef APART
+#if defined(__GNUC__)
+#define APART __attribute__((noinline))
+#elif defined(_MSC_VER)
+#define APART __declspec(noinline)
+#else
+#define APART
+#endif
+#endif
+"""
 _FUNCTION_CALL = re.compile(r"^(?=[a-z])")
 
 
@@ -100,28 +114,102 @@ def number(value: float) -> str:
     return f"({text})" if text.startswith("-") else text
 
 
-def function(f: Any, prefix: str = "model_", kind: str = "double") -> str:
+class _Line(NamedTuple):
+    """One statement: its text, the local variable it sets, and what it reads (variables and arguments)."""
+
+    text: str
+    sets: str
+    reads: tuple[str, ...]
+
+
+def function(f: Any, prefix: str = "model_", kind: str = "double", whole: int = WHOLE, piece: int = PIECE) -> str:
     """The C text of an SX function: static void prefix+name(const kind *in..., kind *out...).
+
+    A long one calls its pieces one after the other, which compute the same numbers in the same order.
 
     Args:
         f: the function
         prefix: what its name in C begins with
         kind: type of its numbers: double, or lanes for some rows side by side by wrapper/lanes.h
+        whole: statements up to which it stays one function
+        piece: statements of a piece of a longer one
 
     Raises:
         FmuError: an operation has no C text
     """
     takes = [f"const {kind} *{f.name_in(i)}" for i in range(f.n_in())]
     gives = [f"{kind} *{f.name_out(i)}" for i in range(f.n_out())]
+    arguments = [f.name_in(i) for i in range(f.n_in())] + [f.name_out(i) for i in range(f.n_out())]
     shared = _shared_divisors(f)
     lines = [line for k in range(f.n_instructions()) for line in _instruction(f, k, shared, kind)]
+    name, signature = f"{prefix}{f.name()}", ", ".join(takes + gives)
+    if len(lines) > whole:
+        return _in_pieces(name, signature, arguments, lines, kind, piece)
     names = [f"a{i}" for i in range(f.sz_w())] + [name for name, first in shared.values() if first]
+    used = {word for line in lines for word in line.reads}
+    return _defined(f"{name}({signature})", kind, names, [a for a in arguments if a not in used], lines)
+
+
+def _defined(head: str, kind: str, names: Sequence[str], unused: Sequence[str], lines: Sequence[_Line]) -> str:
+    """A C function with its local variables; what it does not use of its arguments is said."""
     declared = [f"  {kind} " + ", ".join(names[k : k + 20]) + ";" for k in range(0, len(names), 20)]
-    read = {f.instruction_input(k)[0] for k in range(f.n_instructions()) if f.instruction_id(k) == ca.OP_INPUT}
-    unused = [f"  (void){f.name_in(i)};" for i in range(f.n_in()) if i not in read]
-    unused += [f"  (void){f.name_out(i)};" for i in range(f.n_out()) if f.nnz_out(i) == 0]
-    head = f"static void {prefix}{f.name()}({', '.join(takes + gives)})"
-    return "\n".join([head, "{", *declared, *unused, *lines, "}", ""])
+    said = [f"  (void){name};" for name in unused]
+    return "\n".join([f"static void {head}", "{", *declared, *said, *(line.text for line in lines), "}", ""])
+
+
+def _in_pieces(
+    name: str, signature: str, arguments: Sequence[str], lines: Sequence[_Line], kind: str, piece: int
+) -> str:
+    """A function that calls its pieces; an array holds the values that one piece hands to a later one."""
+    pieces = [lines[k : k + piece] for k in range(0, len(lines), piece)]
+    taken, handed = _crossing(pieces, set(arguments))
+    place = {variable: k for k, variable in enumerate(sorted(set().union(*taken)))}
+    texts, calls = [_APART], []
+    for k, inner in enumerate(pieces):
+        body = _with_transfers(inner, taken[k], handed[k], place)
+        used = {word for line in body for word in line.reads}
+        unused = [argument for argument in (*arguments, "w") if argument not in used]
+        names = list(dict.fromkeys(line.sets for line in body if line.sets))
+        texts.append("APART " + _defined(f"{name}_{k}({signature}, {kind} *w)", kind, names, unused, body))
+        calls.append(_Line(f"  {name}_{k}({', '.join([*arguments, 'w'])});", "", ()))
+    return "\n".join([*texts, _defined(f"{name}({signature})", kind, [f"w[{max(len(place), 1)}]"], [], calls)])
+
+
+def _with_transfers(lines: Sequence[_Line], taken: set[str], handed: set[str], place: Mapping[str, int]) -> list[_Line]:
+    """A piece that takes each value where it is first needed and hands it on where it is last set.
+
+    At its beginning and end instead, a register or a second place in memory would hold each value all the time.
+    """
+    last = {line.sets: k for k, line in enumerate(lines)}
+    left, body = set(taken), []
+    for k, line in enumerate(lines):
+        for v in dict.fromkeys(line.reads):
+            if v in left:
+                left.discard(v)
+                body.append(_Line(f"  {v}=w[{place[v]}];", v, ("w",)))
+        body.append(line)
+        if line.sets in handed and last[line.sets] == k:
+            body.append(_Line(f"  w[{place[line.sets]}]={line.sets};", "", (line.sets, "w")))
+    return body
+
+
+def _crossing(pieces: Sequence[Sequence[_Line]], arguments: set[str]) -> tuple[list[set[str]], list[set[str]]]:
+    """Of each piece the variables it needs from pieces before it, and those it has to hand to later ones."""
+    taken, sets = [], []
+    for lines in pieces:
+        needed: set[str] = set()
+        known: set[str] = set()
+        for line in lines:
+            needed |= {word for word in line.reads if word not in known and word not in arguments}
+            known |= {line.sets} - {""}
+        taken.append(needed)
+        sets.append(known)
+    handed: list[set[str]] = []
+    wanted: set[str] = set()  # by the pieces behind
+    for needed, known in zip(reversed(taken), reversed(sets), strict=True):
+        handed.append(known & wanted)
+        wanted = (wanted - known) | needed
+    return taken, handed[::-1]
 
 
 def _shared_divisors(f: Any) -> dict[int, tuple[str, bool]]:
@@ -143,19 +231,23 @@ def _shared_divisors(f: Any) -> dict[int, tuple[str, bool]]:
     return {k: (f"r{i}", k == group[0]) for i, group in enumerate(groups) for k in group}
 
 
-def _instruction(f: Any, k: int, shared: Mapping[int, tuple[str, bool]], kind: str) -> list[str]:
+def _instruction(f: Any, k: int, shared: Mapping[int, tuple[str, bool]], kind: str) -> list[_Line]:
     constant, texts = _TEXTS[kind]
     code, inputs, outputs = f.instruction_id(k), f.instruction_input(k), f.instruction_output(k)
-    if code == ca.OP_CONST:
-        return [f"  a{outputs[0]}={constant.format(number(f.instruction_constant(k)))};"]
-    if code == ca.OP_INPUT:
-        return [f"  a{outputs[0]}={f.name_in(inputs[0])}[{inputs[1]}];"]
     if code == ca.OP_OUTPUT:
-        return [f"  {f.name_out(outputs[0])}[{outputs[1]}]=a{inputs[0]};"]
+        array, value = f.name_out(outputs[0]), f"a{inputs[0]}"
+        return [_Line(f"  {array}[{outputs[1]}]={value};", "", (array, value))]
+    target = f"a{outputs[0]}"
+    if code == ca.OP_CONST:
+        return [_Line(f"  {target}={constant.format(number(f.instruction_constant(k)))};", target, ())]
+    if code == ca.OP_INPUT:
+        array = f.name_in(inputs[0])
+        return [_Line(f"  {target}={array}[{inputs[1]}];", target, (array,))]
     if code not in texts:
         raise FmuError(f"{f.name()}: CasADi operation {code} has no counterpart in C.")
+    read = tuple(f"a{i}" for i in inputs)
     if k in shared:
         name, first = shared[k]
-        reciprocal = [f"  {name}=1/a{inputs[1]};"] if first else []
-        return [*reciprocal, f"  a{outputs[0]}=a{inputs[0]}*{name};"]
-    return [f"  a{outputs[0]}={texts[code].format(*(f'a{i}' for i in inputs))};"]
+        reciprocal = [_Line(f"  {name}=1/{read[1]};", name, read[1:])] if first else []
+        return [*reciprocal, _Line(f"  {target}={read[0]}*{name};", target, (read[0], name))]
+    return [_Line(f"  {target}={texts[code].format(*read)};", target, read)]

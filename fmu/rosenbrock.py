@@ -100,6 +100,7 @@ def step(ode: Any, residual: Any, x: Any, z: Any, u: Any, tableau: Tableau = ROD
         residual: SX column (k), solvable for z
         x, z: SX symbols of the states (n) and of the algebraic variables (k)
         u: SX symbols of the inputs at the step's beginning (m)
+        tableau: coefficients of the method
 
     Returns:
         the new states (n) and algebraic variables (k), the error estimate of the states (n), and the symbols slope (m)

@@ -40,7 +40,13 @@ GUID_MARK = "@GUID@"
 
 
 def source(flat: FlatModel, model: Equations, table: Table) -> str:
-    """The whole C text, with GUID_MARK in place of the identification."""
+    """The whole C text, with GUID_MARK in place of the identification.
+
+    Args:
+        flat: the model, for its name and values
+        model: its equations
+        table: its variables
+    """
     head = f"/* {_comment(flat.name)}: FMI 2.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
     generated = "\n".join([_sizes(flat, model, table), _tables(flat, table), *map(emit.function, model.functions)])
     return "\n".join([head, _fmi_headers(), generated, *map(_wrapper_file, _WRAPPER)])

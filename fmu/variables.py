@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import casadi as ca
 import numpy as np
@@ -96,11 +96,6 @@ class Table:
     def __iter__(self) -> Iterator[Variable]:
         return iter(self.variables)
 
-    @cached_property
-    def by_name(self) -> Mapping[str, Variable]:
-        """Name -> variable."""
-        return {v.name: v for v in self.variables}
-
     def first(self, kind: str) -> int:
         """Value reference of the first variable of a kind (of the following one when there is none)."""
         order = ("state", "input", "output", "parameter", "derivative")
@@ -124,8 +119,7 @@ def table(flat: FlatModel, start: Mapping[str, float] | None = None) -> Table:
     for kind, group in groups.items():
         variables += [Variable(len(variables) + i, kind, q) for i, q in enumerate(group)]
     variables += [Variable(len(variables) + i, "derivative", q, state=i) for i, q in enumerate(derivatives)]
-    names = [v.name for v in variables]
-    twice = sorted({n for n in names if names.count(n) > 1})
+    twice = sorted(name for name, count in Counter(v.name for v in variables).items() if count > 1)
     problems += [f'{flat.name}: the name "{n}" appears twice.' for n in twice]
     if problems:
         raise FmuError(problems)

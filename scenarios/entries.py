@@ -55,7 +55,12 @@ class Entry:
     checked: Mapping[str, str]
 
     def told(self, key: str, source: str) -> str:
-        """A source of one of the values, with a remark where the value was not compared with a print."""
+        """A source of one of the values, with a remark where the value was not compared with a print.
+
+        Args:
+                    key: of the value
+            source: where the value is from
+        """
         return source if key in self.checked else f'{source}, unchecked ({self.kind} "{self.name}")'
 
 

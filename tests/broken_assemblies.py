@@ -20,7 +20,7 @@ OIL = dict(nu_40=3.2438e-4, nu_100=3.527e-5, rho_15=859.0, alpha_T=-5.6e-4, s_p=
 BEARING = dict(count=1.0, inner_share=0.5, d_m=0.14, F_r_0=100.0, F_a_0=50.0, d=0.11, D=0.17, K_Z=3.1, K_rs=6e-8)
 BEARING |= dict(mu_bl=0.1, mu_EHL=0.05, H=0.03, R_1=3.9e-7, R_2=1.7, S_1=3.23e-3, S_2=36.5, C_0=64e3)
 GEAR = dict(z_1=36.0, z_2=72.0, m_n=0.002, alpha_n=math.radians(20), beta=math.radians(10), b=0.042, a_w=0.1097)
-GEAR |= dict(Ra=6e-7, k_mu=1.0, E=2.06e11, poisson=0.3, x_1=0.0, x_2=0.0, line_load="F_bt/b")
+GEAR |= dict(Ra=6e-7, k_mu=1.0, line_load="F_bn/l", E=2.06e11, poisson=0.3, x_1=0.0, x_2=0.0)
 
 #: Part -> type and values.
 SOUND: dict[str, tuple[str, dict[str, Any]]] = {

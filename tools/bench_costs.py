@@ -53,14 +53,38 @@ def from_c(fmu: Path, folder: Path, speed: str, truth: np.ndarray, flat: FlatMod
     return found
 
 
-def growth(n: int) -> dict[str, float]:
-    """Seconds to flatten, to generate and to compile a chain of n masses and conductors, and those of one step."""
+def chain(n: int) -> Assembly:
+    """n masses in a row, a conductor between neighbours."""
     masses = [PARTS["HeatCapacity"](f"m{k}", C=1000.0) for k in range(n)]
     links = [PARTS["ThermalConductor"](f"g{k}", G=10.0) for k in range(n - 1)]
     nets = [(f"g{k}.a", f"m{k}.heat") for k in range(n - 1)] + [(f"g{k}.b", f"m{k + 1}.heat") for k in range(n - 1)]
-    chain = Assembly("chain", "a chain of masses and conductors", (*masses, *links), tuple(nets))
+    return Assembly("chain", "a chain of masses and conductors", (*masses, *links), tuple(nets))
+
+
+def massless_chain(n: int) -> Assembly:
+    """n conductors in a row between two masses: the temperatures between them are one linear system."""
+    masses = [PARTS["HeatCapacity"](name, C=1000.0) for name in ("first", "last")]
+    links = [PARTS["ThermalConductor"](f"g{k}", G=10.0) for k in range(n)]
+    nets = [(f"g{k}.b", f"g{k + 1}.a") for k in range(n - 1)]
+    ends = [("first.heat", "g0.a"), (f"g{n - 1}.b", "last.heat")]
+    return Assembly("chain", "a chain of conductors", (*masses, *links), (*nets, *ends))
+
+
+def massless(n: int) -> dict[str, float]:
+    """Seconds to flatten n conductors in a row without masses between them, and instructions of what is left."""
+    began = time.process_time()
+    flat = flatten(massless_chain(n))
+    return {"conductors": n, "flatten_s": time.process_time() - began, "instructions": _instructions(flat)}
+
+
+def _instructions(flat: FlatModel) -> int:
+    return int(flat.ode_function.n_instructions() + flat.output_function.n_instructions())
+
+
+def growth(n: int) -> dict[str, float]:
+    """Seconds to flatten, to generate and to compile a chain of n masses and conductors, and those of one step."""
     times = [time.process_time()]
-    flat = flatten(chain)
+    flat = flatten(chain(n))
     times.append(time.process_time())
     text = source(flat, equations(flat), table(flat))
     times.append(time.process_time())
@@ -116,11 +140,18 @@ def _fresh_cache(folder: Path) -> Iterator[None]:
 
 def growth_rows(found: Mapping[str, Any]) -> list[tuple[str, str]]:
     """Rows of the bench's table on the growth of cost."""
-    return [
+    rows = [
         (
-            f"{chain['nodes']} thermal nodes: flatten; generate; compile [s]; right-hand side; step [us]",
-            f"{chain['flatten_s']:.2f}; {chain['generate_s']:.2f}; {chain['compile_s']:.1f}; "
-            f"{1e6 * chain['rhs_s']:.2g}; {1e6 * chain['step_s']:.2g}",
+            f"{made['nodes']} thermal nodes: flatten; generate; compile [s]; right-hand side; step [us]",
+            f"{made['flatten_s']:.2f}; {made['generate_s']:.2f}; {made['compile_s']:.1f}; "
+            f"{1e6 * made['rhs_s']:.2g}; {1e6 * made['step_s']:.2g}",
         )
-        for chain in found["growth"]
+        for made in found["growth"]
+    ]
+    return rows + [
+        (
+            f"{made['conductors']} conductors without masses between them: flatten [s]; instructions",
+            f"{made['flatten_s']:.2f}; {made['instructions']}",
+        )
+        for made in found["massless"]
     ]

@@ -30,14 +30,16 @@ from ..model.run.algebra import algebra
 from ..model.run.fast import Fast
 from ..model.run.schedule import Schedule, stepped
 from ..model.run.simulate import simulate
-from .bench_costs import from_c, growth, growth_rows
+from .bench_costs import from_c, growth, growth_rows, massless
 from .rigs import load
 from .settings import flat_of
 
 #: The warm-up: five stages of 66 min at these parts of the speed; the same as in `importer/measure.c`.
 PARTS_OF_SPEED, STAGE = (0.4, 0.6, 0.8, 1.0, 0.2), 3960.0
 #: Thermal nodes of the chains by which growth is measured.
-CHAINS = (4, 20, 100, 400)
+CHAINS = (4, 20, 100, 400, 1000)
+#: Conductors of the chains without masses between them.
+MASSLESS = (20, 80, 160, 1000)
 #: Tolerances at which a peer is tried: the first that is as accurate as the FMU counts.
 TOLERANCES = (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
 #: Goal -> (what is measured, comparison, bound).
@@ -61,7 +63,13 @@ class Peer(NamedTuple):
     tolerance: float | None
 
 
-def measure(rig: str = "planetary", *, pythonfmu: bool = True, chains: tuple[int, ...] = CHAINS) -> dict[str, Any]:
+def measure(
+    rig: str = "planetary",
+    *,
+    pythonfmu: bool = True,
+    chains: tuple[int, ...] = CHAINS,
+    conductors: tuple[int, ...] = MASSLESS,
+) -> dict[str, Any]:
     """All figures of the bench of the FMU; `goals` lists each goal with its figure and whether it is met."""
     scenario = load(rig)
     flat = flat_of(scenario)
@@ -84,6 +92,7 @@ def measure(rig: str = "planetary", *, pythonfmu: bool = True, chains: tuple[int
     if pythonfmu:
         found["pythonfmu_ratio"] = found["peers"][PYTHONFMU]["over_fmu_from_c"]
     found["growth"] = [growth(n) for n in chains]
+    found["massless"] = [massless(n) for n in conductors]
     found["goals"] = [
         {"goal": goal, "bound": f"{sign} {bound:g}", "measured": found[key], "met": _met(found[key], sign, bound)}
         for goal, (key, sign, bound) in GOALS.items()

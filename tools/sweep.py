@@ -13,14 +13,17 @@ import numpy as np
 
 from ..fmu.batch import Batch, Status
 from ..model.core.flat import FlatModel
-from ..model.errors import GearheatError, ScenarioError
+from ..model.errors import GearheatError, ScenarioError, SolveError
 from ..model.run.point import problem_of
 from ..model.run.schedule import Schedule
+from ..model.run.simulate import simulate
+from ..model.run.steady import steady
 from ..model.units import from_si, shown, to_si
 from ..scenarios.duty import duty_names, read_duty
 from ..scenarios.scenario import Scenario
 from . import sampling
 from .console import answer, file_of, note, table, writable
+from .points import outside_of, tell_outside
 from .rigs import load
 from .settings import adjusted, flat_of
 from .sweep_file import SUFFIXES, Column, Store, parquet_missing, work_file, write_table
@@ -96,6 +99,19 @@ class Plan:
         moments = [np.tile(np.array(self.job.times), rows.stop - rows.start)] if self.job.times else []
         return [number, *values.T, *moments, *found.T]
 
+    def outside(self, row: int) -> list[dict[str, Any]]:
+        """The laws that one row used outside their range: the row is run again by itself."""
+        varied = {name: float(v) for name, v in zip(self.job.varied, self.values[row], strict=True)}
+        first = {name: varied[v] if isinstance(v, str) else v for name, v in self.job.start.items()}
+        states = {name: v for name, v in (first | varied).items() if self.flat.index[name][0] == "state"}
+        given = {name: v for name, v in varied.items() if name not in states}
+        try:
+            if self.job.schedule is None:
+                return outside_of(steady(self.flat, given))
+            return outside_of(simulate(self.flat, self.job.schedule, start=states, values=given))
+        except SolveError:  # found by the batch from another start
+            return []
+
 
 def command(request: Request) -> None:
     """Plan, solve what an earlier run has not finished, write the table."""
@@ -124,7 +140,8 @@ def command(request: Request) -> None:
         summary = _Summary(plan)
         write_table(request.out, plan.columns, (summary.seen(b, store.get(k)) for k, b in enumerate(blocks)))
         store.remove()
-    answer(summary.payload(request.out), request.json, partial(_print, summary, request.out, seconds, bool(left)))
+    found = summary.payload(request.out)
+    answer(found, request.json, partial(_print, summary, found["outside"], request.out, seconds, bool(left)))
 
 
 def planned(request: Request) -> Plan:
@@ -250,6 +267,7 @@ class _Summary:
         n = len(plan.job.outputs)
         self.low, self.high, self.sum, self.count = np.full(n, np.inf), np.full(n, -np.inf), np.zeros(n), 0
         self.residual, self.outside = 0.0, 0
+        self.worst: tuple[float, int] = (0.0, 0)  # law arguments outside their range and the row that has most of them
 
     def seen(self, rows: slice, found: np.ndarray) -> list[np.ndarray]:
         """Take note of a block on its way into the table."""
@@ -263,6 +281,9 @@ class _Summary:
             self.sum, self.count = self.sum + good[:, :n].sum(0), self.count + len(good)
             self.residual = max(self.residual, float(good[:, n + 2].max()))
             self.outside += int((good[::times, n + 3] > 0).sum())
+            counts = np.where(found[::times, n] == Status.OK, found[::times, n + 3], 0.0)
+            k = int(np.argmax(counts))
+            self.worst = max(self.worst, (float(counts[k]), rows.start + k), key=lambda w: w[0])
         return self.plan.cells(rows, found)
 
     def outputs(self) -> Iterator[tuple[str, str, str, list[float]]]:
@@ -295,10 +316,11 @@ class _Summary:
             "energy_residual": self.residual,
             "rows_outside": self.outside,
             "unchecked": plan.unchecked,
+            "outside": {"row": self.worst[1] + 1, "laws": plan.outside(self.worst[1])} if self.outside else None,
         }
 
 
-def _print(summary: _Summary, out: Path, seconds: float, worked: bool) -> None:
+def _print(summary: _Summary, outside: dict[str, Any] | None, out: Path, seconds: float, worked: bool) -> None:
     rows = len(summary.plan.values)
     kind = {"steady": "steady states", "warmup": "warm-ups"}[summary.plan.kind]
     head = ("name", "low", "mean", "high", "unit", "meaning")
@@ -307,7 +329,8 @@ def _print(summary: _Summary, out: Path, seconds: float, worked: bool) -> None:
     failed = {s.name.lower(): n for s, n in summary.statuses.items() if n and s is not Status.OK}
     if failed:
         print("rows without a result: " + ", ".join(f"{name} {n}" for name, n in failed.items()))
-    if summary.outside:
-        print(f"rows with a law outside the range of its source: {summary.outside}")
+    if outside is not None:
+        print(f"rows with a law outside the range of its source: {summary.outside}, most of all row {outside['row']}:")
+        tell_outside(outside["laws"])
     print_unchecked(summary.plan.unchecked)
     print(f"{out}" + (f" after {seconds:.1f} s" if worked else ""))

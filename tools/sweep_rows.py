@@ -54,7 +54,7 @@ class Job:
             [SCHEMA, size, [[q.name for q in g] for g in groups], self.varied, self.outputs, self.start, self.times]
         )
         code = batch.steady_source if schedule is None else batch.warmup_source
-        digest = hashlib.sha256(f"{text}\0{code}\0".encode())
+        digest = hashlib.sha256(f"{text}\0{code}\0{batch.relations_source}\0".encode())
         for array in (*batch.vectors({}), values):
             digest.update(f"{array.shape}".encode() + np.ascontiguousarray(array).tobytes())
         if schedule is not None:

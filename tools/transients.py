@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -71,7 +71,7 @@ def play_command(fmu: Path, duty: Path, out: Path, step: str, assignments: Seque
     with Player(fmu) as player:
         told = player.described
         schedule = read_duty(duty, told.quantities("input"))
-        start = _start(told.quantities("start"), assignments, fmu)
+        start = _start(told.quantities("start"), told.quantities("output"), assignments, fmu)
         inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
         played = player.run(inputs, schedule.stop, dt, begin=schedule.start, start=start)
     units = {name: q.unit for name, q in told.quantities("input", "output").items()}
@@ -86,7 +86,9 @@ def play_command(fmu: Path, duty: Path, out: Path, step: str, assignments: Seque
     answer(found, json, lambda: print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s"))
 
 
-def _start(known: dict[str, Quantity], assignments: Sequence[str], fmu: Path) -> dict[str, float]:
+def _start(
+    known: Mapping[str, Quantity], shown: Mapping[str, Quantity], assignments: Sequence[str], fmu: Path
+) -> dict[str, float]:
     """Start values from texts NAME=VALUE, in SI. Raises ScenarioError with all problems at once."""
     from ..model.errors import GearheatError, suggestion
 
@@ -95,7 +97,8 @@ def _start(known: dict[str, Quantity], assignments: Sequence[str], fmu: Path) ->
     for text in assignments:
         name, _, written = (part.strip() for part in text.partition("="))
         if name not in known:
-            problems.append(f'{fmu.name}: "{name}" cannot be set.{suggestion(name, known)}')
+            why = f" It is calculated: {shown[name].doc}." if name in shown else suggestion(name, known)
+            problems.append(f'{fmu.name}: "{name}" cannot be set.{why}')
             continue
         try:
             values[name] = to_si(written, known[name].unit, name=name)

@@ -30,7 +30,13 @@ Related = tuple[Relation, Any]
 
 
 def equation(name: str, lhs: Any, rhs: Any) -> Equation:
-    """A named, unordered equation."""
+    """A named, unordered equation.
+
+    Args:
+        name: what it says, unique within its part
+        lhs: one side: a number or a CasADi expression
+        rhs: the other side
+    """
     return Equation(name, ca.SX(lhs), ca.SX(rhs))
 
 

@@ -34,7 +34,7 @@ class Known:
 
         Args:
             assembly: the parts
-            typical: typical value of every symbol by its hash
+            typical: hash of a symbol -> value at which coefficients are judged
         """
         parts = assembly.parts
         return Known(

@@ -41,7 +41,12 @@ class Declaration:
         return self if instance is None else instance.symbols[self.name]
 
     def quantity(self, path: str, start: float = 0.0) -> Quantity:
-        """This declaration as the quantity of a path."""
+        """This declaration as the quantity of a path.
+
+        Args:
+            path: of the quantity ("oil.T")
+            start: its value to begin with, in SI
+        """
         low = self.at_least if self.above is None else self.above
         high = self.at_most if self.below is None else self.below
         return Quantity(
@@ -183,7 +188,12 @@ class Port:
 
 
 def declared(owner: type, kind: type) -> dict[str, Any]:
-    """All declarations of a kind on a class, base classes first, in the order written."""
+    """All declarations of a kind on a class, base classes first, in the order written.
+
+    Args:
+        owner: class of a component or port
+        kind: class of the declarations
+    """
     found: dict[str, Any] = {}
     for base in reversed(owner.__mro__):
         found.update({name: d for name, d in vars(base).items() if isinstance(d, kind)})

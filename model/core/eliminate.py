@@ -116,11 +116,11 @@ class _Open:
             self._columns[j].add(i)
             self._size[i][j] = size
         self._terms = [{j: abs(size) for j, size in row.items()} for row in self._size]
-        self._heap: list[tuple[int, int, int]] = []
+        self._heap: list[tuple[tuple[int, bool], int, int]] = []
         self._refill()
 
     def pivot(self) -> tuple[int, int]:
-        """Row and column of the entry of least fill, the first of equals."""
+        """Row and column of the entry of least fill; of equals a large one in its row, then the first."""
         for _ in range(2):  # the second time among all that is left: an entry may have become large in its row since
             while self._heap:
                 cost, i, j = heappop(self._heap)
@@ -179,8 +179,14 @@ class _Open:
         self._heap = [(self._cost(i, j), i, j) for i, j in entries]
         heapify(self._heap)
 
-    def _cost(self, i: int, j: int) -> int:
-        return (len(self._size[i]) - 1) * (len(self._columns[j]) - 1)
+    def _cost(self, i: int, j: int) -> tuple[int, bool]:
+        """The most fill a pivot can make, and whether it is small in its row.
+
+        The large entry of a balance is the one of its own node: with it the pattern stays symmetric, and fill low.
+        """
+        row = self._size[i]
+        small = len(row) > SHORT or abs(row[j]) < max(map(abs, row.values())) / 2
+        return (len(row) - 1) * (len(self._columns[j]) - 1), small
 
     def _large(self, i: int, j: int) -> bool:
         row = self._size[i]

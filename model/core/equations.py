@@ -108,16 +108,17 @@ def _undeclared(part: Component, error: KeyError | AttributeError) -> str:
 
 
 def check_symbols(rows: Sequence[Row], unknowns: Sequence[Unknown], parts: Sequence[Component]) -> None:
-    """Make sure that equations hold nothing but symbols that are declared, and numbers.
+    """Refuse equations that cannot be solved whatever their structure.
+
+    No number comes of functions that take a symbol for a number (`math.sqrt`).
 
     Args:
-        rows: all equations
-        unknowns: all unknowns
-        parts: all parts
+        rows: the equations
+        unknowns: what they are solved for
+        parts: the components, with what each declares
 
     Raises:
-        StructureError: a symbol that no part declares, or no number, which comes of functions that take a symbol for
-            one (`math.sqrt`)
+        StructureError: an equation holds a symbol that no part declares, or no number
     """
     known = {u.symbol.element_hash() for u in unknowns}
     known |= {s.element_hash() for part in parts for s in (*part.symbols.values(), *part.derivatives.values())}

@@ -222,6 +222,6 @@ def listed(names: Sequence[str], word: str = "and") -> str:
 
     Args:
         names: any number
-        word: "and" or "or"
+        word: what stands before the last
     """
     return f" {word} ".join(filter(None, (", ".join(names[:-1]), *names[-1:])))

@@ -86,19 +86,29 @@ class Relation:
     @property
     def bounds(self) -> str:
         """Where the value must lie, in words."""
-        low, high = text(self.low, self.unit, 4), text(self.high, self.unit, 4)
+        low, high = (text(v if abs(v) > 1e-300 else 0.0, self.unit, 4) for v in (self.low, self.high))
         if not np.isfinite(self.high):
             return f"at least {low}"
         return f"from {low} to {high}" if np.isfinite(self.low) else f"at most {high}"
 
     def problem(self, value: float, given: str) -> str:
-        """What is wrong with a value. `given` is what it follows from, in words."""
+        """What is wrong with a value.
+
+        Args:
+            value: of the relation's expression (SI)
+            given: what the value follows from, in words
+        """
         found = text(value, self.unit, 4) if np.isfinite(value) else "not defined"
         return f'"{self.name}" does not hold: {self.value} is {found}, expected {self.bounds} ({given}).\n{self.remedy}'
 
 
 def broken(relations: Sequence[Relation], values: Sequence[float]) -> list[tuple[Relation, float]]:
-    """The relations that do not hold; of a part where one has a value, not those that merely have none."""
+    """The relations that do not hold; of a part where one has a value, not those that merely have none.
+
+    Args:
+        relations: the n relations of a model
+        values: of their expressions (n), SI
+    """
     found = [(r, float(v)) for r, v in zip(relations, values, strict=True) if not r.holds(float(v))]
     told = {r.component for r, v in found if np.isfinite(v)}
     return [(r, v) for r, v in found if np.isfinite(v) or r.component not in told]
@@ -115,7 +125,8 @@ class FlatModel:
 
     A parameter that follows from others is none of `parameters` but an output; `derived` says what it follows from.
     `related` holds the values of the `relations` between parameters, a function of p alone. `joined` says which
-    quantities are outputs because rigid couplings tie them to states ("rotor_2.w follows rotor_1.w").
+    quantities are outputs because rigid couplings tie them to states ("rotor_2.w follows rotor_1.w"). `imbalance` [W]
+    is the power that each of the parts `balanced` takes in and does not account for: zero in a sound part.
     """
 
     name: str
@@ -140,6 +151,8 @@ class FlatModel:
     algebraic: tuple[Quantity, ...] = ()
     z: Any = field(default_factory=lambda: ca.SX(0, 1))
     joined: tuple[str, ...] = ()
+    balanced: tuple[str, ...] = ()
+    imbalance: Any = field(default_factory=lambda: ca.SX(0, 1))
     derived: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     relations: tuple[Relation, ...] = ()
     related: Any = field(default_factory=lambda: ca.SX(0, 1))
@@ -171,8 +184,8 @@ class FlatModel:
 
     @cached_property
     def function(self) -> Any:
-        """CasADi function (x, z, u, p) -> (ode, y, residual, supply, throughput, stored, checked)."""
-        names = ["ode", "y", "residual", "supply", "throughput", "stored", "checked"]
+        """CasADi function (x, z, u, p) -> (ode, y, residual, supply, throughput, stored, checked, imbalance)."""
+        names = ["ode", "y", "residual", "supply", "throughput", "stored", "checked", "imbalance"]
         results = [getattr(self, name) for name in names]
         return ca.Function("model", self.point, results, ["x", "z", "u", "p"], names, {"cse": True})
 

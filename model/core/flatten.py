@@ -135,12 +135,12 @@ def _flat_model(
         sum((ca.fabs(power) for power in supplies), ca.SX(0)),
         sum(aliased([stored for _, stored in energies]), ca.SX(0)),
         column(aliased([value for _, value in checks])),
+        column(aliased([_imbalance(part) for part in parts])),
     ]
-    sizes = [e.numel() for e in expressions]
+    ends = [0, *_cumulative([e.numel() for e in expressions])]
     together = inline(ca.vertcat(*expressions), solution)
-    ode, y, residual, supply, throughput, stored, checked = ca.vertsplit(together, [0, *_cumulative(sizes)])
+    ode, y, residual, supply, throughput, stored, checked, imbalance = ca.vertsplit(together, ends)
     residual, names = scaled_residual(solution, residual)
-
     return FlatModel(
         name=assembly.name,
         doc=assembly.doc,
@@ -167,6 +167,8 @@ def _flat_model(
         derived={f"{part.name}.{k}": part.follows_from(part.symbols[k]) for part in parts for k in part.derived},
         relations=tuple(relation for relation, _ in related),
         related=column([value for _, value in related]),
+        balanced=tuple(part.name for part in parts),
+        imbalance=imbalance,
     )
 
 
@@ -184,6 +186,13 @@ def _output(part: Component, key: str, declaration: Declaration, joined: Mapping
     path = f"{part.name}.{key}"
     quantity = declaration.quantity(path, part.values[key] if key in part.derived else 0.0)
     return replace(quantity, doc=f"{quantity.doc}; {joined[path]}") if path in joined else quantity
+
+
+def _imbalance(part: Component) -> Any:
+    """Power that enters a part through its ports and from outside, less what its states gain [W]."""
+    states = column([part.symbols[k] for k in part.states])
+    gained = ca.jtimes(ca.SX(part.stored_energy()), states, column(list(part.derivatives.values())))
+    return sum((port.power() for port in part.ports.values()), sum(part.supplied_power(), ca.SX(0))) - gained
 
 
 def _cumulative(sizes: list[int]) -> list[int]:

@@ -19,9 +19,9 @@ def open_ports(model: str, parts: Sequence[Component], nets: Sequence[Sequence[P
     torque. A part that is the whole model has nothing to meet.
 
     Args:
-        model: name of the model, for the messages
-        parts: all parts
-        nets: the groups of ports that meet, single ports included
+        model: its name, for messages
+        parts: the components
+        nets: groups of ports that meet; a port alone is one as well
     """
     if len(parts) < 2:
         return []
@@ -55,11 +55,11 @@ def floating(
     All temperatures of a group without storage and room could rise together and no equation would notice.
 
     Args:
-        model: name of the model, for the messages
-        ports: all ports by path
-        rows: all equations
-        unknowns: all unknowns
-        columns: for each equation the positions of its unknowns
+        model: its name, for messages
+        ports: path -> port
+        rows: the equations
+        unknowns: what they are solved for
+        columns: for each equation the places of the unknowns in it
     """
     levels: dict[int, tuple[Port, str]] = {}
     for c, unknown in enumerate(unknowns):

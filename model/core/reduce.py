@@ -91,12 +91,12 @@ def _coupling(reduced: Reduced, columns: list[list[int]], known: Known) -> tuple
 
 
 def tie(rows: list[Row], unknowns: list[Unknown], known: Known) -> Relation | None:
-    """What equations say about states and inputs; None where that is not linear.
+    """What equations, one more than unknowns, say about states and inputs; None where that is not linear.
 
     Args:
-        rows: one equation more than unknowns
-        unknowns: all of theirs
-        known: the quantities they do not determine
+        rows: the equations
+        unknowns: one fewer than equations
+        known: the symbols of the parts
     """
     expression = constraint(rows, unknowns, known)
     return None if expression is None else Relation.of(expression, known)

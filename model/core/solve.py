@@ -64,12 +64,22 @@ class Solution:
     tests: list[Row] = field(default_factory=list)
 
     def keep(self, unknowns: Sequence[Unknown], tests: Sequence[Row]) -> None:
-        """Leave unknowns implicit, with as many equations."""
+        """Leave unknowns implicit, with as many equations.
+
+        Args:
+            unknowns: those that stay implicit
+            tests: the equations that determine them, as many
+        """
         self.torn += unknowns
         self.tests += tests
 
     def define(self, symbol: Any, definition: Any) -> None:
-        """Append one definition; it may use known symbols and those defined before."""
+        """Append one definition; it may use known symbols and those defined before.
+
+        Args:
+            symbol: the unknown (SX, 1)
+            definition: its value as an expression (SX, 1)
+        """
         self.symbols.append(symbol)
         self.definitions.append(definition)
 
@@ -80,12 +90,23 @@ def column(items: Sequence[Any]) -> Any:
 
 
 def incidence(rows: Sequence[Row], unknowns: Sequence[Unknown]) -> Any:
-    """Sparsity of the residuals in the unknowns."""
+    """Sparsity of the residuals in the unknowns.
+
+    Args:
+        rows: the n equations
+        unknowns: m of their symbols
+    """
     return ca.jacobian_sparsity(column([r.residual for r in rows]), column([u.symbol for u in unknowns]))
 
 
 def solve(model: str, rows: Sequence[Row], unknowns: Sequence[Unknown], solution: Solution) -> None:
     """Add the definitions of all unknowns to a solution. The system must be structurally sound.
+
+    Args:
+        model: its name, for messages
+        rows: the equations
+        unknowns: as many as equations
+        solution: takes up the definitions, in order
 
     Raises:
         StructureError: a linear block is singular
@@ -202,7 +223,12 @@ def _inline(expressions: list[Any], solution: Solution) -> list[Any]:
 
 
 def inline(expression: Any, solution: Solution) -> Any:
-    """An expression column with all definitions of a solution put in."""
+    """An expression column with all definitions of a solution put in.
+
+    Args:
+        expression: a column (n)
+        solution: the definitions
+    """
     return _inline([expression], solution)[0]
 
 
@@ -211,6 +237,10 @@ def scaled_residual(solution: Solution, residual: Any) -> tuple[Any, tuple[str, 
 
     They are put in the order in which each depends on its own torn unknown, so that the diagonal of their Jacobian is
     where elimination may begin.
+
+    Args:
+        solution: its torn unknowns and their definitions
+        residual: of the tests (SX, k)
     """
     if not solution.torn:
         return residual, ()

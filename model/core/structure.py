@@ -18,7 +18,7 @@ MOST = 5
 def check_structure(
     assembly: Assembly, rows: Sequence[Row], unknowns: Sequence[Unknown], typical: Mapping[int, float]
 ) -> None:
-    """Make sure that every unknown has an equation of its own and every temperature a level.
+    """Refuse a system unless every unknown has an equation of its own and every temperature a level.
 
     The message names the smallest sets that do not come out even. What is said twice of potentials is missing for
     flows, and the other way round: then the potentials are told.
@@ -30,7 +30,7 @@ def check_structure(
         typical: typical value of every symbol by its hash
 
     Raises:
-        StructureError: at most `MOST` faults
+        StructureError: an unknown has no equation of its own, or a temperature no level
     """
     columns = columns_of(incidence(rows, unknowns))
     if problems := floating(assembly.name, assembly.ports(), rows, unknowns, columns):

@@ -50,7 +50,7 @@ def kinematic_viscosity(T: Num, nu_40: Num, nu_100: Num, T_pour: Num = 0.0, *, s
         nu_40: kinematic viscosity at 40 degC [m2/s]
         nu_100: kinematic viscosity at 100 degC [m2/s]
         T_pour: pour point; bounds the range alone: below it the line goes on for oil that does not flow [K]
-        sharpness: of the bend at the largest viscosity; it is felt within 5 K of it
+        sharpness: of the bend at the largest viscosity; it is felt within 5 K of it [1]
     """
     nu_40_cSt, nu_100_cSt = 1e6 * nu_40, 1e6 * nu_100
     W_40, W_100 = ca.log(ca.log(nu_40_cSt + 0.7)), ca.log(ca.log(nu_100_cSt + 0.7))

@@ -27,12 +27,22 @@ HOLD_WIDTH = 5e-5
 
 
 def smooth_abs(x: Num, width: float = SPEED_WIDTH) -> Num:
-    r""":math:`\sqrt{x^2 + width^2}`, in the unit of x: never zero, even, exact to (width/x)^2/2 far from zero."""
+    r""":math:`\sqrt{x^2 + width^2}`, in the unit of x: never zero, even, exact to (width/x)^2/2 far from zero.
+
+    Args:
+        x: any quantity
+        width: size of x over which the corner is rounded, in its unit
+    """
     return ca.sqrt(x * x + width * width)
 
 
 def smooth_sign(x: Num, width: float = SPEED_WIDTH) -> Num:
-    """The slope of `smooth_abs`: odd, zero at x = 0, between -1 and 1; x * smooth_sign(x) is never negative."""
+    """The slope of `smooth_abs`: odd, zero at x = 0, between -1 and 1; x * smooth_sign(x) is never negative.
+
+    Args:
+        x: any quantity
+        width: size of x over which the corner is rounded, in its unit
+    """
     return x / smooth_abs(x, width)
 
 
@@ -52,22 +62,45 @@ def friction_sign(w: Num, width: float = HOLD_WIDTH, sharpness: int = 8) -> Num:
 
 
 def smooth_magnitude(x: Num, width: float = SPEED_WIDTH) -> Num:
-    """x * smooth_sign(x), in the unit of x: zero at x = 0, even, never above |x|."""
+    """x * smooth_sign(x), in the unit of x: zero at x = 0, even, never above |x|.
+
+    Args:
+        x: any quantity
+        width: size of x over which the corner is rounded, in its unit
+    """
     return x * smooth_sign(x, width)
 
 
 def smooth_power(x: Num, exponent: Num, width: float = SPEED_WIDTH) -> Num:
-    """|x|^exponent as x^2 (x^2 + width^2)^(exponent/2 - 1): even, zero with zero slope at x = 0; exponent above 0."""
+    """|x|^exponent as x^2 (x^2 + width^2)^(exponent/2 - 1): even, zero with zero slope at x = 0; exponent above 0.
+
+    Args:
+        x: any quantity
+        exponent: above 0 [1]
+        width: size of x over which the corner is rounded, in its unit
+    """
     return x * x * (x * x + width * width) ** (0.5 * exponent - 1)
 
 
 def smooth_max(a: Num, b: Num, width: float) -> Num:
-    """The larger of two, in their unit: never below either, above it by at most width/2, where they are equal."""
+    """The larger of two, in their unit: never below either, above it by at most width/2, where they are equal.
+
+    Args:
+        a: any quantity
+        b: the other one, in the same unit
+        width: size of their difference over which the corner is rounded, in their unit
+    """
     return 0.5 * (a + b + smooth_abs(a - b, width))
 
 
 def smooth_min(a: Num, b: Num, width: float) -> Num:
-    """The smaller of two, in their unit: never above either, below it by at most width/2, where they are equal."""
+    """The smaller of two, in their unit: never above either, below it by at most width/2, where they are equal.
+
+    Args:
+        a: any quantity
+        b: the other one, in the same unit
+        width: size of their difference over which the corner is rounded, in their unit
+    """
     return 0.5 * (a + b - smooth_abs(a - b, width))
 
 

@@ -3,10 +3,11 @@
 from ..core.component import Component
 from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
-from .gears import HelicalGearPair, PlanetarySet, ShaftSupport, TwoGearSupport
+from .gears import HelicalGearPair, PlanetarySet
 from .lubrication import Grease, OilBath
 from .sealing import LipSeal
 from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit
+from .supports import ShaftSupport, TwoGearSupport
 from .thermal import (
     BoxCooling,
     CylinderCooling,

@@ -90,7 +90,13 @@ class Algebra:
         return z
 
     def system(self, x: np.ndarray, u: np.ndarray, p: np.ndarray) -> System:
-        """z -> residuals and their Jacobian in z at one point."""
+        """z -> residuals and their Jacobian in z at one point.
+
+        Args:
+            x: states (n), SI
+            u: inputs (m), SI
+            p: parameters, SI
+        """
         n = len(self.start)
 
         def equations(z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -113,6 +113,13 @@ def choose(
     The distance is the root mean square of the deviations, each relative to the target's size or its nominal. Those
     without a steady state come last.
 
+    Args:
+        flat: the model
+        candidates: name -> path of a parameter -> value in SI
+        targets: path of an output or state -> value in SI
+        values: path of a parameter or input -> value in SI, the same for all candidates
+        guess: path of a state -> value in SI to begin with
+
     Raises:
         ScenarioError: unknown names, names of the wrong kind, values out of range
     """
@@ -236,13 +243,14 @@ def _out_of_reach(search: Search, scale: Range, tried: Sequence[Tried]) -> str:
     unit, aim = flat.quantity(name).unit, flat.quantity(target).unit
     ends = f"{text(scale.low, unit, 4)} to {text(scale.high, unit, 4)}"
     solved = [t for t in tried if t.at is not None]
+    if not solved and search.limits:
+        return f"design: no {name} tried from {ends} fits the other parameters." + _limits(search)
     if not solved:
         return (
             f"design: there is no steady state at any {name} from {ends}. Check the loads, the cooling and the bounds."
-            + _limits(search)
         )
     low, high = min(t.y for t in solved), max(t.y for t in solved)
-    if high - low <= UNMOVED * search.size[0]:
+    if high - low <= UNMOVED * search.size[0] and not search.limits:
         return (
             f"design: {target} does not depend on {name}: it stays at {text(low, aim)} while {name} goes from {ends}.\n"
             "Free something else."

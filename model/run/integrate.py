@@ -98,6 +98,11 @@ class Transient:
     def idas(self, stretch: Stretch, grid: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """States at the times of a grid (first and last are the stretch's ends), algebraic variables, and integrals.
 
+        Args:
+            stretch: time without a jump, and its inputs
+            grid: times (n) [s]
+            x: states at the first of them, SI
+
         Returns:
             states and algebraic variables, a column per time; supply and throughput [J]
 
@@ -119,6 +124,11 @@ class Transient:
 
     def lsoda(self, stretch: Stretch, grid: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """The same by SciPy's LSODA, restarted at every kink of the inputs, the implicit blocks solved at every call.
+
+        Args:
+            stretch: time without a jump, and its inputs
+            grid: times (n) [s]
+            x: states at the first of them, SI
 
         Raises:
             Failure: LSODA gave up

@@ -54,7 +54,12 @@ class Box:
     stride: np.ndarray | float = STRIDE
 
     def share(self, z: np.ndarray, d: np.ndarray) -> float:
-        """Largest part of a step that stays inside and is not wild."""
+        """Largest part of a step that stays inside and is not wild.
+
+        Args:
+            z: unknowns (n), inside
+            d: step (n)
+        """
         room = np.where(d > 0, self.high - z, z - self.low)
         most = np.minimum(0.9 * room, self.stride * self.scale + 0.5 * np.abs(z))
         with np.errstate(divide="ignore", invalid="ignore"):
@@ -182,7 +187,12 @@ def pseudo_transient(system: System, z: np.ndarray, box: Box, n: int, most: int 
 
 
 def reduced(jacobian: np.ndarray, n: int) -> np.ndarray:
-    """Jacobian of the first n residuals in the first n unknowns where the others keep theirs at zero; NaN if none."""
+    """Jacobian of the first n residuals in the first n unknowns where the others keep theirs at zero; NaN if none.
+
+    Args:
+        jacobian: of all residuals in all unknowns (m, m)
+        n: how many come first
+    """
     if len(jacobian) == n:
         return jacobian
     try:

@@ -65,7 +65,15 @@ def point(
 def problem_of(
     flat: FlatModel, name: str, allowed: tuple[str, ...], who: str, value: float | None = None
 ) -> str | None:
-    """What is wrong with a name where certain kinds are allowed, or with its value; None if nothing is."""
+    """What is wrong with a name where certain kinds are allowed, or with its value; None if nothing is.
+
+    Args:
+        flat: the model
+        name: path of a quantity
+        allowed: kinds: "state", "input", "parameter", "output"
+        who: who asks, for the message
+        value: in SI; only the name is judged when None
+    """
     if name not in flat.index:
         known = [n for n, (kind, _) in flat.index.items() if kind in allowed]
         return f'{who}: unknown name "{name}".{suggestion(name, known)}'
@@ -83,7 +91,12 @@ def problem_of(
 
 
 def follows(flat: FlatModel, name: str) -> str:
-    """What a user reads who sets a parameter that follows from others."""
+    """What a user reads who sets a parameter that follows from others.
+
+    Args:
+        flat: the model
+        name: path of a derived parameter
+    """
     own = name.rpartition(".")[0] + "."
     known = ", ".join(path.removeprefix(own) for path in flat.derived[name])
     return f"{name} follows from {known}. Change these, or give {name} a value of its own in the rig file."

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable
 
 import numpy as np
 
 from ..core.flat import FlatModel
 from ..errors import SolveError
 from ..sources import LawInfo
-from ..units import text
 from .algebra import algebra
+from .audit import SLACK, imbalance, out_of_range, unsolved
 from .result import Audit, Outside, Result
-
-#: Round-off allowed at the ends of a law's range, relative.
-SLACK = 1e-9
 
 
 def evaluate(
@@ -30,7 +27,7 @@ def evaluate(
         warm: algebraic variables to begin with, n_z by rows
 
     Returns:
-        "ode", "y", "residual", "supply", "throughput", "stored", "checked", each with one column per row
+        "ode", "y", "residual", "supply", "throughput", "stored", "checked", "imbalance", each with one column per row
 
     Raises:
         SolveError: an implicit block has no solution
@@ -64,11 +61,27 @@ def result(
     u: np.ndarray,
     evaluated: dict[str, np.ndarray],
     audit: Audit,
+    tolerance: float = 0.0,
 ) -> Result:
-    """One result from states, inputs and what `evaluate` made of them."""
+    """One result from states, inputs and what `evaluate` made of them, audited.
+
+    Args:
+        flat: the model
+        kind: "steady" or "transient"
+        index: number or time of each row
+        x, u: states and inputs, a column per row
+        evaluated: what `evaluate` found there
+        audit: energy of the whole run
+        tolerance: of the integration
+
+    Raises:
+        SolveError: energy is not conserved, an implicit equation does not hold, an output is out of its range
+    """
     groups = ((flat.states, x), (flat.inputs, u), (flat.outputs, evaluated["y"]))
     columns = {q.name: row for quantities, values in groups for q, row in zip(quantities, values, strict=True)}
-    if problems := list(out_of_range(flat, columns)):
+    implicit = left(flat, evaluated["residual"])
+    problems = [*out_of_range(flat, columns), *unsolved(implicit), *imbalance(flat, evaluated, audit, tolerance)]
+    if problems:
         raise SolveError([f"{kind}: {problem}" for problem in problems])
     return Result(
         model=flat.name,
@@ -79,30 +92,17 @@ def result(
         audit=audit,
         outside=outside(flat, evaluated["checked"]),
         laws=cited(flat.laws),
-        implicit=left(flat, evaluated["residual"]),
+        implicit=implicit,
     )
 
 
-def out_of_range(flat: FlatModel, columns: Mapping[str, np.ndarray]) -> Iterator[str]:
-    """What is wrong with the outputs that leave their declared range, the worst row of each, in words."""
-    for q in flat.outputs:
-        values = columns[q.name]
-        slack = SLACK * (q.nominal + np.abs(values))
-        excess = np.maximum(q.low - values, values - q.high)
-        row = int(np.argmax(np.where(np.isnan(excess), np.inf, excess)))
-        if excess[row] <= slack[row]:
-            continue
-        part = q.name.rpartition(".")[0]
-        if q.refusal:
-            of_part = {o.name.removeprefix(f"{part}."): o for o in flat.outputs if o.name.startswith(f"{part}.")}
-            shown = {key: text(float(columns[o.name][row]), o.unit) for key, o in of_part.items()}
-            yield f"{part}: {q.refusal.format(**shown)}"
-        else:
-            yield str(q.problem(float(values[row])))
-
-
 def outside(flat: FlatModel, checked: np.ndarray) -> tuple[Outside, ...]:
-    """The arguments of laws that left their range over the rows, uses of one law in one part taken together."""
+    """The arguments of laws that left their range over the rows, uses of one law in one part taken together.
+
+    Args:
+        flat: the model
+        checked: arguments of its laws (checks, n)
+    """
     found: dict[tuple[str, str, str], Outside] = {}
     for check, values in zip(flat.checks, checked, strict=True):
         lowest, highest = float(np.min(values)), float(np.max(values))
@@ -117,7 +117,12 @@ def outside(flat: FlatModel, checked: np.ndarray) -> tuple[Outside, ...]:
 
 
 def left(flat: FlatModel, residual: np.ndarray) -> dict[str, float]:
-    """Largest residual of each implicit equation over the rows."""
+    """Largest residual of each implicit equation over the rows.
+
+    Args:
+        flat: the model
+        residual: of its implicit equations (equations, n), in units of their nominals
+    """
     return {name: float(np.max(np.abs(row))) for name, row in zip(flat.residual_names, residual, strict=True)}
 
 

@@ -45,15 +45,6 @@ class Schedule:
         """Last time [s]."""
         return float(self.time[-1])
 
-    def segments(self) -> list[tuple[float, float, dict[str, tuple[float, float]]]]:
-        """The linear pieces: (begin, end, input -> (value at begin, value at end)); jumps lie between pieces."""
-        pieces = []
-        for i in range(len(self.time) - 1):
-            if self.time[i + 1] > self.time[i]:
-                ends = {name: (float(v[i]), float(v[i + 1])) for name, v in self.values.items()}
-                pieces.append((float(self.time[i]), float(self.time[i + 1]), ends))
-        return pieces
-
     def stretches(self) -> list[slice]:
         """The points between jumps: per stretch the slice of points over which all inputs are continuous."""
         jumps = np.flatnonzero(np.diff(self.time) == 0)

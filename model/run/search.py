@@ -55,7 +55,13 @@ class Range:
 
 
 def span(q: Quantity, value: float, given: tuple[float, float] | None) -> Range:
-    """The range to scan: the one given, the declared one, or a wide one around a value."""
+    """The range to scan: the one given, the declared one, or a wide one around a value.
+
+    Args:
+        q: the quantity that is freed
+        value: where the search begins, SI
+        given: lowest and highest value a user has given, SI
+    """
     size = max(abs(value), q.nominal)
     if given is not None:
         low, high = max(given[0], q.low), min(given[1], q.high)
@@ -138,17 +144,35 @@ class Search:
         return replace(self.start, u=u, p=p)
 
     def at(self, found: Equilibrium, f: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Derivatives, algebraic residuals and targets, and their Jacobian in x, z and freed values."""
+        """Derivatives, algebraic residuals and targets, and their Jacobian in x, z and freed values.
+
+        Args:
+            found: states and algebraic variables
+            f: freed values (m), SI
+        """
         here = self.point(f)
         values, jacobian = self.compiled(found.x, found.z, here.u, here.p)
         return values, jacobian.reshape(len(values), -1)
 
     def aims(self, found: Equilibrium, f: np.ndarray) -> np.ndarray:
-        """The targets' quantities."""
+        """The targets' quantities.
+
+        Args:
+            found: states and algebraic variables
+            f: freed values (m), SI
+        """
         return self.at(found, f)[0][self.n :]
 
     def equilibrium(self, f: np.ndarray, warm: Equilibrium | None = None) -> Equilibrium:
-        """The steady state at freed values. Raises SolveError where there is none, or where parameters contradict."""
+        """The steady state at freed values.
+
+        Args:
+            f: freed values (m), SI
+            warm: a steady state nearby to begin with
+
+        Raises:
+            SolveError: there is none, or parameters contradict
+        """
         here = self.point(f)
         if not self.allowed(here.p):
             raise SolveError("design: the parameters contradict each other.")
@@ -161,7 +185,13 @@ class Search:
         return not broken
 
     def newton(self, start: Equilibrium, f: np.ndarray, goal: np.ndarray) -> tuple[Equilibrium, np.ndarray] | None:
-        """Steady state and freed values at once by Newton's method; None if that ends nowhere a machine would stay."""
+        """Steady state and freed values at once by Newton's method; None if that ends nowhere a machine would stay.
+
+        Args:
+            start: steady state to begin with
+            f: freed values (m), SI, to begin with
+            goal: values of the targets (m), SI
+        """
         root = newton(self._system(goal), np.append(start.w, f), self.box)
         found, f = self._split(root.z)
         here = self.point(f)
@@ -184,7 +214,12 @@ class Search:
         return equations
 
     def continued(self, start: Equilibrium, f: np.ndarray) -> tuple[Equilibrium, np.ndarray] | None:
-        """Continue the targets from their values at a steady state to those asked for."""
+        """Continue the targets from their values at a steady state to those asked for.
+
+        Args:
+            start: a steady state
+            f: freed values (m), SI, that belong to it
+        """
         begin, found = self.aims(start, f), (start, f)
         share, stride = 0.0, FIRST_STRIDE
         while share < 1.0 and stride > LEAST_STRIDE:
@@ -197,7 +232,12 @@ class Search:
         return found if share >= 1.0 else None
 
     def scan(self, shares: Sequence[float], warm: Equilibrium | None) -> list[Tried]:
-        """Steady states at some values of the only freed name, each from the one before, in the order given."""
+        """Steady states at some values of the only freed name, each from the one before, in the order given.
+
+        Args:
+            shares: places in the range of the freed name, 0 to 1
+            warm: a steady state near the first
+        """
         found = []
         for share in shares:
             f = np.array([self.ranges[0].at(share)])

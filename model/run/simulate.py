@@ -80,7 +80,7 @@ def simulate(
         x[:, here], z[:, here] = path[:, shown], algebraic[:, shown]
         u[:, here] = stretch.inputs(rows.time[here])
         now, energy = path[:, -1], energy + gained
-    return _result(flat, rows.time, x, z, u, begin, now, energy)
+    return _result(flat, rows.time, x, z, u, begin, now, energy, tolerance)
 
 
 @dataclass(frozen=True)
@@ -172,13 +172,14 @@ def _result(
     begin: Point,
     last: np.ndarray,
     energy: np.ndarray,
+    tolerance: float,
 ) -> Result:
     evaluated = evaluate(flat, x, u, begin.p, z)
     stored = ca.Function("stored", [flat.x, flat.u, flat.p], [flat.stored])
     ends = [float(stored(state, u[:, k], begin.p)) for state, k in ((begin.x, 0), (last, -1))]
     held = float(max(np.abs(evaluated["stored"]).max(), *map(abs, ends)))
     audit = Audit(float(energy[0]), ends[1] - ends[0], float(energy[1]), held)
-    return result(flat, "transient", time, x, u, evaluated, audit)
+    return result(flat, "transient", time, x, u, evaluated, audit, tolerance)
 
 
 def _check_ranges(flat: FlatModel, grid: np.ndarray, path: np.ndarray) -> None:

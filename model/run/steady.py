@@ -260,7 +260,13 @@ class _Search:
 
 
 def conditions(flat: FlatModel, u: np.ndarray, named: tuple[str, ...]) -> str:
-    """The inputs that matter, in the units they are shown in."""
+    """The inputs that matter, in the units they are shown in.
+
+    Args:
+        flat: the model
+        u: inputs (m), SI
+        named: paths of those to tell
+    """
     moved = [q for q, value in zip(flat.inputs, u, strict=True) if value != q.start]
     given = [q for q in flat.inputs if q.name in named] or moved
     chosen = (given or list(flat.inputs))[:SHOWN]

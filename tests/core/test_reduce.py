@@ -17,7 +17,7 @@ from small_parts import Ambient, Body, Conductor, Flywheel, Speed, model
 
 OIL = dict(nu_40=3.2438e-4, nu_100=3.527e-5, rho_15=859.0, alpha_T=-5.6e-4, s_p=7.382, t_p=0.1335, X_L=0.666)
 TEETH = dict(z_1=36.0, z_2=72.0, m_n=0.002, alpha_n=math.radians(20), beta=math.radians(10), b=0.042, a_w=0.1097)
-TEETH |= dict(Ra=6e-7, E=2.06e11, poisson=0.3, line_load="F_bt/b")
+TEETH |= dict(Ra=6e-7, line_load="F_bn/l", E=2.06e11, poisson=0.3)
 SET = TEETH | dict(z_2=36.0, a_w=0.073035, N=3.0, z_3=108.0, eps_alpha_sp=1.666, eps_alpha_pr=1.883)
 SET |= dict(H_v_sp=0.168, H_v_pr=0.062, n_axial_carrier=1.0, n_axial_sun=3.0, s_planet=0.021)
 

@@ -114,8 +114,8 @@ def test_dependencies_are_exact(described: SimpleNamespace) -> None:
 
 
 def test_start_values_can_be_replaced(models: SimpleNamespace) -> None:
-    by_name = table(models.rc, {"source.v": 2.5, "capacitor.v": 0.5, "resistor.R": 7.0}).by_name
-    assert [by_name[n].start for n in ("source.v", "capacitor.v", "resistor.R", "capacitor.C")] == [2.5, 0.5, 7.0, 3.0]
+    start = {v.name: v.start for v in table(models.rc, {"source.v": 2.5, "capacitor.v": 0.5, "resistor.R": 7.0})}
+    assert [start[n] for n in ("source.v", "capacitor.v", "resistor.R", "capacitor.C")] == [2.5, 0.5, 7.0, 3.0]
 
 
 def test_all_wrong_start_values_are_told_at_once(models: SimpleNamespace, tmp_path: Path) -> None:

@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from fmpy.fmi2 import FMU2Model
 from gearheat.fmu.batch import Batch, Status
 from gearheat.fmu.export import export
 from gearheat.model.core.flat import FlatModel, Quantity
@@ -187,6 +188,17 @@ def test_parameters_that_are_tuned_must_fit_at_the_next_step(exported: tuple[Rig
     one.fmu.setReal([one.refs[name]], [own])
     one.fmu.doStep(1.0, 1.0)
     assert one.get("efficiency.P_loss")[0] > 0
+
+
+def test_model_exchange_goes_on_only_with_parameters_that_fit(exported: tuple[Rig, Path], opened: Open) -> None:
+    _, path = exported
+    one = opened(path, FMU2Model).start()
+    (name,) = (n for n in ("stage_1.z_1", "gear_set.z_1") if n in one.refs)
+    one.fmu.setReal([one.refs[name]], [15.5])
+    status, told = one.refused(one.fmu.enterContinuousTimeMode)
+    assert status == 3
+    assert told.startswith("fmi2EnterContinuousTimeMode: ")
+    assert any("z_1 is whole" in text for _, _, text in one.messages)
 
 
 def test_a_derived_parameter_is_found_in_the_fmu_and_says_what_it_follows_from(opened: Open, tmp_path: Path) -> None:

@@ -19,7 +19,7 @@ from gearheat.model.run.rows import evaluate_at
 
 #: Values under which laws act that the rig's own values switch off, and the parameters that act only then.
 SWITCHES = {
-    "churning.c": (40.0, {"churning.a", "churning.b", "churning.count"}),
+    "churning.c": (40.0, {"churning.a", "churning.b", "churning.count", "churning.k_loss"}),
     "carrier_bearing.K_rs": (3e-8, {"carrier_bearing.d", "carrier_bearing.D", "carrier_bearing.K_Z"}),
     "sun_bearing.K_rs": (3e-8, {"sun_bearing.d", "sun_bearing.D", "sun_bearing.K_Z"}),
 }
@@ -62,7 +62,7 @@ def moved(player: Player, name: str, value: float, others: dict[str, float]) -> 
 def other(name: str, start: float) -> float:
     """Another value of a parameter, near by, that fits the rest: whole numbers stay whole."""
     flat, _ = planetary()
-    for value in (1.02 * start, *(start + step for step in (1.0, 3.0))):
+    for value in (1.02 * start, 1.002 * start, start + 1.0, start + 3.0):
         p = flat.starts("parameter")
         p[flat.locate(name)[1]] = value
         if not flat.contradictions(p):

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from gearheat.model.laws.oil import kinematic_viscosity
 from gearheat.model.parts import PARTS
 from gearheat.model.sources import sources
 from gearheat.model.units import to_si
@@ -19,7 +20,7 @@ UNITS = {
     **dict.fromkeys(("k", "k_fin"), "W/(m.K)"),
     **dict.fromkeys(("d", "D", "d_m", "B", "d_sh"), "m"),
     **dict.fromkeys(("X_L", "s_p", "t_p", "R_1", "R_2", "S_1", "S_2", "Y", "K_Z", "K_L", "emissivity", "Pr"), "1"),
-    **{"alpha_T": "1/K", "c_p": "J/(kg.K)", "C_0": "N", "c_sh": "N.m/m2"},
+    **{"T_pour": "K", "alpha_T": "1/K", "c_p": "J/(kg.K)", "C_0": "N", "c_sh": "N.m/m2"},
 }
 LUBRICANT = {"nu_40", "nu_100", "rho_15", "alpha_T", "X_L", "s_p", "t_p"}
 BEARING = {"d", "D", "d_m", "R_1", "R_2", "S_1", "S_2", "K_Z"}
@@ -167,3 +168,23 @@ def test_bearing_has_the_printed_friction_constants_of_its_series(name: str) -> 
     printed = SERIES[number[:2] if len(number.partition("-")[0]) == 4 else number[:3]]
     entry = entries("bearings.toml")[name]
     assert tuple(entry.get(key) for key in ("R_1", "R_2", "S_1", "S_2", "K_Z", "K_L")) == printed
+
+
+def test_every_oil_has_a_pour_point_and_a_grease_has_none() -> None:
+    """Thicker oils of one base pour at higher temperatures, mineral ones before PAO; all are thick there."""
+    oils = {name: si(entry) | {"doc": entry["doc"]} for name, entry in entries("oils.toml").items()}
+    assert [name for name, oil in oils.items() if "T_pour" not in oil] == ["bearing grease"]
+    for base in ("mineral", "PAO", "ester", "PAG"):
+        points = [oil["T_pour"] for name, oil in oils.items() if name.endswith(base)]
+        assert points == sorted(points) and 213.0 < points[0] < points[-1] < 273.0
+    assert oils["ISO VG 220 mineral"]["T_pour"] > oils["ISO VG 220 PAO"]["T_pour"] + 20
+    for oil in oils.values():
+        if "T_pour" in oil:
+            assert kinematic_viscosity(oil["T_pour"], oil["nu_40"], oil["nu_100"]) > 1.5e-3
+
+
+def test_cylindrical_roller_bearing_is_the_printed_one() -> None:
+    """SKF2017, tables 3c (series 4, with a cage) and 5; general catalogue 6000, page 524."""
+    entry = entries("bearings.toml")["NJ 406"]
+    assert [entry[k] for k in ("d", "D", "B")] == ["30 mm", "90 mm", "23 mm"]
+    assert [entry[k] for k in ("R_1", "S_1", "S_2", "K_Z", "K_L")] == [1.0e-6, 0.16, 0.0015, 5.1, 0.65]

@@ -7,6 +7,7 @@ argument in `ZERO` may vanish and change sign; its rounding is the keyword argum
 import ast
 import importlib
 import inspect
+import itertools
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -150,6 +151,32 @@ def test_finite_at_rest_and_reversed(name: str) -> None:
         assert np.isfinite(slope.full()).all(), point
         if name.startswith(MAGNITUDES):
             assert (value.full() >= 0).all(), point
+
+
+#: Ends of what a run may meet: -60 and 200 degC, the thickest oil there is, 1000 rad/s, 1e6 N.
+_ROOM, _OIL = (213.15, 473.15), (1e-6, 20.0)
+EXTREME = {
+    **{"T": (100.0, *_ROOM), "T_film": _ROOM, "T_s": _ROOM, "T_f": _ROOM, "T_1": _ROOM, "T_2": _ROOM},
+    **{"w": (-1000.0, 0.0, 1e-5, 1000.0), "v": (0.0, 100.0), "v_sum": (0.0, 200.0), "u_sum": (0.0, 200.0)},
+    **{"F_r": (0.0, 1.0, 1e6), "F_a": (0.0, 1.0, 1e6), "P_1": (0.0, 1e6), "F_n_l": (0.0, 1e8), "P_a": (-1e9, 0.0, 1e9)},
+    **{"nu": _OIL, "eta_oil": (1e-3, 2e4), "eta_0": (1e-3, 2e4), "s": (0.0, 1e9), "phi_ish": (0.0910, 1.0)},
+    **{"H": (0.0, 0.2), "K_rs": (0.0, 6e-8), "nu_40": (32e-6, 680e-6), "slide_roll": (0.0, 2.0)},
+    **{"phi": (0.0, 1.0), "phi_bl": (0.0, 1.0), "Ra": (1e-7, 1e-5)},
+}
+
+
+def test_extreme_values_are_finite_and_no_loss_is_negative(name: str) -> None:
+    """At every combination of the ends; slopes as well, which solvers need."""
+    function, free = symbolic(name)
+    base = nominal(name) | ({"nu_40": 680e-6} if "nu_40" in nominal(name) else {})
+    own = {} if name == "oil.pressure_viscosity" else EXTREME
+    ends = [own.get(a, (base[a],)) for a in free]
+    for values in itertools.product(*ends):
+        value, slope = function(np.array(values))
+        assert np.isfinite(value.full()).all(), dict(zip(free, values, strict=True))
+        assert np.isfinite(slope.full()).all(), dict(zip(free, values, strict=True))
+        if name.startswith(MAGNITUDES):
+            assert (value.full() >= 0).all(), dict(zip(free, values, strict=True))
 
 
 def test_reversal_changes_nothing(name: str) -> None:

@@ -3,7 +3,9 @@
 import casadi as ca
 import pytest
 from gearheat.model.laws.smooth import (
+    friction_sign,
     smooth_abs,
+    smooth_cap,
     smooth_magnitude,
     smooth_max,
     smooth_min,
@@ -65,6 +67,23 @@ def test_power_is_flat_at_zero(exponent: float) -> None:
     value = smooth_power(x, exponent, 0.1)
     f = ca.Function("f", [x], [value, ca.gradient(value, x)])
     assert [float(v) for v in f(0)] == [0.0, 0.0]
+
+
+@given(st.floats(0.0, 1e12), st.floats(1e-3, 1e6), st.floats(1.0, 1e3))
+def test_cap_rises_to_its_limit(x: float, limit: float, more: float) -> None:
+    assert 0 <= smooth_cap(x, limit) <= min(x, limit) * (1 + 1e-12)
+    assert smooth_cap(more * x, limit) >= smooth_cap(x, limit) * (1 - 1e-12)
+    assert smooth_cap(0.1 * limit, limit) == pytest.approx(0.1 * limit, rel=1e-8)
+
+
+@given(number)
+def test_friction_opposes_and_holds(w: float) -> None:
+    """Odd, never pushing; 0.99 of the full torque is there at 1.4 widths."""
+    assert w * friction_sign(w) >= 0
+    assert friction_sign(-w) == -friction_sign(w)
+    assert abs(friction_sign(w)) <= 1 + 1e-12
+    assert friction_sign(1.4 * 5e-5) > 0.99
+    assert friction_sign(0.1) == pytest.approx(1.0, abs=1e-12)
 
 
 def test_to_rpm() -> None:

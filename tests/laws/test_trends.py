@@ -92,6 +92,82 @@ def test_drag(w: float, faster: float, level: float, V_M: float) -> None:
         assert higher > rolling.drag_loss_factor(level, roller=is_roller)
 
 
+COLDER = st.floats(1.001, 1e4)
+#: From thin hot oil to the thickest there is.
+any_viscosity = st.floats(2e-6, 10.0)
+
+
+@given(st.floats(0.0, 1000.0), any_viscosity, COLDER, st.sampled_from([0.0, 3e-8, 6e-8]), st.floats(0.02, 0.4))
+def test_thicker_oil_never_drags_less(w: float, nu: float, thicker: float, K_rs: float, d: float) -> None:
+    """Rolling with inlet heating and starvation, drag of bearings, needles: rising with viscosity everywhere."""
+    D = 1.9 * d
+    d_m = (d + D) / 2
+
+    def torques(nu: float) -> list[float]:
+        phi = rolling.shear_heating(w, nu, d_m)
+        phi *= rolling.starvation(rolling.starvation_exponent(w, nu, d, D, K_rs, 3.1), phi)
+        return [
+            rolling.rolling_torque(1.0, w, nu, phi),
+            rolling.drag_torque_ball(w, nu, d, D, 0.4 * d_m, 3e-4, 3.1),
+            rolling.drag_torque_roller(w, nu, d, D, 0.3 * d, 0.9 * d_m, 3e-4, 6, 0.7),
+            rolling.needle_torque_viscous(w, nu, d_m, 7.0),
+            churning.churning_torque(w, 860.0, nu, 50.0, 2.5, 0.2),
+        ]
+
+    for thin, thick in zip(torques(nu), torques(thicker * nu), strict=True):
+        assert thick * SLACK >= thin
+
+
+def test_starvation_does_not_free_a_cold_bearing() -> None:
+    """A 6306 at 1450 rpm in oil of 44 700 mm2/s: the printed factor leaves 1e-11 of its rolling torque."""
+    w, nu, d, D = 1450 * math.pi / 30, 44.7e-3, 0.030, 0.072
+    s = rolling.starvation_exponent(w, nu, d, D, 3e-8, 3.1)
+    assert math.exp(-s) < 1e-10
+    assert rolling.starvation(s, rolling.shear_heating(w, nu, 0.051)) > 0.5
+    assert rolling.starvation(0.1, 0.95) == pytest.approx(math.exp(-0.1), rel=1e-7)
+
+
+def test_drag_is_the_printed_one_up_to_its_largest_viscosity() -> None:
+    """nu^1.379 below 500 mm2/s, nu beyond it."""
+
+    def drag(nu: float) -> float:
+        return rolling.drag_torque_ball(50.0, nu, 0.085, 0.15, 0.05, 0.0, 3.1)
+
+    assert drag(100e-6) / drag(50e-6) == pytest.approx(2**1.379, rel=1e-5)
+    assert drag(0.2) / drag(0.1) == pytest.approx(2.0, rel=1e-3)
+
+
+@given(st.floats(1e-3, 2e4), COLDER)
+def test_tooth_friction_stops_falling_on_a_full_film(eta: float, thicker: float) -> None:
+    """eta^-0.05 in mixed friction, as printed; beyond 1 Pa.s only the rounding of the corner is left."""
+
+    def mu(eta_oil: float) -> float:
+        return mesh.friction_schlenk(1e5, 5.0, 0.006, eta_oil, 0.6e-6, 0.7)
+
+    assert mu(thicker * eta) >= 0.9957 * mu(max(eta, 1.0)) if eta >= 1.0 else mu(thicker * eta) <= mu(eta)
+    assert mu(0.1) / mu(0.2) == pytest.approx(2**0.05, rel=1e-6)
+
+
+@given(st.floats(0.0, 1e6), st.floats(0.0, 1e6), factor)
+def test_ball_bearing_slides_by_one_law_under_radial_and_axial_load(F_r: float, F_a: float, more: float) -> None:
+    """The catalogue's two formulas at the ends, and more axial load never slides less."""
+    d_mm, S_1, S_2, C_0 = 51.0, 3.73e-3, 36.5, 16e3
+
+    def sliding(F_r: float, F_a: float) -> float:
+        return rolling.dgb_sliding_variable(F_r, F_a, 1e-3 * d_mm, S_1, S_2, C_0)
+
+    assert sliding(F_r, more * F_a) * SLACK >= sliding(F_r, F_a)
+    if F_r > 100:
+        assert sliding(F_r, 0.0) == pytest.approx(S_1 * d_mm**-0.26 * F_r ** (5 / 3), rel=1e-3)
+    if 100 < F_r < 5 * C_0:
+        axial = S_2 * d_mm**1.5 * F_r**4 / math.sin(math.radians(24.6) * min(F_r / C_0, 1.0) ** 0.24)
+        printed = S_1 * d_mm**-0.145 * (F_r**5 + axial) ** (1 / 3)
+        assert sliding(F_r, F_r) == pytest.approx(printed, rel=0.011)  # 1/C_0 rounding; 0.1 % below half of C_0
+    if 100 < F_a < 0.5 * C_0:
+        axial = S_2 * d_mm**1.5 * F_a**4 / math.sin(math.radians(24.6) * (F_a / C_0) ** 0.24)
+        assert sliding(0.0, F_a) == pytest.approx(S_1 * d_mm**-0.145 * axial ** (1 / 3), rel=1e-5)
+
+
 def test_needle_torque_joins_the_branches() -> None:
     """Both printed branches beside nu n = 2000, and no jump at it."""
     nu, d_m, f_0 = 15e-6, 0.044, 7.0

@@ -1,6 +1,7 @@
 """One test over every component class: power in = power out + losses, losses are heat and never negative, heat flows
 from hot to cold. Each part is put between sources on all of its ports and asked at random states."""
 
+import itertools
 import math
 
 import casadi as ca
@@ -10,6 +11,8 @@ from gearheat.model.core.component import Component, equation
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.declare import Input, Port, declared
 from gearheat.model.core.flatten import flatten
+from gearheat.model.laws.oil import density, kinematic_viscosity, pressure_viscosity, thermoviscosity, walther_constants
+from gearheat.model.laws.rolling import boundary_share
 from gearheat.model.parts import PARTS as PHYSICS
 from gearheat.model.parts.ports import Flange, HeatPort
 from gearheat.model.run.rows import evaluate_at
@@ -209,3 +212,75 @@ def test_heat_flows_from_hot_to_cold(kind: str) -> None:
             "part.Q_flow", values.get("part.Q_flow_convection", 0.0) + values.get("part.Q_flow_radiation", 0.0)
         )
         assert flow * (values[f"{a}.T"] - values[f"{b}.T"]) >= 0.0
+
+
+# ---------------------------------------------------------------------------------------------------- cold and extreme
+
+#: Parts that rub in a lubricant, as the cold table takes them; a seal rubs the same at any temperature.
+COLD = [(kind, {}) for kind in BRAKING if kind not in ("ExtraLoss", "FanLoad")]
+COLD += [(k, {"mixed_friction": False}) for k in ("DeepGrooveBallBearing", "TaperedRollerBearing")]
+#: Speeds [rad/s] and loads as factors of the nominal: forces [N], torques [N.m].
+SPEEDS, LOADS = (1.0, 30.0, 100.0, 300.0), (0.0, 0.5, 1.0, 2.0)
+
+
+def oil_at(T: float) -> dict[str, float]:
+    """What a lubricant port tells of an ISO VG 320 PAO."""
+    nu = float(kinematic_viscosity(T, OIL["nu_40"], OIL["nu_100"]))
+    _, n = walther_constants(OIL["nu_40"], OIL["nu_100"])
+    found = {"nu": nu, "rho": float(density(T, OIL["rho_15"], OIL["alpha_T"])), "k": 0.13, "X_L": OIL["X_L"]}
+    return found | {"alpha_p": float(pressure_viscosity(nu, 7.382, 0.1335)), "beta_T": float(thermoviscosity(T, nu, n))}
+
+
+def lubricated(flat, T: float, w: float, load: float) -> dict[str, float]:
+    """All outputs with oil of an ISO VG 320 PAO at T, every shaft at w, every load and torque by a factor."""
+    of_oil = oil_at(T)
+
+    def value(q) -> float:
+        if q.unit == "K":
+            return T
+        if q.unit in ("rad/s", "N.m", "N"):
+            held = q.name in ("ring.w", "planet.tau")
+            return 0.0 if held else w if q.unit == "rad/s" else load * (300.0 if q.unit == "N.m" else 2000.0)
+        return of_oil.get(q.name.split(".")[-1], q.nominal)
+
+    u = [value(q) for q in flat.inputs]
+    y = flat.output_function([T for _ in flat.states], u, flat.starts("parameter"))[0]
+    return dict(zip([q.name for q in flat.outputs], np.array(y).ravel().tolist(), strict=True))
+
+
+def loss(values: dict[str, float]) -> float:
+    """Power that a part turns into heat."""
+    return sum(v for name, v in values.items() if name in LOSSES)
+
+
+@pytest.mark.parametrize(("kind", "choices"), COLD, ids=str)
+def test_colder_never_means_less_drag(kind: str, choices: dict) -> None:
+    """Loss from -40 to 150 degC at three times the speed and twice the load.
+
+    Two things may fall as it gets colder, and both end: the boundary friction of a bearing (Stribeck), so that one
+    with it is asked where the film is full, and tooth friction in mixed friction, so that teeth are asked beyond the
+    end of their law, at 1 Pa.s, and may fall within its rounding.
+    """
+    flat = flat_of(kind, choices)
+    for w, load in itertools.product(SPEEDS, LOADS):
+        cooling = [273.15 + T for T in range(150, -41, -5)]
+        slack = 1e-9
+        if kind in ("HelicalGearPair", "PlanetarySet"):
+            cooling, slack = [T for T in cooling if oil_at(T)["nu"] > 1.2e-3], 3e-3
+        elif kind in ("DeepGrooveBallBearing", "TaperedRollerBearing") and not choices:
+            cooling = [T for T in cooling if boundary_share(w, oil_at(T)["nu"], EXAMPLES[kind]["d_m"]) < 1e-3]
+        losses = np.array([loss(lubricated(flat, T, w, load)) for T in cooling])
+        assert len(losses) > 5
+        assert (np.diff(losses) >= -slack * losses[:-1]).all(), (w, load)
+
+
+@pytest.mark.parametrize(("kind", "choices"), COLD, ids=str)
+def test_extremes_are_finite_and_no_loss_is_negative(kind: str, choices: dict) -> None:
+    """-60 to 200 degC, 1000 rad/s in both directions, rest, and a thousand times the load."""
+    flat = flat_of(kind, choices)
+    for T, w, load in itertools.product(
+        (213.15, 253.15, 333.15, 473.15), (-1000.0, -1e-6, 0.0, 1e-3, 1000.0), (0.0, 1.0, 500.0)
+    ):
+        values = lubricated(flat, T, w, load)
+        assert all(map(math.isfinite, values.values())), (T, w, load)
+        assert all(v >= 0 for name, v in values.items() if "loss" in name), (T, w, load)

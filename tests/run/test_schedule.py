@@ -18,9 +18,9 @@ def test_phases_keep_what_they_do_not_name() -> None:
     assert schedule.values["tau"].tolist() == [5.0] * 6
 
 
-def test_segments_lie_between_jumps() -> None:
+def test_stretches_lie_between_jumps() -> None:
     schedule = duty([0.0, 10.0, 10.0, 10.0, 20.0], w=[0.0, 1.0, 7.0, 2.0, 3.0])
-    assert schedule.segments() == [(0.0, 10.0, {"w": (0.0, 1.0)}), (10.0, 20.0, {"w": (2.0, 3.0)})]
+    assert [schedule.values["w"][s].tolist() for s in schedule.stretches()] == [[0.0, 1.0], [2.0, 3.0]]
 
 
 def test_stretches_hold_kinks_together() -> None:

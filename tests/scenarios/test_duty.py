@@ -39,7 +39,7 @@ def test_a_duty_in_si_with_a_jump(tmp_path: Path) -> None:
     np.testing.assert_allclose(schedule.values["carrier.w"], np.array([100, 100, 0, 0]) * np.pi / 30, rtol=1e-14)
     np.testing.assert_array_equal(schedule.values["carrier.tau"], [1500, 1500, 0, 0])
     np.testing.assert_allclose(schedule.values["room.T"], [298.15, 299.15, 299.15, 299.15], rtol=1e-15)
-    assert [(begin, end) for begin, end, _ in schedule.segments()] == [(0, 14400), (14400, 14700)]
+    assert [schedule.time[s].tolist() for s in schedule.stretches()] == [[0, 14400], [14400, 14700]]
     assert duty_names(path) == ("carrier.w", "carrier.tau", "room.T")
 
 

@@ -48,15 +48,17 @@ def test_an_entry_says_what_its_values_were_compared_with(found: Entry) -> None:
             assert key not in found.checked
 
 
-def test_all_bearings_are_checked() -> None:
-    assert all(set(found.checked) == set(found.values) for found in catalogue("bearing").values())
+def test_all_bearings_are_checked_but_one() -> None:
+    """The cylindrical roller bearing is as its author programmed it: no print of its constants was found."""
+    known = catalogue("bearing")
+    assert {name for name, found in known.items() if set(found.checked) != set(found.values)} == {"NJ 406"}
 
 
 @pytest.mark.parametrize("found", catalogue("oil").values(), ids=lambda e: e.name)
 def test_an_oil_gives_all_that_a_lubricant_needs(found: Entry) -> None:
     given = set(entry_values(found, settable(PARTS["OilBath"])))
     needed = {"nu_40", "nu_100", "rho_15", "alpha_T", "s_p", "t_p", "X_L"}
-    assert given == (needed if "grease" in found.name else needed | {"c_p"})
+    assert given == (needed if "grease" in found.name else needed | {"c_p", "T_pour"})
     values = entry_values(found, settable(PARTS["OilBath"]))
     assert values["nu_40"] > values["nu_100"]
     assert 800 < values["rho_15"] < 1100

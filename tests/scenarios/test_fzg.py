@@ -10,7 +10,7 @@ from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import SolveError
 from gearheat.model.laws import gears
-from gearheat.model.laws.mesh import tooth_loss_factor_ohlendorf
+from gearheat.model.laws.mesh import tooth_loss_factor
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
 from gearheat.model.run.result import Result
@@ -78,7 +78,7 @@ class TestGeometry:
             for d, z in zip(tips, (16, 24), strict=True)
         ]
         assert values["eps_alpha"] == pytest.approx(sum(eps), rel=1e-5)
-        assert values["H_v"] == pytest.approx(float(tooth_loss_factor_ohlendorf(16, 1.5, 0.0, *eps)), rel=1e-5)
+        assert values["H_v"] == pytest.approx(float(tooth_loss_factor(16, 1.5, 0.0, *eps)), rel=1e-5)
 
     def test_test_and_slave_gears_are_the_same(self) -> None:
         spec = load("fzg_four_square").spec

@@ -148,6 +148,11 @@ def test_a_design_ends_where_the_parameters_fit() -> None:
         design(model, ["stage_1.x_1"], {"stage_1.P_loss": 1.3 * loss}, {})
 
 
+def test_a_design_does_not_cut_teeth_into_pieces() -> None:
+    with pytest.raises(SolveError, match=r'(?s)is out of reach.*limited by .*"z_1 is whole"'):
+        design(flat(HELICAL), ["stage_1.z_1"], {"stage_1.P_loss": 45.0}, {})
+
+
 def test_a_design_gives_what_the_rig_file_gives() -> None:
     model = flat(HELICAL)
     found = design(model, ["stage_1.b"], {"stage_1.P_loss": 45.0}, {})

@@ -2,12 +2,16 @@
 
 import json
 
+import numpy as np
+import pytest
+from gearheat.fmu.equations import equations
+from gearheat.model.core.flatten import flatten
 from gearheat.tools import bench_fmu
-from gearheat.tools.bench_costs import growth
+from gearheat.tools.bench_costs import chain, growth, massless, massless_chain
 
 
 def test_figures_of_the_fmu_and_its_peers() -> None:
-    found = json.loads(json.dumps(bench_fmu.measure(pythonfmu=False, chains=(4,))))
+    found = json.loads(json.dumps(bench_fmu.measure(pythonfmu=False, chains=(4,), conductors=(20,))))
     assert found["warmup_60_error_K"] < 1e-4
     assert found["warmup_1_error_K"] < found["warmup_10_error_K"] < found["warmup_60_error_K"]
     assert found["state_bytes"] <= 2048
@@ -28,3 +32,19 @@ def test_a_larger_chain_costs_more() -> None:
         assert large[key] > small[key] > 0, key
     assert large["compile_s"] > 0.05, "it was compiled anew"
     assert large["step_s"] < 40 * small["step_s"], "a step grows about as the number of nodes, not as its cube"
+
+
+def test_a_chain_without_masses_is_right_and_grows_as_its_length() -> None:
+    """n conductances of 10 W/K in series conduct 10 / n."""
+    for n in (1, 20, 160):
+        flat = flatten(massless_chain(n))
+        u, p = flat.starts("input"), flat.starts("parameter")
+        y = flat.output_function([400.0, 300.0], u, p)[0]
+        assert np.array(y).ravel() == pytest.approx(np.full(n, 10.0 / n * 100.0), rel=1e-9)
+    small, large = massless(100), massless(1000)
+    assert large["instructions"] < 10.5 * small["instructions"]
+
+
+def test_instructions_of_a_step_grow_as_the_number_of_nodes() -> None:
+    small, large = (sum(f.n_instructions() for f in equations(flatten(chain(n))).functions) for n in (50, 500))
+    assert large < 10.5 * small

@@ -4,6 +4,7 @@ import subprocess
 import sys
 
 import pytest
+from gearheat.scenarios.load import RIGS
 
 COMMANDS = (
     "run",
@@ -70,6 +71,27 @@ def test_show_gives_every_parameter_a_value_a_unit_and_a_source(gearheat):
     assert parameters["foot.G"]["uncertainty"] == pytest.approx(0.19)
     assert parameters["cooling.A"]["uncertainty"] is None
     assert all(law["source"] for law in found["laws"])
+
+
+def test_show_tells_which_law_is_outside_its_range_at_the_operating_point(gearheat, tmp_path):
+    assert gearheat("show", "helical_two_stage", "--json", "-").json["outside"] == []
+    rig = (RIGS / "helical_two_stage" / "rig.toml").read_text(encoding="utf-8")
+    cold = tmp_path / "cold.toml"
+    cold.write_text(rig.replace('room.T = "20 degC"', 'room.T = "-40 degC"'), encoding="utf-8")
+    (found,) = [o for o in gearheat("show", cold, "--json", "-").json["outside"] if o["part"] == "input_bearing_a"]
+    assert (found["law"], found["argument"], found["range"]) == ("starvation", "s", [0.0, 0.6])
+    assert found["met"][0] > 1
+    assert "outside its range: input_bearing_a: starvation, s = " in gearheat("show", cold).out
+
+
+def test_simulate_and_design_tell_which_law_is_outside_its_range(gearheat, tmp_path):
+    duty = tmp_path / "duty.csv"
+    duty.write_text("time [s],room.T [degC]\n0,-25\n600,-25\n", encoding="utf-8")
+    out = gearheat("simulate", "helical_two_stage", "--duty", duty, "-o", tmp_path / "run.csv").out
+    assert "outside its range: oil: kinematic_viscosity, T - T_pour = -7 to " in out
+    made = ("--free", "cooling.A", "--target", "oil.T=0 degC", "--set", "room.T=-40 degC")
+    out = gearheat("design", "helical_two_stage", *made, "--among", "oil=ISO VG 220 mineral,ISO VG 220 PAO").out
+    assert out.count("outside its range: input_bearing_a: starvation") == 2
 
 
 def test_show_errata_prints_what_the_source_should_say(gearheat):

@@ -66,3 +66,13 @@ def test_ratios_that_do_not_fit_are_refused(gearheat):
     answer = gearheat("steady", RIG, "--set", "slave_gears.z_1=15", "--set", "slave_gears.z_2=25")
     assert answer.code == 2
     assert "clutch: the loop does not close" in answer.err and "Traceback" not in answer.err
+
+
+def test_its_fmu_refuses_ratios_that_do_not_fit(gearheat, tmp_path):
+    path = tmp_path / "four_square.fmu"
+    gearheat("export", RIG, "--out", path)
+    told = []
+    other = {"slave_gears.z_1": 15.0, "slave_gears.z_2": 25.0}
+    with pytest.raises(fmpy.fmi1.FMICallException):
+        fmpy.simulate_fmu(str(path), start_values=other, logger=lambda *message: told.append(str(message)))
+    assert any("clutch.slip" in message for message in told)

@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import pytest
+from gearheat.fmu.export import export
 from gearheat.model.errors import ScenarioError
 from gearheat.model.run.design import design
 from gearheat.model.run.steady import steady
@@ -87,3 +88,12 @@ class TestDerived:
         assert shown["stage_1.eps_alpha"]["source"].startswith("follows from z_1, z_2, ")
         assert shown["stage_1.z_1"]["kind"] == "given"
         assert shown["stage_1.tau_width"]["kind"] == "default"
+
+    def test_played_it_says_what_it_follows_from(self, gearheat, tmp_path):
+        fmu, duty = tmp_path / "rig.fmu", tmp_path / "duty.csv"
+        duty.write_text("time [s],room.T [degC]\n0,20\n60,20\n")
+        export(flat_of(load("helical_two_stage")), fmu)
+        answer = gearheat("play", fmu, "--duty", duty, "-o", tmp_path / "out.csv", "--set", "stage_1.eps_alpha=1.5")
+        assert answer.code == 2
+        assert '"stage_1.eps_alpha" cannot be set. It is calculated: ' in answer.err
+        assert "follows from z_1, z_2, m_n" in answer.err

@@ -12,11 +12,11 @@ from gearheat.tools.unchecked import unchecked
 OIL = {
     "catalogue": "oil",
     "entry": "ISO VG 220 mineral",
-    "values": [f"oil.{key}" for key in ("nu_100", "rho_15", "alpha_T", "X_L", "c_p")],
+    "values": [f"oil.{key}" for key in ("nu_100", "rho_15", "alpha_T", "X_L", "c_p", "T_pour")],
 }
 LINE = (
     'catalogue values not checked against a print: oil "ISO VG 220 mineral":'
-    " oil.nu_100, oil.rho_15, oil.alpha_T, oil.X_L, oil.c_p\n"
+    " oil.nu_100, oil.rho_15, oil.alpha_T, oil.X_L, oil.c_p, oil.T_pour\n"
 )
 
 
@@ -26,23 +26,26 @@ def found(rig: str, *assignments: str) -> list[dict]:
 
 
 def test_what_is_unchecked_and_acts_is_named() -> None:
-    """Oil, bearings, seals and paint of the planetary rig are checked; of its grease all that has an effect."""
+    """Bearings, seals and paint of the planetary rig are checked, its oil but for the pour point, and of its grease all
+    that has an effect."""
     assert found("helical_two_stage") == [OIL]
-    assert found("planetary") == []
-    assert list(load("planetary").unchecked()) == [("oil", "bearing grease")]
+    assert found("planetary") == [{"catalogue": "oil", "entry": "PAOR", "values": ["oil.T_pour"]}]
+    assert list(load("planetary").unchecked()) == [("oil", "PAOR"), ("oil", "bearing grease")]
 
 
 def test_another_entry_brings_its_own() -> None:
     (typical,) = found("planetary", "oil=ISO VG 320 PAG")
     assert typical == OIL | {"entry": "ISO VG 320 PAG"}
-    assert found("helical_two_stage", "oil=PAOR") == []
+    (pour,) = found("helical_two_stage", "oil=PAOR")
+    assert pour == {"catalogue": "oil", "entry": "PAOR", "values": ["oil.T_pour"]}
+    assert found("helical_two_stage", "oil=PAOR", "oil.T_pour=-40 degC") == []
     (one,) = found("planetary", "oil=PAGD")
-    assert one == {"catalogue": "oil", "entry": "PAGD", "values": ["oil.c_p"]}
+    assert one == {"catalogue": "oil", "entry": "PAGD", "values": ["oil.c_p", "oil.T_pour"]}
 
 
 def test_value_of_one_s_own_is_none_of_the_catalogue() -> None:
     (rest,) = found("helical_two_stage", "oil.rho_15=890 kg/m3", "oil.X_L=1.1")
-    assert rest["values"] == ["oil.nu_100", "oil.alpha_T", "oil.c_p"]
+    assert rest["values"] == ["oil.nu_100", "oil.alpha_T", "oil.c_p", "oil.T_pour"]
     (rest,) = found("planetary", "oil=ISO VG 320 PAG", "oil.rho_15=1050 kg/m3")
     assert "oil.rho_15" not in rest["values"]
 
@@ -53,10 +56,11 @@ def test_written_rig_still_says_it(tmp_path) -> None:
 
 
 def test_oils_of_a_campaign_count() -> None:
-    """Each test runs with its own oil: two of the four lack a printed value."""
+    """Each test runs with its own oil: two of the four lack a printed value beside the pour point."""
     scenario = load("planetary")
     told = unchecked(scenario, flat_of(scenario), oils_of(scenario.campaign))
-    assert [(e["entry"], e["values"]) for e in told] == [("MINE", ["oil.s_p", "oil.t_p"]), ("PAGD", ["oil.c_p"])]
+    unprinted = {e["entry"]: [path for path in e["values"] if path != "oil.T_pour"] for e in told}
+    assert unprinted == {"PAOR": [], "MINR": [], "MINE": ["oil.s_p", "oil.t_p"], "PAGD": ["oil.c_p"]}
 
 
 @pytest.mark.parametrize(
@@ -85,7 +89,7 @@ def test_list_says_what_of_an_entry_is_checked(gearheat) -> None:
     checked = gearheat("list", "--json", "-").json["checked"]
     assert set(checked["bearing"].values()) == {"all"}
     assert checked["material"]["oily steel"] == "none"
-    assert checked["oil"]["PAGD"] == "not c_p"
+    assert checked["oil"]["PAGD"] == "not c_p, T_pour"
 
 
 def test_run_says_it_in_its_report(gearheat, tmp_path) -> None:

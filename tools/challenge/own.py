@@ -22,8 +22,8 @@ KELVIN = 273.15
 #: Factor -> parameters of the model that it multiplies. Emissivity is over the area, which "conv" multiplies.
 PARAMETERS: Mapping[str, tuple[str, ...]] = {
     "mesh": ("gear_set.k_mu",),
-    "bearing": ("carrier_bearing.count", "sun_bearing.count", "planet_bearing.count"),
-    "seal": ("carrier_seal.count", "sun_seal.count"),
+    "bearing": ("carrier_bearing.k_loss", "sun_bearing.k_loss", "planet_bearing.k_loss"),
+    "seal": ("carrier_seal.k_loss", "sun_seal.k_loss"),
     "viscosity": ("oil.nu_40", "oil.nu_100"),
     "conv": ("cooling.A",),
     "rad": ("cooling.emissivity",),

@@ -35,7 +35,7 @@ def extended(inputs: Inputs, findings: Findings) -> Extension:
     """The rig with the calibrated values and the causes of the top hypothesis; without an alarm, calibrated only."""
     hypothesis = words.applied(findings)
     rig = inputs.scenario
-    known = {f"{part.name}.{key}" for part in rig.spec.parts for key in part.values}
+    known = rig.settable()
     own = _own_oil(inputs)
     calibrated = findings.nominal if hypothesis is None else findings.extended
     values = {path: float(value) for path, value in buildable(calibrated).items() if path in known}

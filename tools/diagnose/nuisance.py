@@ -41,8 +41,8 @@ class Group:
 #: of friction in thin films only a reference campaign tells.
 GROUPS: Mapping[str, Group] = {
     "mesh friction": Group.of("mu", 0.4, "gear_set.k_mu"),
-    "bearing loss": Group.of("brg", 0.4, "carrier_bearing.count", "sun_bearing.count", "planet_bearing.count"),
-    "seal loss": Group.of("seal", 0.5, "carrier_seal.count", "sun_seal.count"),
+    "bearing loss": Group.of("brg", 0.4, "carrier_bearing.k_loss", "sun_bearing.k_loss", "planet_bearing.k_loss"),
+    "seal loss": Group.of("seal", 0.5, "carrier_seal.k_loss", "sun_seal.k_loss"),
     "radiation": Group.of("rad", 0.6, "cooling.emissivity"),
     "oil to gears": Group.of("gow", 0.6, "oil_gears.G"),
     "oil to wall": Group.of("gow", 0.6, "oil_wall.G", "oil_carrier_body.G"),

@@ -13,6 +13,7 @@ from markupsafe import Markup
 from ...model.units import from_si, shown
 from ..effects.taxonomy import CAUSES
 from ..report import html_table
+from ..settings import parameter_of
 from . import pictures, words
 from .card import DEFAULTS, PRIOR
 from .findings import Findings, Named
@@ -250,13 +251,12 @@ def _calibrated(inputs: Inputs, findings: Findings) -> Markup:
     body = []
     for path, value in findings.nominal.items():
         part, _, key = path.rpartition(".")
-        if path not in quantities or key not in (own := inputs.spec.part(part).values):
+        parameter = parameter_of(inputs.spec, path)
+        if parameter is None or (own := inputs.spec.part(part).values.get(key, parameter.default)) is None:
             continue
         unit = quantities[path].unit
         extended = findings.extended.get(path, value)
-        body.append(
-            (path, *(words.number(from_si(float(v), unit), 4) for v in (own[key], value, extended)), _unit(unit))
-        )
+        body.append((path, *(words.number(from_si(float(v), unit), 4) for v in (own, value, extended)), _unit(unit)))
     if POWER in findings.nominal:
         power = (0.0, findings.nominal[POWER], findings.extended.get(POWER, findings.nominal[POWER]))
         body.append((HABIT.doc, *(words.number(p, 4) for p in power), "W"))

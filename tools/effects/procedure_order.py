@@ -8,7 +8,13 @@ from typing import Any
 from .cause import Cause, Rows, Shape, Size, Theta
 
 COOLING, TEETH = ("cooling.A", "foot.G"), ("gear_set.k_mu",)
-SHAFTS = ("carrier_bearing.count", "sun_bearing.count", "planet_bearing.count", "carrier_seal.count", "sun_seal.count")
+SHAFTS = (
+    "carrier_bearing.k_loss",
+    "sun_bearing.k_loss",
+    "planet_bearing.k_loss",
+    "carrier_seal.k_loss",
+    "sun_seal.k_loss",
+)
 #: What changes by the shape "target", and upper ends of the shares of the prior.
 TARGETS, ENDS = (COOLING, TEETH, TEETH + SHAFTS), (0.4, 0.7, 1.0)
 

@@ -1,0 +1,92 @@
+"""Ten thousand random duties of the shipped rigs, with jumps, extremes and nonsense: done well, or refused well."""
+
+import re
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+import pytest
+from fmu_in_c import HERE, library, told, unpacked
+from gearheat.scenarios.load import load
+from gearheat.tools.c_importer import Compiler, program
+from gearheat.tools.exporting import operating_start
+from gearheat.tools.settings import adjusted, driven_at, flat_of
+from gearheat.tools.transients import first_temperatures
+
+pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processor time is asked of Linux")
+
+#: Rig, shaft that drives, what is given, number of duties; the seeds are 1 to that number.
+VARIANTS = {
+    "carrier": ("planetary", "carrier", "speed", 3500),
+    "sun": ("planetary", "sun", "speed", 2500),
+    "torques": ("planetary", None, "torque", 1000),
+    "helical": ("helical_two_stage", None, "speed", 2500),
+    "helical on torques": ("helical_two_stage", None, "torque", 500),
+}
+
+Facts = Callable[[str], Path]
+
+
+@pytest.fixture(scope="module")
+def facts(tmp_path_factory: pytest.TempPathFactory) -> Facts:
+    """The facts of a variant's FMU, exported as the command does it."""
+    folder = tmp_path_factory.mktemp("duties")
+
+    @cache
+    def made(variant: str) -> Path:
+        rig, shaft, given, _ = VARIANTS[variant]
+        scenario = load(rig)
+        setting = adjusted(scenario, drive=driven_at(scenario, shaft, given))
+        flat = flat_of(setting)
+        start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, ())
+        return unpacked(flat, folder / variant, start)
+
+    return made
+
+
+def duties(facts: Path, count: int, *library: Path) -> str:
+    return told(program([HERE / "duties.c"]), facts, 1, count, *library)
+
+
+def test_there_are_ten_thousand() -> None:
+    assert sum(count for *_, count in VARIANTS.values()) == 10_000
+
+
+@pytest.mark.parametrize("variant", VARIANTS)
+def test_every_step_is_bounded_and_none_is_wrong(facts: Facts, variant: str) -> None:
+    count = VARIANTS[variant][-1]
+    said = duties(facts(variant), count)
+    print(f"{variant}: {said}", end="")
+    found = re.search(r"(\d+) duties begun of \d+, (\d+) steps done, (\d+) discarded", said)
+    assert found, said
+    begun, done, discarded = map(int, found.groups())
+    assert begun > 0.9 * count
+    assert done > 2 * count, "hardly anything was done"
+    assert discarded > count / 2, "hardly anything was refused"
+
+
+#: Faults the duties are there for: text of the source, what it becomes, what is told of it.
+PLANTED = {
+    "repeats what is hopeless": ("if (refused_before(m, step))", "if (0)", "the same step again is no error"),
+    "steps out of the range": ("if (!in_range(FIRST_X + i, x_new[i])) {", "if (0) {", "after a good step"),
+    "keeps a part of what it refuses": (
+        "remember_refusal(m, step, FIRST_X + w.worst);",
+        "remember_refusal(m, step, FIRST_X + w.worst), m->s.x[0] += 1;",
+        "a refused step changed a value",
+    ),
+    "lets a slope lead anywhere": ("if ((r = input_astray(m, step)) != N_VARIABLES) {", "if (0) {", "good step"),
+}
+
+
+@pytest.mark.parametrize("fault", PLANTED)
+def test_planted_faults_are_found(facts: Facts, fault: str, tmp_path: Path) -> None:
+    before, after, expected = PLANTED[fault]
+    own = facts("carrier")
+    text = (own.parent / "sources" / "all.c").read_text()
+    assert text.count(before) == 1
+    (tmp_path / "sources").mkdir()
+    (tmp_path / "sources" / "all.c").write_text(text.replace(before, after))
+    (tmp_path / "facts.txt").write_text(own.read_text())
+    with pytest.raises(AssertionError, match=expected):
+        duties(own, 100, library(tmp_path / "facts.txt", Compiler.zig(), "-O1"))
