@@ -54,7 +54,7 @@ ZERO = {
     **{"line_load": "F_width", "F_n_l": "F_width", "F_r": "F_width", "F_a": "F_width", "P_1": "F_width"},
 }
 #: Arguments that may be zero but not negative.
-NOT_NEGATIVE = {"h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c", "T_pour"}
+NOT_NEGATIVE = {"P_a", "h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c", "T_pour"}
 #: Torques and losses: magnitudes, never negative.
 MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.")
 
@@ -158,7 +158,7 @@ _ROOM, _OIL = (213.15, 473.15), (1e-6, 20.0)
 EXTREME = {
     **{"T": (100.0, *_ROOM), "T_film": _ROOM, "T_s": _ROOM, "T_f": _ROOM, "T_1": _ROOM, "T_2": _ROOM},
     **{"w": (-1000.0, 0.0, 1e-5, 1000.0), "v": (0.0, 100.0), "v_sum": (0.0, 200.0), "u_sum": (0.0, 200.0)},
-    **{"F_r": (0.0, 1.0, 1e6), "F_a": (0.0, 1.0, 1e6), "P_1": (0.0, 1e6), "F_n_l": (0.0, 1e8), "P_a": (-1e9, 0.0, 1e9)},
+    **{"F_r": (0.0, 1.0, 1e6), "F_a": (0.0, 1.0, 1e6), "P_1": (0.0, 1e6), "F_n_l": (0.0, 1e8), "P_a": (0.0, 1e9)},
     **{"nu": _OIL, "eta_oil": (1e-3, 2e4), "eta_0": (1e-3, 2e4), "s": (0.0, 1e9), "phi_ish": (0.0910, 1.0)},
     **{"H": (0.0, 0.2), "K_rs": (0.0, 6e-8), "nu_40": (32e-6, 680e-6), "slide_roll": (0.0, 2.0)},
     **{"phi": (0.0, 1.0), "phi_bl": (0.0, 1.0), "Ra": (1e-7, 1e-5)},
