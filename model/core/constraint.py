@@ -134,13 +134,11 @@ class Relation:
 
     @staticmethod
     def of(expression: Any, known: Known) -> Relation | None:
-        """A constraint in this form, states in the order of the parts; None where it is not linear in the states.
-
-        States whose coefficient vanishes at the values of the parameters are left out.
+        """A constraint in this form; None where it is not linear in the states and inputs.
 
         Args:
-            expression: zero where the constraint holds (SX, 1)
-            known: the symbols of the parts
+            expression: scalar that has to be zero
+            known: the quantities that stand in it
         """
         held = {s.element_hash(): s for s in ca.symvar(expression)}
         states, inputs = [h for h in known.states if h in held], [h for h in known.inputs if h in held]
