@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
 import pytest
 from gearheat.model.core.connect import Assembly
@@ -90,3 +91,22 @@ def test_flattening_twice_gives_the_same_expressions() -> None:
     first, second = flatten(net.assembly()), flatten(net.assembly())
     assert str(first.y) == str(second.y)
     assert first.parameters == second.parameters
+
+
+def test_replacing_symbols_costs_as_much_as_the_model_is_long(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A call looks at all symbols it replaces: those of all ports once for every equation would be quadratic."""
+    looked_at: list[int] = []
+    real = ca.substitute
+
+    def counting(expressions: object, old: object, new: object) -> object:
+        looked_at.append(ca.vertcat(*old).numel() if isinstance(old, list) else old.numel())
+        return real(expressions, old, new)
+
+    monkeypatch.setattr(ca, "substitute", counting)
+    totals = []
+    for nodes in (10, 100):
+        looked_at.clear()
+        edges = tuple((k, k + 1, 5.0) for k in range(nodes - 1))
+        flatten(Net(nodes, edges, (1.0,) * (nodes - 1), 300.0).assembly())
+        totals.append(sum(looked_at))
+    assert 0 < totals[1] < 12 * totals[0]
