@@ -1,0 +1,171 @@
+"""A table of operating points of every shipped rig: cold to hot, from rest to twice the speed, all directions and drives.
+
+Each point either converges in Python, FMU and batch alike, with its audit, no negative loss and an efficiency between 0
+and 1, or is refused by all of them, with a name. Nothing fails in silence.
+"""
+
+from collections.abc import Callable, Iterator
+from functools import cache
+from itertools import product
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from gearheat.fmu.batch import Batch, Status
+from gearheat.fmu.export import export
+from gearheat.model.core.flat import FlatModel
+from gearheat.model.core.flatten import flatten
+from gearheat.model.errors import SolveError
+from gearheat.model.machines.spec import Spec, assemble
+from gearheat.model.run.audit import LEFT, out_of_range
+from gearheat.model.run.rows import evaluate
+from gearheat.model.run.schedule import stepped
+from gearheat.model.run.steady import steady
+from gearheat.scenarios.load import list_rigs, load
+
+TEMPERATURES = (-40.0, -20.0, 20.0, 80.0, 150.0)
+SPEEDS = (-2.0, -1.0, 0.0, 0.1, 1.0, 2.0)
+TORQUES = (-1.5, -0.2, 0.0, 1.0, 1.5)
+#: Agreement of Python, FMU and batch, relative to value and nominal.
+SAME = 1e-6
+Point = dict[str, float]
+
+
+def drives(spec: Spec) -> dict[str, dict[str, tuple[str, ...]]]:
+    """All ways to give speeds and torques at the shaft ends of a machine."""
+    first, *others = spec.of_type("ShaftEnd")
+    if not others:
+        return {"speed": {first: ("w",)}, "torque": {first: ("tau",)}}
+    (second,) = others
+    both = {f"drive {end}": {end: ("w", "tau")} for end in (first, second)}
+    return both | {"across": {first: ("w",), second: ("tau",)}, "torques": {first: ("tau",), second: ("tau",)}}
+
+
+CASES = [(rig, drive) for rig in list_rigs() for drive in drives(load(rig).spec)]
+
+
+@cache
+def model(rig: str, drive: str) -> FlatModel:
+    spec = load(rig).spec
+    return flatten(assemble(spec.driven(drives(spec)[drive])))
+
+
+@cache
+def usual(rig: str) -> Point:
+    """Speeds and torques of the shafts where the rig works."""
+    scenario = load(rig)
+    result = steady(flatten(assemble(scenario.spec)), scenario.operating_point)
+    names = [f"{end}.{key}" for end in scenario.spec.of_type("ShaftEnd") for key in ("w", "tau")]
+    return {name: float(result[name][0]) for name in names}
+
+
+def points(rig: str, drive: str) -> tuple[np.ndarray, np.ndarray]:
+    """States and inputs, a column per point: every body and the room at one temperature."""
+    flat, own = model(rig, drive), usual(rig)
+    first_speed = next(iter(own))
+    table = []
+    for T, w, tau in product(TEMPERATURES, SPEEDS, TORQUES):
+        if not any(q.name.endswith(".tau") for q in flat.inputs if q.name in own) and tau != 1.0:
+            continue
+        x = [T + 273.15 if q.unit == "K" else w * own[first_speed] for q in flat.states]
+        factor = {"rad/s": w, "N.m": tau}
+        u = [own[q.name] * factor[q.unit] if q.name in own else q.start for q in flat.inputs]
+        room = flat.locate("room.T")[1] if "room.T" in flat.index else None
+        if room is not None:
+            u[room] = T + 273.15
+        table.append((x, u))
+    x, u = (np.array(columns).T for columns in zip(*table, strict=True))
+    return x, u
+
+
+def told(flat: FlatModel, x: np.ndarray, u: np.ndarray) -> tuple[np.ndarray | None, str]:
+    """Outputs at a point and no problem, or none and what Python says of it."""
+    p = flat.starts("parameter")
+    try:
+        found = evaluate(flat, x[:, None], u[:, None], p)
+    except SolveError as error:
+        return None, str(error)
+    y = found["y"][:, 0]
+    columns = {q.name: np.array([v]) for q, v in zip(flat.outputs, y, strict=True)}
+    if problems := list(out_of_range(flat, columns)):
+        return None, "\n".join(problems)
+    if not np.isfinite(np.concatenate([y, found["ode"][:, 0]])).all():
+        return None, ""
+    assert np.abs(found["residual"]).max(initial=0.0) <= LEFT
+    throughput = max(float(found["throughput"][0, 0]), 1.0)
+    assert np.abs(found["imbalance"]).max() <= 1e-6 * throughput
+    return y, ""
+
+
+def negative(flat: FlatModel, y: np.ndarray) -> Iterator[str]:
+    """Losses below zero and efficiencies beyond their ends, unless masses turn and take part."""
+    turning = any(q.unit == "rad/s" for q in flat.states)
+    for q, value in zip(flat.outputs, y, strict=True):
+        key = q.name.rpartition(".")[2]
+        loss = key.startswith(("P_loss", "tau_loss")) and not q.name.startswith("efficiency.")
+        if (loss and value < -1e-9) or (key == "eta" and not turning and not -1e-9 <= value <= 1 + 1e-9):
+            yield f"{q.name} = {value}"
+
+
+def agree(flat: FlatModel, one: np.ndarray, other: np.ndarray) -> bool:
+    nominal = np.array([q.nominal for q in flat.outputs])
+    return bool((np.abs(one - other) <= SAME * (nominal + np.abs(one))).all())
+
+
+@pytest.mark.parametrize(("rig", "drive"), CASES)
+def test_every_point_converges_alike_or_is_refused_by_name(
+    rig: str, drive: str, tmp_path: Path, opened: Callable[..., Any]
+) -> None:
+    flat = model(rig, drive)
+    x, u = points(rig, drive)
+    n = x.shape[1]
+    one = opened(export(flat, tmp_path / "m.fmu"))
+    refs = [one.refs[q.name] for q in (*flat.states, *flat.inputs)]
+    outputs = [one.refs[q.name] for q in flat.outputs]
+    rows = Batch(flat).warmup(stepped([(1e-9, {})]), u.T.copy(), None, x.T.copy(), times=[0.0])
+    answered = 0
+    for k in range(n):
+        y, problem = told(flat, x[:, k], u[:, k])
+        one.fmu.reset()
+        one.fmu.setReal(refs, [*x[:, k], *u[:, k]])
+        where = dict(zip([q.name for q in flat.inputs], u[:, k], strict=True)) | {"T": x[0, k]}
+        if y is None:
+            status, text = one.refused(one.start)
+            assert status == 3 and problem and any(q.name.partition(".")[0] in problem for q in flat.outputs), where
+            assert any(q.name.partition(".")[0] in text for q in flat.outputs), (where, text)
+            assert rows.status[k] != Status.OK, where
+            continue
+        answered += 1
+        assert list(negative(flat, y)) == [], where
+        one.start()
+        assert agree(flat, y, np.array(one.fmu.getReal(outputs))), where
+        assert rows.status[k] == Status.OK and agree(flat, y, rows.y[k, 0]), where
+    assert n >= 25 and answered > 0.9 * n
+
+
+@pytest.mark.parametrize("rig", list_rigs())
+def test_the_table_is_large_enough(rig: str) -> None:
+    assert sum(points(rig, drive)[0].shape[1] for name, drive in CASES if name == rig) >= 60
+
+
+@pytest.mark.parametrize(("rig", "drive"), [c for c in CASES if c[1] not in ("torque", "torques")])
+def test_steady_states_of_python_and_batch_are_the_same(rig: str, drive: str) -> None:
+    """Where the machine settles in a cold and in a hot room; what one refuses the other refuses, and says where."""
+    flat = model(rig, drive)
+    x, u = points(rig, drive)
+    x, u = x[:, ::7], u[:, ::7]
+    rows = Batch(flat).steady(u.T.copy(), None, x.T.copy())
+    names = [q.name for q in flat.inputs]
+    for k in range(x.shape[1]):
+        values = dict(zip(names, u[:, k], strict=True))
+        guess = {q.name: v for q, v in zip(flat.states, x[:, k], strict=True)}
+        try:
+            found = steady(flat, values, guess=guess)
+        except SolveError as error:
+            assert rows.status[k] != Status.OK, (values, str(error))
+            continue
+        assert rows.status[k] == Status.OK, values
+        y = np.array([found[q.name][0] for q in flat.outputs])
+        assert agree(flat, y, rows.y[k]), values
+        assert list(negative(flat, y)) == [], values
