@@ -142,7 +142,10 @@ def test_what_has_no_effect_is_no_parameter(exported):
         for point in (ACTIVE, {"carrier.w": 1e-4, "carrier.tau": 1.0}):
             before = player.run({}, 600, 600.0, start=point).values
             for name in sorted(still):
-                start = {**point, name: 0.99 * point.get(name, parameters[name]) or 1e-3}
+                value = 0.99 * point.get(name, parameters[name]) or 1e-3
+                if name == "oil.T_pour":  # bounds the range of a law, so it counts where the oil no longer flows
+                    value = 400.0
+                start = {**point, name: value}
                 if (player.run({}, 600, 600.0, start=start).values != before).any():
                     still.remove(name)
     assert still == set()
