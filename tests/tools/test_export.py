@@ -267,7 +267,7 @@ def test_the_sentence_for_people(gearheat, tmp_path):
     answer = gearheat("export", "planetary", "-o", tmp_path / "rig.fmu", "--extras", tmp_path)
     assert answer.code == 0, answer.err
     first, second = answer.out.splitlines()
-    assert first == f"{tmp_path / 'rig.fmu'}: 9 inputs, 52 outputs, 96 parameters, for {compiling.host_platform().name}"
+    assert first == f"{tmp_path / 'rig.fmu'}: 9 inputs, 52 outputs, 97 parameters, for {compiling.host_platform().name}"
     assert re.fullmatch(r"\d\d files beside it, from .*rig\.ssv", second)
 
 
