@@ -166,7 +166,10 @@ def test_what_has_no_effect_is_no_parameter(exported):
             before = player.run({}, 600, 600.0, start=point).values
             for name in sorted(still):
                 usual = point.get(name, parameters[name])
-                for value in (0.99 * usual or 1e-3, usual + 1, usual + 3):  # whole numbers, and tooth numbers that fit
+                tried = (0.99 * usual or 1e-3, usual + 1, usual + 3)  # whole numbers, and tooth numbers that fit
+                if name == "oil.T_pour":  # bounds the range of a law, so it counts where the oil no longer flows
+                    tried = (400.0,)
+                for value in tried:
                     try:
                         changed = player.run({}, 600, 600.0, start={**point, name: value}).values
                     except FmuError:
@@ -294,7 +297,7 @@ def test_the_sentence_for_people(gearheat, tmp_path):
     assert answer.code == 0, answer.err
     first, second = answer.out.splitlines()
     assert (
-        first == f"{tmp_path / 'rig.fmu'}: 9 inputs, 52 outputs, 101 parameters, for {compiling.host_platform().name}"
+        first == f"{tmp_path / 'rig.fmu'}: 9 inputs, 52 outputs, 102 parameters, for {compiling.host_platform().name}"
     )
     assert re.fullmatch(r"\d\d files beside it, from .*rig\.ssv", second)
 
