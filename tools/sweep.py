@@ -140,8 +140,8 @@ def command(request: Request) -> None:
         summary = _Summary(plan)
         write_table(request.out, plan.columns, (summary.seen(b, store.get(k)) for k, b in enumerate(blocks)))
         store.remove()
-    found = summary.payload(request.out)
-    answer(found, request.json, partial(_print, summary, found["outside"], request.out, seconds, bool(left)))
+    payload = summary.payload(request.out)
+    answer(payload, request.json, partial(_print, summary, payload["outside"], request.out, seconds, bool(left)))
 
 
 def planned(request: Request) -> Plan:

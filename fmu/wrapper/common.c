@@ -24,6 +24,7 @@ static void start(Instance *m)
     memset(m->warned, 0, sizeof m->warned);
     memset(m->kept, 0, sizeof m->kept);
     m->refused_step = NAN;
+    m->outputs_wanted = 1;
 }
 
 fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,

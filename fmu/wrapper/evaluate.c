@@ -99,6 +99,7 @@ static double value_of(Instance *m, fmi2ValueReference r)
 {
     const double *value = stored(m, r);
     if (value) return *value;
+    m->outputs_wanted = 1;
     refresh_outputs(m);
     return r < FIRST_P ? m->y[r - FIRST_Y] : m->dx[r - FIRST_DX];
 }
@@ -119,10 +120,12 @@ static fmi2Status refuse_value(const Instance *m, const char *function, fmi2Valu
 /* The first output or derivative outside its declared range or not finite; N_VARIABLES when all are well. */
 static int wrong_result(Instance *m)
 {
-    int r;
+    int i;
     refresh_outputs(m);
-    for (r = FIRST_Y; r < N_VARIABLES; r = r + 1 == FIRST_P ? FIRST_DX : r + 1)
-        if (!in_range(r, value_of(m, r))) return r;
+    for (i = 0; i < NY; i++)
+        if (!in_range(FIRST_Y + i, m->y[i])) return FIRST_Y + i;
+    for (i = 0; i < NX; i++)
+        if (!in_range(FIRST_DX + i, m->dx[i])) return FIRST_DX + i;
     return N_VARIABLES;
 }
 

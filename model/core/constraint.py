@@ -50,11 +50,19 @@ class Known:
         )
 
     def constant(self, expression: Any) -> bool:
-        """Whether an expression holds nothing but parameters."""
+        """Whether an expression holds nothing but parameters.
+
+        Args:
+            expression: CasADi expression of any shape
+        """
         return all(s.element_hash() in self.parameters for s in ca.symvar(expression))
 
     def values(self, expression: Any) -> Any:
-        """An expression at typical values, as a CasADi matrix of numbers."""
+        """An expression at typical values, as a CasADi matrix of numbers.
+
+        Args:
+            expression: CasADi expression of any shape
+        """
         free = ca.symvar(expression)
         point = [self.typical.get(s.element_hash(), 1.0) for s in free]
         return ca.Function("values", free, [expression])(*point) if free else ca.DM(expression)

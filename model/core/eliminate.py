@@ -182,10 +182,11 @@ class _Open:
     def _cost(self, i: int, j: int) -> tuple[int, bool]:
         """The most fill a pivot can make, and whether it is small in its row.
 
-        The large entry of a balance is the one of its own node: with it the pattern stays symmetric, and fill low.
+        The large entry of a balance is the one of its own node: with it the pattern stays symmetric, and fill low. A
+        row of two makes one other entry of either, so its order decides.
         """
         row = self._size[i]
-        small = len(row) > SHORT or abs(row[j]) < max(map(abs, row.values())) / 2
+        small = len(row) > SHORT or (len(row) > 2 and abs(row[j]) < max(map(abs, row.values())) / 2)
         return (len(row) - 1) * (len(self._columns[j]) - 1), small
 
     def _large(self, i: int, j: int) -> bool:

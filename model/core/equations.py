@@ -24,6 +24,9 @@ KIND = "Wrong number or type of arguments"
 def rows_of(part: Component) -> list[Row]:
     """The equations of a part, named "part: equation".
 
+    Args:
+        part: the part
+
     Raises:
         StructureError: the part has no equations, names what it does not declare, decides by the value of a symbol, or
             gives a side that is no scalar; with the equation behind which that happens
@@ -57,7 +60,10 @@ def _row(part: Component, e: Equation) -> Row:
 
 
 def energies_of(part: Component) -> tuple[list[Any], Any]:
-    """Powers that enter the model through a part, and the energy it stores.
+    """Powers that enter the model through a part [W], and the energy it stores [J].
+
+    Args:
+        part: the part
 
     Raises:
         StructureError: as `rows_of`

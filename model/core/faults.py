@@ -53,7 +53,11 @@ class Faults:
         self.chosen = {path for path, d, given in inputs if given and isinstance(d, Given)}
 
     def too_much(self, chosen: Sequence[int]) -> Fault:
-        """Equations that are one more than their unknowns."""
+        """Equations that are one more than their unknowns.
+
+        Args:
+            chosen: their positions
+        """
         inside = sorted({c for r in chosen for c in self.columns[r]})
         rows, unknowns = [self.rows[r] for r in chosen], [self.unknowns[c] for c in inside]
         relation = tie(rows, unknowns, self.known)
@@ -143,7 +147,11 @@ class Faults:
         return ends or ports
 
     def too_little(self, chosen: Sequence[int]) -> Fault:
-        """Unknowns that have fewer equations than they are."""
+        """Unknowns that have fewer equations than they are.
+
+        Args:
+            chosen: their positions
+        """
         names = {self.unknowns[c].name: None for c in chosen}
         if deaf := self._deaf(names):
             return Fault(tuple(self._told(net) for net in deaf), True)
@@ -200,7 +208,11 @@ def _part(row: Row) -> str:
 
 
 def some(names: Sequence[str]) -> str:
-    """The first few names and how many more there are."""
+    """The first few names and how many more there are.
+
+    Args:
+        names: any number
+    """
     more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
     return ", ".join(names[:SHOWN]) + more
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import accumulate
 from typing import Any
 
 import casadi as ca
@@ -124,56 +125,48 @@ def _flat_model(
     parameters = [(part, k) for part in parts for k in part.parameters]
     outputs = [(part, k, d) for part in parts for k, d in _shown(part, joined).items()]
     related = [pair for part in parts for pair in part.all_relations()]
-    x = column([part.symbols[k] for part, k in states])
     energies = [energies_of(part) for part in parts]
     supplies = aliased([power for powers, _ in energies for power in powers])
-    expressions = [
-        column([part.derivatives[k] for part, k in states]),
-        column([part.symbols[k] for part, k, _ in outputs]),
-        column([test.residual for test in solution.tests]),
-        sum(supplies, ca.SX(0)),
-        sum((ca.fabs(power) for power in supplies), ca.SX(0)),
-        sum(aliased([stored for _, stored in energies]), ca.SX(0)),
-        column(aliased([value for _, value in checks])),
-        column(aliased([_imbalance(part) for part in parts])),
-    ]
-    sizes = [e.numel() for e in expressions]
-    together = inline(ca.vertcat(*expressions), solution)
-    ode, y, residual, supply, throughput, stored, checked, imbalance = ca.vertsplit(together, [0, *_cumulative(sizes)])
-    residual, names = scaled_residual(solution, residual)
-
-    def quantities(items: list[tuple[Component, str]], kind: str) -> tuple[Quantity, ...]:
-        return tuple(getattr(part, kind)[k].quantity(f"{part.name}.{k}", part.values[k]) for part, k in items)
-
+    expressions = {
+        "ode": column([part.derivatives[k] for part, k in states]),
+        "y": column([part.symbols[k] for part, k, _ in outputs]),
+        "residual": column([test.residual for test in solution.tests]),
+        "supply": sum(supplies, ca.SX(0)),
+        "throughput": sum((ca.fabs(power) for power in supplies), ca.SX(0)),
+        "stored": sum(aliased([stored for _, stored in energies]), ca.SX(0)),
+        "checked": column(aliased([value for _, value in checks])),
+        "imbalance": column(aliased([_imbalance(part) for part in parts])),
+    }
+    together = inline(ca.vertcat(*expressions.values()), solution)
+    ends = [0, *accumulate(e.numel() for e in expressions.values())]
+    found = dict(zip(expressions, ca.vertsplit(together, ends), strict=True))
+    found["residual"], names = scaled_residual(solution, found["residual"])
     return FlatModel(
         name=assembly.name,
         doc=assembly.doc,
-        states=quantities(states, "states"),
-        inputs=quantities(inputs, "inputs"),
-        parameters=quantities(parameters, "parameters"),
+        states=_quantities(states, "states"),
+        inputs=_quantities(inputs, "inputs"),
+        parameters=_quantities(parameters, "parameters"),
         outputs=tuple(_output(part, k, d, joined) for part, k, d in outputs),
-        x=x,
         algebraic=tuple(Quantity(u.name, u.unit, "", u.nominal, start_of(u)) for u in solution.torn),
+        x=column([part.symbols[k] for part, k in states]),
         z=column([u.symbol for u in solution.torn]),
         u=column([part.symbols[k] for part, k in inputs]),
         p=column([part.symbols[k] for part, k in parameters]),
-        ode=ode,
-        y=y,
-        residual=residual,
         residual_names=names,
-        supply=supply,
-        throughput=throughput,
-        stored=stored,
         checks=tuple(check for check, _ in checks),
-        checked=checked,
         laws=laws,
         joined=tuple(joined.values()),
         derived={f"{part.name}.{k}": part.follows_from(part.symbols[k]) for part in parts for k in part.derived},
         relations=tuple(relation for relation, _ in related),
         related=column([value for _, value in related]),
         balanced=tuple(part.name for part in parts),
-        imbalance=imbalance,
+        **found,
     )
+
+
+def _quantities(items: list[tuple[Component, str]], kind: str) -> tuple[Quantity, ...]:
+    return tuple(getattr(part, kind)[k].quantity(f"{part.name}.{k}", part.values[k]) for part, k in items)
 
 
 def _shown(part: Component, joined: Mapping[str, str]) -> dict[str, Declaration]:
@@ -193,11 +186,3 @@ def _imbalance(part: Component) -> Any:
     states = column([part.symbols[k] for k in part.states])
     gained = ca.jtimes(ca.SX(part.stored_energy()), states, column(list(part.derivatives.values())))
     return sum((port.power() for port in part.ports.values()), sum(part.supplied_power(), ca.SX(0))) - gained
-
-
-def _cumulative(sizes: list[int]) -> list[int]:
-    total, ends = 0, []
-    for size in sizes:
-        total += size
-        ends.append(total)
-    return ends

@@ -15,8 +15,8 @@ from .solve import Row, Unknown, column
 def open_ports(model: str, parts: Sequence[Component], nets: Sequence[Sequence[Port]]) -> list[str]:
     """Parts that are connected to nothing, and ports that have to meet another and do not.
 
-        Which those are, the type of the port says (`must_meet`), or the part: a gear's flange may stay open, there acts no
-    torque. A part that is the whole model has nothing to meet.
+    Which those are, the type of the port says (`must_meet`), or the part: a gear's flange may stay open, where no
+    torque acts. A part that is the whole model has nothing to meet.
 
     Args:
         model: its name, for messages

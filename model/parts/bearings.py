@@ -79,7 +79,7 @@ class SkfBearing(RollingBearing):
         remedy = "Give bore, outside and mean diameter of one bearing."
         yield self.relation("D is larger than d", "D / d", self.D / self.d, 1.02, remedy=remedy)
         middle = (self.d_m - self.d) / (self.D - self.d)
-        yield self.relation("d_m lies between d and D", "(d_m - d) / (D - d)", middle, 0.48, 0.52, remedy=remedy)
+        yield self.relation("d_m lies between d and D", "(d_m - d) / (D - d)", middle, 0.45, 0.55, remedy=remedy)
         if self.oil_bath:
             remedy = "Give the oil level above the lowest point of the outer raceway."
             yield self.relation("H is below D", "H / D", self.H / self.D, 0.0, 1.0, remedy=remedy)

@@ -54,7 +54,6 @@ def once(make: Callable[Concatenate[FlatModel, Arguments], Made]) -> Callable[Co
     """What is compiled of a model, made once per model and further arguments, and gone with the model."""
     made: WeakKeyDictionary[FlatModel, dict[Any, Made]] = WeakKeyDictionary()
 
-    @wraps(make)
     def kept(flat: FlatModel, /, *arguments: Arguments.args, **named: Arguments.kwargs) -> Made:
         own = made.setdefault(flat, {})
         key = (arguments, tuple(named.items()))
@@ -62,4 +61,4 @@ def once(make: Callable[Concatenate[FlatModel, Arguments], Made]) -> Callable[Co
             own[key] = make(flat, *arguments, **named)
         return own[key]
 
-    return kept
+    return wraps(make)(kept)

@@ -38,7 +38,7 @@ FIRST_STRIDE, LEAST_STRIDE = 0.25, 1e-3
 CAUTION, FAR = 0.3, 5.0
 
 #: The pseudo-transient ends where steps this long [s] change nothing, and gives up below the shortest.
-LONGEST, SHORTEST, MOST_RELAX = 1e9, 1e-12, 300
+LONGEST, SHORTEST, MOST_RELAX = 1e9, 1e-12, 1000
 
 
 @dataclass(frozen=True)

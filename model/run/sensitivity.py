@@ -41,10 +41,10 @@ def sensitivities(
     if wrong := [problem for problem in problems if problem]:
         raise ScenarioError(wrong)
     here = point(flat, values, guess, who="sensitivities")
-    found = equilibrium(flat, here, None, tuple(values), "sensitivities")
-    n, m = len(found.w), len(outputs)
+    at = equilibrium(flat, here, None, tuple(values), "sensitivities")
+    n, m = len(at.w), len(outputs)
     compiled = _compiled(flat, tuple(outputs), tuple(names))
-    jacobian = compiled(found.x, found.z, here.u, here.p)[0].reshape(n + m, n + len(names))
+    jacobian = compiled(at.x, at.z, here.u, here.p)[0].reshape(n + m, n + len(names))
     answer = np.linalg.solve(jacobian[:n, :n], -jacobian[:n, n:])
     return cast(np.ndarray, jacobian[n:, n:] + jacobian[n:, :n] @ answer)
 

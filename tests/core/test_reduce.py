@@ -30,7 +30,7 @@ def gearbox(k_mu: float, *inertias, J_1: float = 0.2, J_2: float = 3.0) -> FlatM
     """A gear pair that warms its oil, torques given on both sides, with an inertia on each shaft named."""
     masses = {"rotor": ("pinion", J_1), "mill": ("wheel", J_2)}
     parts = [part("ShaftEnd", end, given=("tau",)) for end in ("input", "output")]
-    parts += [part("HelicalGearPair", "gear", **TEETH, x_1=0.0, x_2=0.0, k_mu=k_mu, line_load="F_bn/l")]
+    parts += [part("HelicalGearPair", "gear", **TEETH, x_1=0.0, x_2=0.0, k_mu=k_mu)]
     parts += [part("Inertia", name, J=masses[name][1]) for name in inertias]
     parts += [
         part("OilBath", "oil", **OIL, V=1e-3, c_p=2000.0),

@@ -54,7 +54,7 @@ ZERO = {
     **{"line_load": "F_width", "F_n_l": "F_width", "F_r": "F_width", "F_a": "F_width", "P_1": "F_width"},
 }
 #: Arguments that may be zero but not negative.
-NOT_NEGATIVE = {"h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c", "T_pour"}
+NOT_NEGATIVE = {"P_a", "h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c", "T_pour"}
 #: Torques and losses: magnitudes, never negative.
 MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.")
 

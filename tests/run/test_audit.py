@@ -69,5 +69,5 @@ def test_a_state_that_is_joined_is_in_the_balance() -> None:
     parts = (Body("one", C=100.0), Body("two", C=300.0), Conductor("foot", G=2.0), Ambient("room"))
     flat = model(*parts, nets=[("one.heat", "two.heat", "foot.a"), ("foot.b", "room.heat")])
     run = simulate(flat, stepped([(600.0, {"one.Q": 50.0})]))
-    assert run.audit.residual < 1e-9
+    assert run.audit.residual < 1e-7
     assert np.isfinite(run["one.T"]).all()

@@ -107,6 +107,16 @@ def test_rows_are_those_of_the_command_steady(gearheat, tmp_path) -> None:
     assert found["outputs"]["oil.T"]["mean"] == pytest.approx(oil.mean())
 
 
+@pytest.mark.parametrize("how", [(), ("--kind", "warmup", "--duration", "1 min")])
+def test_a_sweep_names_the_laws_outside_their_range(gearheat, tmp_path, how) -> None:
+    """The row that has most of them is told with its laws."""
+    vary = ("--vary", "room.T=20..160 degC", "--grid", "3", *KEPT)
+    answer = gearheat("sweep", "planetary", *vary, *how, "-o", tmp_path / "hot.csv", "--json", tmp_path / "hot.json")
+    told = json.loads((tmp_path / "hot.json").read_text("utf-8"))["outside"]
+    assert told["row"] == 3 and "kinematic_viscosity" in {o["law"] for o in told["laws"]}
+    assert "most of all row 3:" in answer.out and "outside its range: oil: kinematic_viscosity" in answer.out
+
+
 def test_a_shaft_end_that_is_varied_is_driven(gearheat, tmp_path) -> None:
     out = tmp_path / "rows.csv"
     gearheat("sweep", "planetary", "--vary", "sun.w=400..1000 rpm", "--grid", "3", "--output", "carrier.w", "-o", out)
