@@ -11,6 +11,7 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import casadi as ca
+import numpy as np
 from gearheat.model.core.flat import FlatModel
 
 from . import units
@@ -73,16 +74,28 @@ def dependencies(model: Equations, table: Table) -> Dependencies:
         table: the variables, for their value references
     """
     unknowns = ca.vertcat(model.y, model.ode)
+    by_z = _pattern(unknowns, model.z) @ _inverse(_pattern(model.residual, model.z))
     firsts = [table.first("state"), table.first("input"), table.first("parameter")]
     found: list[list[tuple[int, ...]]] = []
     for known, first in zip((model.x, model.u, model.p), firsts, strict=True):
-        rows: list[list[int]] = [[] for _ in range(unknowns.shape[0])]
-        for i, j in zip(*ca.jacobian_sparsity(unknowns, known).get_triplet(), strict=True):
-            rows[i].append(first + j)
-        found.append([tuple(sorted(row)) for row in rows])
+        depends = _pattern(unknowns, known) + by_z @ _pattern(model.residual, known) > 0
+        found.append([tuple(first + j for j in np.flatnonzero(row).tolist()) for row in depends])
     x, u, p = found
     step = tuple(tuple(sorted(a + b)) for a, b in zip(x, u, strict=True))
     return Dependencies(step, tuple(tuple(sorted(a + b)) for a, b in zip(step, p, strict=True)))
+
+
+def _pattern(values: Any, known: Any) -> np.ndarray:
+    """1 where a value depends on a symbol directly, else 0 (values, symbols)."""
+    return np.array(ca.DM(ca.jacobian_sparsity(values, known), 1).full())
+
+
+def _inverse(pattern: np.ndarray) -> np.ndarray:
+    """Pattern of the inverse of a matrix with a full diagonal: what is reached along its entries."""
+    reached = pattern
+    for _ in range(len(pattern).bit_length()):
+        reached = ((reached @ reached) > 0).astype(float)
+    return reached
 
 
 def description(

@@ -16,10 +16,11 @@ static void start(Instance *m)
     m->s.mode = INSTANTIATED;
     m->s.tolerance = TOLERANCE;
     for (i = 0; i < NX; i++) m->s.x[i] = model_start[FIRST_X + i];
-    for (i = 0; i < NZ; i++) m->s.z_from[i] = model_z_start[i];
+    for (i = 0; i < NZ; i++) m->s.z[i] = model_z_start[i];
     for (i = 0; i < NU; i++) m->s.u[i] = model_start[FIRST_U + i];
     for (i = 0; i < NP; i++) m->s.p[i] = model_start[FIRST_P + i];
-    m->constants_known = m->outputs_known = 0;
+    m->constants_known = 0;
+    changed(m);
     m->log_mask = m->log_mask_at_start;
     memset(m->warned, 0, sizeof m->warned);
     memset(m->kept, 0, sizeof m->kept);

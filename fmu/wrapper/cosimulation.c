@@ -124,7 +124,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     if (wanted && (r = wrong_result(m)) != N_VARIABLES) {
         double value = value_of(m, r);
         m->s = before;
-        m->outputs_known = 0;
+        changed(m);
         remember_refusal(m, step, model_names[r]);
         return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s would be %.10g %s, but must be %s. "
                        "Nothing has changed; check the inputs.", time, time + step, model_names[r], value,

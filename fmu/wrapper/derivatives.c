@@ -13,9 +13,9 @@ static void derive(Instance *m, const Direction *d, int parameters_move, Slopes 
     double c_dot[AT_LEAST_1(NC)];
     memset(c_dot, 0, sizeof c_dot);
     refresh_constants(m);
-    refresh_algebra(m);
+    unsolved(m);
     if (parameters_move) model_constants_directional(m->s.p, d->p, c_dot);
-    model_directional(m->s.x, m->s.z, m->s.u, m->s.p, m->c, d->x, d->u, d->p, c_dot, out->y, out->dx);
+    model_directional(m->s.x, m->z, m->s.u, m->s.p, m->c, d->x, d->u, d->p, c_dot, out->y, out->dx);
 }
 
 static double slope_of(const Direction *d, const Slopes *s, fmi2ValueReference r)

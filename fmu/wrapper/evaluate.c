@@ -8,17 +8,17 @@ static void refresh_constants(Instance *m)
     m->relations_hold = 0;
 }
 
-/* Solve the implicit equations where states, inputs or parameters have changed; -1, or the number of the one without a
+/* Solve the implicit equations where states, inputs or parameters have changed; NULL, or the name of the one without a
    solution. */
-static int refresh_algebra(Instance *m)
+static const char *unsolved(Instance *m)
 {
-    int failed;
-    if (m->s.consistent) return -1;
-    refresh_constants(m);
-    memcpy(m->s.z, m->s.z_from, sizeof m->s.z);
-    failed = implicit_solve(m->s.x, m->s.z, m->s.u, m->s.p, m->c);
-    m->s.consistent = failed < 0;
-    return failed;
+    if (!m->algebra_known) {
+        refresh_constants(m);
+        memcpy(m->z, m->s.z, sizeof m->z);
+        m->unsolved = implicit_solve(m->s.x, m->z, m->s.u, m->s.p, m->c);
+        m->algebra_known = 1;
+    }
+    return m->unsolved < 0 ? NULL : model_blocks[m->unsolved];
 }
 
 /* Whether the parameters fit each other; asked when all of them are set, as one by one they pass through states that
@@ -57,8 +57,8 @@ static void refresh_outputs(Instance *m)
 {
     int i;
     if (m->outputs_known) return;
-    if (check_relations(m, "outputs") && refresh_algebra(m) < 0) {
-        model_outputs(m->s.x, m->s.z, m->s.u, m->s.p, m->c, m->y, m->dx);
+    if (check_relations(m, "outputs") && !unsolved(m)) {
+        model_outputs(m->s.x, m->z, m->s.u, m->s.p, m->c, m->y, m->dx);
         settle(m->y);
     } else {
         for (i = 0; i < NY; i++) m->y[i] = NAN;
@@ -67,23 +67,16 @@ static void refresh_outputs(Instance *m)
     m->outputs_known = 1;
 }
 
-/* The name of the implicit equation that has no solution here, or NULL. */
-static const char *unsolved(Instance *m)
-{
-    int failed = refresh_algebra(m);
-    return failed < 0 ? NULL : model_blocks[failed];
-}
-
 /* From here on iterations begin at the present solution. */
 static void accept_algebra(Instance *m)
 {
-    if (m->s.consistent) memcpy(m->s.z_from, m->s.z, sizeof m->s.z);
+    if (!unsolved(m)) memcpy(m->s.z, m->z, sizeof m->s.z);
 }
 
 /* Something the outputs depend on has changed. */
 static void changed(Instance *m)
 {
-    m->outputs_known = m->s.consistent = 0;
+    m->outputs_known = m->algebra_known = 0;
 }
 
 /* Where a value lies: NULL for a value the model calculates. */
@@ -136,8 +129,8 @@ static void warn_validity(Instance *m)
     int i;
     if (NK == 0 || !(m->log_mask & (1u << LOG_WARNING))) return;
     refresh_constants(m);
-    if (refresh_algebra(m) >= 0) return;
-    model_arguments(m->s.x, m->s.z, m->s.u, m->s.p, m->c, argument);
+    if (unsolved(m)) return;
+    model_arguments(m->s.x, m->z, m->s.u, m->s.p, m->c, argument);
     for (i = 0; i < NK; i++) {
         if (m->warned[i] || !(argument[i] < model_check_low[i] || argument[i] > model_check_high[i])) continue;
         m->warned[i] = 1;

@@ -97,7 +97,7 @@ fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real dx[], size_t n)
         return discard(m, "fmi2GetDerivatives: the equation \"%s\" has no solution at t = %.10g s.", block, m->s.time);
     refresh_constants(m);
     if (m->outputs_known) memcpy(dx, m->dx, sizeof m->dx);
-    else model_rates(m->s.x, m->s.z, m->s.u, m->s.p, m->c, dx);
+    else model_rates(m->s.x, m->z, m->s.u, m->s.p, m->c, dx);
     for (i = 0; i < NX; i++)
         if (!isfinite(dx[i]))
             return discard(m, "fmi2GetDerivatives: %s is %g at t = %.10g s.", model_names[FIRST_DX + i], dx[i],

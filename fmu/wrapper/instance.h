@@ -43,16 +43,13 @@ typedef struct {
     int jumped;            /* an input or a parameter has jumped since the last step */
     int states_touched;    /* ModelExchange: the integrator has to restart at the end of event mode */
     int stepped;           /* a communication step has been done */
-    int consistent;        /* z belongs to x, u and p */
-    int spare;             /* keeps the doubles aligned without hidden bytes */
     double time;
     double stop;
     double tolerance;
     double h_first;        /* step proposed after the first accepted step of the last communication step */
     double h_last;         /* step proposed after the last one */
     double x[AT_LEAST_1(NX)];
-    double z[AT_LEAST_1(NZ)];
-    double z_from[AT_LEAST_1(NZ)];   /* at the last accepted step: where an iteration begins, whatever was asked since */
+    double z[AT_LEAST_1(NZ)];   /* algebraic variables at the last accepted step: where an iteration begins */
     double u[AT_LEAST_1(NU)];
     double slope[AT_LEAST_1(NU)];
     double p[AT_LEAST_1(NP)];
@@ -62,12 +59,15 @@ typedef struct {
     State s;
     int constants_known;   /* c belongs to s.p */
     int relations_hold;    /* all relations between the parameters hold at s.p */
+    int algebra_known;     /* z belongs to s, or there is none: then the number of an equation without a solution is */
+    int unsolved;          /* here, else -1 */
     int outputs_known;     /* y and dx belong to s */
     unsigned log_mask;
     unsigned log_mask_at_start;
     fmi2CallbackFunctions callbacks;
     char *name;
     double c[AT_LEAST_1(NC)];
+    double z[AT_LEAST_1(NZ)];
     double y[AT_LEAST_1(NY)];
     double dx[AT_LEAST_1(NX)];
     unsigned char warned[AT_LEAST_1(NK)];

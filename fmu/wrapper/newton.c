@@ -81,7 +81,7 @@ static int implicit_newton(const Implicit *at, double *z, int most)
     if (!implicit_correction(at, z, &now)) return 0;
     for (step = 0; step < most; step++) {
         if (now.length <= CONVERGED) {
-            for (i = 0; i < NZ; i++) z[i] += now.d[i];
+            for (i = 0; i < NZ && step > 0; i++) z[i] += now.d[i];   /* what had converged before stays bit by bit */
             return 1;
         }
         for (;;) {

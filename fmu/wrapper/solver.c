@@ -12,7 +12,7 @@ static int walk(Instance *m, double length, Walk *w)
     refresh_constants(m);
     if ((w->block = unsolved(m)) != NULL) return 0;
     memcpy(x, s->x, sizeof x);
-    memcpy(z, s->z, sizeof z);
+    memcpy(z, m->z, sizeof z);
     memcpy(u, s->u, sizeof u);
     if (!(h > 0.0)) h = length;
     while (t < length) {
@@ -32,12 +32,12 @@ static int walk(Instance *m, double length, Walk *w)
         if (h == 0.0 && t < length) return 0;
     }
     memcpy(s->x, x, sizeof x);
-    memcpy(s->z_from, z, sizeof z);
+    memcpy(s->z, z, sizeof z);
     memcpy(s->u, u, sizeof u);
     if (length > 0.0) changed(m);
     if ((w->block = unsolved(m)) != NULL) {
         *s = before;
-        m->outputs_known = 0;
+        changed(m);
         return 0;
     }
     accept_algebra(m);

@@ -48,7 +48,8 @@ fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate saved)
     if (copy->type != m->s.type)
         return refuse(m, "fmi2SetFMUstate: the state was saved by an instance of the other interface.");
     memcpy(&m->s, copy, sizeof m->s);
-    m->constants_known = m->outputs_known = 0; /* whether z is consistent is part of the state */
+    m->constants_known = 0;
+    changed(m);
     return fmi2OK;
 }
 

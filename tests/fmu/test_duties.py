@@ -71,8 +71,8 @@ PLANTED = {
     "repeats what is hopeless": ("if (refused_before(m, step))", "if (0)", "the same step again is no error"),
     "steps out of the range": ("if (!in_range(FIRST_X + i, x_new[i])) {", "if (0) {", "after a good step"),
     "keeps a part of what it refuses": (
-        "remember_refusal(m, step, FIRST_X + w.worst);",
-        "remember_refusal(m, step, FIRST_X + w.worst), m->s.x[0] += 1;",
+        "return stuck(m, time, step, &w);",
+        "return m->s.x[0] += 1, stuck(m, time, step, &w);",
         "a refused step changed a value",
     ),
     "lets a slope lead anywhere": ("if ((r = input_astray(m, step)) != N_VARIABLES) {", "if (0) {", "good step"),

@@ -1,4 +1,4 @@
-"""A table of operating points of every shipped rig: cold to hot, from rest to twice the speed, all directions and drives.
+"""A table of operating points of every shipped rig: cold to hot, rest to twice the speed, all directions and drives.
 
 Each point either converges in Python, FMU and batch alike, with its audit, no negative loss and an efficiency between 0
 and 1, or is refused by all of them, with a name. Nothing fails in silence.
