@@ -22,7 +22,7 @@ from gearheat.model.core.flat import FlatModel, Quantity
 from gearheat.model.errors import ScenarioError, suggestion
 from gearheat.model.run.schedule import Schedule
 
-from .batch_library import Course, address, driver, instructions, rows_from, shared, widened
+from .batch_library import Duty, address, driver, instructions, rows_from, shared, widened
 from .batch_relations import broken_relations, relations_source
 from .batch_source import EXTRA, steady_source, warmup_source
 from .grid import Grid, grid
@@ -96,7 +96,7 @@ class Prepared:
     """A duty laid out for a model: points in time, and the same as C knows it."""
 
     points: Grid
-    course: Course
+    duty: Duty
 
 
 class Batch:
@@ -218,7 +218,7 @@ class Batch:
         tolerance: float = TOLERANCE,
         threads: int = 0,
     ) -> Rows:
-        """Each row's course through a duty, by the solver of the FMU.
+        """Each row through a duty, by the solver of the FMU.
 
         Args:
             schedule: inputs over time, the same for all rows; inputs it does not name keep the row's value. A prepared
@@ -236,7 +236,7 @@ class Batch:
         """
         n, vectors, verdict = self._checked(u, p, start)
         prepared = schedule if isinstance(schedule, Prepared) else self.prepared(schedule, times, tolerance)
-        points, course = prepared.points, prepared.course
+        points, duty = prepared.points, prepared.duty
         m = len(points.row_time)
         x, y, energy = np.empty((n, m, len(self.states))), np.empty((n, m, len(self.outputs))), np.empty((n, 4))
         status, steps = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
@@ -244,7 +244,7 @@ class Batch:
 
         def block(a: int, b: int) -> int:
             results = [address(array[a:]) for array in (x, y, energy, status, steps)]
-            return int(run(b - a, ctypes.byref(course), *rows_from(vectors, a), m, *results))
+            return int(run(b - a, ctypes.byref(duty), *rows_from(vectors, a), m, *results))
 
         shared(block, n, WARMUP_BLOCK, threads)
         supplied, gained, throughput, outside = energy.T
@@ -272,7 +272,7 @@ class Batch:
         inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
         length = schedule.stop - schedule.start
         points = grid(inputs, schedule.start, schedule.stop, length, [schedule.stop] if times is None else times)
-        return Prepared(points, Course(points, self.inputs, tolerance))
+        return Prepared(points, Duty(points, self.inputs, tolerance))
 
     def _checked(
         self, u: np.ndarray | None, p: np.ndarray | None, start: np.ndarray | None

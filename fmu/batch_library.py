@@ -102,8 +102,8 @@ def _load(source: str) -> ctypes.CDLL:
             Path(name).unlink()
 
 
-class Course(ctypes.Structure):
-    """The course of a warm-up as C knows it; holds its arrays alive."""
+class Duty(ctypes.Structure):
+    """The duty of a warm-up as C knows it; holds its arrays alive."""
 
     _fields_ = [
         ("m", _COUNT),

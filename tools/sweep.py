@@ -198,9 +198,9 @@ def _problems(request: Request) -> list[str]:
         found.append(dask_missing())
     if (request.sample is None) == (request.grid is None):
         found.append("Give the number of rows either by --sample N or by --grid NxM.")
-    course = [option for option in ("duty", "duration", "every") if getattr(request, option) is not None]
-    if request.kind == "steady" and course:
-        found.append(f"--{course[0]} belongs to a warm-up. Add --kind warmup, or leave it out.")
+    timed = [option for option in ("duty", "duration", "every") if getattr(request, option) is not None]
+    if request.kind == "steady" and timed:
+        found.append(f"--{timed[0]} belongs to a warm-up. Add --kind warmup, or leave it out.")
     if request.kind == "warmup" and (request.duty is None) == (request.duration is None):
         found.append('A warm-up lasts either as long as its --duty or a --duration, for example "330 min". Give one.')
     return [problem for problem in found if problem]

@@ -1,19 +1,19 @@
 /* Warm-ups by the adaptive solver of the FMU. The states behind the model's own are its audit's.
 
    A step costs far more than deciding on it, so the trial steps of some rows are made together, one in each lane. Every
-   row keeps its own time, step size and piece of the course, and the next row takes over the lane of one that is done.
+   row keeps its own time, step size and piece of the duty, and the next row takes over the lane of one that is done.
    Which rows share a call changes nothing in any of them. */
 
 enum { STORED = N_OUTPUTS, OUTSIDE = N_OUTPUTS + 2 };
 
-/* The course of a warm-up, the same for all rows: m pieces; inputs that are not scheduled keep the row's value.
+/* The duty of a warm-up, the same for all rows: m pieces; inputs that are not scheduled keep the row's value.
    before[k] and after[k] rows are kept at the beginning of piece k, before and after its inputs are set. */
 typedef struct {
     int64_t m;
     const double *length, *value, *slope;
     const int32_t *scheduled, *before, *after;
     double tolerance;
-} Course;
+} Duty;
 
 typedef struct {
     double *x, *y;             /* where the next kept row goes */
@@ -34,13 +34,13 @@ static int keep(Instance *m, int count, Kept *kept)
     return 1;
 }
 
-static void set_inputs(Instance *m, const Course *course, int64_t k)
+static void set_inputs(Instance *m, const Duty *duty, int64_t k)
 {
     int i;
     for (i = 0; i < NU; i++) {
-        double value = course->value[k * NU + i];
-        if (!course->scheduled[i]) continue;
-        m->s.slope[i] = course->slope[k * NU + i];
+        double value = duty->value[k * NU + i];
+        if (!duty->scheduled[i]) continue;
+        m->s.slope[i] = duty->slope[k * NU + i];
         if (fabs(value - m->s.u[i]) > 1e-6 * (fabs(m->s.u[i]) + model_nominal[FIRST_U + i])) m->s.jumped = 1;
         m->s.u[i] = value;
     }
@@ -51,7 +51,7 @@ static void set_inputs(Instance *m, const Course *course, int64_t k)
 typedef struct {
     Instance m;
     Kept kept;
-    int64_t row, piece;        /* which row; the piece of the course it is in, m when it is done */
+    int64_t row, piece;        /* which row; the piece of the duty it is in, m when it is done */
     double begin;              /* stored energy at the start */
     double x[NX], z[AT_LEAST_1(NZ)], u[AT_LEAST_1(NU)];   /* where the next trial begins */
     double t, h, first, size;  /* in the piece: time, step proposed, the one proposed first, the one tried */
@@ -64,7 +64,7 @@ typedef struct {
 /* The arguments of batch_warmup, and the next row to begin with. */
 typedef struct {
     int64_t n;
-    const Course *course;
+    const Duty *duty;
     const double *u;
     int64_t u_stride;
     const double *p;
@@ -85,7 +85,7 @@ typedef struct {
 /* What becomes of a row that is not done. */
 enum { ROW_UNDER_WAY = -1 };
 
-/* Begin a piece of the course as walk() begins a communication step. */
+/* Begin a piece of the duty as advance() begins a communication step. */
 static void depart(Runner *r, double length)
 {
     State *s = &r->m.s;
@@ -110,26 +110,26 @@ static void arrive(Runner *r)
     changed(&r->m);
 }
 
-/* To the next trial step, through the ends of pieces; or to the end of the course, where the energy that came in, that
+/* To the next trial step, through the ends of pieces; or to the end of the duty, where the energy that came in, that
    the states gained, and the throughput [J] are left. */
-static int proceed(Runner *r, const Course *course, double *energy)
+static int proceed(Runner *r, const Duty *duty, double *energy)
 {
     Instance *m = &r->m;
     double left, length;
-    while (length = course->length[r->piece], !(r->t < length)) {
+    while (length = duty->length[r->piece], !(r->t < length)) {
         arrive(r);
         r->piece++;
-        if (!keep(m, course->before[r->piece], &r->kept)) return ROW_NO_SOLUTION;
-        if (r->piece == course->m) {
+        if (!keep(m, duty->before[r->piece], &r->kept)) return ROW_NO_SOLUTION;
+        if (r->piece == duty->m) {
             if (!refresh_outputs(m)) return ROW_NO_SOLUTION;
             energy[0] = m->s.x[SUPPLIED];
             energy[1] = m->y[STORED] - r->begin;
             energy[2] = m->s.x[THROUGHPUT];
             return ROW_OK;
         }
-        set_inputs(m, course, r->piece);
-        if (!keep(m, course->after[r->piece], &r->kept) || !refresh_algebra(m)) return ROW_NO_SOLUTION;
-        depart(r, course->length[r->piece]);
+        set_inputs(m, duty, r->piece);
+        if (!keep(m, duty->after[r->piece], &r->kept) || !refresh_algebra(m)) return ROW_NO_SOLUTION;
+        depart(r, duty->length[r->piece]);
     }
     left = length - r->t;
     r->last = r->h * (1 + 1e-9) >= left;
@@ -138,27 +138,27 @@ static int proceed(Runner *r, const Course *course, double *energy)
 }
 
 /* From an instance whose states, inputs and parameters are set to its first trial step. */
-static int start_out(Runner *r, const Course *course, double *energy)
+static int start_out(Runner *r, const Duty *duty, double *energy)
 {
     Instance *m = &r->m;
-    m->s.tolerance = course->tolerance;
+    m->s.tolerance = duty->tolerance;
     r->piece = 0;
-    set_inputs(m, course, 0);
+    set_inputs(m, duty, 0);
     m->s.jumped = 1;
     memcpy(m->s.z, model_z_start, NZ * sizeof(double));
     changed(m);
     if (!refresh_outputs(m)) return ROW_NO_SOLUTION;
     r->begin = m->y[STORED];
     if (!all_finite(m->dx, NX)) return ROW_NOT_FINITE;
-    keep(m, course->before[0] + course->after[0], &r->kept);
-    depart(r, course->length[0]);
-    return proceed(r, course, energy);
+    keep(m, duty->before[0] + duty->after[0], &r->kept);
+    depart(r, duty->length[0]);
+    return proceed(r, duty, energy);
 }
 
-/* Take or refuse the trial step in a lane, as walk() does. */
-static int conclude(Runner *r, const Beside *b, int lane, const Course *course, double *energy)
+/* Take or refuse the trial step in a lane, as advance() does. */
+static int conclude(Runner *r, const Beside *b, int lane, const Duty *duty, double *energy)
 {
-    double x_new[NX + N_CONTROLLED], z_new[AT_LEAST_1(NZ)] = {0.0}, length = course->length[r->piece], error;
+    double x_new[NX + N_CONTROLLED], z_new[AT_LEAST_1(NZ)] = {0.0}, length = duty->length[r->piece], error;
     int worst, i;
     for (i = 0; i < NX; i++) x_new[i] = b->x_new[i][lane];
     for (i = 0; i < N_CONTROLLED; i++) x_new[NX + i] = b->error[i][lane];
@@ -173,7 +173,7 @@ static int conclude(Runner *r, const Beside *b, int lane, const Course *course, 
         for (i = 0; i < NU; i++) r->u[i] = r->m.s.u[i] + r->m.s.slope[i] * r->t;
         if (r->first == 0.0) r->first = r->h;
     }
-    return r->h == 0.0 && r->t < length ? ROW_STOPPED : proceed(r, course, energy);
+    return r->h == 0.0 && r->t < length ? ROW_STOPPED : proceed(r, duty, energy);
 }
 
 static void put(Beside *b, int lane, const Runner *r)
@@ -202,7 +202,7 @@ static int open_row(Runner *r, Rows *rows)
     m->constants_known = m->constants_known && rows->p_stride == 0;
     r->steps = 0;
     r->fresh = 1;
-    return start_out(r, rows->course, rows->energy + 4 * row);
+    return start_out(r, rows->duty, rows->energy + 4 * row);
 }
 
 static void close_row(const Runner *r, Rows *rows, int outcome)
@@ -243,7 +243,7 @@ static void run_rows(Rows *rows, Runner *runner)
         for (lane = 0; lane < LANES; lane++) {
             Runner *r = &runner[lane];
             if (!busy[lane]) continue;
-            busy[lane] = carry_on(r, rows, conclude(r, &b, lane, rows->course, rows->energy + 4 * r->row));
+            busy[lane] = carry_on(r, rows, conclude(r, &b, lane, rows->duty, rows->energy + 4 * r->row));
             lanes_busy -= !busy[lane];
         }
     }
@@ -251,11 +251,11 @@ static void run_rows(Rows *rows, Runner *runner)
 
 /* Warm-ups of n rows. x takes N numbers a row and time, y N_OUTPUTS; energy takes what came in, what was gained, the
    throughput [J], and the largest number of law arguments out of range. */
-BATCH_EXPORT int batch_warmup(int64_t n, const Course *course, const double *u, int64_t u_stride, const double *p,
+BATCH_EXPORT int batch_warmup(int64_t n, const Duty *duty, const double *u, int64_t u_stride, const double *p,
                               int64_t p_stride, const double *start, int64_t start_stride, int64_t times, double *x,
                               double *y, double *energy, int32_t *status, int32_t *steps)
 {
-    Rows rows = {n, course, u, u_stride, p, p_stride, start, start_stride, times, x, y, energy, status, steps, 0};
+    Rows rows = {n, duty, u, u_stride, p, p_stride, start, start_stride, times, x, y, energy, status, steps, 0};
     Runner *runner = calloc(LANES, sizeof *runner);
     if (!runner) return 0;
     run_rows(&rows, runner);

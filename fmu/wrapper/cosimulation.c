@@ -67,8 +67,8 @@ static int input_astray(const Instance *m, double step)
     return N_VARIABLES;
 }
 
-/* Why a walk did not arrive. */
-static fmi2Status stuck(const Instance *m, double time, double step, const Walk *w)
+/* Why a step did not arrive. */
+static fmi2Status stuck(const Instance *m, double time, double step, const Advance *w)
 {
     const Effort *e = &w->effort;
     const char *name = model_names[FIRST_X + w->worst];
@@ -93,7 +93,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
 {
     Instance *m = c;
     State before;
-    Walk w;
+    Advance w;
     int r, wanted;
     (void)no_return;
     if (!allowed_for(m, fmi2CoSimulation, STEP_COMPLETE | STEP_FAILED, "fmi2DoStep")) return fmi2Error;
@@ -109,7 +109,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
                        model_ranges[r], model_units[r]);
     }
     before = m->s;
-    if (!walk(m, step, &w)) {
+    if (!advance(m, step, &w)) {
         remember_refusal(m, step, w.block ? w.block : model_names[FIRST_X + w.worst]);
         return stuck(m, time, step, &w);
     }

@@ -1,7 +1,7 @@
-/* Walk over a communication step. With success the state is that at its end, else it is as before. A held input that
+/* Advance over a communication step. With success the state is that at its end, else it is as before. A held input that
    jumps makes a boundary layer behind the communication point, so the size that fitted there last time is remembered
    beside the size that fitted at the end. */
-static int walk(Instance *m, double length, Walk *w)
+static int advance(Instance *m, double length, Advance *w)
 {
     State *s = &m->s;
     State before = *s;

@@ -24,7 +24,7 @@ typedef struct {
     Effort effort;
     int worst;                 /* state that limited the last trial */
     const char *block;         /* implicit equation without a solution at the begin or the end, or NULL */
-} Walk;
+} Advance;
 
 /* What an error of a state is measured by. The supplied energy is measured by the energy that has crossed the boundary:
    without it a step may pass over a fast layer whose states end up right but whose energy is lost from the audit. */

@@ -244,9 +244,9 @@ class _Search:
             reason = f"The only equilibrium found, {q.name} = {reached}, is one the machine leaves by itself."
         else:
             reason = REMEDIES.get(q.unit, f"{q.name} finds no equilibrium: check what drives it.")
-        led = f" There are solutions up to {100 * self.share:.0f} % of these inputs." if self.share > 0 else ""
+        partly = f" There are solutions up to {100 * self.share:.0f} % of these inputs." if self.share > 0 else ""
         last = f"(last {q.name} {reached} after {self.steps} steps)"
-        return f"no solution at {conditions(flat, self.here.u, named)} {last}.\n{reason}{led}"
+        return f"no solution at {conditions(flat, self.here.u, named)} {last}.\n{reason}{partly}"
 
     def _loose(self, jacobian: np.ndarray) -> str | None:
         """The state a singular Jacobian says nothing about."""

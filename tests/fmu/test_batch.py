@@ -188,10 +188,10 @@ def test_rows_that_cannot_be_solved_leave_the_others_alone() -> None:
     assert np.isnan(rows.residual[1:4]).all()
     assert rows.x[0].tobytes() == rows.x[4].tobytes()
     duty = stepped([(1e6, {"room.T": 300.0})])
-    course = batch.warmup(duty, *batch.vectors(values), times=[10.0, 1e6])
-    assert course.status.tolist() == [Status.OK, Status.STOPPED, Status.OUT_OF_RANGE, Status.OUT_OF_RANGE, Status.OK]
-    assert np.isnan(course.x[1:4]).all()
-    assert course.x[0, 1] == pytest.approx(rows.x[0], abs=1e-2)
+    warm = batch.warmup(duty, *batch.vectors(values), times=[10.0, 1e6])
+    assert warm.status.tolist() == [Status.OK, Status.STOPPED, Status.OUT_OF_RANGE, Status.OUT_OF_RANGE, Status.OK]
+    assert np.isnan(warm.x[1:4]).all()
+    assert warm.x[0, 1] == pytest.approx(rows.x[0], abs=1e-2)
 
 
 def crowd(n: int) -> dict[str, np.ndarray]:
@@ -243,8 +243,8 @@ def test_a_model_without_states() -> None:
     batch = Batch(model(Battery("battery"), Resistor("resistor", R=5.0), Ground("ground"), nets=nets))
     rows = batch.steady(*batch.vectors({"battery.V": np.array([10.0, 20.0])}))
     assert rows["resistor.P"].tolist() == [20.0, 80.0]
-    course = batch.warmup(stepped([(1.0, {"battery.V": (0.0, 10.0)})]), times=[0.5, 1.0])
-    assert course["resistor.P"][0] == pytest.approx([5.0, 20.0])
+    warm = batch.warmup(stepped([(1.0, {"battery.V": (0.0, 10.0)})]), times=[0.5, 1.0])
+    assert warm["resistor.P"][0] == pytest.approx([5.0, 20.0])
 
 
 def test_what_is_wrong_is_said_at_once(heat: Batch) -> None:
