@@ -23,6 +23,8 @@ from .eliminate import Factors, Singular, typical_sizes
 #: What it costs to let an equation determine an unknown: given by one side, linear in it, nonlinear; and on top of
 #: these where it gives a torn unknown, which it is to test.
 EXPLICIT, LINEAR, NONLINEAR, DEFINES_TORN = 1.0, 2.0, 100.0, 1e4
+#: What it costs to test a torn unknown by an equation that it is not in.
+ABSENT = 1e6
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,24 +154,13 @@ def _eliminate(model: str, matrix: Any, constant: Any, unknowns: list[Unknown], 
         solution.define(unknown.symbol, value)
 
 
-def _at_typical(matrix: Any, typical: Mapping[int, float]) -> np.ndarray:
-    """A symbolic matrix where every symbol has its typical value."""
-    free = ca.symvar(matrix)
-    point = [typical.get(symbol.element_hash(), 1.0) for symbol in free]
-    values = ca.Function("sizes", free, [matrix])(*point) if free else ca.DM(matrix)
-    return np.array(ca.DM(values).full())
-
-
 def _tear(model: str, rows: list[Row], unknowns: list[Unknown], solution: Solution) -> None:
     """Keep some unknowns of a block as algebraic variables, define the rest by them, and test what is left.
 
-    Torn are the unknowns with a guess; without any, the one that enters most equations in a nonlinear way. What is
-    still implicit after that is torn again.
+    Torn are the unknowns with a guess; without any, as few as make the rest linear. What is still implicit after that
+    is torn again.
     """
-    if len(rows) == 1:
-        solution.keep(unknowns, rows)
-        return
-    torn = [u for u in unknowns if u.guess is not None] or [_most_nonlinear(rows, unknowns)]
+    torn = [u for u in unknowns if u.guess is not None] or _nonlinear(rows, unknowns)
     rest = [u for u in unknowns if u not in torn]
     tests = _tests(rows, torn, rest)
     solution.keep(torn, tests)
@@ -177,12 +168,19 @@ def _tear(model: str, rows: list[Row], unknowns: list[Unknown], solution: Soluti
         solve(model, [r for r in rows if r not in tests], rest, solution)
 
 
-def _most_nonlinear(rows: list[Row], unknowns: list[Unknown]) -> Unknown:
-    """The unknown on which most derivatives of the residuals depend; the first of equals."""
+def _nonlinear(rows: list[Row], unknowns: list[Unknown]) -> list[Unknown]:
+    """Unknowns of which at least one is in every nonlinear term, those first that are in most of them."""
     z = column([u.symbol for u in unknowns])
-    curved = ca.jacobian_sparsity(_entries(rows, z).nz[:], z)
-    counts = np.bincount(curved.get_triplet()[1], minlength=len(unknowns))
-    return unknowns[int(np.argmax(counts))]
+    entries = _entries(rows, z)
+    of_entry = np.array(entries.sparsity().get_triplet()[1], dtype=int)
+    entry, by = np.array(ca.jacobian_sparsity(entries.nz[:], z).get_triplet(), dtype=int).reshape(2, -1)
+    pairs = np.unique(np.sort(np.stack([of_entry[entry], by], axis=1), axis=1), axis=0)
+    chosen: list[int] = []
+    while len(pairs):
+        most = int(np.argmax(np.bincount(pairs.ravel(), minlength=len(unknowns))))
+        chosen.append(most)
+        pairs = pairs[(pairs != most).all(axis=1)]
+    return [unknowns[i] for i in sorted(chosen)]
 
 
 def _tests(rows: list[Row], torn: list[Unknown], rest: list[Unknown]) -> list[Row]:
@@ -204,22 +202,13 @@ def _tests(rows: list[Row], torn: list[Unknown], rest: list[Unknown]) -> list[Ro
             costs[k] += DEFINES_TORN
     row, col = np.array(places, dtype=int).reshape(-1, 2).T
     graph = csr_matrix((costs, (col, row)), shape=(len(rest), len(rows)))
-    _, taken = min_weight_full_bipartite_matching(graph)
-    return [row for i, row in enumerate(rows) if i not in set(taken.tolist())]
+    taken = set(min_weight_full_bipartite_matching(graph)[1].tolist())
+    return [row for i, row in enumerate(rows) if i not in taken]
 
 
 def _entries(rows: list[Row], z: Any) -> Any:
     """Derivatives of the residuals of some equations."""
     return ca.jacobian(column([r.residual for r in rows]), z)
-
-
-def _inline(expressions: list[Any], solution: Solution) -> list[Any]:
-    """Expressions with all definitions of a solution put in, as one column in a list."""
-    stacked = column(expressions)
-    if not solution.symbols:
-        return [stacked]
-    _, (result,) = ca.substitute_inplace(solution.symbols, solution.definitions, [stacked], False)
-    return [result]
 
 
 def inline(expression: Any, solution: Solution) -> Any:
@@ -229,7 +218,10 @@ def inline(expression: Any, solution: Solution) -> Any:
         expression: a column (n)
         solution: the definitions
     """
-    return _inline([expression], solution)[0]
+    if not solution.symbols:
+        return expression
+    _, (result,) = ca.substitute_inplace(solution.symbols, solution.definitions, [expression], False)
+    return result
 
 
 def scaled_residual(solution: Solution, residual: Any) -> tuple[Any, tuple[str, ...]]:
@@ -247,13 +239,15 @@ def scaled_residual(solution: Solution, residual: Any) -> tuple[Any, tuple[str, 
     nominals = np.array([u.nominal for u in solution.torn])
     matrix = ca.jacobian(residual, column([u.symbol for u in solution.torn]))
     typical = dict(solution.typical) | {u.symbol.element_hash(): start_of(u) for u in solution.torn}
-    entries = np.abs(_at_typical(matrix, typical)) * nominals
-    entries = np.where(np.isfinite(entries), entries, 1.0)
-    size = entries.sum(axis=1)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        cost = -np.log(entries / size[:, None])
-    row, _ = linear_sum_assignment(np.where(np.isfinite(cost), cost, 1e6).T)[::-1]
-    return residual[row.tolist()] / ca.DM(size[row]), tuple(solution.tests[i].name for i in row)
+    rows, columns = matrix.sparsity().get_triplet()
+    size = np.zeros(matrix.shape)
+    size[rows, columns] = np.abs(typical_sizes(matrix, typical)) * nominals[columns]
+    whole = size.sum(axis=1, keepdims=True)
+    whole[whole == 0.0] = 1.0
+    cost = np.full(matrix.shape, ABSENT)
+    cost[rows, columns] = -np.log(np.maximum(size / whole, 1e-300)[rows, columns])
+    _, test = linear_sum_assignment(cost.T)
+    return residual[test.tolist()] / ca.DM(whole[test]), tuple(solution.tests[i].name for i in test)
 
 
 def start_of(unknown: Unknown) -> float:

@@ -93,9 +93,9 @@ def test_a_cubic_far_from_its_guess(a: float) -> None:
     assert y**3 - 6 * y**2 + 11 * y == pytest.approx(a + 6, rel=1e-9, abs=1e-8)
 
 
-def test_a_block_without_guesses_is_torn_at_one_unknown_and_solved() -> None:
+def test_a_block_without_guesses_is_torn_at_its_nonlinear_unknowns() -> None:
     flat = model(Pair("pair", b=-1.0), nets=[])
-    assert len(flat.algebraic) == 1
+    assert {q.name for q in flat.algebraic} == {"pair.x", "pair.y"}
     found = steady(flat, {"pair.r": 3.0})
     assert found.implicit and max(found.implicit.values()) < 1e-12
 
@@ -140,3 +140,20 @@ def test_a_node_without_capacity_radiates_and_conducts() -> None:
     T = brentq(lambda T: 2 * (420 - T) - SIGMA * 0.1 * (T**4 - 300**4) - 0.5 * (T - 300), 250, 420, xtol=1e-12)
     assert y["surface.Q_flow"] == pytest.approx(SIGMA * 0.1 * (T**4 - 300**4), rel=1e-9)
     assert y["wall.Q_flow"] == pytest.approx(2 * (420 - T), rel=1e-9)
+
+
+def test_many_nodes_without_capacity() -> None:
+    """A bar of massless nodes that radiate: one algebraic variable a node, the heat that enters leaves."""
+    n = 40
+    walls, skins = (
+        [kind(f"{name}{k}", **value) for k in range(n)]
+        for kind, name, value in ((Conductor, "wall", dict(G=5.0)), (Radiation, "skin", dict(A=0.02)))
+    )
+    nets = [(f"wall{k}.b", f"skin{k}.a", *([f"wall{k + 1}.a"] if k + 1 < n else [])) for k in range(n)]
+    nets += [("body.heat", "wall0.a"), ("room.heat", *(f"skin{k}.b" for k in range(n)))]
+    flat = model(Body("body", C=1000.0), *walls, *skins, Ambient("room"), nets=nets)
+    assert len(flat.algebraic) == n
+    found = evaluate_at(flat, np.array([900.0]), flat.starts("input"), flat.starts("parameter"))
+    y = dict(zip([q.name for q in flat.outputs], found["y"], strict=True))
+    assert y["wall0.Q_flow"] == pytest.approx(sum(y[f"skin{k}.Q_flow"] for k in range(n)), rel=1e-12)
+    assert y["wall0.Q_flow"] > y[f"wall{n - 1}.Q_flow"] > 0
