@@ -137,10 +137,10 @@ def operating_start(
 
 
 def _holding(own: FlatModel, flat: FlatModel, names: set[str]) -> dict[str, float]:
-    """Torques and states of a balance that the machine does not leave by itself.
+    """Torques and states of an equilibrium that the machine does not leave by itself.
 
     Friction that falls with speed or with its own heat lets a loaded machine run away or stop as long as both torques
-    stay, so the balance may be one of a part of the load. A machine that holds no speed at all starts at rest.
+    stay, so the equilibrium may be one of a part of the load. A machine that holds no speed at all starts at rest.
 
     Args:
         own: the model driven as its rig
@@ -155,9 +155,12 @@ def _holding(own: FlatModel, flat: FlatModel, names: set[str]) -> dict[str, floa
             balancing = {name: float(at[name][0]) for name in torques}
             shafts = {name: float(at[name][0]) for name in names & at.columns.keys()}
             warm = {q.name: float(at[q.name][0]) for q in flat.states if q.name in at.columns}
-            found = steady(flat, balancing, guess=warm | _speeds(flat, shafts, set()))
+            speeds = _speeds(flat, shafts, set())
+            found = steady(flat, balancing, guess=warm | speeds)
         except SolveError:
             continue
+        if any(abs(float(found[name][0])) < 0.1 * abs(speed) for name, speed in speeds.items()):
+            continue  # it has come to rest, where friction holds any load
         return balancing | {q.name: float(found[q.name][0]) for q in flat.states}
     return dict.fromkeys([*torques, *(q.name for q in flat.states if q.unit == "rad/s")], 0.0)
 

@@ -295,11 +295,12 @@ def test_for_another_machine_the_reference_is_made_all_the_same(gearheat, tmp_pa
 def test_the_sentence_for_people(gearheat, tmp_path):
     answer = gearheat("export", "planetary", "-o", tmp_path / "rig.fmu", "--extras", tmp_path)
     assert answer.code == 0, answer.err
-    first, second = answer.out.splitlines()
+    first, second, third = answer.out.splitlines()
     assert (
         first == f"{tmp_path / 'rig.fmu'}: 9 inputs, 52 outputs, 102 parameters, for {compiling.host_platform().name}"
     )
     assert re.fullmatch(r"\d\d files beside it, from .*rig\.ssv", second)
+    assert third == 'catalogue values not checked against a print: oil "PAOR": oil.T_pour'
 
 
 def test_an_extended_rig_has_its_oils_too(gearheat, tmp_path):
