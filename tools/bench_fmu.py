@@ -1,8 +1,8 @@
 """The FMU against its peers on the same equations: what calls cost, a warm-up of 330 min, growth with the model's size.
 
-All ratios are of one run. A right-hand side is one call of the function of the rates, compiled from the source in the
-FMU; it is the unit in which costs are given. All times are processor times, so other work on the machine does not
-count.
+All ratios are of one run. A right-hand side is the rates at a new point, its implicit equations solved from the last
+solution, by the functions in the source of the FMU; it is the unit in which costs are given. All times are processor
+times, so other work on the machine does not count.
 """
 
 from __future__ import annotations
