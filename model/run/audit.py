@@ -67,13 +67,12 @@ def imbalance(
     """
     if audit.residual <= max(ENERGY, ENERGY_BY_TOLERANCE * tolerance):
         return
-    power = np.abs(evaluated["imbalance"])
-    who = "the integration" if not power.size else ""
+    who = "no part makes or loses power, so the integration does: use a tighter tolerance"
+    power = evaluated["imbalance"]
     if power.size:
-        worst, row = np.unravel_index(int(np.nanargmax(power)), power.shape)
-        made = float(evaluated["imbalance"][worst, row])
-        small = ENERGY * max(float(evaluated["throughput"][0, row]), 1e-3)
-        does = "takes in" if made > 0 else "gives off"
-        who = f"{flat.balanced[worst]} {does} {abs(made):.4g} W more than it accounts for" if abs(made) > small else ""
-    who = who or "no part makes or loses power, so the integration does: use a tighter tolerance"
+        worst, row = np.unravel_index(int(np.nanargmax(np.abs(power))), power.shape)
+        made = float(power[worst, row])
+        if abs(made) > ENERGY * max(float(evaluated["throughput"][0, row]), 1e-3):
+            does = "takes in" if made > 0 else "gives off"
+            who = f"{flat.balanced[worst]} {does} {abs(made):.4g} W more than it accounts for"
     yield f"energy is not conserved: {audit.residual:.2g} of the throughput is missing; {who}."
