@@ -8,14 +8,16 @@ typedef struct {
     double y[AT_LEAST_1(NY)], dx[AT_LEAST_1(NX)];
 } Slopes;
 
-static void derive(Instance *m, const Direction *d, int parameters_move, Slopes *out)
+/* Derivatives along d; 0 where the implicit equations have no solution. */
+static int derive(Instance *m, const Direction *d, int parameters_move, Slopes *out)
 {
     double c_dot[AT_LEAST_1(NC)];
     memset(c_dot, 0, sizeof c_dot);
     refresh_constants(m);
-    unsolved(m);
+    if (unsolved(m)) return 0;
     if (parameters_move) model_constants_directional(m->s.p, d->p, c_dot);
     model_directional(m->s.x, m->z, m->s.u, m->s.p, m->c, d->x, d->u, d->p, c_dot, out->y, out->dx);
+    return 1;
 }
 
 static double slope_of(const Direction *d, const Slopes *s, fmi2ValueReference r)
@@ -55,7 +57,8 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     for (i = 0; i < n_unknown; i++)
         if (!is_calculated(unknown[i]))
             return refuse(m, "%s: %s is given, so it is no unknown.", f, model_names[unknown[i]]);
-    derive(m, &d, parameters_move, &s);
+    if (!derive(m, &d, parameters_move, &s))
+        return discard(m, "%s: the equation \"%s\" has no solution at t = %.10g s.", f, unsolved(m), m->s.time);
     for (i = 0; i < n_unknown; i++) {
         d_unknown[i] = slope_of(&d, &s, unknown[i]);
         if (!isfinite(d_unknown[i]))
@@ -86,7 +89,8 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     memset(&d, 0, sizeof d);
     memcpy(d.x, m->dx, sizeof d.x);
     memcpy(d.u, m->s.slope, sizeof d.u);
-    derive(m, &d, 0, &s);
+    if (!derive(m, &d, 0, &s))
+        return discard(m, "%s: the equation \"%s\" has no solution at t = %.10g s.", f, unsolved(m), m->s.time);
     for (i = 0; i < n; i++) {
         value[i] = slope_of(&d, &s, r[i]);
         if (!isfinite(value[i])) return discard(m, "%s: the derivative of %s is not finite.", f, model_names[r[i]]);
