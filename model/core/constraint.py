@@ -109,7 +109,7 @@ def _entries(matrix: Any, sparsity: Any) -> dict[tuple[int, int], Any]:
 
 
 @dataclass(frozen=True)
-class Relation:
+class Constraint:
     """A constraint as sum of coefficient times state, plus what inputs and parameters say.
 
     Attributes:
@@ -133,7 +133,7 @@ class Relation:
         return [k for k, size in enumerate(self.sizes) if size]
 
     @staticmethod
-    def of(expression: Any, known: Known) -> Relation | None:
+    def of(expression: Any, known: Known) -> Constraint | None:
         """A constraint in this form; None where it is not linear in the states and inputs.
 
         Args:
@@ -149,7 +149,7 @@ class Relation:
         found = [float(size) for size in known.values(ca.densify(slopes)).full().ravel()]
         sizes = [size if abs(size) > NOTHING else 0.0 for size in found]
         x = z[: len(states)]
-        return Relation(
+        return Constraint(
             tuple(known.states[h] for h in states),
             tuple(slopes[0, k] for k in range(len(states))),
             tuple(sizes[: len(states)]),

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from .connect import Assembly, nets
-from .constraint import Known, Relation
+from .constraint import Constraint, Known
 from .declare import Given, Port
 from .reduce import tie
 from .solve import Row, Unknown
@@ -78,7 +78,9 @@ class Faults:
         levels = {name for net in self.nets if type(net[0]).flows() for name in _of_net(net)}
         return Fault((text,), not levels.isdisjoint(u.name for u in unknowns))
 
-    def _contradiction(self, relation: Relation | None, given: Sequence[str], ports: Sequence[Port]) -> tuple[str, str]:
+    def _contradiction(
+        self, relation: Constraint | None, given: Sequence[str], ports: Sequence[Port]
+    ) -> tuple[str, str]:
         """What some equations say too much, and what to do about it."""
         held = [] if relation is None else [relation.states[k] for k in relation.acting]
         states, owners = [f"{part.name}.{key}" for part, key in held], listed([part.name for part, _ in held])

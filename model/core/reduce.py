@@ -16,7 +16,7 @@ import casadi as ca
 from ..errors import StructureError
 from .component import Component
 from .connect import Assembly
-from .constraint import Known, Relation, constraint
+from .constraint import Constraint, Known, constraint
 from .matching import Matching, columns_of
 from .solve import Row, Unknown, incidence
 
@@ -78,7 +78,7 @@ def _standing(rows: list[Row], known: Known) -> dict[str, list[int]]:
     return found
 
 
-def _coupling(reduced: Reduced, columns: list[list[int]], known: Known) -> tuple[Relation, int] | None:
+def _coupling(reduced: Reduced, columns: list[list[int]], known: Known) -> tuple[Constraint, int] | None:
     """The first relation between states alone, and which of them is to follow."""
     matching = Matching(columns, len(reduced.unknowns))
     for spare in matching.spare_rows:
@@ -90,7 +90,7 @@ def _coupling(reduced: Reduced, columns: list[list[int]], known: Known) -> tuple
     return None
 
 
-def tie(rows: list[Row], unknowns: list[Unknown], known: Known) -> Relation | None:
+def tie(rows: list[Row], unknowns: list[Unknown], known: Known) -> Constraint | None:
     """What equations, one more than unknowns, say about states and inputs; None where that is not linear.
 
     Args:
@@ -99,17 +99,17 @@ def tie(rows: list[Row], unknowns: list[Unknown], known: Known) -> Relation | No
         known: the symbols of the parts
     """
     expression = constraint(rows, unknowns, known)
-    return None if expression is None else Relation.of(expression, known)
+    return None if expression is None else Constraint.of(expression, known)
 
 
-def _follower(relation: Relation) -> int:
+def _follower(relation: Constraint) -> int:
     """The last state of those whose start nobody has given, the last of all where each was given."""
     starts = [(part.values[key], part.states[key].start) for part, key in relation.states]
     unasked = [k for k in relation.acting if starts[k][0] == starts[k][1]]
     return (unasked or relation.acting)[-1]
 
 
-def _demote(model: str, relation: Relation, k: int, known: Known, reduced: Reduced) -> None:
+def _demote(model: str, relation: Constraint, k: int, known: Known, reduced: Reduced) -> None:
     """Make the k-th state of a relation an unknown, with the relation's derivative to go with its derivative."""
     (part, key), others = relation.states[k], [i for i in range(len(relation.states)) if i != k]
     path, leaders = _path(part, key), [_path(*relation.states[i]) for i in others]
@@ -123,7 +123,7 @@ def _demote(model: str, relation: Relation, k: int, known: Known, reduced: Reduc
     reduced.joined[path] = f"{path} follows {' and '.join(leaders)}"
 
 
-def _check_start(model: str, relation: Relation, k: int, known: Known) -> None:
+def _check_start(model: str, relation: Constraint, k: int, known: Known) -> None:
     """Raise StructureError where a start that was given is not the one that follows from the others."""
     part, key = relation.states[k]
     given, state = part.values[key], part.states[key]
