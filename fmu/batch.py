@@ -20,6 +20,7 @@ from typing import Any
 import numpy as np
 from gearheat.model.core.flat import FlatModel, Quantity
 from gearheat.model.errors import ScenarioError, suggestion
+from gearheat.model.run.audit import SLACK
 from gearheat.model.run.schedule import Schedule
 
 from .batch_library import Duty, address, driver, instructions, rows_from, shared, widened
@@ -344,7 +345,7 @@ def _marked(rows: Rows, verdict: np.ndarray, outputs: Sequence[Quantity]) -> Row
     for i, q in enumerate(outputs):
         if np.isfinite([q.low, q.high]).any():
             y = rows.y[..., i].reshape(len(rows.status), -1)
-            slack = 1e-9 * (q.nominal + np.abs(y))
+            slack = SLACK * (q.nominal + np.abs(y))
             wrong = ((y < q.low - slack) | (y > q.high + slack)).any(axis=1)
             rows.status[wrong & (rows.status == int(Status.OK))] = Status.OUT_OF_RANGE
     failed = rows.status != int(Status.OK)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from importlib.resources import files
 
-import casadi as ca
 import numpy as np
 from gearheat.model.core.flat import FlatModel
 
@@ -20,7 +19,6 @@ def relations_source(flat: FlatModel) -> str:
     """
     if not flat.relations:
         return ""
-    values = ca.Function("relations_of", [flat.p], [ca.densify(flat.related)], ["p"], ["related"], {"cse": True})
     limits = {"low": [r.low for r in flat.relations], "high": [r.high for r in flat.relations]}
     wrapper = files("gearheat.fmu") / "wrapper"
     return "\n".join(
@@ -31,7 +29,7 @@ def relations_source(flat: FlatModel) -> str:
                 f"static const double model_relation_{end}[] = {{{', '.join(map(emit.number, numbers))}}};"
                 for end, numbers in limits.items()
             ),
-            emit.function(values),
+            emit.function(flat.relation_function),
             (wrapper / "batch_relations.c").read_text(encoding="utf-8"),
         ]
     )

@@ -110,6 +110,8 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
     }
     before = m->s;
     if (!advance(m, step, &w)) {
+        m->s = before;
+        changed(m);
         remember_refusal(m, step, w.block ? w.block : model_names[FIRST_X + w.worst]);
         return stuck(m, time, step, &w);
     }

@@ -1,10 +1,9 @@
-/* Advance over a communication step. With success the state is that at its end, else it is as before. A held input that
-   jumps makes a boundary layer behind the communication point, so the size that fitted there last time is remembered
-   beside the size that fitted at the end. */
+/* Advance over a communication step; 0 where it does not arrive, for the caller to go back. A held input that jumps makes
+   a boundary layer behind the communication point, so the size that fitted there last time is remembered beside the size
+   that fitted at the end. */
 static int advance(Instance *m, double length, Advance *w)
 {
     State *s = &m->s;
-    State before = *s;
     double x[AT_LEAST_1(NX)], x_new[AT_LEAST_1(NX)], u[AT_LEAST_1(NU)], z[AT_LEAST_1(NZ)], z_new[AT_LEAST_1(NZ)] = {0.0};
     double t = 0.0, first = 0.0, h = s->jumped ? s->h_first : s->h_last;
     int i;
@@ -35,11 +34,7 @@ static int advance(Instance *m, double length, Advance *w)
     memcpy(s->z, z, sizeof z);
     memcpy(s->u, u, sizeof u);
     if (length > 0.0) changed(m);
-    if ((w->block = unsolved(m)) != NULL) {
-        *s = before;
-        changed(m);
-        return 0;
-    }
+    if ((w->block = unsolved(m)) != NULL) return 0;
     accept_algebra(m);
     s->h_first = first;
     s->h_last = h;

@@ -10,9 +10,10 @@ import casadi as ca
 
 from .component import Component
 from .connect import Assembly
+from .eliminate import Factors, Singular, typical_sizes
 from .solve import Row, Unknown, column
 
-#: A coefficient below this share of the largest one in its row is none.
+#: A coefficient of a constraint below this is none.
 NOTHING = 1e-12
 
 
@@ -85,27 +86,16 @@ def constraint(rows: Sequence[Row], unknowns: Sequence[Unknown], known: Known) -
     matrix = ca.jacobian(residual, z)
     if not known.constant(matrix):
         return None
-    size = _entries(known.values(matrix), matrix.sparsity())
-    entries = _entries(matrix, matrix.sparsity())
-    rest = ca.vertsplit(ca.substitute(residual, z, ca.SX.zeros(*z.shape)))
-    left = set(range(len(rows)))
-    for j in range(len(unknowns)):
-        candidates = [i for i in left if abs(size.get((i, j), 0.0)) > NOTHING]
-        if not candidates:
-            return None
-        pivot = min(candidates, key=lambda i: (sum((i, c) in size for c in range(len(unknowns))), i))
-        left.discard(pivot)
-        for i in [i for i in left if (i, j) in entries]:
-            factor, ratio = entries.pop((i, j)) / entries[pivot, j], size.pop((i, j)) / size[pivot, j]
-            rest[i] = rest[i] - factor * rest[pivot]
-            for c in [c for c in range(j + 1, len(unknowns)) if (pivot, c) in entries]:
-                entries[i, c] = entries.get((i, c), 0) - factor * entries[pivot, c]
-                size[i, c] = size.get((i, c), 0.0) - ratio * size[pivot, c]
-    return rest[left.pop()]
-
-
-def _entries(matrix: Any, sparsity: Any) -> dict[tuple[int, int], Any]:
-    return {(i, j): matrix[i, j] for i, j in zip(*sparsity.get_triplet(), strict=True)}
+    rest = ca.substitute(residual, z, ca.SX.zeros(*z.shape))
+    for left in reversed(range(len(rows))):
+        others = [i for i in range(len(rows)) if i != left]
+        chosen = matrix[others, :]
+        try:
+            answer = Factors(chosen, typical_sizes(chosen, known.typical)).solve(-rest[others, :])
+        except Singular:
+            continue
+        return rest[left] + ca.mtimes(matrix[left, :], answer)
+    return None
 
 
 @dataclass(frozen=True)

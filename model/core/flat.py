@@ -192,7 +192,9 @@ class FlatModel:
     @cached_property
     def relation_function(self) -> Any:
         """CasADi function (p) -> (related,)."""
-        return ca.Function("relations", [self.p], [ca.densify(ca.SX(self.related))], ["p"], ["related"], {"cse": True})
+        return ca.Function(
+            "relations_of", [self.p], [ca.densify(ca.SX(self.related))], ["p"], ["related"], {"cse": True}
+        )
 
     def contradictions(self, p: np.ndarray) -> dict[Relation, str]:
         """The relations that do not hold between the values of all parameters, each with what is wrong."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from ..core.flat import FlatModel
 from ..errors import ScenarioError, SolveError, suggestion
 from ..units import text
+from .fast import once
 from .integrate import Failure, Stretch, Transient
 from .point import Point, point, problem_of
 from .result import Audit, Result
@@ -175,11 +177,17 @@ def _result(
     tolerance: float,
 ) -> Result:
     evaluated = evaluate(flat, x, u, begin.p, z)
-    stored = ca.Function("stored", [flat.x, flat.u, flat.p], [flat.stored])
+    stored = _stored(flat)
     ends = [float(stored(state, u[:, k], begin.p)) for state, k in ((begin.x, 0), (last, -1))]
     held = float(max(np.abs(evaluated["stored"]).max(), *map(abs, ends)))
     audit = Audit(float(energy[0]), ends[1] - ends[0], float(energy[1]), held)
     return result(flat, "transient", time, x, u, evaluated, audit, tolerance)
+
+
+@once
+def _stored(flat: FlatModel) -> Any:
+    """CasADi function (x, u, p) -> energy of the states."""
+    return ca.Function("stored", [flat.x, flat.u, flat.p], [flat.stored])
 
 
 def _check_ranges(flat: FlatModel, grid: np.ndarray, path: np.ndarray) -> None:
