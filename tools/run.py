@@ -13,7 +13,7 @@ import numpy as np
 from ..model.core.flat import FlatModel
 from ..model.units import shown, to_si
 from ..scenarios.scenario import Scenario
-from . import campaign, describe, summary, unchecked
+from . import campaign, describe, summary
 from .compare import Comparison, Rows, compare, present
 from .console import answer, as_json, file_of, folder, note, table, writable, write
 from .exporting import write_fmu
@@ -22,6 +22,7 @@ from .readings import sources
 from .report import Study, render
 from .rivals import Score, rivals
 from .settings import adjusted, driven_by, flat_of, loaded
+from .unchecked import print_unchecked, unchecked, unchecked_lines
 
 #: First columns of a row, the rest follow in the order they arise.
 ROW = ("point", "test", "direction", "oil", "T_oil_C", "T_wall_C", "T_amb_C", "loss_Nm", "P_loss_W", "efficiency")
@@ -60,7 +61,7 @@ def command(
     rows = [_ordered(row) for row in campaign.rows(scenario, found, played)]
     comparison, scores = (compare(rows), rivals(rows)) if present(rows) else (None, ())
     result = _result(scenario, fmu, digest, rows, comparison, scores)
-    result["unchecked"] = unchecked.unchecked(scenario, flat, oils_of(scenario.campaign))
+    result["unchecked"] = unchecked(scenario, flat, oils_of(scenario.campaign))
     study = _study(scenario, flat, found, played, rows, result, kept)
     write(out / "rows.csv", _csv(rows))
     write(out / "result.json", as_json(result))
@@ -117,7 +118,7 @@ def _study(
         laws=describe.cited(flat),
         outside=campaign.outside_of(flat, found, played),
         parameters=describe.parameters(scenario, flat),
-        unchecked=tuple(unchecked.unchecked_lines(result["unchecked"])),
+        unchecked=tuple(unchecked_lines(result["unchecked"])),
         errata=tuple((e.place, e.says, e.should_be, e.evidence) for e in scenario.errata),
         energy_residual_max=result["energy_residual_max"],
     )
@@ -169,5 +170,5 @@ def _print(rows: Rows, comparison: Comparison | None, scores: Sequence[Score], r
         table(f"{result['rig']}: operating point", ("name", "value"), [[c, rows[0][c]] for c in columns])
     else:
         summary.show(comparison, scores)
-    unchecked.print_unchecked(result["unchecked"])
+    print_unchecked(result["unchecked"])
     print(f"{len(rows)} readings; energy balance closed within {result['energy_residual_max']:.1e} of the throughput")
