@@ -13,7 +13,7 @@ from typing import Any
 
 import pytest
 
-GOLDEN = Path(__file__).parents[1] / "golden"
+GOLDEN = Path(__file__).parents[2] / "model" / "golden"
 RPM = 3.141592653589793 / 30
 #: Unit -> factor to SI. "W at 250 rpm" is a torque, "W at 250 K" a conductance, told by their power.
 UNITS = {

@@ -15,13 +15,14 @@ FLOORS = {
     "model.core": 2,
     "model.parts": 3,
     "model.machines": 4,
+    "model.contact": 4,
     "model.run": 5,
     "fmu": 6,
     "scenarios": 6,
     "tools": 7,
 }
 #: Neighbours that do not know each other: laws and core meet in the parts, fmu and scenarios in the tools.
-STRANGERS = [{"model.laws", "model.core"}, {"fmu", "scenarios"}]
+STRANGERS = [{"model.laws", "model.core"}, {"model.machines", "model.contact"}, {"fmu", "scenarios"}]
 MODULES = sorted(p for top in ("model", "fmu", "scenarios", "tools") for p in (ROOT / top).rglob("*.py"))
 
 
