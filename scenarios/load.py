@@ -1,6 +1,6 @@
 """Rig files: one TOML file says everything about a rig, with a source for every value.
 
-    kind = "planetary"                    # a machine of gearheat.model.machines, or "network"
+    kind = "planetary"                    # a machine: a name in `LAYOUTS`, or "network"
     doc = "..."
 
     [drive]                               # what is given at the shaft ends
@@ -47,7 +47,7 @@ from ..model.core.connect import nets
 from ..model.core.declare import Port, State, declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
-from ..model.machines import planetary
+from ..model.machines import cycloidal, planetary
 from ..model.machines.spec import PartSpec, Spec, assemble
 from ..model.parts import PARTS
 from ..model.units import to_si
@@ -60,6 +60,8 @@ from .values import PartValues, in_range, part_values, readable, settable
 #: Kind of rig -> its fixed parts (name -> type) and connections.
 LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
     "planetary": (planetary.PARTS, planetary.CONNECTIONS),
+    "cycloidal": (cycloidal.PARTS, cycloidal.CONNECTIONS),
+    "cycloidal_printed": (cycloidal.PRINTED_PARTS, cycloidal.PRINTED_CONNECTIONS),
     "network": ({}, ()),
 }
 

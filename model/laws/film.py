@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import casadi as ca
+
 from ..sources import law
 from .smooth import Num, smooth_abs, smooth_power
 
@@ -87,3 +89,50 @@ def specific_film_thickness(h: Num, sigma: Num) -> Num:
         sigma: root of the sum of the squared roughnesses of both surfaces [m]
     """
     return h / sigma
+
+
+@law(source="Grubin1949", where="exponents of the central film thickness", valid="one contact", verified=False)
+def film_from_reference(
+    Lambda_ref: Num, stir: Num, load: Num, *, stir_width: float = 1e-6, load_width: float = 1e-3
+) -> Num:
+    r"""Specific film thickness of a contact by what it is at a reference [1], zero at standstill.
+
+    .. math:: \Lambda = \Lambda_{ref} \left(\frac{\eta u}{\eta_{ref} u_{ref}}\right)^{0.727}
+        \left(\frac{F}{F_{ref}}\right)^{-0.091}
+
+    Args:
+        Lambda_ref: specific film thickness at the reference [1]
+        stir: viscosity times speed over that of the reference, either sign [1]
+        load: force over that of the reference, either sign [1]
+        stir_width: rounding at standstill [1]
+        load_width: rounding without load [1]
+    """
+    return Lambda_ref * smooth_power(stir, 0.727, stir_width) * smooth_abs(load, load_width) ** -0.091
+
+
+@law(source="OlverSpikes1998", where="friction between full film and boundary", valid="mixed friction", verified=False)
+def mixed_friction(Lambda: Num, mu_film: Num, mu_bl: Num) -> Num:
+    r"""Friction coefficient of a contact that a film carries in part [1].
+
+    .. math:: \mu = f \mu_{film} + (1 - f) \mu_{bl},\quad f = 1 - \frac{1}{(1 + \Lambda)^2}
+
+    Args:
+        Lambda: specific film thickness, not negative [1]
+        mu_film: friction coefficient of a full film [1]
+        mu_bl: friction coefficient without a film [1]
+    """
+    return mu_film + (mu_bl - mu_film) / (1 + Lambda) ** 2
+
+
+@law(source="OlverSpikes1998", where="friction between full film and boundary", valid="mixed friction", verified=False)
+def film_of_friction(mu: Num, mu_film: Num, mu_bl: Num) -> Num:
+    r"""Specific film thickness at which a contact has a given friction coefficient [1]: `mixed_friction` inverted.
+
+    .. math:: \Lambda = \sqrt{\frac{\mu_{bl} - \mu_{film}}{\mu - \mu_{film}}} - 1
+
+    Args:
+        mu: friction coefficient, between the other two [1]
+        mu_film: friction coefficient of a full film [1]
+        mu_bl: friction coefficient without a film [1]
+    """
+    return ca.sqrt((mu_bl - mu_film) / (mu - mu_film)) - 1

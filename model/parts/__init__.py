@@ -3,7 +3,16 @@
 from ..core.component import Component
 from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
+from .cycloid import CycloidalReducer, MalhotraReducer
 from .gears import HelicalGearPair, PlanetarySet
+from .housing import (
+    FlatWallCooling,
+    LinearFlatWallCooling,
+    LinearShellCooling,
+    OilToHousing,
+    RoundHousing,
+    ShellCooling,
+)
 from .lubrication import Grease, OilBath
 from .sealing import LipSeal
 from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit
@@ -32,6 +41,8 @@ PARTS: dict[str, type[Component]] = {
         Efficiency,
         PlanetarySet,
         HelicalGearPair,
+        CycloidalReducer,
+        MalhotraReducer,
         ShaftSupport,
         TwoGearSupport,
         TaperedRollerBearing,
@@ -49,6 +60,12 @@ PARTS: dict[str, type[Component]] = {
         BoxCooling,
         CylinderCooling,
         FinnedBoxCooling,
+        RoundHousing,
+        OilToHousing,
+        FlatWallCooling,
+        ShellCooling,
+        LinearFlatWallCooling,
+        LinearShellCooling,
         Room,
         PrescribedTemperature,
     )
