@@ -60,7 +60,7 @@ class CycloidDrive(Component):
     mu_r2 = Parameter("1", "coefficient of rolling friction of the output rollers", nominal=1e-3, at_least=0.0)
     mu_r3 = Parameter("1", "coefficient of rolling friction of the rollers on the pins", nominal=1e-3, at_least=0.0)
     P_loss = Output("W", "friction power", nominal=100.0, at_least=0.0)
-    tau_loss = Output("N.m", "friction torque, on the output", nominal=10.0, at_least=0.0)
+    tau_loss = Output("N.m", "friction torque, on the output", nominal=10.0, at_least=0.0, guess=0.0)
     F_N = Output("N", "sum of the forces between a disc and its pins", nominal=1000.0)
     F_K = Output("N", "sum of the forces between a disc and its output rollers", nominal=1000.0)
     F_E = Output("N", "force on the eccentric bearing of a disc", nominal=1000.0)
