@@ -1,9 +1,10 @@
 """Golden rows of laws as published numbers: a law of the model against a number from print.
 
-A row of `model/golden/*.toml` has `law` ("module.function"), `args` (numbers in SI, or text with a unit), `expect` with
-`unit`, and `tol` in that unit or `rel`. `kind` says what the number is: "published" as the source prints it, "corrected"
-by an erratum (`published` and `why` then say what stands in print and why it cannot), "reproduced" a recomputation that no
-one printed, "misprint" what a misprint of the source leads to. `item` picks from a law with several results.
+A row of `model/golden/*.toml` has `law` ("module.function"), `args` (numbers in SI, or text with a unit), `expect`
+with `unit`, and `tol` in that unit or `rel`. `kind` says what the number is: "published" as the source prints it,
+"corrected" by an erratum (`published` and `why` then say what stands in print and why it cannot), "reproduced" a
+recomputation that no one printed, "misprint" what a misprint of the source leads to. `item` picks from a law with
+several results.
 """
 
 from __future__ import annotations
@@ -40,20 +41,22 @@ class GoldenRow(Strict):
 
     def as_row(self) -> Row:
         """The row in the form of all published numbers."""
-        given = {"published": "published", "corrected": "corrected"}.get(self.kind, "recomputed")
-        numbers = {"published": self.published, given: self.expect}
-        return Row(
-            name=self.name,
-            where=self.source,
-            **numbers,
-            why=self.why or (self.name if self.kind == "corrected" else ""),
-            tol=self.tol,
-            rel=self.rel,
-            unit="" if self.unit == "1" else self.unit,
-            run="law",
-            law=self.law,
-            args=self.args,
-            item=self.item,
+        given = self.kind if self.kind in ("published", "corrected") else "recomputed"
+        return Row.model_validate(
+            {
+                "name": self.name,
+                "where": self.source,
+                "published": self.published,
+                given: self.expect,
+                "why": self.why,
+                "tol": self.tol,
+                "rel": self.rel,
+                "unit": "" if self.unit == "1" else self.unit,
+                "run": "law",
+                "law": self.law,
+                "args": self.args,
+                "item": self.item,
+            }
         )
 
 

@@ -8,7 +8,7 @@
     recomputed = "139.5 degC"             # a recomputation from the source, where it prints no number
     contradiction = true                  # the printed number cannot hold, and no corrected one exists
     why = "..."                           # needed with corrected and contradiction
-    tol = "0.6 K"                         # or rel = 0.01: distance allowed from corrected, else published, else recomputed
+    tol = "0.6 K"                         # or rel = 0.01: distance allowed from the last of these numbers
     unit = "N.mm"                         # of numbers that stand without one
 
 How the model gives it is one of:
@@ -23,8 +23,8 @@ How the model gives it is one of:
     run = "print"                         # path = "0.0303 + 0.0588": arithmetic on printed numbers alone
 
 A `path` may be an expression, in SI: "3 * gear_set.P_loss". One that compares, such as "max(Lambda) < 0.7", is a
-statement; it needs no tolerance and either holds or not. A table `[[table]]` with `data = "name.csv"` makes a row of each
-number in the CSV file; see `SheetTable`.
+statement; it needs no tolerance and either holds or not. A table `[[table]]` with `data = "name.csv"` makes a row of
+each number in the CSV file; see `SheetTable`.
 """
 
 from __future__ import annotations
@@ -90,6 +90,7 @@ class Row(Strict):
     args: dict[str, Any] = Field({}, description="argument -> number in SI, or text with a unit")
     item: int | None = Field(None, description="which of several results of a law, from 0")
     of: dict[str, str] = Field({}, description="name in the expression -> name of a row")
+    group: str = Field("", description="name of the table that the row belongs to")
 
     @property
     def expected(self) -> Number | None:
@@ -184,18 +185,20 @@ class _Reader:
 
 def _cell(sheet: SheetTable, source: Cells, column: str, keys: Mapping[str, float], value: float) -> Row:
     said = ", ".join(f"{key} {key_value:g}" for key, key_value in keys.items())
-    return Row(
-        name=f"{sheet.name}: {said}, {column}",
-        where=sheet.where,
-        tol=sheet.tol,
-        rel=sheet.rel,
-        unit=sheet.unit,
-        run=sheet.run,
-        set={**sheet.set, **source.set},
-        path=source.path,
-        select={**keys, **source.select},
-        published=value if sheet.kind == "published" else None,
-        recomputed=value if sheet.kind == "recomputed" else None,
+    return Row.model_validate(
+        {
+            "name": f"{sheet.name}: {said}, {column}",
+            "where": sheet.where,
+            "group": sheet.name,
+            sheet.kind: value,
+            "tol": sheet.tol,
+            "rel": sheet.rel,
+            "unit": sheet.unit,
+            "run": sheet.run,
+            "set": {**sheet.set, **source.set},
+            "path": source.path,
+            "select": {**keys, **source.select},
+        }
     )
 
 
