@@ -25,7 +25,7 @@ from ..laws.cycloid import (
     roller_loss_torque,
 )
 from ..laws.cycloid_pin import greatest_curvature, pin_load, width_coefficient
-from ..laws.film import film_from_reference, film_of_friction, mixed_friction
+from ..laws.film import film_from_reference, film_of_share, mixed_friction
 from ..laws.smooth import Num, friction_sign, smooth_magnitude, smooth_sign
 from .ports import Flange, HeatPort, Lubricant
 
@@ -145,7 +145,7 @@ class CycloidalReducer(CycloidDrive):
     lubricant = Lubricant()
 
     mu_ref = Parameter("1", "sliding friction of rollers on pins at the reference", nominal=0.1, above=0.0)
-    mu_film = Parameter("1", "sliding friction of a full film", nominal=0.1, at_least=0.0)
+    mu_fluid = Parameter("1", "sliding friction of a full film", nominal=0.1, at_least=0.0)
     mu_bl = Parameter("1", "sliding friction without a film", nominal=0.1, above=0.0, at_most=0.3)
     eta_ref = Parameter("Pa.s", "dynamic viscosity at the reference", nominal=0.1, above=0.0)
     w_ref = Parameter("rad/s", "speed of the input at the reference", nominal=100.0, above=0.0)
@@ -154,7 +154,7 @@ class CycloidalReducer(CycloidDrive):
         "1",
         "specific film thickness at the reference",
         at_least=0.0,
-        derived=lambda p: film_of_friction(p.mu_ref, p.mu_film, p.mu_bl),
+        derived=lambda p: film_of_share((p.mu_bl - p.mu_ref) / (p.mu_bl - p.mu_fluid)),
     )
     mu_s = Output("1", "sliding friction of rollers on pins", nominal=0.1)
     Lambda = Output("1", "specific film thickness of rollers on pins")
@@ -165,10 +165,10 @@ class CycloidalReducer(CycloidDrive):
     def relations(self) -> Iterator[Related]:
         """Friction lies between that of a film and that without, and locks nothing."""
         yield from super().relations()
-        place = (self.mu_ref - self.mu_film) / (self.mu_bl - self.mu_film)
-        remedy = "Give mu_film below mu_ref and mu_bl above it."
+        place = (self.mu_ref - self.mu_fluid) / (self.mu_bl - self.mu_fluid)
+        remedy = "Give mu_fluid below mu_ref and mu_bl above it."
         yield self.relation(
-            "mu_ref is mixed friction", "(mu_ref - mu_film) / (mu_bl - mu_film)", place, 1e-3, 1.0, remedy=remedy
+            "mu_ref is mixed friction", "(mu_ref - mu_fluid) / (mu_bl - mu_fluid)", place, 0.1, 1.0, remedy=remedy
         )
         most, remedy = sum(self.torques(1.0, self.mu_bl)), "Give smaller coefficients of friction or a smaller ratio."
         yield self.relation(
@@ -200,7 +200,7 @@ class CycloidalReducer(CycloidDrive):
         stir = self.lubricant.nu * self.lubricant.rho * self.input.w / (self.eta_ref * self.w_ref)
         load = self.output.tau / self.tau_ref
         yield equation("film", self.Lambda, film_from_reference(self.Lambda_ref, stir, load))
-        yield equation("sliding friction", self.mu_s, mixed_friction(self.Lambda, self.mu_film, self.mu_bl))
+        yield equation("sliding friction", self.mu_s, mixed_friction(self.Lambda, self.mu_fluid, self.mu_bl))
         w = friction_sign(self.input.w) * self.output.w
         for key, P, torque in zip(
             ("bearings", "output rollers", "rollers on pins"),

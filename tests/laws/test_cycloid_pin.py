@@ -23,6 +23,8 @@ from gearheat.model.laws.cycloid_pin import (
 MACHINES = [(40, 0.064, 0.0013, 0.003), (14, 0.086, 0.004, 0.007), (30, 0.05, 0.001, 0.002)]
 ANGLES = np.radians(np.linspace(1.0, 179.0, 90))
 W = 61.0
+#: What the formula for endlessly many pins misses of the torque at the worst position, by number of pins.
+WORST = {40: 1.5e-3, 14: 1.2e-2, 30: 6e-4}
 
 
 def path(Zp: int, Rp: float, e: float, theta: float) -> complex:
@@ -93,7 +95,7 @@ def test_speeds_are_those_of_the_mechanism(Zp: int, Rp: float, e: float, r_rp: f
 def test_pin_loads_carry_the_torque(Zp: int, Rp: float, e: float, r_rp: float) -> None:
     """Over a mesh cycle in the mean to 1e-4; with a pin on the crank's line to 2 K^Zp, as a trapezoidal sum must.
 
-    At other positions a few thousandths are missing: the formula stands for endlessly many pins.
+    At other positions some is missing or too much: the formula stands for endlessly many pins.
     """
     K, T = width_coefficient(e, Zp, Rp), 206.0
 
@@ -104,7 +106,7 @@ def test_pin_loads_carry_the_torque(Zp: int, Rp: float, e: float, r_rp: float) -
     assert carried(0.0) == pytest.approx(T, rel=2 * K**Zp)
     over = [carried(first) for first in np.linspace(0, 2 * math.pi / Zp, 41)[:-1]]
     assert np.mean(over) == pytest.approx(T, rel=1e-4)
-    assert max(abs(sum_ / T - 1) for sum_ in over) < 8e-3
+    assert max(abs(sum_ / T - 1) for sum_ in over) < WORST[Zp]
 
 
 def test_lever_is_the_distance_of_the_force_from_the_centre() -> None:

@@ -52,7 +52,7 @@ EXAMPLES: dict[str, dict] = {
     | dict(N=3.0, z_3=108.0, eps_alpha_sp=1.666, eps_alpha_pr=1.883, H_v_sp=0.168, H_v_pr=0.062)
     | dict(n_axial_carrier=1.0, n_axial_sun=3.0, s_planet=0.021),
     "HelicalGearPair": TEETH | dict(z_2=72.0, a_w=0.1097, x_1=0.0, x_2=0.0),
-    "CycloidalReducer": DISC | dict(mu_ref=0.05, mu_film=0.02, mu_bl=0.1, eta_ref=0.03, w_ref=148.7, tau_ref=332.0),
+    "CycloidalReducer": DISC | dict(mu_ref=0.05, mu_fluid=0.02, mu_bl=0.1, eta_ref=0.03, w_ref=148.7, tau_ref=332.0),
     "MalhotraReducer": DISC
     | dict(mu_s1=0.05, mu_s2=0.05, n_counted=1.0, turns_ring=1.0, P_rated=4000.0, w_rated=148.7, tau_rated=332.0),
     "ShaftSupport": SUPPORT,

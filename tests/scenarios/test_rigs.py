@@ -50,6 +50,7 @@ def test_all_are_listed() -> None:
         "planetary",
     )
     assert all(list_rigs().values())
+    assert all(list_rigs("reproduces").values())
 
 
 @pytest.mark.parametrize("name", NAMES)
