@@ -232,8 +232,8 @@ def test_heat_flows_from_hot_to_cold(kind: str) -> None:
 
 # ---------------------------------------------------------------------------------------------------- cold and extreme
 
-#: Parts that rub in a lubricant, as the cold table takes them; a seal rubs the same at any temperature. The rollers of a
-#: cycloidal reducer are in mixed friction at any: test_cycloid.py asks that it stays between its ends.
+#: Parts that rub in a lubricant, as the cold table takes them; a seal rubs the same at any temperature. The rollers of
+#: a cycloidal reducer are in mixed friction at any: test_cycloid.py asks that it stays between its ends.
 COLD = [(kind, {}) for kind in BRAKING if kind not in ("ExtraLoss", "FanLoad", "CycloidalReducer")]
 COLD += [(k, {"mixed_friction": False}) for k in ("DeepGrooveBallBearing", "TaperedRollerBearing")]
 #: Speeds [rad/s] and loads as factors of the nominal: forces [N], torques [N.m].
