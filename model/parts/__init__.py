@@ -5,8 +5,9 @@ from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBea
 from .churning import Churning
 from .gears import HelicalGearPair, PlanetarySet
 from .lubrication import Grease, OilBath
+from .rv import CycloidPinStage
 from .sealing import LipSeal
-from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit
+from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit, TurningFrame
 from .supports import ShaftSupport, TwoGearSupport
 from .thermal import (
     BoxCooling,
@@ -29,9 +30,11 @@ PARTS: dict[str, type[Component]] = {
         Inertia,
         LoadingClutch,
         TorqueSplit,
+        TurningFrame,
         Efficiency,
         PlanetarySet,
         HelicalGearPair,
+        CycloidPinStage,
         ShaftSupport,
         TwoGearSupport,
         TaperedRollerBearing,
