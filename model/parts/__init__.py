@@ -14,8 +14,9 @@ from .housing import (
     ShellCooling,
 )
 from .lubrication import Grease, OilBath
+from .rv import CycloidPinStage
 from .sealing import LipSeal
-from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit
+from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit, TurningFrame
 from .supports import ShaftSupport, TwoGearSupport
 from .thermal import (
     BoxCooling,
@@ -38,11 +39,13 @@ PARTS: dict[str, type[Component]] = {
         Inertia,
         LoadingClutch,
         TorqueSplit,
+        TurningFrame,
         Efficiency,
         PlanetarySet,
         HelicalGearPair,
         CycloidalReducer,
         MalhotraReducer,
+        CycloidPinStage,
         ShaftSupport,
         TwoGearSupport,
         TaperedRollerBearing,

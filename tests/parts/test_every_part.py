@@ -55,6 +55,10 @@ EXAMPLES: dict[str, dict] = {
     "CycloidalReducer": DISC | dict(mu_ref=0.05, mu_fluid=0.02, mu_bl=0.1, eta_ref=0.03, w_ref=148.7, tau_ref=332.0),
     "MalhotraReducer": DISC
     | dict(mu_s1=0.05, mu_s2=0.05, n_counted=1.0, turns_ring=1.0, P_rated=4000.0, w_rated=148.7, tau_rated=332.0),
+    "CycloidPinStage": dict(pin="rolling", disc_torque="output", Zp=40.0, Zc=39.0, Rp=0.064, e=0.0013, r_rp=0.003)
+    | dict(b=8.86e-3, N=2.0, a_0=0.04, s_discs=0.012, s_crank=0.04, s_main=0.06, E_eff=230.6e9, sigma=5e-8)
+    | dict(mu_fluid=0.03, mu_boundary=0.1, clearance=5e-6, sigma_groove=4e-7),
+    "TurningFrame": {},
     "ShaftSupport": SUPPORT,
     "TwoGearSupport": SUPPORT | dict(x_2=0.07, r_2=0.03, phi=2.5),
     "TaperedRollerBearing": SKF | dict(R_1=2.38e-6, R_2=10.9, S_1=0.014, S_2=2.0, Y=1.4, B=0.038, K_L=0.7),
@@ -89,6 +93,7 @@ EXAMPLES: dict[str, dict] = {
 #: Ports without a source: on them a part gives information, or a temperature of its own.
 GIVES = {"OilBath.heat", "HeatCapacity.heat", "OilBath.lubricant", "Grease.lubricant", "HelicalGearPair.force"}
 GIVES |= {f"PlanetarySet.{k}" for k in ("carrier_load", "sun_load", "planet_load")}
+GIVES |= {f"CycloidPinStage.{k}" for k in ("eccentric_load", "crank_load", "main_load")}
 GIVES |= {f"{s}.{k}" for s in ("ShaftSupport", "TwoGearSupport") for k in ("load_a", "load_b")}
 GIVES |= {f"RoundHousing.{k}" for k in ("flat_inside", "flat_outside", "cylinder_inside", "cylinder_outside")}
 #: What is given at the flanges of a part with several of them; elsewhere the speed (a storage: the torque).
@@ -97,6 +102,8 @@ GIVEN = {
     "CycloidalReducer": {"input": ("w",), "output": ("tau",)},
     "MalhotraReducer": {"input": ("w",), "output": ("tau",)},
     "PlanetarySet": {"carrier": ("w", "tau"), "sun": (), "ring": ("w",), "planet": ("tau",)},
+    "CycloidPinStage": {"crank": (), "carrier": ("w", "tau"), "housing": ("w",)},
+    "TurningFrame": {"shaft": ("w", "tau"), "carrier": ("w",), "relative": ()},
     "Inertia": {"flange": ("tau",)},
     "FixedFlange": {"flange": ("tau",)},
     "TorqueSplit": {"flange": ("w", "tau"), "a": ()},
@@ -151,6 +158,7 @@ LOSSES = ("part.P_loss", "part.P_loss_sp", "part.P_loss_pr", "part.P")
 #: Each kind once, gears and bearings under each of their choices.
 CASES = [(kind, {}) for kind in PARTS] + [("PlanetarySet", {"power_flow": "ideal"}), ("Inertia", {"dynamic": False})]
 CASES += [("PlanetarySet", {"line_load": "F_bt/b"}), ("HelicalGearPair", {"line_load": "F_bt/b"})]
+CASES += [("CycloidPinStage", {"pin": p, "disc_torque": t}) for p in ("held", "rolling") for t in ("output", "statics")]
 CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath")]
 CASES += [(kind, {"oil_bath": False}) for kind in ("TaperedRollerBearing", "CylindricalRollerBearing")]
 _flat: dict = {}
