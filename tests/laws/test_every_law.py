@@ -36,9 +36,15 @@ NOMINAL = {
     **{"T_film": 310.0, "Pr": 0.7, "Re": 5e4, "h_natural": 5.0, "h_forced": 7.0, "A": 0.6},
     **{"T_s": 340.0, "T_f": 300.0, "L": 0.3, "height": 0.3, "v": 1.5, "T_1": 340.0, "T_2": 300.0, "emissivity": 0.9},
     **{"r_i": 0.1, "r_o": 0.11, "thickness": 0.004, "length": 0.03},
+    **{"xi": 0.4, "F": 240.0, "C": 1e-17},
 }
 OWN = {
     "rolling.starvation": {"s": 0.2},
+    "pad.wedge_coefficient": {"a": 2.2},
+    "pad.side_leakage": {"a": 2.2},
+    "pad.combined_film": {"A": 1e-11},
+    "pad.fill_arc": {"beta": 0.5},
+    "pad.fill_volume_share": {"beta": 0.5},
     "churning.churning_loss": {"a": 2.5, "b": 0.3},
     "churning.churning_torque": {"a": 2.5, "b": 0.3},
     "conduction.fin_efficiency": {"h": 10.0, "k": 100.0},
