@@ -4,6 +4,7 @@ from ..core.component import Component
 from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
 from .gears import HelicalGearPair, PlanetarySet
+from .harmonic import HarmonicContact, HarmonicMesh
 from .lubrication import Grease, OilBath
 from .sealing import LipSeal
 from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit
@@ -32,6 +33,8 @@ PARTS: dict[str, type[Component]] = {
         Efficiency,
         PlanetarySet,
         HelicalGearPair,
+        HarmonicMesh,
+        HarmonicContact,
         ShaftSupport,
         TwoGearSupport,
         TaperedRollerBearing,
