@@ -5,6 +5,7 @@ from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBea
 from .churning import Churning
 from .cycloid import CycloidalReducer, MalhotraReducer
 from .gears import HelicalGearPair, PlanetarySet
+from .harmonic import HarmonicContact, HarmonicMesh
 from .housing import (
     FlatWallCooling,
     LinearFlatWallCooling,
@@ -46,6 +47,8 @@ PARTS: dict[str, type[Component]] = {
         CycloidalReducer,
         MalhotraReducer,
         CycloidPinStage,
+        HarmonicMesh,
+        HarmonicContact,
         ShaftSupport,
         TwoGearSupport,
         TaperedRollerBearing,

@@ -51,6 +51,7 @@ NOMINAL = {
     **{"M": 20.0, "L": 0.3, "U": 1e-11, "G": 5000.0, "W": 1e-4, "D": 0.15, "R_x": 0.01, "R_y": 0.05},
     **{"Lambda": 0.7, "mu_fluid": 0.04, "mu_boundary": 0.12},
     **{"r_i": 0.1, "r_o": 0.11, "thickness": 0.004, "length": 0.03},
+    **{"xi": 0.4, "F": 240.0, "C": 1e-17},
 }
 CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
 OWN = {
@@ -59,6 +60,11 @@ OWN = {
     "cycloid.output_roller_power": CYCLOID | {"D": 0.014, "d": 0.007},
     "cycloid.ring_roller_power": CYCLOID | {"D": 0.014, "d": 0.008},
     "rolling.starvation": {"s": 0.2},
+    "pad.wedge_coefficient": {"a": 2.2},
+    "pad.side_leakage": {"a": 2.2},
+    "pad.combined_film": {"A": 1e-11},
+    "pad.fill_arc": {"beta": 0.5},
+    "pad.fill_volume_share": {"beta": 0.5},
     "churning.churning_loss": {"a": 2.5, "b": 0.3},
     "churning.churning_torque": {"a": 2.5, "b": 0.3},
     "film_line.moes_central": {"L": 10.0},
