@@ -3,8 +3,10 @@
 from ..core.component import Component
 from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
+from .drum import BeltContact, DrumChurning, DrumCooling, DrumOil, WettedWall
 from .gears import HelicalGearPair, PlanetarySet
 from .lubrication import Grease, OilBath
+from .motor import Motor
 from .sealing import LipSeal
 from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit
 from .supports import ShaftSupport, TwoGearSupport
@@ -30,6 +32,7 @@ PARTS: dict[str, type[Component]] = {
         LoadingClutch,
         TorqueSplit,
         Efficiency,
+        Motor,
         PlanetarySet,
         HelicalGearPair,
         ShaftSupport,
@@ -40,14 +43,19 @@ PARTS: dict[str, type[Component]] = {
         NeedleBearing,
         LipSeal,
         Churning,
+        DrumChurning,
         OilBath,
+        DrumOil,
         Grease,
         HeatCapacity,
         ThermalConductor,
         PlaneWall,
         CylinderWall,
+        WettedWall,
+        BeltContact,
         BoxCooling,
         CylinderCooling,
+        DrumCooling,
         FinnedBoxCooling,
         Room,
         PrescribedTemperature,
