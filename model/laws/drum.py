@@ -247,15 +247,15 @@ def power_law_exponent(T_oil: Num, nu: Num, nu_50: Num) -> Num:
 
 
 @law(source="ElectronicCylinder", where="ratio of film and roughness, with 1.13 or 1.27 for the printed 1.6")
-def film_ratio(h: Num, Ra_1: Num, Ra_2: Num, c: Num) -> Num:
+def film_ratio(h: Num, Ra_1: Num, Ra_2: Num, c_q: Num) -> Num:
     r"""Film thickness over the root mean square of both roughnesses [1].
 
-    .. math:: \lambda = \frac{h}{\sqrt{R_{q1}^2 + R_{q2}^2}},\quad R_q = c R_a
+    .. math:: \lambda = \frac{h}{\sqrt{R_{q1}^2 + R_{q2}^2}},\quad R_q = c_q R_a
 
     Args:
         h: film thickness [m]
         Ra_1: mean roughness of one surface [m]
         Ra_2: mean roughness of the other [m]
-        c: root mean square over mean roughness, 1.25 of ground surfaces, 1.11 of a sine [1]
+        c_q: root mean square over mean roughness, 1.25 of ground surfaces, 1.11 of a sine [1]
     """
-    return h / (c * ca.sqrt(Ra_1**2 + Ra_2**2))
+    return h / (c_q * ca.sqrt(Ra_1**2 + Ra_2**2))
