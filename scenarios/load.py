@@ -2,6 +2,7 @@
 
     kind = "planetary"                    # a machine of gearheat.model.machines, or "network"
     doc = "..."
+    reproduces = "..."                    # the published results it reproduces, or that nothing of it is published
 
     [drive]                               # what is given at the shaft ends
     carrier = ["w", "tau"]
@@ -66,10 +67,14 @@ LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
 RIGS = Path(str(files("gearheat.scenarios").joinpath("rigs")))
 
 
-def list_rigs() -> dict[str, str]:
-    """The shipped rigs: name -> what they are."""
+def list_rigs(key: str = "doc") -> dict[str, str]:
+    """The shipped rigs: name -> what they are.
+
+    Args:
+        key: text of the rig file to give: "doc", or "reproduces" for the published results that a rig reproduces
+    """
     found = sorted(RIGS.glob("*/rig.toml"))
-    return {path.parent.name: str(read_toml(path).get("doc", "")) for path in found}
+    return {path.parent.name: str(read_toml(path).get(key, "")) for path in found}
 
 
 def load(name_or_path: str | Path, types: Mapping[str, type[Component]] = PARTS) -> Scenario:
@@ -172,6 +177,7 @@ class _Loader:
             errata=tuple(Erratum(e.place, e.says, e.should_be, e.evidence) for e in self.table.errata),
             protocol=protocol,
             campaign=campaign,
+            reproduces=self.table.reproduces,
         )
 
     def _parts(self) -> dict[str, PartValues]:
