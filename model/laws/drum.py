@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import casadi as ca
 
 from ..sources import law
@@ -49,7 +47,7 @@ def forced_rotating_cylinder(w: Num, T_film: Num, D: Num, *, w_width: float = SP
 
 
 @law(
-    source="ElectronicCylinder",
+    source="DrumMotor",
     where="heat transfer coefficient of the drum",
     valid="as printed, with D in metres; 58-72 W/(m2.K), four to five times a bare drum",
     verified=False,
@@ -69,7 +67,7 @@ def source_coefficient(P: Num, D: Num, v: Num, *, v_width: float = V_WIDTH) -> N
     return 21 - 2 * P_kW / D + 36 * ca.sqrt(1 + smooth_abs(v, v_width))
 
 
-@law(source="ElectronicCylinder", where="cooling area", verified=False)
+@law(source="DrumMotor", where="cooling area", verified=False)
 def cooling_area(S_1: Num, S_2: Num, S_3: Num, S_4: Num, psi_1: Num, psi_2: Num) -> Num:
     r"""Area that gives the heat of a drum away [m2].
 
@@ -87,7 +85,7 @@ def cooling_area(S_1: Num, S_2: Num, S_3: Num, S_4: Num, psi_1: Num, psi_2: Num)
 
 
 @law(
-    source="ElectronicCylinder",
+    source="DrumMotor",
     where="heat of the drum",
     valid="P is the power of the motor's shaft; as printed, 1000 P (1 - eta_N eta_g), P would be the electric power",
     verified=False,
@@ -105,7 +103,7 @@ def drum_heat(P: Num, eta_N: Num, eta_g: Num) -> Num:
     return P * (1 / eta_N - eta_g)
 
 
-@law(source="ElectronicCylinder", where="temperature of the drum in equilibrium", verified=False)
+@law(source="DrumMotor", where="temperature of the drum in equilibrium", verified=False)
 def lumped_temperature(Q: Num, h: Num, S: Num, T_room: Num) -> Num:
     r"""Temperature of a drum motor as one body [K].
 
@@ -150,7 +148,7 @@ def motor_loss(w: Num, tau: Num, P_N: Num, w_N: Num, eta: Num, share: Num, a: Nu
 
 
 @law(
-    source="ElectronicCylinder",
+    source="DrumMotor",
     where="efficiency of churning, with the power of ten and the root of the handbooks it is taken from",
     valid="a gear that dips into oil; 12-24 times too large with z not inverted",
     verified=False,
@@ -171,7 +169,7 @@ def gear_churning_loss(v: Num, b: Num, nu: Num, z: Num, *, v_width: float = V_WI
     return 7.5e-3 * smooth_power(v, 1.5, v_width) * b_mm * ca.sqrt(200 * nu_cSt / z)
 
 
-@law(source="ElectronicCylinder", where="efficiency of churning", verified=False)
+@law(source="DrumMotor", where="efficiency of churning", verified=False)
 def churning_efficiency(v: Num, b: Num, nu: Num, z: Num, P: Num) -> Num:
     r"""Efficiency of churning at a given power [1].
 
@@ -191,40 +189,7 @@ def churning_efficiency(v: Num, b: Num, nu: Num, z: Num, P: Num) -> Num:
 
 
 @law(
-    source="ElectronicCylinder",
-    where="fill of the drum",
-    valid="a drum on its side",
-    ranges={"beta": (0.0, 1.0)},
-    verified=False,
-)
-def wetted_arc(beta: Num) -> Num:
-    r"""Arc of a drum's inside that the oil wets [rad].
-
-    .. math:: s = \frac{2 \pi \beta'}{1 + \beta'}
-
-    Args:
-        beta: wetted over dry area of the inside, 1 for a half full drum [1]
-    """
-    return 2 * math.pi * beta / (1 + beta)
-
-
-@law(source="ElectronicCylinder", where="volume of oil", valid="a drum on its side", verified=False)
-def fill_volume(beta: Num, r: Num, L: Num) -> Num:
-    r"""Volume of oil in a drum [m3].
-
-    .. math:: V = \frac{r^2}{2} (s - \sin s) L
-
-    Args:
-        beta: wetted over dry area of the inside, 1 for a half full drum [1]
-        r: inner radius of the drum [m]
-        L: length of the drum that holds oil [m]
-    """
-    s = wetted_arc(beta)
-    return r**2 / 2 * (s - ca.sin(s)) * L
-
-
-@law(
-    source="ElectronicCylinder",
+    source="DrumMotor",
     where="viscosity over temperature, power law",
     valid="within 5 % from 40 to 80 degC with one exponent; not below 30 degC",
     ranges={"T_oil": (303.15, 393.15)},
@@ -246,7 +211,7 @@ def power_law_exponent(T_oil: Num, nu: Num, nu_50: Num) -> Num:
     return ca.log(nu_50 / nu) / ca.log(t / 50)
 
 
-@law(source="ElectronicCylinder", where="ratio of film and roughness, with 1.13 or 1.27 for the printed 1.6")
+@law(source="DrumMotor", where="ratio of film and roughness, with 1.13 or 1.27 for the printed 1.6")
 def film_ratio(h: Num, Ra_1: Num, Ra_2: Num, c_q: Num) -> Num:
     r"""Film thickness over the root mean square of both roughnesses [1].
 

@@ -10,12 +10,11 @@ from ..core.declare import Choice, Parameter
 from ..laws.convection import mixed
 from ..laws.drum import (
     cooling_area,
-    fill_volume,
     forced_rotating_cylinder,
     gear_churning_loss,
     source_coefficient,
-    wetted_arc,
 )
+from ..laws.pad import fill_arc, fill_volume_share
 from ..laws.smooth import SPEED_WIDTH, Num, smooth_abs
 from .friction import Friction
 from .lubrication import OilBath
@@ -36,13 +35,13 @@ class DrumOil(OilBath):
         "volume of oil at 15 degC",
         nominal=1e-3,
         above=0.0,
-        derived=lambda p: fill_volume(p.beta, p.r, p.L),
+        derived=lambda p: math.pi * p.r**2 * p.L * fill_volume_share(p.beta),
     )
 
     def equations(self) -> Iterator[Equation]:
         """An oil bath that tells its level."""
         yield from super().equations()
-        yield equation("wetted share", self.level.share, wetted_arc(self.beta) / (2 * math.pi))
+        yield equation("wetted share", self.level.share, fill_arc(self.beta) / (2 * math.pi))
 
 
 class DrumChurning(Friction):

@@ -43,12 +43,18 @@ NOMINAL = {
     **{"Re_w": 2e4, "P": 2200.0, "P_N": 2200.0, "w_N": 298.5, "tau": 7.4, "eta": 0.82, "eta_N": 0.82, "eta_g": 0.76},
     **{"share": 0.4, "Q": 1000.0, "S": 0.76, "T_room": 298.0, "psi_1": 0.5, "psi_2": 0.9, "S_3": 0.6, "S_4": 0.3},
     **{"r": 0.15, "T_oil": 345.0, "nu_50": 30e-6, "Ra_1": 0.4e-6, "Ra_2": 0.4e-6, "c_q": 1.25},
+    **{"xi": 0.4, "F": 240.0, "C": 1e-17},
 }
 OWN = {
     "rolling.starvation": {"s": 0.2},
     "drum.motor_loss": {"a": 1.5},
     "drum.cooling_area": {"S_1": 0.08, "S_2": 0.08},
     "drum.lumped_temperature": {"h": 20.0},
+    "pad.wedge_coefficient": {"a": 2.2},
+    "pad.side_leakage": {"a": 2.2},
+    "pad.combined_film": {"A": 1e-11},
+    "pad.fill_arc": {"beta": 0.5},
+    "pad.fill_volume_share": {"beta": 0.5},
     "churning.churning_loss": {"a": 2.5, "b": 0.3},
     "churning.churning_torque": {"a": 2.5, "b": 0.3},
     "film_line.moes_central": {"L": 10.0},
