@@ -16,7 +16,7 @@ PARTS: Mapping[str, str] = {
     "axle": "FixedFlange",
     "motor": "Motor",
     "mesh": "HarmonicMesh",
-    "wave_bearing": "WaveGeneratorBearing",
+    "wave_bearing": "DeepGrooveBallBearing",
     "drum_bearing": "DeepGrooveBallBearing",
     "drum_seal": "LipSeal",
     "churning": "DrumChurning",
@@ -40,11 +40,12 @@ PARTS: Mapping[str, str] = {
 #: The groups of ports that meet.
 CONNECTIONS: tuple[tuple[str, ...], ...] = (
     # shafts
-    ("motor_shaft.flange", "rotor.flange", "churning.shaft", "wave_bearing.shaft", "mesh.wave_generator"),
+    ("motor_shaft.flange", "rotor.flange", "churning.shaft", "mesh.wave_generator"),
+    ("mesh.wave", "wave_bearing.shaft"),
     ("mesh.flexspline", "axle.flange"),
     ("mesh.circular_spline", "drum_bearing.shaft", "drum_seal.shaft", "cooling.shaft", "drum.flange"),
     # what the bearings carry, what is read, and how full the drum is
-    ("mesh.load", "wave_bearing.load"),
+    ("mesh.wave_load", "wave_bearing.load"),
     ("motor_shaft.reading", "motor.shaft", "efficiency.a"),
     ("drum.reading", "efficiency.b"),
     ("oil.level", "churning.level", "oil_shell.level"),
@@ -53,7 +54,8 @@ CONNECTIONS: tuple[tuple[str, ...], ...] = (
     # heat
     ("windings.heat", "motor.windings", "windings_stator.a", "windings_oil.a"),
     ("stator.heat", "motor.stator", "windings_stator.b", "stator_oil.a"),
-    ("gear.heat", "mesh.gears", "wave_bearing.inner", "wave_bearing.outer", "gear_oil.a"),
+    ("gear.heat", "mesh.flexspline_teeth", "mesh.circular_spline_teeth")
+    + ("wave_bearing.inner", "wave_bearing.outer", "gear_oil.a"),
     ("oil.heat", "churning.inner", "churning.outer", "windings_oil.b", "stator_oil.b", "gear_oil.b", "oil_shell.a"),
     ("shell.heat", "oil_shell.b", "cooling.surface", "belt.a")
     + ("drum_bearing.inner", "drum_bearing.outer", "drum_seal.inner", "drum_seal.outer"),
