@@ -5,6 +5,7 @@ from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBea
 from .churning import Churning
 from .drum import BeltContact, DrumChurning, DrumCooling, DrumOil, WettedWall
 from .gears import HelicalGearPair, PlanetarySet
+from .harmonic import HarmonicContact, HarmonicMesh
 from .lubrication import Grease, OilBath
 from .motor import Motor
 from .sealing import LipSeal
@@ -35,6 +36,8 @@ PARTS: dict[str, type[Component]] = {
         Motor,
         PlanetarySet,
         HelicalGearPair,
+        HarmonicMesh,
+        HarmonicContact,
         ShaftSupport,
         TwoGearSupport,
         TaperedRollerBearing,
