@@ -48,7 +48,7 @@ from ..model.core.connect import nets
 from ..model.core.declare import Port, State, declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
-from ..model.machines import cycloidal, planetary, rv_stage
+from ..model.machines import cycloidal, drum_motor, planetary, rv_stage
 from ..model.machines.spec import PartSpec, Spec, assemble
 from ..model.parts import PARTS
 from ..model.units import to_si
@@ -64,6 +64,7 @@ LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
     "cycloidal": (cycloidal.PARTS, cycloidal.CONNECTIONS),
     "cycloidal_printed": (cycloidal.PRINTED_PARTS, cycloidal.PRINTED_CONNECTIONS),
     "rv_stage": (rv_stage.PARTS, rv_stage.CONNECTIONS),
+    "drum_motor": (drum_motor.PARTS, drum_motor.CONNECTIONS),
     "network": ({}, ()),
 }
 

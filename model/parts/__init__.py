@@ -4,6 +4,7 @@ from ..core.component import Component
 from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
 from .cycloid import CycloidalReducer, MalhotraReducer
+from .drum import BeltContact, DrumChurning, DrumCooling, DrumOil, WettedWall
 from .gears import HelicalGearPair, PlanetarySet
 from .harmonic import HarmonicContact, HarmonicMesh
 from .housing import (
@@ -15,6 +16,7 @@ from .housing import (
     ShellCooling,
 )
 from .lubrication import Grease, OilBath
+from .motor import Motor
 from .rv import CycloidPinStage
 from .sealing import LipSeal
 from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit, TurningFrame
@@ -42,6 +44,7 @@ PARTS: dict[str, type[Component]] = {
         TorqueSplit,
         TurningFrame,
         Efficiency,
+        Motor,
         PlanetarySet,
         HelicalGearPair,
         CycloidalReducer,
@@ -57,14 +60,19 @@ PARTS: dict[str, type[Component]] = {
         NeedleBearing,
         LipSeal,
         Churning,
+        DrumChurning,
         OilBath,
+        DrumOil,
         Grease,
         HeatCapacity,
         ThermalConductor,
         PlaneWall,
         CylinderWall,
+        WettedWall,
+        BeltContact,
         BoxCooling,
         CylinderCooling,
+        DrumCooling,
         FinnedBoxCooling,
         RoundHousing,
         OilToHousing,

@@ -98,6 +98,15 @@ class Lubricant(Port):
     X_L = Potential("1", "lubricant factor of the tooth friction", nominal=0.8)
 
 
+class OilLevel(Port):
+    """How much of a turning drum the oil inside wets: information, not power."""
+
+    missing = "nothing says how far the drum is filled"
+    source = "the level of a DrumOil"
+
+    share = Potential("1", "share of the drum's inside that the oil wets", nominal=0.4)
+
+
 class ShaftReading(Port):
     """Speed and torque read at a shaft end: information, not power."""
 

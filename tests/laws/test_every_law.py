@@ -51,6 +51,9 @@ NOMINAL = {
     **{"M": 20.0, "L": 0.3, "U": 1e-11, "G": 5000.0, "W": 1e-4, "D": 0.15, "R_x": 0.01, "R_y": 0.05},
     **{"Lambda": 0.7, "mu_fluid": 0.04, "mu_boundary": 0.12},
     **{"r_i": 0.1, "r_o": 0.11, "thickness": 0.004, "length": 0.03},
+    **{"Re_w": 2e4, "P": 2200.0, "P_N": 2200.0, "w_N": 298.5, "tau": 7.4, "eta": 0.82, "eta_N": 0.82, "eta_g": 0.76},
+    **{"share": 0.4, "Q": 1000.0, "S": 0.76, "T_room": 298.0, "psi_1": 0.5, "psi_2": 0.9, "S_3": 0.6, "S_4": 0.3},
+    **{"r": 0.15, "T_oil": 345.0, "nu_50": 30e-6, "Ra_1": 0.4e-6, "Ra_2": 0.4e-6, "c_q": 1.25},
     **{"xi": 0.4, "F": 240.0, "C": 1e-17},
 }
 CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
@@ -60,6 +63,9 @@ OWN = {
     "cycloid.output_roller_power": CYCLOID | {"D": 0.014, "d": 0.007},
     "cycloid.ring_roller_power": CYCLOID | {"D": 0.014, "d": 0.008},
     "rolling.starvation": {"s": 0.2},
+    "drum.motor_loss": {"a": 1.5},
+    "drum.cooling_area": {"S_1": 0.08, "S_2": 0.08},
+    "drum.lumped_temperature": {"h": 20.0},
     "pad.wedge_coefficient": {"a": 2.2},
     "pad.side_leakage": {"a": 2.2},
     "pad.combined_film": {"A": 1e-11},

@@ -48,6 +48,7 @@ EXAMPLES: dict[str, dict] = {
     "LoadingClutch": {},
     "TorqueSplit": dict(share=0.4),
     "Efficiency": {},
+    "Motor": dict(P_N=2200.0, w_N=298.5, eta=0.82, speed_share=0.35, speed_exponent=1.5),
     "PlanetarySet": TEETH
     | dict(N=3.0, z_3=108.0, eps_alpha_sp=1.666, eps_alpha_pr=1.883, H_v_sp=0.168, H_v_pr=0.062)
     | dict(n_axial_carrier=1.0, n_axial_sun=3.0, s_planet=0.021),
@@ -67,14 +68,19 @@ EXAMPLES: dict[str, dict] = {
     "NeedleBearing": BEARING | dict(d_m=0.044, f_0=7.0, f_1=2e-4),
     "LipSeal": FRICTION | dict(d_sh=0.14, c_sh=73.4),
     "Churning": FRICTION | dict(c=100.0, a=2.0, b=0.2),
+    "DrumChurning": FRICTION | dict(r=0.05, b=0.03, z=198.0, share_dip=0.4),
     "OilBath": OIL | dict(V=1e-3, c_p=2000.0),
+    "DrumOil": OIL | dict(beta=0.7, r=0.15, L=0.25, c_p=2000.0),
     "Grease": OIL,
     "HeatCapacity": dict(C=3600.0),
     "ThermalConductor": dict(G=60.0),
     "PlaneWall": dict(k=50.0, A=0.4, d=0.01),
     "CylinderWall": dict(k=50.0, L=0.3, r_i=0.14, r_o=0.15),
+    "WettedWall": dict(h=300.0, A=0.5),
+    "BeltContact": dict(h=20.0, A=0.7, dT_belt=4.0),
     "BoxCooling": BOX,
     "CylinderCooling": SURFACE | dict(D=0.3, share_ends=0.33),
+    "DrumCooling": SURFACE | dict(D=0.32, share_ends=0.2),
     "FinnedBoxCooling": BOX | dict(A_fins=0.5, fin_height=0.03, fin_thickness=0.004, k_fin=50.0),
     "RoundHousing": dict(d=0.011, k=50.0, A_flat_inner=0.074, A_flat_outer=0.083, height=0.23)
     | dict(R_o=0.111, L=0.15, circumference=1.0),
@@ -91,7 +97,13 @@ EXAMPLES: dict[str, dict] = {
     | dict(forward=1.0, backward=0.5),
 }
 #: Ports without a source: on them a part gives information, or a temperature of its own.
-GIVES = {"OilBath.heat", "HeatCapacity.heat", "OilBath.lubricant", "Grease.lubricant", "HelicalGearPair.force"}
+GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level"} | {
+    "OilBath.heat",
+    "HeatCapacity.heat",
+    "OilBath.lubricant",
+    "Grease.lubricant",
+    "HelicalGearPair.force",
+}
 GIVES |= {f"PlanetarySet.{k}" for k in ("carrier_load", "sun_load", "planet_load")}
 GIVES |= {f"CycloidPinStage.{k}" for k in ("eccentric_load", "crank_load", "main_load")}
 GIVES |= {f"{s}.{k}" for s in ("ShaftSupport", "TwoGearSupport") for k in ("load_a", "load_b")}
@@ -160,6 +172,8 @@ CASES = [(kind, {}) for kind in PARTS] + [("PlanetarySet", {"power_flow": "ideal
 CASES += [("PlanetarySet", {"line_load": "F_bt/b"}), ("HelicalGearPair", {"line_load": "F_bt/b"})]
 CASES += [("CycloidPinStage", {"pin": p, "disc_torque": t}) for p in ("held", "rolling") for t in ("output", "statics")]
 CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath")]
+PRINTED_DRUM = {"coefficient": "source", "P_N": 2200.0, "psi_1": 0.5, "psi_2": 0.9, "A_belt": 0.3}
+CASES += [("DrumCooling", PRINTED_DRUM)]
 CASES += [(kind, {"oil_bath": False}) for kind in ("TaperedRollerBearing", "CylindricalRollerBearing")]
 _flat: dict = {}
 
