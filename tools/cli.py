@@ -297,6 +297,21 @@ def show(
 
 @app.command()
 @console.guarded
+def verify(
+    rig: Annotated[
+        str | None, typer.Argument(help="Name of a shipped rig, or path of a rig file; all shipped rigs if left out.")
+    ] = None,
+    json: Json = None,
+    html: Annotated[Path | None, typer.Option(metavar="FILE", help="HTML page to write.")] = None,
+) -> None:
+    """Each published number of each machine, the corrected one, what the model gives, and the verdict."""
+    from . import verify
+
+    verify.command(rig, json, html)
+
+
+@app.command()
+@console.guarded
 def sweep(
     rig: Rig,
     vary: Annotated[

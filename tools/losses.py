@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -101,7 +101,7 @@ def at_readings(scenario: Scenario, campaign: Campaign, temperature: str) -> lis
         result = steady_table(flat, values)
         columns: dict[str, np.ndarray] = dict(result.columns)
     else:
-        columns = _at(flat, values, [reading.si("T_oil_C") for reading in campaign.readings])
+        columns = held(flat, values, [reading.si("T_oil_C") for reading in campaign.readings])
     rows = []
     for i, reading in enumerate(campaign.readings):
         name = {"point": reading.point, "test": reading.test, "direction": reading.direction, "oil": reading.oil}
@@ -130,15 +130,24 @@ def oil_values(scenario: Scenario, protocol: Protocol, oil: str) -> dict[str, fl
     return {path: value for path, value in values.items() if not scenario.value_sources.get(path, "").startswith(kept)}
 
 
-def _at(flat: FlatModel, values: Sequence[dict[str, float]], temperatures: Sequence[float]) -> dict[str, np.ndarray]:
-    """All outputs with every temperature of the model at a given value, per point."""
+def held(
+    flat: FlatModel, values: Sequence[Mapping[str, float]], temperatures: Sequence[float]
+) -> dict[str, np.ndarray]:
+    """All outputs, inputs and parameters with every temperature of the model at a given value.
+
+    Args:
+        flat: the model
+        values: inputs and parameters by path (SI), per point
+        temperatures: of every body, per point [K]
+    """
     hot = [q.name for q in flat.states if q.unit == "K"]
     points = [
         point(flat, row, dict.fromkeys(hot, T), who="losses") for row, T in zip(values, temperatures, strict=True)
     ]
     x, u, p = (np.array([getattr(here, kind) for here in points]).T for kind in "xup")
     y = evaluate(flat, x.reshape(len(flat.states), -1), u, p)["y"]
-    return {q.name: line for q, line in zip(flat.outputs, y, strict=True)}
+    groups = ((flat.outputs, y), (flat.inputs, u), (flat.parameters, p))
+    return {q.name: line for quantities, lines in groups for q, line in zip(quantities, lines, strict=True)}
 
 
 def at_operating_point(scenario: Scenario) -> dict[str, Any]:

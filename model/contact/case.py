@@ -42,9 +42,20 @@ class Lubricant:
         ln = log(self.eta_0 / ETA_POLE)
         return np.asarray(self.eta_0 * np.exp(ln * ((1 + p / self.p_r) ** (self.alpha_p * self.p_r / ln) - 1)))
 
+    def viscosity_slope(self, p: Array) -> Array:
+        """Relative slope of the viscosity, d(ln eta)/dp [1/Pa], at a pressure [Pa]."""
+        if self.piezoviscous == "barus":
+            return np.full_like(p, self.alpha_p)
+        z = self.alpha_p * self.p_r / log(self.eta_0 / ETA_POLE)
+        return np.asarray(self.alpha_p * (1 + p / self.p_r) ** (z - 1))
+
     def density(self, p: Array) -> Array:
         """Density over that at ambient pressure [1] at a pressure [Pa]."""
         return np.asarray(1 + 0.6e-9 * p / (1 + 1.7e-9 * p)) if self.compressible else np.ones_like(p)
+
+    def density_slope(self, p: Array) -> Array:
+        """Slope of the relative density [1/Pa] at a pressure [Pa]."""
+        return np.asarray(0.6e-9 / (1 + 1.7e-9 * p) ** 2) if self.compressible else np.zeros_like(p)
 
 
 @dataclass(frozen=True)
