@@ -49,9 +49,7 @@ class Linear:
         return float(p.sum()) * self.grid.hx * self.grid.hy
 
 
-def linearise(
-    grid: Grid, reynolds: Reynolds, p: Array, h: Array, active: np.ndarray, touching: np.ndarray
-) -> Linear:
+def linearise(grid: Grid, reynolds: Reynolds, p: Array, h: Array, active: np.ndarray, touching: np.ndarray) -> Linear:
     """The equations around a state.
 
     Args:
@@ -63,8 +61,9 @@ def linearise(
         touching: nodes where the surfaces touch: the film does not change there (n, n)
     """
     by_p, by_h = reynolds.linear(p, h)
-    for layer in (*by_p, *by_h):
-        layer[touching | ~active] = 0.0
+    fluid = active & ~touching
+    by_p *= fluid
+    by_h *= fluid
     by_h[stencil.CENTRE][touching] = -1.0
     return Linear(grid, by_p, by_h, active, touching)
 
@@ -85,9 +84,7 @@ class Cycle:
         if grid.n <= COARSEST:
             self._direct = _factored(linear)
             return
-        self._relax = LineRelaxation(
-            linear.by_p, linear.by_h, grid.deformation.near, linear.active, (grid.hx, grid.hy)
-        )
+        self._relax = LineRelaxation(linear.by_p, linear.by_h, grid.deformation.near, linear.active, (grid.hx, grid.hy))
         past = reynolds.past
         coarse = replace(
             reynolds,
