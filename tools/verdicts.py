@@ -177,9 +177,9 @@ def _on_statement(row: Row, holds: bool) -> Verdict:
 
 def _unit_of(row: Row, found: Value) -> str:
     """The unit in which a row is shown: that of its number, else the row's own, else the value's."""
-    for number in (row.expected, row.published):
-        if isinstance(number, str) and (unit := _split(number)[1]):
-            return unit
+    written = _split(row.expected)[1] if isinstance(row.expected, str) else ""
+    if written and not (row.contradiction and row.unit):
+        return written
     if row.unit or row.contradiction:
         return row.unit or shown(found.unit) or "1"
     if isinstance(row.expected, str) and _split(row.expected)[0] is None:
