@@ -18,6 +18,17 @@ CONTRADICTED = "published contradicts itself"
 NOT_REPRODUCED = "not reproduced"
 #: What fails comes first wherever verdicts are counted.
 VERDICTS = (NOT_REPRODUCED, CONTRADICTED, REPRODUCED)
+#: How a row comes by its number, in words.
+HOW = {
+    "steady": "steady state",
+    "held": "temperatures held",
+    "design": "design",
+    "losses": "losses at readings",
+    "contacts": "contacts of a cycle",
+    "law": "law",
+    "rows": "from other rows",
+    "print": "arithmetic on print",
+}
 
 
 @dataclass(frozen=True)
@@ -93,6 +104,7 @@ class Verdict:
             "verdict": self.verdict,
             "why": self.why,
             "group": row.group,
+            "how": HOW[row.run],
             "shown": self.shown,
             "allowed": self.allowed,
         }
