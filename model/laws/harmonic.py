@@ -60,7 +60,7 @@ def printed_film(
     R: Num,
     F_n_l: Num,
     *,
-    u_width: float = 1e-4,
+    u_width: float = 1e-6,
     F_width: float = 10.0,
 ) -> Num:
     r"""Minimum film as the source prints it [m], zero at standstill. It takes an elastohydrodynamic contact for granted.

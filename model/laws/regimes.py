@@ -17,7 +17,7 @@ _NOT_HERE = "(g_V = {g_V}, g_E = {g_E}): the elastohydrodynamic formula does not
 
 @law(source="Johnson1970", where="viscosity parameter", verified=False)
 def viscosity_parameter(
-    alpha_p: Num, eta_0: Num, u_m: Num, F_n_l: Num, R: Num, *, u_width: float = 1e-4, F_width: float = 10.0
+    alpha_p: Num, eta_0: Num, u_m: Num, F_n_l: Num, R: Num, *, u_width: float = 1e-6, F_width: float = 10.0
 ) -> Num:
     r"""How much pressure thickens the oil of a line contact [1].
 
@@ -37,7 +37,7 @@ def viscosity_parameter(
 
 @law(source="Johnson1970", where="elasticity parameter", verified=False)
 def elasticity_parameter(
-    eta_0: Num, u_m: Num, F_n_l: Num, R: Num, E_eff: Num, *, u_width: float = 1e-4, F_width: float = 10.0
+    eta_0: Num, u_m: Num, F_n_l: Num, R: Num, E_eff: Num, *, u_width: float = 1e-6, F_width: float = 10.0
 ) -> Num:
     r"""How much a line contact deforms [1].
 
