@@ -41,9 +41,14 @@ NOMINAL = {
     **{"Lambda": 0.7, "mu_fluid": 0.04, "mu_boundary": 0.12},
     **{"r_i": 0.1, "r_o": 0.11, "thickness": 0.004, "length": 0.03},
     **{"xi": 0.4, "F": 240.0, "C": 1e-17},
+    **{"w_0": 0.64e-3, "r_convex": 0.0192194, "r_concave": 0.0192307, "E_eff": 230e9, "u_0": 0.03, "u_m": 0.03},
+    **{"g_V": 20.0, "g_E": 5.0, "rigid_isoviscous": 0.5, "rigid_piezoviscous": 0.4, "elastic_isoviscous": 0.3},
 }
 OWN = {
     "rolling.starvation": {"s": 0.2},
+    "harmonic.conforming_radius": {"r_concave": 0.02},
+    "harmonic.flank_speed_radius": {"phi": 0.2},
+    "harmonic.pad_shear": {"a": 2.2, "B": 1e-3, "L": 0.012, "v_slide": 0.06},
     "pad.wedge_coefficient": {"a": 2.2},
     "pad.side_leakage": {"a": 2.2},
     "pad.combined_film": {"A": 1e-11},
