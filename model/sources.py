@@ -29,7 +29,7 @@ class Source:
     key: str
     title: str
     author: str
-    year: int
+    year: int | str
     where: str = ""
 
 

@@ -63,7 +63,7 @@ def printed_film(
     u_width: float = 1e-6,
     F_width: float = 10.0,
 ) -> Num:
-    r"""Minimum film as the source prints it [m], zero at standstill. It takes an elastohydrodynamic contact for granted.
+    r"""Minimum film as the source prints it [m], zero at standstill; for an elastohydrodynamic contact.
 
     .. math:: h_{min} = 1.6 \alpha^{0.6} (\eta_0 u_0)^{0.7} E'^{0.03} R^{0.43} (L/F_0)^{0.13}
 

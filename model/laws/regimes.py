@@ -57,7 +57,7 @@ def elasticity_parameter(
 
 @law(source="Johnson1970", where="asymptotes of the four regimes", verified=False)
 def regime_films(g_V: Num, g_E: Num) -> tuple[Num, Num, Num, Num]:
-    r"""Film numbers of the four regimes [1]: rigid and isoviscous, rigid and piezoviscous, elastic and isoviscous, both.
+    r"""Film numbers of the four regimes [1]: neither, piezoviscous, elastic, and both.
 
     .. math:: \hat h_{RI} = 4.9,\quad \hat h_{RP} = 1.66 g_V^{2/3},\quad \hat h_{EI} = 3.1 g_E^{0.8},\quad
         \hat h_{EP} = 2.65 g_V^{0.54} g_E^{0.06}

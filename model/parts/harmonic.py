@@ -1,4 +1,4 @@
-"""Harmonic drive: the film between the teeth of flexspline and circular spline, and the mesh of both with its bearing."""
+"""Harmonic drive: the film between the teeth of flexspline and circular spline, and the mesh of both."""
 
 from __future__ import annotations
 
