@@ -3,7 +3,7 @@
 from ..core.component import Component
 from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
-from .drum import BeltContact, DrumChurning, DrumCooling, DrumOil, WettedWall
+from .drum import BeltContact, BeltPull, DrumChurning, DrumCooling, DrumOil, WettedWall
 from .gears import HelicalGearPair, PlanetarySet
 from .harmonic import HarmonicContact, HarmonicMesh
 from .lubrication import Grease, OilBath
@@ -38,6 +38,7 @@ PARTS: dict[str, type[Component]] = {
         HelicalGearPair,
         HarmonicMesh,
         HarmonicContact,
+        BeltPull,
         ShaftSupport,
         TwoGearSupport,
         TaperedRollerBearing,

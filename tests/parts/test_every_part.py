@@ -50,6 +50,7 @@ EXAMPLES: dict[str, dict] = {
     | dict(N=3.0, z_3=108.0, eps_alpha_sp=1.666, eps_alpha_pr=1.883, H_v_sp=0.168, H_v_pr=0.062)
     | dict(n_axial_carrier=1.0, n_axial_sun=3.0, s_planet=0.021),
     "HelicalGearPair": TEETH | dict(z_2=72.0, a_w=0.1097, x_1=0.0, x_2=0.0),
+    "BeltPull": dict(D=0.32, k_pull=2.0),
     "ShaftSupport": SUPPORT,
     "TwoGearSupport": SUPPORT | dict(x_2=0.07, r_2=0.03, phi=2.5),
     "TaperedRollerBearing": SKF | dict(R_1=2.38e-6, R_2=10.9, S_1=0.014, S_2=2.0, Y=1.4, B=0.038, K_L=0.7),
@@ -80,7 +81,7 @@ EXAMPLES: dict[str, dict] = {
     | dict(forward=1.0, backward=0.5),
 }
 #: Ports without a source: on them a part gives information, or a temperature of its own.
-GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level"} | {
+GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level", "BeltPull.load"} | {
     "OilBath.heat",
     "HeatCapacity.heat",
     "OilBath.lubricant",
