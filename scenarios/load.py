@@ -48,7 +48,7 @@ from ..model.core.connect import nets
 from ..model.core.declare import Port, State, declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
-from ..model.machines import drum_motor, planetary
+from ..model.machines import drum_motor, harmonic, planetary
 from ..model.machines.spec import PartSpec, Spec, assemble
 from ..model.parts import PARTS
 from ..model.units import to_si
@@ -62,6 +62,7 @@ from .values import PartValues, in_range, part_values, readable, settable
 LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
     "planetary": (planetary.PARTS, planetary.CONNECTIONS),
     "drum_motor": (drum_motor.PARTS, drum_motor.CONNECTIONS),
+    "harmonic": (harmonic.PARTS, harmonic.CONNECTIONS),
     "network": ({}, ()),
 }
 
