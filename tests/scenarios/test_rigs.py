@@ -41,7 +41,15 @@ def helical() -> FlatModel:
 
 
 def test_all_are_listed() -> None:
-    assert NAMES == ("fzg_four_square", "helical_two_stage", "planetary")
+    assert NAMES == (
+        "drum_motor",
+        "drum_motor_planetary",
+        "fzg_four_square",
+        "harmonic",
+        "harmonic_printed",
+        "helical_two_stage",
+        "planetary",
+    )
     assert all(list_rigs().values())
     assert all(list_rigs("reproduces").values())
 
