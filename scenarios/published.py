@@ -24,7 +24,7 @@ How the model gives it is one of:
 
 A `path` may be an expression, in SI: "3 * gear_set.P_loss". One that compares, such as "max(Lambda) < 0.7", is a
 statement; it needs no tolerance and either holds or not. A table `[[table]]` with `data = "name.csv"` makes a row of
-each number in the CSV file; see `SheetTable`.
+each number in the CSV file; see `SheetTable`. A table `[set]` holds what every row sets that does not say otherwise.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from pydantic import Field, ValidationError
 
 from ..model.errors import GearheatError, ScenarioError
 from .csv_table import number, read_cells
-from .document import read_toml
+from .document import paths, read_toml
 from .tables import Strict, problem_of
 
 Number = str | float
@@ -134,6 +134,7 @@ class SheetTable(Strict):
 class PublishedTable(Strict):
     """A file of published numbers."""
 
+    set: dict[str, Any] = Field({}, description="path -> value or choice, for every row that sets values")
     row: list[Row] = Field([], description="one table [[row]] a number")
     table: list[SheetTable] = Field([], description="CSV files with many numbers")
 
@@ -160,7 +161,8 @@ class _Reader:
         for row in raw.row:
             unknown = [other for other in row.of.values() if other not in names]
             self.problems += [f'{self.path.name} {row.name}: there is no row "{other}".' for other in unknown]
-        return (*raw.row, *(row for sheet in raw.table for row in self._cells(sheet)))
+        every = (*raw.row, *(row for sheet in raw.table for row in self._cells(sheet)))
+        return tuple(_with_common(row, raw.set) for row in every)
 
     def _cells(self, sheet: SheetTable) -> Iterator[Row]:
         """A row for each number of a CSV table."""
@@ -200,6 +202,13 @@ def _cell(sheet: SheetTable, source: Cells, column: str, keys: Mapping[str, floa
             "select": {**keys, **source.select},
         }
     )
+
+
+def _with_common(row: Row, common: Mapping[str, Any]) -> Row:
+    """The row with what all rows set, where its run takes values."""
+    if "set" not in _ALLOWED.get(row.run, ()):
+        return row
+    return row.model_copy(update={"set": {**dict(paths(common)), **dict(paths(row.set))}})
 
 
 def read_published(path: Path) -> tuple[Row, ...]:

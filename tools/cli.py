@@ -67,13 +67,16 @@ def losses(
         Literal["ideal", "successive"] | None,
         typer.Option(help="ideal: mesh forces from the input torque; successive: each stage sees upstream losses."),
     ] = None,
+    contacts: Annotated[
+        bool, typer.Option("--contacts", help="Also every contact over a mesh cycle: loads, speeds, films, friction.")
+    ] = False,
     set_: Set = None,
     json: Json = None,
 ) -> None:
     """Every loss at every measured reading."""
     from . import losses
 
-    losses.command(rig, data, temperature, power_flow, set_ or [], json)
+    losses.command(rig, data, temperature, power_flow, set_ or [], json, contacts=contacts)
 
 
 @app.command()

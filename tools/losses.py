@@ -10,6 +10,7 @@ import numpy as np
 
 from ..model.core.flat import FlatModel
 from ..model.errors import DataError, ScenarioError
+from ..model.parts.contacts import ContactTable
 from ..model.run.point import point
 from ..model.run.rows import evaluate
 from ..model.run.steady import steady, steady_table
@@ -17,6 +18,7 @@ from ..scenarios.entries import catalogue
 from ..scenarios.measured import Campaign, Protocol, Reading, read_measured
 from ..scenarios.scenario import Scenario
 from .console import answer, table
+from .contacts import contacts_at, part_with_contacts, print_contacts
 from .points import conditions
 from .rigs import load
 from .settings import DIAGNOSED, SET, adjusted, choice_paths, driven_by, flat_of
@@ -30,8 +32,13 @@ def command(
     power_flow: str | None,
     assignments: Sequence[str],
     json: str | None,
+    *,
+    contacts: bool = False,
 ) -> None:
-    """Losses at all readings of a rig, or at the operating point of a rig without measured data."""
+    """Losses at all readings of a rig, or at the operating point of a rig without measured data.
+
+    With `contacts` the contacts at the operating point as well.
+    """
     scenario = load(rig)
     flows = [f"{path}={power_flow}" for path in choice_paths(scenario.spec) if path.endswith(".power_flow")]
     if power_flow is not None and not flows:
@@ -54,9 +61,14 @@ def command(
         "unchecked": unchecked(scenario, flat_of(scenario), oils_of(campaign)),
     }
     columns = list(rows[0])
+    told = contacts_at_operating_point(scenario) if contacts else None
+    if told is not None:
+        found |= {"contacts": told.rows, "columns": told.columns, **told.totals}
 
     def human() -> None:
         table(f"{scenario.name}: losses", columns, [[r[c] for c in columns] for r in rows])
+        if told is not None:
+            print_contacts(scenario.name, told)
         print_unchecked(found["unchecked"])
 
     answer(found, json, human)
@@ -143,6 +155,13 @@ def at_operating_point(scenario: Scenario) -> dict[str, Any]:
     flat = flat_of(scenario)
     result = steady(flat, conditions(scenario, flat))
     return {c: float(sum(result[path][0] for path in paths)) for c, paths in scenario.losses.items()}
+
+
+def contacts_at_operating_point(scenario: Scenario) -> ContactTable:
+    """The contacts of a rig at its operating point and the steady temperatures there."""
+    part_with_contacts(scenario)
+    flat = flat_of(scenario)
+    return contacts_at(scenario, flat, steady(flat, conditions(scenario, flat)))
 
 
 def _flow_paths(scenario: Scenario) -> list[str]:

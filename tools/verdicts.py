@@ -52,9 +52,28 @@ class Verdict:
     @property
     def kind(self) -> str:
         """ "published", "statement", or "recomputed" where the source prints no number."""
-        if self.row.recomputed is not None:
+        if self.row.published is None:
             return "recomputed"
         return "statement" if isinstance(self.model, bool) else "published"
+
+    @property
+    def shown(self) -> str:
+        """What the model gives, as a reader sees it."""
+        if self.model is None:
+            return "no solution"
+        if isinstance(self.model, bool):
+            return "holds" if self.model else "does not hold"
+        return _with_unit(f"{self.model:.6g}", self.unit)
+
+    @property
+    def allowed(self) -> str:
+        """The distance allowed, as a reader sees it."""
+        return "" if self.tolerance is None else _with_unit(f"{self.tolerance:.2g}", _difference(self.unit))
+
+    @property
+    def distance(self) -> float:
+        """How far the model is from the expected number."""
+        return abs(float(self.model or 0.0) - (self.expected or 0.0))
 
     def as_dict(self) -> dict[str, Any]:
         """The row as `--json` gives it."""
@@ -73,6 +92,9 @@ class Verdict:
             "tolerance": self.tolerance,
             "verdict": self.verdict,
             "why": self.why,
+            "group": row.group,
+            "shown": self.shown,
+            "allowed": self.allowed,
         }
 
 
@@ -83,9 +105,15 @@ def as_printed(number: Number | None, unit: str) -> str | None:
         number: text with a unit, a bare number, or None
         unit: of a bare number
     """
-    if number is None or isinstance(number, str):
-        return number
-    return f"{number:.10g} {unit}".strip()
+    return number if number is None or isinstance(number, str) else _with_unit(f"{number:.10g}", unit)
+
+
+def _with_unit(text: str, unit: str) -> str:
+    return text if unit in ("", "1") else f"{text} {unit}"
+
+
+def _difference(unit: str) -> str:
+    return "K" if unit == "degC" else unit
 
 
 def judged(row: Row, found: Value) -> Verdict:
@@ -171,6 +199,11 @@ def _split(text: str) -> tuple[float | None, str]:
         return split(text)
     except ValueError:
         return None, ""
+
+
+def kinds(verdicts: Sequence[Verdict]) -> dict[str, int]:
+    """How many rows are printed numbers, printed statements, and numbers recomputed because none is printed."""
+    return {name: sum(v.kind == name for v in verdicts) for name in ("published", "statement", "recomputed")}
 
 
 def counts(verdicts: Sequence[Verdict]) -> dict[str, int]:

@@ -21,7 +21,7 @@ from .console import answer, file_of, table, writable, write
 from .describe import errata_of
 from .model_values import RigValues, single
 from .rigs import load
-from .verdicts import NOT_REPRODUCED, VERDICTS, Value, Verdict, as_printed, counts, judged
+from .verdicts import NOT_REPRODUCED, VERDICTS, Value, Verdict, as_printed, counts, judged, kinds
 from .verify_page import render
 
 #: Exit code where a number is not reproduced.
@@ -45,6 +45,7 @@ class Machine:
             "doc": self.doc,
             "reproduces": self.reproduces,
             "counts": counts(self.verdicts),
+            "kinds": kinds(self.verdicts),
             "rows": [verdict.as_dict() for verdict in self.verdicts],
             "errata": list(self.errata),
         }
@@ -91,8 +92,13 @@ def as_dict(machines: Sequence[Machine], laws: Sequence[Verdict]) -> dict[str, A
     return {
         "schema": "gearheat.verify/1",
         "counts": counts(every),
+        "kinds": kinds(every),
         "machines": [machine.as_dict() for machine in machines],
-        "laws": {"counts": counts(laws), "rows": [{"law": v.row.law, **v.as_dict()} for v in laws]},
+        "laws": {
+            "counts": counts(laws),
+            "kinds": kinds(laws),
+            "rows": [{"law": v.row.law, **v.as_dict()} for v in laws],
+        },
     }
 
 
@@ -192,18 +198,18 @@ def _progress(total: int) -> Any:
     return shown()
 
 
-HEAD = ("number", "place", "published", "corrected", "model", "verdict")
+HEAD = ("number", "place", "published", "corrected", "model", "allowed", "verdict")
 
 
 def _print(machines: Sequence[Machine], laws: Sequence[Verdict], found: Mapping[str, Any]) -> None:
     for machine in machines:
         if machine.verdicts:
-            table(f"{machine.name}: {machine.doc}", HEAD, _lines(machine.verdicts))
+            table(f"{machine.name}: {machine.doc}", HEAD, _lines(machine.verdicts), wrapped=True)
     if laws:
-        table("Laws", HEAD, _lines(laws))
-    summary = [[m.name, *counts(m.verdicts).values()] for m in machines if m.verdicts]
-    body = [*summary, ["laws", *counts(laws).values()], ["in all", *found["counts"].values()]]
-    table("Numbers by verdict", ("", *VERDICTS), body)
+        table("Laws", HEAD, _lines(laws), wrapped=True)
+    named = [*((m["name"], m) for m in found["machines"] if m["rows"]), ("laws", found["laws"]), ("in all", found)]
+    body = [[name, *part["counts"].values(), *part["kinds"].values()] for name, part in named]
+    table("Numbers by verdict and by kind", ("", *VERDICTS, *found["kinds"]), body)
     for machine in machines:
         if not machine.verdicts:
             print(f"{machine.name}: has no published numbers. {machine.reproduces}".strip())
@@ -227,28 +233,13 @@ def _lines(verdicts: Sequence[Verdict]) -> list[list[Any]]:
 def _line(v: Verdict) -> list[Any]:
     row = v.row
     told = f"{v.verdict}: {v.why}" if v.why else v.verdict
-    other = as_printed(row.corrected, row.unit) or ""
-    if row.recomputed is not None:
-        other = f"{as_printed(row.recomputed, row.unit)} (recomputed)"
+    other = as_printed(row.corrected if row.recomputed is None else row.recomputed, row.unit) or ""
     name = f"{row.law}: {row.name}" if row.law else row.name
-    return [name, row.where, as_printed(row.published, row.unit) or "", other, shown_value(v), told]
-
-
-def shown_value(verdict: Verdict) -> str:
-    """What the model gives, with its unit.
-
-    Args:
-        verdict: on a row
-    """
-    if verdict.model is None:
-        return "no solution"
-    if isinstance(verdict.model, bool):
-        return "holds" if verdict.model else "does not hold"
-    return f"{verdict.model:.6g} {verdict.unit if verdict.unit != '1' else ''}".strip()
+    numbers = [as_printed(row.published, row.unit) or "", other, v.shown, v.allowed]
+    return [name, row.where, *numbers, told]
 
 
 def _group_line(name: str, members: Sequence[Verdict]) -> list[Any]:
-    worst = max(members, key=lambda v: abs(float(v.model or 0.0) - (v.expected or 0.0)) / (v.tolerance or 1.0))
-    far = abs(float(worst.model or 0.0) - (worst.expected or 0.0))
-    model = f"within {far:.2g} {worst.unit} of {worst.tolerance:.2g}" if worst.tolerance else ""
-    return [name, members[0].row.where, f"{len(members)} numbers", "", model, worst.verdict]
+    worst = max(members, key=lambda v: v.distance / (v.tolerance or 1.0))
+    model = f"within {worst.distance:.2g} {worst.unit}"
+    return [name, members[0].row.where, f"{len(members)} numbers", "", model, worst.allowed, worst.verdict]

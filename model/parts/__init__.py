@@ -3,13 +3,23 @@
 from ..core.component import Component
 from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
+from .cycloid import CycloidalReducer, MalhotraReducer
 from .drum import BeltContact, BeltPull, DrumChurning, DrumCooling, DrumOil, WettedWall
 from .gears import HelicalGearPair, PlanetarySet
 from .harmonic import HarmonicContact, HarmonicMesh
+from .housing import (
+    FlatWallCooling,
+    LinearFlatWallCooling,
+    LinearShellCooling,
+    OilToHousing,
+    RoundHousing,
+    ShellCooling,
+)
 from .lubrication import Grease, OilBath
 from .motor import Motor
+from .rv import CycloidPinStage
 from .sealing import LipSeal
-from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit
+from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit, TurningFrame
 from .supports import ShaftSupport, TwoGearSupport
 from .thermal import (
     BoxCooling,
@@ -32,10 +42,14 @@ PARTS: dict[str, type[Component]] = {
         Inertia,
         LoadingClutch,
         TorqueSplit,
+        TurningFrame,
         Efficiency,
         Motor,
         PlanetarySet,
         HelicalGearPair,
+        CycloidalReducer,
+        MalhotraReducer,
+        CycloidPinStage,
         HarmonicMesh,
         HarmonicContact,
         BeltPull,
@@ -61,6 +75,12 @@ PARTS: dict[str, type[Component]] = {
         CylinderCooling,
         DrumCooling,
         FinnedBoxCooling,
+        RoundHousing,
+        OilToHousing,
+        FlatWallCooling,
+        ShellCooling,
+        LinearFlatWallCooling,
+        LinearShellCooling,
         Room,
         PrescribedTemperature,
     )

@@ -42,7 +42,9 @@ class FlankFilm(Component):
         above=0.0,
         derived=lambda p: flank_speed_radius(p.w_0, p.phi),
     )
-    speed_factor = Parameter("1", "factor on the mean speed of the flanks, 1 for their kinematics", default=1.0, above=0.0)
+    speed_factor = Parameter(
+        "1", "factor on the mean speed of the flanks, 1 for their kinematics", default=1.0, above=0.0
+    )
     L = Parameter("m", "face width", nominal=0.01, above=0.0)
     r_convex = Parameter("m", "radius of curvature of the convex flank", nominal=0.02, above=0.0)
     r_concave = Parameter("m", "radius of curvature of the concave flank", nominal=0.02, above=0.0)

@@ -1,4 +1,4 @@
-"""The ports of the parts: two that carry power, and four that carry information only."""
+"""The ports of the parts: two that carry power, and five that carry information only."""
 
 from __future__ import annotations
 
@@ -71,6 +71,16 @@ class ToothForce(Port):
     F_t = Potential("N", "tangential force", nominal=1000.0)
     F_r = Potential("N", "radial force", nominal=1000.0)
     F_a = Potential("N", "axial force", nominal=1000.0)
+
+
+class WallSize(Port):
+    """Size of one side of a housing wall: information, not power."""
+
+    missing = "nothing says how large the wall is"
+    source = "the side of a RoundHousing"
+
+    A = Potential("m2", "area that takes part in the heat transfer", nominal=0.1)
+    L = Potential("m", "characteristic length: height of a flat wall, diameter of a round one", nominal=0.2)
 
 
 class Lubricant(Port):

@@ -42,6 +42,9 @@ def helical() -> FlatModel:
 
 def test_all_are_listed() -> None:
     assert NAMES == (
+        "cycloidal",
+        "cycloidal_areas",
+        "cycloidal_printed",
         "drum_motor",
         "drum_motor_planetary",
         "fzg_four_square",
@@ -49,6 +52,7 @@ def test_all_are_listed() -> None:
         "harmonic_printed",
         "helical_two_stage",
         "planetary",
+        "rv_stage",
     )
     assert all(list_rigs().values())
     assert all(list_rigs("reproduces").values())
