@@ -61,11 +61,11 @@ from .values import PartValues, in_range, part_values, readable, settable
 #: Kind of rig -> its fixed parts (name -> type) and connections.
 LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
     "planetary": (planetary.PARTS, planetary.CONNECTIONS),
+    "harmonic": (harmonic.PARTS, harmonic.CONNECTIONS),
     "cycloidal": (cycloidal.PARTS, cycloidal.CONNECTIONS),
     "cycloidal_printed": (cycloidal.PRINTED_PARTS, cycloidal.PRINTED_CONNECTIONS),
     "rv_stage": (rv_stage.PARTS, rv_stage.CONNECTIONS),
     "drum_motor": (drum_motor.PARTS, drum_motor.CONNECTIONS),
-    "harmonic": (harmonic.PARTS, harmonic.CONNECTIONS),
     "network": ({}, ()),
 }
 
