@@ -62,6 +62,13 @@ def test_design_finds_the_belt_that_keeps_the_oil_at_70_degC() -> None:
     assert at(flat, belt__h=found.values["belt.h"])["oil.T"] == pytest.approx(343.15, abs=1e-6)
 
 
+def test_hot_oil_means_less_churning_and_a_thinner_film() -> None:
+    warm, hot = (at(flat_of("drum_motor"), room__T=T) for T in (293.15, 313.15))
+    assert hot["oil.T"] > warm["oil.T"] + 5.0
+    assert hot["churning.P_loss"] < warm["churning.P_loss"]
+    assert hot["mesh.h_min"] < warm["mesh.h_min"]
+
+
 @pytest.mark.parametrize("rig", RIGS)
 class TestEveryDrumMotor:
     def test_the_motor_has_its_efficiency_at_the_rated_point(self, rig: str) -> None:
