@@ -35,6 +35,7 @@ def newton(
     grid: Grid, reynolds: Reynolds, gap: Array, load: float, start: State, tolerance: float, steps: int
 ) -> State:
     import os
+
     verbose = os.environ.get("EHLV")
     p, h_0 = start.p.copy(), start.h_0
     inner = np.zeros(p.shape, dtype=bool)
@@ -77,5 +78,7 @@ def newton(
         p = np.maximum(p + step * dp, 0.0)
         h_0 += step * dh0
         if verbose:
-            print(f"  n={grid.n} it={it} res={norm:.2e} k={k} step={step:.2f} dpmax={np.abs(dp).max():.2e} hmin={h.min():.3e} pmax={p.max():.3f}")
+            print(
+                f"  n={grid.n} it={it} res={norm:.2e} k={k} step={step:.2f} dpmax={np.abs(dp).max():.2e} hmin={h.min():.3e} pmax={p.max():.3f}"
+            )
     return State(p, h_0, tuple(norms), products)
