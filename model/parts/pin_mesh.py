@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
 
 from ..laws.cycloid_pin import (
@@ -22,15 +24,10 @@ from ..laws.film import mixed_friction, specific_film_thickness
 from ..laws.film_line import line_film_central, line_film_minimum
 from ..laws.smooth import Num
 
-#: Angles of the fixed quadrature over the loaded half of the mesh cycle. Where the entrainment of a held pin changes
-#: sign the film closes: 32 angles are within 0.6 % of thousands there, and exact to six digits without it.
-ANGLES = 32
-
-
-def quadrature(count: int = ANGLES) -> list[tuple[float, float]]:
-    """Angles [rad] and weights [rad] of Gauss's rule over the loaded half of the mesh cycle, 0 to pi."""
-    x, weights = np.polynomial.legendre.leggauss(count)
-    return [(float(np.pi / 2 * (1 + a)), float(np.pi / 2 * b)) for a, b in zip(x, weights, strict=True)]
+#: Angles of the fixed quadrature in each of the three parts of the loaded half of the mesh cycle.
+ANGLES = 12
+#: Cosine next to which angles are cut off, so that their slopes stay finite.
+INSIDE = 1 - 1e-9
 
 
 @dataclass(frozen=True)
@@ -54,7 +51,7 @@ class PinContact:
     specific film thickness [1], `mu` friction coefficient [1]. Speeds have the sign of the crank's speed.
     """
 
-    theta: float
+    theta: Num
     F: Num
     lever: Num
     w: Num
@@ -98,7 +95,41 @@ class PinMesh:
         """Short-width coefficient [1]."""
         return width_coefficient(self.e, self.Zp, self.Rp)
 
-    def contact(self, theta: float, film: Film) -> PinContact:
+    def turning_angles(self) -> tuple[Num, Num]:
+        """Angles at which the entrainment changes its direction [rad]; where it does not, where it comes nearest to it.
+
+        With g = 1/2 (held) or 1 (rolling) the entrainment g v_s - v_c is zero where
+        S^3 - p S^2 + q = 0, p = r_rp (2 g + Zc)/(2 g Rp), q = Zc r_rp (1 - K^2)/(2 g Rp).
+        """
+        K, Zc, g = self.K, self.Zp - 1, 1.0 if self.rolling else 0.5
+        p = self.r_rp * (2 * g + Zc) / (2 * g * self.Rp)
+        q = Zc * self.r_rp * (1 - K**2) / (2 * g * self.Rp)
+        phi = ca.acos(ca.fmin(ca.fmax(1 - 13.5 * q / p**3, -INSIDE), INSIDE))
+        angles = []
+        for turn in (-2 * ca.pi, 0.0):
+            S = p / 3 * (1 + 2 * ca.cos((phi + turn) / 3))
+            c = (1 + K**2 - S**2) / (2 * K)
+            angles.append(ca.acos(ca.fmin(ca.fmax(c, -INSIDE), INSIDE)))
+        return angles[0], angles[1]
+
+    def quadrature(self, count: int = ANGLES) -> list[tuple[Num, Num]]:
+        """Angles and weights [rad] of a sum over the loaded half: Gauss's rule between the turns of the entrainment.
+
+        The film closes at the turns, so that friction has a cusp there: the angles crowd towards them.
+
+        Args:
+            count: number of angles in each of the three parts
+        """
+        x, weights = np.polynomial.legendre.leggauss(count)
+        ends = (0.0, *self.turning_angles(), float(np.pi))
+        found = []
+        for low, high in itertools.pairwise(ends):
+            for t, weight in zip((1 + x) / 2, weights / 2, strict=True):
+                at, slope = float(t**2 * (3 - 2 * t)), float(6 * t * (1 - t))
+                found.append((low + (high - low) * at, (high - low) * slope * float(weight)))
+        return found
+
+    def contact(self, theta: Num, film: Film) -> PinContact:
         """The contact of a pin at an angle of the loaded half.
 
         Args:
@@ -145,4 +176,4 @@ class PinMesh:
     def towards_pole(self, contact: PinContact) -> tuple[Num, Num]:
         """Direction of the pin's force on the disc, along the crank's line and across it [1]."""
         S = pole_distance(self.K, contact.theta)
-        return (self.K - float(np.cos(contact.theta))) / S, -float(np.sin(contact.theta)) / S
+        return (self.K - ca.cos(contact.theta)) / S, -ca.sin(contact.theta) / S
