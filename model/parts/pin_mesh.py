@@ -47,7 +47,7 @@ class PinContact:
 
     `theta` angle of the pin from the crank's line [rad], `F` force [N], `lever` about the disc's centre [m], `w` load
     per length [N/m], `R` reduced radius [m], `v_rub` speed at which the disc moves over the place of the pin [m/s],
-    `u_disc` and `u_pin` speeds of both surfaces through the contact [m/s], `h_min` and `h_c` films [m], `Lambda`
+    `u_disc` and `u_pin` speeds of both surfaces through the contact [m/s], `h_c` central film [m], `Lambda`
     specific film thickness [1], `mu` friction coefficient [1]. Speeds have the sign of the crank's speed.
     """
 
@@ -59,7 +59,6 @@ class PinContact:
     v_rub: Num
     u_disc: Num
     u_pin: Num
-    h_min: Num
     h_c: Num
     Lambda: Num
     mu: Num
@@ -146,11 +145,10 @@ class PinMesh:
         u_disc = v_rub - v_contact
         w = F / self.b
         h_c = line_film_central(film.eta, u_sum, film.alpha_p, w, R, self.E_eff)
-        h_min = line_film_minimum(film.eta, u_sum, film.alpha_p, w, R, self.E_eff)
         Lambda = specific_film_thickness(h_c, self.sigma)
         mu = mixed_friction(Lambda, self.mu_fluid, self.mu_boundary)
         lever = pin_lever(K, self.Zp, self.Rp, theta)
-        return PinContact(theta, F, lever, w, R, v_rub, u_disc, u_sum - u_disc, h_min, h_c, Lambda, mu)
+        return PinContact(theta, F, lever, w, R, v_rub, u_disc, u_sum - u_disc, h_c, Lambda, mu)
 
     def groove_friction(self, contact: PinContact, clearance: Num, sigma: Num, film: Film) -> Num:
         """Friction coefficient of a rolling pin in its groove [1]: a film between two surfaces that all but conform.
@@ -168,6 +166,10 @@ class PinMesh:
     def rubbing_lever(self, contact: PinContact) -> Num:
         """Speed at which the disc moves over the place of the pin, over that of carrier against housing [m]."""
         return self.Rp * pole_distance(self.K, contact.theta) - self.r_rp
+
+    def minimum_film(self, contact: PinContact, film: Film) -> Num:
+        """Minimum film between disc and pin [m]."""
+        return line_film_minimum(film.eta, 2 * contact.U, film.alpha_p, contact.w, contact.R, self.E_eff)
 
     def pressure(self, contact: PinContact) -> Num:
         """Greatest pressure of the dry contact [Pa]."""
