@@ -1,7 +1,8 @@
 """Rig files: one TOML file says everything about a rig, with a source for every value.
 
-    kind = "planetary"                    # a machine of gearheat.model.machines, or "network"
+    kind = "planetary"                    # a machine: a name in `LAYOUTS`, or "network"
     doc = "..."
+    reproduces = "..."                    # the published results it reproduces, or that nothing of it is published
 
     [drive]                               # what is given at the shaft ends
     carrier = ["w", "tau"]
@@ -47,11 +48,12 @@ from ..model.core.connect import nets
 from ..model.core.declare import Port, State, declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
-from ..model.machines import planetary
+from ..model.machines import cycloidal, drum_motor, harmonic, planetary, rv_stage
 from ..model.machines.spec import PartSpec, Spec, assemble
 from ..model.parts import PARTS
 from ..model.units import to_si
 from .document import ABOUT, paths, read_toml, sources_of
+from .film_map import film_maps, names_map
 from .measured import Campaign, Driven, Protocol, read_measured
 from .scenario import Erratum, Scenario
 from .tables import RigTable, validate
@@ -60,16 +62,25 @@ from .values import PartValues, in_range, part_values, readable, settable
 #: Kind of rig -> its fixed parts (name -> type) and connections.
 LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
     "planetary": (planetary.PARTS, planetary.CONNECTIONS),
+    "harmonic": (harmonic.PARTS, harmonic.CONNECTIONS),
+    "cycloidal": (cycloidal.PARTS, cycloidal.CONNECTIONS),
+    "cycloidal_printed": (cycloidal.PRINTED_PARTS, cycloidal.PRINTED_CONNECTIONS),
+    "rv_stage": (rv_stage.PARTS, rv_stage.CONNECTIONS),
+    "drum_motor": (drum_motor.PARTS, drum_motor.CONNECTIONS),
     "network": ({}, ()),
 }
 
 RIGS = Path(str(files("gearheat.scenarios").joinpath("rigs")))
 
 
-def list_rigs() -> dict[str, str]:
-    """The shipped rigs: name -> what they are."""
+def list_rigs(key: str = "doc") -> dict[str, str]:
+    """The shipped rigs: name -> what they are.
+
+    Args:
+        key: text of the rig file to give: "doc", or "reproduces" for the published results that a rig reproduces
+    """
     found = sorted(RIGS.glob("*/rig.toml"))
-    return {path.parent.name: str(read_toml(path).get("doc", "")) for path in found}
+    return {path.parent.name: str(read_toml(path).get(key, "")) for path in found}
 
 
 def load(name_or_path: str | Path, types: Mapping[str, type[Component]] = PARTS) -> Scenario:
@@ -172,12 +183,18 @@ class _Loader:
             errata=tuple(Erratum(e.place, e.says, e.should_be, e.evidence) for e in self.table.errata),
             protocol=protocol,
             campaign=campaign,
+            reproduces=self.table.reproduces,
         )
 
     def _parts(self) -> dict[str, PartValues]:
         parts: dict[str, PartValues] = {}
         for name, cls in self.types.items():
             table = {k: v for k, v in self.table.part.get(name, {}).items() if k != "type"}
+            try:
+                table |= film_maps(table, self.path.parent)
+            except GearheatError as error:
+                self.problems += [f"{self.file} [part.{name}]: {problem}" for problem in error.problems]
+                table = {k: v for k, v in table.items() if not names_map(v)}
             parts[name] = part_values(f"{self.file} [part.{name}]", name, cls, table)
             self.problems += parts[name].problems
             self.value_sources |= {f"{name}.{key}": source for key, source in parts[name].sources.items()}

@@ -39,6 +39,7 @@ class Scenario:
         overrides: values that stand in the place of their catalogue's
         entries: part -> kind of catalogue -> name of the entry it was filled from
         protocol: how measured tables of this rig were taken; `campaign` is the one it comes with
+        reproduces: what published results the rig reproduces, in a line
     """
 
     name: str
@@ -57,6 +58,7 @@ class Scenario:
     errata: tuple[Erratum, ...] = ()
     protocol: Protocol | None = None
     campaign: Campaign | None = None
+    reproduces: str = ""
 
     def settable(self) -> dict[str, Quantity]:
         """All that may be given a value, by path: parameters, start values of states, inputs."""
@@ -129,7 +131,7 @@ class Scenario:
     def _entry(self, part: str, name: str) -> Entry:
         declarations = settable(self.spec.types[self.spec.part(part).type])
         kinds = self.entries.get(part) or FILES
-        known = {n: e for kind in kinds for n, e in catalogue(kind).items() if entry_values(e, declarations)}
+        known = {n: e for kind in kinds for n, e in catalogue(kind).items() if e.values.keys() & declarations.keys()}
         if name not in known:
             close = suggestion(name, known) or f" Known: {', '.join(known) or 'none'}."
             raise ScenarioError(f'{part} = {name}: unknown {" or ".join(kinds)} "{name}".{close}')

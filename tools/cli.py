@@ -67,13 +67,16 @@ def losses(
         Literal["ideal", "successive"] | None,
         typer.Option(help="ideal: mesh forces from the input torque; successive: each stage sees upstream losses."),
     ] = None,
+    contacts: Annotated[
+        bool, typer.Option("--contacts", help="Also every contact over a mesh cycle: loads, speeds, films, friction.")
+    ] = False,
     set_: Set = None,
     json: Json = None,
 ) -> None:
     """Every loss at every measured reading."""
     from . import losses
 
-    losses.command(rig, data, temperature, power_flow, set_ or [], json)
+    losses.command(rig, data, temperature, power_flow, set_ or [], json, contacts=contacts)
 
 
 @app.command()
@@ -294,6 +297,21 @@ def show(
 
 @app.command()
 @console.guarded
+def verify(
+    rig: Annotated[
+        str | None, typer.Argument(help="Name of a shipped rig, or path of a rig file; all shipped rigs if left out.")
+    ] = None,
+    json: Json = None,
+    html: Annotated[Path | None, typer.Option(metavar="FILE", help="HTML page to write.")] = None,
+) -> None:
+    """Each published number of each machine, the corrected one, what the model gives, and the verdict."""
+    from . import verify
+
+    verify.command(rig, json, html)
+
+
+@app.command()
+@console.guarded
 def sweep(
     rig: Rig,
     vary: Annotated[
@@ -330,6 +348,28 @@ def sweep(
 
     options = (sample, grid, method, seed, set_ or [], output or [], kind, duty, duration, every)
     sweep.command(sweep.Request(rig, vary, out, *options, threads, scheduler, json))
+
+
+@app.command()
+@console.guarded
+def film(
+    rig: Annotated[str, typer.Argument(help="Name of a shipped rig, path of a rig file, or TOML file of one contact.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write; a run that was interrupted goes on.")],
+    part: Annotated[str | None, typer.Option(help="Part of the rig whose contact it is.")] = None,
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(help='Range of F, u_m or T, for example "F=100..2000 N" or "T=40..100 degC". Repeatable.'),
+    ] = None,
+    grid: Annotated[str | None, typer.Option(help="Points along each axis that is varied, such as 6x6x4.")] = None,
+    nodes: Annotated[int | None, typer.Option(help="Nodes of the contact solver, along a side.")] = None,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture to write, .png or .svg.")] = None,
+    set_: Set = None,
+    json: Json = None,
+) -> None:
+    """Solve a contact over load, speed and temperature: a film map, and the law that parts take from it."""
+    from . import film
+
+    film.command(film.Request(rig, out, part, vary or [], grid, nodes, plot, set_ or [], json))
 
 
 @app.command()

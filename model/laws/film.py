@@ -1,9 +1,9 @@
-"""Thickness of the oil film between the flanks: a diagnosis of the regime, no part of any loss."""
+"""Films between flanks, and how film and asperities share load and friction."""
 
 from __future__ import annotations
 
 from ..sources import law
-from .smooth import Num, smooth_abs, smooth_power
+from .smooth import Num, smooth_abs, smooth_power, smooth_sign
 
 
 @law(
@@ -87,3 +87,80 @@ def specific_film_thickness(h: Num, sigma: Num) -> Num:
         sigma: root of the sum of the squared roughnesses of both surfaces [m]
     """
     return h / sigma
+
+
+@law(source="Grubin1949", where="exponents of the central film thickness", valid="one contact", verified=False)
+def film_from_reference(
+    Lambda_ref: Num, stir: Num, load: Num, *, stir_width: float = 1e-6, load_width: float = 1e-3
+) -> Num:
+    r"""Specific film thickness of a contact by what it is at a reference [1], zero at standstill.
+
+    .. math:: \Lambda = \Lambda_{ref} \left(\frac{\eta u}{\eta_{ref} u_{ref}}\right)^{0.727}
+        \left(\frac{F}{F_{ref}}\right)^{-0.091}
+
+    Args:
+        Lambda_ref: specific film thickness at the reference [1]
+        stir: viscosity times speed over that of the reference, either sign [1]
+        load: force over that of the reference, either sign [1]
+        stir_width: rounding at standstill [1]
+        load_width: rounding without load [1]
+    """
+    return Lambda_ref * smooth_power(stir, 0.727, stir_width) * smooth_abs(load, load_width) ** -0.091
+
+
+@law(
+    source="Castro2007",
+    where="load sharing in mixed lubrication",
+    valid="gear and twin-disc tests",
+    ranges={"Lambda": (0.2, 2.0)},
+    verified=False,
+)
+def fluid_share(Lambda: Num, *, Lambda_width: float = 1e-6, sharpness: float = 32.0) -> Num:
+    r"""Share of the load that the film carries [1]: 0 without a film, 1 from :math:`\Lambda \approx 2` on.
+
+    .. math:: f = 0.82 \Lambda^{0.28} \le 1
+
+    Args:
+        Lambda: specific film thickness [1]
+        Lambda_width: rounding without a film [1]
+        sharpness: of the bend where the film carries all; 2 % below 1 at the bend itself [1]
+    """
+    carried = 0.82 * smooth_abs(Lambda, Lambda_width) ** 0.28
+    return (1 + carried**-sharpness) ** (-1 / sharpness) * smooth_sign(Lambda, Lambda_width) ** 2
+
+
+def asperity_share(Lambda: Num) -> Num:
+    """Share of the load that asperities carry [1], what `fluid_share` leaves at a specific film thickness [1]."""
+    return 1 - fluid_share(Lambda)
+
+
+@law(source="Castro2007", where="friction coefficient in mixed lubrication", verified=False)
+def mixed_friction(Lambda: Num, mu_fluid: Num, mu_boundary: Num) -> Num:
+    r"""Friction coefficient of a contact whose load film and asperities share [1].
+
+    .. math:: \mu = f \mu_{fluid} + (1 - f) \mu_{boundary}
+
+    Args:
+        Lambda: specific film thickness [1]
+        mu_fluid: friction coefficient of the full film [1]
+        mu_boundary: friction coefficient of touching asperities [1]
+    """
+    f = fluid_share(Lambda)
+    return f * mu_fluid + (1 - f) * mu_boundary
+
+
+@law(
+    source="Castro2007",
+    where="load sharing in mixed lubrication, solved for the film",
+    valid="f below 0.9",
+    verified=False,
+)
+def film_of_share(f: Num) -> Num:
+    r"""Specific film thickness at which the film carries a share of the load [1]: `fluid_share` inverted.
+
+    .. math:: \Lambda = (f / 0.82)^{1/0.28}
+
+    Args:
+        f: share of the load that the film carries [1]
+    """
+    return (f / 0.82) ** (1 / 0.28)

@@ -22,7 +22,7 @@ NOMINAL = {
     **{"T": 330.0, "nu_40": 320e-6, "nu_100": 30e-6, "nu": 60e-6, "rho": 860.0, "rho_15": 880.0, "alpha_T": -6e-4},
     **{"m": 7.2, "n": 2.73, "s": 8.0, "t": 0.14, "z_sum": 72.0},
     **{"alpha_n": 0.35, "beta": 0.17, "alpha_t": 0.354, "alpha_wt": 0.3512, "beta_b": 0.164},
-    **{"a": 0.0731, "a_w": 0.073, "m_n": 0.002, "z": 36.0, "d": 0.085, "D": 0.15, "x": 0.1},
+    **{"a": 0.0731, "a_w": 0.073, "m_n": 0.002, "z": 36.0, "d": 0.085, "x": 0.1},
     **{"d_a": 0.077, "d_b": 0.0686, "p_et": 0.006, "b": 0.042, "eps_alpha": 1.6, "rho_1": 0.0126, "rho_2": 0.02},
     **{"z_1": 36.0, "u": 2.0, "eps_1": 0.8, "eps_2": 0.9},
     **{"F_bt": 6e3, "F_bn": 6.1e3, "line_load": 8e4},
@@ -35,12 +35,53 @@ NOMINAL = {
     **{"phi_ish": 0.9, "T_pour": 240.0, "f_0": 7.0, "f_1": 2e-4, "P_1": 5000.0, "d_sh": 0.085, "c_sh": 73.4, "c": 50.0},
     **{"T_film": 310.0, "Pr": 0.7, "Re": 5e4, "h_natural": 5.0, "h_forced": 7.0, "A": 0.6},
     **{"T_s": 340.0, "T_f": 300.0, "L": 0.3, "height": 0.3, "v": 1.5, "T_1": 340.0, "T_2": 300.0, "emissivity": 0.9},
+    **{"K": 0.8125, "Zp": 40.0, "Zc": 39.0, "Rp": 0.064, "e": 0.0013, "r_rp": 0.003, "theta": 1.0, "kappa": 215.0},
+    **{"T_disc": 206.0, "w_crank": 61.0, "v_slide": 0.15, "v_contact": 0.08, "roll": 0.4, "w_l": 4e4, "E_eff": 230e9},
+    **{"F": 4700.0, "F_N": 4065.0, "F_K": 4450.0, "R_0": 0.0475, "w_rel": 160.0, "w_disc": 11.4, "tau_loss": 2.3},
+    **{
+        "mu_r": 0.005,
+        "mu_s": 0.05,
+        "P_in": 4000.0,
+        "w_in": 148.7,
+        "Lambda_ref": 0.4,
+        "stir": 0.7,
+        "load": 0.8,
+        "f": 0.6,
+    },
+    **{"M": 20.0, "L": 0.3, "U": 1e-11, "G": 5000.0, "W": 1e-4, "D": 0.15, "R_x": 0.01, "R_y": 0.05},
+    **{"Lambda": 0.7, "mu_fluid": 0.04, "mu_boundary": 0.12},
     **{"r_i": 0.1, "r_o": 0.11, "thickness": 0.004, "length": 0.03},
+    **{"Re_w": 2e4, "P": 2200.0, "P_N": 2200.0, "w_N": 298.5, "tau": 7.4, "eta": 0.82, "eta_N": 0.82, "eta_g": 0.76},
+    **{"share": 0.4, "Q": 1000.0, "S": 0.76, "T_room": 298.0, "psi_1": 0.5, "psi_2": 0.9, "S_3": 0.6, "S_4": 0.3},
+    **{"r": 0.15, "T_oil": 345.0, "nu_50": 30e-6, "Ra_1": 0.4e-6, "Ra_2": 0.4e-6, "c_q": 1.25},
+    **{"xi": 0.4, "F": 240.0, "C": 1e-17},
+    **{"w_0": 0.64e-3, "r_convex": 0.0192194, "r_concave": 0.0192307, "E_eff": 230e9, "u_0": 0.03, "u_m": 0.03},
+    **{"g_V": 20.0, "g_E": 5.0, "rigid_isoviscous": 0.5, "rigid_piezoviscous": 0.4, "elastic_isoviscous": 0.3},
 }
+CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
 OWN = {
+    **{f"cycloid.{key}": CYCLOID for key in ("pin_force_sum", "pin_force_along_crank", "eccentric_force")},
+    "cycloid.roller_loss_torque": CYCLOID | {"D": 0.014, "d": 0.008},
+    "cycloid.output_roller_power": CYCLOID | {"D": 0.014, "d": 0.007},
+    "cycloid.ring_roller_power": CYCLOID | {"D": 0.014, "d": 0.008},
     "rolling.starvation": {"s": 0.2},
+    "harmonic.conforming_radius": {"r_concave": 0.02},
+    "harmonic.flank_speed_radius": {"phi": 0.2},
+    "harmonic.pad_shear": {"a": 2.2, "B": 1e-3, "L": 0.012, "v_slide": 0.06},
+    "drum.motor_loss": {"a": 1.5},
+    "drum.cooling_area": {"S_1": 0.08, "S_2": 0.08},
+    "drum.lumped_temperature": {"h": 20.0},
+    "pad.wedge_coefficient": {"a": 2.2},
+    "pad.side_leakage": {"a": 2.2},
+    "pad.combined_film": {"A": 1e-11},
+    "pad.fill_arc": {"beta": 0.5},
+    "pad.fill_volume_share": {"beta": 0.5},
     "churning.churning_loss": {"a": 2.5, "b": 0.3},
     "churning.churning_torque": {"a": 2.5, "b": 0.3},
+    "film_line.moes_central": {"L": 10.0},
+    "film_point.nijenbanning_central": {"L": 10.0, "D": 0.8},
+    "film_point.hamrock_dowson_central": {"k": 1.5},
+    "film_point.hamrock_dowson_minimum": {"k": 1.5},
     "conduction.fin_efficiency": {"h": 10.0, "k": 100.0},
     "conduction.plane_wall": {"k": 50.0, "d": 0.01},
     "conduction.cylinder_wall": {"k": 50.0},
@@ -52,11 +93,13 @@ OWN = {
 ZERO = {
     **{"w": "w_width", "v_sum": "v_width", "u_sum": "u_width", "slide_roll": "slide_width", "v": "v_width"},
     **{"line_load": "F_width", "F_n_l": "F_width", "F_r": "F_width", "F_a": "F_width", "P_1": "F_width"},
+    **{"Lambda": "Lambda_width"},
 }
 #: Arguments that may be zero but not negative.
 NOT_NEGATIVE = {"P_a", "h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c", "T_pour"}
 #: Torques and losses: magnitudes, never negative.
-MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.")
+MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.", "film_line.", "film_point.")
+MAGNITUDES += ("cycloid.",)
 
 
 def every_function() -> dict[str, Callable[..., Any]]:
@@ -161,6 +204,7 @@ EXTREME = {
     **{"F_r": (0.0, 1.0, 1e6), "F_a": (0.0, 1.0, 1e6), "P_1": (0.0, 1e6), "F_n_l": (0.0, 1e8), "P_a": (0.0, 1e9)},
     **{"nu": _OIL, "eta_oil": (1e-3, 2e4), "eta_0": (1e-3, 2e4), "s": (0.0, 1e9), "phi_ish": (0.0910, 1.0)},
     **{"H": (0.0, 0.2), "K_rs": (0.0, 6e-8), "nu_40": (32e-6, 680e-6), "slide_roll": (0.0, 2.0)},
+    **{"Lambda": (0.0, 1e-6, 1e-3, 2.0, 1e3), "M": (1e-2, 1e6), "L": (1e-2, 100.0)},
     **{"phi": (0.0, 1.0), "phi_bl": (0.0, 1.0), "Ra": (1e-7, 1e-5)},
 }
 

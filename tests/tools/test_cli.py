@@ -19,6 +19,7 @@ COMMANDS = (
     "list",
     "show",
     "plan",
+    "verify",
 )
 
 
@@ -61,6 +62,12 @@ def test_list_names_rigs_and_oils(gearheat):
     assert {"PAOR", "MINR", "MINE", "PAGD"} <= found["catalogues"]["oil"].keys()
 
 
+def test_list_says_what_each_rig_reproduces(gearheat):
+    found = gearheat("list", "--json", "-").json
+    assert found["reproduces"].keys() == found["rigs"].keys()
+    assert "Dias2014" in found["reproduces"]["planetary"] and "reproduces" in gearheat("list").out
+
+
 def test_show_gives_every_parameter_a_value_a_unit_and_a_source(gearheat):
     found = gearheat("show", "planetary", "--json", "-").json
     parameters = {p["name"]: p for p in found["parameters"]}
@@ -96,6 +103,7 @@ def test_simulate_and_design_tell_which_law_is_outside_its_range(gearheat, tmp_p
 
 def test_show_errata_prints_what_the_source_should_say(gearheat):
     assert "PAGD" in gearheat("show", "planetary", "--errata").out
+    assert "no corrections" in gearheat("show", "helical_two_stage", "--errata").out
 
 
 def test_steady_takes_values_with_units_and_closes_the_power_balance(gearheat):
