@@ -17,8 +17,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import os
-
 import numpy as np
 
 from . import stencil
@@ -120,7 +118,7 @@ class Step:
         right = np.where(self.touching, film - problem.floor, np.where(active, -r, 0.0))
         self.right = self._joined(right, problem.load - self.linear.load(p))
         self.norm = float(np.linalg.norm(self.right)) / grid.n
-        self._cycle = lambda: Cycle(self.linear, moved, p, h)
+        self._around = (moved, p, h)
         self.h = h
 
     def _joined(self, r: Array, load: float) -> Array:
@@ -134,7 +132,7 @@ class Step:
 
     def solved(self) -> tuple[Array, float, int]:
         """Changes of pressure and approach, and the number of products."""
-        cycle = self._cycle()
+        cycle = Cycle(self.linear, *self._around)
 
         def precondition(v: Array) -> Array:
             p, h_0 = cycle(v[:-1].reshape(self._scale.shape) / self._scale, float(v[-1]) / self._scale_load)
@@ -182,6 +180,4 @@ def newton(problem: Problem, start: State, tolerance: float, steps: int) -> Stat
         share = step.share(p, h_0, problem.floor)
         now = step.state
         state = State(np.maximum(now.p + share * p, 0.0), now.h_0 + share * h_0, step.touching)
-        if os.environ.get("EHLV"):
-            print(f"  n={problem.grid.n} it={k} res={step.norm:.2e} k={products} dp={np.abs(p).max():.2e} touch={step.touching.sum()} hmin={step.h.min():.3e} pmax={state.p.max():.3f} slow={slow:.2e}", flush=True)
     return replace(state, residuals=tuple(norms), work=work)
