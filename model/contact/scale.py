@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan, exp, inf, pi, sqrt
+from math import atan, exp, inf, log, pi, sqrt
 
 import numpy as np
 
@@ -135,9 +135,10 @@ class Scaled:
         x_out = 1.5
         k = next((k for k in range(parts // 2, 13) if x_out * k / (parts - k) >= 1 + ahead), 12)
         x_out = max(x_out, (1 + ahead) * (parts - k) / k)
-        radius = self.contact.edge_radius
-        ends = sqrt(2 * radius * self.unit.h) / self.unit.a if radius else 0.0  # the approach is of the order of h
-        return -x_out * k / (parts - k), x_out, self.unit.b / self.unit.a + ends + 0.5 + 0.45 * ahead
+        slender, ends = self.unit.b / self.unit.a, 0.0
+        if self.contact.edge_radius:  # as far as the rounded ends are twice as far apart as a line contact approaches
+            ends = sqrt(2 * self.contact.edge_radius * self.unit.h * (log(2 * slender) + 0.5)) / self.unit.a
+        return -x_out * k / (parts - k), x_out, slender + ends + 0.5 + 0.45 * ahead
 
 
 def checked(contact: Contact) -> Contact:
