@@ -115,7 +115,7 @@ class Scaled:
         wedge = self.contact.u_m / unit.u if self.contact.u_m > REST else 0.0
         if wedge == 0 and squeeze == 0:
             kappa = 0.0  # at rest the oil has left
-        return Reynolds(oil, unit.p, kappa, wedge, grid.hx, grid.hy, squeeze, past, floor)
+        return Reynolds(oil, unit.p, kappa, wedge, grid.hx, grid.hy, squeeze, past, floor, self.contact.edge_radius > 0)
 
     def grid(self, n: int, domain: tuple[float, float, float] | None = None) -> Grid:
         """The finest grid.
