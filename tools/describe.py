@@ -110,6 +110,7 @@ def choices(scenario: Scenario) -> list[dict[str, Any]]:
     for part in scenario.spec.parts:
         for key, choice in declared(scenario.spec.types[part.type], Choice).items():
             value = part.values.get(key, choice.default)
+            value = str(value) if choice.also is not None and isinstance(value, choice.also) else value
             found.append({"name": f"{part.name}.{key}", "value": value, "options": choice.options, "doc": choice.doc})
     return found
 
@@ -196,6 +197,9 @@ def _print(found: dict[str, Any]) -> None:
 
 def _print_errata(found: dict[str, Any]) -> None:
     keys = ("place", "says", "should_be", "evidence")
+    if not found["errata"]:
+        print(f"{found['rig']}: no corrections to its sources are known.")
+        return
     table(
         f"{found['rig']}: corrections to the sources",
         ("place", "says", "should be", "evidence"),
