@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from math import inf
 
-from ..errors import ScenarioError
 from .case import Contact, Lubricant
 from .film import Film
 from .hertz import Hertz, hertz
+from .line import solve_line
 from .point import solve_point
 
 __all__ = ["Contact", "Film", "Hertz", "Lubricant", "hertz", "solve"]
@@ -24,7 +24,7 @@ def solve(
 
     Args:
         contact: the contact
-        n: nodes along a side of the finest grid, 2^k + 1
+        n: nodes along a side of the finest grid, 2^k + 1; of a line contact, any number
         domain: first x, last x and largest y over the half width a of the Hertz contact
         tolerance: scaled residual at which it stops, in units of the Hertz pressure [1]
 
@@ -32,5 +32,5 @@ def solve(
         ScenarioError: n or the contact make no problem
     """
     if contact.R_y == inf and contact.edge_radius == 0:
-        raise ScenarioError("contact: line contacts are not solved yet. Give R_y or edge_radius.")
+        return solve_line(contact, n=n, domain=domain[:2] if domain else None, tolerance=tolerance)
     return solve_point(contact, n=n, domain=domain, tolerance=tolerance)
