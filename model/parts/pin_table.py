@@ -78,8 +78,9 @@ def pin_case(mesh: PinMesh, film: Film, theta: float) -> ContactCase:
     """
     c = mesh.contact(theta, film)
     time = theta / abs(film.w_crank) if film.w_crank else inf
-    numbers = (time, theta, c.F, mesh.b, c.R, c.u_disc, c.u_pin, mesh.E_eff, film.eta, film.alpha_p, mesh.sigma)
-    return ContactCase(*map(float, numbers), mu_boundary=float(mesh.mu_boundary))
+    there = (time, theta, c.F, mesh.b, c.R, c.u_disc, c.u_pin)
+    both = (mesh.E_eff, film.eta, film.alpha_p, mesh.sigma, mesh.mu_boundary)
+    return ContactCase(*map(float, (*there, *both)))
 
 
 def pin_cycle(mesh: PinMesh, film: Film, count: int) -> list[ContactCase]:
