@@ -24,23 +24,22 @@ def fgmres(apply: Map, precondition: Map, b: Array, tolerance: float, steps: int
     beta = float(np.linalg.norm(b))
     if beta == 0:
         return np.zeros_like(b), 0
-    v, z = [b / beta], []
+    v, z = np.empty((steps + 1, b.size)), np.empty((steps, b.size))
     h = np.zeros((steps + 1, steps))
-    y = np.zeros(0)
+    v[0] = b / beta
     for k in range(steps):
-        z.append(precondition(v[k]))
+        z[k] = precondition(v[k])
         w = apply(z[k])
         for _ in range(2):  # orthogonalised twice
-            for i in range(k + 1):
-                share = float(np.dot(v[i], w))
-                h[i, k] += share
-                w = w - share * v[i]
+            share = v[: k + 1] @ w
+            h[: k + 1, k] += share
+            w = w - share @ v[: k + 1]
         h[k + 1, k] = np.linalg.norm(w)
         rhs = np.zeros(k + 2)
         rhs[0] = beta
-        y, *_ = np.linalg.lstsq(h[: k + 2, : k + 1], rhs, rcond=None)
+        y = np.linalg.lstsq(h[: k + 2, : k + 1], rhs, rcond=None)[0]
         left = float(np.linalg.norm(rhs - h[: k + 2, : k + 1] @ y))
         if left <= tolerance * beta or h[k + 1, k] <= 1e-14 * beta:
             break
-        v.append(w / h[k + 1, k])
-    return np.asarray(sum(c * u for c, u in zip(y, z, strict=True))), len(z)
+        v[k + 1] = w / h[k + 1, k]
+    return np.asarray(y @ z[: k + 1]), k + 1

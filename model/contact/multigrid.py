@@ -63,8 +63,9 @@ def linearise(
         touching: nodes where the surfaces touch: the film does not change there (n, n)
     """
     by_p, by_h = reynolds.linear(p, h)
-    for layer in (*by_p, *by_h):
-        layer[touching | ~active] = 0.0
+    fluid = active & ~touching
+    by_p *= fluid
+    by_h *= fluid
     by_h[stencil.CENTRE][touching] = -1.0
     return Linear(grid, by_p, by_h, active, touching)
 

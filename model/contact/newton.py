@@ -1,8 +1,21 @@
-"""Newton's method for pressure and approach on one grid, with the set of nodes under pressure found on the way."""
+"""Newton's method for one grid: pressure and approach, fluid film and touching surfaces in one system.
+
+With the residual R of Reynolds' equation (mass that gathers at a node), pressure p and film h = h_0 + gap + K p, every
+node is in one of three states:
+
+    film:      R = 0,          p > 0,  h > h_floor
+    cavity:    p = 0,          R <= 0: oil leaves faster than it arrives, and pressure cannot fall further
+    touching:  h = h_floor,    R <= 0: oil leaves faster than it arrives, and the film cannot fall further
+
+and the load fixes h_0. So where the film closes the deformed surfaces rest on one another, with a pressure that is
+found from h = h_floor instead of from the oil (Holmes, Evans, Hughes and Snidle, J. Tribol. 127, 2005, take contact
+nodes the same way); oil that arrives lifts them again. At rest the solution is Hertz's contact. Which state holds at a
+node is guessed, the equations are solved, and the guess is corrected until it stays: an active-set Newton method.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -10,8 +23,15 @@ from . import stencil
 from .case import Array
 from .grid import Grid
 from .krylov import fgmres
-from .multigrid import Cycle, Linear, linearise
+from .multigrid import Cycle, linearise
 from .reynolds import Reynolds
+
+#: Residual of the linear equations, over that before, at which a Newton step is good enough.
+FORCING = 3e-2
+#: Largest number of products in a Newton step.
+PRODUCTS = 40
+#: Largest change of pressure in a Newton step [1].
+LARGEST = 0.5
 
 
 @dataclass(frozen=True)
@@ -19,63 +39,115 @@ class State:
     """Pressure (n, n) and approach, and how they were found.
 
     Args:
-        p: pressure of the fluid [1]
+        p: pressure [1]
         h_0: film at the origin without deformation [1]
+        touching: nodes where the surfaces touch (n, n)
         residuals: scaled residual before each step
-        products: applications of the full operator
+        work: products with the operator
     """
 
     p: Array
     h_0: float
+    touching: np.ndarray
     residuals: tuple[float, ...] = ()
-    products: int = 0
+    work: int = 0
 
 
-def newton(
-    grid: Grid, reynolds: Reynolds, gap: Array, load: float, start: State, tolerance: float, steps: int
-) -> State:
+@dataclass(frozen=True)
+class Problem:
+    """What has to hold on one grid.
+
+    Args:
+        grid: the grid
+        reynolds: Reynolds' equation on it
+        gap: gap of the undeformed bodies (n, n) [1]
+        load: integral of the pressure [1]
+        floor: smallest film, at which surfaces touch [1]
+    """
+
+    grid: Grid
+    reynolds: Reynolds
+    gap: Array
+    load: float
+    floor: float
+
+    def film(self, state: State) -> Array:
+        """Film of a state (n, n) [1]; below the floor where its pressure is not yet right."""
+        return np.asarray(state.h_0 + self.gap + self.grid.deformation(state.p))
+
+
+class Step:
+    """The linear equations of one Newton step around a state.
+
+    Args:
+        problem: what has to hold
+        state: pressure and approach
+    """
+
+    def __init__(self, problem: Problem, state: State) -> None:
+        grid, p = problem.grid, state.p
+        self._k_0 = float(grid.deformation.near[0, 0])
+        inner = np.zeros(p.shape, dtype=bool)
+        inner[1:-1, 1:-1] = True
+        film = problem.film(state)
+        h = np.maximum(film, problem.floor)
+        r = problem.reynolds.residual(p, h)
+        self.touching = inner & ((film < problem.floor) | (state.touching & (p > 0) & (r <= 0)))
+        active = self.touching | (inner & ((p > 0) | (r > 0)))
+        self.linear = linearise(grid, problem.reynolds, p, h, active, self.touching)
+        diagonal = np.abs(self.linear.by_p[stencil.CENTRE]) + np.abs(self.linear.by_h[stencil.CENTRE]) * self._k_0
+        self._scale = 1 / np.where(active, diagonal, 1.0)
+        self._scale_load = grid.n / problem.load
+        right = np.where(self.touching, film - problem.floor, np.where(active, -r, 0.0))
+        self.right = self._joined(right, problem.load - self.linear.load(p))
+        self.norm = float(np.linalg.norm(self.right)) / grid.n
+        self._cycle = lambda: Cycle(self.linear, problem.reynolds, p, h)
+        self.h = h
+
+    def _joined(self, r: Array, load: float) -> Array:
+        """One scaled vector of the equations at the nodes and of the load."""
+        return np.append((r * self._scale).ravel(), load * self._scale_load)
+
+    def _product(self, v: Array) -> Array:
+        """Change of all equations with a change `v` of the unknowns."""
+        p = v[:-1].reshape(self._scale.shape)
+        return self._joined(self.linear(p, float(v[-1])), self.linear.load(p))
+
+    def solved(self) -> tuple[Array, float, int]:
+        """Changes of pressure and approach, and the number of products."""
+        cycle = self._cycle()
+
+        def precondition(v: Array) -> Array:
+            p, h_0 = cycle(v[:-1].reshape(self._scale.shape) / self._scale, float(v[-1]) / self._scale_load)
+            return np.append(p.ravel(), h_0)
+
+        x, products = fgmres(self._product, precondition, self.right, FORCING, PRODUCTS)
+        return x[:-1].reshape(self._scale.shape), float(x[-1]), products
+
+
+def newton(problem: Problem, start: State, tolerance: float, steps: int) -> State:
+    """Pressure and approach on a grid; the last of `residuals` says how well they hold.
+
+    Args:
+        problem: what has to hold
+        start: where to begin
+        tolerance: scaled residual at which it stops [1]
+        steps: largest number of Newton steps
+    """
     import os
-    verbose = os.environ.get("EHLV")
-    p, h_0 = start.p.copy(), start.h_0
-    inner = np.zeros(p.shape, dtype=bool)
-    inner[1:-1, 1:-1] = True
-    none = np.zeros_like(inner)
-    cell = grid.hx * grid.hy
+
+    state = start
     norms: list[float] = []
-    products = start.products
+    work = start.work
     for it in range(steps):
-        h = h_0 + gap + grid.deformation(p)
-        r = reynolds.residual(p, h)
-        active = inner & ((p > 0) | (r > 0))
-        linear = linearise(grid, reynolds, p, h, active, none)
-        diag = np.abs(linear.by_p[stencil.CENTRE]) + np.abs(linear.by_h[stencil.CENTRE]) * grid.deformation.near[0, 0]
-        scale = 1 / np.where(active, diag, 1.0)
-        missing = load - cell * p.sum()
-        lscale = grid.n / load
-        b = np.append((-r * scale * active).ravel(), missing * lscale)
-        norm = float(np.linalg.norm(b)) / grid.n
-        norms.append(norm)
-        if norm < tolerance:
+        step = Step(problem, state)
+        norms.append(step.norm)
+        if step.norm < tolerance:
             break
-        cycle = Cycle(linear, reynolds, p, h)
-
-        def apply(v: Array) -> Array:
-            f = v[:-1].reshape(p.shape)
-            return np.append((linear(f, v[-1]) * scale).ravel(), linear.load(f) * lscale)
-
-        def pre(v: Array) -> Array:
-            f, dh = cycle(v[:-1].reshape(p.shape) / scale, v[-1] / lscale)
-            return np.append(f.ravel(), dh)
-
-        x, k = fgmres(apply, pre, b, 1e-2, 30)
-        products += k
-        dp, dh0 = x[:-1].reshape(p.shape), x[-1]
-        dh = grid.deformation(dp) + dh0
-        with np.errstate(divide="ignore"):
-            room = np.min(np.where(dh < 0, -0.8 * h / dh, np.inf))
-        step = min(1.0, room)
-        p = np.maximum(p + step * dp, 0.0)
-        h_0 += step * dh0
-        if verbose:
-            print(f"  n={grid.n} it={it} res={norm:.2e} k={k} step={step:.2f} dpmax={np.abs(dp).max():.2e} hmin={h.min():.3e} pmax={p.max():.3f}")
-    return State(p, h_0, tuple(norms), products)
+        p, h_0, products = step.solved()
+        work += products
+        share = min(1.0, LARGEST / float(np.abs(p).max()))
+        if os.environ.get("EHLV"):
+            print(f"  n={problem.grid.n} it={it} res={step.norm:.2e} k={products} dp={np.abs(p).max():.2e} touch={step.touching.sum()} hmin={step.h.min():.3e} pmax={state.p.max():.3f}")
+        state = State(np.maximum(state.p + share * p, 0.0), state.h_0 + share * h_0, step.touching)
+    return replace(state, residuals=tuple(norms), work=work)

@@ -2,17 +2,29 @@
 
 from __future__ import annotations
 
+from math import ceil, log
+
 import numpy as np
 
 from ..errors import ScenarioError, SolveError
 from .case import Array, Contact
 from .film import Film, friction, smallest
 from .grid import COARSEST, Grid, prolong
-from .newton import State, newton
-from .scale import Scaled, central_film, scaled
+from .newton import Problem, State, newton
+from .scale import REST, Scaled, central_film, scaled
 
 #: Nodes along a side of the grid on which a contact is first solved.
 FIRST = 33
+#: Largest number of Newton steps on a grid.
+STEPS = 60
+#: Films are resolved by a grid down to this times the square of the distance of its nodes.
+RESOLVED = 3.0
+#: Largest factor by which the speed falls from one solution to the next.
+SLOWER = 4.0
+#: Tolerance of solutions that only start the next one.
+COARSE = 1e-3
+#: Film at which surfaces touch: a few molecules of oil [m].
+FLOOR = 1e-9
 
 
 def solve_point(
@@ -21,6 +33,7 @@ def solve_point(
     n: int = 257,
     domain: tuple[float, float, float] | None = None,
     tolerance: float = 1e-6,
+    floor: float = FLOOR,
 ) -> Film:
     """A steady elliptical contact or a roller of finite length.
 
@@ -29,6 +42,7 @@ def solve_point(
         n: nodes along a side of the finest grid, 2^k + 1
         domain: first x, last x and largest y over the half width a of the Hertz contact
         tolerance: scaled residual at which it stops, in units of the Hertz pressure [1]
+        floor: film at which the surfaces touch [m]
 
     Raises:
         ScenarioError: n or the contact make no problem
@@ -36,17 +50,22 @@ def solve_point(
     """
     unit = scaled(contact)
     grids = hierarchy(unit.grid(checked(n), domain))
-    state = first_guess(unit, grids[0])
+    speed = resolvable(unit, grids[0])
+    state = first_guess(unit, grids[0], speed)
     for i, grid in enumerate(grids):
         if i:
-            state = State(prolong(state.p), state.h_0)
-        state = newton(grid, unit.reynolds(grid), unit.gap(grid), unit.load, state, tolerance, 40)
+            state = finer(state)
+        for faster in descent(speed, resolvable(unit, grid) if i < len(grids) - 1 else 1.0):
+            speed = faster
+            problem = Problem(grid, unit.reynolds(grid, speed), unit.gap(grid), unit.load, floor / unit.film_unit)
+            last = i == len(grids) - 1 and speed == 1.0
+            state = newton(problem, state, tolerance if last else max(tolerance, COARSE), STEPS)
     if not state.residuals[-1] < tolerance:
         raise SolveError(
             f"contact: no film found on {n} x {n} nodes (residual {state.residuals[-1]:.1e}). "
             "Refine the grid: n = 2^k + 1, larger."
         )
-    return film_of(unit, grids[-1], state)
+    return film_of(unit, grids[-1], state, floor)
 
 
 def checked(n: int) -> int:
@@ -68,12 +87,35 @@ def hierarchy(finest: Grid) -> list[Grid]:
     return grids
 
 
-def first_guess(unit: Scaled, grid: Grid) -> State:
+def resolvable(unit: Scaled, grid: Grid) -> float:
+    """Factor on the speed, at least 1, at which the film is not below what the grid can resolve.
+
+    Args:
+        unit: the contact
+        grid: the grid
+    """
+    film = central_film(unit.contact) / unit.film_unit
+    return max(1.0, (RESOLVED * grid.hx**2 / film) ** 1.5) if film > 0 else 1.0
+
+
+def descent(start: float, end: float) -> list[float]:
+    """Factors on the speed from that of the last solution down to the next one.
+
+    Args:
+        start: factor of the last solution
+        end: factor wanted
+    """
+    steps = max(1, ceil(log(start / end) / log(SLOWER)))
+    return [end * (start / end) ** (1 - k / steps) for k in range(1, steps + 1)]
+
+
+def first_guess(unit: Scaled, grid: Grid, speed: float) -> State:
     """Hertz pressure, raised to the film of a formula.
 
     Args:
         unit: the contact
         grid: the coarsest grid
+        speed: factor on the speed
     """
     x, y = grid.nodes
     if unit.dry.b < np.inf:
@@ -82,23 +124,32 @@ def first_guess(unit: Scaled, grid: Grid) -> State:
         inside = (1 - x**2) * (np.abs(y) <= unit.contact.length / 2 / unit.dry.a)
     p = np.sqrt(np.maximum(inside, 0.0))
     p *= unit.load / (p.sum() * grid.hx * grid.hy)
-    film = central_film(unit.contact) / unit.film_unit
-    return State(p, film - float((unit.gap(grid) + grid.deformation(p)).min()))
+    film = central_film(unit.contact) / unit.film_unit * speed**0.67
+    h_0 = film - float((unit.gap(grid) + grid.deformation(p)).min())
+    return State(p, h_0, np.full(p.shape, unit.contact.u_m < REST) & (p > 0))
 
 
-def film_of(unit: Scaled, grid: Grid, state: State) -> Film:
+def finer(state: State) -> State:
+    """A state on the grid of half the distance."""
+    touching = prolong(state.touching.astype(float)) > 0.5
+    return State(prolong(state.p), state.h_0, touching, work=state.work)
+
+
+def film_of(unit: Scaled, grid: Grid, state: State, floor: float) -> Film:
     """What is told of a solution.
 
     Args:
         unit: the contact
         grid: its grid
-        state: pressure and approach on it
+        state: pressures and approach on it
+        floor: film at which the surfaces touch [m]
     """
     contact, a, p_h = unit.contact, unit.dry.a, unit.dry.p_max
     x, y = (np.asarray(c.ravel() * a) for c in grid.nodes)
     p = np.ascontiguousarray(state.p.T * p_h)
-    h = np.ascontiguousarray((state.h_0 + unit.gap(grid) + grid.deformation(state.p)).T * unit.film_unit)
-    p_asperity = np.zeros_like(p)
+    p_asperity = np.where(state.touching.T, p, 0.0)
+    film = state.h_0 + unit.gap(grid) + grid.deformation(state.p)
+    h = np.maximum(np.ascontiguousarray(film.T * unit.film_unit), floor)
     cell = float((x[1] - x[0]) * (y[1] - y[0]))
     return Film(
         contact=contact,
@@ -116,7 +167,7 @@ def film_of(unit: Scaled, grid: Grid, state: State) -> Film:
         load_error=float(p.sum() * cell / contact.F - 1),
         residual=state.residuals[-1],
         residuals=state.residuals,
-        work=state.products,
+        work=state.work,
     )
 
 

@@ -21,6 +21,30 @@ BAND = 4
 SPREAD_LIMIT = 0.4
 
 
+class Lines:
+    """Band matrices of all lines along x, factored together.
+
+    Args:
+        band: entries (2 reach + 1, ny, nx), the diagonal in the middle, none beyond the ends of the lines
+    """
+
+    def __init__(self, band: Array) -> None:
+        self._reach = k = band.shape[0] // 2
+        flat = band.reshape(2 * k + 1, -1)
+        n = flat.shape[1]
+        stored = np.zeros((3 * k + 1, n), order="F")
+        for d in range(-k, k + 1):
+            lo, hi = max(0, -d), min(n, n - d)
+            stored[2 * k - d, lo + d : hi + d] = flat[k + d, lo:hi]
+        factor, self._solve = get_lapack_funcs(("gbtrf", "gbtrs"), (stored,))
+        self._factors, self._pivots, _ = factor(stored, k, k, overwrite_ab=True)
+
+    def __call__(self, r: Array) -> Array:
+        """Solution for the right side `r` (ny, nx)."""
+        found, _ = self._solve(self._factors, self._reach, self._reach, r.ravel(), self._pivots)
+        return np.asarray(found.reshape(r.shape))
+
+
 class LineRelaxation:
     """Solves all lines of J D s = r, and gives D s.
 
@@ -39,8 +63,7 @@ class LineRelaxation:
         self._wx, self._wy = hy2 / (hx2 + hy2) / 2, hx2 / (hx2 + hy2) / 2
         self._active = active
         self._c = self._spread(by_p, by_h, near)
-        band = self._band(by_p, by_h, near)
-        self._factor, self._pivots = self._factored(band)
+        self._lines = Lines(self._band(by_p, by_h, near))
 
     def _spread(self, by_p: Array, by_h: Array, near: Array) -> Array:
         """How much of a change is spread, between 0 and 1 (ny, nx)."""
@@ -79,27 +102,9 @@ class LineRelaxation:
         out[BAND, ~self._active] = 1.0
         return out
 
-    @staticmethod
-    def _factored(band: Array) -> tuple[Array, np.ndarray]:
-        """LU factors of the matrix of all lines, in LAPACK's storage of a band."""
-        flat = band.reshape(2 * BAND + 1, -1)
-        stored = np.zeros((3 * BAND + 1, flat.shape[1]), order="F")
-        for d in range(-BAND, BAND + 1):
-            n = flat.shape[1] - abs(d)
-            row = flat[BAND + d]
-            if d >= 0:
-                stored[2 * BAND - d, d:] = row[:n]
-            else:
-                stored[2 * BAND - d, :n] = row[-d:]
-        (gbtrf,) = get_lapack_funcs(("gbtrf",), (stored,))
-        factor, pivots, _ = gbtrf(stored, BAND, BAND, overwrite_ab=True)
-        return factor, pivots
-
     def __call__(self, r: Array) -> Array:
         """Change of the pressure (ny, nx) that removes the residual `r` (ny, nx) of the lines."""
-        (gbtrs,) = get_lapack_funcs(("gbtrs",), (self._factor,))
-        s, _ = gbtrs(self._factor, BAND, BAND, np.where(self._active, r, 0.0).ravel(), self._pivots)
-        s = s.reshape(r.shape)
+        s = self._lines(np.where(self._active, r, 0.0))
         c = self._c * s
         out = s.copy()
         out[:, 1:] -= self._wx * c[:, :-1]

@@ -67,16 +67,17 @@ class Scaled:
             side = side + beyond**2 * (c.R_x / c.edge_radius) / 2
         return np.asarray(x**2 / 2 + side)
 
-    def reynolds(self, grid: Grid, squeeze: float = 0.0, past: Array | float = 0.0) -> Reynolds:
+    def reynolds(self, grid: Grid, faster: float = 1.0, squeeze: float = 0.0, past: Array | float = 0.0) -> Reynolds:
         """Reynolds' equation of the contact.
 
         Args:
             grid: the grid
+            faster: factor on the mean speed [1]
             squeeze: factor of the present d(rho h)/dt [1]
             past: what earlier moments add to d(rho h)/dt (n, n) [1]
         """
         c, unit = self.contact, self.dry
-        speed = max(c.u_m, REST)
+        speed = max(c.u_m, REST) * faster
         kappa = unit.p_max * unit.a**3 / (12 * c.lubricant.eta_0 * speed * c.R_x**2)
         wedge = 0.0 if c.u_m < REST else 1.0
         return Reynolds(c.lubricant, unit.p_max, kappa, wedge, grid.hx, grid.hy, squeeze, past)
