@@ -1,0 +1,99 @@
+"""Figures of the verification, as SVG text: the same bytes for the same results."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+
+from ..plots import COLOURS, STYLE, empty, svg
+from .pages import Row
+from .rows import Found
+
+MARKS = "osD^v<>"
+
+
+def films(table: Sequence[Row]) -> str:
+    """Ours over reference for every row whose reference is a film, one panel an item."""
+    items = [item for item in ("Hamrock and Dowson", "Nijenbanning, Venner and Moes", "Line contact") if _of(table, item)]
+    figure, panels = empty(4.2 * max(len(items), 1), 4.2, 1, max(len(items), 1))
+    for panel, item in zip(panels, items, strict=False):
+        mine = [row for row in _of(table, item) if row["tolerance"]]
+        low, high = _range([v for row in mine for v in (row["reference"], row["ours"])])
+        ends, rel = np.array([low, high]), float(mine[0]["tolerance"])
+        panel.fill_between(ends, ends * (1 - rel), ends * (1 + rel), color="#eeeeee", label=f"{100 * rel:g} %")
+        panel.plot(ends, ends, color="#888888", linewidth=1)
+        for i, quantity in enumerate(dict.fromkeys(row["quantity"] for row in mine)):
+            points = [(row["reference"], row["ours"]) for row in mine if row["quantity"] == quantity]
+            panel.plot(*zip(*points, strict=True), MARKS[i], color=COLOURS[i], markersize=4, label=quantity)
+        _logarithmic(panel, title=item, xlabel="reference", ylabel="this solver")
+        panel.set(xlim=(low, high), ylim=(low, high))
+        _legend(panel)
+    return svg(figure)
+
+
+def _of(table: Sequence[Row], item: str) -> list[Row]:
+    return [row for row in table if row["item"] == item]
+
+
+def _range(values: Sequence[float]) -> tuple[float, float]:
+    return 0.9 * min(values), 1.1 * max(values)
+
+
+def _logarithmic(panel: Axes, **words: str) -> None:
+    with mpl.rc_context(STYLE):
+        panel.set(xscale="log", yscale="log", **words)
+
+
+def _legend(panel: Axes) -> None:
+    with mpl.rc_context(STYLE):
+        panel.legend(fontsize=8)
+
+
+def convergence(found: Mapping[str, Found]) -> str:
+    """Differences between successive grids over the distance of nodes, one panel a contact."""
+    figure, panels = empty(5.2 * len(found), 4.2, 1, len(found), sharey=True)
+    for panel, (name, study) in zip(panels, found.items(), strict=True):
+        spacing = np.array(study["spacing"][:-1])
+        for i, (what, apart) in enumerate(study["apart"].items()):
+            panel.plot(spacing, apart, f"-{MARKS[i]}", color=COLOURS[i % len(COLOURS)], markersize=4, label=what)
+        top = max(values[0] for values in study["apart"].values())
+        panel.plot(spacing, top * (spacing / spacing[0]) ** 2, "--", color="#888888", label="second order")
+        _logarithmic(panel, title=name, xlabel="distance of nodes over a", ylabel="change on the next finer grid")
+        _legend(panel)
+    return svg(figure)
+
+
+def cost(study: Found) -> str:
+    """Processor time per unknown over the number of nodes a side."""
+    figure, panels = empty(5.2, 3.6, 1, 1)
+    each = np.array(study["us_per_unknown"])
+    panels[0].plot(study["nodes"], each / each[0], "-o", color=COLOURS[0])
+    with mpl.rc_context(STYLE):
+        panels[0].set_xscale("log", base=2)
+        panels[0].set_xticks(study["nodes"], [str(n) for n in study["nodes"]])
+        panels[0].minorticks_off()
+    panels[0].set_ylim(0, 1.15 * float((each / each[0]).max()))
+    panels[0].set(xlabel="nodes a side", ylabel=f"cost per unknown over that on {study['nodes'][0]}²")
+    return svg(figure)
+
+
+def shape(study: Found) -> str:
+    """Film over the plane as lines of equal film, and film and pressure along the middle."""
+    figure, panels = empty(10.4, 4.0, 1, 2)
+    x, y, p, h = (np.array(study[k]) for k in ("x", "y", "p", "h"))
+    levels = [0.7, 0.75, 0.8, 0.85, 0.9, 0.95, 1.0, 1.05, 1.1, 1.2, 1.5, 2.0, 3.0]
+    with mpl.rc_context(STYLE):
+        lines = panels[0].contour(x, y, h.T, levels, cmap="viridis", linewidths=0.8)
+        panels[0].clabel(lines, [0.8, 1.0, 1.2, 2.0], fontsize=7)
+    panels[0].set(xlim=(-2, 1.5), ylim=(-1.5, 1.5), aspect="equal", xlabel="x/a", ylabel="y/a", title="film over h_c")
+    middle = len(y) // 2
+    panels[1].plot(x, h[:, middle], color=COLOURS[0], label="film over h_c")
+    panels[1].plot(x, p[:, middle], color=COLOURS[1], label="pressure over Hertz'")
+    dry = np.sqrt(np.maximum(1 - x**2, 0.0))
+    panels[1].plot(x, dry, color="#888888", linewidth=1, linestyle="--", label="Hertz")
+    panels[1].set(xlim=(-2, 1.5), ylim=(0, 3), xlabel="x/a", title="in the middle, y = 0")
+    _legend(panels[1])
+    return svg(figure)

@@ -1,0 +1,51 @@
+"""Results of pieces of work, kept in files, so that an interrupted verification goes on where it stopped."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+
+from ..console import as_json, folder, note, write
+from .rows import Found, Job
+
+
+def fingerprint() -> str:
+    """What the results depend on, as a short text: another solver makes kept results void."""
+    state = hashlib.sha256()
+    for package in ("gearheat.model.contact", "gearheat.tools.contacts"):
+        for entry in sorted(files(package).iterdir(), key=lambda e: e.name):
+            if entry.name.endswith(".py"):
+                state.update(entry.read_bytes())
+    for entry in sorted(files("gearheat.model.contact").joinpath("reference").iterdir(), key=lambda e: e.name):
+        state.update(entry.read_bytes())
+    return state.hexdigest()[:16]
+
+
+def run(jobs: Sequence[Job], out: Path) -> list[tuple[Job, Found]]:
+    """All results, those that are kept not computed again; progress on stderr.
+
+    Args:
+        jobs: what to do
+        out: folder of the results
+    """
+    place, made_by, found = folder(out / "work"), fingerprint(), []
+    for i, job in enumerate(jobs):
+        path = place / f"{job.key}.json"
+        kept = _kept(path, made_by)
+        if kept is None:
+            note(f"[{i + 1}/{len(jobs)}] {job.item}: {job.name}")
+            kept = json.loads(as_json(job.work()))
+            write(path, as_json({"made_by": made_by, "found": kept}))
+        found.append((job, kept))
+    return found
+
+
+def _kept(path: Path, made_by: str) -> Found | None:
+    try:
+        held = json.loads(path.read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return held["found"] if held.get("made_by") == made_by else None
