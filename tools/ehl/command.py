@@ -30,7 +30,7 @@ def command(out: Path, quick: bool, json: str | None) -> None:
     write(out / "verification.md", pages.markdown(rows, {title: FILES[title] for title in drawn}))
     write(out / "verification.html", pages.html(rows, drawn))
     write(out / "verification.csv", pages.as_csv(rows))
-    result: dict[str, Any] = {"schema": "gearheat.contacts/1", "rows": rows}
+    result: dict[str, Any] = {"schema": "gearheat.ehl/1", "rows": rows}
     answer(result, json, lambda: table("The contact solver, verified", pages.SUMMARY, pages.summary(rows)))
 
 

@@ -15,7 +15,7 @@ from .rows import Found, Job
 def fingerprint() -> str:
     """What the results depend on, as a short text: another solver makes kept results void."""
     state = hashlib.sha256()
-    for package in ("gearheat.model.contact", "gearheat.tools.contacts"):
+    for package in ("gearheat.model.contact", "gearheat.tools.ehl"):
         for entry in sorted(files(package).iterdir(), key=lambda e: e.name):
             if entry.name.endswith(".py"):
                 state.update(entry.read_bytes())
