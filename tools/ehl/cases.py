@@ -12,6 +12,7 @@ from ...model.contact import Contact, Lubricant
 
 #: The oil and the steel of contacts that are given by numbers without a unit; the radius cancels out.
 OIL = Lubricant(eta_0=0.04, alpha_p=2.2e-8)
+SIMPLE_OIL = Lubricant(eta_0=0.04, alpha_p=2.2e-8, piezoviscous="barus", compressible=False)
 E_STEEL = 2.26e11
 RADIUS = 0.01
 
