@@ -29,7 +29,7 @@ class Source:
     key: str
     title: str
     author: str
-    year: int
+    year: int | str
     where: str = ""
 
 
@@ -41,7 +41,8 @@ _BETWEEN: Mapping[str, Callable[[Any, Any], Any]] = {"-": operator.sub, "/": ope
 class LawInfo:
     """What a law declares: source key, place in the source, validity in words and as ranges (SI).
 
-    A range belongs to an argument, "nu", or to the difference or quotient of two, "T - T_pour", "F_a / C_0".
+    A range belongs to an argument, "nu", or to the difference or quotient of two, "T - T_pour", "F_a / C_0". Where one
+    is left, `regimes` says what reigns there; "{name}" in it stands for the value of that output of the part.
     """
 
     name: str
@@ -50,6 +51,7 @@ class LawInfo:
     valid: str = ""
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     verified: bool = True
+    regimes: Mapping[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,6 +83,7 @@ def law(
     valid: str = "",
     ranges: Mapping[str, tuple[float, float]] | None = None,
     verified: bool = True,
+    regimes: Mapping[str, str] | None = None,
 ) -> Callable[[Callable[P, R]], Callable[P, R]]:
     """Tie a pure function to the source it comes from.
 
@@ -91,11 +94,12 @@ def law(
         ranges: argument, or two of them as "a - b" or "a / b" -> (low, high) in SI, checked by every run that uses
             the law; a range of an argument that a call leaves out does not count
         verified: False for a law without a golden row from print; reports list it as unverified
+        regimes: argument with a range -> what reigns where it is left, in words; see `LawInfo`
     """
     limits = dict(ranges or {})
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
-        info = LawInfo(function.__name__, source, where, valid, limits, verified)
+        info = LawInfo(function.__name__, source, where, valid, limits, verified, dict(regimes or {}))
         signature = inspect.signature(function)
         operands = {operand for name in limits for operand in name.split(" ")[::2]}
         if unknown := operands - signature.parameters.keys():

@@ -88,6 +88,68 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
     return _finite(float(result), name, value)
 
 
+def _magnitude(unit: str) -> Any:
+    """One of a unit; "W at 250 rpm" is the torque or conductance that takes one watt there."""
+    what, _, at = unit.partition(" at ")
+    one = _registry().Quantity(1.0, _pint_unit(what))
+    if not at:
+        return one
+    number, of = split(at)
+    return one / _registry().Quantity(number, _pint_unit(of))
+
+
+@functools.cache
+def kind_of(unit: str) -> str:
+    """What a unit measures: the same for "kW" and "N.mm/s", and for "degC" and "K (difference)".
+
+    Args:
+        unit: as users write it, also "W at 250 rpm"
+
+    Raises:
+        ScenarioError: there is no such unit
+    """
+    try:
+        return str(_magnitude(unit.removesuffix("(difference)").strip()).dimensionality)
+    except Exception:  # the parser of units fails on odd text in many ways
+        raise ScenarioError(f'there is no unit "{unit}". Write for example "N.m", "degC" or "mPa.s".') from None
+
+
+def in_unit(number: float, unit: str) -> float:
+    """An SI number in a unit of its kind.
+
+    Args:
+        number: in SI
+        unit: as users write it, such as "degC", "kW" or "W at 250 rpm"
+
+    Raises:
+        ScenarioError: there is no such unit
+    """
+    kind_of(unit)
+    base = _magnitude(unit).to_base_units()
+    if " at " in unit:
+        return number / float(base.magnitude)
+    return float(_registry().Quantity(number, base.units).to(_pint_unit(unit)).magnitude)
+
+
+def si_of(value: float | str) -> float:
+    """A number as it is, text with a unit in SI, whatever its kind.
+
+    Args:
+        value: such as 0.05 or "62 mm"
+
+    Raises:
+        ScenarioError: there is no such unit
+    """
+    if not isinstance(value, str):
+        return value
+    try:
+        number, unit = split(value)
+    except ValueError:
+        raise ScenarioError(f'"{value}" is no number with a unit. Write for example "62 mm".') from None
+    kind_of(unit)
+    return float(_registry().Quantity(number, _pint_unit(unit)).to_base_units().magnitude)
+
+
 def _finite(number: float, name: str, value: object) -> float:
     if not math.isfinite(number):
         raise ScenarioError(f"{name} = {value!r} is not finite. Write a finite number.")

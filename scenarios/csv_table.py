@@ -67,14 +67,18 @@ def raise_all(problems: Sequence[str], name: str) -> None:
         raise DataError(problems)
 
 
-def read_cells(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+def read_cells(path: Path, comments: bool = False) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """Header and rows (line number, cells) of a CSV file; blank lines are left out.
+
+    Args:
+        path: the file
+        comments: whether lines that begin with # are left out as well
 
     Raises:
         DataError: no such file, not text, empty, no row under the header, another separator, or rows of other lengths
     """
     name = path.name
-    lines = _lines(path)
+    lines = [(line, cells) for line, cells in _lines(path) if not (comments and cells[0].startswith("#"))]
     if not lines:
         raise DataError(f"{name}: the file is empty. It needs a line of column names and at least one row.")
     (_, header), *rows = lines

@@ -1,7 +1,8 @@
 """Rig files: one TOML file says everything about a rig, with a source for every value.
 
-    kind = "planetary"                    # a machine of gearheat.model.machines, or "network"
+    kind = "planetary"                    # a machine: a name in `LAYOUTS`, or "network"
     doc = "..."
+    reproduces = "..."                    # the published results it reproduces, or that nothing of it is published
 
     [drive]                               # what is given at the shaft ends
     carrier = ["w", "tau"]
@@ -47,7 +48,7 @@ from ..model.core.connect import nets
 from ..model.core.declare import Port, State, declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
-from ..model.machines import planetary
+from ..model.machines import cycloidal, drum_motor, planetary, rv_stage
 from ..model.machines.spec import PartSpec, Spec, assemble
 from ..model.parts import PARTS
 from ..model.units import to_si
@@ -60,16 +61,24 @@ from .values import PartValues, in_range, part_values, readable, settable
 #: Kind of rig -> its fixed parts (name -> type) and connections.
 LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
     "planetary": (planetary.PARTS, planetary.CONNECTIONS),
+    "cycloidal": (cycloidal.PARTS, cycloidal.CONNECTIONS),
+    "cycloidal_printed": (cycloidal.PRINTED_PARTS, cycloidal.PRINTED_CONNECTIONS),
+    "rv_stage": (rv_stage.PARTS, rv_stage.CONNECTIONS),
+    "drum_motor": (drum_motor.PARTS, drum_motor.CONNECTIONS),
     "network": ({}, ()),
 }
 
 RIGS = Path(str(files("gearheat.scenarios").joinpath("rigs")))
 
 
-def list_rigs() -> dict[str, str]:
-    """The shipped rigs: name -> what they are."""
+def list_rigs(key: str = "doc") -> dict[str, str]:
+    """The shipped rigs: name -> what they are.
+
+    Args:
+        key: text of the rig file to give: "doc", or "reproduces" for the published results that a rig reproduces
+    """
     found = sorted(RIGS.glob("*/rig.toml"))
-    return {path.parent.name: str(read_toml(path).get("doc", "")) for path in found}
+    return {path.parent.name: str(read_toml(path).get(key, "")) for path in found}
 
 
 def load(name_or_path: str | Path, types: Mapping[str, type[Component]] = PARTS) -> Scenario:
@@ -172,6 +181,7 @@ class _Loader:
             errata=tuple(Erratum(e.place, e.says, e.should_be, e.evidence) for e in self.table.errata),
             protocol=protocol,
             campaign=campaign,
+            reproduces=self.table.reproduces,
         )
 
     def _parts(self) -> dict[str, PartValues]:

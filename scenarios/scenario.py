@@ -39,6 +39,7 @@ class Scenario:
         overrides: values that stand in the place of their catalogue's
         entries: part -> kind of catalogue -> name of the entry it was filled from
         protocol: how measured tables of this rig were taken; `campaign` is the one it comes with
+        reproduces: what published results the rig reproduces, in a line
     """
 
     name: str
@@ -57,6 +58,7 @@ class Scenario:
     errata: tuple[Erratum, ...] = ()
     protocol: Protocol | None = None
     campaign: Campaign | None = None
+    reproduces: str = ""
 
     def settable(self) -> dict[str, Quantity]:
         """All that may be given a value, by path: parameters, start values of states, inputs."""

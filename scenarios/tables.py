@@ -48,6 +48,7 @@ class RigTable(Strict):
 
     kind: str = Field(description='"planetary", or "network" for parts and connections of its own')
     doc: str = Field(description="what the rig is, in a sentence")
+    reproduces: str = Field("", description="what published results the rig reproduces, in a line, or that it has none")
     drive: dict[str, list[Literal["w", "tau"]]] = Field(
         description='what is given at the shaft ends, e.g. carrier = ["w", "tau"]'
     )
@@ -76,13 +77,20 @@ def validate(name: str, raw: Mapping[str, Any]) -> tuple[RigTable, list[str]]:
     except ValidationError as error:
         wrong = {str(e["loc"][0]) for e in error.errors()}
         kept = {key: value for key, value in raw.items() if key not in wrong}
-        return RigTable.model_validate({**_STANDING_IN, **kept}), [_problem(name, dict(e)) for e in error.errors()]
+        problems = [problem_of(name, dict(e), RigTable) for e in error.errors()]
+        return RigTable.model_validate({**_STANDING_IN, **kept}), problems
 
 
-def _problem(name: str, error: Mapping[str, Any]) -> str:
-    """One finding of pydantic: place, what was found, what is expected."""
+def problem_of(name: str, error: Mapping[str, Any], top: type[Strict]) -> str:
+    """One finding of pydantic: place, what was found, what is expected.
+
+    Args:
+        name: name of the file
+        error: the finding
+        top: model of the whole file
+    """
     steps = error["loc"]
-    model, expected = _expected(steps)
+    model, expected = _expected(steps, top)
     *tables, key = steps if isinstance(steps[-1], str) else steps[:-1]
     place = "".join(f" {t + 1}" if isinstance(t, int) else f".{t}" for t in tables).lstrip(".")
     where = f"{name} [{place}]" if place else name
@@ -94,9 +102,9 @@ def _problem(name: str, error: Mapping[str, Any]) -> str:
     return f"{where}: {key} = {error['input']!r} does not fit. Expected: {expected}."
 
 
-def _expected(steps: Iterable[str | int]) -> tuple[type[Strict] | None, str]:
+def _expected(steps: Iterable[str | int], top: type[Strict]) -> tuple[type[Strict] | None, str]:
     """The innermost model on the way to a place, and what the last known key on it means."""
-    model: type[Strict] | None = RigTable
+    model: type[Strict] | None = top
     meaning = ""
     for step in steps:
         if model and (field := model.model_fields.get(str(step))):

@@ -216,4 +216,4 @@ def outside_of(
                 point(flat, settings | inputs, {n: v for n, v in values.items() if n in states}, who="readings")
             )
     x, u, p = (np.array([getattr(here, kind) for here in points]).T for kind in "xup")
-    return outside(flat, evaluate(flat, x, u, p)["checked"])
+    return outside(flat, evaluate(flat, x, u, p))

@@ -67,13 +67,16 @@ def losses(
         Literal["ideal", "successive"] | None,
         typer.Option(help="ideal: mesh forces from the input torque; successive: each stage sees upstream losses."),
     ] = None,
+    contacts: Annotated[
+        bool, typer.Option("--contacts", help="Also every contact over a mesh cycle: loads, speeds, films, friction.")
+    ] = False,
     set_: Set = None,
     json: Json = None,
 ) -> None:
     """Every loss at every measured reading."""
     from . import losses
 
-    losses.command(rig, data, temperature, power_flow, set_ or [], json)
+    losses.command(rig, data, temperature, power_flow, set_ or [], json, contacts=contacts)
 
 
 @app.command()
@@ -290,6 +293,21 @@ def show(
     from . import describe
 
     describe.show_command(rig, errata, json)
+
+
+@app.command()
+@console.guarded
+def verify(
+    rig: Annotated[
+        str | None, typer.Argument(help="Name of a shipped rig, or path of a rig file; all shipped rigs if left out.")
+    ] = None,
+    json: Json = None,
+    html: Annotated[Path | None, typer.Option(metavar="FILE", help="HTML page to write.")] = None,
+) -> None:
+    """Each published number of each machine, the corrected one, what the model gives, and the verdict."""
+    from . import verify
+
+    verify.command(rig, json, html)
 
 
 @app.command()

@@ -133,8 +133,15 @@ def _cannot_write(path: Path, error: OSError) -> str:
     return f"{path}: cannot be written ({error.strerror or error}). Give a folder that exists and may be written."
 
 
-def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> None:
-    """Print a table: columns of numbers to the right, columns of words to the left."""
+def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]], *, wrapped: bool = False) -> None:
+    """Print a table: columns of numbers to the right, columns of words to the left.
+
+    Args:
+        title: above it
+        columns: names of the columns
+        rows: a value per column
+        wrapped: whether the first column may be broken into lines; names that are typed must not
+    """
     from rich import box
     from rich.console import Console
     from rich.table import Table
@@ -143,7 +150,7 @@ def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]]) -> 
     drawn = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
     for i, column in enumerate(columns):
         words = any(not _is_number(row[i]) for row in body)
-        drawn.add_column(column, justify="left" if words else "right", overflow="fold", no_wrap=i == 0)
+        drawn.add_column(column, justify="left" if words else "right", overflow="fold", no_wrap=i == 0 and not wrapped)
     for row in body:
         drawn.add_row(*row)
     Console(width=None if sys.stdout.isatty() else 160, markup=False, emoji=False).print(drawn)

@@ -28,12 +28,14 @@ def list_command(json: str | None) -> None:
     found: dict[str, Any] = {
         "schema": "gearheat.list/1",
         "rigs": list_rigs(),
+        "reproduces": list_rigs("reproduces"),
         "catalogues": entries,
         "checked": checked,
     }
 
     def human() -> None:
-        table("Rigs", ("name", "what it is"), found["rigs"].items())
+        rigs = [(name, doc, found["reproduces"][name]) for name, doc in found["rigs"].items()]
+        table("Rigs", ("name", "what it is", "reproduces"), rigs)
         for kind, docs in entries.items():
             rows = [(name, doc, checked[kind][name]) for name, doc in docs.items()]
             table(f"Catalogue: {kind}", ("name", "what it is", "checked"), rows)
@@ -49,6 +51,7 @@ def show_command(rig: str, errata: bool, json: str | None) -> None:
         "schema": "gearheat.show/1",
         "rig": scenario.name,
         "doc": scenario.doc,
+        "reproduces": scenario.reproduces,
         "kind": scenario.kind,
         "parts": [{"name": p.name, "type": p.type, "doc": _doc(types[p.type])} for p in scenario.spec.parts],
         "parameters": [_parameter(scenario, flat, q) for q in every_parameter(scenario, flat)],
@@ -171,6 +174,8 @@ def _doc(cls: type) -> str:
 
 def _print(found: dict[str, Any]) -> None:
     print(f"{found['rig']}: {found['doc']}\n")
+    if found["reproduces"]:
+        print(f"Reproduces: {found['reproduces']}\n")
     valued = ("name", "value", "unit", "doc")
     table("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")))
     known = ("name", "value", "kind", "uncertainty", "unit", "doc", "source")

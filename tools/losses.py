@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from ..model.core.flat import FlatModel
 from ..model.errors import DataError, ScenarioError
+from ..model.parts.contacts import ContactTable
 from ..model.run.point import point
 from ..model.run.rows import evaluate
 from ..model.run.steady import steady, steady_table
@@ -17,6 +18,7 @@ from ..scenarios.entries import catalogue
 from ..scenarios.measured import Campaign, Protocol, Reading, read_measured
 from ..scenarios.scenario import Scenario
 from .console import answer, table
+from .contacts import contacts_at, part_with_contacts, print_contacts
 from .points import conditions
 from .rigs import load
 from .settings import DIAGNOSED, SET, adjusted, choice_paths, driven_by, flat_of
@@ -30,8 +32,13 @@ def command(
     power_flow: str | None,
     assignments: Sequence[str],
     json: str | None,
+    *,
+    contacts: bool = False,
 ) -> None:
-    """Losses at all readings of a rig, or at the operating point of a rig without measured data."""
+    """Losses at all readings of a rig, or at the operating point of a rig without measured data.
+
+    With `contacts` the contacts at the operating point as well.
+    """
     scenario = load(rig)
     flows = [f"{path}={power_flow}" for path in choice_paths(scenario.spec) if path.endswith(".power_flow")]
     if power_flow is not None and not flows:
@@ -54,9 +61,14 @@ def command(
         "unchecked": unchecked(scenario, flat_of(scenario), oils_of(campaign)),
     }
     columns = list(rows[0])
+    told = contacts_at_operating_point(scenario) if contacts else None
+    if told is not None:
+        found |= {"contacts": told.rows, "columns": told.columns, **told.totals}
 
     def human() -> None:
         table(f"{scenario.name}: losses", columns, [[r[c] for c in columns] for r in rows])
+        if told is not None:
+            print_contacts(scenario.name, told)
         print_unchecked(found["unchecked"])
 
     answer(found, json, human)
@@ -89,7 +101,7 @@ def at_readings(scenario: Scenario, campaign: Campaign, temperature: str) -> lis
         result = steady_table(flat, values)
         columns: dict[str, np.ndarray] = dict(result.columns)
     else:
-        columns = _at(flat, values, [reading.si("T_oil_C") for reading in campaign.readings])
+        columns = held(flat, values, [reading.si("T_oil_C") for reading in campaign.readings])
     rows = []
     for i, reading in enumerate(campaign.readings):
         name = {"point": reading.point, "test": reading.test, "direction": reading.direction, "oil": reading.oil}
@@ -118,15 +130,24 @@ def oil_values(scenario: Scenario, protocol: Protocol, oil: str) -> dict[str, fl
     return {path: value for path, value in values.items() if not scenario.value_sources.get(path, "").startswith(kept)}
 
 
-def _at(flat: FlatModel, values: Sequence[dict[str, float]], temperatures: Sequence[float]) -> dict[str, np.ndarray]:
-    """All outputs with every temperature of the model at a given value, per point."""
+def held(
+    flat: FlatModel, values: Sequence[Mapping[str, float]], temperatures: Sequence[float]
+) -> dict[str, np.ndarray]:
+    """All outputs, inputs and parameters with every temperature of the model at a given value.
+
+    Args:
+        flat: the model
+        values: inputs and parameters by path (SI), per point
+        temperatures: of every body, per point [K]
+    """
     hot = [q.name for q in flat.states if q.unit == "K"]
     points = [
         point(flat, row, dict.fromkeys(hot, T), who="losses") for row, T in zip(values, temperatures, strict=True)
     ]
     x, u, p = (np.array([getattr(here, kind) for here in points]).T for kind in "xup")
     y = evaluate(flat, x.reshape(len(flat.states), -1), u, p)["y"]
-    return {q.name: line for q, line in zip(flat.outputs, y, strict=True)}
+    groups = ((flat.outputs, y), (flat.inputs, u), (flat.parameters, p))
+    return {q.name: line for quantities, lines in groups for q, line in zip(quantities, lines, strict=True)}
 
 
 def at_operating_point(scenario: Scenario) -> dict[str, Any]:
@@ -134,6 +155,13 @@ def at_operating_point(scenario: Scenario) -> dict[str, Any]:
     flat = flat_of(scenario)
     result = steady(flat, conditions(scenario, flat))
     return {c: float(sum(result[path][0] for path in paths)) for c, paths in scenario.losses.items()}
+
+
+def contacts_at_operating_point(scenario: Scenario) -> ContactTable:
+    """The contacts of a rig at its operating point and the steady temperatures there."""
+    part_with_contacts(scenario)
+    flat = flat_of(scenario)
+    return contacts_at(scenario, flat, steady(flat, conditions(scenario, flat)))
 
 
 def _flow_paths(scenario: Scenario) -> list[str]:

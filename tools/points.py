@@ -58,6 +58,7 @@ def outside_of(result: Result) -> list[dict[str, Any]]:
             "argument": o.argument,
             "range": [o.low, o.high],
             "met": [o.lowest, o.highest],
+            "regime": o.regime,
         }
         for o in result.outside
     ]
@@ -170,7 +171,8 @@ def tell_outside(outside: Sequence[Mapping[str, Any]]) -> None:
     for o in outside:
         (least, most), (low, high) = o["met"], o["range"]
         met = f"{least:.4g}" if least == most else f"{least:.4g} to {most:.4g}"
-        print(f"outside its range: {o['part']}: {o['law']}, {o['argument']} = {met} (valid {low:g} to {high:g})")
+        there = f": {o['regime']}" if o["regime"] else ""
+        print(f"outside its range: {o['part']}: {o['law']}, {o['argument']} = {met} (valid {low:g} to {high:g}){there}")
 
 
 def _print_design(flat: FlatModel, found: Mapping[str, Any]) -> None:

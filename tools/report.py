@@ -123,9 +123,9 @@ def _laws(laws: Sequence[LawInfo]) -> Markup:
 
 
 def _outside(outside: Sequence[Outside]) -> Markup:
-    body = [(o.law, o.component, o.argument, o.low, o.high, o.lowest, o.highest) for o in outside]
-    head = ("law", "part", "argument", "valid from", "to", "met from", "to")
-    return html_table(head, body, text=(1, 2)) if body else Markup("")
+    body = [(o.law, o.component, o.argument, o.low, o.high, o.lowest, o.highest, o.regime) for o in outside]
+    head = ("law", "part", "argument", "valid from", "to", "met from", "to", "regime there")
+    return html_table(head, body, text=(1, 2, 7)) if body else Markup("")
 
 
 def _readings(rows: Rows) -> Markup:

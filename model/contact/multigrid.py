@@ -49,9 +49,7 @@ class Linear:
         return float(p.sum()) * self.grid.hx * self.grid.hy
 
 
-def linearise(
-    grid: Grid, reynolds: Reynolds, p: Array, h: Array, active: np.ndarray, touching: np.ndarray
-) -> Linear:
+def linearise(grid: Grid, reynolds: Reynolds, p: Array, h: Array, active: np.ndarray, touching: np.ndarray) -> Linear:
     """The equations around a state.
 
     Args:
@@ -86,9 +84,7 @@ class Cycle:
         if grid.n <= COARSEST:
             self._direct = _factored(linear)
             return
-        self._relax = LineRelaxation(
-            linear.by_p, linear.by_h, grid.deformation.near, linear.active, (grid.hx, grid.hy)
-        )
+        self._relax = LineRelaxation(linear.by_p, linear.by_h, grid.deformation.near, linear.active, (grid.hx, grid.hy))
         past = reynolds.past
         coarse = replace(
             reynolds,

@@ -18,7 +18,7 @@ FIRST = 33
 #: Largest number of Newton steps on a grid.
 STEPS = 60
 #: Films are resolved by a grid down to this times the square of the distance of its nodes.
-RESOLVED = 3.0
+RESOLVED = 10.0
 #: Largest factor by which the speed falls from one solution to the next.
 SLOWER = 4.0
 #: Tolerance of solutions that only start the next one.

@@ -56,9 +56,7 @@ class LineRelaxation:
         steps: distance of the nodes along x and along y
     """
 
-    def __init__(
-        self, by_p: Array, by_h: Array, near: Array, active: np.ndarray, steps: tuple[float, float]
-    ) -> None:
+    def __init__(self, by_p: Array, by_h: Array, near: Array, active: np.ndarray, steps: tuple[float, float]) -> None:
         hx2, hy2 = steps[0] ** 2, steps[1] ** 2
         self._wx, self._wy = hy2 / (hx2 + hy2) / 2, hx2 / (hx2 + hy2) / 2
         self._active = active

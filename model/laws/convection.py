@@ -154,6 +154,47 @@ def nusselt_forced_cylinder(Re: Num, Pr: Num) -> Num:
     return 0.3 + laminar * (1 + (Re / 282000) ** (5 / 8)) ** 0.8
 
 
+#: C and m of Nu = C Re^m Pr^(1/3) for Re 0.4-4, 4-40, 40-4e3 and 4e3-4e4.
+HILPERT = ((0.989, 0.330), (0.911, 0.385), (0.683, 0.466), (0.193, 0.618))
+
+
+@law(
+    source="Incropera2007",
+    where="Hilpert correlation, Table 7.2",
+    valid="cylinder in cross flow of a gas, Re 0.4-4e4",
+    ranges={"Re": (0.4, 4e4)},
+)
+def nusselt_hilpert(Re: Num, Pr: Num, *, sharpness: float = 100.0) -> Num:
+    r"""Mean Nusselt number of a cylinder in cross flow [1], length its diameter.
+
+    .. math:: Nu = C Re^m Pr^{1/3}
+
+    with C and m of the row in which Re lies: the one that gives most, as the rows rise ever steeper. The row from 4e4
+    to 4e5 is left out, as Vasic2022 uses the row before it there as well.
+
+    Args:
+        Re: Reynolds number, above 0 [1]
+        Pr: Prandtl number [1]
+        sharpness: exponent of the mean that joins the rows; they meet at 0.7 % above both for 100 [1]
+    """
+    last = HILPERT[-1][0] * Re ** HILPERT[-1][1]
+    others = sum((C * Re**m / last) ** sharpness for C, m in HILPERT[:-1])
+    return last * (1 + others) ** (1 / sharpness) * Pr ** (1 / 3)
+
+
+@law(source="Vasic2022", where="eq 15", valid="flat wall of a housing in moving air", verified=False)
+def flat_wall_coefficient(v: Num, *, v_width: float = V_WIDTH) -> Num:
+    r"""Heat transfer coefficient [W/(m2.K)] of the flat walls of a housing.
+
+    .. math:: h = 7 + 12 \sqrt{v}
+
+    Args:
+        v: speed of the air, either direction [m/s]
+        v_width: rounding in still air [m/s]
+    """
+    return 7 + 12 * smooth_power(v, 0.5, v_width)
+
+
 @law(source="Incropera2007", where="mixed convection, exponent 3", valid="assisting flow", verified=False)
 def mixed(h_natural: Num, h_forced: Num, *, width: float = 1e-3) -> Num:
     r"""Heat transfer coefficient of free and forced convection together [W/(m2.K)].

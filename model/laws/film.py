@@ -89,6 +89,25 @@ def specific_film_thickness(h: Num, sigma: Num) -> Num:
     return h / sigma
 
 
+@law(source="Grubin1949", where="exponents of the central film thickness", valid="one contact", verified=False)
+def film_from_reference(
+    Lambda_ref: Num, stir: Num, load: Num, *, stir_width: float = 1e-6, load_width: float = 1e-3
+) -> Num:
+    r"""Specific film thickness of a contact by what it is at a reference [1], zero at standstill.
+
+    .. math:: \Lambda = \Lambda_{ref} \left(\frac{\eta u}{\eta_{ref} u_{ref}}\right)^{0.727}
+        \left(\frac{F}{F_{ref}}\right)^{-0.091}
+
+    Args:
+        Lambda_ref: specific film thickness at the reference [1]
+        stir: viscosity times speed over that of the reference, either sign [1]
+        load: force over that of the reference, either sign [1]
+        stir_width: rounding at standstill [1]
+        load_width: rounding without load [1]
+    """
+    return Lambda_ref * smooth_power(stir, 0.727, stir_width) * smooth_abs(load, load_width) ** -0.091
+
+
 @law(
     source="Castro2007",
     where="load sharing in mixed lubrication",
@@ -128,3 +147,20 @@ def mixed_friction(Lambda: Num, mu_fluid: Num, mu_boundary: Num) -> Num:
     """
     f = fluid_share(Lambda)
     return f * mu_fluid + (1 - f) * mu_boundary
+
+
+@law(
+    source="Castro2007",
+    where="load sharing in mixed lubrication, solved for the film",
+    valid="f below 0.9",
+    verified=False,
+)
+def film_of_share(f: Num) -> Num:
+    r"""Specific film thickness at which the film carries a share of the load [1]: `fluid_share` inverted.
+
+    .. math:: \Lambda = (f / 0.82)^{1/0.28}
+
+    Args:
+        f: share of the load that the film carries [1]
+    """
+    return (f / 0.82) ** (1 / 0.28)

@@ -24,3 +24,17 @@ def radiated(T_1: Num, T_2: Num, A: Num, emissivity: Num) -> Num:
         emissivity: emissivity of the surface [1]
     """
     return SIGMA * emissivity * A * (T_1**4 - T_2**4)
+
+
+@law(source="Vasic2022", where="eq 16, temperatures in K", valid="grey surface, large room", verified=False)
+def radiation_coefficient(T_1: Num, T_2: Num, emissivity: Num) -> Num:
+    r"""Radiated heat over area and temperature difference [W/(m2.K)].
+
+    .. math:: h = \sigma \varepsilon (T_1^2 + T_2^2)(T_1 + T_2)
+
+    Args:
+        T_1: temperature of the surface [K]
+        T_2: temperature of the room's walls [K]
+        emissivity: emissivity of the surface [1]
+    """
+    return SIGMA * emissivity * (T_1**2 + T_2**2) * (T_1 + T_2)

@@ -3,10 +3,23 @@
 from ..core.component import Component
 from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
+from .cycloid import CycloidalReducer, MalhotraReducer
+from .drum import BeltContact, DrumChurning, DrumCooling, DrumOil, WettedWall
 from .gears import HelicalGearPair, PlanetarySet
+from .harmonic import HarmonicContact, HarmonicMesh
+from .housing import (
+    FlatWallCooling,
+    LinearFlatWallCooling,
+    LinearShellCooling,
+    OilToHousing,
+    RoundHousing,
+    ShellCooling,
+)
 from .lubrication import Grease, OilBath
+from .motor import Motor
+from .rv import CycloidPinStage
 from .sealing import LipSeal
-from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit
+from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit, TurningFrame
 from .supports import ShaftSupport, TwoGearSupport
 from .thermal import (
     BoxCooling,
@@ -29,9 +42,16 @@ PARTS: dict[str, type[Component]] = {
         Inertia,
         LoadingClutch,
         TorqueSplit,
+        TurningFrame,
         Efficiency,
+        Motor,
         PlanetarySet,
         HelicalGearPair,
+        CycloidalReducer,
+        MalhotraReducer,
+        CycloidPinStage,
+        HarmonicMesh,
+        HarmonicContact,
         ShaftSupport,
         TwoGearSupport,
         TaperedRollerBearing,
@@ -40,15 +60,26 @@ PARTS: dict[str, type[Component]] = {
         NeedleBearing,
         LipSeal,
         Churning,
+        DrumChurning,
         OilBath,
+        DrumOil,
         Grease,
         HeatCapacity,
         ThermalConductor,
         PlaneWall,
         CylinderWall,
+        WettedWall,
+        BeltContact,
         BoxCooling,
         CylinderCooling,
+        DrumCooling,
         FinnedBoxCooling,
+        RoundHousing,
+        OilToHousing,
+        FlatWallCooling,
+        ShellCooling,
+        LinearFlatWallCooling,
+        LinearShellCooling,
         Room,
         PrescribedTemperature,
     )

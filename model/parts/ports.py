@@ -1,4 +1,4 @@
-"""The ports of the parts: two that carry power, and four that carry information only."""
+"""The ports of the parts: two that carry power, and five that carry information only."""
 
 from __future__ import annotations
 
@@ -73,6 +73,16 @@ class ToothForce(Port):
     F_a = Potential("N", "axial force", nominal=1000.0)
 
 
+class WallSize(Port):
+    """Size of one side of a housing wall: information, not power."""
+
+    missing = "nothing says how large the wall is"
+    source = "the side of a RoundHousing"
+
+    A = Potential("m2", "area that takes part in the heat transfer", nominal=0.1)
+    L = Potential("m", "characteristic length: height of a flat wall, diameter of a round one", nominal=0.2)
+
+
 class Lubricant(Port):
     """State of a lubricant where it is used: information, not power."""
 
@@ -86,6 +96,15 @@ class Lubricant(Port):
     beta_T = Potential("1/K", "temperature coefficient of the viscosity", nominal=0.03)
     k = Potential("W/(m.K)", "thermal conductivity", nominal=0.13)
     X_L = Potential("1", "lubricant factor of the tooth friction", nominal=0.8)
+
+
+class OilLevel(Port):
+    """How much of a turning drum the oil inside wets: information, not power."""
+
+    missing = "nothing says how far the drum is filled"
+    source = "the level of a DrumOil"
+
+    share = Potential("1", "share of the drum's inside that the oil wets", nominal=0.4)
 
 
 class ShaftReading(Port):

@@ -132,6 +132,24 @@ class LoadingClutch(Component):
         yield equation("slip", self.slip, self.w_a - self.w_b)
 
 
+class TurningFrame(Component):
+    """A shaft as a turning carrier sees it: `relative` turns with the shaft less the carrier.
+
+    Parts that sit on the carrier meet at `relative`: a gear pair whose wheels the carrier takes along, the bearings
+    of its shafts. No power is lost: the carrier holds against the torque that the shaft brings.
+    """
+
+    shaft = Flange()
+    carrier = Flange()
+    relative = Flange()
+
+    def equations(self) -> Iterator[Equation]:
+        """One torque, a difference of speeds."""
+        yield equation("speed against the carrier", self.relative.w, self.shaft.w - self.carrier.w)
+        yield equation("torque passes", self.relative.tau, -self.shaft.tau)
+        yield equation("the carrier holds against it", self.carrier.tau, -self.shaft.tau)
+
+
 class TorqueSplit(Component):
     """Where power splits into two parallel paths: a carries a given share of the torque, b the rest.
 

@@ -36,11 +36,23 @@ def out_of_range(flat: FlatModel, columns: Mapping[str, np.ndarray]) -> Iterator
             continue
         part = q.name.rpartition(".")[0]
         if q.refusal:
-            of_part = {o.name.removeprefix(f"{part}."): o for o in flat.outputs if o.name.startswith(f"{part}.")}
-            shown = {key: text(float(columns[o.name][row]), o.unit) for key, o in of_part.items()}
-            yield f"{part}: {q.refusal.format(**shown)}"
+            at_worst = np.array([columns[o.name][row] for o in flat.outputs])
+            yield f"{part}: {q.refusal.format(**words(flat, part, at_worst))}"
         else:
             yield str(q.problem(float(values[row])))
+
+
+def words(flat: FlatModel, part: str, y: np.ndarray, digits: int = 6) -> dict[str, str]:
+    """The outputs of a part as a person reads them, by key.
+
+    Args:
+        flat: the model
+        part: path of the part
+        y: all outputs of the model at one point, SI
+        digits: significant digits to write
+    """
+    of_part = [(q, value) for q, value in zip(flat.outputs, y, strict=True) if q.name.rpartition(".")[0] == part]
+    return {q.name.rpartition(".")[2]: text(float(value), q.unit, digits) for q, value in of_part}
 
 
 def unsolved(implicit: Mapping[str, float]) -> Iterator[str]:

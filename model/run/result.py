@@ -15,7 +15,7 @@ SMALLEST_THROUGHPUT = 1e-3
 
 @dataclass(frozen=True)
 class Outside:
-    """A law used outside its range: where, which argument, the range and the values met (SI)."""
+    """A law used outside its range: where, which argument, the range and the values met (SI), and what reigns there."""
 
     component: str
     law: str
@@ -24,6 +24,7 @@ class Outside:
     high: float
     lowest: float
     highest: float
+    regime: str = ""
 
 
 @dataclass(frozen=True)

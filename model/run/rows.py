@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
@@ -10,7 +10,7 @@ from ..core.flat import FlatModel
 from ..errors import SolveError
 from ..sources import LawInfo
 from .algebra import algebra
-from .audit import SLACK, imbalance, out_of_range, unsolved
+from .audit import SLACK, imbalance, out_of_range, unsolved, words
 from .result import Audit, Outside, Result
 
 
@@ -90,21 +90,21 @@ def result(
         columns=columns,
         units={name: flat.quantity(name).unit for name in columns},
         audit=audit,
-        outside=outside(flat, evaluated["checked"]),
+        outside=outside(flat, evaluated),
         laws=cited(flat.laws),
         implicit=implicit,
     )
 
 
-def outside(flat: FlatModel, checked: np.ndarray) -> tuple[Outside, ...]:
+def outside(flat: FlatModel, evaluated: Mapping[str, np.ndarray]) -> tuple[Outside, ...]:
     """The arguments of laws that left their range over the rows, uses of one law in one part taken together.
 
     Args:
         flat: the model
-        checked: arguments of its laws (checks, n)
+        evaluated: what `evaluate` found
     """
     found: dict[tuple[str, str, str], Outside] = {}
-    for check, values in zip(flat.checks, checked, strict=True):
+    for check, values in zip(flat.checks, evaluated["checked"], strict=True):
         lowest, highest = float(np.min(values)), float(np.max(values))
         slack = SLACK * max(abs(lowest), abs(highest))
         if lowest >= check.low - slack and highest <= check.high + slack:
@@ -112,7 +112,11 @@ def outside(flat: FlatModel, checked: np.ndarray) -> tuple[Outside, ...]:
         key = (check.component, check.law.name, check.argument)
         if (other := found.get(key)) is not None:
             lowest, highest = min(lowest, other.lowest), max(highest, other.highest)
-        found[key] = Outside(*key, check.low, check.high, lowest, highest)
+        regime = check.law.regimes.get(check.argument, "")
+        if regime:
+            worst = int(np.argmax(np.maximum(check.low - values, values - check.high)))
+            regime = regime.format(**words(flat, check.component, evaluated["y"][:, worst], digits=3))
+        found[key] = Outside(*key, check.low, check.high, lowest, highest, regime)
     return tuple(found.values())
 
 

@@ -35,12 +35,42 @@ NOMINAL = {
     **{"phi_ish": 0.9, "T_pour": 240.0, "f_0": 7.0, "f_1": 2e-4, "P_1": 5000.0, "d_sh": 0.085, "c_sh": 73.4, "c": 50.0},
     **{"T_film": 310.0, "Pr": 0.7, "Re": 5e4, "h_natural": 5.0, "h_forced": 7.0, "A": 0.6},
     **{"T_s": 340.0, "T_f": 300.0, "L": 0.3, "height": 0.3, "v": 1.5, "T_1": 340.0, "T_2": 300.0, "emissivity": 0.9},
+    **{"K": 0.8125, "Zp": 40.0, "Zc": 39.0, "Rp": 0.064, "e": 0.0013, "r_rp": 0.003, "theta": 1.0, "kappa": 215.0},
+    **{"T_disc": 206.0, "w_crank": 61.0, "v_slide": 0.15, "v_contact": 0.08, "roll": 0.4, "w_l": 4e4, "E_eff": 230e9},
+    **{"F": 4700.0, "F_N": 4065.0, "F_K": 4450.0, "R_0": 0.0475, "w_rel": 160.0, "w_disc": 11.4, "tau_loss": 2.3},
+    **{
+        "mu_r": 0.005,
+        "mu_s": 0.05,
+        "P_in": 4000.0,
+        "w_in": 148.7,
+        "Lambda_ref": 0.4,
+        "stir": 0.7,
+        "load": 0.8,
+        "f": 0.6,
+    },
     **{"M": 20.0, "L": 0.3, "U": 1e-11, "G": 5000.0, "W": 1e-4, "D": 0.15, "R_x": 0.01, "R_y": 0.05},
     **{"Lambda": 0.7, "mu_fluid": 0.04, "mu_boundary": 0.12},
     **{"r_i": 0.1, "r_o": 0.11, "thickness": 0.004, "length": 0.03},
+    **{"Re_w": 2e4, "P": 2200.0, "P_N": 2200.0, "w_N": 298.5, "tau": 7.4, "eta": 0.82, "eta_N": 0.82, "eta_g": 0.76},
+    **{"share": 0.4, "Q": 1000.0, "S": 0.76, "T_room": 298.0, "psi_1": 0.5, "psi_2": 0.9, "S_3": 0.6, "S_4": 0.3},
+    **{"r": 0.15, "T_oil": 345.0, "nu_50": 30e-6, "Ra_1": 0.4e-6, "Ra_2": 0.4e-6, "c_q": 1.25},
+    **{"xi": 0.4, "F": 240.0, "C": 1e-17},
 }
+CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
 OWN = {
+    **{f"cycloid.{key}": CYCLOID for key in ("pin_force_sum", "pin_force_along_crank", "eccentric_force")},
+    "cycloid.roller_loss_torque": CYCLOID | {"D": 0.014, "d": 0.008},
+    "cycloid.output_roller_power": CYCLOID | {"D": 0.014, "d": 0.007},
+    "cycloid.ring_roller_power": CYCLOID | {"D": 0.014, "d": 0.008},
     "rolling.starvation": {"s": 0.2},
+    "drum.motor_loss": {"a": 1.5},
+    "drum.cooling_area": {"S_1": 0.08, "S_2": 0.08},
+    "drum.lumped_temperature": {"h": 20.0},
+    "pad.wedge_coefficient": {"a": 2.2},
+    "pad.side_leakage": {"a": 2.2},
+    "pad.combined_film": {"A": 1e-11},
+    "pad.fill_arc": {"beta": 0.5},
+    "pad.fill_volume_share": {"beta": 0.5},
     "churning.churning_loss": {"a": 2.5, "b": 0.3},
     "churning.churning_torque": {"a": 2.5, "b": 0.3},
     "film_line.moes_central": {"L": 10.0},
@@ -64,6 +94,7 @@ ZERO = {
 NOT_NEGATIVE = {"P_a", "h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c", "T_pour"}
 #: Torques and losses: magnitudes, never negative.
 MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.", "film_line.", "film_point.")
+MAGNITUDES += ("cycloid.",)
 
 
 def every_function() -> dict[str, Callable[..., Any]]:

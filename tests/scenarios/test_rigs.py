@@ -41,8 +41,16 @@ def helical() -> FlatModel:
 
 
 def test_all_are_listed() -> None:
-    assert NAMES == ("fzg_four_square", "helical_two_stage", "planetary")
+    assert NAMES == (
+        "cycloidal",
+        "cycloidal_areas",
+        "cycloidal_printed",
+        "fzg_four_square",
+        "helical_two_stage",
+        "planetary",
+    )
     assert all(list_rigs().values())
+    assert all(list_rigs("reproduces").values())
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -1,0 +1,104 @@
+"""Which of four regimes a line contact is in: whether it deforms, and whether pressure thickens its oil.
+
+Films here are numbers after Johnson, h F' / (eta_0 u_m R), with the mean speed of the surfaces. The regime that would
+give the thickest film is the one the contact is in.
+"""
+
+from __future__ import annotations
+
+import casadi as ca
+
+from ..sources import law
+from .smooth import Num, smooth_abs
+
+#: What a contact is called that is in none but the elastohydrodynamic regime.
+_NOT_HERE = "(g_V = {g_V}, g_E = {g_E}): the elastohydrodynamic formula does not hold"
+
+
+@law(source="Johnson1970", where="viscosity parameter", verified=False)
+def viscosity_parameter(
+    alpha_p: Num, eta_0: Num, u_m: Num, F_n_l: Num, R: Num, *, u_width: float = 1e-4, F_width: float = 10.0
+) -> Num:
+    r"""How much pressure thickens the oil of a line contact [1].
+
+    .. math:: g_V = \sqrt{\frac{\alpha_p^2 F'^3}{\eta_0 u_m R^2}}
+
+    Args:
+        alpha_p: pressure-viscosity coefficient [1/Pa]
+        eta_0: dynamic viscosity at the inlet [Pa.s]
+        u_m: mean speed of the surfaces, either sign [m/s]
+        F_n_l: normal load per length, either sign [N/m]
+        R: reduced radius [m]
+        u_width: rounding at standstill [m/s]
+        F_width: rounding at zero load [N/m]
+    """
+    return alpha_p * smooth_abs(F_n_l, F_width) ** 1.5 / (R * ca.sqrt(eta_0 * smooth_abs(u_m, u_width)))
+
+
+@law(source="Johnson1970", where="elasticity parameter", verified=False)
+def elasticity_parameter(
+    eta_0: Num, u_m: Num, F_n_l: Num, R: Num, E_eff: Num, *, u_width: float = 1e-4, F_width: float = 10.0
+) -> Num:
+    r"""How much a line contact deforms [1].
+
+    .. math:: g_E = \sqrt{\frac{F'^2}{\eta_0 u_m E' R}}
+
+    Args:
+        eta_0: dynamic viscosity at the inlet [Pa.s]
+        u_m: mean speed of the surfaces, either sign [m/s]
+        F_n_l: normal load per length, either sign [N/m]
+        R: reduced radius [m]
+        E_eff: effective modulus, 2/E_eff = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2 [Pa]
+        u_width: rounding at standstill [m/s]
+        F_width: rounding at zero load [N/m]
+    """
+    return smooth_abs(F_n_l, F_width) / ca.sqrt(eta_0 * smooth_abs(u_m, u_width) * E_eff * R)
+
+
+@law(source="Johnson1970", where="asymptotes of the four regimes", verified=False)
+def regime_films(g_V: Num, g_E: Num) -> tuple[Num, Num, Num, Num]:
+    r"""Film numbers of the four regimes [1]: rigid and isoviscous, rigid and piezoviscous, elastic and isoviscous, both.
+
+    .. math:: \hat h_{RI} = 4.9,\quad \hat h_{RP} = 1.66 g_V^{2/3},\quad \hat h_{EI} = 3.1 g_E^{0.8},\quad
+        \hat h_{EP} = 2.65 g_V^{0.54} g_E^{0.06}
+
+    Args:
+        g_V: viscosity parameter [1]
+        g_E: elasticity parameter [1]
+    """
+    return 4.9, 1.66 * g_V ** (2 / 3), 3.1 * g_E**0.8, 2.65 * g_V**0.54 * g_E**0.06
+
+
+@law(
+    source="Johnson1970",
+    where="map of the regimes",
+    valid="the elastohydrodynamic regime, where none of the other three gives a thicker film than the rest",
+    ranges=dict.fromkeys(("rigid_isoviscous", "rigid_piezoviscous", "elastic_isoviscous"), (0.0, 1.0)),
+    regimes={
+        "rigid_isoviscous": f"rigid-isoviscous {_NOT_HERE}",
+        "rigid_piezoviscous": f"rigid-piezoviscous {_NOT_HERE}",
+        "elastic_isoviscous": f"elastic-isoviscous {_NOT_HERE}",
+    },
+    verified=False,
+)
+def elastohydrodynamic(rigid_isoviscous: Num, rigid_piezoviscous: Num, elastic_isoviscous: Num) -> Num:
+    """How far inside the elastohydrodynamic regime a contact is: 1 or more inside, below 1 outside [1].
+
+    Args:
+        rigid_isoviscous: film of this regime over the thickest film of the other three [1]
+        rigid_piezoviscous: film of this regime over the thickest film of the other three [1]
+        elastic_isoviscous: film of this regime over the thickest film of the other three [1]
+    """
+    return 1 / ca.fmax(rigid_isoviscous, ca.fmax(rigid_piezoviscous, elastic_isoviscous))
+
+
+def inside_elastohydrodynamic(g_V: Num, g_E: Num) -> Num:
+    """What `elastohydrodynamic` tells of a contact, so that a run names the regime where it is another one [1].
+
+    Args:
+        g_V: viscosity parameter [1]
+        g_E: elasticity parameter [1]
+    """
+    RI, RP, EI, EP = regime_films(g_V, g_E)
+    others = ((RI, RP, EI), (RP, RI, EI), (EI, RI, RP))
+    return elastohydrodynamic(*(film / ca.fmax(EP, ca.fmax(a, b)) for film, a, b in others))

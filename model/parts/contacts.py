@@ -1,0 +1,78 @@
+"""Parts that tell their contacts in numbers: a table over the mesh cycle, single contacts, and the cycle's moments."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ..core.component import Component
+
+
+@dataclass(frozen=True)
+class ContactTable:
+    """Contacts of a part at one operating point.
+
+    Args:
+        rows: a mapping of column to value per contact, in the order of the mesh cycle; SI units but for degrees
+        columns: column -> what it is
+        totals: what holds for all contacts together, by name
+    """
+
+    rows: Sequence[Mapping[str, float]]
+    columns: Mapping[str, str]
+    totals: Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class ContactCase:
+    """One line contact in numbers, as a contact solver needs it.
+
+    `time` of the mesh cycle [s], `theta` angle of the cycle [rad], `F` normal force [N], `length` of the contact [m],
+    `R` reduced radius [m], `u_1` and `u_2` speeds of both surfaces through the contact [m/s], `E_eff` effective modulus
+    [Pa], `eta_0` dynamic viscosity [Pa.s], `alpha_p` pressure-viscosity coefficient [1/Pa], `sigma` composite
+    roughness [m], `mu_boundary` friction coefficient of touching surfaces [1].
+    """
+
+    time: float
+    theta: float
+    F: float
+    length: float
+    R: float
+    u_1: float
+    u_2: float
+    E_eff: float
+    eta_0: float
+    alpha_p: float
+    sigma: float
+    mu_boundary: float
+
+
+class PartWithContacts(Component):
+    """Base of parts that tell their contacts. `values` are the part's parameters and outputs by key, in SI."""
+
+    def contact_table(self, values: Mapping[str, float]) -> ContactTable:
+        """All contacts over a mesh cycle.
+
+        Args:
+            values: parameters and outputs of the part at an operating point, by key, in SI
+        """
+        raise AttributeError(f"{type(self).__name__} has no contact table")
+
+    def contact_case(self, values: Mapping[str, float], theta: float) -> ContactCase:
+        """One contact, for a contact solver.
+
+        Args:
+            values: parameters and outputs of the part at an operating point, by key, in SI
+            theta: angle of the mesh cycle [rad]
+        """
+        raise AttributeError(f"{type(self).__name__} has no contact case")
+
+    def mesh_cycle(self, values: Mapping[str, float], count: int = 15) -> list[ContactCase]:
+        """The way of one contact through its load, in steps of equal time, for a transient contact solver.
+
+        Args:
+            values: parameters and outputs of the part at an operating point, by key, in SI
+            count: number of moments
+        """
+        raise AttributeError(f"{type(self).__name__} has no mesh cycle")

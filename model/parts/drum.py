@@ -1,0 +1,142 @@
+"""What makes a drum of a gearbox: partly filled with oil, turning in the air, with a belt round it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from ..core.component import Equation, equation
+from ..core.declare import Choice, Parameter
+from ..laws.convection import mixed
+from ..laws.drum import (
+    cooling_area,
+    forced_rotating_cylinder,
+    gear_churning_loss,
+    source_coefficient,
+)
+from ..laws.pad import fill_arc, fill_volume_share
+from ..laws.smooth import SPEED_WIDTH, Num, smooth_abs
+from .friction import Friction
+from .lubrication import OilBath
+from .ports import Flange, Lubricant, OilLevel
+from .thermal import Conductor, CylinderCooling
+
+
+class DrumOil(OilBath):
+    """The oil of a partly filled drum on its side; its volume follows from how much of the drum it wets."""
+
+    level = OilLevel()
+
+    beta = Parameter("1", "wetted over dry area of the drum's inside; 1 is half full", above=0.0, at_most=1.0)
+    r = Parameter("m", "inner radius of the drum", nominal=0.1, above=0.0)
+    L = Parameter("m", "length of the drum that holds oil, less what motor and gear displace", above=0.0)
+    V = Parameter(
+        "m3",
+        "volume of oil at 15 degC",
+        nominal=1e-3,
+        above=0.0,
+        derived=lambda p: math.pi * p.r**2 * p.L * fill_volume_share(p.beta),
+    )
+
+    def equations(self) -> Iterator[Equation]:
+        """An oil bath that tells its level."""
+        yield from super().equations()
+        yield equation("wetted share", self.level.share, fill_arc(self.beta) / (2 * math.pi))
+
+
+class DrumChurning(Friction):
+    """Churning of what turns in the oil of a drum, whatever the load. Its `inner` body is the oil."""
+
+    lubricant = Lubricant()
+    level = OilLevel()
+
+    r = Parameter("m", "pitch radius of what turns in the oil", nominal=0.05, above=0.0)
+    b = Parameter("m", "width that dips", nominal=0.02, at_least=0.0)
+    z = Parameter("1", "sum of the teeth of both gears", nominal=100.0, above=0.0)
+    share_dip = Parameter("1", "wetted share of the drum at which it dips as the law means", above=0.0, at_most=1.0)
+
+    def torque(self) -> Num:
+        """Churning torque [N.m]: the law's power over the speed, in proportion to what the oil wets."""
+        w = self.shaft.w
+        power = gear_churning_loss(w * self.r, self.b, self.lubricant.nu, self.z, v_width=SPEED_WIDTH * self.r)
+        return power / smooth_abs(w) * self.level.share / self.share_dip
+
+
+class WettedWall(Conductor):
+    """Heat transfer between the oil of a drum and the part of a wall that it wets."""
+
+    level = OilLevel()
+
+    h = Parameter("W/(m2.K)", "heat transfer coefficient between oil and wall", nominal=100.0, at_least=0.0)
+    A = Parameter("m2", "area of the whole wall", above=0.0)
+
+    def conductance(self) -> Num:
+        """Of the wetted part."""
+        return self.h * self.A * self.level.share
+
+
+class BeltContact(Conductor):
+    """Conduction from a drum (a) to the belt that runs over it, which leaves at the temperature of b or warmer."""
+
+    h = Parameter("W/(m2.K)", "heat transfer coefficient to the belt, 0 without one", nominal=10.0, at_least=0.0)
+    A = Parameter("m2", "area that the heat transfer coefficient counts for", above=0.0)
+    dT_belt = Parameter("K (difference)", "belt warmer than b", nominal=10.0)
+
+    def conductance(self) -> Num:
+        """Of the contact."""
+        return self.h * self.A
+
+    def equations(self) -> Iterator[Equation]:
+        """What enters at a leaves at b."""
+        dT = self.a.T - self.b.T - self.dT_belt
+        yield equation("conduction", self.Q_flow, self.conductance() * dT)
+        yield equation("enters at a", self.a.Q_flow, self.Q_flow)
+        yield equation("leaves at b", self.b.Q_flow, -self.Q_flow)
+
+
+class DrumCooling(CylinderCooling):
+    """A drum that turns in the air: free convection, its own rotation, the air of the room, and radiation.
+
+    With `coefficient` "source" it is the printed formula for a drum with its belt, over the printed area, and nothing
+    else: for comparison with the source, not for use. The drag of the air on the drum is left out.
+    """
+
+    shaft = Flange(must_meet=True)
+
+    coefficient = Choice(
+        ("rotating cylinder", "source"),
+        "rotating cylinder: convection and radiation of a bare drum; source: the printed K, belt included",
+        default="rotating cylinder",
+    )
+    P_N = Parameter("W", "rated power of the motor, as the printed K counts it", nominal=1000.0, above=0.0)
+    psi_1 = Parameter("1", "share of its heat that the covered shell passes on to the belt", at_least=0.0, at_most=1.0)
+    psi_2 = Parameter("1", "share of the shell that the oil inside keeps warm", at_least=0.0, at_most=1.0)
+    A_belt = Parameter("m2", "area of the shell under the belt", at_least=0.0)
+
+    def has(self, name: str) -> bool:
+        """What the printed formula needs counts with it only."""
+        printed = self.choices["coefficient"] == "source"
+        return printed or name not in ("P_N", "psi_1", "psi_2", "A_belt")
+
+    def forced(self, T_film: Num) -> Num:
+        """Rotation and moving air side by side; ends like the shell."""
+        return mixed(super().forced(T_film), forced_rotating_cylinder(self.shaft.w, T_film, self.D))
+
+    def equations(self) -> Iterator[Equation]:
+        """Those of a cylinder, or the printed formula."""
+        yield equation("air takes no torque", self.shaft.tau, 0.0)
+        if self.coefficient == "source":
+            yield from self._printed()
+        else:
+            yield from super().equations()
+
+    def _printed(self) -> Iterator[Equation]:
+        """One coefficient over one area."""
+        T, T_air, end = self.surface.T, self.air.T, self.A * self.share_ends / 2
+        S = cooling_area(end, end, self.A - 2 * end, self.A_belt, self.psi_1, self.psi_2)
+        h = source_coefficient(self.P_N, self.D, self.shaft.w * self.D / 2)
+        yield equation("heat transfer coefficient", self.h, h)
+        yield equation("convection", self.Q_flow_convection, self.h * S * (T - T_air))
+        yield equation("radiation", self.Q_flow_radiation, 0.0)
+        yield equation("leaves the surface", self.surface.Q_flow, self.Q_flow_convection)
+        yield equation("enters the room", self.air.Q_flow, -self.surface.Q_flow)

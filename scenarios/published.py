@@ -1,0 +1,251 @@
+"""Published numbers of a rig: one row a number, with what an erratum makes of it and how the model gives it.
+
+    [[row]]
+    name = "lubricant at 332 N.m"
+    where = "Smith2020, table 4"          # place in the source
+    published = "139.1 degC"              # as printed: a number with its unit, or a statement in words
+    corrected = "139.5 degC"              # what an erratum makes of it; left out where the printed number stands
+    recomputed = "139.5 degC"             # a recomputation from the source, where it prints no number
+    contradiction = true                  # the printed number cannot hold, and no corrected one exists
+    why = "..."                           # needed with corrected and contradiction
+    tol = "0.6 K"                         # or rel = 0.01: distance allowed from the last of these numbers
+    unit = "N.mm"                         # of numbers that stand without one
+
+How the model gives it is one of:
+
+    run = "steady"                        # a steady state: set = { "output.tau" = "-332 N.m" }, path = "oil.T"
+    run = "held"                          # all temperatures held at temperature = "85 degC": set, path
+    run = "design"                        # free = "wave_generator.w", target = "mesh.h_min=0.88 um", set
+    run = "losses"                        # the losses at measured readings: set, select = { test = [1, 2] }, path
+    run = "contacts"                      # the contacts over a mesh cycle: set, path, at = 60 (theta_deg)
+    run = "law"                           # law = "cycloid.curvature", args = { ... }, item = 0
+    run = "rows"                          # of = { a = "name of a row", b = "of another" }, path = "a - b"
+    run = "print"                         # path = "0.0303 + 0.0588": arithmetic on printed numbers alone
+
+A `path` may be an expression, in SI: "3 * gear_set.P_loss". One that compares, such as "max(Lambda) < 0.7", is a
+statement; it needs no tolerance and either holds or not. A table `[[table]]` with `data = "name.csv"` makes a row of
+each number in the CSV file; see `SheetTable`. A table `[set]` holds what every row sets that does not say otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+from typing import Any, Literal
+
+from pydantic import Field, ValidationError
+
+from ..model.errors import GearheatError, ScenarioError
+from .csv_table import number, read_cells
+from .document import paths, read_toml
+from .tables import Strict, problem_of
+
+Number = str | float
+
+#: Keys of a row that say how the model gives the number -> the runs that need them, and those that may have them.
+_NEEDED: Mapping[str, tuple[str, ...]] = {
+    "steady": ("path",),
+    "held": ("path", "temperature"),
+    "design": ("free", "target"),
+    "losses": ("path",),
+    "contacts": ("path",),
+    "law": ("law", "args"),
+    "rows": ("of", "path"),
+    "print": ("path",),
+}
+_ALLOWED: Mapping[str, tuple[str, ...]] = {
+    "steady": ("set",),
+    "held": ("set",),
+    "design": ("set", "path"),
+    "losses": ("set", "select"),
+    "contacts": ("set", "at"),
+    "law": ("item",),
+}
+
+Run = Literal["steady", "held", "design", "losses", "contacts", "law", "rows", "print"]
+
+
+class Row(Strict):
+    """One published number, or one statement."""
+
+    name: str = Field(description="what the number is, in words")
+    where: str = Field(description="place in the source")
+    published: Number | None = Field(None, description="the printed number with its unit, or the printed statement")
+    corrected: Number | None = Field(None, description="what an erratum makes of it")
+    recomputed: Number | None = Field(None, description="a recomputation, where the source prints no number")
+    contradiction: bool = Field(False, description="true where the printed number cannot hold")
+    why: str = Field("", description="why the printed number does not stand")
+    tol: Number | None = Field(None, description='distance allowed, for example "0.6 K"')
+    rel: float | None = Field(None, description="distance allowed over the number")
+    unit: str = Field("", description="unit of numbers that stand without one")
+    run: Run = Field(description=f"one of {', '.join(_NEEDED)}")
+    set: dict[str, Any] = Field({}, description="path -> value with its unit, or choice")
+    path: str = Field("", description="path of an output, column, or an expression in them")
+    temperature: str = Field("", description='temperature of all bodies, for example "85 degC"')
+    free: str | list[str] = Field("", description="path of a parameter or input, or a list of them")
+    target: str | list[str] = Field("", description='"PATH=VALUE", or a list of them')
+    select: dict[str, Any] = Field({}, description="column -> value, or list of values")
+    at: float | None = Field(None, description="angle of the contact in degrees")
+    law: str = Field("", description='"module.function" of a law')
+    args: dict[str, Any] = Field({}, description="argument -> number in SI, or text with a unit")
+    item: int | None = Field(None, description="which of several results of a law, from 0")
+    of: dict[str, str] = Field({}, description="name in the expression -> name of a row")
+    group: str = Field("", description="name of the table that the row belongs to")
+
+    @property
+    def expected(self) -> Number | None:
+        """The number that the model is compared with."""
+        given = (self.corrected, self.published, self.recomputed)
+        return next((number for number in given if number is not None), None)
+
+    @property
+    def is_statement(self) -> bool:
+        """Whether it holds or not, and no number is compared."""
+        return not self.contradiction and self.tol is None and self.rel is None
+
+
+class Cells(Strict):
+    """Where the numbers of one column of a CSV table come from in the model."""
+
+    path: str = Field(description="path of an output, or column")
+    set: dict[str, Any] = Field({}, description="path -> value with its unit, or choice")
+    select: dict[str, Any] = Field({}, description="column -> value, or list of values")
+
+
+class SheetTable(Strict):
+    """A CSV file of numbers: a row per line, a number per column named in `columns`, all found by the same run.
+
+    The columns named in `keys` select a reading of the rig (run = "losses").
+    """
+
+    name: str = Field(description="what the table is, in words")
+    where: str = Field(description="place in the source")
+    data: str = Field(description="name of the CSV file beside this one")
+    kind: Literal["published", "recomputed"] = Field(description="published, or recomputed where no source prints it")
+    tol: Number | None = Field(None, description='distance allowed, for example "0.3 W"')
+    rel: float | None = Field(None, description="distance allowed over the number")
+    unit: str = Field("", description="unit of the numbers")
+    run: Literal["losses"] = Field(description='"losses"')
+    set: dict[str, Any] = Field({}, description="path -> value with its unit, or choice")
+    keys: list[str] = Field(description="columns that say which reading a line is of")
+    columns: dict[str, Cells] = Field(description="column of the file -> where the model has it")
+
+
+class PublishedTable(Strict):
+    """A file of published numbers."""
+
+    set: dict[str, Any] = Field({}, description="path -> value or choice, for every row that sets values")
+    row: list[Row] = Field([], description="one table [[row]] a number")
+    table: list[SheetTable] = Field([], description="CSV files with many numbers")
+
+
+class _Reader:
+    """Reads one file, collecting problems all the way."""
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self.problems: list[str] = []
+
+    def rows(self) -> tuple[Row, ...]:
+        """All rows of the file and of its tables, while problems are collected."""
+        try:
+            raw = PublishedTable.model_validate(read_toml(self.path))
+        except ValidationError as error:
+            self.problems += [problem_of(self.path.name, dict(e), PublishedTable) for e in error.errors()]
+            return ()
+        for i, row in enumerate(raw.row, 1):
+            self.problems += [f"{self.path.name} [row {i}] {row.name}: {told}" for told in _wrong(row)]
+        names = [row.name for row in raw.row]
+        for name in dict.fromkeys(n for n in names if names.count(n) > 1):
+            self.problems.append(f'{self.path.name}: two rows are named "{name}". Name them apart.')
+        for row in raw.row:
+            unknown = [other for other in row.of.values() if other not in names]
+            self.problems += [f'{self.path.name} {row.name}: there is no row "{other}".' for other in unknown]
+        every = (*raw.row, *(row for sheet in raw.table for row in self._cells(sheet)))
+        return tuple(_with_common(row, raw.set) for row in every)
+
+    def _cells(self, sheet: SheetTable) -> Iterator[Row]:
+        """A row for each number of a CSV table."""
+        where = f"{self.path.name} [table] {sheet.name}"
+        try:
+            header, lines = read_cells(self.path.parent / sheet.data, comments=True)
+        except GearheatError as error:
+            self.problems += error.problems
+            return
+        if unknown := [name for name in (*sheet.keys, *sheet.columns) if name not in header]:
+            self.problems.append(f"{where}: {sheet.data} has no column {', '.join(unknown)}. Name its columns.")
+            return
+        for line, cells in lines:
+            found = dict(zip(header, cells, strict=True))
+            for column, source in sheet.columns.items():
+                try:
+                    keys = {key: number(found[key]) for key in sheet.keys}
+                    yield _cell(sheet, source, column, keys, number(found[column]))
+                except ValueError as error:
+                    self.problems.append(f"{sheet.data} line {line}: {column} {error}.")
+
+
+def _cell(sheet: SheetTable, source: Cells, column: str, keys: Mapping[str, float], value: float) -> Row:
+    said = ", ".join(f"{key} {key_value:g}" for key, key_value in keys.items())
+    return Row.model_validate(
+        {
+            "name": f"{sheet.name}: {said}, {column}",
+            "where": sheet.where,
+            "group": sheet.name,
+            sheet.kind: value,
+            "tol": sheet.tol,
+            "rel": sheet.rel,
+            "unit": sheet.unit,
+            "run": sheet.run,
+            "set": {**sheet.set, **source.set},
+            "path": source.path,
+            "select": {**keys, **source.select},
+        }
+    )
+
+
+def _with_common(row: Row, common: Mapping[str, Any]) -> Row:
+    """The row with what all rows set, where its run takes values."""
+    if "set" not in _ALLOWED.get(row.run, ()):
+        return row
+    return row.model_copy(update={"set": {**dict(paths(common)), **dict(paths(row.set))}})
+
+
+def read_published(path: Path) -> tuple[Row, ...]:
+    """The rows of a file of published numbers.
+
+    Args:
+        path: a `published.toml`
+
+    Raises:
+        ScenarioError: everything wrong with the file at once
+    """
+    reader = _Reader(path)
+    rows = reader.rows()
+    if reader.problems:
+        raise ScenarioError(reader.problems)
+    return rows
+
+
+def _wrong(row: Row) -> Iterator[str]:
+    """What does not fit together in a row."""
+    if row.expected is None:
+        yield "has no number. Give published, corrected or recomputed."
+    if row.recomputed is not None and (row.published is not None or row.corrected is not None):
+        yield "recomputed stands beside a printed number. Leave it out."
+    if (row.contradiction or row.corrected is not None) and not row.why:
+        yield "why is missing. Say why the printed number does not stand."
+    if row.contradiction and row.corrected is not None:
+        yield "contradiction and corrected exclude each other: with a corrected number, leave contradiction out."
+    if row.corrected is not None and row.corrected == row.published:
+        yield "corrected is the published number. Leave it out."
+    if row.tol is not None and row.rel is not None:
+        yield "has both tol and rel. Give one."
+    needed = _NEEDED[row.run]
+    allowed = (*needed, *_ALLOWED.get(row.run, ()))
+    for key in ("set", "path", "temperature", "free", "target", "select", "at", "law", "args", "item", "of"):
+        given = getattr(row, key) not in (None, "", {}, [])
+        if key in needed and not given:
+            yield f'{key} is missing for run = "{row.run}" ({Row.model_fields[key].description}).'
+        elif given and key not in allowed:
+            yield f'{key} means nothing with run = "{row.run}". Leave it out.'

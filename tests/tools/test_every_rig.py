@@ -1,0 +1,96 @@
+"""Every shipped rig through every command, at its own operating point."""
+
+import csv
+from pathlib import Path
+
+import numpy as np
+import pytest
+from fmpy import simulate_fmu
+from fmpy.validation import validate_fmu
+from gearheat.model.core.flatten import flatten
+from gearheat.model.machines.spec import assemble
+from gearheat.scenarios.load import list_rigs, load
+
+RIGS = tuple(list_rigs())
+END = 7200.0
+
+
+def columns(path: Path) -> dict[str, np.ndarray]:
+    with path.open(encoding="utf-8") as file:
+        rows = list(csv.DictReader(file))
+    return {name: np.array([float(row[name]) for row in rows]) for name in rows[0] if name != "status"}
+
+
+@pytest.fixture(params=RIGS, scope="module")
+def rig(request: pytest.FixtureRequest) -> str:
+    return str(request.param)
+
+
+def test_steady_losses_and_show(gearheat, rig: str) -> None:
+    found = gearheat("steady", rig, "--json", "-").json
+    assert found["energy_residual"] < 1e-6
+    losses = gearheat("losses", rig, "--json", "-")
+    assert losses.code == 0 and losses.json["rows"], losses.err
+    shown = gearheat("show", rig, "--json", "-").json
+    assert shown["rig"] == rig and shown["no_steady_state"] == []
+    assert gearheat("show", rig, "--errata").code == 0
+
+
+def test_design_gives_the_target_back(gearheat, rig: str) -> None:
+    """The room that makes the warmest body 2 K warmer than it is, or without bodies the speed that gives an output."""
+    before = gearheat("steady", rig, "--json", "-").json
+    bodies = {name: before["values"][name] for name in before["states"] if before["units"][name] == "degC"}
+    if bodies:
+        name = max(bodies, key=bodies.__getitem__)
+        free, target, unit = "room.T", bodies[name] + 2.0, "degC"
+        assert (free in before["inputs"]) or pytest.skip("the room of this rig is not given")
+    else:
+        shown = gearheat("show", rig, "--json", "-").json
+        (free,) = [q["name"] for q in shown["inputs"] if q["name"].endswith(".w")]
+        name = next(q["name"] for q in shown["outputs"] if q["unit"] in ("um", "m", "mm"))
+        unit = before["units"][name]
+        target = 1.1 * before["values"][name]
+    answer = gearheat("design", rig, "--free", free, "--target", f"{name}={target!r} {unit}", "--json", "-")
+    assert answer.code == 0, answer.err
+    value = answer.json["free"][free]
+    after = gearheat("steady", rig, "--set", f"{free}={value!r} {before['units'][free]}", "--json", "-").json
+    assert after["values"][name] == pytest.approx(target, rel=1e-5)
+
+
+def test_sweep_agrees_with_steady(gearheat, rig: str, tmp_path: Path) -> None:
+    inputs = gearheat("show", rig, "--json", "-").json["inputs"]
+    speed = next(q for q in inputs if q["name"].endswith(".w"))
+    low, high = sorted((0.8 * speed["value"], speed["value"]))
+    out = tmp_path / "sweep.csv"
+    vary = f"{speed['name']}={low!r}..{high!r} {speed['unit']}"
+    found = gearheat("sweep", rig, "--vary", vary, "--grid", "3", "-o", out, "--json", "-")
+    assert found.code == 0, found.err
+    table = columns(out)
+    steady = gearheat("steady", rig, "--json", "-").json
+    row = int(np.argmin(np.abs(next(v for k, v in table.items() if k.startswith(speed["name"])) - speed["value"])))
+    for name, value in steady["values"].items():
+        column = next((v for k, v in table.items() if k.partition(" [")[0] == name), None)
+        if column is not None:
+            assert column[row] == pytest.approx(value, rel=1e-5, abs=1e-6), name
+
+
+def test_a_warm_up_in_fmpy_is_that_of_simulate(gearheat, rig: str, tmp_path: Path) -> None:
+    fmu, duty, out = tmp_path / "rig.fmu", tmp_path / "duty.csv", tmp_path / "out.csv"
+    assert gearheat("export", rig, "-o", fmu).code == 0
+    assert validate_fmu(str(fmu)) == []
+    inputs = gearheat("show", rig, "--json", "-").json["inputs"]
+    line = ",".join(repr(q["value"]) for q in inputs)
+    duty.write_text(
+        "time [s]," + ",".join(f"{q['name']} [{q['unit']}]" for q in inputs) + f"\n0,{line}\n{END},{line}\n"
+    )
+    answer = gearheat("simulate", rig, "--duty", duty, "-o", out, "--json", "-")
+    assert answer.code == 0, answer.err
+    assert answer.json["energy_residual"] < 1e-6
+    flat = flatten(assemble(load(rig).spec))
+    bodies = [q.name for q in flat.states if q.unit == "K"]
+    table = columns(out)
+    start = {name: table[f"{name} [degC]"][0] + 273.15 for name in bodies}
+    played = simulate_fmu(str(fmu), stop_time=END, output_interval=60.0, start_values=start, output=bodies or None)
+    for name in bodies:
+        ours = np.interp(played["time"][10::10], table["time [s]"], table[f"{name} [degC]"])
+        assert np.abs(played[name][10::10] - 273.15 - ours).max() <= 1e-3, name

@@ -1,0 +1,245 @@
+"""The command `verify`: every published number of every machine, what the model gives for it, and the verdict."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+from ..model.errors import GearheatError, ScenarioError
+from ..model.sources import LawInfo
+from ..model.units import si_of
+from ..scenarios.golden import golden_rows
+from ..scenarios.load import list_rigs
+from ..scenarios.published import Row, read_published
+from ..scenarios.scenario import Scenario
+from .console import answer, file_of, table, writable, write
+from .describe import errata_of
+from .model_values import RigValues, single
+from .rigs import load
+from .verdicts import NOT_REPRODUCED, VERDICTS, Value, Verdict, as_printed, counts, judged, kinds
+from .verify_page import render
+
+#: Exit code where a number is not reproduced.
+FAILED = 1
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A rig with the verdicts on its published numbers."""
+
+    name: str
+    doc: str
+    reproduces: str
+    verdicts: tuple[Verdict, ...]
+    errata: tuple[Mapping[str, str], ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The machine as `--json` and the page have it."""
+        return {
+            "name": self.name,
+            "doc": self.doc,
+            "reproduces": self.reproduces,
+            "counts": counts(self.verdicts),
+            "kinds": kinds(self.verdicts),
+            "rows": [verdict.as_dict() for verdict in self.verdicts],
+            "errata": list(self.errata),
+        }
+
+
+def command(rig: str | None, json: str | None, html: Path | None) -> None:
+    """Verify one rig with the laws it uses, or all shipped rigs and all laws; exit code 1 if a number fails."""
+    writable(file_of(json), html)
+    rigs = [RigValues(load(name)) for name in ([rig] if rig else list_rigs())]
+    rows = [published_of(values.scenario) for values in rigs]
+    laws = [row for row in golden_rows() if rig is None or law_of(row) in rigs[0].laws]
+    with _progress(sum(map(len, rows)) + len(laws)) as advance:
+        machines = [_machine(values, own, advance) for values, own in zip(rigs, rows, strict=True)]
+        verdicts = verified(laws, None, advance)
+    found = as_dict(machines, verdicts)
+    if html is not None:
+        write(html, render(found))
+    answer(found, json, lambda: _print(machines, verdicts, found))
+    if found["counts"][NOT_REPRODUCED]:
+        sys.exit(FAILED)
+
+
+def published_of(scenario: Scenario) -> tuple[Row, ...]:
+    """The published numbers beside a rig file; none where there is no such file.
+
+    Args:
+        scenario: the rig
+
+    Raises:
+        ScenarioError: everything wrong with the file at once
+    """
+    path = scenario.path.parent / "published.toml"
+    return read_published(path) if path.is_file() else ()
+
+
+def as_dict(machines: Sequence[Machine], laws: Sequence[Verdict]) -> dict[str, Any]:
+    """The object of `--json`.
+
+    Args:
+        machines: the rigs
+        laws: verdicts on the golden rows of laws
+    """
+    every = [verdict for machine in machines for verdict in machine.verdicts] + list(laws)
+    return {
+        "schema": "gearheat.verify/1",
+        "counts": counts(every),
+        "kinds": kinds(every),
+        "machines": [machine.as_dict() for machine in machines],
+        "laws": {
+            "counts": counts(laws),
+            "kinds": kinds(laws),
+            "rows": [{"law": v.row.law, **v.as_dict()} for v in laws],
+        },
+    }
+
+
+def _machine(values: RigValues, rows: Sequence[Row], advance: Any) -> Machine:
+    scenario = values.scenario
+    verdicts = verified(rows, values, advance)
+    return Machine(scenario.name, scenario.doc, scenario.reproduces, verdicts, tuple(errata_of(scenario)))
+
+
+def verified(rows: Sequence[Row], rig: RigValues | None, advance: Any = lambda: None) -> tuple[Verdict, ...]:
+    """The verdict on each row.
+
+    Args:
+        rows: published numbers
+        rig: what the model of their rig gives; None for rows of laws alone
+        advance: called after each row
+
+    Raises:
+        ScenarioError: all rows that name what does not exist, or do not fit together, at once
+    """
+    problems: list[str] = []
+    known: dict[str, Verdict] = {}
+    found = []
+    for row in sorted(rows, key=lambda row: row.run == "rows"):  # they need the others
+        try:
+            verdict = judged(row, _value(row, rig, known))
+            known[row.name] = verdict
+            found.append((row, verdict))
+        except GearheatError as error:
+            problems += [p if p.startswith(row.name) else f"{row.name}: {p}" for p in error.problems]
+        advance()
+    if problems:
+        where = f"{rig.scenario.name}: " if rig else ""
+        raise ScenarioError([f"{where}{problem}" for problem in problems])
+    order = {id(row): i for i, row in enumerate(rows)}
+    return tuple(verdict for _, verdict in sorted(found, key=lambda pair: order[id(pair[0])]))
+
+
+def _value(row: Row, rig: RigValues | None, known: Mapping[str, Verdict]) -> Value:
+    """What the model, a law or arithmetic gives for a row."""
+    if row.run == "law":
+        return _law_value(row)
+    if row.run in ("rows", "print"):
+        others = {name: known[other].model for name, other in row.of.items() if other in known}
+
+        def value_of(name: str) -> Any:
+            if others.get(name) is None:
+                raise ScenarioError(f'there is no value of "{name}".')
+            return others[name]
+
+        return Value(single(row.path, value_of), labelled=True)
+    if rig is None:
+        raise ScenarioError(f'run = "{row.run}" needs a rig.')
+    return rig.value(row)
+
+
+def _law_value(row: Row) -> Value:
+    arguments = {name: si_of(value) for name, value in row.args.items()}
+    try:
+        result = _function(row.law)(**arguments)
+        return Value(float(result if row.item is None else result[row.item]))
+    except (TypeError, IndexError) as error:
+        raise ScenarioError(f"{row.law}: {error}.") from None
+
+
+def law_of(row: Row) -> LawInfo | None:
+    """What the law of a row declares.
+
+    Args:
+        row: with run = "law"
+    """
+    return getattr(_function(row.law), "law", None)
+
+
+def _function(name: str) -> Any:
+    module, _, law = name.partition(".")
+    try:
+        return getattr(import_module(f"gearheat.model.laws.{module}"), law)
+    except (ImportError, AttributeError):
+        raise ScenarioError(f'there is no law "{name}". Write "module.function" of gearheat.model.laws.') from None
+
+
+# ------------------------------------------------------------------------------------------------- what is shown
+
+
+def _progress(total: int) -> Any:
+    """Rows done, on a terminal; nothing elsewhere."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    @contextmanager
+    def shown() -> Iterator[Callable[[], None]]:
+        with Progress(console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()) as bar:
+            task = bar.add_task("verify", total=total)
+            yield lambda: bar.advance(task)
+
+    return shown()
+
+
+HEAD = ("number", "place", "published", "corrected", "model", "allowed", "verdict")
+
+
+def _print(machines: Sequence[Machine], laws: Sequence[Verdict], found: Mapping[str, Any]) -> None:
+    for machine in machines:
+        if machine.verdicts:
+            table(f"{machine.name}: {machine.doc}", HEAD, _lines(machine.verdicts), wrapped=True)
+    if laws:
+        table("Laws", HEAD, _lines(laws), wrapped=True)
+    named = [*((m["name"], m) for m in found["machines"] if m["rows"]), ("laws", found["laws"]), ("in all", found)]
+    body = [[name, *part["counts"].values(), *part["kinds"].values()] for name, part in named]
+    table("Numbers by verdict and by kind", ("", *VERDICTS, *found["kinds"]), body)
+    for machine in machines:
+        if not machine.verdicts:
+            print(f"{machine.name}: has no published numbers. {machine.reproduces}".strip())
+    if failed := found["counts"][NOT_REPRODUCED]:
+        print(f"{failed} published numbers are not reproduced.")
+
+
+def _lines(verdicts: Sequence[Verdict]) -> list[list[Any]]:
+    """A line for each row, what fails first; rows of a group that all hold are one line."""
+    lines = []
+    groups: dict[str, list[Verdict]] = {}
+    for verdict in sorted(verdicts, key=lambda v: VERDICTS.index(v.verdict) != 0):
+        group = verdict.row.group
+        if group and verdict.verdict != NOT_REPRODUCED:
+            groups.setdefault(group, []).append(verdict)
+            continue
+        lines.append(_line(verdict))
+    return lines + [_group_line(name, members) for name, members in groups.items()]
+
+
+def _line(v: Verdict) -> list[Any]:
+    row = v.row
+    told = f"{v.verdict}: {v.why}" if v.why else v.verdict
+    other = as_printed(row.corrected if row.recomputed is None else row.recomputed, row.unit) or ""
+    name = f"{row.law}: {row.name}" if row.law else row.name
+    numbers = [as_printed(row.published, row.unit) or "", other, v.shown, v.allowed]
+    return [name, row.where, *numbers, told]
+
+
+def _group_line(name: str, members: Sequence[Verdict]) -> list[Any]:
+    worst = max(members, key=lambda v: v.distance / (v.tolerance or 1.0))
+    model = f"within {worst.distance:.2g} {worst.unit}"
+    return [name, members[0].row.where, f"{len(members)} numbers", "", model, worst.allowed, worst.verdict]
