@@ -7,6 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from .case import Array, Contact
+from .grid import Grid
+from .newton import State
+from .scale import Scaled
 
 
 @dataclass(frozen=True)
@@ -48,6 +51,43 @@ class Film:
     residual: float
     residuals: tuple[float, ...]
     work: int
+
+
+def film_of(case: Scaled, grid: Grid, state: State, gap: Array, floor: float) -> Film:
+    """What is told of a solution.
+
+    Args:
+        case: the contact in its units
+        grid: its grid
+        state: pressure and approach on it
+        gap: gap of the undeformed surfaces (n, n) [1]
+        floor: film at which the surfaces touch [m]
+    """
+    contact, unit = case.contact, case.unit
+    x, y = (np.asarray(c.ravel() * unit.a) for c in grid.nodes)
+    p = np.ascontiguousarray(state.p.T * unit.p)
+    p_asperity = np.where(state.touching.T, p, 0.0)
+    film = state.h_0 + gap + grid.deformation(state.p)
+    h = np.maximum(np.ascontiguousarray(film.T * unit.h), floor)
+    cell = float((x[1] - x[0]) * (y[1] - y[0]))
+    return Film(
+        contact=contact,
+        x=x,
+        y=y,
+        p=p,
+        h=h,
+        p_asperity=p_asperity,
+        h_c=float(np.interp(0.0, x, h[:, h.shape[1] // 2])),
+        h_min=smallest(h),
+        approach=-state.h_0 * unit.h,
+        asperity_share=float(p_asperity.sum() * cell / contact.F),
+        mu=friction(contact, p, h, p_asperity, cell),
+        rolling_moment=float(-(x[:, None] * p).sum() * cell),
+        load_error=float(p.sum() * cell / contact.F - 1),
+        residual=state.residuals[-1],
+        residuals=state.residuals,
+        work=state.work,
+    )
 
 
 def friction(contact: Contact, p: Array, h: Array, p_asperity: Array, cell: float) -> float:
