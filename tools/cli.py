@@ -310,6 +310,24 @@ def verify(
     verify.command(rig, json, html)
 
 
+@app.command("verify-contact")
+@console.guarded
+def verify_contact(
+    out: Annotated[
+        Path,
+        typer.Option("-o", "--out", help="Folder for table and figures; an interrupted run goes on from there."),
+    ],
+    quick: Annotated[bool, typer.Option("--quick", help="A subset on coarse grids.")] = False,
+    json: Json = None,
+) -> None:
+    """The contact solver beside published films, Hertz and measurements: table, convergence, figures."""
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # times are those of one core
+        os.environ.setdefault(name, "1")
+    from .ehl import command
+
+    command.command(out, quick, json)
+
+
 @app.command()
 @console.guarded
 def sweep(

@@ -12,12 +12,14 @@ from ..plots import COLOURS, STYLE, empty, svg
 from .pages import Row
 from .rows import Found
 
+#: Items whose references are films.
+FILMS = ("Hamrock and Dowson", "Nijenbanning, Venner and Moes", "Line contact")
 MARKS = "osD^v<>"
 
 
 def films(table: Sequence[Row]) -> str:
     """Ours over reference for every row whose reference is a film, one panel an item."""
-    items = [item for item in ("Hamrock and Dowson", "Nijenbanning, Venner and Moes", "Line contact") if _of(table, item)]
+    items = [item for item in FILMS if _of(table, item)]
     figure, panels = empty(4.2 * max(len(items), 1), 4.2, 1, max(len(items), 1))
     for panel, item in zip(panels, items, strict=False):
         mine = [row for row in _of(table, item) if row["tolerance"]]

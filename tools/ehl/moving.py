@@ -6,7 +6,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.contact import Film, hertz, solve, solve_transient
+from ...model.contact import hertz, solve, solve_transient
 from . import cases
 from .rows import Found, Job, row
 from .studies import DOMAIN, L_STUDY, M_STUDY
@@ -49,9 +49,10 @@ def _dent(share: float, n: int, steps: int) -> Found:
     )
     middle = len(smooth.y) // 2
     x = smooth.x / a
-    change = np.array([_without_dent(f, t, share * u_m, height, middle) - smooth.h[:, middle] for f, t in zip(films, times, strict=True)])
-    if share == 1.0:  # what moves is dent and film together
-        change += np.array([-height(smooth.x - share * u_m * t, np.zeros(1)) for t in times])
+    dents = np.array([height(smooth.x - share * u_m * t, np.zeros(1)) for t in times])
+    change = np.array([f.h[:, middle] - smooth.h[:, middle] for f in films])
+    if share != 1.0:  # the film alone, without the dent itself
+        change += dents
     places = [_place(x, line) for line in change]
     moments = times * u_m / a
     inside = [i for i, at in enumerate(places) if at is not None and FOLLOWED[0] < at < FOLLOWED[1]]
@@ -69,12 +70,6 @@ def _dent(share: float, n: int, steps: int) -> Found:
         "films": [films[i].h[:, middle] / smooth.h_c for i in shown],
         "smooth": smooth.h[:, middle] / smooth.h_c,
     }
-
-
-def _without_dent(film: Film, t: float, speed: float, height: object, middle: int) -> np.ndarray:
-    """Film along the middle less what the dent itself adds to it."""
-    assert callable(height)
-    return np.asarray(film.h[:, middle] + height(film.x - speed * t, np.zeros(1)))
 
 
 def _place(x: np.ndarray, change: np.ndarray) -> float | None:

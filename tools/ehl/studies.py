@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from itertools import pairwise
 from math import log2
 
 import numpy as np
@@ -50,17 +51,15 @@ def _order(grids: tuple[int, ...]) -> Found:
     }
     name = f"M {M_STUDY:g} L {L_STUDY:g}, {grids[-3]}, {grids[-2]}, {grids[-1]} nodes a side"
     orders = {what: log2(d[-2] / d[-1]) for what, d in apart.items()}
-    rows = [
-        bound(name, f"order of {what}", order, least=SECOND) if what in FILMS else row(name, f"order of {what}", 2, order, 0)
-        for what, order in orders.items()
-    ]
+    rows = [bound(name, f"order of {what}", orders.pop(what), least=SECOND) for what in FILMS]
+    rows += [row(name, f"order of {what}", 2.0, order, 0.0) for what, order in orders.items()]
     a = hertz(contact).a
     spacing = [(f.x[1] - f.x[0]) / a for f in films]
     return {"rows": rows, "spacing": spacing, "apart": apart, "residuals": films[-1].residuals}
 
 
 def _pairs(films: list[Film]) -> list[tuple[Film, Film]]:
-    return list(zip(films, films[1:], strict=False))
+    return list(pairwise(films))
 
 
 def _rms(coarse: np.ndarray, fine: np.ndarray) -> float:
@@ -81,7 +80,8 @@ def _cost(grids: tuple[int, ...]) -> Found:
         work.append(film.work)
     each = [1e6 * s / n**2 for s, n in zip(seconds, grids, strict=True)]
     name = f"M {M_STUDY:g} L {L_STUDY:g}"
-    rows = [bound(name, f"{grids[-1]}^2 over {grids[0]}^2 nodes, cost per unknown", each[-1] / each[0], most=MOST_GROWTH)]
+    growth = f"{grids[-1]}^2 over {grids[0]}^2 nodes, cost per unknown"
+    rows = [bound(name, growth, each[-1] / each[0], most=MOST_GROWTH)]
     if 257 in grids:
         rows.append(bound(name, "257 x 257 nodes, processor time [s]", seconds[grids.index(257)], most=MOST_SECONDS))
     return {"rows": rows, "nodes": grids, "us_per_unknown": each, "products": work}
