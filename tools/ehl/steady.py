@@ -125,11 +125,11 @@ def _dry(n: int) -> list[Job]:
     def work(name: str, contact: Contact) -> Found:
         film, dry = solve(contact, n=n), hertz(contact)
         cell = (film.x[1] - film.x[0]) * (film.y[1] - film.y[0])
-        area = float(np.count_nonzero(film.p > 1e-6 * dry.p_max) * cell)
+        area = float(np.count_nonzero(film.p_asperity > 0) * cell)
         rows = [
             row(name, "largest pressure [GPa]", dry.p_max / 1e9, float(film.p.max()) / 1e9, 0.01, film.load_error),
             row(name, "approach [um]", 1e6 * dry.approach, 1e6 * film.approach, 0.01, film.load_error),
-            row(name, "area [mm2]", 1e6 * pi * dry.a * dry.b, 1e6 * area, 0.0, film.load_error),
+            row(name, "area where the surfaces touch [mm2]", 1e6 * pi * dry.a * dry.b, 1e6 * area, 0.0, film.load_error),
         ]
         return {"rows": rows}
 

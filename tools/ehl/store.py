@@ -12,15 +12,16 @@ from ..console import as_json, folder, note, write
 from .rows import Found, Job
 
 
-def fingerprint() -> str:
-    """What the results depend on, as a short text: another solver makes kept results void."""
+def fingerprint(job: Job) -> str:
+    """What a result depends on, as a short text: another solver, reference or piece of work makes a kept one void."""
+    solver = files("gearheat.model.contact")
+    kept = [*solver.iterdir(), *solver.joinpath("reference").iterdir()]
+    module = getattr(job.work, "func", job.work).__module__.rpartition(".")[2]
+    kept += [files("gearheat.tools.ehl").joinpath(f"{name}.py") for name in ("cases", "rows", module)]
     state = hashlib.sha256()
-    for package in ("gearheat.model.contact", "gearheat.tools.ehl"):
-        for entry in sorted(files(package).iterdir(), key=lambda e: e.name):
-            if entry.name.endswith(".py"):
-                state.update(entry.read_bytes())
-    for entry in sorted(files("gearheat.model.contact").joinpath("reference").iterdir(), key=lambda e: e.name):
-        state.update(entry.read_bytes())
+    for entry in sorted(kept, key=lambda e: e.name):
+        if entry.name.endswith((".py", ".toml")):
+            state.update(entry.read_bytes())
     return state.hexdigest()[:16]
 
 
@@ -31,9 +32,9 @@ def run(jobs: Sequence[Job], out: Path) -> list[tuple[Job, Found]]:
         jobs: what to do
         out: folder of the results
     """
-    place, made_by, found = folder(out / "work"), fingerprint(), []
+    place, found = folder(out / "work"), []
     for i, job in enumerate(jobs):
-        path = place / f"{job.key}.json"
+        path, made_by = place / f"{job.key}.json", fingerprint(job)
         kept = _kept(path, made_by)
         if kept is None:
             note(f"[{i + 1}/{len(jobs)}] {job.item}: {job.name}")
