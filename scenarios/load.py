@@ -48,7 +48,7 @@ from ..model.core.connect import nets
 from ..model.core.declare import Port, State, declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
-from ..model.machines import cycloidal, drum_motor, planetary, rv_stage
+from ..model.machines import cycloidal, drum_motor, harmonic, planetary, rv_stage
 from ..model.machines.spec import PartSpec, Spec, assemble
 from ..model.parts import PARTS
 from ..model.units import to_si
@@ -61,6 +61,7 @@ from .values import PartValues, in_range, part_values, readable, settable
 #: Kind of rig -> its fixed parts (name -> type) and connections.
 LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
     "planetary": (planetary.PARTS, planetary.CONNECTIONS),
+    "harmonic": (harmonic.PARTS, harmonic.CONNECTIONS),
     "cycloidal": (cycloidal.PARTS, cycloidal.CONNECTIONS),
     "cycloidal_printed": (cycloidal.PRINTED_PARTS, cycloidal.PRINTED_CONNECTIONS),
     "rv_stage": (rv_stage.PARTS, rv_stage.CONNECTIONS),

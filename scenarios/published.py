@@ -17,7 +17,7 @@ How the model gives it is one of:
     run = "held"                          # all temperatures held at temperature = "85 degC": set, path
     run = "design"                        # free = "wave_generator.w", target = "mesh.h_min=0.88 um", set
     run = "losses"                        # the losses at measured readings: set, select = { test = [1, 2] }, path
-    run = "contacts"                      # the contacts over a mesh cycle: set, path, at = 60 (theta_deg)
+    run = "contacts"                      # the contacts over a mesh cycle: set, path, at = 60 (theta_deg, linear)
     run = "law"                           # law = "cycloid.curvature", args = { ... }, item = 0
     run = "rows"                          # of = { a = "name of a row", b = "of another" }, path = "a - b"
     run = "print"                         # path = "0.0303 + 0.0588": arithmetic on printed numbers alone

@@ -131,7 +131,7 @@ class Scenario:
     def _entry(self, part: str, name: str) -> Entry:
         declarations = settable(self.spec.types[self.spec.part(part).type])
         kinds = self.entries.get(part) or FILES
-        known = {n: e for kind in kinds for n, e in catalogue(kind).items() if entry_values(e, declarations)}
+        known = {n: e for kind in kinds for n, e in catalogue(kind).items() if e.values.keys() & declarations.keys()}
         if name not in known:
             close = suggestion(name, known) or f" Known: {', '.join(known) or 'none'}."
             raise ScenarioError(f'{part} = {name}: unknown {" or ".join(kinds)} "{name}".{close}')

@@ -25,7 +25,9 @@ def part_with_contacts(scenario: Scenario) -> PartWithContacts:
     """
     parts = [part for part in assemble(scenario.spec).parts if isinstance(part, PartWithContacts)]
     if not parts:
-        kinds = ", ".join(sorted(kind for kind, cls in scenario.spec.types.items() if issubclass(cls, PartWithContacts)))
+        kinds = ", ".join(
+            sorted(kind for kind, cls in scenario.spec.types.items() if issubclass(cls, PartWithContacts))
+        )
         raise ScenarioError(
             f"{scenario.name}: no part has a table of contacts. Leave out --contacts, or take a rig with: {kinds}."
         )

@@ -104,8 +104,8 @@ class _Evaluation:
             case ast.Subscript(slice=ast.Slice() as part):
                 ends = [end and self.of(end) for end in (part.lower, part.upper, part.step)]
                 found = self.of(node.value)[slice(*ends)]
-            case ast.Subscript(slice=ast.Constant(value=int(place))):
-                found = self.of(node.value)[place]
+            case ast.Subscript():
+                found = self.of(node.value)[self.of(node.slice)]
             case _:
                 names = ", ".join(FUNCTIONS)
                 raise ValueError(f'"{ast.unparse(node)}" in "{self.text}" is not known. Functions: {names}')

@@ -1,4 +1,4 @@
-"""What a rig's model gives for published numbers: steady states, held temperatures, designs, losses at readings.
+"""What a rig's model gives for published numbers: steady states, designs, losses at readings, contacts of a cycle.
 
 The flattened model is shared by all rows that have the same structure: the choices, what drives the rig, and which
 parameters have a value of their own.
@@ -15,6 +15,7 @@ import numpy as np
 
 from ..model.core.flat import FlatModel
 from ..model.errors import ScenarioError, SolveError
+from ..model.parts.contacts import ContactTable
 from ..model.run.design import design
 from ..model.run.steady import steady
 from ..model.sources import LawInfo
@@ -23,7 +24,7 @@ from ..scenarios.document import paths
 from ..scenarios.published import Row
 from ..scenarios.scenario import Scenario, parse_assignments
 from .expressions import evaluate
-from .losses import at_readings, held
+from .losses import at_readings, contacts_at_operating_point, held
 from .settings import adjusted, choice_paths, flat_of, parameter_of
 from .verdicts import Value, number_of
 
@@ -44,7 +45,8 @@ class RigValues:
     def __init__(self, scenario: Scenario) -> None:
         self.scenario = scenario
         self._structures: dict[object, tuple[Scenario, FlatModel]] = {}
-        self._losses: dict[str, list[dict[str, Any]]] = {}
+        self._losses: dict[tuple[str, ...], list[dict[str, Any]]] = {}
+        self._cycles: dict[tuple[str, ...], ContactTable] = {}
 
     @cached_property
     def laws(self) -> tuple[LawInfo, ...]:
@@ -60,7 +62,8 @@ class RigValues:
         Raises:
             ScenarioError: the row names what the rig does not have
         """
-        found = {"steady": self._steady, "held": self._held, "design": self._design, "losses": self._at_readings}
+        found = {"steady": self._steady, "held": self._held, "design": self._design}
+        found |= {"losses": self._at_readings, "contacts": self._contacts}
         try:
             return found[row.run](row)
         except SolveError as error:
@@ -84,6 +87,31 @@ class RigValues:
         columns = {name: float(column[0]) for name, column in solution.result.columns.items()}
         return _read(row.path or free[0], setting, columns | dict(solution.values))
 
+    def _contacts(self, row: Row) -> Value:
+        """A total of the contacts over a mesh cycle, or their columns: all of them, or at one angle."""
+        found = self._cycle(_assignments(row))
+        columns = {name: np.array([contact[name] for contact in found.rows]) for name in found.columns}
+        theta = columns.get("theta_deg")
+        if row.at is not None and theta is not None:
+            if not theta.min() <= row.at <= theta.max():
+                raise ScenarioError(f"at = {row.at:g} is outside the contacts, {theta.min():g} to {theta.max():g} deg.")
+            order = np.argsort(theta)
+            columns = {name: np.interp(row.at, theta[order], column[order]) for name, column in columns.items()}
+        known = columns | dict(found.totals)
+
+        def value_of(name: str) -> Any:
+            if name not in known:
+                raise ScenarioError(f'there is no "{name}" among the contacts. Known: {", ".join(known)}.')
+            return known[name]
+
+        return Value(single(row.path, value_of))
+
+    def _cycle(self, assignments: tuple[str, ...]) -> ContactTable:
+        """The contacts at the operating point with values set."""
+        if assignments not in self._cycles:
+            self._cycles[assignments] = contacts_at_operating_point(adjusted(self.scenario, assignments))
+        return self._cycles[assignments]
+
     def _at_readings(self, row: Row) -> Value:
         readings = selected(self._readings(_assignments(row)), row.select)
         if not readings:
@@ -98,16 +126,15 @@ class RigValues:
 
     def _readings(self, assignments: tuple[str, ...]) -> list[dict[str, Any]]:
         """The losses at all measured readings beside what was measured, a row each."""
-        key = "\n".join(assignments)
-        if key not in self._losses:
+        if assignments not in self._losses:
             scenario = adjusted(self.scenario, assignments)
             if (campaign := scenario.campaign) is None:
                 raise ScenarioError(f"{scenario.name} has no measured readings.")
             rows = at_readings(scenario, campaign, "measured")
-            self._losses[key] = [
+            self._losses[assignments] = [
                 {**reading.values, **row} for reading, row in zip(campaign.readings, rows, strict=True)
             ]
-        return self._losses[key]
+        return self._losses[assignments]
 
     def _setting(self, assignments: Iterable[str], free: Iterable[str] = ()) -> _Setting:
         """The rig with values set, flattened once for each structure."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -18,6 +18,17 @@ CONTRADICTED = "published contradicts itself"
 NOT_REPRODUCED = "not reproduced"
 #: What fails comes first wherever verdicts are counted.
 VERDICTS = (NOT_REPRODUCED, CONTRADICTED, REPRODUCED)
+#: How a row comes by its number, in words.
+HOW = {
+    "steady": "steady state",
+    "held": "temperatures held",
+    "design": "design",
+    "losses": "losses at readings",
+    "contacts": "contacts of a cycle",
+    "law": "law",
+    "rows": "from other rows",
+    "print": "arithmetic on print",
+}
 
 
 @dataclass(frozen=True)
@@ -93,8 +104,32 @@ class Verdict:
             "verdict": self.verdict,
             "why": self.why,
             "group": row.group,
+            "how": HOW[row.run],
             "shown": self.shown,
             "allowed": self.allowed,
+        }
+
+
+@dataclass(frozen=True)
+class Machine:
+    """A rig with the verdicts on its published numbers."""
+
+    name: str
+    doc: str
+    reproduces: str
+    verdicts: tuple[Verdict, ...]
+    errata: tuple[Mapping[str, str], ...]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The machine as `--json` and the page have it."""
+        return {
+            "name": self.name,
+            "doc": self.doc,
+            "reproduces": self.reproduces,
+            "counts": counts(self.verdicts),
+            "kinds": kinds(self.verdicts),
+            "rows": [verdict.as_dict() for verdict in self.verdicts],
+            "errata": list(self.errata),
         }
 
 
@@ -154,10 +189,16 @@ def _on_statement(row: Row, holds: bool) -> Verdict:
 
 def _unit_of(row: Row, found: Value) -> str:
     """The unit in which a row is shown: that of its number, else the row's own, else the value's."""
-    for number in (row.expected, row.published):
-        if isinstance(number, str) and (unit := _split(number)[1]):
-            return unit
-    return row.unit or shown(found.unit) or "1"
+    written = _split(row.expected)[1] if isinstance(row.expected, str) else ""
+    if written and not (row.contradiction and row.unit):
+        return written
+    if row.unit or row.contradiction:
+        return row.unit or shown(found.unit) or "1"
+    if isinstance(row.expected, str) and _split(row.expected)[0] is None:
+        raise ScenarioError(f'{row.name}: "{row.expected}" is no number with a unit. Write for example "139.1 degC".')
+    if found.unit not in ("", "1"):
+        raise ScenarioError(f"{row.name}: has no unit. Give unit, for example {shown(found.unit)}.")
+    return "1"
 
 
 def _converted(row: Row, found: Value, unit: str) -> float:
@@ -172,10 +213,7 @@ def _number(row: Row, unit: str) -> float:
     expected = row.expected
     if not isinstance(expected, str):
         return float("nan") if expected is None else float(expected)
-    number, _ = _split(expected)
-    if number is None:
-        raise ScenarioError(f'{row.name}: "{expected}" is no number with a unit. Write for example "139.1 degC".')
-    return number
+    return _split(expected)[0] or 0.0
 
 
 def _tolerance(row: Row, unit: str) -> float:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -17,38 +16,16 @@ from ..scenarios.golden import golden_rows
 from ..scenarios.load import list_rigs
 from ..scenarios.published import Row, read_published
 from ..scenarios.scenario import Scenario
-from .console import answer, file_of, table, writable, write
+from .console import answer, file_of, writable, write
 from .describe import errata_of
 from .model_values import RigValues, single
 from .rigs import load
-from .verdicts import NOT_REPRODUCED, VERDICTS, Value, Verdict, as_printed, counts, judged, kinds
+from .verdicts import NOT_REPRODUCED, Machine, Value, Verdict, counts, judged, kinds
 from .verify_page import render
+from .verify_table import show
 
 #: Exit code where a number is not reproduced.
 FAILED = 1
-
-
-@dataclass(frozen=True)
-class Machine:
-    """A rig with the verdicts on its published numbers."""
-
-    name: str
-    doc: str
-    reproduces: str
-    verdicts: tuple[Verdict, ...]
-    errata: tuple[Mapping[str, str], ...]
-
-    def as_dict(self) -> dict[str, Any]:
-        """The machine as `--json` and the page have it."""
-        return {
-            "name": self.name,
-            "doc": self.doc,
-            "reproduces": self.reproduces,
-            "counts": counts(self.verdicts),
-            "kinds": kinds(self.verdicts),
-            "rows": [verdict.as_dict() for verdict in self.verdicts],
-            "errata": list(self.errata),
-        }
 
 
 def command(rig: str | None, json: str | None, html: Path | None) -> None:
@@ -63,7 +40,7 @@ def command(rig: str | None, json: str | None, html: Path | None) -> None:
     found = as_dict(machines, verdicts)
     if html is not None:
         write(html, render(found))
-    answer(found, json, lambda: _print(machines, verdicts, found))
+    answer(found, json, lambda: show(machines, verdicts, found))
     if found["counts"][NOT_REPRODUCED]:
         sys.exit(FAILED)
 
@@ -123,6 +100,8 @@ def verified(rows: Sequence[Row], rig: RigValues | None, advance: Any = lambda: 
     known: dict[str, Verdict] = {}
     found = []
     for row in sorted(rows, key=lambda row: row.run == "rows"):  # they need the others
+        if problems and not known.keys() >= set(row.of.values()):  # told already
+            continue
         try:
             verdict = judged(row, _value(row, rig, known))
             known[row.name] = verdict
@@ -181,9 +160,6 @@ def _function(name: str) -> Any:
         raise ScenarioError(f'there is no law "{name}". Write "module.function" of gearheat.model.laws.') from None
 
 
-# ------------------------------------------------------------------------------------------------- what is shown
-
-
 def _progress(total: int) -> Any:
     """Rows done, on a terminal; nothing elsewhere."""
     from rich.console import Console
@@ -196,50 +172,3 @@ def _progress(total: int) -> Any:
             yield lambda: bar.advance(task)
 
     return shown()
-
-
-HEAD = ("number", "place", "published", "corrected", "model", "allowed", "verdict")
-
-
-def _print(machines: Sequence[Machine], laws: Sequence[Verdict], found: Mapping[str, Any]) -> None:
-    for machine in machines:
-        if machine.verdicts:
-            table(f"{machine.name}: {machine.doc}", HEAD, _lines(machine.verdicts), wrapped=True)
-    if laws:
-        table("Laws", HEAD, _lines(laws), wrapped=True)
-    named = [*((m["name"], m) for m in found["machines"] if m["rows"]), ("laws", found["laws"]), ("in all", found)]
-    body = [[name, *part["counts"].values(), *part["kinds"].values()] for name, part in named]
-    table("Numbers by verdict and by kind", ("", *VERDICTS, *found["kinds"]), body)
-    for machine in machines:
-        if not machine.verdicts:
-            print(f"{machine.name}: has no published numbers. {machine.reproduces}".strip())
-    if failed := found["counts"][NOT_REPRODUCED]:
-        print(f"{failed} published numbers are not reproduced.")
-
-
-def _lines(verdicts: Sequence[Verdict]) -> list[list[Any]]:
-    """A line for each row, what fails first; rows of a group that all hold are one line."""
-    lines = []
-    groups: dict[str, list[Verdict]] = {}
-    for verdict in sorted(verdicts, key=lambda v: VERDICTS.index(v.verdict) != 0):
-        group = verdict.row.group
-        if group and verdict.verdict != NOT_REPRODUCED:
-            groups.setdefault(group, []).append(verdict)
-            continue
-        lines.append(_line(verdict))
-    return lines + [_group_line(name, members) for name, members in groups.items()]
-
-
-def _line(v: Verdict) -> list[Any]:
-    row = v.row
-    told = f"{v.verdict}: {v.why}" if v.why else v.verdict
-    other = as_printed(row.corrected if row.recomputed is None else row.recomputed, row.unit) or ""
-    name = f"{row.law}: {row.name}" if row.law else row.name
-    numbers = [as_printed(row.published, row.unit) or "", other, v.shown, v.allowed]
-    return [name, row.where, *numbers, told]
-
-
-def _group_line(name: str, members: Sequence[Verdict]) -> list[Any]:
-    worst = max(members, key=lambda v: v.distance / (v.tolerance or 1.0))
-    model = f"within {worst.distance:.2g} {worst.unit}"
-    return [name, members[0].row.where, f"{len(members)} numbers", "", model, worst.allowed, worst.verdict]

@@ -23,7 +23,7 @@ def flank_speed_radius(w_0: Num, phi: Num) -> Num:
     return w_0 * ca.cos(2 * phi)
 
 
-@law(source="Kalina2021", where="equation 9, convex flank in a concave one", verified=False)
+@law(source="Kalina2021", where="equation 9, convex flank in a concave one")
 def conforming_radius(r_convex: Num, r_concave: Num) -> Num:
     r"""Reduced radius of a convex flank in a slightly larger concave one [m].
 
@@ -36,7 +36,7 @@ def conforming_radius(r_convex: Num, r_concave: Num) -> Num:
     return r_convex * r_concave / (r_concave - r_convex)
 
 
-@law(source="Hertz1881", where="half width of a line contact", verified=False)
+@law(source="Hertz1881", where="half width of a line contact")
 def half_width(F_n_l: Num, R: Num, E_eff: Num, *, F_width: float = 10.0) -> Num:
     r"""Half of the width that a line contact is flattened over [m]; the source leaves out the pi.
 
@@ -60,10 +60,10 @@ def printed_film(
     R: Num,
     F_n_l: Num,
     *,
-    u_width: float = 1e-4,
+    u_width: float = 1e-6,
     F_width: float = 10.0,
 ) -> Num:
-    r"""Minimum film as the source prints it [m], zero at standstill. It takes an elastohydrodynamic contact for granted.
+    r"""Minimum film as the source prints it [m], zero at standstill; for an elastohydrodynamic contact.
 
     .. math:: h_{min} = 1.6 \alpha^{0.6} (\eta_0 u_0)^{0.7} E'^{0.03} R^{0.43} (L/F_0)^{0.13}
 
@@ -82,17 +82,17 @@ def printed_film(
 
 
 @law(source="Hamrock2004", where="friction of a fixed-incline slider of infinite width", verified=False)
-def pad_shear(eta_0: Num, v: Num, B: Num, L: Num, h: Num, a: Num) -> Num:
+def pad_shear(eta_0: Num, v_slide: Num, B: Num, L: Num, h: Num, a: Num) -> Num:
     r"""Viscous drag of a converging pad [N], with the sign of the speed.
 
     .. math:: F = \frac{\eta_0 v B L}{h} \frac{1}{a - 1} \left[4 \ln a - \frac{6 (a - 1)}{a + 1}\right]
 
     Args:
         eta_0: dynamic viscosity [Pa.s]
-        v: sliding speed, either sign [m/s]
+        v_slide: sliding speed, either sign [m/s]
         B: length along the motion [m]
         L: width across it [m]
         h: film at the outlet [m]
         a: film at the inlet over film at the outlet, above 1 [1]
     """
-    return eta_0 * v * B * L / h * (4 * ca.log(a) - 6 * (a - 1) / (a + 1)) / (a - 1)
+    return eta_0 * v_slide * B * L / h * (4 * ca.log(a) - 6 * (a - 1) / (a + 1)) / (a - 1)

@@ -17,7 +17,7 @@ _NOT_HERE = "(g_V = {g_V}, g_E = {g_E}): the elastohydrodynamic formula does not
 
 @law(source="Johnson1970", where="viscosity parameter", verified=False)
 def viscosity_parameter(
-    alpha_p: Num, eta_0: Num, u_m: Num, F_n_l: Num, R: Num, *, u_width: float = 1e-4, F_width: float = 10.0
+    alpha_p: Num, eta_0: Num, u_m: Num, F_n_l: Num, R: Num, *, u_width: float = 1e-6, F_width: float = 10.0
 ) -> Num:
     r"""How much pressure thickens the oil of a line contact [1].
 
@@ -37,7 +37,7 @@ def viscosity_parameter(
 
 @law(source="Johnson1970", where="elasticity parameter", verified=False)
 def elasticity_parameter(
-    eta_0: Num, u_m: Num, F_n_l: Num, R: Num, E_eff: Num, *, u_width: float = 1e-4, F_width: float = 10.0
+    eta_0: Num, u_m: Num, F_n_l: Num, R: Num, E_eff: Num, *, u_width: float = 1e-6, F_width: float = 10.0
 ) -> Num:
     r"""How much a line contact deforms [1].
 
@@ -57,7 +57,7 @@ def elasticity_parameter(
 
 @law(source="Johnson1970", where="asymptotes of the four regimes", verified=False)
 def regime_films(g_V: Num, g_E: Num) -> tuple[Num, Num, Num, Num]:
-    r"""Film numbers of the four regimes [1]: rigid and isoviscous, rigid and piezoviscous, elastic and isoviscous, both.
+    r"""Film numbers of the four regimes [1]: neither, piezoviscous, elastic, and both.
 
     .. math:: \hat h_{RI} = 4.9,\quad \hat h_{RP} = 1.66 g_V^{2/3},\quad \hat h_{EI} = 3.1 g_E^{0.8},\quad
         \hat h_{EP} = 2.65 g_V^{0.54} g_E^{0.06}

@@ -1,4 +1,4 @@
-"""Harmonic drive: the film between the teeth of flexspline and circular spline, and the mesh of both with its bearing."""
+"""Harmonic drive: the film between the teeth of flexspline and circular spline, and the mesh of both."""
 
 from __future__ import annotations
 
@@ -22,6 +22,8 @@ ADMISSIBLE = 1.1
 RQ_OVER_RZ = 0.2
 #: Force of a tooth pair below which it is blurred [N].
 FORCE_WIDTH = 0.1
+#: Sliding speed of the flanks below which their film is blurred [m/s]: that of a wave generator at 0.02 rpm.
+U_WIDTH = 1e-6
 
 
 class FlankFilm(Component):
@@ -118,7 +120,7 @@ class FlankFilm(Component):
         """
         u_sum = self.speed_factor * self.r_u * w
         if self.film == "moes":
-            return line_film_central(eta, u_sum, alpha_p, F / self.L, self.R, self.E_eff)
+            return line_film_central(eta, u_sum, alpha_p, F / self.L, self.R, self.E_eff, u_width=U_WIDTH)
         if self.film == "dowson_higginson_printed":
             inside_elastohydrodynamic(self.g_V, self.g_E)
             return printed_film(alpha_p, eta, u_sum / 2, self.E_eff, self.R, F / self.L)
@@ -191,6 +193,7 @@ class HarmonicMesh(FlankFilm):
     circular_spline = Flange()
     wave = Flange()
     wave_load = BearingLoad()
+    shaft_load = BearingLoad()
     flexspline_teeth = HeatPort()
     circular_spline_teeth = HeatPort()
     lubricant = Lubricant()
@@ -229,5 +232,7 @@ class HarmonicMesh(FlankFilm):
         yield from self.contact(self.eta_0, self.lubricant.alpha_p, w, self.F_0, self.pairs)
         yield equation("bearing radially", self.wave_load.F_r, F_t * ca.tan(self.alpha))
         yield equation("bearing axially", self.wave_load.F_a, 0)
+        yield equation("shafts radially, the two meshes cancel", self.shaft_load.F_r, 0)
+        yield equation("shafts axially", self.shaft_load.F_a, 0)
         yield equation("half heats the flexspline", self.flexspline_teeth.Q_flow, -self.P_loss / 2)
         yield equation("half heats the circular spline", self.circular_spline_teeth.Q_flow, -self.P_loss / 2)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -21,6 +22,9 @@ SCAN, REFINED, STARTS = 25, 12, 32
 
 #: A target that varies less than this over a scan, relative, does not depend on the freed name.
 UNMOVED = 1e-9
+
+#: Where a range ends that keeps its sign, over where the search starts.
+NEAR_ZERO = 1e-6
 
 #: Above this condition number the freed names do nearly the same to the targets.
 ALIKE = 1e6
@@ -95,9 +99,22 @@ def design(
         begin = search.equilibrium(search.f)
     except SolveError:
         begin = Equilibrium(start.x, flat.starts("algebraic"))
-    if (found := search.newton(begin, search.f, search.goal)) is not None:
+    found = search.newton(begin, search.f, search.goal)
+    if found is not None and (found[1] * search.f >= 0).all():
+        return _design(search, *found)
+    if sides := _sides(search, bounds or {}):  # a speed: a film at rest is no way to the other direction
+        with suppress(SolveError):
+            return design(flat, free, targets, values, guess=guess, bounds={**(bounds or {}), **sides})
+    if found is not None:
         return _design(search, *found)
     return _by_scan(search, begin) if len(free) == 1 else _by_starts(search, begin)
+
+
+def _sides(search: Search, bounds: Mapping[str, tuple[float, float]]) -> dict[str, tuple[float, float]]:
+    """Bounds that keep the sign of where the search starts, of the freed names without bounds of either sign."""
+    named = zip(search.free, search.f, search.ranges, strict=True)
+    free = [(name, float(f), r) for name, f, r in named if name not in bounds and r.low < 0 < r.high and f != 0]
+    return {name: (NEAR_ZERO * f, r.high) if f > 0 else (r.low, NEAR_ZERO * f) for name, f, r in free}
 
 
 def choose(

@@ -55,6 +55,8 @@ NOMINAL = {
     **{"share": 0.4, "Q": 1000.0, "S": 0.76, "T_room": 298.0, "psi_1": 0.5, "psi_2": 0.9, "S_3": 0.6, "S_4": 0.3},
     **{"r": 0.15, "T_oil": 345.0, "nu_50": 30e-6, "Ra_1": 0.4e-6, "Ra_2": 0.4e-6, "c_q": 1.25},
     **{"xi": 0.4, "F": 240.0, "C": 1e-17},
+    **{"w_0": 0.64e-3, "r_convex": 0.0192194, "r_concave": 0.0192307, "E_eff": 230e9, "u_0": 0.03, "u_m": 0.03},
+    **{"g_V": 20.0, "g_E": 5.0, "rigid_isoviscous": 0.5, "rigid_piezoviscous": 0.4, "elastic_isoviscous": 0.3},
 }
 CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
 OWN = {
@@ -63,6 +65,9 @@ OWN = {
     "cycloid.output_roller_power": CYCLOID | {"D": 0.014, "d": 0.007},
     "cycloid.ring_roller_power": CYCLOID | {"D": 0.014, "d": 0.008},
     "rolling.starvation": {"s": 0.2},
+    "harmonic.conforming_radius": {"r_concave": 0.02},
+    "harmonic.flank_speed_radius": {"phi": 0.2},
+    "harmonic.pad_shear": {"a": 2.2, "B": 1e-3, "L": 0.012, "v_slide": 0.06},
     "drum.motor_loss": {"a": 1.5},
     "drum.cooling_area": {"S_1": 0.08, "S_2": 0.08},
     "drum.lumped_temperature": {"h": 20.0},

@@ -32,7 +32,7 @@ UNITS = {
     "W at 250 K": 1 / 250,
 }
 KINDS = {"published", "corrected", "reproduced", "misprint"}
-#: Laws that the tests of whole chains compare with printed statements: test_planetary_chain.py.
+#: Laws that whole chains compare with printed statements: test_planetary_chain.py, and what `verify` has of the rig.
 CHAINED = {
     "oil.walther_constants",
     "oil.pressure_viscosity",

@@ -1,4 +1,6 @@
-"""The laws in a row: loss breakdown, film statements and friction ranking of the planetary gearbox of Dias2014.
+"""The laws in a row: loss breakdown, line load and film of the planetary gearbox of Dias2014.
+
+What its source prints of the gearbox as a whole stands in the rig's table of published numbers; `verify` asserts it.
 
 The model is the source's own: torque and speed as measured, oil temperature as measured, bearings in grease of the same
 temperature, friction of the teeth raised by k_mu = 1.044, ball bearing without boundary friction, needles with f_0 = 7.
@@ -13,7 +15,6 @@ import numpy as np
 import pytest
 from gearheat.model.laws import film, gears, mesh, oil, rolling, sealing
 
-TESTS = Path(__file__).parents[1]
 OILS = {  # nu_40, nu_100 [cSt], rho_15, alpha_T, X_L, s, t
     "PAOR": (324.38, 35.27, 859, -5.6e-4, 0.666, 7.382, 0.1335),
     "MINR": (319.25, 22.41, 902, -5.8e-4, 0.858, 9.904, 0.1390),
@@ -33,8 +34,9 @@ def table(path: Path) -> list[dict[str, Any]]:
     ]
 
 
-BREAKDOWN = table(TESTS / "golden" / "planetary_breakdown.csv")
-MEASURED = table(TESTS.parent / "scenarios" / "rigs" / "planetary" / "measured.csv")
+RIG = Path(__file__).parents[2] / "scenarios" / "rigs" / "planetary"
+BREAKDOWN = table(RIG / "breakdown.csv")
+MEASURED = table(RIG / "measured.csv")
 POINTS = {(int(r["test"]), int(r["direction"])): r for r in MEASURED}
 
 
@@ -126,57 +128,6 @@ def nominal() -> dict[str, Any]:
     return {"oil": "PAOR", "n_carrier_rpm": 250.0, "T_carrier_Nm": 2500.0, "T_oil_C": 85.0}
 
 
-def test_printed_bearing_powers() -> None:
-    """Table 5.7 to 2e-4 (the tapered bearing with its 38.499 N.mm of drag), Table 5.8 to 3e-3, Table 5.9 to 1e-4."""
-    P = losses(nominal())
-    drag = 38.499e-3 * 250 * math.pi / 30
-    assert P["trb"] / 2 + drag == pytest.approx(133.47, rel=2e-4)
-    assert P["dgb"] == pytest.approx(43.65, rel=2e-4)
-    assert P["needle"] / 6 == pytest.approx(6.9937, rel=3e-3)
-    assert P["seal"] == pytest.approx(37.681 + 55.560, rel=1e-4)
-
-
-def test_printed_shares_of_the_input_power() -> None:
-    """Chapter 6, first grid, tests 1, 10, 13 and 16: lowest and highest share of each part in percent."""
-    shares = {name: [] for name in ("mesh", "trb", "seal", "dgb", "needle")}
-    for test in (1, 10, 13, 16):
-        point = POINTS[test, 1]
-        power = point["T_carrier_Nm"] * point["n_carrier_rpm"] * math.pi / 30
-        for name, values in shares.items():
-            values.append(100 * losses(point)[name] / power)
-    assert min(shares["mesh"]) == pytest.approx(0.53, abs=0.015)
-    assert max(shares["mesh"]) == pytest.approx(0.67, abs=0.015)
-    assert shares["trb"][:2] == pytest.approx([0.61, 0.63], abs=0.02)
-    assert shares["trb"][2:] == pytest.approx([0.36, 0.36], abs=0.02)
-    assert min(shares["seal"]) == pytest.approx(0.13, abs=0.005)
-    assert max(shares["seal"]) == pytest.approx(0.23, abs=0.005)
-    for name in ("dgb", "needle"):  # the printed 0.06 to 0.13 holds for each of the two
-        assert min(shares[name]) == pytest.approx(0.06, abs=0.01)
-        assert max(shares[name]) <= 0.13 + 0.01
-
-
-def test_printed_line_of_the_thermal_conductance() -> None:
-    """Table 7.2, PAOR: conductance over temperature difference, slope 0.1742, intercept 10.4038 W/K, norm 1.1373."""
-    points = [POINTS[test, 1] for test in range(17, 22)]
-    dT = np.array([p["T_oil_C"] - p["T_amb_C"] for p in points])
-    G = np.array([sum(losses(p).values()) for p in points]) / dT
-    slope, intercept = np.polyfit(dT, G, 1)
-    assert slope == pytest.approx(0.1742, abs=0.005)
-    assert intercept == pytest.approx(10.4038, abs=0.15)
-    assert np.linalg.norm(G - slope * dT - intercept) == pytest.approx(1.1373, abs=0.25)
-    assert slope * dT.mean() + intercept == pytest.approx(0.1742 * dT.mean() + 10.4038, rel=0.005)
-
-
-def test_printed_friction_ranking() -> None:
-    """PAGD < PAOR < MINE < MINR in both meshes, planet-ring below sun-planet, at 150 rpm and 2800 N.m."""
-    points = {POINTS[test, 1]["oil"]: POINTS[test, 1] for test in (20, 25, 30, 35)}
-    for name, expected in (("SP", (0.0326, 0.0387, 0.0429, 0.0508)), ("PR", (0.0255, 0.0303, 0.0336, 0.0398))):
-        found = [1.044 * friction(points[o], name) for o in ("PAGD", "PAOR", "MINE", "MINR")]
-        assert found == sorted(found)
-        assert found == pytest.approx(expected, abs=0.00005)
-    assert all(friction(p, "PR") < friction(p, "SP") for p in points.values())
-
-
 def test_printed_coefficients_of_the_gear_program_tell_the_line_load() -> None:
     """The second sheet of appendix D prints 0.058 and 0.047: their ratio is that of a load per face width."""
     point = nominal()
@@ -209,21 +160,6 @@ def lambdas(mesh_name: str, **choice: float) -> dict[tuple[int, int], float]:
     return {(int(p["n_set_rpm"]), int(p["T_set_Nm"])): film_parameter(p, mesh_name, **choice) for p in points}
 
 
-def test_printed_film_statement() -> None:
-    """With PAOR only 100 rpm with 1600 and 2000 N.m has more than 0.7, in planet-ring; sun-planet never."""
-    found = lambdas("PR")
-    assert {point for point, value in found.items() if value > 0.7} == {(100, 1600), (100, 2000)}
-    assert max(lambdas("SP").values()) < 0.7
-
-
-def test_recomputed_film_parameters() -> None:
-    found = lambdas("PR")
-    assert found[100, 1600] == pytest.approx(0.825, abs=0.0005)
-    assert found[100, 2000] == pytest.approx(0.710, abs=0.0005)
-    assert found[150, 1600] == pytest.approx(0.682, abs=0.0005)
-    assert max(lambdas("SP").values()) == pytest.approx(0.547, abs=0.0005)
-
-
 def test_plain_radius_contradicts_the_printed_film_statement() -> None:
     """The source's "equivalent radius" is twice the reduced radius, 2^0.364 = 1.287 in the film."""
     plain = lambdas("PR", radius_factor=1.0)
@@ -238,19 +174,6 @@ def test_twice_the_radius_is_grubins_formula() -> None:
     h = film.film_thickness(eta, u, alpha, F, R, E_STAR)
     grubin = 1.95 * R * (alpha * eta * (u / 2) / R) ** (8 / 11) * (2 * E_STAR * R / F) ** (1 / 11)
     assert h == pytest.approx(grubin, rel=0.01)
-
-
-def test_printed_film_ranking_of_the_oils() -> None:
-    """At equal speed and torque MINE has the thickest film and MINR the thinnest; PAGD beats PAOR at two points."""
-    films: dict[tuple[int, int], dict[str, float]] = {}
-    for test in range(17, 37):
-        p = POINTS[test, 1]
-        films.setdefault((int(p["n_set_rpm"]), int(p["T_set_Nm"])), {})[p["oil"]] = film_parameter(p, "PR")
-    assert len(films) == 5
-    for found in films.values():
-        assert max(found, key=found.__getitem__) == "MINE"
-        assert min(found, key=found.__getitem__) == "MINR"
-    assert {point for point, found in films.items() if found["PAGD"] > found["PAOR"]} == {(150, 2800), (200, 2800)}
 
 
 def test_thermal_factor_of_the_misprint() -> None:

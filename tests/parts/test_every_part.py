@@ -34,6 +34,8 @@ BOX = SURFACE | dict(height=0.3, length=0.4, width=0.2, share_top=0.2, share_bot
 EXTRA = dict(P_ref=50.0, w_ref=20.0, nu_ref=7e-5, tau_ref=2000.0, a=2.0, b=0.2, c=0.5, forward=1.0, backward=0.5)
 EXTRA |= dict(w_on=10.0, w_side=1.0, w_width=0.5, tau_on=-1e4, tau_side=1.0, tau_width=60.0)
 EXTRA |= dict(T_on=340.0, T_side=-1.0, T_width=1.5, film_on=2e-3, oil_share=0.8)
+FLANK = dict(w_0=6.4e-4, phi=0.2063, L=0.012, r_convex=0.0192194, r_concave=0.0192307, E_eff=2.308e11, B_tooth=1e-3)
+FLANK |= dict(a=2.2, approach=1e-6, Rz_1=4e-7, Rz_2=4e-7, mu_fluid=0.01, mu_boundary=0.1)
 SUPPORT = dict(span=0.1, x=0.04, r=0.05, axial_share_a=1.0)
 DISC = dict(z_1=13.0, z_2=14.0, n=2.0, e=4e-3, r=0.086, D_0=0.014, d_0=0.008, u=8.0, R_0=0.0475, D_VK=0.014, d_VK=0.007)
 DISC |= dict(d_CZ=0.035, D_CZ=0.04, mu_r1=0.005, mu_r2=0.0045, mu_r3=0.0045)
@@ -53,6 +55,8 @@ EXAMPLES: dict[str, dict] = {
     | dict(N=3.0, z_3=108.0, eps_alpha_sp=1.666, eps_alpha_pr=1.883, H_v_sp=0.168, H_v_pr=0.062)
     | dict(n_axial_carrier=1.0, n_axial_sun=3.0, s_planet=0.021),
     "HelicalGearPair": TEETH | dict(z_2=72.0, a_w=0.1097, x_1=0.0, x_2=0.0),
+    "HarmonicMesh": FLANK | dict(z_1=132.0, z_2=134.0, m_n=6e-4, alpha=math.radians(20), pairs=40.0),
+    "HarmonicContact": FLANK | dict(eta_0=0.06, alpha_p=2e-8, F_0=240.0),
     "CycloidalReducer": DISC | dict(mu_ref=0.05, mu_fluid=0.02, mu_bl=0.1, eta_ref=0.03, w_ref=148.7, tau_ref=332.0),
     "MalhotraReducer": DISC
     | dict(mu_s1=0.05, mu_s2=0.05, n_counted=1.0, turns_ring=1.0, P_rated=4000.0, w_rated=148.7, tau_rated=332.0),
@@ -105,12 +109,14 @@ GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level"} | {
     "HelicalGearPair.force",
 }
 GIVES |= {f"PlanetarySet.{k}" for k in ("carrier_load", "sun_load", "planet_load")}
+GIVES |= {f"HarmonicMesh.{k}" for k in ("wave_load", "shaft_load")}
 GIVES |= {f"CycloidPinStage.{k}" for k in ("eccentric_load", "crank_load", "main_load")}
 GIVES |= {f"{s}.{k}" for s in ("ShaftSupport", "TwoGearSupport") for k in ("load_a", "load_b")}
 GIVES |= {f"RoundHousing.{k}" for k in ("flat_inside", "flat_outside", "cylinder_inside", "cylinder_outside")}
 #: What is given at the flanges of a part with several of them; elsewhere the speed (a storage: the torque).
 GIVEN = {
     "HelicalGearPair": {"pinion": ("w", "tau"), "wheel": ()},
+    "HarmonicMesh": {"wave_generator": ("w",), "flexspline": ("tau",), "circular_spline": ("w",), "wave": ("tau",)},
     "CycloidalReducer": {"input": ("w",), "output": ("tau",)},
     "MalhotraReducer": {"input": ("w",), "output": ("tau",)},
     "PlanetarySet": {"carrier": ("w", "tau"), "sun": (), "ring": ("w",), "planet": ("tau",)},
@@ -170,6 +176,7 @@ LOSSES = ("part.P_loss", "part.P_loss_sp", "part.P_loss_pr", "part.P")
 #: Each kind once, gears and bearings under each of their choices.
 CASES = [(kind, {}) for kind in PARTS] + [("PlanetarySet", {"power_flow": "ideal"}), ("Inertia", {"dynamic": False})]
 CASES += [("PlanetarySet", {"line_load": "F_bt/b"}), ("HelicalGearPair", {"line_load": "F_bt/b"})]
+CASES += [(k, {"film": f}) for k in ("HarmonicMesh", "HarmonicContact") for f in ("moes", "dowson_higginson_printed")]
 CASES += [("CycloidPinStage", {"pin": p, "disc_torque": t}) for p in ("held", "rolling") for t in ("output", "statics")]
 CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath")]
 PRINTED_DRUM = {"coefficient": "source", "P_N": 2200.0, "psi_1": 0.5, "psi_2": 0.9, "A_belt": 0.3}
@@ -278,7 +285,7 @@ def lubricated(flat, T: float, w: float, load: float) -> dict[str, float]:
         if q.unit == "K":
             return T
         if q.unit in ("rad/s", "N.m", "N"):
-            held = q.name in ("ring.w", "planet.tau")
+            held = q.name in ("ring.w", "planet.tau", "circular_spline.w", "wave.tau")
             return 0.0 if held else w if q.unit == "rad/s" else load * (300.0 if q.unit == "N.m" else 2000.0)
         return of_oil.get(q.name.split(".")[-1], q.nominal)
 
@@ -298,7 +305,8 @@ def test_colder_never_means_less_drag(kind: str, choices: dict) -> None:
 
     Two things may fall as it gets colder, and both end: the boundary friction of a bearing (Stribeck), so that one
     with it is asked where the film is full, and tooth friction in mixed friction, so that teeth are asked beyond the
-    end of their law, at 1 Pa.s, and may fall within its rounding.
+    end of their law, at 1 Pa.s, and may fall within its rounding; so are the flanks of a harmonic drive, where their
+    film is five times their roughness.
     """
     flat = flat_of(kind, choices)
     for w, load in itertools.product(SPEEDS, LOADS):
@@ -308,6 +316,9 @@ def test_colder_never_means_less_drag(kind: str, choices: dict) -> None:
             cooling, slack = [T for T in cooling if oil_at(T)["nu"] > 1.2e-3], 3e-3
         elif kind.endswith(("BallBearing", "RollerBearing")) and choices.get("mixed_friction", True):
             cooling = [T for T in cooling if boundary_share(w, oil_at(T)["nu"], EXAMPLES[kind]["d_m"]) < 1e-3]
+        elif kind == "HarmonicMesh":
+            cooling = [T for T in cooling if lubricated(flat, T, w, load)["part.Lambda"] > 5]
+            slack = 1e-4
         losses = np.array([loss(lubricated(flat, T, w, load)) for T in cooling])
         assert len(losses) > 5
         assert (np.diff(losses) >= -slack * losses[:-1]).all(), (w, load)

@@ -19,6 +19,7 @@ COMMANDS = (
     "list",
     "show",
     "plan",
+    "verify",
 )
 
 
@@ -59,6 +60,12 @@ def test_list_names_rigs_and_oils(gearheat):
     found = gearheat("list", "--json", "-").json
     assert "planetary" in found["rigs"]
     assert {"PAOR", "MINR", "MINE", "PAGD"} <= found["catalogues"]["oil"].keys()
+
+
+def test_list_says_what_each_rig_reproduces(gearheat):
+    found = gearheat("list", "--json", "-").json
+    assert found["reproduces"].keys() == found["rigs"].keys()
+    assert "Dias2014" in found["reproduces"]["planetary"] and "reproduces" in gearheat("list").out
 
 
 def test_show_gives_every_parameter_a_value_a_unit_and_a_source(gearheat):

@@ -1,21 +1,16 @@
-"""The command `losses` against the breakdown that the source's own model gives."""
+"""The command `losses`: its rows and columns; `verify` compares them with the breakdown of the source's own model."""
 
 from __future__ import annotations
 
-import csv
 import functools
 import json
-from pathlib import Path
 from typing import Any
 
 import pytest
 from gearheat.tools.cli import app
 from typer.testing import CliRunner
 
-GOLDEN = Path(__file__).parents[1] / "golden" / "planetary_breakdown.csv"
 PARTS = ("P_mesh_W", "P_trb_W", "P_dgb_W", "P_needle_W", "P_seal_W")
-#: A cell of the table may be off by this [W].
-TOLERANCE = 0.3
 
 
 @pytest.fixture(scope="module")
@@ -32,22 +27,6 @@ def losses():
 
 
 IDEAL = ("--temperature", "measured", "--power-flow", "ideal")
-
-
-def test_every_cell_of_the_published_breakdown(losses):
-    rows = {(row["test"], row["direction"]): row for row in losses(*IDEAL)}
-    lines = [line for line in GOLDEN.read_text(encoding="utf-8").splitlines() if not line.startswith("#")]
-    table = list(csv.DictReader(lines))
-    assert len(table) == 36
-    wrong = []
-    for printed in table:
-        test = int(printed["test"])
-        cells = [(1, name, name) for name in PARTS]
-        cells += [(d, "P_total_W", f"P_total_{d}_W") for d in (1, 2)]
-        for direction, ours, theirs in cells:
-            if abs(rows[test, direction][ours] - float(printed[theirs])) > TOLERANCE:
-                wrong.append((test, theirs, printed[theirs], rows[test, direction][ours]))
-    assert not wrong
 
 
 def test_rows_carry_the_keys_that_programs_read(losses):
