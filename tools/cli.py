@@ -374,12 +374,15 @@ def bench(
     rig: Rig = "planetary",
     tests: Tests = None,
     fmu: Annotated[bool, typer.Option("--fmu", help="The FMU against its peers, and the batch, instead.")] = False,
+    contact: Annotated[bool, typer.Option("--contact", help="The contact solver against slippy, instead.")] = False,
     json: Json = None,
 ) -> None:
     """Time and memory of the main job, beside SciPy's LSODA on the same equations in the same run."""
+    if contact:
+        os.environ.setdefault("OMP_NUM_THREADS", "1")
     from . import bench
 
-    bench.command(rig, tests, json, fmu)
+    bench.command(rig, tests, json, fmu, contact)
 
 
 def main() -> None:

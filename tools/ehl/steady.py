@@ -129,7 +129,9 @@ def _dry(n: int) -> list[Job]:
         rows = [
             row(name, "largest pressure [GPa]", dry.p_max / 1e9, float(film.p.max()) / 1e9, 0.01, film.load_error),
             row(name, "approach [um]", 1e6 * dry.approach, 1e6 * film.approach, 0.01, film.load_error),
-            row(name, "area where the surfaces touch [mm2]", 1e6 * pi * dry.a * dry.b, 1e6 * area, 0.0, film.load_error),
+            row(
+                name, "area where the surfaces touch [mm2]", 1e6 * pi * dry.a * dry.b, 1e6 * area, 0.0, film.load_error
+            ),
         ]
         return {"rows": rows}
 
