@@ -11,6 +11,9 @@ from .grid import Grid
 from .newton import State
 from .scale import Scaled
 
+#: Share of the smallest film by which a film may exceed it and still count as closed [1].
+TOUCHING = 1e-3
+
 
 @dataclass(frozen=True)
 class Film:
@@ -66,9 +69,9 @@ def film_of(case: Scaled, grid: Grid, state: State, gap: Array, floor: float) ->
     contact, unit = case.contact, case.unit
     x, y = (np.asarray(c.ravel() * unit.a) for c in grid.nodes)
     p = np.ascontiguousarray(state.p.T * unit.p)
-    p_asperity = np.where(state.touching.T, p, 0.0)
     film = state.h_0 + gap + grid.deformation(state.p)
     h = np.maximum(np.ascontiguousarray(film.T * unit.h), floor)
+    p_asperity = np.where(h < floor * (1 + TOUCHING), p, 0.0)
     cell = float((x[1] - x[0]) * (y[1] - y[0]))
     return Film(
         contact=contact,
@@ -78,7 +81,7 @@ def film_of(case: Scaled, grid: Grid, state: State, gap: Array, floor: float) ->
         h=h,
         p_asperity=p_asperity,
         h_c=float(np.interp(0.0, x, h[:, h.shape[1] // 2])),
-        h_min=smallest(h),
+        h_min=max(smallest(h), floor),
         approach=-state.h_0 * unit.h,
         asperity_share=float(p_asperity.sum() * cell / contact.F),
         mu=friction(contact, p, h, p_asperity, cell),
@@ -123,4 +126,4 @@ def smallest(h: Array) -> float:
         slope, bend = (line[i + 1] - line[i - 1]) / 2, line[i + 1] - 2 * line[i] + line[i - 1]
         if bend > 0:
             found -= float(slope**2 / bend / 2)
-    return max(found, 0.0)
+    return found

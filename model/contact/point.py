@@ -10,7 +10,7 @@ import numpy as np
 from ..errors import ScenarioError, SolveError
 from .case import Array, Contact
 from .film import Film, film_of
-from .grid import Grid, prolong
+from .grid import Grid, prolong, restrict
 from .newton import Problem, State, newton
 from .scale import REST, Scaled, checked, units
 
@@ -76,16 +76,20 @@ def steady(case: Scaled, finest: Grid, roughness: Height | None, tolerance: floa
     grids = [finest]
     while grids[0].n > FIRST:
         grids.insert(0, grids[0].coarser())
+    grounds = [gap(case, finest, roughness) - case.gap(finest)]
+    for _ in grids[1:]:
+        grounds.insert(0, restrict(grounds[0]))
     speed = resolvable(case, grids[0])
     state = first_guess(case, grids[0], speed)
-    for grid in grids:
+    smallest = floor / case.unit.h
+    for grid, rough in zip(grids, grounds, strict=True):
         last = grid is finest
         if grid is not grids[0]:
             state = finer(state)
-        ground = gap(case, grid, roughness)
         for faster in descent(speed, 1.0 if last else resolvable(case, grid)):
             speed = faster
-            problem = Problem(grid, case.reynolds(grid, speed), ground, case.load, floor / case.unit.h)
+            equation = case.reynolds(grid, smallest, speed)
+            problem = Problem(grid, equation, case.gap(grid) + rough, case.load, smallest)
             state = newton(problem, state, tolerance if last and speed == 1.0 else max(tolerance, COARSE), STEPS)
     return state
 

@@ -92,11 +92,14 @@ class Scaled:
             side = side + np.maximum(np.abs(y) - c.length / (2 * self.unit.a), 0.0) ** 2 / c.edge_radius
         return np.asarray(curve * (x**2 / c.R_x + side))
 
-    def reynolds(self, grid: Grid, faster: float = 1.0, squeeze: float = 0.0, past: Array | float = 0.0) -> Reynolds:
+    def reynolds(
+        self, grid: Grid, floor: float, faster: float = 1.0, squeeze: float = 0.0, past: Array | float = 0.0
+    ) -> Reynolds:
         """Reynolds' equation of the contact.
 
         Args:
             grid: the grid
+            floor: film at which the surfaces touch [1]
             faster: factor on the unit of speed, and so on the mean speed [1]
             squeeze: factor of the present d(rho h)/dt [1]
             past: what earlier moments add to d(rho h)/dt (n, n) [1]
@@ -104,7 +107,7 @@ class Scaled:
         oil, unit = self.contact.lubricant, self.unit
         kappa = unit.h**2 * unit.p / (12 * oil.eta_0 * unit.u * faster * unit.a)
         wedge = self.contact.u_m / unit.u if self.contact.u_m > REST else 0.0
-        return Reynolds(oil, unit.p, kappa, wedge, grid.hx, grid.hy, squeeze, past)
+        return Reynolds(oil, unit.p, kappa, wedge, grid.hx, grid.hy, squeeze, past, floor)
 
     def grid(self, n: int, domain: tuple[float, float, float] | None = None) -> Grid:
         """The finest grid.
