@@ -53,6 +53,7 @@ from ..model.machines.spec import PartSpec, Spec, assemble
 from ..model.parts import PARTS
 from ..model.units import to_si
 from .document import ABOUT, paths, read_toml, sources_of
+from .film_map import film_maps, names_map
 from .measured import Campaign, Driven, Protocol, read_measured
 from .scenario import Erratum, Scenario
 from .tables import RigTable, validate
@@ -189,6 +190,11 @@ class _Loader:
         parts: dict[str, PartValues] = {}
         for name, cls in self.types.items():
             table = {k: v for k, v in self.table.part.get(name, {}).items() if k != "type"}
+            try:
+                table |= film_maps(table, self.path.parent)
+            except GearheatError as error:
+                self.problems += [f"{self.file} [part.{name}]: {problem}" for problem in error.problems]
+                table = {k: v for k, v in table.items() if not names_map(v)}
             parts[name] = part_values(f"{self.file} [part.{name}]", name, cls, table)
             self.problems += parts[name].problems
             self.value_sources |= {f"{name}.{key}": source for key, source in parts[name].sources.items()}

@@ -8,6 +8,7 @@ from typing import Any
 
 from ..model.core.component import Component
 from ..model.core.declare import Choice, declared
+from ..model.laws.film_map import FilmMap
 from ..model.machines.spec import PartSpec
 from .scenario import Scenario
 from .values import UNCERTAINTIES, settable
@@ -54,7 +55,8 @@ def _part_values(part: PartSpec, cls: type[Component]) -> dict[str, Any]:
     """Values with units and choices of a part."""
     declarations, choices = settable(cls), declared(cls, Choice)
     values = {k: _value(v, declarations[k].unit) for k, v in part.values.items() if k in declarations}
-    return values | {k: v for k, v in part.values.items() if k in choices and k not in _DRIVEN}
+    chosen = {k: v for k, v in part.values.items() if k in choices and k not in _DRIVEN}
+    return values | {k: str(v) if isinstance(v, FilmMap) else v for k, v in chosen.items()}
 
 
 def _uncertainties(scenario: Scenario, part: PartSpec, cls: type[Component]) -> dict[str, Any]:

@@ -370,6 +370,28 @@ def sweep(
 
 @app.command()
 @console.guarded
+def film(
+    rig: Annotated[str, typer.Argument(help="Name of a shipped rig, path of a rig file, or TOML file of one contact.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write; a run that was interrupted goes on.")],
+    part: Annotated[str | None, typer.Option(help="Part of the rig whose contact it is.")] = None,
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(help='Range of F, u_m or T, for example "F=100..2000 N" or "T=40..100 degC". Repeatable.'),
+    ] = None,
+    grid: Annotated[str | None, typer.Option(help="Points along each axis that is varied, such as 6x6x4.")] = None,
+    nodes: Annotated[int | None, typer.Option(help="Nodes of the contact solver, along a side.")] = None,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture to write, .png or .svg.")] = None,
+    set_: Set = None,
+    json: Json = None,
+) -> None:
+    """Solve a contact over load, speed and temperature: a film map, and the law that parts take from it."""
+    from . import film
+
+    film.command(film.Request(rig, out, part, vary or [], grid, nodes, plot, set_ or [], json))
+
+
+@app.command()
+@console.guarded
 def bench(
     rig: Rig = "planetary",
     tests: Tests = None,

@@ -110,6 +110,7 @@ def choices(scenario: Scenario) -> list[dict[str, Any]]:
     for part in scenario.spec.parts:
         for key, choice in declared(scenario.spec.types[part.type], Choice).items():
             value = part.values.get(key, choice.default)
+            value = str(value) if choice.also is not None and isinstance(value, choice.also) else value
             found.append({"name": f"{part.name}.{key}", "value": value, "options": choice.options, "doc": choice.doc})
     return found
 

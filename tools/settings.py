@@ -11,7 +11,9 @@ from ..model.core.declare import Choice, Given, Parameter, declared
 from ..model.core.flat import FlatModel
 from ..model.core.flatten import flatten
 from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
+from ..model.laws.film_map import FilmMap
 from ..model.machines.spec import Spec, assemble
+from ..scenarios.film_map import map_named, names_map
 from ..scenarios.measured import read_measured
 from ..scenarios.scenario import Scenario, parse_assignments
 from .rigs import load
@@ -184,6 +186,11 @@ def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], li
         written = text.partition("=")[2].strip()
         if written.lower() in options:
             values[path] = options[written.lower()]
+        elif known[path].also is FilmMap and names_map(written):
+            try:
+                values[path] = map_named(written, Path())
+            except GearheatError as error:
+                problems += [f"{path}: {problem}" for problem in error.problems]
         else:
             close = suggestion(written.lower(), options)
             problems.append(f'{path} = "{written}" is not known.{close} Choose one of: {", ".join(options)}.')

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from math import inf
 
-from ..errors import ScenarioError
+import numpy as np
+
 from .case import Contact, Lubricant
 from .film import Film
 from .hertz import Hertz, hertz
+from .line import solve_line
 from .point import FLOOR, Height, solve_point
 from .rough import Texture, gaussian_texture
 from .transient import solve_transient
@@ -28,7 +30,7 @@ def solve(
 
     Args:
         contact: the contact
-        n: nodes along a side of the finest grid, 2^k + 1
+        n: nodes along a side of the finest grid, 2^k + 1; of a line contact, any number
         domain: first x, last x and largest y over the half width a of the Hertz contact
         roughness: height [m] of a surface that stands still, at places x and y [m]
         tolerance: scaled residual at which it stops, in units of the Hertz pressure [1]
@@ -38,5 +40,6 @@ def solve(
         ScenarioError: n or the contact make no problem
     """
     if contact.R_y == inf and contact.edge_radius == 0:
-        raise ScenarioError("contact: line contacts are not solved yet. Give R_y or edge_radius.")
+        across = None if roughness is None else lambda x: roughness(x, np.zeros_like(x))
+        return solve_line(contact, n=n, domain=domain[:2] if domain else None, roughness=across, tolerance=tolerance)
     return solve_point(contact, n=n, domain=domain, roughness=roughness, tolerance=tolerance, floor=floor)

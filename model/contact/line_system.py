@@ -11,11 +11,14 @@ from functools import cached_property
 from math import inf
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..errors import SolveError
 from .case import Array, Lubricant
 from .line_grid import LineGrid
 
+#: Numbers of nodes.
+Places = NDArray[np.intp]
 #: Film below which its logarithm is no longer taken, in units of b^2/R.
 LEAST_FILM = 1e-12
 #: Largest step of the pressure in one Newton step, in units of p_H.
@@ -49,14 +52,14 @@ class Moment:
     past: Array | None = None
 
     @cached_property
-    def upstream(self) -> tuple[Array, Array, Array]:
+    def upstream(self) -> tuple[Places, Places, Array]:
         """For the face after each node but the last: the node upstream, the one before it, and how far to go on."""
         x, n = self.grid.x, len(self.grid.x)
         i = np.arange(n - 1)
         near = i if self.couette > 0 else i + 1
         far = np.clip(near - 1 if self.couette > 0 else near + 1, 0, n - 1)
-        face = (x[:-1] + x[1:]) / 2
-        return near, far, np.where(near == far, 0.0, (face - x[near]) / np.where(near == far, 1.0, x[near] - x[far]))
+        ahead = (x[:-1] + x[1:]) / 2 - x[near]
+        return near, far, np.where(near == far, 0.0, ahead / np.where(near == far, 1.0, x[near] - x[far]))
 
     @property
     def dry(self) -> bool:
@@ -75,7 +78,7 @@ class LineState:
     p: Array
     h_0: float
     h: Array
-    touching: Array
+    touching: NDArray[np.bool_]
     residuals: tuple[float, ...]
 
 

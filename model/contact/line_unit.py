@@ -64,7 +64,7 @@ def numbers(contact: Contact) -> tuple[float, float]:
     """The load number M and the lubricant number L of Moes, with the sum of the speeds; M is infinite at rest."""
     U = 2 * contact.lubricant.eta_0 * abs(contact.u_m) / (contact.E_eff * contact.R_x)
     W = contact.F / contact.length / (contact.E_eff * contact.R_x)
-    return (W / sqrt(U) if U > 0 else inf), contact.lubricant.alpha_p * contact.E_eff * U**0.25
+    return (W / sqrt(U) if U > 0 else inf), contact.lubricant.alpha_p * contact.E_eff * sqrt(sqrt(U))
 
 
 def film_number(contact: Contact) -> float:

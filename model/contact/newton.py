@@ -154,6 +154,8 @@ def newton(problem: Problem, start: State, tolerance: float, steps: int) -> Stat
         work += products
         share = min(1.0, LARGEST / float(np.abs(p).max()))
         if os.environ.get("EHLV"):
-            print(f"  n={problem.grid.n} it={it} res={step.norm:.2e} k={products} dp={np.abs(p).max():.2e} touch={step.touching.sum()} hmin={step.h.min():.3e} pmax={state.p.max():.3f}")
+            print(
+                f"  n={problem.grid.n} it={it} res={step.norm:.2e} k={products} dp={np.abs(p).max():.2e} touch={step.touching.sum()} hmin={step.h.min():.3e} pmax={state.p.max():.3f}"
+            )
         state = State(np.maximum(state.p + share * p, 0.0), state.h_0 + share * h_0, step.touching)
     return replace(state, residuals=tuple(norms), work=work)

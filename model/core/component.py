@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from math import inf, nextafter
 from typing import Any
@@ -88,7 +88,7 @@ class Component:
             if (problem := settable[key].quantity(f"{self.name}.{key}").problem(value)) is not None:
                 found.append(f"{where}: {problem}")
         for key, c in declared(type(self), Choice).items():
-            if c.options and self.choices[key] not in c.options:
+            if not c.takes(self.choices[key]):
                 options = ", ".join(str(o) for o in c.options)
                 wrong = (
                     f"is missing ({c.doc})" if self.choices[key] is None else f"= {self.choices[key]!r} is not known"
@@ -126,6 +126,17 @@ class Component:
             keys = [path.removeprefix(f"{self.name}.") for path in relation.parameters]
             given = ", ".join(f"{key} = {text(self.values[key], self.parameters[key].unit, 6)}" for key in keys)
             yield relation.problem(value, given)
+
+    def number_at(self, expression: Any, values: Mapping[str, float]) -> float:
+        """Value of an expression of the parameters.
+
+        Args:
+            expression: the expression
+            values: parameters by key, in SI
+        """
+        symbols = ca.symvar(ca.SX(expression))
+        given = [float(values[symbol.name().removeprefix(f"{self.name}.")]) for symbol in symbols]
+        return float(ca.Function("number", symbols, [expression])(*given))
 
     def relation(
         self, name: str, value: str, number: Any, low: float = -inf, high: float = inf, *, remedy: str, unit: str = "1"

@@ -116,11 +116,12 @@ class Given(Input):
 
 @dataclass(eq=False)
 class Choice:
-    """A structural Python value, fixed before flattening."""
+    """A structural Python value, fixed before flattening: one of the options, or any value of the type `also`."""
 
     options: tuple[Any, ...]
     doc: str
     default: Any = None
+    also: type | None = None
     name: str = field(default="", init=False)
 
     def __set_name__(self, owner: type, name: str) -> None:
@@ -128,6 +129,10 @@ class Choice:
 
     def __get__(self, instance: Any, owner: type) -> Any:
         return self if instance is None else instance.choices[self.name]
+
+    def takes(self, value: Any) -> bool:
+        """Whether a value may be chosen."""
+        return not self.options or value in self.options or (self.also is not None and isinstance(value, self.also))
 
 
 class Port:

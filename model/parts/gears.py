@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping
 
 import casadi as ca
 
 from ..core.component import Component, Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.film import film_thickness, specific_film_thickness, thermal_film_reduction
+from ..laws.film_map import FilmMap
 from ..laws.gears import (
     addendum_contact_ratio,
     base_diameter,
@@ -34,7 +34,9 @@ from ..laws.mesh import (
     tooth_loss_factor,
 )
 from ..laws.smooth import Num, friction_sign, smooth_abs
+from .contacts import FilmContact, fits_map
 from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading, ToothForce
+from .tooth_contact import ToothContact
 
 #: Share of a_w that the base circles may take; at 1 the flanks would have no line of action.
 ANGLE_LEFT = 0.9999
@@ -44,21 +46,6 @@ SHIFT_LEFT = 0.05
 UNDERCUT_LEFT = 0.5
 #: How far a load may exceed that of all planets, relative: such numbers are inferred from measured losses.
 LOAD_LEFT = 0.05
-
-
-@dataclass(frozen=True)
-class Contact:
-    """One tooth contact at its pitch point: what does not depend on speed and load.
-
-    `rho` radius of curvature of the first gear [m], `R` reduced radius normal to the teeth [m], `l` length of the
-    lines of contact [m], `base` and `normal` base tangential and normal force over tangential force [1].
-    """
-
-    rho: Num
-    R: Num
-    l: Num  # noqa: E741
-    base: Num
-    normal: Num
 
 
 class ToothedPart(Component):
@@ -112,7 +99,7 @@ class ToothedPart(Component):
             remedy="Give a larger a_w, fewer teeth, or a smaller m_n or beta.",
         )
 
-    def contact(self, eps_alpha: Num, z_a: Num, z_b: Num) -> Contact:
+    def contact(self, eps_alpha: Num, z_a: Num, z_b: Num) -> ToothContact:
         """The contact of two gears.
 
         Args:
@@ -125,15 +112,16 @@ class ToothedPart(Component):
         rho_a, rho_b = (curvature_radius(base_diameter(2 * self.radius(z), alpha_t), alpha_wt) for z in (z_a, z_b))
         R, length = reduced_radius(rho_a, rho_b, beta_b), contact_length(self.b, eps_alpha, beta_b)
         base = 1 / ca.cos(alpha_t)
-        return Contact(rho_a, R, length, base, base / ca.cos(beta_b))
+        return ToothContact(rho_a, R, length, base, base / ca.cos(beta_b))
 
-    def friction(self, contact: Contact, F_t: Num, w: Num) -> tuple[Num, Num]:
+    def friction(self, contact: ToothContact, F_t: Num, w: Num, film: FilmMap | None = None) -> tuple[Num, Num]:
         """Friction coefficient and specific film thickness of a contact.
 
         Args:
             contact: the contact
             F_t: tangential force [N]
             w: speed of the first gear against the line of centres [rad/s]
+            film: map of the film; Grubin's formula without one
         """
         oil = self.lubricant
         F_n_l = load_per_contact_length(F_t * contact.normal, contact.l)
@@ -142,7 +130,10 @@ class ToothedPart(Component):
         eta = oil.nu * oil.rho
         mu = self.k_mu * friction_schlenk(load, u_sum, contact.R, eta, self.Ra, oil.X_L)
         E_eff = self.E / (2 * (1 - self.poisson**2))
-        h = film_thickness(eta, u_sum, oil.alpha_p, F_n_l, contact.R, E_eff)
+        if film is None:
+            h = film_thickness(eta, u_sum, oil.alpha_p, F_n_l, contact.R, E_eff)
+        else:
+            h, _ = film.films(eta, u_sum, F_n_l, contact.R)
         reduction = thermal_film_reduction(oil.beta_T, eta, u_sum, oil.k, 0.0)
         return mu, specific_film_thickness(reduction * h, ca.sqrt(2.0) * self.Ra)
 
@@ -154,6 +145,7 @@ class HelicalGearPair(ToothedPart):
     wheel = Flange()
     force = ToothForce()
 
+    film = Choice(("grubin",), 'film: Grubin\'s formula, or a map, "map:FILE"', default="grubin", also=FilmMap)
     x_1 = Parameter("1", "profile shift of the pinion")
     x_2 = Parameter("1", "profile shift of the wheel")
     eps_alpha = Parameter("1", "transverse contact ratio", above=0.0, derived=lambda p: sum(p.addendum_ratios()))
@@ -162,6 +154,8 @@ class HelicalGearPair(ToothedPart):
     P_loss = Output("W", "mesh loss", nominal=100.0, at_least=0.0)
     mu = Output("1", "tooth friction coefficient", nominal=0.1)
     Lambda = Output("1", "specific film thickness")
+    F_t = Output("N", "tangential force", nominal=1000.0)
+    u_m = Output("m/s", "mean speed of the flanks at the pitch point, across the teeth")
 
     def addendum_ratios(self) -> list[Num]:
         """Addendum contact ratios of pinion and wheel [1]."""
@@ -211,17 +205,32 @@ class HelicalGearPair(ToothedPart):
                 remedy=f"Give a smaller x_{key}.",
             )
 
+        if isinstance(self.film, FilmMap):
+            yield fits_map(self, self.film, self.E / (1 - self.poisson**2))
+
     def loss_factor(self) -> Num:
         """Tooth loss factor from the geometry [1]."""
         beta_b = base_helix_angle(self.alpha_n, self.beta)
         return tooth_loss_factor(self.z_1, self.z_2 / self.z_1, beta_b, *self.addendum_ratios())
+
+    def film_contact(self, values: Mapping[str, float]) -> FilmContact:
+        """The contact at the pitch point.
+
+        Args:
+            values: parameters and outputs at an operating point, by key, in SI
+        """
+        c = self.contact(self.eps_alpha, self.z_1, self.z_2)
+        R, length, normal = (self.number_at(x, values) for x in (c.R, c.l, c.normal))
+        E_eff, sigma = values["E"] / (1 - values["poisson"] ** 2), 2**0.5 * values["Ra"]
+        return FilmContact(values["F_t"] * normal, R, length, values["u_m"], values["u_m"], E_eff, sigma)
 
     def equations(self) -> Iterator[Equation]:
         """The gear that drives brings the loss; what is left arrives at the other."""
         w, ratio, r = self.pinion.w, self.z_2 / self.z_1, self.radius(self.z_1)
         sign = friction_sign(w)
         tau_mean = smooth_abs(self.pinion.tau - sign * self.tau_loss / 2, self.tau_width)
-        mu, Lambda = self.friction(self.contact(self.eps_alpha, self.z_1, self.z_2), self.force.F_t, w)
+        contact = self.contact(self.eps_alpha, self.z_1, self.z_2)
+        mu, Lambda = self.friction(contact, self.force.F_t, w, self.film if isinstance(self.film, FilmMap) else None)
         alpha_t = transverse_pressure_angle(self.alpha_n, self.beta)
         yield equation("gears roll on each other", self.wheel.w, -w / ratio)
         yield equation("torque less loss", self.wheel.tau / ratio, self.pinion.tau - sign * self.tau_loss)
@@ -230,6 +239,8 @@ class HelicalGearPair(ToothedPart):
         yield equation("tooth friction", self.mu, mu)
         yield equation("film", self.Lambda, Lambda)
         yield equation("tangential force", self.force.F_t, tau_mean / r)
+        yield equation("tangential force told", self.F_t, self.force.F_t)
+        yield equation("speed of the flanks", self.u_m, smooth_abs(w) * contact.rho)
         yield equation("radial force", self.force.F_r, self.force.F_t * ca.tan(alpha_t))
         yield equation("axial force", self.force.F_a, self.force.F_t * ca.tan(self.beta))
         yield equation("loss heats the gears", self.gears.Q_flow, -self.P_loss)

@@ -10,6 +10,7 @@ from ..core.component import Component, Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.film import mixed_friction, specific_film_thickness
 from ..laws.film_line import RIGID, line_film_central
+from ..laws.film_map import FilmMap
 from ..laws.harmonic import conforming_radius, flank_speed_radius, half_width, pad_shear, printed_film
 from ..laws.pad import combined_film, side_leakage, squeeze_factor, wedge_coefficient
 from ..laws.regimes import elasticity_parameter, inside_elastohydrodynamic, viscosity_parameter
@@ -34,7 +35,12 @@ class FlankFilm(Component):
     Moes, which knows rigid flanks ("moes"), or the formula that the source prints ("dowson_higginson_printed").
     """
 
-    film = Choice(("pad", "moes", "dowson_higginson_printed"), "which film the flanks have", default="pad")
+    film = Choice(
+        ("pad", "moes", "dowson_higginson_printed"),
+        'which film the flanks have; or a map of line contacts, "map:FILE"',
+        default="pad",
+        also=FilmMap,
+    )
     w_0 = Parameter("m", "radial deflection of the flexspline", nominal=1e-3, above=0.0)
     phi = Parameter("rad", "angle of the meshing tooth from the long axis", nominal=0.2, at_least=0.0, below=0.7853)
     r_u = Parameter(
@@ -119,6 +125,8 @@ class FlankFilm(Component):
             B: length of the pad [m]
         """
         u_sum = self.speed_factor * self.r_u * w
+        if isinstance(self.film, FilmMap):
+            return self.film.films(eta, u_sum, F / self.L, self.R)[0]
         if self.film == "moes":
             return line_film_central(eta, u_sum, alpha_p, F / self.L, self.R, self.E_eff, u_width=U_WIDTH)
         if self.film == "dowson_higginson_printed":

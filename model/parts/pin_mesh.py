@@ -20,6 +20,7 @@ from ..laws.cycloid_pin import (
 )
 from ..laws.film import mixed_friction, specific_film_thickness
 from ..laws.film_line import line_film_central, line_film_minimum
+from ..laws.film_map import FilmMap
 from ..laws.smooth import Num
 
 #: Angles of the fixed quadrature over the loaded half of the mesh cycle. Where the entrainment of a held pin changes
@@ -92,6 +93,7 @@ class PinMesh:
     mu_fluid: Num
     mu_boundary: Num
     rolling: bool
+    law: FilmMap | None = None
 
     @property
     def K(self) -> Num:
@@ -114,8 +116,11 @@ class PinMesh:
         u_sum = 2 * entrainment_speed(v_rub, v_contact, roll)
         u_disc = v_rub - v_contact
         w = F / self.b
-        h_c = line_film_central(film.eta, u_sum, film.alpha_p, w, R, self.E_eff)
-        h_min = line_film_minimum(film.eta, u_sum, film.alpha_p, w, R, self.E_eff)
+        if self.law is not None:
+            h_c, h_min = self.law.films(film.eta, u_sum, w, R)
+        else:
+            h_c = line_film_central(film.eta, u_sum, film.alpha_p, w, R, self.E_eff)
+            h_min = line_film_minimum(film.eta, u_sum, film.alpha_p, w, R, self.E_eff)
         Lambda = specific_film_thickness(h_c, self.sigma)
         mu = mixed_friction(Lambda, self.mu_fluid, self.mu_boundary)
         lever = pin_lever(K, self.Zp, self.Rp, theta)

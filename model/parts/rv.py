@@ -9,8 +9,9 @@ import casadi as ca
 from ..core.component import Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.cycloid_pin import greatest_curvature, width_coefficient
+from ..laws.film_map import FilmMap
 from ..laws.smooth import Num, friction_sign, smooth_abs
-from .contacts import ContactCase, ContactTable, PartWithContacts
+from .contacts import ContactCase, ContactTable, FilmContact, PartWithContacts, fits_map
 from .pin_mesh import Film, PinContact, PinMesh, quadrature
 from .pin_table import pin_case, pin_cycle, pin_table
 from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading
@@ -47,6 +48,7 @@ class CycloidPinStage(PartWithContacts):
     main_load = BearingLoad()
 
     pin = Choice(("held", "rolling"), "whether the pins are held, so that the disc slides, or roll in their grooves")
+    film = Choice(("moes",), 'film of disc and pin: Moes\' formula, or a map, "map:FILE"', "moes", also=FilmMap)
     disc_torque = Choice(("output", "statics"), "torque of a disc: half of that at the shaft end, or from statics")
     Zp = Parameter("1", "number of pins, one more than lobes of a disc", at_least=3.0, whole=True)
     Zc = Parameter("1", "number of lobes of a disc", at_least=2.0, whole=True)
@@ -103,11 +105,14 @@ class CycloidPinStage(PartWithContacts):
             remedy="Give thinner or fewer pins, or a larger Rp.",
         )
         remedy = "Put the cranks inside the pin circle."
+        if isinstance(self.film, FilmMap):
+            yield fits_map(self, self.film, self.E_eff)
         yield self.relation("the cranks are inside the pins", "a_0 / Rp", self.a_0 / self.Rp, high=1.0, remedy=remedy)
 
     def _mesh(self, value: Mapping[str, Num]) -> PinMesh:
         keys = ("Zp", "Rp", "e", "r_rp", "b", "E_eff", "sigma", "mu_fluid", "mu_boundary")
-        return PinMesh(**{key: value[key] for key in keys}, rolling=self.pin == "rolling")
+        law = self.film if isinstance(self.film, FilmMap) else None
+        return PinMesh(**{key: value[key] for key in keys}, rolling=self.pin == "rolling", law=law)
 
     def _sliding(self, mesh: PinMesh, contact: PinContact, film: Film) -> Num:
         """Friction coefficient where a pin slides: on the disc or in its groove [1]."""
@@ -190,6 +195,15 @@ class CycloidPinStage(PartWithContacts):
             theta: angle of the pin from the crank's line [rad]
         """
         return pin_case(*self._in_numbers(values), theta)
+
+    def film_contact(self, values: Mapping[str, float]) -> FilmContact:
+        """The contact of the pin across the crank's line.
+
+        Args:
+            values: parameters and outputs of the stage at an operating point, by key, in SI
+        """
+        c = self.contact_case(values, ca.pi / 2)
+        return FilmContact(c.F, c.R, c.length, c.u_1, c.u_2, c.E_eff, c.sigma, c.mu_boundary)
 
     def mesh_cycle(self, values: Mapping[str, float], count: int = 15) -> list[ContactCase]:
         """The way of a pin through the loaded half: load, radius and speeds at moments of equal distance in time.

@@ -1,6 +1,7 @@
 """The line contact against solved contacts, its limits, Hertz, and itself on finer grids and shorter steps."""
 
 from dataclasses import replace
+from itertools import pairwise
 from math import pi, sin, sqrt
 
 import numpy as np
@@ -126,7 +127,7 @@ def test_nothing_changes_while_nothing_changes() -> None:
 def test_steps_in_time_converge_with_second_order() -> None:
     films = [cycle(lambda t: 1 + 0.4 * sin(pi * t) ** 2, k) for k in (24, 48, 96)]
     middle = [np.array([f[j * (len(f) - 1) // 4].h_c for j in (1, 2, 3, 4)]) for f in films]
-    first, second = (np.abs(a - b).max() for a, b in zip(middle, middle[1:], strict=False))
+    first, second = (np.abs(a - b).max() for a, b in pairwise(middle))
     assert 2.5 < first / second < 6
     assert max(abs(f.load_error) for f in films[0]) < 1e-8
 

@@ -1,0 +1,214 @@
+"""Film maps as files: a table of solved contacts, read strictly and fitted by a smooth law. Same table, same law."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from itertools import product
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+from ..model.errors import DataError
+from ..model.laws.film_map import FilmMap, Fit, products
+from .csv_table import Column, Table, parse, raise_all
+
+#: How a rig file says that a film comes from a map.
+PREFIX = "map:"
+#: Highest sum of the degrees of the three polynomials.
+DEGREE = 4
+
+#: The columns of a map. Values of the contact itself are the same in all rows.
+COLUMNS = (
+    Column("F [N]", "normal force", above=0.0),
+    Column("u_m [m/s]", "mean speed of the surfaces", above=0.0),
+    Column("T [degC]", "temperature of the oil", required=False),
+    Column("eta_0 [Pa.s]", "dynamic viscosity", above=0.0),
+    Column("alpha_p [1/Pa]", "pressure-viscosity coefficient", at_least=0.0),
+    Column("h_c [m]", "central film", required=False, at_least=0.0),
+    Column("h_min [m]", "minimum film", required=False, at_least=0.0),
+    Column("mu_fluid [1]", "friction coefficient of the film", required=False, at_least=0.0),
+    Column("Lambda [1]", "central film over composite roughness", required=False),
+    Column("asperity_share [1]", "share of the load that asperities carry", required=False),
+    Column("mu [1]", "friction coefficient of film and asperities", required=False),
+    Column("p_max [Pa]", "largest pressure", required=False),
+    Column("status", "ok, or what is wrong", "text"),
+    Column("R_x [m]", "reduced radius along the direction of rolling", above=0.0),
+    Column("R_y [m]", "reduced radius across it; empty for a line", required=False),
+    Column("length [m]", "length of the contact", above=0.0),
+    Column("E_eff [Pa]", "effective modulus", above=0.0),
+    Column("slide_roll [1]", "sliding speed over mean speed", at_least=0.0),
+    Column("sigma [m]", "composite roughness; empty where it is not known", required=False),
+    Column("mu_boundary [1]", "friction coefficient of touching surfaces", at_least=0.0),
+)
+#: Columns of what a contact is, which do not change over a map.
+CONSTANT = ("R_x [m]", "R_y [m]", "length [m]", "E_eff [Pa]", "slide_roll [1]")
+#: What a row without a film says.
+FAILED = "failed"
+
+
+@dataclass(frozen=True)
+class FittedMap:
+    """A law and the points it was fitted to: how many, how many without a film, and its mean square errors."""
+
+    law: FilmMap
+    points: int
+    failed: int
+    rms: dict[str, float]
+
+
+def read_film_map(path: Path, name: str = "") -> FittedMap:
+    """The law of the map in a file.
+
+    Args:
+        path: the CSV file
+        name: as a rig file writes it; the file's own if empty
+
+    Raises:
+        DataError: all that is wrong with the file at once
+    """
+    table, problems = parse(path, COLUMNS)
+    rows = _solved(table, problems)
+    raise_all(problems, path.name)
+    values = {c: np.array(table.columns[c], dtype=float)[rows] for c in table.columns if c != "status"}
+    for column in CONSTANT:
+        held = values.get(column, np.array([np.nan]))
+        if len(distinct(held)) > 1:
+            problems.append(
+                f"{path.name}: {column} changes from {held.min():g} to {held.max():g}. A map is of one contact: "
+                "make one file for each."
+            )
+    raise_all(problems, path.name)
+    radius = float(values["R_x [m]"][0])
+    across = float(values["R_y [m]"][0]) if "R_y [m]" in values else np.nan
+    line = bool(np.isnan(across))
+    area = float(values["length [m]"][0]) * radius if line else radius**2
+    points = np.column_stack([values["F [N]"] / area, values["u_m [m/s]"] / radius, values["eta_0 [Pa.s]"]])
+    shape: Literal["line", "ellipse"] = "line" if line else "ellipse"
+    about = (name or path.name, str(path.resolve()), shape)
+    return fitted(about, points, values, len(table.lines) - len(rows))
+
+
+def distinct(values: np.ndarray) -> np.ndarray:
+    """Values that differ by more than what is lost in writing them; none for a column that is empty."""
+    known = np.unique(values[~np.isnan(values)])
+    return known[np.append(True, np.diff(known) > 1e-6 * np.abs(known[1:]))] if len(known) else known
+
+
+def _solved(table: Table, problems: list[str]) -> list[int]:
+    """Rows that hold a film; a row that says so and does not is a problem."""
+    if any(column not in table.columns for column in ("status", "h_c [m]", "h_min [m]")):
+        problems += [
+            f'{table.name} line 1: column "{c}" is missing. Make the map with `gearheat film`.'
+            for c in ("h_c [m]", "h_min [m]")
+            if c not in table.columns
+        ]
+        return []
+    rows = []
+    for i, status in enumerate(table.columns["status"]):
+        if status == FAILED:
+            continue
+        bad = [c for c in ("h_c [m]", "h_min [m]") if not _positive(table.columns[c][i])]
+        problems += [f'{table.place(i)}: {c} has no film, but status is not "{FAILED}".' for c in bad]
+        rows += [] if bad else [i]
+    return rows
+
+
+def _positive(value: Any) -> bool:
+    return value is None or bool(value > 0)  # None was told of already
+
+
+def fitted(
+    about: tuple[str, str, Literal["line", "ellipse"]],
+    points: np.ndarray,
+    values: dict[str, np.ndarray],
+    failed: int,
+) -> FittedMap:
+    """The law nearest to the films of solved contacts.
+
+    Args:
+        about: name, place and shape of the map
+        points: load, speed and viscosity of each contact as `FilmMap` has them (n, 3)
+        values: columns of the map (n)
+        failed: contacts without a film
+
+    Raises:
+        DataError: too few contacts
+    """
+    name, file, shape = about
+    ranges = tuple((float(line.min()), float(line.max())) for line in points.T) if len(points) else ()
+    levels = [len(distinct(line)) for line in points.T]
+    degrees = tuple(
+        (i, j, k) for i, j, k in product(*(range(min(n, DEGREE + 1)) for n in levels)) if i + j + k <= DEGREE
+    )
+    if len(points) < max(len(degrees), 4) or max(levels, default=0) < 2:
+        raise DataError(
+            f"{name}: {len(points)} contacts with a film are too few for a law of {len(degrees)} terms. "
+            "Solve more loads, speeds or temperatures."
+        )
+    z = np.column_stack([_place(line, *limits) for line, limits in zip(points.T, ranges, strict=True)])
+    basis = np.column_stack([np.broadcast_to(b, len(z)) for b in products(list(z.T), degrees)])
+    R = float(values["R_x [m]"][0])
+    rms: dict[str, float] = {}
+
+    def fit(key: str, wanted: np.ndarray) -> Fit:
+        coefficients = np.linalg.lstsq(basis, np.log(wanted), rcond=None)[0]
+        error = np.expm1(basis @ coefficients - np.log(wanted))
+        rms[key] = float(np.sqrt(np.mean(error**2)))
+        return Fit(tuple(float(c) for c in coefficients), float(np.abs(error).max()))
+
+    across = values.get("R_y [m]", np.array([np.nan]))[0]
+    rubbed = values.get("mu_fluid [1]", np.zeros(len(z)))
+    law = FilmMap(
+        name=name,
+        file=file,
+        shape=shape,
+        ranges=ranges,
+        degrees=degrees,
+        central=fit("h_c", values["h_c [m]"] / R),
+        minimum=fit("h_min", values["h_min [m]"] / R),
+        friction=fit("mu_fluid", rubbed) if bool((rubbed > 0).all()) else None,
+        E_eff=float(values["E_eff [Pa]"][0]),
+        R_ratio=0.0 if shape == "line" else float(across) / R,
+    )
+    return FittedMap(law, len(points), failed, rms)
+
+
+def _place(line: np.ndarray, low: float, high: float) -> np.ndarray:
+    """Places of the logarithms of values in their range, -1 to 1."""
+    if not high > low * (1 + 1e-9):
+        return np.zeros(len(line))
+    return np.asarray((2 * np.log(line) - np.log(low) - np.log(high)) / np.log(high / low))
+
+
+def map_named(text: str, folder: Path) -> FilmMap:
+    """The law that a rig file names.
+
+    Args:
+        text: "map:FILE", the file beside the rig file or with a place of its own
+        folder: of the rig file
+
+    Raises:
+        DataError: all that is wrong with the file
+    """
+    written = text.removeprefix(PREFIX).strip()
+    return read_film_map(folder / written, f"{PREFIX}{written}").law
+
+
+def names_map(value: object) -> bool:
+    """Whether a value of a rig file names a film map."""
+    return isinstance(value, str) and value.startswith(PREFIX)
+
+
+def film_maps(values: Mapping[str, Any], folder: Path) -> dict[str, FilmMap]:
+    """The laws among the values of a part that a rig file names.
+
+    Args:
+        values: of a part, as written, by key
+        folder: of the rig file
+
+    Raises:
+        DataError: all that is wrong with the files
+    """
+    return {key: map_named(raw, folder) for key, raw in values.items() if names_map(raw)}
