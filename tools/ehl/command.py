@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from ..console import answer, folder, table, write
-from . import figures, lines, pages, steady, store, studies
+from . import figures, lines, moving, pages, steady, store, studies
 from .rows import Found, Job
 
 #: File of each figure.
@@ -40,7 +40,7 @@ def jobs(quick: bool) -> list[Job]:
     Args:
         quick: a subset on coarse grids
     """
-    parts = (*steady.jobs(quick), *lines.jobs(quick), *studies.jobs(quick))
+    parts = (*steady.jobs(quick), *lines.jobs(quick), *studies.jobs(quick), *moving.jobs(quick))
     items = list(dict.fromkeys(job.item for job in parts))
     wanted = [job for job in parts if job.quick or not quick]
     return sorted(wanted, key=lambda job: items.index(job.item))

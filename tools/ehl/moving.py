@@ -13,8 +13,8 @@ from .studies import DOMAIN, L_STUDY, M_STUDY
 
 #: Depth of the dent over the central film, its width over a, and where it starts, over a.
 DEPTH, WIDTH, START = 0.3, 0.25, -2.5
-#: Part of the contact, over a, in which the disturbance is followed.
-FOLLOWED = (-0.5, 0.6)
+#: Part of the contact, over a, in which the disturbance is followed, and how far ahead of a slower dent.
+FOLLOWED, AHEAD = (-0.6, 0.6), 0.4
 #: Speed of the dented surface over the mean speed -> accepted distance of the disturbance's speed from the mean speed.
 SPEEDS = {1.0: 0.03, 0.5: 0.05}
 
@@ -23,9 +23,9 @@ def jobs(quick: bool) -> list[Job]:
     """The pieces of work.
 
     Args:
-        quick: on a coarse grid and with few steps
+        quick: with few steps
     """
-    n, steps = (65, 48) if quick else (129, 96)
+    n, steps = (65, 48) if quick else (65, 96)
     return [
         Job("Moving dent", f"dented surface at {share:g} u_m", lambda share=share: _dent(share, n, steps), share == 1.0)
         for share in SPEEDS
@@ -53,9 +53,12 @@ def _dent(share: float, n: int, steps: int) -> Found:
     change = np.array([f.h[:, middle] - smooth.h[:, middle] for f in films])
     if share != 1.0:  # the film alone, without the dent itself
         change += dents
-    places = [_place(x, line) for line in change]
     moments = times * u_m / a
-    inside = [i for i, at in enumerate(places) if at is not None and FOLLOWED[0] < at < FOLLOWED[1]]
+    dent = START + share * moments
+    places = [
+        _place(x, line, at - AHEAD if share == 1.0 else at + AHEAD) for line, at in zip(change, dent, strict=True)
+    ]
+    inside = _followed(places, dent)
     slope = float(np.polyfit(moments[inside], [places[i] for i in inside], 1)[0])
     name = f"M {M_STUDY:g} L {L_STUDY:g}, dented surface at {share:g} u_m"
     worst = max((f.load_error for f in films), key=abs)
@@ -65,16 +68,34 @@ def _dent(share: float, n: int, steps: int) -> Found:
         "x": x,
         "moments": moments,
         "places": [None if at is None else float(at) for at in places],
-        "dent": START + share * moments,
+        "dent": dent,
         "shown": [float(moments[i]) for i in shown],
         "films": [films[i].h[:, middle] / smooth.h_c for i in shown],
         "smooth": smooth.h[:, middle] / smooth.h_c,
     }
 
 
-def _place(x: np.ndarray, change: np.ndarray) -> float | None:
-    """Where a disturbance is largest within the contact, of the parabola through three nodes; None at the ends."""
-    inside = np.flatnonzero(np.abs(x) < 0.85)
+def _followed(places: list[float | None], dent: np.ndarray) -> list[int]:
+    """Moments from when the disturbance first is in the middle of the contact until it leaves it."""
+    found: list[int] = []
+    for i, at in enumerate(places):
+        if at is None or not FOLLOWED[0] < at < FOLLOWED[1] or dent[i] < -1.5:
+            if found:
+                break
+            continue
+        found.append(i)
+    return found
+
+
+def _place(x: np.ndarray, change: np.ndarray, from_: float) -> float | None:
+    """Where a disturbance is largest within the contact, of the parabola through three nodes; None at the ends.
+
+    Args:
+        x: places over a
+        change: film with the dent less the film without it
+        from_: least place that counts, over a
+    """
+    inside = np.flatnonzero((np.abs(x) < 0.85) & (x > min(from_, FOLLOWED[1])))
     i = int(inside[np.argmax(np.abs(change[inside]))])
     if i in (inside[0], inside[-1]):
         return None

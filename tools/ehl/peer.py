@@ -68,13 +68,16 @@ young = E * (1 - nu**2)
 dry = c.hertz_full([R, R], [float("inf")] * 2, [young] * 2, [nu] * 2, F)
 p_h, a = dry["max_pressure"], dry["contact_radii"][0]
 
+def density(nd_pressure, **_):
+    return 1 + 0.6e-9 * p_h * nd_pressure / (1 + 1.7e-9 * p_h * nd_pressure)
+
 def work(n, steps):
     ball = s.RoundSurface((R,) * 3, shape=(n, n), extent=(a * case["width"],) * 2, generate=True)
     flat = s.FlatSurface()
     ball.material = flat.material = c.Elastic(f"steel {n}", {"E": young, "v": nu})
     oil = c.Lubricant("oil")
     oil.add_sub_model("nd_viscosity", c.lubricant_models.nd_roelands(eta, case["p_r"], p_h, case["z"]))
-    oil.add_sub_model("nd_density", lambda nd_pressure, **_: 1 + 0.6e-9 * p_h * nd_pressure / (1 + 1.7e-9 * p_h * nd_pressure))
+    oil.add_sub_model("nd_density", density)
     model = c.ContactModel("peer", ball, flat, oil)
     reynolds = c.UnifiedReynoldsSolver(
         time_step=0, grid_spacing=ball.grid_spacing, hertzian_pressure=p_h, radius_in_rolling_direction=R,

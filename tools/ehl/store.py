@@ -8,8 +8,9 @@ from collections.abc import Sequence
 from importlib.resources import files
 from pathlib import Path
 
+from ...model.errors import SolveError
 from ..console import as_json, folder, note, write
-from .rows import Found, Job
+from .rows import Found, Job, bound
 
 
 def fingerprint(job: Job) -> str:
@@ -38,10 +39,19 @@ def run(jobs: Sequence[Job], out: Path) -> list[tuple[Job, Found]]:
         kept = _kept(path, made_by)
         if kept is None:
             note(f"[{i + 1}/{len(jobs)}] {job.item}: {job.name}")
-            kept = json.loads(as_json(job.work()))
+            kept = json.loads(as_json(_result(job)))
             write(path, as_json({"made_by": made_by, "found": kept}))
         found.append((job, kept))
     return found
+
+
+def _result(job: Job) -> Found:
+    """What a piece of work gives; a contact without a solution is a row of its own."""
+    try:
+        return job.work()
+    except SolveError as error:
+        note(f"error: {error}")
+        return {"rows": [bound(job.name, "solutions found", 0.0, least=1.0)]}
 
 
 def _kept(path: Path, made_by: str) -> Found | None:
