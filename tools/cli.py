@@ -318,6 +318,9 @@ def verify_contact(
         typer.Option("-o", "--out", help="Folder for table and figures; an interrupted run goes on from there."),
     ],
     quick: Annotated[bool, typer.Option("--quick", help="A subset on coarse grids.")] = False,
+    cycle: Annotated[
+        str | None, typer.Option(metavar="RIG", help="Solve the mesh cycle of this rig too, such as rv_stage.")
+    ] = None,
     json: Json = None,
 ) -> None:
     """The contact solver beside published films, Hertz and measurements: table, convergence, figures."""
@@ -325,7 +328,7 @@ def verify_contact(
         os.environ.setdefault(name, "1")
     from .ehl import command
 
-    command.command(out, quick, json)
+    command.command(out, quick, cycle, json)
 
 
 @app.command()

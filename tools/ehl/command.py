@@ -7,22 +7,30 @@ from pathlib import Path
 from typing import Any
 
 from ..console import answer, folder, table, write
-from . import figures, lines, moving, pages, steady, store, studies
+from . import cycle, figures, lines, moving, pages, steady, store, studies
 from .rows import Found, Job
 
 #: File of each figure.
-FILES = {"Films": "films.svg", "Convergence": "convergence.svg", "Film and pressure": "shape.svg", "Cost": "cost.svg"}
+FILES = {
+    "Films": "films.svg",
+    "Convergence": "convergence.svg",
+    "Film and pressure": "shape.svg",
+    "Moving dent": "dent.svg",
+    "Cost": "cost.svg",
+    "Mesh cycle": "cycle.svg",
+}
 
 
-def command(out: Path, quick: bool, json: str | None) -> None:
+def command(out: Path, quick: bool, rig: str | None, json: str | None) -> None:
     """Verify the contact solver and write the pages.
 
     Args:
         out: folder for pages, figures and kept results
         quick: a subset on coarse grids
+        rig: whose mesh cycle is solved as well
         json: where the rows go as JSON
     """
-    found = store.run(jobs(quick), folder(out))
+    found = store.run([*jobs(quick), *(cycle.jobs(rig) if rig else [])], folder(out))
     rows = pages.rows(found)
     drawn = draw(found, rows)
     for title, text in drawn.items():
@@ -61,4 +69,9 @@ def draw(found: Sequence[tuple[Job, Found]], rows: Sequence[Mapping[str, Any]]) 
         drawn["Film and pressure"] = figures.shape(next(iter(by_item["Shape"].values())))
     if "Cost" in by_item:
         drawn["Cost"] = figures.cost(next(iter(by_item["Cost"].values())))
+    if "Moving dent" in by_item:
+        drawn["Moving dent"] = figures.dent(by_item["Moving dent"])
+    if "Mesh cycle" in by_item:
+        bands = {"ratio": cycle.LAMBDA_BAND, "share": cycle.SHARE_BAND}
+        drawn["Mesh cycle"] = figures.cycle(next(iter(by_item["Mesh cycle"].values())), bands)
     return drawn

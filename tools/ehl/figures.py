@@ -99,3 +99,52 @@ def shape(study: Found) -> str:
     panels[1].set(xlim=(-2, 1.5), ylim=(0, 3), xlabel="x/a", title="in the middle, y = 0")
     _legend(panels[1])
     return svg(figure)
+
+
+def dent(found: Mapping[str, Found]) -> str:
+    """Place of what a dent brings into the film over time, and films along the middle, one line of panels a case."""
+    figure, panels = empty(10.4, 3.6 * len(found), len(found), 2)
+    for i, (name, study) in enumerate(found.items()):
+        place, film = panels[2 * i], panels[2 * i + 1]
+        moments = np.array(study["moments"])
+        seen = np.array([np.nan if at is None else at for at in study["places"]], dtype=float)
+        place.plot(moments, study["dent"], color="#888888", label="the dent itself")
+        place.plot(moments, seen, "o", color=COLOURS[0], markersize=3, label="largest change of the film")
+        place.set(title=name, xlabel="time, u_m t/a", ylabel="x/a", ylim=(-1.2, 1.2))
+        film.plot(study["x"], study["smooth"], color="#888888", linestyle="--", label="smooth")
+        shades = mpl.colormaps["viridis"](np.linspace(0, 0.9, len(study["films"])))
+        for shade, moment, line in zip(shades, study["shown"], study["films"], strict=True):
+            film.plot(study["x"], line, color=shade, linewidth=1, label=f"u_m t/a = {moment:.2f}")
+        film.set(xlim=(-1.5, 1.2), ylim=(0, 2), xlabel="x/a", ylabel="film over h_c, y = 0")
+        _legend(place)
+        _legend(film)
+    return svg(figure)
+
+
+def cycle(study: Found, bands: Mapping[str, tuple[float, float]]) -> str:
+    """A mesh cycle: load, film, specific film thickness and asperity share over the angle, and pressures.
+
+    Args:
+        study: what was computed
+        bands: the article's bands of "ratio" and "share"
+    """
+    figure, panels = empty(12.0, 7.2, 2, 3)
+    angles = study["angles"]
+    labels = {"load": "load [kN/m]", "ratio": "h_c/sigma", "share": "share of the load on asperities"}
+    for panel, key in zip((panels[0], panels[2], panels[3]), labels, strict=True):
+        panel.plot(angles, study[key], "-o", color=COLOURS[0], markersize=3, label="this solver")
+        if key in bands:
+            panel.axhspan(*bands[key], color="#f3d9c9", label="the article")
+        panel.set(xlabel="angle of the pin [deg]", ylabel=labels[key])
+        _legend(panel)
+    for i, (key, label) in enumerate((("transient", "transient"), ("steady", "steady"), ("regression", "formula"))):
+        panels[1].plot(angles, study[key], "-", color=COLOURS[i], label=label)
+    panels[1].set(xlabel="angle of the pin [deg]", ylabel="central film [nm]")
+    _legend(panels[1])
+    for i, profile in enumerate(study["profiles"]):
+        panels[4].plot(profile["x"], profile["p"], color=COLOURS[i], label=f"{profile['angle']:.0f} deg")
+    reach = 1.5 * max(abs(v) for p in study["profiles"] for v, q in zip(p["x"], p["p"], strict=True) if q > 0.2)
+    panels[4].set(xlim=(-reach, reach), xlabel="x [um]", ylabel="pressure [GPa]")
+    _legend(panels[4])
+    panels[5].set_visible(False)
+    return svg(figure)
