@@ -61,10 +61,17 @@ def summary(table: Sequence[Row]) -> list[list[str]]:
         mine = [row for row in table if (row["item"], row["quantity"]) == (item, quantity)]
         within = sum(row["verdict"] == "within" for row in mine)
         outside = sum(row["verdict"] == "outside" for row in mine)
-        worst = max(mine, key=lambda row: abs(row["deviation"]))
+        worst = max(mine, key=_badness)
         counts = [str(len(mine)), str(within or ""), str(outside or "")]
         lines.append([f"{item}: {quantity}", *counts, _deviation(worst), _tolerance(worst)])
     return lines
+
+
+def _badness(row: Row) -> float:
+    """How far a row is on the wrong side of a bound, or from its reference on either."""
+    signs = {">=": -1.0, "<=": 1.0}
+    bad = float(row["deviation"])
+    return signs[row["tolerance"]] * bad if row["tolerance"] in signs else abs(bad)
 
 
 def _deviation(row: Row) -> str:

@@ -149,8 +149,15 @@ def _rolling(n: int) -> list[Job]:
         contact, U = cases.circular(M, L)
         film = solve(contact, n=n, domain=MOMENT_DOMAIN)
         ours = film.rolling_moment / (contact.E_eff * contact.R_x**3)
-        formula = 2 * hertz(contact).a / contact.R_x * 1.8 * U**0.75
-        return {"rows": [row(f"M {M:g} L {L:g}", "M_r/(E_eff R_x^3)", formula, ours, data.rel, film.load_error)]}
+        wide = 2 * hertz(contact).a / contact.R_x
+        name, what = f"M {M:g} L {L:g}", "M_r/(E_eff R_x^3), U with R ="
+        readings = {"R_x R_y/(R_x + R_y)": (2 * U, data.rel), "R_x": (U, 0.0)}
+        return {
+            "rows": [
+                row(name, f"{what} {radius}", wide * 1.8 * speed**0.75, ours, rel, film.load_error)
+                for radius, (speed, rel) in readings.items()
+            ]
+        }
 
     return [
         Job("Rolling moment", f"M {r['M']} L {r['L']}", partial(work, r["M"], r["L"]), quick=False) for r in data.rows
