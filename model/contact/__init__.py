@@ -4,17 +4,13 @@ from __future__ import annotations
 
 from math import inf
 
-import numpy as np
-
 from .case import Contact, Lubricant
 from .film import Film
 from .hertz import Hertz, hertz
 from .line import solve_line
-from .point import FLOOR, Height, solve_point
-from .rough import Texture, gaussian_texture
-from .transient import solve_transient
+from .point import solve_point
 
-__all__ = ["Contact", "Film", "Hertz", "Lubricant", "Texture", "gaussian_texture", "hertz", "solve", "solve_transient"]
+__all__ = ["Contact", "Film", "Hertz", "Lubricant", "hertz", "solve"]
 
 
 def solve(
@@ -22,9 +18,7 @@ def solve(
     *,
     n: int = 257,
     domain: tuple[float, float, float] | None = None,
-    roughness: Height | None = None,
     tolerance: float = 1e-6,
-    floor: float = FLOOR,
 ) -> Film:
     """The steady film of a contact.
 
@@ -32,14 +26,11 @@ def solve(
         contact: the contact
         n: nodes along a side of the finest grid, 2^k + 1; of a line contact, any number
         domain: first x, last x and largest y over the half width a of the Hertz contact
-        roughness: height [m] of a surface that stands still, at places x and y [m]
         tolerance: scaled residual at which it stops, in units of the Hertz pressure [1]
-        floor: film at which the surfaces touch [m]
 
     Raises:
         ScenarioError: n or the contact make no problem
     """
     if contact.R_y == inf and contact.edge_radius == 0:
-        across = None if roughness is None else lambda x: roughness(x, np.zeros_like(x))
-        return solve_line(contact, n=n, domain=domain[:2] if domain else None, roughness=across, tolerance=tolerance)
-    return solve_point(contact, n=n, domain=domain, roughness=roughness, tolerance=tolerance, floor=floor)
+        return solve_line(contact, n=n, domain=domain[:2] if domain else None, tolerance=tolerance)
+    return solve_point(contact, n=n, domain=domain, tolerance=tolerance)

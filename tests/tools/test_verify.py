@@ -33,7 +33,7 @@ def test_every_number_of_every_rig_and_the_counts_of_the_readme(gearheat, tmp_pa
     assert not [row["name"] for row in every if row["verdict"] == CONTRADICTED and not row["why"]]
     assert answer.code == 0
     assert parts.keys() >= set(list_rigs())
-    assert page.read_text(encoding="utf-8").count("<h2>") == len(list_rigs()) + 1
+    assert page.read_text(encoding="utf-8").count("<h2>") == len(list_rigs()) + 2  # laws and sources
     section = README.partition("### What is verified")[2].partition("\n#")[0]
     printed = {name: [int(n) for n in cells.split("|")[:6]] for name, cells in re.findall(LINE, section, re.MULTILINE)}
     counted = {name: [*part["counts"].values(), *part["kinds"].values()] for name, part in parts.items()}
@@ -216,7 +216,7 @@ class TestCommand:
 
     def test_keys_of_the_json(self, gearheat, reducer) -> None:
         found = gearheat("verify", reducer(GOOD), "--json", "-").json
-        assert list(found) == ["schema", "counts", "kinds", "machines", "laws"]
+        assert list(found) == ["schema", "counts", "kinds", "machines", "laws", "sources"]
         assert found["schema"] == "gearheat.verify/1"
         (machine,) = found["machines"]
         assert list(machine) == ["name", "doc", "reproduces", "counts", "kinds", "rows", "errata"]
@@ -265,6 +265,17 @@ class TestCommand:
         assert 'unknown name "rom.T". Did you mean "room.T"' in answer.err
         assert "inputt.w" in answer.err and '"foo(2)"' in answer.err
         assert "Traceback" not in answer.err
+
+    def test_what_has_no_solution_is_not_reproduced_nor_what_follows_from_it(self, gearheat, reducer) -> None:
+        """No area cools the oil below the room; what is computed from that row has no value either."""
+        rows = GOOD.replace("oil.T=50 degC", "oil.T=5 degC").replace(
+            '{ i = "ratio" }', '{ i = "area that holds 50 degC, over 0.1 m2" }'
+        )
+        answer = gearheat("verify", reducer(rows), "--json", "-")
+        assert answer.code == 1
+        _, over, area = answer.json["machines"][0]["rows"]
+        assert over["verdict"] == area["verdict"] == NOT_REPRODUCED
+        assert "out of reach" in area["why"] and "no solution of: area" in over["why"]
 
     def test_contacts_over_a_mesh_cycle(self, gearheat, tmp_path: Path) -> None:
         """A total, a column at one angle, and a statement over all contacts."""
