@@ -36,8 +36,8 @@ NEEDED = {"R_x": "m", "length": "m", "E_eff": "Pa"}
 MAY_BE = {"F": "N", "u_m": "m/s", "R_y": "m", "edge_radius": "m", "slide_roll": "1", "sigma": "m", "mu_boundary": "1"}
 OIL = {"eta_0": "Pa.s", "alpha_p": "1/Pa"}
 OIL_MAY_BE = {"T": "K", "p_r": "Pa", "tau_eyring": "Pa"}
-#: Range of a rig's map about the operating point, over the value there, and its temperatures [K].
-ABOUT, WARM = (0.25, 2.0), (313.15, 373.15)
+#: Ranges of the map of a part over the value at the operating point, and its temperatures [K].
+ABOUT, WARM = {"F": (0.05, 2.0), "u_m": (0.25, 2.0)}, (313.15, 373.15)
 
 #: Dynamic viscosity [Pa.s] and pressure-viscosity coefficient [1/Pa] at a temperature [K].
 Oil = Callable[[float], tuple[float, float]]
@@ -246,7 +246,7 @@ def from_rig(scenario: Scenario, part: str | None, vary: Sequence[str]) -> MapCa
             f"{scenario.name}: {chosen.name} carries {c.F:g} N at {u_m:g} m/s at the operating point: a contact "
             "without load or speed has no film. Give the rig an operating point with both."
         )
-    ranges = {k: Axis(k, "uniform", ABOUT[0] * v, ABOUT[1] * v) for k, v in (("F", c.F), ("u_m", u_m))}
+    ranges = {k: Axis(k, "uniform", ABOUT[k][0] * v, ABOUT[k][1] * v) for k, v in (("F", c.F), ("u_m", u_m))}
     ranges |= {"T": Axis("T", "uniform", *WARM)} | varied(vary)
     values: dict[str, Any] = {"R_x": c.R_x, "length": c.length, "E_eff": c.E_eff, "sigma": c.sigma, "R_y": c.R_y}
     values["slide_roll"] = abs(c.u_1 - c.u_2) / u_m

@@ -17,7 +17,7 @@ from ..sources import law
 from .smooth import Num, smooth_abs, smooth_max, smooth_min
 
 #: How far beyond the map its law is used, and over what it is blurred there; in halves of the range.
-BEYOND, BLUR = 0.02, 0.01
+BEYOND, BLUR = 0.01, 0.004
 #: Roundings at standstill [m/s] and without load [N/m or N].
 U_WIDTH, F_WIDTH = 1e-6, 1e-3
 
