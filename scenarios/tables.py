@@ -46,7 +46,7 @@ class ErratumTable(Strict):
 class RigTable(Strict):
     """A rig file. Values are checked later, against the parts."""
 
-    kind: str = Field(description='"planetary", or "network" for parts and connections of its own')
+    kind: str = Field(description='a machine such as "planetary", or "network" for parts and connections of its own')
     doc: str = Field(description="what the rig is, in a sentence")
     reproduces: str = Field("", description="what published results the rig reproduces, in a line, or that it has none")
     drive: dict[str, list[Literal["w", "tau"]]] = Field(

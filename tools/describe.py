@@ -197,6 +197,9 @@ def _print(found: dict[str, Any]) -> None:
 
 def _print_errata(found: dict[str, Any]) -> None:
     keys = ("place", "says", "should_be", "evidence")
+    if not found["errata"]:
+        print(f"{found['rig']}: no corrections to its sources are known.")
+        return
     table(
         f"{found['rig']}: corrections to the sources",
         ("place", "says", "should be", "evidence"),

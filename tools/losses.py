@@ -19,7 +19,7 @@ from ..scenarios.measured import Campaign, Protocol, Reading, read_measured
 from ..scenarios.scenario import Scenario
 from .console import answer, table
 from .contacts import contacts_at, part_with_contacts, print_contacts
-from .points import conditions
+from .points import conditions, outside_of, tell_outside
 from .rigs import load
 from .settings import DIAGNOSED, SET, adjusted, choice_paths, driven_by, flat_of
 from .unchecked import print_unchecked, unchecked
@@ -49,7 +49,12 @@ def command(
     campaign = scenario.campaign
     if data is not None:
         campaign = read_measured(data, campaign.protocol if campaign else None)
-    rows = at_readings(scenario, campaign, temperature) if campaign else [at_operating_point(scenario)]
+    at_point: dict[str, Any] = {}
+    if campaign:
+        rows = at_readings(scenario, campaign, temperature)
+    else:
+        row, outside = at_operating_point(scenario)
+        rows, at_point = [row], {"outside": outside}
     found: dict[str, Any] = {
         "schema": "gearheat.losses/1",
         "rig": scenario.name,
@@ -58,6 +63,7 @@ def command(
             p: scenario.spec.part(p.rpartition(".")[0]).values.get(p.rpartition(".")[2]) for p in _flow_paths(scenario)
         },
         "rows": rows,
+        **at_point,
         "unchecked": unchecked(scenario, flat_of(scenario), oils_of(campaign)),
     }
     columns = list(rows[0])
@@ -69,6 +75,7 @@ def command(
         table(f"{scenario.name}: losses", columns, [[r[c] for c in columns] for r in rows])
         if told is not None:
             print_contacts(scenario.name, told)
+        tell_outside(found.get("outside", ()))
         print_unchecked(found["unchecked"])
 
     answer(found, json, human)
@@ -150,11 +157,12 @@ def held(
     return {q.name: line for quantities, lines in groups for q, line in zip(quantities, lines, strict=True)}
 
 
-def at_operating_point(scenario: Scenario) -> dict[str, Any]:
-    """The losses at the rig's operating point and the steady temperatures there."""
+def at_operating_point(scenario: Scenario) -> tuple[dict[str, Any], list[dict[str, Any]]]:
+    """The losses at the rig's operating point and the steady temperatures there, and the laws outside their range."""
     flat = flat_of(scenario)
     result = steady(flat, conditions(scenario, flat))
-    return {c: float(sum(result[path][0] for path in paths)) for c, paths in scenario.losses.items()}
+    row = {c: float(sum(result[path][0] for path in paths)) for c, paths in scenario.losses.items()}
+    return row, outside_of(result)
 
 
 def contacts_at_operating_point(scenario: Scenario) -> ContactTable:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache
@@ -18,6 +19,8 @@ CONTRADICTED = "published contradicts itself"
 NOT_REPRODUCED = "not reproduced"
 #: What fails comes first wherever verdicts are counted.
 VERDICTS = (NOT_REPRODUCED, CONTRADICTED, REPRODUCED)
+#: Least and most significant digits of what the model gives.
+DIGITS = (6, 12)
 #: How a row comes by its number, in words.
 HOW = {
     "steady": "steady state",
@@ -74,7 +77,15 @@ class Verdict:
             return "no solution"
         if isinstance(self.model, bool):
             return "holds" if self.model else "does not hold"
-        return _with_unit(f"{self.model:.6g}", self.unit)
+        return _with_unit(f"{self.model:.{self._digits}g}", self.unit)
+
+    @property
+    def _digits(self) -> int:
+        """Significant digits that tell the model from the expected number to a tenth of what is allowed."""
+        if not self.tolerance or not self.model:
+            return DIGITS[0]
+        needed = math.ceil(math.log10(abs(self.model) / self.tolerance)) + 1
+        return min(max(needed, DIGITS[0]), DIGITS[1])
 
     @property
     def allowed(self) -> str:

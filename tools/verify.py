@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import re
 import sys
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 from ..model.errors import GearheatError, ScenarioError
-from ..model.sources import LawInfo
+from ..model.sources import LawInfo, sources
 from ..model.units import si_of
 from ..scenarios.golden import golden_rows
 from ..scenarios.load import list_rigs
@@ -76,7 +77,14 @@ def as_dict(machines: Sequence[Machine], laws: Sequence[Verdict]) -> dict[str, A
             "kinds": kinds(laws),
             "rows": [{"law": v.row.law, **v.as_dict()} for v in laws],
         },
+        "sources": _cited(verdict.row.where for verdict in every),
     }
+
+
+def _cited(places: Iterable[str]) -> dict[str, str]:
+    """The sources whose keys stand in places such as "Dias2014, table 5.7": key -> author, year and title."""
+    words = {word for place in places for word in re.findall(r"\w+", place)}
+    return {key: f"{s.author} {s.year}, {s.title}" for key, s in sources().items() if key in words}
 
 
 def _machine(values: RigValues, rows: Sequence[Row], advance: Any) -> Machine:

@@ -39,20 +39,23 @@ def show(machines: Sequence[Machine], laws: Sequence[Verdict], found: Mapping[st
 
 def _lines(verdicts: Sequence[Verdict]) -> list[list[Any]]:
     """A line for each row, what fails first; rows of a group that all hold are one line."""
-    lines = []
+    lines: list[list[Any]] = []
+    before = ""
     groups: dict[str, list[Verdict]] = {}
     for verdict in sorted(verdicts, key=lambda v: VERDICTS.index(v.verdict) != 0):
         group = verdict.row.group
         if group and verdict.verdict != NOT_REPRODUCED:
             groups.setdefault(group, []).append(verdict)
             continue
-        lines.append(_line(verdict))
+        again = verdict.why != "" and verdict.why == before
+        lines.append(_line(verdict, "as above" if again else verdict.why))
+        before = verdict.why
     return lines + [_group_line(name, members) for name, members in groups.items()]
 
 
-def _line(v: Verdict) -> list[Any]:
+def _line(v: Verdict, why: str) -> list[Any]:
     row = v.row
-    told = f"{v.verdict}: {v.why}" if v.why else v.verdict
+    told = f"{v.verdict}: {why}" if why else v.verdict
     other = as_printed(row.corrected if row.recomputed is None else row.recomputed, row.unit) or ""
     name = f"{row.law}: {row.name}" if row.law else row.name
     numbers = [as_printed(row.published, row.unit) or "", other, v.shown, v.allowed]

@@ -7,6 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from .case import Array, Contact
+from .grid import Grid
+from .newton import State
+from .scale import Scaled
+
+#: Share of the smallest film by which a film may exceed it and still count as closed [1].
+TOUCHING = 1e-3
 
 
 @dataclass(frozen=True)
@@ -50,7 +56,44 @@ class Film:
     work: int
 
 
-def friction(contact: Contact, p: Array, h: Array, p_asperity: Array, cell: float | Array) -> float:
+def film_of(case: Scaled, grid: Grid, state: State, gap: Array, floor: float) -> Film:
+    """What is told of a solution.
+
+    Args:
+        case: the contact in its units
+        grid: its grid
+        state: pressure and approach on it
+        gap: gap of the undeformed surfaces (n, n) [1]
+        floor: film at which the surfaces touch [m]
+    """
+    contact, unit = case.contact, case.unit
+    x, y = (np.asarray(c.ravel() * unit.a) for c in grid.nodes)
+    p = np.ascontiguousarray(state.p.T * unit.p)
+    film = state.h_0 + gap + grid.deformation(state.p)
+    h = np.maximum(np.ascontiguousarray(film.T * unit.h), floor)
+    p_asperity = np.where(h < floor * (1 + TOUCHING), p, 0.0)
+    cell = float((x[1] - x[0]) * (y[1] - y[0]))
+    return Film(
+        contact=contact,
+        x=x,
+        y=y,
+        p=p,
+        h=h,
+        p_asperity=p_asperity,
+        h_c=float(np.interp(0.0, x, h[:, h.shape[1] // 2])),
+        h_min=max(smallest(h), floor),
+        approach=-state.h_0 * unit.h,
+        asperity_share=float(p_asperity.sum() * cell / contact.F),
+        mu=friction(contact, p, h, p_asperity, cell),
+        rolling_moment=float(-(x[:, None] * p).sum() * cell),
+        load_error=float(p.sum() * cell / contact.F - 1),
+        residual=state.residuals[-1],
+        residuals=state.residuals,
+        work=state.work,
+    )
+
+
+def friction(contact: Contact, p: Array, h: Array, p_asperity: Array, cell: float) -> float:
     """Friction coefficient of sliding: Eyring's shear of the film, and boundary friction where surfaces touch [1].
 
     Args:
@@ -58,16 +101,15 @@ def friction(contact: Contact, p: Array, h: Array, p_asperity: Array, cell: floa
         p: pressure [Pa]
         h: film [m]
         p_asperity: pressure on touching surfaces [Pa]
-        cell: area of a node, or of each node [m2]
+        cell: area of a node [m2]
     """
     v, oil = abs(contact.u_1 - contact.u_2), contact.lubricant
     if v == 0:
         return 0.0
     p_fluid = p - p_asperity
-    film = np.where(p_asperity > 0, np.inf, h)  # no shear where no film is left
-    shear = oil.tau_eyring * np.arcsinh(oil.viscosity(p_fluid) * v / (film * oil.tau_eyring))
+    shear = oil.tau_eyring * np.arcsinh(oil.viscosity(p_fluid) * v / (h * oil.tau_eyring))
     tau = np.where(p_fluid > 0, shear, 0.0) + contact.mu_boundary * p_asperity
-    return float((tau * cell).sum() / contact.F)
+    return float(tau.sum() * cell / contact.F)
 
 
 def smallest(h: Array) -> float:
@@ -83,4 +125,4 @@ def smallest(h: Array) -> float:
         slope, bend = (line[i + 1] - line[i - 1]) / 2, line[i + 1] - 2 * line[i] + line[i - 1]
         if bend > 0:
             found -= float(slope**2 / bend / 2)
-    return max(found, 0.0)
+    return found

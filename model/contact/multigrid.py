@@ -49,18 +49,18 @@ class Linear:
         return float(p.sum()) * self.grid.hx * self.grid.hy
 
 
-def linearise(grid: Grid, reynolds: Reynolds, p: Array, h: Array, active: np.ndarray, touching: np.ndarray) -> Linear:
+def linearise(
+    grid: Grid, layers: tuple[Array, Array], active: np.ndarray, touching: np.ndarray
+) -> Linear:
     """The equations around a state.
 
     Args:
         grid: the grid
-        reynolds: Reynolds' equation on it
-        p: pressure of the fluid (n, n)
-        h: film (n, n)
+        layers: change of Reynolds' equation with pressure and with film, two stencils; they are changed
         active: nodes whose pressure changes (n, n)
         touching: nodes where the surfaces touch: the film does not change there (n, n)
     """
-    by_p, by_h = reynolds.linear(p, h)
+    by_p, by_h = layers
     fluid = active & ~touching
     by_p *= fluid
     by_h *= fluid
@@ -84,17 +84,14 @@ class Cycle:
         if grid.n <= COARSEST:
             self._direct = _factored(linear)
             return
-        self._relax = LineRelaxation(linear.by_p, linear.by_h, grid.deformation.near, linear.active, (grid.hx, grid.hy))
-        past = reynolds.past
-        coarse = replace(
-            reynolds,
-            hx=2 * reynolds.hx,
-            hy=2 * reynolds.hy,
-            past=past if isinstance(past, float) else np.ascontiguousarray(past[::2, ::2]),
+        self._relax = LineRelaxation(
+            linear.by_p, linear.by_h, grid.deformation.near, linear.active, (grid.hx, grid.hy)
         )
+        coarse = replace(reynolds, hx=2 * reynolds.hx, hy=2 * reynolds.hy)
         p_c, h_c = np.ascontiguousarray(p[::2, ::2]), np.ascontiguousarray(h[::2, ::2])
         active, touching = linear.active[::2, ::2].copy(), linear.touching[::2, ::2].copy()
-        self._coarse = Cycle(linearise(grid.coarser(), coarse, p_c, h_c, active, touching), coarse, p_c, h_c)
+        below = linearise(grid.coarser(), coarse.linear(p_c, h_c), active, touching)
+        self._coarse = Cycle(below, coarse, p_c, h_c)
 
     def __call__(self, r: Array, load: float) -> tuple[Array, float]:
         """Changes of pressure (n, n) and approach that roughly remove a residual.

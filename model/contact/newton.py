@@ -33,6 +33,10 @@ PRODUCTS = 40
 #: Largest change of pressure in a Newton step [1].
 LARGEST = 0.5
 
+#: Mass that arrives, in units of pressure, above which touching surfaces come apart [1].
+RELEASED = 1e-9
+TINY = 1e-300
+
 
 @dataclass(frozen=True)
 class State:
@@ -92,11 +96,13 @@ class Step:
         film = problem.film(state)
         h = np.maximum(film, problem.floor)
         r = problem.reynolds.residual(p, h)
-        self.touching = inner & ((film < problem.floor) | (state.touching & (p > 0) & (r <= 0)))
+        layers = problem.reynolds.linear(p, h)
+        scale = 1 / (np.abs(layers[0][stencil.CENTRE]) + np.abs(layers[1][stencil.CENTRE]) * self._k_0 + TINY)
+        arrives = r * scale > RELEASED
+        self.touching = inner & ((film < problem.floor) | (state.touching & (p > 0) & ~arrives))
         active = self.touching | (inner & ((p > 0) | (r > 0)))
-        self.linear = linearise(grid, problem.reynolds, p, h, active, self.touching)
-        diagonal = np.abs(self.linear.by_p[stencil.CENTRE]) + np.abs(self.linear.by_h[stencil.CENTRE]) * self._k_0
-        self._scale = 1 / np.where(active, diagonal, 1.0)
+        self.linear = linearise(grid, layers, active, self.touching)
+        self._scale = np.where(active, np.where(self.touching, 1 / self._k_0, scale), 1.0)
         self._scale_load = grid.n / problem.load
         right = np.where(self.touching, film - problem.floor, np.where(active, -r, 0.0))
         self.right = self._joined(right, problem.load - self.linear.load(p))

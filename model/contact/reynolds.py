@@ -2,9 +2,10 @@
 
 In units of the Hertz contact (x, y over a; p over p_h; h over a^2/R_x; t over a/u_m) it reads
 
-    div(eps grad p) - s d(rho h)/dx - d(rho h)/dt = 0,    eps = kappa rho h^3 / (eta/eta_0),
+    div(eps grad p) - s dm/dx - dm/dt = 0,    eps = kappa rho h^3 / (eta/eta_0),    m = rho (h - h_b) + h_b,
 
-with kappa = p_h a^3 / (12 eta_0 u_m R_x^2) and s = 1 (0 at rest). The wedge is differenced upstream over three nodes,
+with kappa = p_h a^3 / (12 eta_0 u_m R_x^2) and s = 1 (0 at rest). The last
+molecules h_b of a film are bound to the surfaces and as stiff as they are; without them m = rho h. The wedge is differenced upstream over three nodes,
 eps is the mean of two neighbours (Venner and Lubrecht, Multilevel Methods in Lubrication, 2000, chapters 5 and 6).
 """
 
@@ -31,6 +32,7 @@ class Reynolds:
         hy: distance of nodes along y [1]
         squeeze: factor of the present d(rho h)/dt, 0 in the steady state [1]
         past: what earlier moments add to d(rho h)/dt, (ny, nx) or 0
+        bound: film of molecules bound to the surfaces, which is moved but not compressed [1]
     """
 
     lubricant: Lubricant
@@ -41,6 +43,16 @@ class Reynolds:
     hy: float
     squeeze: float = 0.0
     past: Array | float = 0.0
+    bound: float = 0.0
+
+    def mass(self, p: Array, h: Array) -> Array:
+        """Mass of the film over an area and the density at ambient pressure [1].
+
+        Args:
+            p: pressure [1]
+            h: film [1]
+        """
+        return np.asarray(self.lubricant.density(p * self.p_unit) * (h - self.bound) + self.bound)
 
     def mobility(self, p: Array, h: Array) -> Array:
         """The factor eps of the pressure flow [1].
@@ -60,7 +72,7 @@ class Reynolds:
             h: film [1]
         """
         eps = self.mobility(p, h)
-        mass = self.lubricant.density(p * self.p_unit) * h
+        mass = self.mass(p, h)
         flow_x = (eps[1:-1, 1:] + eps[1:-1, :-1]) * np.diff(p[1:-1], axis=1) / (2 * self.hx**2)
         flow_y = (eps[1:, 1:-1] + eps[:-1, 1:-1]) * np.diff(p[:, 1:-1], axis=0) / (2 * self.hy**2)
         out = np.zeros_like(p)
@@ -87,7 +99,7 @@ class Reynolds:
         self._pressure_flow(by_p, p, eps)
         self._mobility_change(by_p, p, eps_p)
         self._mobility_change(by_h, p, 3 * eps / h)
-        self._mass_change(by_p, rho_p * h)
+        self._mass_change(by_p, rho_p * (h - self.bound))
         self._mass_change(by_h, rho)
         for layer in (by_p, by_h):
             layer[:, [0, -1], :] = 0.0

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, inf, pi
+from math import exp, inf, pi, sqrt
 
 import numpy as np
 
 from ..errors import ScenarioError
 from .case import Array, Contact
 from .grid import COARSEST, Grid
-from .hertz import Hertz, hertz
+from .hertz import hertz
 from .reynolds import Reynolds
 
 #: Speed below which a contact rests: its film would be thinner than an atom.
@@ -31,56 +31,83 @@ def central_film(contact: Contact) -> float:
 
 
 @dataclass(frozen=True)
+class Units:
+    """What lengths, pressures, films and speeds are measured by.
+
+    Args:
+        a: half width of a Hertz contact [m]
+        b: its half length, or half of the length of a roller [m]
+        p: its peak pressure [Pa]
+        h: film [m]
+        u: mean speed [m/s]
+    """
+
+    a: float
+    b: float
+    p: float
+    h: float
+    u: float
+
+
+def units(contact: Contact) -> Units:
+    """The units in which a contact is of the order of 1."""
+    dry = hertz(contact)
+    b = dry.b if contact.edge_radius == 0 else contact.length / 2
+    return Units(dry.a, b, dry.p_max, dry.a**2 / contact.R_x, max(contact.u_m, REST))
+
+
+@dataclass(frozen=True)
 class Scaled:
-    """A contact in units of its Hertz contact: lengths over a, films over a^2/R_x, pressures over p_h.
+    """A contact in such units.
 
     Args:
         contact: the contact
-        dry: its Hertz contact, whose a, p_max are the units
+        unit: the units
     """
 
     contact: Contact
-    dry: Hertz
-
-    @property
-    def film_unit(self) -> float:
-        """Unit of films [m]."""
-        return self.dry.a**2 / self.contact.R_x
+    unit: Units
 
     @property
     def load(self) -> float:
         """Integral of the pressure [1]."""
-        return self.contact.F / (self.dry.p_max * self.dry.a**2)
+        return self.contact.F / (self.unit.p * self.unit.a**2)
 
     @property
     def elastic(self) -> float:
         """Deformation of a unit of the integral of pressure over distance [1]."""
-        return 2 * self.dry.p_max * self.contact.R_x / (pi * self.contact.E_eff * self.dry.a)
+        return 2 * self.unit.p * self.unit.a / (pi * self.contact.E_eff * self.unit.h)
+
+    @property
+    def film(self) -> float:
+        """Central film expected [1]."""
+        return central_film(self.contact) / self.unit.h
 
     def gap(self, grid: Grid) -> Array:
         """Gap of the undeformed bodies over the grid (n, n) [1]."""
-        x, y = grid.nodes
-        c = self.contact
-        side = y**2 * (c.R_x / c.R_y) / 2
+        (x, y), c = grid.nodes, self.contact
+        curve = self.unit.a**2 / (2 * self.unit.h)
+        side = y**2 / c.R_y
         if c.edge_radius > 0:
-            beyond = np.maximum(np.abs(y) - c.length / 2 / self.dry.a, 0.0)
-            side = side + beyond**2 * (c.R_x / c.edge_radius) / 2
-        return np.asarray(x**2 / 2 + side)
+            side = side + np.maximum(np.abs(y) - c.length / (2 * self.unit.a), 0.0) ** 2 / c.edge_radius
+        return np.asarray(curve * (x**2 / c.R_x + side))
 
-    def reynolds(self, grid: Grid, faster: float = 1.0, squeeze: float = 0.0, past: Array | float = 0.0) -> Reynolds:
+    def reynolds(
+        self, grid: Grid, floor: float, faster: float = 1.0, squeeze: float = 0.0, past: Array | float = 0.0
+    ) -> Reynolds:
         """Reynolds' equation of the contact.
 
         Args:
             grid: the grid
-            faster: factor on the mean speed [1]
+            floor: film at which the surfaces touch [1]
+            faster: factor on the unit of speed, and so on the mean speed [1]
             squeeze: factor of the present d(rho h)/dt [1]
             past: what earlier moments add to d(rho h)/dt (n, n) [1]
         """
-        c, unit = self.contact, self.dry
-        speed = max(c.u_m, REST) * faster
-        kappa = unit.p_max * unit.a**3 / (12 * c.lubricant.eta_0 * speed * c.R_x**2)
-        wedge = 0.0 if c.u_m < REST else 1.0
-        return Reynolds(c.lubricant, unit.p_max, kappa, wedge, grid.hx, grid.hy, squeeze, past)
+        oil, unit = self.contact.lubricant, self.unit
+        kappa = unit.h**2 * unit.p / (12 * oil.eta_0 * unit.u * faster * unit.a)
+        wedge = self.contact.u_m / unit.u if self.contact.u_m > REST else 0.0
+        return Reynolds(oil, unit.p, kappa, wedge, grid.hx, grid.hy, squeeze, past, floor)
 
     def grid(self, n: int, domain: tuple[float, float, float] | None = None) -> Grid:
         """The finest grid.
@@ -95,23 +122,18 @@ class Scaled:
     def _domain(self) -> tuple[float, float, float]:
         """First x, last x and largest y. The inlet reaches twice as far ahead as starvation begins to thin the film
         (Hamrock and Dowson, J. Lubr. Technol. 99, 1977, part IV), and the middle of the contact is a node."""
-        ahead = 6.1 * (central_film(self.contact) / self.film_unit) ** 0.58
+        ahead = 6.1 * self.film**0.58
         parts = COARSEST - 1
         x_out = 1.5
         k = next((k for k in range(parts // 2, 13) if x_out * k / (parts - k) >= 1 + ahead), 12)
         x_out = max(x_out, (1 + ahead) * (parts - k) / k)
-        b = self.dry.b if self.dry.b < inf else self._half_length()
-        return -x_out * k / (parts - k), x_out, b / self.dry.a + 0.5 + 0.45 * ahead
-
-    def _half_length(self) -> float:
-        """Half of the loaded length of a roller with rounded ends [m]."""
-        c = self.contact
-        approach = self.film_unit  # of the order of the approach of the straight part
-        return c.length / 2 + (2 * c.edge_radius * approach) ** 0.5
+        radius = self.contact.edge_radius
+        ends = sqrt(2 * radius * self.unit.h) / self.unit.a if radius else 0.0  # the approach is of the order of h
+        return -x_out * k / (parts - k), x_out, self.unit.b / self.unit.a + ends + 0.5 + 0.45 * ahead
 
 
-def scaled(contact: Contact) -> Scaled:
-    """The contact in its own units.
+def checked(contact: Contact) -> Contact:
+    """The contact, if it has a film in the plane.
 
     Raises:
         ScenarioError: the oil enters from the wrong side, or the contact has no ends
@@ -123,4 +145,4 @@ def scaled(contact: Contact) -> Scaled:
         )
     if contact.R_y == inf and contact.edge_radius == 0:
         raise ScenarioError("contact: a line contact has no ends. Give R_y or edge_radius for a grid in the plane.")
-    return Scaled(contact, hertz(contact))
+    return contact

@@ -1,17 +1,16 @@
-"""Which of four regimes a line contact is in: whether it deforms, and whether pressure thickens its oil.
-
-Films here are numbers after Johnson, h F' / (eta_0 u_m R), with the mean speed of the surfaces. The regime that would
-give the thickest film is the one the contact is in.
-"""
+"""Which of four regimes a line contact is in: whether it deforms, and whether pressure thickens its oil."""
 
 from __future__ import annotations
+
+import math
 
 import casadi as ca
 
 from ..sources import law
+from .film_line import RIGID
 from .smooth import Num, smooth_abs
 
-#: What a contact is called that is in none but the elastohydrodynamic regime.
+#: What is said of a contact that is in any but the elastohydrodynamic regime.
 _NOT_HERE = "(g_V = {g_V}, g_E = {g_E}): the elastohydrodynamic formula does not hold"
 
 
@@ -55,24 +54,25 @@ def elasticity_parameter(
     return smooth_abs(F_n_l, F_width) / ca.sqrt(eta_0 * smooth_abs(u_m, u_width) * E_eff * R)
 
 
-@law(source="Johnson1970", where="asymptotes of the four regimes", verified=False)
+@law(source="Moes1992", where="asymptotes of the four regimes", verified=False)
 def regime_films(g_V: Num, g_E: Num) -> tuple[Num, Num, Num, Num]:
-    r"""Film numbers of the four regimes [1]: neither, piezoviscous, elastic, and both.
+    r"""Film numbers h F'/(eta_0 u_sum R) of the four regimes [1]: neither, piezoviscous, elastic, and both.
 
-    .. math:: \hat h_{RI} = 4.9,\quad \hat h_{RP} = 1.66 g_V^{2/3},\quad \hat h_{EI} = 3.1 g_E^{0.8},\quad
-        \hat h_{EP} = 2.65 g_V^{0.54} g_E^{0.06}
+    .. math:: \hat h_{RI} = 2.448,\quad \hat h_{RP} = 1.287 v^{2/3},\quad \hat h_{EI} = 2.621 e^{4/5},\quad
+        \hat h_{EP} = 1.311 v^{3/4} e^{-1/4},\quad v = g_V/\sqrt 2,\quad e = g_E/\sqrt 2
 
     Args:
-        g_V: viscosity parameter [1]
-        g_E: elasticity parameter [1]
+        g_V: viscosity parameter, with the mean speed [1]
+        g_E: elasticity parameter, with the mean speed [1]
     """
-    return 4.9, 1.66 * g_V ** (2 / 3), 3.1 * g_E**0.8, 2.65 * g_V**0.54 * g_E**0.06
+    v, e = g_V / math.sqrt(2), g_E / math.sqrt(2)  # with the sum of the speeds, as Moes has it
+    return RIGID, 1.287 * v ** (2 / 3), 2.621 * e**0.8, 1.311 * v**0.75 * e**-0.25
 
 
 @law(
-    source="Johnson1970",
-    where="map of the regimes",
-    valid="the elastohydrodynamic regime, where none of the other three gives a thicker film than the rest",
+    source="Moes1992",
+    where="which asymptote is followed",
+    valid="the elastohydrodynamic regime: elastic flanks and oil that pressure thickens",
     ranges=dict.fromkeys(("rigid_isoviscous", "rigid_piezoviscous", "elastic_isoviscous"), (0.0, 1.0)),
     regimes={
         "rigid_isoviscous": f"rigid-isoviscous {_NOT_HERE}",
@@ -85,9 +85,9 @@ def elastohydrodynamic(rigid_isoviscous: Num, rigid_piezoviscous: Num, elastic_i
     """How far inside the elastohydrodynamic regime a contact is: 1 or more inside, below 1 outside [1].
 
     Args:
-        rigid_isoviscous: film of this regime over the thickest film of the other three [1]
-        rigid_piezoviscous: film of this regime over the thickest film of the other three [1]
-        elastic_isoviscous: film of this regime over the thickest film of the other three [1]
+        rigid_isoviscous: lead of this regime over the others, above 1 where the contact is in it [1]
+        rigid_piezoviscous: lead of this regime over the others, above 1 where the contact is in it [1]
+        elastic_isoviscous: lead of this regime over the others, above 1 where the contact is in it [1]
     """
     return 1 / ca.fmax(rigid_isoviscous, ca.fmax(rigid_piezoviscous, elastic_isoviscous))
 
@@ -95,10 +95,14 @@ def elastohydrodynamic(rigid_isoviscous: Num, rigid_piezoviscous: Num, elastic_i
 def inside_elastohydrodynamic(g_V: Num, g_E: Num) -> Num:
     """What `elastohydrodynamic` tells of a contact, so that a run names the regime where it is another one [1].
 
+    The film follows the thicker of two: the thicker one in oil of constant viscosity, rigid or elastic, and the
+    thinner one in oil that pressure thickens.
+
     Args:
         g_V: viscosity parameter [1]
         g_E: elasticity parameter [1]
     """
     RI, RP, EI, EP = regime_films(g_V, g_E)
-    others = ((RI, RP, EI), (RP, RI, EI), (EI, RI, RP))
-    return elastohydrodynamic(*(film / ca.fmax(EP, ca.fmax(a, b)) for film, a, b in others))
+    thickened = ca.fmin(RP, EP)
+    rigid_piezoviscous = ca.fmin(EP / RP, RP / ca.fmax(RI, EI))
+    return elastohydrodynamic(RI / ca.fmax(EI, thickened), rigid_piezoviscous, EI / ca.fmax(RI, thickened))

@@ -26,19 +26,20 @@ PARTS: Mapping[str, str] = {
     "housing": "RoundHousing",
     "flat_cooling": "FlatWallCooling",
     "cylinder_cooling": "ShellCooling",
+    "foot": "ThermalConductor",
     "room": "Room",
     "efficiency": "Efficiency",
 }
 
-#: The same with friction and cooling as the source prints them.
+#: The same with friction and cooling as the source prints them; it has neither foot nor shafts.
 PRINTED_PARTS: Mapping[str, str] = {
-    **PARTS,
+    **{name: kind for name, kind in PARTS.items() if name != "foot"},
     "reducer": "MalhotraReducer",
     "flat_cooling": "LinearFlatWallCooling",
     "cylinder_cooling": "LinearShellCooling",
 }
 
-#: The groups of ports that meet, but for the lubrication.
+#: The groups of ports that meet, but for lubrication and foot.
 PRINTED_CONNECTIONS: tuple[tuple[str, ...], ...] = (
     # shafts, and what is read
     ("input.flange", "rotor.flange", "reducer.input"),
@@ -60,5 +61,10 @@ PRINTED_CONNECTIONS: tuple[tuple[str, ...], ...] = (
     ("room.air", "flat_cooling.air", "cylinder_cooling.air"),
 )
 
-#: The groups of ports that meet where the oil lubricates.
-CONNECTIONS = (*PRINTED_CONNECTIONS, ("oil.lubricant", "reducer.lubricant"))
+#: The groups of ports that meet where the oil lubricates and the foot conducts.
+CONNECTIONS = (
+    *PRINTED_CONNECTIONS,
+    ("oil.lubricant", "reducer.lubricant"),
+    ("cylinder_outer.heat", "foot.a"),
+    ("room.floor", "foot.b"),
+)

@@ -17,6 +17,7 @@ PARTS: Mapping[str, str] = {
     "motor": "Motor",
     "mesh": "HarmonicMesh",
     "wave_bearing": "DeepGrooveBallBearing",
+    "belt_pull": "BeltPull",
     "drum_bearing": "DeepGrooveBallBearing",
     "drum_seal": "LipSeal",
     "churning": "DrumChurning",
@@ -47,7 +48,8 @@ CONNECTIONS: tuple[tuple[str, ...], ...] = (
     # what the bearings carry, what is read, and how full the drum is
     ("mesh.wave_load", "wave_bearing.load"),
     ("motor_shaft.reading", "motor.shaft", "efficiency.a"),
-    ("drum.reading", "efficiency.b"),
+    ("drum.reading", "belt_pull.reading", "efficiency.b"),
+    ("belt_pull.load", "drum_bearing.load"),
     ("oil.level", "churning.level", "oil_shell.level"),
     # the oil lubricates all
     ("oil.lubricant", "mesh.lubricant", "wave_bearing.lubricant", "drum_bearing.lubricant", "churning.lubricant"),

@@ -4,7 +4,7 @@ from ..core.component import Component
 from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
 from .churning import Churning
 from .cycloid import CycloidalReducer, MalhotraReducer
-from .drum import BeltContact, DrumChurning, DrumCooling, DrumOil, WettedWall
+from .drum import BeltContact, BeltPull, DrumChurning, DrumCooling, DrumOil, WettedWall
 from .gears import HelicalGearPair, PlanetarySet
 from .harmonic import HarmonicContact, HarmonicMesh
 from .housing import (
@@ -52,6 +52,7 @@ PARTS: dict[str, type[Component]] = {
         CycloidPinStage,
         HarmonicMesh,
         HarmonicContact,
+        BeltPull,
         ShaftSupport,
         TwoGearSupport,
         TaperedRollerBearing,

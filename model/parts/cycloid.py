@@ -236,6 +236,12 @@ class MalhotraReducer(CycloidDrive):
     tau_loss_2 = Output("N.m", "loss torque of the output rollers, on the input", at_least=0.0)
     tau_loss_3 = Output("N.m", "loss torque of the rollers on the pins, on the input", at_least=0.0)
 
+    def relations(self) -> Iterator[Related]:
+        """No more discs are counted than there are."""
+        yield from super().relations()
+        share, remedy = self.n_counted / self.n, "Give n_counted as n or below."
+        yield self.relation("n_counted fits n", "n_counted / n", share, high=1.0, remedy=remedy)
+
     def torques(self, T_disc: Num) -> tuple[Num, Num, Num]:
         """Loss torques of bearings, output rollers and rollers on pins, referred to the input [N.m]."""
         F_N, F_K, F_E = self.forces(T_disc)

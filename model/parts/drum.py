@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from ..core.component import Equation, equation
+from ..core.component import Component, Equation, equation
 from ..core.declare import Choice, Parameter
 from ..laws.convection import mixed
 from ..laws.drum import (
@@ -18,8 +18,11 @@ from ..laws.pad import fill_arc, fill_volume_share
 from ..laws.smooth import SPEED_WIDTH, Num, smooth_abs
 from .friction import Friction
 from .lubrication import OilBath
-from .ports import Flange, Lubricant, OilLevel
+from .ports import BearingLoad, Flange, Lubricant, OilLevel, ShaftReading
 from .thermal import Conductor, CylinderCooling
+
+#: Torque of the drum [N.m] below which the pull of its belt is rounded.
+TAU_WIDTH = 0.1
 
 
 class DrumOil(OilBath):
@@ -92,6 +95,22 @@ class BeltContact(Conductor):
         yield equation("conduction", self.Q_flow, self.conductance() * dT)
         yield equation("enters at a", self.a.Q_flow, self.Q_flow)
         yield equation("leaves at b", self.b.Q_flow, -self.Q_flow)
+
+
+class BeltPull(Component):
+    """What a belt does to the bearings of the drum it runs over: the pull of both its ends, shared by two bearings."""
+
+    reading = ShaftReading(must_meet=True)
+    load = BearingLoad()
+
+    D = Parameter("m", "diameter of the drum", above=0.0)
+    k_pull = Parameter("1", "pull of both ends of the belt over the difference of their pulls", at_least=1.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """The difference of the pulls is what turns the belt."""
+        pull = 2 * smooth_abs(self.reading.tau, TAU_WIDTH) / self.D
+        yield equation("radially", self.load.F_r, self.k_pull * pull / 2)
+        yield equation("axially", self.load.F_a, 0.0)
 
 
 class DrumCooling(CylinderCooling):

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
 
 from ..laws.cycloid_pin import (
@@ -23,15 +25,10 @@ from ..laws.film_line import line_film_central, line_film_minimum
 from ..laws.film_map import FilmMap
 from ..laws.smooth import Num
 
-#: Angles of the fixed quadrature over the loaded half of the mesh cycle. Where the entrainment of a held pin changes
-#: sign the film closes: 32 angles are within 0.6 % of thousands there, and exact to six digits without it.
-ANGLES = 32
-
-
-def quadrature(count: int = ANGLES) -> list[tuple[float, float]]:
-    """Angles [rad] and weights [rad] of Gauss's rule over the loaded half of the mesh cycle, 0 to pi."""
-    x, weights = np.polynomial.legendre.leggauss(count)
-    return [(float(np.pi / 2 * (1 + a)), float(np.pi / 2 * b)) for a, b in zip(x, weights, strict=True)]
+#: Angles of the fixed quadrature in each of the three parts of the loaded half of the mesh cycle.
+ANGLES = 12
+#: Cosine next to which angles are cut off, so that their slopes stay finite.
+INSIDE = 1 - 1e-9
 
 
 @dataclass(frozen=True)
@@ -51,11 +48,11 @@ class PinContact:
 
     `theta` angle of the pin from the crank's line [rad], `F` force [N], `lever` about the disc's centre [m], `w` load
     per length [N/m], `R` reduced radius [m], `v_rub` speed at which the disc moves over the place of the pin [m/s],
-    `u_disc` and `u_pin` speeds of both surfaces through the contact [m/s], `h_min` and `h_c` films [m], `Lambda`
+    `u_disc` and `u_pin` speeds of both surfaces through the contact [m/s], `h_c` central film [m], `Lambda`
     specific film thickness [1], `mu` friction coefficient [1]. Speeds have the sign of the crank's speed.
     """
 
-    theta: float
+    theta: Num
     F: Num
     lever: Num
     w: Num
@@ -63,7 +60,6 @@ class PinContact:
     v_rub: Num
     u_disc: Num
     u_pin: Num
-    h_min: Num
     h_c: Num
     Lambda: Num
     mu: Num
@@ -100,7 +96,41 @@ class PinMesh:
         """Short-width coefficient [1]."""
         return width_coefficient(self.e, self.Zp, self.Rp)
 
-    def contact(self, theta: float, film: Film) -> PinContact:
+    def turning_angles(self) -> tuple[Num, Num]:
+        """Angles at which the entrainment changes its direction [rad]; where it does not, where it comes nearest to it.
+
+        With g = 1/2 (held) or 1 (rolling) the entrainment g v_s - v_c is zero where
+        S^3 - p S^2 + q = 0, p = r_rp (2 g + Zc)/(2 g Rp), q = Zc r_rp (1 - K^2)/(2 g Rp).
+        """
+        K, Zc, g = self.K, self.Zp - 1, 1.0 if self.rolling else 0.5
+        p = self.r_rp * (2 * g + Zc) / (2 * g * self.Rp)
+        q = Zc * self.r_rp * (1 - K**2) / (2 * g * self.Rp)
+        phi = ca.acos(ca.fmin(ca.fmax(1 - 13.5 * q / p**3, -INSIDE), INSIDE))
+        angles = []
+        for turn in (-2 * ca.pi, 0.0):
+            S = p / 3 * (1 + 2 * ca.cos((phi + turn) / 3))
+            c = (1 + K**2 - S**2) / (2 * K)
+            angles.append(ca.acos(ca.fmin(ca.fmax(c, -INSIDE), INSIDE)))
+        return angles[0], angles[1]
+
+    def quadrature(self, count: int = ANGLES) -> list[tuple[Num, Num]]:
+        """Angles and weights [rad] of a sum over the loaded half: Gauss's rule between the turns of the entrainment.
+
+        The film closes at the turns, so that friction has a cusp there: the angles crowd towards them.
+
+        Args:
+            count: number of angles in each of the three parts
+        """
+        x, weights = np.polynomial.legendre.leggauss(count)
+        ends = (0.0, *self.turning_angles(), float(np.pi))
+        found = []
+        for low, high in itertools.pairwise(ends):
+            for t, weight in zip((1 + x) / 2, weights / 2, strict=True):
+                at, slope = float(t**2 * (3 - 2 * t)), float(6 * t * (1 - t))
+                found.append((low + (high - low) * at, (high - low) * slope * float(weight)))
+        return found
+
+    def contact(self, theta: Num, film: Film) -> PinContact:
         """The contact of a pin at an angle of the loaded half.
 
         Args:
@@ -117,14 +147,13 @@ class PinMesh:
         u_disc = v_rub - v_contact
         w = F / self.b
         if self.law is not None:
-            h_c, h_min = self.law.films(film.eta, u_sum, w, R)
+            h_c, _ = self.law.films(film.eta, u_sum, w, R)
         else:
             h_c = line_film_central(film.eta, u_sum, film.alpha_p, w, R, self.E_eff)
-            h_min = line_film_minimum(film.eta, u_sum, film.alpha_p, w, R, self.E_eff)
         Lambda = specific_film_thickness(h_c, self.sigma)
         mu = mixed_friction(Lambda, self.mu_fluid, self.mu_boundary)
         lever = pin_lever(K, self.Zp, self.Rp, theta)
-        return PinContact(theta, F, lever, w, R, v_rub, u_disc, u_sum - u_disc, h_min, h_c, Lambda, mu)
+        return PinContact(theta, F, lever, w, R, v_rub, u_disc, u_sum - u_disc, h_c, Lambda, mu)
 
     def groove_friction(self, contact: PinContact, clearance: Num, sigma: Num, film: Film) -> Num:
         """Friction coefficient of a rolling pin in its groove [1]: a film between two surfaces that all but conform.
@@ -143,6 +172,12 @@ class PinMesh:
         """Speed at which the disc moves over the place of the pin, over that of carrier against housing [m]."""
         return self.Rp * pole_distance(self.K, contact.theta) - self.r_rp
 
+    def minimum_film(self, contact: PinContact, film: Film) -> Num:
+        """Minimum film between disc and pin [m]."""
+        if self.law is not None:
+            return self.law.films(film.eta, 2 * contact.U, contact.w, contact.R)[1]
+        return line_film_minimum(film.eta, 2 * contact.U, film.alpha_p, contact.w, contact.R, self.E_eff)
+
     def pressure(self, contact: PinContact) -> Num:
         """Greatest pressure of the dry contact [Pa]."""
         return hertz_line_pressure(contact.w, contact.R, self.E_eff)
@@ -150,4 +185,4 @@ class PinMesh:
     def towards_pole(self, contact: PinContact) -> tuple[Num, Num]:
         """Direction of the pin's force on the disc, along the crank's line and across it [1]."""
         S = pole_distance(self.K, contact.theta)
-        return (self.K - float(np.cos(contact.theta))) / S, -float(np.sin(contact.theta)) / S
+        return (self.K - ca.cos(contact.theta)) / S, -ca.sin(contact.theta) / S

@@ -52,7 +52,7 @@ def _row(mesh: PinMesh, film: Film, degree: int) -> dict[str, float]:
         **{"theta_deg": degree, "R_m": contact.R, "w_N_m": w},
         **{"U_m_s": abs(contact.U), "v_slide_m_s": abs(contact.v_slide)},
         **{"p_H_Pa": mesh.pressure(contact) if w > 0 else 0.0},
-        **{"h_min_m": contact.h_min, "h_c_m": contact.h_c, "Lambda": contact.Lambda},
+        **{"h_min_m": mesh.minimum_film(contact, film), "h_c_m": contact.h_c, "Lambda": contact.Lambda},
         **{"asperity_share": asperity_share(contact.Lambda), "mu": contact.mu},
     }
     return {key: float(value) for key, value in found.items()}
@@ -78,8 +78,9 @@ def pin_case(mesh: PinMesh, film: Film, theta: float) -> ContactCase:
     """
     c = mesh.contact(theta, film)
     time = theta / abs(film.w_crank) if film.w_crank else inf
-    numbers = (time, theta, c.F, mesh.b, c.R, c.u_disc, c.u_pin, mesh.E_eff, film.eta, film.alpha_p, mesh.sigma)
-    return ContactCase(*map(float, numbers), mu_boundary=float(mesh.mu_boundary))
+    there = (time, theta, c.F, mesh.b, c.R, c.u_disc, c.u_pin)
+    both = (mesh.E_eff, film.eta, film.alpha_p, mesh.sigma, mesh.mu_boundary)
+    return ContactCase(*map(float, (*there, *both)))
 
 
 def pin_cycle(mesh: PinMesh, film: Film, count: int) -> list[ContactCase]:

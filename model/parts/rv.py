@@ -12,7 +12,7 @@ from ..laws.cycloid_pin import greatest_curvature, width_coefficient
 from ..laws.film_map import FilmMap
 from ..laws.smooth import Num, friction_sign, smooth_abs
 from .contacts import ContactCase, ContactTable, FilmContact, PartWithContacts, fits_map
-from .pin_mesh import Film, PinContact, PinMesh, quadrature
+from .pin_mesh import Film, PinContact, PinMesh
 from .pin_table import pin_case, pin_cycle, pin_table
 from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading
 
@@ -126,7 +126,7 @@ class CycloidPinStage(PartWithContacts):
         per_pin = self.Zp / (2 * ca.pi)
         rub, load, along, across, films = 0.0, 0.0, 0.0, 0.0, 0.0
         lever_sum = 0.0
-        for theta, weight in quadrature():
+        for theta, weight in mesh.quadrature():
             contact = mesh.contact(theta, film)
             share = weight * per_pin * contact.F
             lever = mesh.rubbing_lever(contact)

@@ -55,6 +55,7 @@ EXAMPLES: dict[str, dict] = {
     | dict(N=3.0, z_3=108.0, eps_alpha_sp=1.666, eps_alpha_pr=1.883, H_v_sp=0.168, H_v_pr=0.062)
     | dict(n_axial_carrier=1.0, n_axial_sun=3.0, s_planet=0.021),
     "HelicalGearPair": TEETH | dict(z_2=72.0, a_w=0.1097, x_1=0.0, x_2=0.0),
+    "BeltPull": dict(D=0.32, k_pull=2.0),
     "HarmonicMesh": FLANK | dict(z_1=132.0, z_2=134.0, m_n=6e-4, alpha=math.radians(20), pairs=40.0),
     "HarmonicContact": FLANK | dict(eta_0=0.06, alpha_p=2e-8, F_0=240.0),
     "CycloidalReducer": DISC | dict(mu_ref=0.05, mu_fluid=0.02, mu_bl=0.1, eta_ref=0.03, w_ref=148.7, tau_ref=332.0),
@@ -101,7 +102,7 @@ EXAMPLES: dict[str, dict] = {
     | dict(forward=1.0, backward=0.5),
 }
 #: Ports without a source: on them a part gives information, or a temperature of its own.
-GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level"} | {
+GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level", "BeltPull.load"} | {
     "OilBath.heat",
     "HeatCapacity.heat",
     "OilBath.lubricant",

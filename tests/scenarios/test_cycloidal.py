@@ -106,7 +106,7 @@ def test_more_cooling_is_colder(model, rig: str) -> None:
     """Moving air and a better transfer to the wall cool most; a thicker wall insulates, a better conductor does not."""
     flat = model(rig)
     here = oil(flat, output_tau=-100.0)
-    assert oil(flat, output_tau=-100.0, room_air_speed=2.5) < here - 3
+    assert oil(flat, output_tau=-100.0, room_air_speed=2.5) < here - 1.5
     assert oil(flat, output_tau=-100.0, oil_housing_h=250.0) < here - 0.5
     assert here < oil(flat, output_tau=-100.0, housing_d=0.014) < here + 1
     assert here - 1 < oil(flat, output_tau=-100.0, housing_k=92.0) < here
@@ -154,16 +154,17 @@ def test_physical_rig_has_the_corrections_and_no_number_of_the_presets(model) ->
 
 
 def test_physical_rig_says_that_the_rated_torque_is_too_much(model) -> None:
-    """Without foot and shafts 332 N.m overheats the lubricant, as in Table 4."""
+    """Without foot and shafts 332 N.m overheats the lubricant, as in Table 4; with them it stays above 80 degC."""
     flat = model("cycloidal")
-    assert oil(flat, output_tau=-332.0) > 140
-    assert oil(flat, output_tau=-60.0) < 70
+    assert oil(flat, output_tau=-332.0, foot_G=0.0) > 140
+    assert oil(flat, output_tau=-60.0, foot_G=0.0) < 70
+    assert 80 < oil(flat, output_tau=-332.0) < 120
 
 
 @pytest.mark.parametrize("rig", RIGS_HERE)
 def test_steady_is_where_a_simulation_ends_and_design_finds_80_degC(model, rig: str) -> None:
     flat = model(rig)
-    at = {q.name: q.start for q in flat.inputs} | {"output.tau": -150.0}
+    at = {q.name: q.start for q in flat.inputs} | {"output.tau": -150.0 if rig in PRINTED else -290.0}
     run = simulate(flat, stepped([(40 * 3600.0, at)]), times=np.array([0.0, 40 * 3600.0]))
     assert run["oil.T"][-1] == pytest.approx(steady(flat, at)["oil.T"][0], abs=0.01)
     assert run.audit.residual < 1e-6

@@ -41,25 +41,32 @@ def at(flat: FlatModel, **values: float) -> dict[str, float]:
 def test_belt_decides_how_warm_the_drum_is(h_belt: float, published: float) -> None:
     """The one body of the source against the model, whose motor and gear lose what the temperature lets them."""
     found = at(flat_of("drum_motor"), belt__h=h_belt)
-    assert found["shell.T"] - 273.15 == pytest.approx(published, abs=7.0)
+    assert found["oil.T"] - 273.15 == pytest.approx(published, abs=7.0)
     one_body = lumped_temperature(found["room.Q_flow"], BARE + h_belt, AREA, found["room.T"])
-    assert found["shell.T"] == pytest.approx(one_body, abs=4.0)
+    assert found["shell.T"] == pytest.approx(one_body, abs=6.0)
     assert found["windings.T"] > found["oil.T"] > found["shell.T"] > found["room.T"]
 
 
 def test_loss_is_that_of_the_source() -> None:
-    found = at(flat_of("drum_motor"))
+    found = at(flat_of("drum_motor"), belt__h=20.0)
     heat = drum_heat(2200.0, 0.82, found["efficiency.eta"])
     assert found["room.Q_flow"] == pytest.approx(heat, rel=1e-4)
-    assert found["room.Q_flow"] == pytest.approx(1010.0, rel=0.07)
+    assert found["room.Q_flow"] == pytest.approx(1010.0, rel=0.02)
 
 
 def test_design_finds_the_belt_that_keeps_the_oil_at_70_degC() -> None:
     """The target is met from about 30 W/(m2.K) in all, so 15 to the belt."""
     flat = flat_of("drum_motor")
     found = design(flat, ["belt.h"], {"oil.T": 343.15}, {})
-    assert 10.0 < found.values["belt.h"] < 20.0
+    assert 12.0 < found.values["belt.h"] < 20.0
     assert at(flat, belt__h=found.values["belt.h"])["oil.T"] == pytest.approx(343.15, abs=1e-6)
+
+
+def test_hot_oil_means_less_churning_and_a_thinner_film() -> None:
+    warm, hot = (at(flat_of("drum_motor"), room__T=T) for T in (293.15, 313.15))
+    assert hot["oil.T"] > warm["oil.T"] + 5.0
+    assert hot["churning.P_loss"] < warm["churning.P_loss"]
+    assert hot["mesh.h_min"] < warm["mesh.h_min"]
 
 
 @pytest.mark.parametrize("rig", RIGS)

@@ -109,13 +109,13 @@ class TestNames:
 class TestBadFiles:
     def test_all_mistakes_at_once(self, tmp_path: Path) -> None:
         text = (
-            '["A 1"]\nchecked = false\nd_m = 62\nR1 = 3\nsource = "SKF2018"\n'
+            '["A 1"]\nchecked = false\nd_m = 62\nmu_EHLL = 3\nsource = "SKF2018"\n'
             '["A 2"]\nchecked = "SKF2018"\nd_m = "62 kg"\nD = "80 mm"\nsources = { d_m = "SKF2018" }\n'
         )
         assert problems(tmp_path, "stray = 3\n" + text) == (
             "own.toml [stray]: is no table. Write the values of the entry below [stray].",
             'own.toml [A 1]: d_m = 62 has no unit. Write "62 m" (expected a unit like m).',
-            'own.toml [A 1]: no part takes "R1". Did you mean "R_1"?',
+            'own.toml [A 1]: no part takes "mu_EHLL". Did you mean "mu_EHL"?',
             "own.toml [A 2]: no source is given for D."
             ' Add source = "..." (a citation, or "assumed: reason") to the table.',
             'own.toml [A 2]: d_m = "62 kg": unit "kg" does not fit m. Write for example "62 mm".',

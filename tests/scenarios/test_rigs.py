@@ -45,9 +45,14 @@ def test_all_are_listed() -> None:
         "cycloidal",
         "cycloidal_areas",
         "cycloidal_printed",
+        "drum_motor",
+        "drum_motor_planetary",
         "fzg_four_square",
+        "harmonic",
+        "harmonic_printed",
         "helical_two_stage",
         "planetary",
+        "rv_stage",
     )
     assert all(list_rigs().values())
     assert all(list_rigs("reproduces").values())

@@ -103,6 +103,7 @@ def test_simulate_and_design_tell_which_law_is_outside_its_range(gearheat, tmp_p
 
 def test_show_errata_prints_what_the_source_should_say(gearheat):
     assert "PAGD" in gearheat("show", "planetary", "--errata").out
+    assert "no corrections" in gearheat("show", "helical_two_stage", "--errata").out
 
 
 def test_steady_takes_values_with_units_and_closes_the_power_balance(gearheat):

@@ -33,7 +33,7 @@ def test_every_number_of_every_rig_and_the_counts_of_the_readme(gearheat, tmp_pa
     assert not [row["name"] for row in every if row["verdict"] == CONTRADICTED and not row["why"]]
     assert answer.code == 0
     assert parts.keys() >= set(list_rigs())
-    assert page.read_text(encoding="utf-8").count("<h2>") == len(list_rigs()) + 1
+    assert page.read_text(encoding="utf-8").count("<h2>") == len(list_rigs()) + 2  # laws and sources
     section = README.partition("### What is verified")[2].partition("\n#")[0]
     printed = {name: [int(n) for n in cells.split("|")[:6]] for name, cells in re.findall(LINE, section, re.MULTILINE)}
     counted = {name: [*part["counts"].values(), *part["kinds"].values()] for name, part in parts.items()}
@@ -216,7 +216,7 @@ class TestCommand:
 
     def test_keys_of_the_json(self, gearheat, reducer) -> None:
         found = gearheat("verify", reducer(GOOD), "--json", "-").json
-        assert list(found) == ["schema", "counts", "kinds", "machines", "laws"]
+        assert list(found) == ["schema", "counts", "kinds", "machines", "laws", "sources"]
         assert found["schema"] == "gearheat.verify/1"
         (machine,) = found["machines"]
         assert list(machine) == ["name", "doc", "reproduces", "counts", "kinds", "rows", "errata"]
