@@ -4,13 +4,26 @@ from __future__ import annotations
 
 from math import inf
 
+from ..errors import ScenarioError
 from .case import Contact, Lubricant
 from .film import Film
 from .hertz import Hertz, hertz
 from .line import solve_line
-from .point import solve_point
+from .point import FLOOR, Height, solve_point
+from .rough import Texture, gaussian_texture
+from .transient import solve_transient
 
-__all__ = ["Contact", "Film", "Hertz", "Lubricant", "hertz", "solve"]
+__all__ = [
+    "Contact",
+    "Film",
+    "Hertz",
+    "Lubricant",
+    "Texture",
+    "gaussian_texture",
+    "hertz",
+    "solve",
+    "solve_transient",
+]
 
 
 def solve(
@@ -18,7 +31,9 @@ def solve(
     *,
     n: int = 257,
     domain: tuple[float, float, float] | None = None,
+    roughness: Height | None = None,
     tolerance: float = 1e-6,
+    floor: float = FLOOR,
 ) -> Film:
     """The steady film of a contact.
 
@@ -26,11 +41,15 @@ def solve(
         contact: the contact
         n: nodes along a side of the finest grid, 2^k + 1; of a line contact, any number
         domain: first x, last x and largest y over the half width a of the Hertz contact
+        roughness: height [m] of a surface that stands still, at places x and y [m]; not of a line contact
         tolerance: scaled residual at which it stops, in units of the Hertz pressure [1]
+        floor: film at which the surfaces touch [m]; not of a line contact
 
     Raises:
         ScenarioError: n or the contact make no problem
     """
-    if contact.R_y == inf and contact.edge_radius == 0:
-        return solve_line(contact, n=n, domain=domain[:2] if domain else None, tolerance=tolerance)
-    return solve_point(contact, n=n, domain=domain, tolerance=tolerance)
+    if contact.R_y < inf or contact.edge_radius > 0:
+        return solve_point(contact, n=n, domain=domain, roughness=roughness, tolerance=tolerance, floor=floor)
+    if roughness is not None:
+        raise ScenarioError("contact: a line contact is solved smooth. Give edge_radius for a rough roller.")
+    return solve_line(contact, n=n, domain=domain[:2] if domain else None, tolerance=tolerance)

@@ -49,9 +49,7 @@ class Linear:
         return float(p.sum()) * self.grid.hx * self.grid.hy
 
 
-def linearise(
-    grid: Grid, layers: tuple[Array, Array], active: np.ndarray, touching: np.ndarray
-) -> Linear:
+def linearise(grid: Grid, layers: tuple[Array, Array], active: np.ndarray, touching: np.ndarray) -> Linear:
     """The equations around a state.
 
     Args:
@@ -84,9 +82,7 @@ class Cycle:
         if grid.n <= COARSEST:
             self._direct = _factored(linear)
             return
-        self._relax = LineRelaxation(
-            linear.by_p, linear.by_h, grid.deformation.near, linear.active, (grid.hx, grid.hy)
-        )
+        self._relax = LineRelaxation(linear.by_p, linear.by_h, grid.deformation.near, linear.active, (grid.hx, grid.hy))
         coarse = replace(reynolds, hx=2 * reynolds.hx, hy=2 * reynolds.hy)
         p_c, h_c = np.ascontiguousarray(p[::2, ::2]), np.ascontiguousarray(h[::2, ::2])
         active, touching = linear.active[::2, ::2].copy(), linear.touching[::2, ::2].copy()

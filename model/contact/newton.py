@@ -33,9 +33,15 @@ PRODUCTS = 40
 #: Largest change of pressure in a Newton step [1].
 LARGEST = 0.5
 
+#: Largest share of a film that closes in a Newton step [1].
+CLOSING = 0.8
 #: Mass that arrives, in units of pressure, above which touching surfaces come apart [1].
 RELEASED = 1e-9
 TINY = 1e-300
+#: Newton steps after which a step is held back like a step in time (pseudo-transient continuation, Kelley and Keyes,
+#: SIAM J. Numer. Anal. 35, 1998), and how many nodes oil passes in it.
+PATIENCE = 12
+HELD = 4.0
 
 
 @dataclass(frozen=True)
@@ -86,17 +92,22 @@ class Step:
     Args:
         problem: what has to hold
         state: pressure and approach
+        slow: factor of a d(rho h)/dt that holds the film back, and vanishes as the steps do [1]
     """
 
-    def __init__(self, problem: Problem, state: State) -> None:
+    def __init__(self, problem: Problem, state: State, slow: float = 0.0) -> None:
+        if problem.reynolds.kappa == 0:  # no oil: what does not touch bears nothing
+            state = replace(state, p=np.where(state.touching | (problem.film(state) < problem.floor), state.p, 0.0))
         grid, p = problem.grid, state.p
+        self.state = state
         self._k_0 = float(grid.deformation.near[0, 0])
         inner = np.zeros(p.shape, dtype=bool)
         inner[1:-1, 1:-1] = True
         film = problem.film(state)
         h = np.maximum(film, problem.floor)
         r = problem.reynolds.residual(p, h)
-        layers = problem.reynolds.linear(p, h)
+        moved = replace(problem.reynolds, squeeze=problem.reynolds.squeeze + slow)
+        layers = moved.linear(p, h)
         scale = 1 / (np.abs(layers[0][stencil.CENTRE]) + np.abs(layers[1][stencil.CENTRE]) * self._k_0 + TINY)
         arrives = r * scale > RELEASED
         self.touching = inner & ((film < problem.floor) | (state.touching & (p > 0) & ~arrives))
@@ -107,7 +118,7 @@ class Step:
         right = np.where(self.touching, film - problem.floor, np.where(active, -r, 0.0))
         self.right = self._joined(right, problem.load - self.linear.load(p))
         self.norm = float(np.linalg.norm(self.right)) / grid.n
-        self._cycle = lambda: Cycle(self.linear, problem.reynolds, p, h)
+        self._around = (moved, p, h)
         self.h = h
 
     def _joined(self, r: Array, load: float) -> Array:
@@ -121,7 +132,7 @@ class Step:
 
     def solved(self) -> tuple[Array, float, int]:
         """Changes of pressure and approach, and the number of products."""
-        cycle = self._cycle()
+        cycle = Cycle(self.linear, *self._around)
 
         def precondition(v: Array) -> Array:
             p, h_0 = cycle(v[:-1].reshape(self._scale.shape) / self._scale, float(v[-1]) / self._scale_load)
@@ -129,6 +140,19 @@ class Step:
 
         x, products = fgmres(self._product, precondition, self.right, FORCING, PRODUCTS)
         return x[:-1].reshape(self._scale.shape), float(x[-1]), products
+
+    def share(self, p: Array, h_0: float, floor: float) -> float:
+        """How much of a change can be made: pressure changes little, films well above the floor do not close.
+
+        Args:
+            p: change of the pressure (n, n) [1]
+            h_0: change of the approach [1]
+            floor: smallest film [1]
+        """
+        thinner = -(self.linear.grid.deformation(p) + h_0)
+        wide = (self.h > floor / (1 - CLOSING)) & (thinner > 0)
+        closing = float(np.max(np.where(wide, thinner / self.h, 0.0))) / CLOSING
+        return 1 / max(1.0, float(np.abs(p).max()) / LARGEST, closing)
 
 
 def newton(problem: Problem, start: State, tolerance: float, steps: int) -> State:
@@ -140,22 +164,20 @@ def newton(problem: Problem, start: State, tolerance: float, steps: int) -> Stat
         tolerance: scaled residual at which it stops [1]
         steps: largest number of Newton steps
     """
-    import os
-
     state = start
     norms: list[float] = []
     work = start.work
-    for it in range(steps):
-        step = Step(problem, state)
+    slow = 0.0
+    for k in range(steps):
+        step = Step(problem, state, slow)
         norms.append(step.norm)
         if step.norm < tolerance:
             break
+        if k >= PATIENCE:
+            slow = min(norms[-1] / norms[PATIENCE], 1.0) / (HELD * problem.grid.hx)
         p, h_0, products = step.solved()
         work += products
-        share = min(1.0, LARGEST / float(np.abs(p).max()))
-        if os.environ.get("EHLV"):
-            print(
-                f"  n={problem.grid.n} it={it} res={step.norm:.2e} k={products} dp={np.abs(p).max():.2e} touch={step.touching.sum()} hmin={step.h.min():.3e} pmax={state.p.max():.3f}"
-            )
-        state = State(np.maximum(state.p + share * p, 0.0), state.h_0 + share * h_0, step.touching)
+        share = step.share(p, h_0, problem.floor)
+        now = step.state
+        state = State(np.maximum(now.p + share * p, 0.0), now.h_0 + share * h_0, step.touching)
     return replace(state, residuals=tuple(norms), work=work)

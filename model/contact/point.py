@@ -79,14 +79,14 @@ def steady(case: Scaled, finest: Grid, roughness: Height | None, tolerance: floa
     grounds = [gap(case, finest, roughness) - case.gap(finest)]
     for _ in grids[1:]:
         grounds.insert(0, restrict(grounds[0]))
-    speed = resolvable(case, grids[0])
+    speed = resolvable(case, grids[0], grounds[0])
     state = first_guess(case, grids[0], speed)
     smallest = floor / case.unit.h
     for grid, rough in zip(grids, grounds, strict=True):
         last = grid is finest
         if grid is not grids[0]:
             state = finer(state)
-        for faster in descent(speed, 1.0 if last else resolvable(case, grid)):
+        for faster in descent(speed, 1.0 if last else resolvable(case, grid, rough)):
             speed = faster
             equation = case.reynolds(grid, smallest, speed)
             problem = Problem(grid, equation, case.gap(grid) + rough, case.load, smallest)
@@ -121,17 +121,19 @@ def nodes(n: int) -> int:
     return n
 
 
-def resolvable(case: Scaled, grid: Grid) -> float:
+def resolvable(case: Scaled, grid: Grid, rough: Array) -> float:
     """Factor on the speed, at least 1, at which the film is not below what the grid can resolve.
 
     A coarse grid thins a film by about the square of the distance of its nodes; a film it would close starts no
-    solution on the next grid.
+    solution on the next grid. Neither does one that the highest asperities close before they are resolved.
 
     Args:
         case: the contact
         grid: the grid
+        rough: what roughness takes from the gap (n, n) [1]
     """
-    return max(1.0, (RESOLVED * grid.hx**2 / case.film) ** 1.5) if case.film > 0 else 1.0
+    film = max(RESOLVED * grid.hx**2, -float(rough.min()))
+    return max(1.0, (film / case.film) ** 1.5) if case.film > 0 else 1.0
 
 
 def descent(start: float, end: float) -> list[float]:

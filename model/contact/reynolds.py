@@ -4,9 +4,9 @@ In units of the Hertz contact (x, y over a; p over p_h; h over a^2/R_x; t over a
 
     div(eps grad p) - s dm/dx - dm/dt = 0,    eps = kappa rho h^3 / (eta/eta_0),    m = rho (h - h_b) + h_b,
 
-with kappa = p_h a^3 / (12 eta_0 u_m R_x^2) and s = 1 (0 at rest). The last
-molecules h_b of a film are bound to the surfaces and as stiff as they are; without them m = rho h. The wedge is differenced upstream over three nodes,
-eps is the mean of two neighbours (Venner and Lubrecht, Multilevel Methods in Lubrication, 2000, chapters 5 and 6).
+with kappa = p_h a^3 / (12 eta_0 u_m R_x^2) and s = 1 (0 at rest). The last molecules h_b of a film are bound to the
+surfaces and as stiff as they are; without them m = rho h. The wedge is differenced upstream over three nodes, eps is
+the mean of two neighbours (Venner and Lubrecht, Multilevel Methods in Lubrication, 2000, chapters 5 and 6).
 """
 
 from __future__ import annotations

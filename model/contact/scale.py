@@ -107,6 +107,8 @@ class Scaled:
         oil, unit = self.contact.lubricant, self.unit
         kappa = unit.h**2 * unit.p / (12 * oil.eta_0 * unit.u * faster * unit.a)
         wedge = self.contact.u_m / unit.u if self.contact.u_m > REST else 0.0
+        if wedge == 0 and squeeze == 0:
+            kappa = 0.0  # at rest the oil has left
         return Reynolds(oil, unit.p, kappa, wedge, grid.hx, grid.hy, squeeze, past, floor)
 
     def grid(self, n: int, domain: tuple[float, float, float] | None = None) -> Grid:

@@ -186,9 +186,12 @@ def _advanced(course: Course, past: list[Moment], t: float, contact: Contact, ha
 
 def _between(a: Contact, b: Contact) -> Contact:
     """The contact half way between two, linear in load, curvatures and speeds."""
-    curved = {k: 2 / (1 / getattr(a, k) + 1 / getattr(b, k)) if getattr(a, k) < np.inf else np.inf for k in ("R_x", "R_y")}
-    linear = {k: (getattr(a, k) + getattr(b, k)) / 2 for k in ("F", "u_1", "u_2")}
-    return replace(b, **curved, **linear)
+
+    def mean(name: str, power: int = 1) -> float:
+        x, y = getattr(a, name), getattr(b, name)
+        return float(((x**power + y**power) / 2) ** power) if x < np.inf else x
+
+    return replace(b, F=mean("F"), u_1=mean("u_1"), u_2=mean("u_2"), R_x=mean("R_x", -1), R_y=mean("R_y", -1))
 
 
 def _shifted(height: Height | None, moved: float) -> Height | None:
