@@ -19,6 +19,9 @@ PREFIX = "map:"
 #: Highest sum of the degrees of the three polynomials; less where there are fewer contacts than terms.
 DEGREE = 4
 
+#: Fewest contacts of a map.
+FEWEST = 4
+
 #: The columns of a map. Values of the contact itself are the same in all rows.
 COLUMNS = (
     Column("F [N]", "normal force", above=0.0),
@@ -142,9 +145,10 @@ def fitted(
     ranges = tuple((float(line.min()), float(line.max())) for line in points.T) if len(points) else ()
     levels = [len(distinct(line)) for line in points.T]
     degrees = next((d for n in range(DEGREE, 0, -1) if len(d := _degrees(levels, n)) <= len(points)), ())
-    if len(degrees) < 2:
+    if len(points) < FEWEST or len(degrees) < 2:
         raise DataError(
-            f"{name}: {len(points)} contacts with a film are too few for a law. Solve more loads, speeds or temperatures."
+            f"{name}: {len(points)} contacts with a film are too few for a law. "
+            f"Solve at least {FEWEST} loads, speeds or temperatures."
         )
     z = np.column_stack([_place(line, *limits) for line, limits in zip(points.T, ranges, strict=True)])
     basis = np.column_stack([np.broadcast_to(b, len(z)) for b in products(list(z.T), degrees)])
