@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -144,14 +144,15 @@ def _case(
     """A case of values in SI. Raises ScenarioError where they make no contact."""
     first = {key: ranges[key].first if key in ranges else fixed[key] for key in AXES}
     eta_0, alpha_p = oil(first["T"])
-    rest = {key: liquid[key] for key in ("p_r", "tau_eyring") if key in liquid}
+    usual = Lubricant(eta_0, alpha_p)
+    oil_there = replace(usual, p_r=liquid.get("p_r", usual.p_r), tau_eyring=liquid.get("tau_eyring", usual.tau_eyring))
     contact = Contact(
         F=first["F"],
         R_x=values["R_x"],
         u_1=first["u_m"],
         u_2=first["u_m"],
         E_eff=values["E_eff"],
-        lubricant=Lubricant(eta_0, alpha_p, **rest),
+        lubricant=oil_there,
         R_y=values.get("R_y", inf),
         length=values["length"],
         edge_radius=values.get("edge_radius", 0.0),
@@ -162,8 +163,8 @@ def _case(
         raise ScenarioError(
             f'{about[0]}: nothing is varied. Give [vary] or --vary, for example --vary "u_m=0.1..5 m/s".'
         )
-    known = (values.get("slide_roll", 0.0), values.get("sigma"), values.get("mu_boundary"))
-    return MapCase(*about, contact, oil, *known, ordered, dict(fixed))
+    slide_roll, sigma, mu_boundary = values.get("slide_roll", 0.0), values.get("sigma"), values.get("mu_boundary")
+    return MapCase(*about, contact, oil, slide_roll, sigma, mu_boundary, ordered, dict(fixed))
 
 
 def _values(
