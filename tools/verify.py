@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 from ..model.errors import GearheatError, ScenarioError
 from ..model.sources import LawInfo, sources
@@ -25,6 +25,9 @@ from .verdicts import NOT_REPRODUCED, Machine, Value, Verdict, counts, judged, k
 from .verify_page import render
 from .verify_table import show
 
+A = TypeVar("A")
+B = TypeVar("B")
+
 #: Exit code where a number is not reproduced.
 FAILED = 1
 
@@ -33,10 +36,10 @@ def command(rig: str | None, json: str | None, html: Path | None) -> None:
     """Verify one rig with the laws it uses, or all shipped rigs and all laws; exit code 1 if a number fails."""
     writable(file_of(json), html)
     rigs = [RigValues(load(name)) for name in ([rig] if rig else list_rigs())]
-    rows = [published_of(values.scenario) for values in rigs]
+    rows = _each(published_of, [values.scenario for values in rigs])
     laws = [row for row in golden_rows() if rig is None or law_of(row) in rigs[0].laws]
     with _progress(sum(map(len, rows)) + len(laws)) as advance:
-        machines = [_machine(values, own, advance) for values, own in zip(rigs, rows, strict=True)]
+        machines = _each(lambda pair: _machine(pair[0], pair[1], advance), list(zip(rigs, rows, strict=True)))
         verdicts = verified(laws, None, advance)
     found = as_dict(machines, verdicts)
     if html is not None:
@@ -44,6 +47,20 @@ def command(rig: str | None, json: str | None, html: Path | None) -> None:
     answer(found, json, lambda: show(machines, verdicts, found))
     if found["counts"][NOT_REPRODUCED]:
         sys.exit(FAILED)
+
+
+def _each(work: Callable[[A], B], items: Sequence[A]) -> list[B]:
+    """Work done on each item, or the problems of all of them."""
+    found: list[B] = []
+    problems: list[str] = []
+    for item in items:
+        try:
+            found.append(work(item))
+        except ScenarioError as error:
+            problems += error.problems
+    if problems:
+        raise ScenarioError(problems)
+    return found
 
 
 def published_of(scenario: Scenario) -> tuple[Row, ...]:
@@ -56,7 +73,10 @@ def published_of(scenario: Scenario) -> tuple[Row, ...]:
         ScenarioError: everything wrong with the file at once
     """
     path = scenario.path.parent / "published.toml"
-    return read_published(path) if path.is_file() else ()
+    try:
+        return read_published(path) if path.is_file() else ()
+    except ScenarioError as error:
+        raise ScenarioError([f"{scenario.name}: {problem}" for problem in error.problems]) from None
 
 
 def as_dict(machines: Sequence[Machine], laws: Sequence[Verdict]) -> dict[str, Any]:
@@ -108,7 +128,7 @@ def verified(rows: Sequence[Row], rig: RigValues | None, advance: Any = lambda: 
     known: dict[str, Verdict] = {}
     found = []
     for row in sorted(rows, key=lambda row: row.run == "rows"):  # they need the others
-        if problems and not known.keys() >= set(row.of.values()):  # told already
+        if not known.keys() >= set(row.of.values()):  # what is wrong with the others is told
             continue
         try:
             verdict = judged(row, _value(row, rig, known))
@@ -129,17 +149,24 @@ def _value(row: Row, rig: RigValues | None, known: Mapping[str, Verdict]) -> Val
     if row.run == "law":
         return _law_value(row)
     if row.run in ("rows", "print"):
-        others = {name: known[other].model for name, other in row.of.items() if other in known}
-
-        def value_of(name: str) -> Any:
-            if others.get(name) is None:
-                raise ScenarioError(f'there is no value of "{name}".')
-            return others[name]
-
-        return Value(single(row.path, value_of), labelled=True)
+        return _from_rows(row, known)
     if rig is None:
         raise ScenarioError(f'run = "{row.run}" needs a rig.')
     return rig.value(row)
+
+
+def _from_rows(row: Row, known: Mapping[str, Verdict]) -> Value:
+    """What an expression in other rows gives, or in printed numbers alone."""
+    others = {name: known[other].model for name, other in row.of.items()}
+    if lost := [row.of[name] for name, value in others.items() if value is None]:
+        return Value(None, problem=f"no solution of: {', '.join(lost)}")
+
+    def value_of(name: str) -> Any:
+        if name not in others:
+            raise ScenarioError(f'"{name}" is not among the names of the row ({", ".join(others) or "none"}).')
+        return others[name]
+
+    return Value(single(row.path, value_of), labelled=True)
 
 
 def _law_value(row: Row) -> Value:

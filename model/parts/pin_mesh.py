@@ -173,7 +173,12 @@ class PinMesh:
         return self.Rp * pole_distance(self.K, contact.theta) - self.r_rp
 
     def minimum_film(self, contact: PinContact, film: Film) -> Num:
-        """Minimum film between disc and pin [m]."""
+        """Minimum film between disc and pin [m].
+
+        Args:
+            contact: of the pin with the disc
+            film: what acts in the mesh
+        """
         if self.law is not None:
             return self.law.films(film.eta, 2 * contact.U, contact.w, contact.R)[1]
         return line_film_minimum(film.eta, 2 * contact.U, film.alpha_p, contact.w, contact.R, self.E_eff)

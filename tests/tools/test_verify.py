@@ -266,6 +266,17 @@ class TestCommand:
         assert "inputt.w" in answer.err and '"foo(2)"' in answer.err
         assert "Traceback" not in answer.err
 
+    def test_what_has_no_solution_is_not_reproduced_nor_what_follows_from_it(self, gearheat, reducer) -> None:
+        """No area cools the oil below the room; what is computed from that row has no value either."""
+        rows = GOOD.replace("oil.T=50 degC", "oil.T=5 degC").replace(
+            '{ i = "ratio" }', '{ i = "area that holds 50 degC, over 0.1 m2" }'
+        )
+        answer = gearheat("verify", reducer(rows), "--json", "-")
+        assert answer.code == 1
+        _, over, area = answer.json["machines"][0]["rows"]
+        assert over["verdict"] == area["verdict"] == NOT_REPRODUCED
+        assert "out of reach" in area["why"] and "no solution of: area" in over["why"]
+
     def test_contacts_over_a_mesh_cycle(self, gearheat, tmp_path: Path) -> None:
         """A total, a column at one angle, and a statement over all contacts."""
         (tmp_path / "rig.toml").write_text((RIGS / "rv_stage" / "rig.toml").read_text("utf-8"), encoding="utf-8")
