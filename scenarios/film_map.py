@@ -31,6 +31,7 @@ COLUMNS = (
     Column("alpha_p [1/Pa]", "pressure-viscosity coefficient", at_least=0.0),
     Column("h_c [m]", "central film", required=False, at_least=0.0),
     Column("h_min [m]", "minimum film", required=False, at_least=0.0),
+    Column("h_c_formula [m]", "central film by the formula for such contacts", required=False),
     Column("mu_fluid [1]", "friction coefficient of the film", required=False, at_least=0.0),
     Column("Lambda [1]", "central film over composite roughness", required=False),
     Column("asperity_share [1]", "share of the load that asperities carry", required=False),
@@ -162,7 +163,6 @@ def fitted(
         return Fit(tuple(float(c) for c in coefficients), float(np.abs(error).max()))
 
     across = values.get("R_y [m]", np.array([np.nan]))[0]
-    rubbed = values.get("mu_fluid [1]", np.zeros(len(z)))
     law = FilmMap(
         name=name,
         file=file,
@@ -171,7 +171,6 @@ def fitted(
         degrees=degrees,
         central=fit("h_c", values["h_c [m]"] / R),
         minimum=fit("h_min", values["h_min [m]"] / R),
-        friction=fit("mu_fluid", rubbed) if bool((rubbed > 0).all()) else None,
         E_eff=float(values["E_eff [Pa]"][0]),
         R_ratio=0.0 if shape == "line" else float(across) / R,
     )

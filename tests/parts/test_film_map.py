@@ -65,11 +65,12 @@ class Disc(Component):
     F = Input("N/m", "load per length", nominal=1e4, start=5e4)
     x = State("1", "integral of the film, in um")
     h = Output("m", "central film", nominal=1e-6)
-    mu = Output("1", "friction coefficient of the film")
+    h_min = Output("m", "minimum film", nominal=1e-6)
 
     def equations(self) -> Iterator[Equation]:
-        yield equation("film", self.h, self.film.films(0.07, 2 * self.u, self.F, R)[0])
-        yield equation("friction", self.mu, self.film.fluid_friction(0.07, 2 * self.u, self.F, R))
+        h_c, h_min = self.film.films(0.07, 2 * self.u, self.F, R)
+        yield equation("film", self.h, h_c)
+        yield equation("minimum film", self.h_min, h_min)
         yield equation("integral", self.der("x"), 1e6 * self.h)
 
 
@@ -85,7 +86,7 @@ def test_an_fmu_has_the_map_in_its_equations(law: FilmMap, tmp_path: Path) -> No
     times = np.linspace(0.0, 20.0, 41)
     played = play(tmp_path / "disc.fmu", duty, 20.0, 0.5, tolerance=1e-8, output_times=times)
     result = simulate(flat, Schedule(*_joined(duty)), times=times, tolerance=1e-8)
-    for name, rel in (("disc.h", 1e-9), ("disc.mu", 1e-9), ("disc.x", 1e-5)):
+    for name, rel in (("disc.h", 1e-9), ("disc.h_min", 1e-9), ("disc.x", 1e-5)):
         assert played[name] == pytest.approx(np.asarray(result[name]), rel=rel), name
     outside = {(o.law, o.argument) for o in result.outside}
     assert outside == {("film_map", "load"), ("film_map", "speed")}
