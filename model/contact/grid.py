@@ -57,6 +57,7 @@ class Grid:
         near = self.deformation.near[i[:, None, :, None], i[None, :, None, :]]
         return np.asarray(near.reshape(self.n**2, self.n**2))
 
+    @cached_property
     def coarser(self) -> Grid:
         """The grid of every other node."""
         return Grid(self.x, self.y, (self.n + 1) // 2, self.elastic)

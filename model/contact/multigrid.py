@@ -86,7 +86,7 @@ class Cycle:
         coarse = replace(reynolds, hx=2 * reynolds.hx, hy=2 * reynolds.hy)
         p_c, h_c = np.ascontiguousarray(p[::2, ::2]), np.ascontiguousarray(h[::2, ::2])
         active, touching = linear.active[::2, ::2].copy(), linear.touching[::2, ::2].copy()
-        below = linearise(grid.coarser(), coarse.linear(p_c, h_c), active, touching)
+        below = linearise(grid.coarser, coarse.linear(p_c, h_c), active, touching)
         self._coarse = Cycle(below, coarse, p_c, h_c)
 
     def __call__(self, r: Array, load: float) -> tuple[Array, float]:

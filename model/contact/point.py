@@ -75,7 +75,7 @@ def steady(case: Scaled, finest: Grid, roughness: Height | None, tolerance: floa
     """
     grids = [finest]
     while grids[0].n > FIRST:
-        grids.insert(0, grids[0].coarser())
+        grids.insert(0, grids[0].coarser)
     grounds = [gap(case, finest, roughness) - case.gap(finest)]
     for _ in grids[1:]:
         grounds.insert(0, restrict(grounds[0]))

@@ -18,7 +18,7 @@ from .case import Array
 #: Entries of the band on either side of the diagonal.
 BAND = 4
 #: Pressure flow over deformation flow at a node where half of a change is spread.
-SPREAD_LIMIT = 0.4
+SPREAD_LIMIT = 4.0
 
 
 class Lines:

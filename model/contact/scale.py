@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import exp, inf, pi, sqrt
+from math import atan, exp, inf, pi, sqrt
 
 import numpy as np
 
@@ -18,16 +18,22 @@ REST = 1e-12
 
 
 def central_film(contact: Contact) -> float:
-    """Central film of an elliptical contact by Hamrock and Dowson (J. Lubr. Technol. 99, 1977) [m], a first guess."""
+    """Central film expected [m], for a first guess and the size of the grid.
+
+    The thicker of the elastic film of Hamrock and Dowson (J. Lubr. Technol. 99, 1977) and that between rigid bodies
+    (Brewe, Hamrock and Taylor, J. Lubr. Technol. 101, 1979); of a line contact, Dowson's (Proc. IMechE 182, 1968).
+    """
     oil, e, r = contact.lubricant, contact.E_eff, contact.R_x
     if contact.u_m <= 0:
         return 0.0
-    u, g, w = oil.eta_0 * contact.u_m / (e * r), oil.alpha_p * e, contact.F / (e * r**2)
-    k = inf if contact.R_y == inf or contact.edge_radius > 0 else 1.03 * (contact.R_y / r) ** 0.64
-    if k == inf:
+    u, g = oil.eta_0 * contact.u_m / (e * r), oil.alpha_p * e
+    if contact.R_y == inf or contact.edge_radius > 0:
         w = contact.F / contact.length / (e * r)
-        return 2.92 * r * u**0.692 * g**0.47 * w**-0.166
-    return 2.69 * r * u**0.67 * g**0.53 * w**-0.067 * (1 - 0.61 * exp(-0.73 * k))
+        return 2.65 * r * u**0.7 * g**0.54 * w**-0.13
+    w, ratio = contact.F / (e * r**2), contact.R_y / r
+    elastic = 2.69 * u**0.67 * g**0.53 * w**-0.067 * (1 - 0.61 * exp(-0.73 * 1.03 * ratio**0.64))
+    leakage = ratio / (1 + 2 / (3 * ratio)) ** 2 * (0.131 * atan(ratio / 2) + 1.683) ** 2
+    return r * max(elastic, 128 * leakage * (u / w) ** 2)
 
 
 @dataclass(frozen=True)
