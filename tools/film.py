@@ -190,7 +190,8 @@ def table_of(case: MapCase, points: np.ndarray, kept: np.ndarray) -> str:
     constant = (c.R_x, across, c.length, c.E_eff, case.slide_roll, case.sigma, case.mu_boundary)
     for (F, u_m, T), (h_c, h_min, mu_fluid, share, p_max, found) in zip(points, kept, strict=True):
         eta_0, alpha_p = case.oil(float(T))
-        films, rest = (None, None), (None,) * 5
+        films: tuple[float | None, ...] = (None,) * 2
+        rest: tuple[float | None, ...] = (None,) * 5
         formula = formula_of(contact_at(case, np.array([F, u_m, T])))
         if found:
             Lambda = h_c / case.sigma if case.sigma else None
