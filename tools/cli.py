@@ -388,6 +388,8 @@ def film(
     json: Json = None,
 ) -> None:
     """Solve a contact over load, speed and temperature: a film map, and the law that parts take from it."""
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # its matrices are small
+        os.environ.setdefault(name, "1")
     from . import film
 
     film.command(film.Request(rig, out, part, vary or [], grid, nodes, plot, set_ or [], json))
