@@ -21,7 +21,9 @@ from ..settings import flat_of
 from .rows import Found, Job, row
 
 #: Angles of the cycle [deg] and their number, as in the article; nodes, and time steps between two angles.
-ANGLES, POINTS, NODES, STEPS = (30.0, 120.0), 15, 161, 2
+ANGLES, POINTS, NODES, STEPS = (30.0, 120.0), 15, 321, 2
+#: Domain of the transient over the half width of each Hertz contact.
+DOMAIN = (-4.0, 1.5)
 #: What a part with contacts has to tell beside its table.
 KEYS = ("eta_oil", "alpha_p", "E_eff", "b", "sigma", "w_crank")
 #: Bands of the article: specific film thickness, and share of the load on asperities.
@@ -102,7 +104,7 @@ def _columns(rows: Sequence[dict[str, float]], key: str) -> tuple[list[float], l
 def _work(rig: str) -> Found:
     """The transient, the steady contacts at the same angles, and the article's trends solved."""
     cycle = cycle_of(rig)
-    moving = solve_line_cycle(cycle.contacts, cycle.times, n=NODES, steps=STEPS)
+    moving = solve_line_cycle(cycle.contacts, cycle.times, n=NODES, steps=STEPS, domain=DOMAIN)
     still = [solve_line(c, n=NODES) for c in cycle.contacts]
     h = [1e9 * f.h_c for f in moving]
     ratio = [f.h_c / cycle.sigma for f in moving]
