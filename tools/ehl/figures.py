@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import NullFormatter
 
 from ..plots import COLOURS, STYLE, empty, svg
 from .pages import Row
@@ -32,6 +33,9 @@ def films(table: Sequence[Row]) -> str:
             panel.plot(*zip(*points, strict=True), MARKS[i], color=COLOURS[i], markersize=4, label=quantity)
         _logarithmic(panel, title=item, xlabel="reference", ylabel="this solver")
         panel.set(xlim=(low, high), ylim=(low, high))
+        if high > 10 * low:  # ticks between the decades have no room for numbers
+            for axis in (panel.xaxis, panel.yaxis):
+                axis.set_minor_formatter(NullFormatter())
         _legend(panel)
     return svg(figure)
 
@@ -107,7 +111,8 @@ def dent(found: Mapping[str, Found]) -> str:
     for i, (name, study) in enumerate(found.items()):
         place, film = panels[2 * i], panels[2 * i + 1]
         moments = np.array(study["moments"])
-        seen = np.array([np.nan if at is None else at for at in study["places"]], dtype=float)
+        near = [-1.6 < at < 0.9 for at in study["dent"]]  # of the dent: else there is nothing to see
+        seen = [at if at is not None and seen else np.nan for at, seen in zip(study["places"], near, strict=True)]
         place.plot(moments, study["dent"], color="#888888", label="the dent itself")
         place.plot(moments, seen, "o", color=COLOURS[0], markersize=3, label="largest change of the film")
         place.set(title=name, xlabel="time, u_m t/a", ylabel="x/a", ylim=(-1.2, 1.2))

@@ -57,14 +57,18 @@ def rows(found: Sequence[tuple[Job, Found]]) -> list[Row]:
 def summary(table: Sequence[Row]) -> list[list[str]]:
     """One line an item and quantity: how many rows lie where."""
     lines = []
-    for item, quantity in dict.fromkeys((row["item"], row["quantity"]) for row in table):
-        mine = [row for row in table if (row["item"], row["quantity"]) == (item, quantity)]
+    for item, quantity, judged in dict.fromkeys(map(_kind, table)):
+        mine = [row for row in table if _kind(row) == (item, quantity, judged)]
         within = sum(row["verdict"] == "within" for row in mine)
         outside = sum(row["verdict"] == "outside" for row in mine)
         worst = max(mine, key=_badness)
         counts = [str(len(mine)), str(within or ""), str(outside or "")]
         lines.append([f"{item}: {quantity}", *counts, _deviation(worst), _tolerance(worst)])
     return lines
+
+
+def _kind(row: Row) -> tuple[str, str, bool]:
+    return row["item"], row["quantity"], row["verdict"] != "reported"
 
 
 def _badness(row: Row) -> float:
