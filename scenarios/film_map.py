@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
@@ -16,8 +16,11 @@ from .csv_table import Column, Table, parse, raise_all
 
 #: How a rig file says that a film comes from a map.
 PREFIX = "map:"
-#: Highest sum of the degrees of the three polynomials.
+#: Highest sum of the degrees of the three polynomials; less where there are fewer contacts than terms.
 DEGREE = 4
+
+#: Fewest contacts of a map.
+FEWEST = 4
 
 #: The columns of a map. Values of the contact itself are the same in all rows.
 COLUMNS = (
@@ -28,6 +31,7 @@ COLUMNS = (
     Column("alpha_p [1/Pa]", "pressure-viscosity coefficient", at_least=0.0),
     Column("h_c [m]", "central film", required=False, at_least=0.0),
     Column("h_min [m]", "minimum film", required=False, at_least=0.0),
+    Column("h_c_formula [m]", "central film by the formula for such contacts", required=False),
     Column("mu_fluid [1]", "friction coefficient of the film", required=False, at_least=0.0),
     Column("Lambda [1]", "central film over composite roughness", required=False),
     Column("asperity_share [1]", "share of the load that asperities carry", required=False),
@@ -40,7 +44,7 @@ COLUMNS = (
     Column("E_eff [Pa]", "effective modulus", above=0.0),
     Column("slide_roll [1]", "sliding speed over mean speed", at_least=0.0),
     Column("sigma [m]", "composite roughness; empty where it is not known", required=False),
-    Column("mu_boundary [1]", "friction coefficient of touching surfaces", at_least=0.0),
+    Column("mu_boundary [1]", "friction coefficient of touching surfaces", required=False),
 )
 #: Columns of what a contact is, which do not change over a map.
 CONSTANT = ("R_x [m]", "R_y [m]", "length [m]", "E_eff [Pa]", "slide_roll [1]")
@@ -71,6 +75,8 @@ def read_film_map(path: Path, name: str = "") -> FittedMap:
     table, problems = parse(path, COLUMNS)
     rows = _solved(table, problems)
     raise_all(problems, path.name)
+    if not rows:
+        raise DataError(f"{path.name}: 0 contacts with a film. Solve other loads, speeds or temperatures.")
     values = {c: np.array(table.columns[c], dtype=float)[rows] for c in table.columns if c != "status"}
     for column in CONSTANT:
         held = values.get(column, np.array([np.nan]))
@@ -139,13 +145,11 @@ def fitted(
     name, file, shape = about
     ranges = tuple((float(line.min()), float(line.max())) for line in points.T) if len(points) else ()
     levels = [len(distinct(line)) for line in points.T]
-    degrees = tuple(
-        (i, j, k) for i, j, k in product(*(range(min(n, DEGREE + 1)) for n in levels)) if i + j + k <= DEGREE
-    )
-    if len(points) < max(len(degrees), 4) or max(levels, default=0) < 2:
+    degrees = next((d for n in range(DEGREE, 0, -1) if len(d := _degrees(levels, n)) <= len(points)), ())
+    if len(points) < FEWEST or len(degrees) < 2:
         raise DataError(
-            f"{name}: {len(points)} contacts with a film are too few for a law of {len(degrees)} terms. "
-            "Solve more loads, speeds or temperatures."
+            f"{name}: {len(points)} contacts with a film are too few for a law. "
+            f"Solve at least {FEWEST} loads, speeds or temperatures."
         )
     z = np.column_stack([_place(line, *limits) for line, limits in zip(points.T, ranges, strict=True)])
     basis = np.column_stack([np.broadcast_to(b, len(z)) for b in products(list(z.T), degrees)])
@@ -159,7 +163,6 @@ def fitted(
         return Fit(tuple(float(c) for c in coefficients), float(np.abs(error).max()))
 
     across = values.get("R_y [m]", np.array([np.nan]))[0]
-    rubbed = values.get("mu_fluid [1]", np.zeros(len(z)))
     law = FilmMap(
         name=name,
         file=file,
@@ -168,11 +171,16 @@ def fitted(
         degrees=degrees,
         central=fit("h_c", values["h_c [m]"] / R),
         minimum=fit("h_min", values["h_min [m]"] / R),
-        friction=fit("mu_fluid", rubbed) if bool((rubbed > 0).all()) else None,
         E_eff=float(values["E_eff [Pa]"][0]),
         R_ratio=0.0 if shape == "line" else float(across) / R,
     )
     return FittedMap(law, len(points), failed, rms)
+
+
+def _degrees(levels: Sequence[int], highest: int) -> tuple[tuple[int, int, int], ...]:
+    """Degrees of the three polynomials of each product that so many values of each variable determine."""
+    ranges = (range(min(n, highest + 1)) for n in levels)
+    return tuple((i, j, k) for i, j, k in product(*ranges) if i + j + k <= highest)
 
 
 def _place(line: np.ndarray, low: float, high: float) -> np.ndarray:

@@ -118,7 +118,7 @@ class _Loader:
         self.path = path
         self.known = known
         self.file = path.name
-        self.name = path.parent.name if path.name == "rig.toml" else path.stem
+        self.name = path.resolve().parent.name if path.name == "rig.toml" else path.stem
         self.table: RigTable
         self.table, self.problems = validate(self.file, raw)
         if self.table.kind not in LAYOUTS and (self.table.kind or not self.problems):

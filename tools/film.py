@@ -16,6 +16,8 @@ import numpy as np
 from ..model.contact import Contact, Lubricant, solve
 from ..model.errors import ScenarioError, SolveError
 from ..model.laws.film import asperity_share, mixed_friction
+from ..model.laws.film_line import line_film_central
+from ..model.laws.film_point import point_film_central
 from ..model.units import from_si, shown
 from ..scenarios.film_map import COLUMNS, FAILED, FittedMap, read_film_map
 from . import console
@@ -188,16 +190,28 @@ def table_of(case: MapCase, points: np.ndarray, kept: np.ndarray) -> str:
     constant = (c.R_x, across, c.length, c.E_eff, case.slide_roll, case.sigma, case.mu_boundary)
     for (F, u_m, T), (h_c, h_min, mu_fluid, share, p_max, found) in zip(points, kept, strict=True):
         eta_0, alpha_p = case.oil(float(T))
-        films: tuple[float | None, ...] = (None,) * 7
+        films: tuple[float | None, ...] = (None,) * 2
+        rest: tuple[float | None, ...] = (None,) * 5
+        formula = formula_of(contact_at(case, np.array([F, u_m, T])))
         if found:
             Lambda = h_c / case.sigma if case.sigma else None
             carried = float(asperity_share(Lambda)) if Lambda is not None else share
             rough = Lambda is not None and case.mu_boundary is not None
             mu = float(mixed_friction(Lambda, mu_fluid, case.mu_boundary)) if rough else None
-            films = (h_c, h_min, mu_fluid, Lambda, carried, mu, p_max)
-        cells = [F, u_m, T - 273.15, eta_0, alpha_p, *films, "ok" if found else FAILED, *constant]
+            films, rest = (h_c, h_min), (mu_fluid, Lambda, carried, mu, p_max)
+        cells = [F, u_m, T - 273.15, eta_0, alpha_p, *films, formula, *rest, "ok" if found else FAILED, *constant]
         text.write(",".join("" if v is None else v if isinstance(v, str) else f"{v:.9g}" for v in cells) + "\n")
     return text.getvalue()
+
+
+def formula_of(contact: Contact) -> float:
+    """Central film by the formula for such contacts [m]: Moes for lines, Nijenbanning, Venner and Moes for ellipses."""
+    oil, u_sum = contact.lubricant, 2 * contact.u_m
+    if not isfinite(contact.R_y) or contact.edge_radius > 0:
+        load = contact.F / contact.length
+        return float(line_film_central(oil.eta_0, u_sum, oil.alpha_p, load, contact.R_x, contact.E_eff))
+    shape = (contact.R_x, contact.R_y, contact.E_eff)
+    return float(point_film_central(oil.eta_0, u_sum, oil.alpha_p, contact.F, *shape))
 
 
 def _named(case: MapCase, point: np.ndarray) -> str:
@@ -212,7 +226,7 @@ def _named(case: MapCase, point: np.ndarray) -> str:
 
 def _payload(case: MapCase, request: Request, found: FittedMap, failed: Sequence[str]) -> dict[str, Any]:
     law = found.law
-    fits = {"h_c": law.central, "h_min": law.minimum, "mu_fluid": law.friction}
+    fits = {"h_c": law.central, "h_min": law.minimum}
     return {
         "schema": "gearheat.film/1",
         "case": case.name,
@@ -230,7 +244,7 @@ def _payload(case: MapCase, request: Request, found: FittedMap, failed: Sequence
             for a in case.axes
         },
         "terms": len(law.degrees),
-        "fit": {k: {"largest": f.error, "rms": found.rms[k]} for k, f in fits.items() if f is not None},
+        "fit": {k: {"largest": f.error, "rms": found.rms[k]} for k, f in fits.items()},
         "plot": None if request.plot is None else str(request.plot),
     }
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import inf
 from pathlib import Path
 from typing import Any
@@ -36,8 +36,8 @@ NEEDED = {"R_x": "m", "length": "m", "E_eff": "Pa"}
 MAY_BE = {"F": "N", "u_m": "m/s", "R_y": "m", "edge_radius": "m", "slide_roll": "1", "sigma": "m", "mu_boundary": "1"}
 OIL = {"eta_0": "Pa.s", "alpha_p": "1/Pa"}
 OIL_MAY_BE = {"T": "K", "p_r": "Pa", "tau_eyring": "Pa"}
-#: Range of a rig's map about the operating point, over the value there, and its temperatures [K].
-ABOUT, WARM = (0.25, 2.0), (313.15, 373.15)
+#: Ranges of the map of a part over the value at the operating point, and its temperatures [K].
+ABOUT, WARM = {"F": (0.05, 2.0), "u_m": (0.25, 2.0)}, (313.15, 373.15)
 
 #: Dynamic viscosity [Pa.s] and pressure-viscosity coefficient [1/Pa] at a temperature [K].
 Oil = Callable[[float], tuple[float, float]]
@@ -144,14 +144,15 @@ def _case(
     """A case of values in SI. Raises ScenarioError where they make no contact."""
     first = {key: ranges[key].first if key in ranges else fixed[key] for key in AXES}
     eta_0, alpha_p = oil(first["T"])
-    rest = {key: liquid[key] for key in ("p_r", "tau_eyring") if key in liquid}
+    usual = Lubricant(eta_0, alpha_p)
+    oil_there = replace(usual, p_r=liquid.get("p_r", usual.p_r), tau_eyring=liquid.get("tau_eyring", usual.tau_eyring))
     contact = Contact(
         F=first["F"],
         R_x=values["R_x"],
         u_1=first["u_m"],
         u_2=first["u_m"],
         E_eff=values["E_eff"],
-        lubricant=Lubricant(eta_0, alpha_p, **rest),
+        lubricant=oil_there,
         R_y=values.get("R_y", inf),
         length=values["length"],
         edge_radius=values.get("edge_radius", 0.0),
@@ -162,8 +163,8 @@ def _case(
         raise ScenarioError(
             f'{about[0]}: nothing is varied. Give [vary] or --vary, for example --vary "u_m=0.1..5 m/s".'
         )
-    known = (values.get("slide_roll", 0.0), values.get("sigma"), values.get("mu_boundary"))
-    return MapCase(*about, contact, oil, *known, ordered, dict(fixed))
+    slide_roll, sigma, mu_boundary = values.get("slide_roll", 0.0), values.get("sigma"), values.get("mu_boundary")
+    return MapCase(*about, contact, oil, slide_roll, sigma, mu_boundary, ordered, dict(fixed))
 
 
 def _values(
@@ -246,7 +247,7 @@ def from_rig(scenario: Scenario, part: str | None, vary: Sequence[str]) -> MapCa
             f"{scenario.name}: {chosen.name} carries {c.F:g} N at {u_m:g} m/s at the operating point: a contact "
             "without load or speed has no film. Give the rig an operating point with both."
         )
-    ranges = {k: Axis(k, "uniform", ABOUT[0] * v, ABOUT[1] * v) for k, v in (("F", c.F), ("u_m", u_m))}
+    ranges = {k: Axis(k, "uniform", ABOUT[k][0] * v, ABOUT[k][1] * v) for k, v in (("F", c.F), ("u_m", u_m))}
     ranges |= {"T": Axis("T", "uniform", *WARM)} | varied(vary)
     values: dict[str, Any] = {"R_x": c.R_x, "length": c.length, "E_eff": c.E_eff, "sigma": c.sigma, "R_y": c.R_y}
     values["slide_roll"] = abs(c.u_1 - c.u_2) / u_m

@@ -9,6 +9,7 @@ from .case import Contact, Lubricant
 from .film import Film
 from .hertz import Hertz, hertz
 from .line import solve_line
+from .line_cycle import solve_line_cycle
 from .point import FLOOR, Height, solve_point
 from .rough import Texture, gaussian_texture
 from .transient import solve_transient
@@ -22,6 +23,8 @@ __all__ = [
     "gaussian_texture",
     "hertz",
     "solve",
+    "solve_line",
+    "solve_line_cycle",
     "solve_transient",
 ]
 

@@ -96,7 +96,7 @@ def film_of(case: Scaled, grid: Grid, state: State, gap: Array, floor: float) ->
     )
 
 
-def friction(contact: Contact, p: Array, h: Array, p_asperity: Array, cell: float) -> float:
+def friction(contact: Contact, p: Array, h: Array, p_asperity: Array, cell: float | Array) -> float:
     """Friction coefficient of sliding: Eyring's shear of the film, and boundary friction where surfaces touch [1].
 
     Args:
@@ -104,7 +104,7 @@ def friction(contact: Contact, p: Array, h: Array, p_asperity: Array, cell: floa
         p: pressure [Pa]
         h: film [m]
         p_asperity: pressure on touching surfaces [Pa]
-        cell: area of a node [m2]
+        cell: area of a node, or of each node [m2]
     """
     v, oil = abs(contact.u_1 - contact.u_2), contact.lubricant
     if v == 0:
@@ -112,7 +112,7 @@ def friction(contact: Contact, p: Array, h: Array, p_asperity: Array, cell: floa
     p_fluid = p - p_asperity
     shear = oil.tau_eyring * np.arcsinh(oil.viscosity(p_fluid) * v / (h * oil.tau_eyring))
     tau = np.where(p_fluid > 0, shear, 0.0) + contact.mu_boundary * p_asperity
-    return float(tau.sum() * cell / contact.F)
+    return float((tau * cell).sum() / contact.F)
 
 
 def smallest(h: Array) -> float:

@@ -14,6 +14,8 @@ from .line_start import settled
 from .line_system import LineState, Moment
 from .line_unit import LineUnit, flooded, layer, line_unit
 
+#: Film in whose place none is, for its shear [m].
+LEAST_FILM = 1e-12
 #: Fewest nodes.
 FEWEST = 51
 
@@ -82,7 +84,7 @@ def film_of(unit: LineUnit, contact: Contact, moment: Moment, state: LineState) 
         h_min=smallest_of_line(x, h),
         approach=-state.h_0 * unit.film,
         asperity_share=float(touching @ cells / contact.F),
-        mu=friction(contact, p, h, touching, cells),
+        mu=friction(contact, p, np.maximum(h, LEAST_FILM), touching, cells),
         rolling_moment=float(-(x * b * p) @ cells),
         load_error=float(p @ cells / contact.F - 1),
         residual=state.residuals[-1],

@@ -67,7 +67,12 @@ class Moment:
         return self.couette == 0 and self.past is None
 
     def film(self, p: Array, h_0: float) -> Array:
-        """Film for a pressure (n) and an approach."""
+        """Film (n) of a pressure.
+
+        Args:
+            p: pressure (n)
+            h_0: approach
+        """
         return np.asarray(h_0 + self.gap + self.grid.deformation @ p)
 
 

@@ -79,7 +79,7 @@ def film_number(contact: Contact) -> float:
 
 def layer(contact: Contact) -> float:
     """Thickness of the layers at the edges of the contact, in half widths."""
-    return min(max(LAYER * film_number(contact) ** (2 / 3), 0.01), 1.0)
+    return float(min(max(LAYER * film_number(contact) ** (2 / 3), 0.01), 1.0))
 
 
 def flooded(contact: Contact) -> tuple[float, float]:

@@ -1,7 +1,7 @@
 """Film maps: films of solved contacts as a smooth law of load, speed and viscosity.
 
-Contacts of one shape, material and oil are similar: film over radius, and friction, follow from load over radius, speed
-over radius and viscosity. So a map that was solved for one radius holds for all of them.
+Contacts of one shape, material and oil are similar: film over radius follows from load over radius, speed over radius
+and viscosity. So a map that was solved for one radius holds for all of them.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from ..sources import law
 from .smooth import Num, smooth_abs, smooth_max, smooth_min
 
 #: How far beyond the map its law is used, and over what it is blurred there; in halves of the range.
-BEYOND, BLUR = 0.02, 0.01
+BEYOND, BLUR = 0.01, 0.004
 #: Roundings at standstill [m/s] and without load [N/m or N].
 U_WIDTH, F_WIDTH = 1e-6, 1e-3
 
@@ -46,7 +46,6 @@ class FilmMap:
         degrees: degree of each of the three polynomials, a triple for each product
         central: central film over radius [1]
         minimum: minimum film over radius [1]
-        friction: friction coefficient of the film [1]; None where a contact did not slide
         E_eff: effective modulus of the contacts [Pa]
         R_ratio: R_y over R_x of an ellipse [1]; 0 of a line
     """
@@ -58,7 +57,6 @@ class FilmMap:
     degrees: tuple[tuple[int, int, int], ...]
     central: Fit
     minimum: Fit
-    friction: Fit | None
     E_eff: float
     R_ratio: float = 0.0
 
@@ -77,22 +75,6 @@ class FilmMap:
         """
         z = self._places(eta_0, u_sum, F, R)
         return R * self._value(self.central, z), R * self._value(self.minimum, z)
-
-    def fluid_friction(self, eta_0: Num, u_sum: Num, F: Num, R: Num) -> Num:
-        """Friction coefficient of the film at the slide-roll ratio of the map [1].
-
-        Args:
-            eta_0: dynamic viscosity at the inlet [Pa.s]
-            u_sum: sum of the speeds of the two surfaces through the contact, either sign [m/s]
-            F: normal load per length of a line, normal force of an ellipse, either sign [N/m or N]
-            R: reduced radius along the direction of rolling [m]
-
-        Raises:
-            AttributeError: the contacts of the map did not slide
-        """
-        if self.friction is None:
-            raise AttributeError(f"{self.name} has no friction: its contacts do not slide")
-        return self._value(self.friction, self._places(eta_0, u_sum, F, R))
 
     def _places(self, eta_0: Num, u_sum: Num, F: Num, R: Num) -> list[Num]:
         """The three variables, -1 to 1 over their ranges, held at the edges."""
