@@ -38,8 +38,15 @@ STEP = 60.0
 EVERY = 0.02
 
 
-def command(rig: str, tests: str | None, json: str | None, fmu: bool = False) -> None:
-    """Measure and print: the main job, and with `fmu` the FMU against its peers and the batch."""
+def command(rig: str, tests: str | None, json: str | None, fmu: bool = False, contact: bool = False) -> None:
+    """Measure and print: the main job, with `fmu` the FMU against its peers and the batch, or the contact solver."""
+    if contact:
+        from .ehl import peer
+
+        compared = {"schema": "gearheat.bench/1", **peer.measure()}
+        title = "The contact solver and slippy, processor times of one core"
+        answer(compared, json, lambda: table(title, ("what", "value"), peer.rows(compared)))
+        return
     if fmu:
         note("the FMU, its peers and the batch; this installs PythonFMU in an environment of its own")
         measured = {"schema": "gearheat.bench/1", **bench_fmu.measure(rig), "batch": throughput.measure(rig)}

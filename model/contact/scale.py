@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import atan, exp, inf, pi, sqrt
+from math import atan, exp, inf, log, pi, sqrt
 
 import numpy as np
 
@@ -29,11 +29,11 @@ def central_film(contact: Contact) -> float:
     u, g = oil.eta_0 * contact.u_m / (e * r), oil.alpha_p * e
     if contact.R_y == inf or contact.edge_radius > 0:
         w = contact.F / contact.length / (e * r)
-        return 2.65 * r * u**0.7 * g**0.54 * w**-0.13
+        return float(2.65 * r * u**0.7 * g**0.54 * w**-0.13)
     w, ratio = contact.F / (e * r**2), contact.R_y / r
     elastic = 2.69 * u**0.67 * g**0.53 * w**-0.067 * (1 - 0.61 * exp(-0.73 * 1.03 * ratio**0.64))
     leakage = ratio / (1 + 2 / (3 * ratio)) ** 2 * (0.131 * atan(ratio / 2) + 1.683) ** 2
-    return r * max(elastic, 128 * leakage * (u / w) ** 2)
+    return float(r * max(elastic, 128 * leakage * (u / w) ** 2))
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ class Scaled:
         wedge = self.contact.u_m / unit.u if self.contact.u_m > REST else 0.0
         if wedge == 0 and squeeze == 0:
             kappa = 0.0  # at rest the oil has left
-        return Reynolds(oil, unit.p, kappa, wedge, grid.hx, grid.hy, squeeze, past, floor)
+        return Reynolds(oil, unit.p, kappa, wedge, grid.hx, grid.hy, squeeze, past, floor, self.contact.edge_radius > 0)
 
     def grid(self, n: int, domain: tuple[float, float, float] | None = None) -> Grid:
         """The finest grid.
@@ -135,9 +135,10 @@ class Scaled:
         x_out = 1.5
         k = next((k for k in range(parts // 2, 13) if x_out * k / (parts - k) >= 1 + ahead), 12)
         x_out = max(x_out, (1 + ahead) * (parts - k) / k)
-        radius = self.contact.edge_radius
-        ends = sqrt(2 * radius * self.unit.h) / self.unit.a if radius else 0.0  # the approach is of the order of h
-        return -x_out * k / (parts - k), x_out, self.unit.b / self.unit.a + ends + 0.5 + 0.45 * ahead
+        slender, ends = self.unit.b / self.unit.a, 0.0
+        if self.contact.edge_radius:  # as far as the rounded ends are twice as far apart as a line contact approaches
+            ends = sqrt(2 * self.contact.edge_radius * self.unit.h * (log(2 * slender) + 0.5)) / self.unit.a
+        return -x_out * k / (parts - k), x_out, slender + ends + 0.5 + 0.45 * ahead
 
 
 def checked(contact: Contact) -> Contact:
