@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import log, pi
 
@@ -97,7 +97,7 @@ def cycle_of(rig: str) -> Cycle:
     return Cycle(angles.tolist(), times.tolist(), contacts, column["h_c_m"].tolist(), values["sigma"])
 
 
-def _columns(rows: Sequence[dict[str, float]], key: str) -> tuple[list[float], list[float]]:
+def _columns(rows: Sequence[Mapping[str, float]], key: str) -> tuple[list[float], list[float]]:
     return [r["theta_deg"] for r in rows], [r[key] for r in rows]
 
 

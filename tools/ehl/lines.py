@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from itertools import pairwise
@@ -48,7 +49,7 @@ def _extrapolated(M: float, L: float, **more: Any) -> tuple[float, float, float]
     return (4 * central[1] - central[0]) / 3, (4 * least[1] - least[0]) / 3, worst
 
 
-def _table(case: dict[str, float], rel: float) -> Found:
+def _table(case: Mapping[str, float], rel: float) -> Found:
     """One row of the table of another solver, whose first order is extrapolated."""
     central, least, missing = _extrapolated(case["M"], case["L"])
     name = f"M {case['M']:g} L {case['L']:g}"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -27,7 +28,7 @@ def jobs(quick: bool) -> list[Job]:
     """
     n, steps = (65, 48) if quick else (65, 96)
     return [
-        Job("Moving dent", f"dented surface at {share:g} u_m", lambda share=share: _dent(share, n, steps), share == 1.0)
+        Job("Moving dent", f"dented surface at {share:g} u_m", partial(_dent, share, n, steps), share == 1.0)
         for share in SPEEDS
     ]
 
@@ -59,7 +60,7 @@ def _dent(share: float, n: int, steps: int) -> Found:
         _place(x, line, at - AHEAD if share == 1.0 else at + AHEAD) for line, at in zip(change, dent, strict=True)
     ]
     inside = _followed(places, dent)
-    slope = float(np.polyfit(moments[inside], [places[i] for i in inside], 1)[0])
+    slope = float(np.polyfit(moments[inside], np.array(places, dtype=float)[inside], 1)[0])
     name = f"M {M_STUDY:g} L {L_STUDY:g}, dented surface at {share:g} u_m"
     worst = max((f.load_error for f in films), key=abs)
     shown = [int(i) for i in np.linspace(0.45, 0.95, 6) * steps]

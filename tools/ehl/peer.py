@@ -106,15 +106,14 @@ def measure() -> dict[str, Any]:
         DataError: slippy cannot be installed or run here
     """
     note("this project's contact")
-    contact, own, films = _contact(), [], {}
+    contact, seconds, films = _contact(), [], []
     for n in GRIDS:
         begun = time.process_time()
         film = solve(contact, n=n)
-        own.append({"n": n, "s": time.process_time() - begun})
-        films[n] = (film.h_c, film.h_min)
-    exact = [(4 * fine - coarse) / 3 for fine, coarse in zip(films[GRIDS[-1]], films[GRIDS[-2]], strict=True)]
-    for line in own:
-        line["error"] = _error(films[line["n"]], exact)
+        seconds.append(time.process_time() - begun)
+        films.append((film.h_c, film.h_min))
+    exact = [(4 * fine - coarse) / 3 for coarse, fine in zip(*films[-2:], strict=True)]
+    own = [{"n": n, "s": s, "error": _error(f, exact)} for n, s, f in zip(GRIDS, seconds, films, strict=True)]
     with tempfile.TemporaryDirectory() as folder:
         note("slippy, in an environment of its own")
         python = _install(Path(folder))

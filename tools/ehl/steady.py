@@ -120,7 +120,7 @@ def _nijenbanning(n: int) -> list[Job]:
 def _dry(n: int) -> list[Job]:
     """Contacts at rest: pressure and approach of Hertz."""
     oil = Lubricant(0.04, 2.2e-8)
-    steel = {"E_eff": cases.E_STEEL, "u_1": 0.0, "u_2": 0.0, "lubricant": oil}
+    resting = partial(Contact, F=100.0, R_x=0.01, E_eff=cases.E_STEEL, u_1=0.0, u_2=0.0, lubricant=oil)
 
     def work(name: str, contact: Contact) -> Found:
         film, dry = solve(contact, n=n), hertz(contact)
@@ -136,8 +136,8 @@ def _dry(n: int) -> list[Job]:
         return {"rows": rows}
 
     shapes = {
-        "circular, 100 N": Contact(F=100.0, R_x=0.01, R_y=0.01, **steel),
-        "elliptical, R_y = 4 R_x, 100 N": Contact(F=100.0, R_x=0.01, R_y=0.04, **steel),
+        "circular, 100 N": resting(R_y=0.01),
+        "elliptical, R_y = 4 R_x, 100 N": resting(R_y=0.04),
     }
     return [Job("Hertz", name, partial(work, name, c), quick=i == 0) for i, (name, c) in enumerate(shapes.items())]
 
