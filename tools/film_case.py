@@ -245,7 +245,7 @@ def from_rig(scenario: Scenario, part: str | None, vary: Sequence[str]) -> MapCa
     start = f"{chosen.name}."
     c = chosen.film_contact({k.removeprefix(start): v for k, v in numbers.items() if k.startswith(start)})
     u_m = abs(c.u_1 + c.u_2) / 2
-    if c.F < LEAST[0] or u_m < LEAST[1]:
+    if min(c.F / LEAST[0], u_m / LEAST[1]) < 1:
         raise ScenarioError(
             f"{scenario.name}: {chosen.name} carries {c.F:g} N at {u_m:g} m/s at the operating point: a contact "
             "without load or speed has no film. Give the rig an operating point with both."
