@@ -48,8 +48,8 @@ COLUMNS = (
 )
 #: Columns of what a contact is, which do not change over a map.
 CONSTANT = ("R_x [m]", "R_y [m]", "length [m]", "E_eff [Pa]", "slide_roll [1]")
-#: What a row without a film says.
-FAILED = "failed"
+#: What a row with a film says, and one for which none was found.
+OK, FAILED = "ok", "failed"
 
 
 @dataclass(frozen=True)
@@ -113,10 +113,10 @@ def _solved(table: Table, problems: list[str]) -> list[int]:
         return []
     rows = []
     for i, status in enumerate(table.columns["status"]):
-        if status == FAILED:
+        if status != OK:
             continue
         bad = [c for c in ("h_c [m]", "h_min [m]") if not _positive(table.columns[c][i])]
-        problems += [f'{table.place(i)}: {c} has no film, but status is not "{FAILED}".' for c in bad]
+        problems += [f'{table.place(i)}: {c} has no film, but status is "{OK}".' for c in bad]
         rows += [] if bad else [i]
     return rows
 

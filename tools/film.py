@@ -19,7 +19,7 @@ from ..model.laws.film import asperity_share, mixed_friction
 from ..model.laws.film_line import line_film_central
 from ..model.laws.film_point import point_film_central
 from ..model.units import from_si, shown
-from ..scenarios.film_map import COLUMNS, FAILED, FittedMap, read_film_map
+from ..scenarios.film_map import COLUMNS, FAILED, OK, FittedMap, read_film_map
 from . import console
 from .film_case import AXES, MapCase, from_file, from_rig
 from .rigs import load
@@ -27,9 +27,15 @@ from .settings import adjusted
 from .sweep_file import Store, work_file
 
 #: Points along load, speed and temperature, and nodes of a line contact and along a side of an elliptical one.
-POINTS, NODES = {"F": 6, "u_m": 6, "T": 4}, (201, 65)
+POINTS, NODES = {"F": 6, "u_m": 6, "T": 4}, (201, 129)
 #: Numbers kept of each point: films, friction, share on asperities, pressure, and whether there is a solution.
 KEPT = ("h_c", "h_min", "mu_fluid", "share", "p_max", "found")
+#: Whether a film was found: none, one, or one on too coarse a grid; and the largest error of a film on a grid [1].
+LOST, FOUND, COARSE, ROUGHEST = 0.0, 1.0, 2.0, 0.1
+#: Fewest nodes along a side of an elliptical contact.
+FINER = 65
+#: What the table and a person are told of a point without a film.
+WRONG = {LOST: (FAILED, "no film found"), COARSE: ("coarse", "the grid is too coarse; give more --nodes")}
 
 
 @dataclass(frozen=True)
@@ -59,10 +65,15 @@ def command(request: Request) -> None:
         raise ScenarioError(problems)
     case = case_of(request)
     points = grid_of(case, request.grid)
-    nodes = request.nodes or NODES[0 if case.contact.R_y == np.inf and not case.contact.edge_radius else 1]
+    nodes = request.nodes or NODES[0 if _is_line(case.contact) else 1]
+    if not _is_line(case.contact) and (nodes < FINER or (nodes - 1) & (nodes - 2)):
+        raise ScenarioError(
+            f"--nodes {nodes}: give 2^k + 1, at least {FINER}: a film is compared with that on half of them."
+        )
     kept = solved(case, points, nodes, request.out)
     console.write(request.out, table_of(case, points, kept))
-    failed = [_named(case, p) for p, k in zip(points, kept, strict=True) if not k[-1]]
+    wrong = [(p, k[-1]) for p, k in zip(points, kept, strict=True) if k[-1] != FOUND]
+    failed = [f"{_named(case, point)}: {WRONG[found][1]}" for point, found in wrong]
     law = read_film_map(request.out)
     if request.plot is not None:
         console.write(request.plot, _plot(case, points, kept, request.plot.suffix))
@@ -157,8 +168,22 @@ def _solution(contact: Contact, nodes: int) -> list[float]:
         film = solve(contact, n=nodes)
     except SolveError:
         return [0.0] * len(KEPT)
-    found = film.h_c > 0 and film.h_min > 0
-    return [film.h_c, film.h_min, film.mu, film.asperity_share, float(film.p.max()), float(found)]
+    found = FOUND if film.h_c > 0 and film.h_min > 0 else LOST
+    if found == FOUND and not _is_line(contact) and _error(contact, nodes, film.h_c) > ROUGHEST:
+        found = COARSE
+    return [film.h_c, film.h_min, film.mu, film.asperity_share, float(film.p.max()), found]
+
+
+def _is_line(contact: Contact) -> bool:
+    return not isfinite(contact.R_y) and contact.edge_radius == 0
+
+
+def _error(contact: Contact, nodes: int, h_c: float) -> float:
+    """Error of a central film, from that on every other node: of second order, a third of their difference [1]."""
+    try:
+        return abs(h_c - solve(contact, n=(nodes + 1) // 2).h_c) / (3 * h_c)
+    except SolveError:
+        return 1.0
 
 
 def _watched(left: Sequence[int], total: int) -> Iterator[int]:
@@ -193,13 +218,24 @@ def table_of(case: MapCase, points: np.ndarray, kept: np.ndarray) -> str:
         films: tuple[float | None, ...] = (None,) * 2
         rest: tuple[float | None, ...] = (None,) * 5
         formula = formula_of(contact_at(case, np.array([F, u_m, T])))
-        if found:
+        if found == FOUND:
             Lambda = h_c / case.sigma if case.sigma else None
             carried = float(asperity_share(Lambda)) if Lambda is not None else share
             rough = Lambda is not None and case.mu_boundary is not None
             mu = float(mixed_friction(Lambda, mu_fluid, case.mu_boundary)) if rough else None
             films, rest = (h_c, h_min), (mu_fluid, Lambda, carried, mu, p_max)
-        cells = [F, u_m, T - 273.15, eta_0, alpha_p, *films, formula, *rest, "ok" if found else FAILED, *constant]
+        cells = [
+            F,
+            u_m,
+            T - 273.15,
+            eta_0,
+            alpha_p,
+            *films,
+            formula,
+            *rest,
+            OK if found == FOUND else WRONG[found][0],
+            *constant,
+        ]
         text.write(",".join("" if v is None else v if isinstance(v, str) else f"{v:.9g}" for v in cells) + "\n")
     return text.getvalue()
 
@@ -207,7 +243,7 @@ def table_of(case: MapCase, points: np.ndarray, kept: np.ndarray) -> str:
 def formula_of(contact: Contact) -> float:
     """Central film by the formula for such contacts [m]: Moes for lines, Nijenbanning, Venner and Moes for ellipses."""
     oil, u_sum = contact.lubricant, 2 * contact.u_m
-    if not isfinite(contact.R_y) or contact.edge_radius > 0:
+    if not isfinite(contact.R_y):
         load = contact.F / contact.length
         return float(line_film_central(oil.eta_0, u_sum, oil.alpha_p, load, contact.R_x, contact.E_eff))
     shape = (contact.R_x, contact.R_y, contact.E_eff)
@@ -254,7 +290,7 @@ def _print(case: MapCase, found: dict[str, Any]) -> None:
     rows = [(k, v["low"], v["high"], v["unit"]) for k, v in found["varied"].items()]
     console.table(f"{of}: {found['contacts']} {found['shape']} contacts", ("varied", "low", "high", "unit"), rows)
     for name in found["failed"]:
-        print(f"no film found at {name}")
+        print(f"without a film: {name}")
     for key, error in found["fit"].items():
         largest, rms = 100 * error["largest"], 100 * error["rms"]
         print(f"law of {key}, {found['terms']} terms: error {largest:.2g} % at most, {rms:.2g} % rms")
@@ -269,7 +305,7 @@ def _plot(case: MapCase, points: np.ndarray, kept: np.ndarray, suffix: str) -> s
     figure, panels = empty(3.2 * len(temperatures) + 0.8, 3.6, 1, len(temperatures), sharey=True)
     for panel, T in zip(panels, temperatures, strict=True):
         for k, F in enumerate(loads):
-            here = (points[:, 2] == T) & (points[:, 0] == F) & (kept[:, -1] > 0)
+            here = (points[:, 2] == T) & (points[:, 0] == F) & (kept[:, -1] == FOUND)
             label = f"{F:.3g} N" if panel is panels[0] else None
             panel.loglog(points[here, 1], 1e6 * kept[here, 0], "o-", ms=3, color=COLOURS[k % len(COLOURS)], label=label)
             panel.loglog(points[here, 1], 1e6 * kept[here, 1], ":", color=COLOURS[k % len(COLOURS)])

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -70,6 +71,7 @@ def command(
     told = contacts_at_operating_point(scenario) if contacts else None
     if told is not None:
         found |= {"contacts": told.rows, "columns": told.columns, **told.totals}
+        found["cycle"] = [asdict(moment) for moment in told.cycle]
 
     def human() -> None:
         table(f"{scenario.name}: losses", columns, [[r[c] for c in columns] for r in rows])

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from functools import partial
 from math import inf
 
-from ..errors import ScenarioError
-from .case import Contact, Lubricant
+import numpy as np
+
+from .case import Array, Contact, Lubricant
 from .film import Film
 from .hertz import Hertz, hertz
 from .line import solve_line
@@ -44,7 +46,7 @@ def solve(
         contact: the contact
         n: nodes along a side of the finest grid, 2^k + 1; of a line contact, any number
         domain: first x, last x and largest y over the half width a of the Hertz contact
-        roughness: height [m] of a surface that stands still, at places x and y [m]; not of a line contact
+        roughness: height [m] of a surface that stands still, at places x and y [m]
         tolerance: scaled residual at which it stops, in units of the Hertz pressure [1]
         floor: film at which the surfaces touch [m]; not of a line contact
 
@@ -53,6 +55,11 @@ def solve(
     """
     if contact.R_y < inf or contact.edge_radius > 0:
         return solve_point(contact, n=n, domain=domain, roughness=roughness, tolerance=tolerance, floor=floor)
-    if roughness is not None:
-        raise ScenarioError("contact: a line contact is solved smooth. Give edge_radius for a rough roller.")
-    return solve_line(contact, n=n, domain=domain[:2] if domain else None, tolerance=tolerance)
+    profile = None if roughness is None else partial(_along, roughness)
+    span = domain[:2] if domain else None
+    return solve_line(contact, n=n, domain=span, roughness=profile, tolerance=tolerance)
+
+
+def _along(height: Height, x: Array) -> Array:
+    """Heights of a rough surface along the middle of a line contact [m]."""
+    return height(x, np.zeros_like(x))

@@ -14,6 +14,9 @@ from .scale import Scaled
 #: Share of the smallest film by which a film may exceed it and still count as closed [1].
 TOUCHING = 1e-3
 
+#: Films up to which factor of the smallest make a parabola with it; beyond, the nodes do not resolve it [1].
+RESOLVED = 2.0
+
 
 @dataclass(frozen=True)
 class Film:
@@ -123,6 +126,6 @@ def smallest(h: Array) -> float:
             continue
         line = np.take(h, at[1 - axis], axis=1 - axis)
         slope, bend = (line[i + 1] - line[i - 1]) / 2, line[i + 1] - 2 * line[i] + line[i - 1]
-        if bend > 0:
+        if bend > 0 and max(line[i + 1], line[i - 1]) < RESOLVED * low:
             found -= float(slope**2 / bend / 2)
     return found

@@ -38,6 +38,8 @@ CLOSING = 0.8
 #: Mass that arrives, in units of pressure, above which touching surfaces come apart [1].
 RELEASED = 1e-9
 TINY = 1e-300
+#: Newton steps that lift a film.
+LIFTING = 2
 #: Newton steps after which a step is held back like a step in time (pseudo-transient continuation, Kelley and Keyes,
 #: SIAM J. Numer. Anal. 35, 1998), and how many nodes oil passes in it.
 PATIENCE = 12
@@ -93,9 +95,10 @@ class Step:
         problem: what has to hold
         state: pressure and approach
         slow: factor of a d(rho h)/dt that holds the film back, and vanishes as the steps do [1]
+        least: film below which a first guess is lifted (n, n), in place of the smallest film [1]
     """
 
-    def __init__(self, problem: Problem, state: State, slow: float = 0.0) -> None:
+    def __init__(self, problem: Problem, state: State, slow: float = 0.0, least: Array | None = None) -> None:
         if problem.reynolds.kappa == 0:  # no oil: what does not touch bears nothing
             state = replace(state, p=np.where(state.touching | (problem.film(state) < problem.floor), state.p, 0.0))
         grid, p = problem.grid, state.p
@@ -104,18 +107,19 @@ class Step:
         inner = np.zeros(p.shape, dtype=bool)
         inner[1:-1, 1:-1] = True
         film = problem.film(state)
-        h = np.maximum(film, problem.floor)
+        floor = problem.floor if least is None else np.maximum(least, problem.floor)
+        h = np.maximum(film, floor)
         r = problem.reynolds.residual(p, h)
         moved = replace(problem.reynolds, squeeze=problem.reynolds.squeeze + slow)
         layers = moved.linear(p, h)
         scale = 1 / (np.abs(layers[0][stencil.CENTRE]) + np.abs(layers[1][stencil.CENTRE]) * self._k_0 + TINY)
         arrives = r * scale > RELEASED
-        self.touching = inner & ((film < problem.floor) | (state.touching & (p > 0) & ~arrives))
+        self.touching = inner & ((film < floor) | (state.touching & (p > 0) & ~arrives))
         active = self.touching | (inner & ((p > 0) | (r > 0)))
         self.linear = linearise(grid, layers, active, self.touching)
         self._scale = np.where(active, np.where(self.touching, 1 / self._k_0, scale), 1.0)
         self._scale_load = grid.n / problem.load
-        right = np.where(self.touching, film - problem.floor, np.where(active, -r, 0.0))
+        right = np.where(self.touching, film - floor, np.where(active, -r, 0.0))
         self.right = self._joined(right, problem.load - self.linear.load(p))
         self.norm = float(np.linalg.norm(self.right)) / grid.n
         self._around = (moved, p, h)
@@ -155,7 +159,7 @@ class Step:
         return 1 / max(1.0, float(np.abs(p).max()) / LARGEST, closing)
 
 
-def newton(problem: Problem, start: State, tolerance: float, steps: int) -> State:
+def newton(problem: Problem, start: State, tolerance: float, steps: int, before: Array | None = None) -> State:
     """Pressure and approach on a grid; the last of `residuals` says how well they hold.
 
     Args:
@@ -163,13 +167,16 @@ def newton(problem: Problem, start: State, tolerance: float, steps: int) -> Stat
         start: where to begin
         tolerance: scaled residual at which it stops [1]
         steps: largest number of Newton steps
+        before: film on the coarser grid, at these nodes (n, n); where the pressure between its nodes would close it,
+            the first steps lift it
     """
     state = start
     norms: list[float] = []
     work = start.work
     slow = 0.0
     for k in range(steps):
-        step = Step(problem, state, slow)
+        least = before / 2 if before is not None and k < LIFTING else None
+        step = Step(problem, state, slow, least)
         norms.append(step.norm)
         if step.norm < tolerance:
             break
@@ -179,5 +186,9 @@ def newton(problem: Problem, start: State, tolerance: float, steps: int) -> Stat
         work += products
         share = step.share(p, h_0, problem.floor)
         now = step.state
-        state = State(np.maximum(now.p + share * p, 0.0), now.h_0 + share * h_0, step.touching)
+        state = State(
+            np.maximum(now.p + share * p, 0.0),
+            now.h_0 + share * h_0,
+            start.touching if least is not None else step.touching,
+        )
     return replace(state, residuals=tuple(norms), work=work)

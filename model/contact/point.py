@@ -82,15 +82,18 @@ def steady(case: Scaled, finest: Grid, roughness: Height | None, tolerance: floa
     speed = resolvable(case, grids[0], grounds[0])
     state = first_guess(case, grids[0], speed)
     smallest = floor / case.unit.h
+    before: Array | None = None
     for grid, rough in zip(grids, grounds, strict=True):
         last = grid is finest
-        if grid is not grids[0]:
-            state = finer(state)
+        ground = case.gap(grid) + rough
         for faster in descent(speed, 1.0 if last else resolvable(case, grid, rough)):
             speed = faster
-            equation = case.reynolds(grid, smallest, speed)
-            problem = Problem(grid, equation, case.gap(grid) + rough, case.load, smallest)
-            state = newton(problem, state, tolerance if last and speed == 1.0 else max(tolerance, COARSE), STEPS)
+            problem = Problem(grid, case.reynolds(grid, smallest, speed), ground, case.load, smallest)
+            enough = tolerance if last and speed == 1.0 else max(tolerance, COARSE)
+            state, before = newton(problem, state, enough, STEPS, before), None
+        if not last:
+            film = state.h_0 + ground + grid.deformation(state.p)
+            state, before = finer(state), prolong(np.maximum(film, smallest))
     return state
 
 

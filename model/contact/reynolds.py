@@ -33,6 +33,8 @@ class Reynolds:
         squeeze: factor of the present d(rho h)/dt, 0 in the steady state [1]
         past: what earlier moments add to d(rho h)/dt, (ny, nx) or 0
         bound: film of molecules bound to the surfaces, which is moved but not compressed [1]
+        steep: whether the film may open from one node to the next across the rolling, at the ends of a roller: the
+            mobility between such nodes is the harmonic mean, that of the two halves one after the other
     """
 
     lubricant: Lubricant
@@ -44,6 +46,7 @@ class Reynolds:
     squeeze: float = 0.0
     past: Array | float = 0.0
     bound: float = 0.0
+    steep: bool = False
 
     def mass(self, p: Array, h: Array) -> Array:
         """Mass of the film over an area and the density at ambient pressure [1].
@@ -74,7 +77,7 @@ class Reynolds:
         eps = self.mobility(p, h)
         mass = self.mass(p, h)
         flow_x = (eps[1:-1, 1:] + eps[1:-1, :-1]) * np.diff(p[1:-1], axis=1) / (2 * self.hx**2)
-        flow_y = (eps[1:, 1:-1] + eps[:-1, 1:-1]) * np.diff(p[:, 1:-1], axis=0) / (2 * self.hy**2)
+        flow_y = self._across(eps)[0][:, 1:-1] * np.diff(p[:, 1:-1], axis=0) / self.hy**2
         out = np.zeros_like(p)
         wedge = 1.5 * mass[1:-1, 1:-1] - 2 * mass[1:-1, :-2]
         wedge[:, 1:] += 0.5 * mass[1:-1, :-3]
@@ -97,8 +100,8 @@ class Reynolds:
         eps_p = eps * (rho_p / rho - oil.viscosity_slope(si) * self.p_unit)
         by_p, by_h = np.zeros((6, *p.shape)), np.zeros((6, *p.shape))
         self._pressure_flow(by_p, p, eps)
-        self._mobility_change(by_p, p, eps_p)
-        self._mobility_change(by_h, p, 3 * eps / h)
+        self._mobility_change(by_p, p, eps, eps_p)
+        self._mobility_change(by_h, p, eps, 3 * eps / h)
         self._mass_change(by_p, rho_p * (h - self.bound))
         self._mass_change(by_h, rho)
         for layer in (by_p, by_h):
@@ -109,7 +112,7 @@ class Reynolds:
     def _pressure_flow(self, out: Array, p: Array, eps: Array) -> None:
         """Adds div(eps grad .)."""
         x = (eps[:, 1:] + eps[:, :-1]) / (2 * self.hx**2)
-        y = (eps[1:] + eps[:-1]) / (2 * self.hy**2)
+        y = self._across(eps)[0] / self.hy**2
         out[stencil.EAST, :, :-1] += x
         out[stencil.WEST, :, 1:] += x
         out[stencil.NORTH, :-1] += y
@@ -117,16 +120,26 @@ class Reynolds:
         out[stencil.CENTRE, :, 1:-1] -= x[:, 1:] + x[:, :-1]
         out[stencil.CENTRE, 1:-1] -= y[1:] + y[:-1]
 
-    def _mobility_change(self, out: Array, p: Array, slope: Array) -> None:
+    def _across(self, eps: Array) -> tuple[Array, Array, Array]:
+        """Mobility between neighbours across the rolling, and its change with that of the lower and of the upper."""
+        low, high = eps[:-1], eps[1:]
+        if not self.steep:
+            half = np.full_like(low, 0.5)
+            return (low + high) / 2, half, half
+        both = low + high + 1e-300
+        return 2 * low * high / both, 2 * (high / both) ** 2, 2 * (low / both) ** 2
+
+    def _mobility_change(self, out: Array, p: Array, eps: Array, slope: Array) -> None:
         """Adds div(slope . grad p)."""
         x = np.diff(p, axis=1) / (2 * self.hx**2)
-        y = np.diff(p, axis=0) / (2 * self.hy**2)
+        y = np.diff(p, axis=0) / self.hy**2
+        _, low, high = self._across(eps)
         out[stencil.EAST, :, :-1] += slope[:, 1:] * x
         out[stencil.WEST, :, 1:] -= slope[:, :-1] * x
-        out[stencil.NORTH, :-1] += slope[1:] * y
-        out[stencil.SOUTH, 1:] -= slope[:-1] * y
         out[stencil.CENTRE, :, 1:-1] += slope[:, 1:-1] * np.diff(x, axis=1)
-        out[stencil.CENTRE, 1:-1] += slope[1:-1] * np.diff(y, axis=0)
+        out[stencil.NORTH, :-1] += slope[1:] * high * y
+        out[stencil.SOUTH, 1:] -= slope[:-1] * low * y
+        out[stencil.CENTRE, 1:-1] += slope[1:-1] * ((low * y)[1:] - (high * y)[:-1])
 
     def _mass_change(self, out: Array, slope: Array) -> None:
         """Subtracts d(slope .)/dx and d(slope .)/dt."""

@@ -29,11 +29,11 @@ def central_film(contact: Contact) -> float:
     u, g = oil.eta_0 * contact.u_m / (e * r), oil.alpha_p * e
     if contact.R_y == inf or contact.edge_radius > 0:
         w = contact.F / contact.length / (e * r)
-        return 2.65 * r * u**0.7 * g**0.54 * w**-0.13
+        return float(2.65 * r * u**0.7 * g**0.54 * w**-0.13)
     w, ratio = contact.F / (e * r**2), contact.R_y / r
     elastic = 2.69 * u**0.67 * g**0.53 * w**-0.067 * (1 - 0.61 * exp(-0.73 * 1.03 * ratio**0.64))
     leakage = ratio / (1 + 2 / (3 * ratio)) ** 2 * (0.131 * atan(ratio / 2) + 1.683) ** 2
-    return r * max(elastic, 128 * leakage * (u / w) ** 2)
+    return float(r * max(elastic, 128 * leakage * (u / w) ** 2))
 
 
 @dataclass(frozen=True)
@@ -115,7 +115,7 @@ class Scaled:
         wedge = self.contact.u_m / unit.u if self.contact.u_m > REST else 0.0
         if wedge == 0 and squeeze == 0:
             kappa = 0.0  # at rest the oil has left
-        return Reynolds(oil, unit.p, kappa, wedge, grid.hx, grid.hy, squeeze, past, floor)
+        return Reynolds(oil, unit.p, kappa, wedge, grid.hx, grid.hy, squeeze, past, floor, self.contact.edge_radius > 0)
 
     def grid(self, n: int, domain: tuple[float, float, float] | None = None) -> Grid:
         """The finest grid.

@@ -127,6 +127,9 @@ def solve_transient(
 ) -> tuple[Film, ...]:
     """Films of a contact at given times, from the steady film of smooth surfaces at the first.
 
+    Roughness is there from the first time on, under the pressure of smooth surfaces; what that stirs up has left when
+    the surfaces have moved by about the length of the contact.
+
     Args:
         times: increasing [s]
         contacts: the contact at each of them

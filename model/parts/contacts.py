@@ -20,11 +20,13 @@ class ContactTable:
         rows: a mapping of column to value per contact, in the order of the mesh cycle; SI units but for degrees
         columns: column -> what it is
         totals: what holds for all contacts together, by name
+        cycle: the way of one contact through its load
     """
 
     rows: Sequence[Mapping[str, float]]
     columns: Mapping[str, str]
     totals: Mapping[str, Any]
+    cycle: Sequence[ContactCase] = ()
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ COLUMNS = {
     "U_m_s": "mean entrainment speed of disc and pin [m/s]",
     "v_slide_m_s": "sliding speed between disc and pin [m/s]; 0 where the pin rolls and slides in its groove instead",
     "p_H_Pa": "greatest Hertzian pressure of disc and pin [Pa]",
-    "h_min_m": "minimum film between disc and pin, Dowson and Higginson [m]",
-    "h_c_m": "central film between disc and pin, Moes [m]",
+    "h_min_m": "minimum film between disc and pin, Dowson and Higginson or the film map [m]",
+    "h_c_m": "central film between disc and pin, Moes or the film map [m]",
     "Lambda": "central film over composite roughness [1]",
     "asperity_share": "share of the load that asperities carry [1]",
     "mu": "friction coefficient between disc and pin [1]",
@@ -78,17 +78,5 @@ def pin_case(mesh: PinMesh, film: Film, theta: float) -> ContactCase:
     """
     c = mesh.contact(theta, film)
     time = theta / abs(film.w_crank) if film.w_crank else inf
-    there = (time, theta, c.F, mesh.b, c.R, c.u_disc, c.u_pin)
-    both = (mesh.E_eff, film.eta, film.alpha_p, mesh.sigma, mesh.mu_boundary)
-    return ContactCase(*map(float, (*there, *both)))
-
-
-def pin_cycle(mesh: PinMesh, film: Film, count: int) -> list[ContactCase]:
-    """The way of a pin through its load, in the middles of equal steps: load and speed vanish at no moment.
-
-    Args:
-        mesh: geometry, material and friction, in numbers
-        film: torque, speed and lubricant, in numbers
-        count: number of moments
-    """
-    return [pin_case(mesh, film, pi * (k + 0.5) / count) for k in range(count)]
+    numbers = (time, theta, c.F, mesh.b, c.R, c.u_disc, c.u_pin, mesh.E_eff, film.eta, film.alpha_p, mesh.sigma)
+    return ContactCase(*map(float, (*numbers, mesh.mu_boundary)))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
 import casadi as ca
 
@@ -13,7 +14,7 @@ from ..laws.film_map import FilmMap
 from ..laws.smooth import Num, friction_sign, smooth_abs
 from .contacts import ContactCase, ContactTable, FilmContact, PartWithContacts, fits_map
 from .pin_mesh import Film, PinContact, PinMesh
-from .pin_table import pin_case, pin_cycle, pin_table
+from .pin_table import pin_case, pin_table
 from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading
 
 #: Discs of a stage; they stand opposite each other, so that the radial forces of both cancel.
@@ -185,7 +186,7 @@ class CycloidPinStage(PartWithContacts):
         Args:
             values: parameters and outputs of the stage at an operating point, by key, in SI
         """
-        return pin_table(*self._in_numbers(values))
+        return replace(pin_table(*self._in_numbers(values)), cycle=self.mesh_cycle(values))
 
     def contact_case(self, values: Mapping[str, float], theta: float) -> ContactCase:
         """The contact of a pin, for a contact solver.
@@ -206,10 +207,10 @@ class CycloidPinStage(PartWithContacts):
         return FilmContact(c.F, c.R, c.length, c.u_1, c.u_2, c.E_eff, c.sigma, c.mu_boundary)
 
     def mesh_cycle(self, values: Mapping[str, float], count: int = 15) -> list[ContactCase]:
-        """The way of a pin through the loaded half: load, radius and speeds at moments of equal distance in time.
+        """The way of a pin through the loaded half, in the middles of equal steps: it carries at every moment.
 
         Args:
             values: parameters and outputs of the stage at an operating point, by key, in SI
             count: number of moments
         """
-        return pin_cycle(*self._in_numbers(values), count)
+        return [self.contact_case(values, float(ca.pi) * (k + 0.5) / count) for k in range(count)]

@@ -6,6 +6,7 @@ from math import pi, sin, sqrt
 
 import numpy as np
 import pytest
+from gearheat.model.contact import solve
 from gearheat.model.contact.case import Contact, Lubricant
 from gearheat.model.contact.film import Film
 from gearheat.model.contact.hertz import hertz
@@ -174,3 +175,15 @@ def test_a_dent_is_carried_through_at_the_speed_of_its_surface(share: float) -> 
 def test_what_makes_no_problem_is_refused(call: object, says: str) -> None:
     with pytest.raises(ScenarioError, match=says):
         call(moes(20, 10))
+
+
+def test_solve_takes_line_contacts_with_their_roughness() -> None:
+    contact = moes(20, 10)
+    wave = 2e-8, 0.5 * hertz(contact).a
+
+    def height(x: np.ndarray, y: np.ndarray) -> np.ndarray:
+        return wave[0] * np.cos(2 * pi * x / wave[1]) + 0 * y
+
+    assert solve(contact, n=101).h_c == pytest.approx(solve_line(contact, n=101).h_c, rel=1e-6)
+    rough = solve_line(contact, n=101, roughness=lambda x: wave[0] * np.cos(2 * pi * x / wave[1]))
+    assert solve(contact, n=101, roughness=height).h_min == pytest.approx(rough.h_min, rel=1e-4)

@@ -81,7 +81,7 @@ def changed(at: int, **values):
         (None, "h_c [m]", 'column "h_c [m]" is missing'),
         (None, "eta_0 [Pa.s]", 'column "eta_0 [Pa.s]" (dynamic viscosity) is missing'),
         (changed(7, **{"h_c [m]": "nan"}), "", "map.csv line 9: h_c [m]"),
-        (changed(7, **{"h_min [m]": ""}), "", 'line 9: h_min [m] has no film, but status is not "failed"'),
+        (changed(7, **{"h_min [m]": ""}), "", 'line 9: h_min [m] has no film, but status is "ok"'),
         (changed(7, **{"F [N]": 0}), "", "The normal force must be above 0"),
         (changed(7, **{"R_x [m]": 0.02}), "", "R_x [m] changes from 0.01 to 0.02"),
         (rows()[:3], "", "3 contacts with a film are too few for a law"),

@@ -12,6 +12,7 @@ def test_contacts_of_every_pin_as_json(gearheat) -> None:
         assert found.code == 0, found.err
         assert found.json["rows"] and abs(found.json["torque_recovery"] - 1) < 1e-3
         assert list(found.json["columns"]) == KEYS
+        assert len(found.json["cycle"]) == 15 and all(moment["F"] > 0 for moment in found.json["cycle"])
         assert all(list(row) == KEYS for row in found.json["contacts"])
         assert all(math.isfinite(v) for row in found.json["contacts"] for v in row.values())
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -85,7 +86,7 @@ def test_contacts_without_a_film_are_named(gearheat, case, tmp_path, monkeypatch
     out = tmp_path / "map.csv"
     answer = gearheat("film", case, "-o", out, "--grid", "2x3x2", "--nodes", "61")
     assert answer.code == 0, answer.err
-    assert "no film found at F = 4000 N, u_m = 4 m/s, T = 60 degC" in answer.out
+    assert "without a film: F = 4000 N, u_m = 4 m/s, T = 60 degC: no film found" in answer.out
     assert answer.out.count("no film found") == 2
     assert out.read_text("utf-8").count(",failed,") == 2
 
@@ -162,3 +163,25 @@ def test_a_film_is_chosen_on_the_command_line(gearheat, tmp_path):
     answer = gearheat("steady", "helical_two_stage", "--set", "stage_1.film=map:none.csv")
     assert answer.code == 2
     assert "none.csv: there is no such file" in answer.err
+
+
+@pytest.mark.parametrize(("slope", "found"), [(0.3, film.FOUND), (2.0, film.COARSE)])
+def test_an_ellipse_on_too_coarse_a_grid_has_no_film(case, monkeypatch, slope, found):
+    """A film whose error falls with the square of the number of nodes, known on 65 of them and on every other one."""
+    case.write_text(CASE.replace('length = "10 mm"', 'length = "10 mm"\nR_y = "20 mm"'), encoding="utf-8")
+    made = film.case_of(film.Request(str(case), Path("map.csv")))
+
+    def solved(contact, n):
+        h = 1e-7 / (1 + slope * (32 / (n - 1)) ** 2)
+        return SimpleNamespace(h_c=h, h_min=h, mu=0.03, asperity_share=0.0, p=np.array([1e9]))
+
+    monkeypatch.setattr(film, "solve", solved)
+    assert film._solution(made.contact, 65)[-1] == found
+    assert film.WRONG[film.COARSE] == ("coarse", "the grid is too coarse; give more --nodes")
+
+
+def test_an_ellipse_needs_a_grid_to_compare_with(gearheat, case, tmp_path):
+    case.write_text(CASE.replace('length = "10 mm"', 'length = "10 mm"\nR_y = "20 mm"'), encoding="utf-8")
+    answer = gearheat("film", case, "-o", tmp_path / "map.csv", "--nodes", "33")
+    assert answer.code == 2
+    assert "--nodes 33: give 2^k + 1, at least 65" in answer.err
