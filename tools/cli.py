@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from . import console
+from . import cli_contact, console
 
 app = typer.Typer(
     name="gearheat",
@@ -310,25 +310,7 @@ def verify(
     verify.command(rig, json, html)
 
 
-@app.command("verify-contact")
-@console.guarded
-def verify_contact(
-    out: Annotated[
-        Path,
-        typer.Option("-o", "--out", help="Folder for table and figures; an interrupted run goes on from there."),
-    ],
-    quick: Annotated[bool, typer.Option("--quick", help="A subset on coarse grids.")] = False,
-    cycle: Annotated[
-        str | None, typer.Option(metavar="RIG", help="Solve the mesh cycle of this rig too, such as rv_stage.")
-    ] = None,
-    json: Json = None,
-) -> None:
-    """The contact solver beside published films, Hertz and measurements: table, convergence, figures."""
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # times are those of one core
-        os.environ.setdefault(name, "1")
-    from .ehl import command
-
-    command.command(out, quick, cycle, json)
+app.command("verify-contact")(console.guarded(cli_contact.verify_contact))
 
 
 @app.command()
@@ -405,8 +387,6 @@ def bench(
     json: Json = None,
 ) -> None:
     """Time and memory of the main job, beside SciPy's LSODA on the same equations in the same run."""
-    if contact:
-        os.environ.setdefault("OMP_NUM_THREADS", "1")
     from . import bench
 
     bench.command(rig, tests, json, fmu, contact)
