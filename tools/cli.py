@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 import typer
 
 from . import cli_contact, console
+from .cli_contact import Json, Set
 
 app = typer.Typer(
     name="gearheat",
@@ -20,11 +21,6 @@ app = typer.Typer(
 )
 
 Rig = Annotated[str, typer.Argument(help="Name of a shipped rig (see `gearheat list`), or path of a rig file.")]
-Set = Annotated[
-    list[str] | None,
-    typer.Option("--set", help='NAME=VALUE with a unit, for example "carrier.w=250 rpm". Repeatable.'),
-]
-Json = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
 Workers = Annotated[int, typer.Option(min=0, help="Processes to use; 0 for one per core.")]
 Extended = Annotated[
     Path | None, typer.Option(metavar="FILE", help="Rig file that `diagnose` wrote; it takes the rig's place.")
@@ -353,28 +349,7 @@ def sweep(
     sweep.command(sweep.Request(rig, vary, out, *options, threads, scheduler, json))
 
 
-@app.command()
-@console.guarded
-def film(
-    rig: Annotated[str, typer.Argument(help="Name of a shipped rig, path of a rig file, or TOML file of one contact.")],
-    out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write; a run that was interrupted goes on.")],
-    part: Annotated[str | None, typer.Option(help="Part of the rig whose contact it is.")] = None,
-    vary: Annotated[
-        list[str] | None,
-        typer.Option(help='Range of F, u_m or T, for example "F=100..2000 N" or "T=40..100 degC". Repeatable.'),
-    ] = None,
-    grid: Annotated[str | None, typer.Option(help="Points along each axis that is varied, such as 6x6x4.")] = None,
-    nodes: Annotated[int | None, typer.Option(help="Nodes of the contact solver, along a side.")] = None,
-    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture to write, .png or .svg.")] = None,
-    set_: Set = None,
-    json: Json = None,
-) -> None:
-    """Solve a contact over load, speed and temperature: a film map, and the law that parts take from it."""
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # its matrices are small
-        os.environ.setdefault(name, "1")
-    from . import film
-
-    film.command(film.Request(rig, out, part, vary or [], grid, nodes, plot, set_ or [], json))
+app.command()(console.guarded(cli_contact.film))
 
 
 @app.command()

@@ -1,4 +1,4 @@
-"""The command `verify-contact` of the command line."""
+"""The commands `film` and `verify-contact` of the command line, and the options that most commands have."""
 
 from __future__ import annotations
 
@@ -7,6 +7,34 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
+
+Set = Annotated[
+    list[str] | None,
+    typer.Option("--set", help='NAME=VALUE with a unit, for example "carrier.w=250 rpm". Repeatable.'),
+]
+Json = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
+
+
+def film(
+    rig: Annotated[str, typer.Argument(help="Name of a shipped rig, path of a rig file, or TOML file of one contact.")],
+    out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write; a run that was interrupted goes on.")],
+    part: Annotated[str | None, typer.Option(help="Part of the rig whose contact it is.")] = None,
+    vary: Annotated[
+        list[str] | None,
+        typer.Option(help='Range of F, u_m or T, for example "F=100..2000 N" or "T=40..100 degC". Repeatable.'),
+    ] = None,
+    grid: Annotated[str | None, typer.Option(help="Points along each axis that is varied, such as 6x6x4.")] = None,
+    nodes: Annotated[int | None, typer.Option(help="Nodes of the contact solver, along a side.")] = None,
+    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture to write, .png or .svg.")] = None,
+    set_: Set = None,
+    json: Json = None,
+) -> None:
+    """Solve a contact over load, speed and temperature: a film map, and the law that parts take from it."""
+    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # its matrices are small
+        os.environ.setdefault(name, "1")
+    from . import film
+
+    film.command(film.Request(rig, out, part, vary or [], grid, nodes, plot, set_ or [], json))
 
 
 def verify_contact(
@@ -18,9 +46,7 @@ def verify_contact(
     cycle: Annotated[
         str | None, typer.Option(metavar="RIG", help="Solve the mesh cycle of this rig too, such as rv_stage.")
     ] = None,
-    json: Annotated[
-        str | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")
-    ] = None,
+    json: Json = None,
 ) -> None:
     """The contact solver beside published films, Hertz and measurements: table, convergence, figures."""
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # times are those of one core
