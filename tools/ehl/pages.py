@@ -87,7 +87,7 @@ def _deviation(row: Row) -> str:
 def _tolerance(row: Row) -> str:
     tolerance = row["tolerance"]
     if isinstance(tolerance, str):
-        return f"{tolerance} {cell(row['reference'])}"
+        return "reported" if row["verdict"] == "reported" else f"{tolerance} {cell(row['reference'])}"
     return "reported" if tolerance == 0 else "1e-4" if row["item"] == "Load" else f"{100 * tolerance:g} %"
 
 

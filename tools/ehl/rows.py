@@ -57,7 +57,15 @@ def row(case: str, quantity: str, reference: float, ours: float, rel: float, loa
     }
 
 
-def bound(case: str, quantity: str, ours: float, *, least: float | None = None, most: float | None = None) -> Found:
+def bound(
+    case: str,
+    quantity: str,
+    ours: float,
+    *,
+    least: float | None = None,
+    most: float | None = None,
+    judged: bool = True,
+) -> Found:
     """One row of the table whose reference is a bound.
 
     Args:
@@ -66,10 +74,11 @@ def bound(case: str, quantity: str, ours: float, *, least: float | None = None, 
         ours: its value
         least: the bound below it
         most: the bound above it
+        judged: whether it has to hold; else it is only reported
     """
     limit = least if least is not None else most
     assert limit is not None
     held = (least is None or ours >= least) and (most is None or ours <= most)
     found = row(case, quantity, limit, ours, 0.0)
     sign = ">=" if least is not None else "<="
-    return {**found, "tolerance": sign, "verdict": "within" if held else "outside"}
+    return {**found, "tolerance": sign, "verdict": "reported" if not judged else "within" if held else "outside"}

@@ -10,7 +10,7 @@ import numpy as np
 
 from ...model.contact import Film, hertz, solve
 from . import cases
-from .rows import Found, Job, bound, row
+from .rows import Found, Job, bound
 
 #: The contact of the studies, by the numbers of Moes, and the part of the plane it is solved in.
 M_STUDY, L_STUDY = 20.0, 10.0
@@ -51,8 +51,9 @@ def _order(grids: tuple[int, ...]) -> Found:
     }
     name = f"M {M_STUDY:g} L {L_STUDY:g}, {grids[-3]}, {grids[-2]}, {grids[-1]} nodes a side"
     orders = {what: log2(d[-2] / d[-1]) for what, d in apart.items()}
-    rows = [bound(name, f"order of {what}", orders.pop(what), least=SECOND) for what in FILMS]
-    rows += [row(name, f"order of {what}", 2.0, order, 0.0) for what, order in orders.items()]
+    rows = [
+        bound(name, f"order of {what}", order, least=SECOND, judged=what in FILMS) for what, order in orders.items()
+    ]
     a = hertz(contact).a
     spacing = [(f.x[1] - f.x[0]) / a for f in films]
     return {"rows": rows, "spacing": spacing, "apart": apart, "residuals": films[-1].residuals}
