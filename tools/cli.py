@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 import typer
 
 from . import cli_contact, console
-from .cli_contact import Json, Set
+from .cli_options import Json, Set
 
 app = typer.Typer(
     name="gearheat",
@@ -306,9 +306,6 @@ def verify(
     verify.command(rig, json, html)
 
 
-app.command("verify-contact")(console.guarded(cli_contact.verify_contact))
-
-
 @app.command()
 @console.guarded
 def sweep(
@@ -349,9 +346,6 @@ def sweep(
     sweep.command(sweep.Request(rig, vary, out, *options, threads, scheduler, json))
 
 
-app.command()(console.guarded(cli_contact.film))
-
-
 @app.command()
 @console.guarded
 def bench(
@@ -362,9 +356,15 @@ def bench(
     json: Json = None,
 ) -> None:
     """Time and memory of the main job, beside SciPy's LSODA on the same equations in the same run."""
+    if contact:
+        os.environ.setdefault("OMP_NUM_THREADS", "1")
     from . import bench
 
     bench.command(rig, tests, json, fmu, contact)
+
+
+app.command()(cli_contact.film)
+app.command("verify-contact")(cli_contact.verify_contact)
 
 
 def main() -> None:

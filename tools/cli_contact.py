@@ -1,4 +1,4 @@
-"""The commands `film` and `verify-contact` of the command line, and the options that most commands have."""
+"""The commands of the contact solver: film maps, and what the solver is verified with."""
 
 from __future__ import annotations
 
@@ -8,13 +8,11 @@ from typing import Annotated
 
 import typer
 
-Set = Annotated[
-    list[str] | None,
-    typer.Option("--set", help='NAME=VALUE with a unit, for example "carrier.w=250 rpm". Repeatable.'),
-]
-Json = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
+from . import console
+from .cli_options import Json, Set
 
 
+@console.guarded
 def film(
     rig: Annotated[str, typer.Argument(help="Name of a shipped rig, path of a rig file, or TOML file of one contact.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write; a run that was interrupted goes on.")],
@@ -37,6 +35,7 @@ def film(
     film.command(film.Request(rig, out, part, vary or [], grid, nodes, plot, set_ or [], json))
 
 
+@console.guarded
 def verify_contact(
     out: Annotated[
         Path,

@@ -39,6 +39,9 @@ OIL_MAY_BE = {"T": "K", "p_r": "Pa", "tau_eyring": "Pa"}
 #: Ranges of the map of a part over the value at the operating point, and its temperatures [K].
 ABOUT, WARM = {"F": (0.05, 2.0), "u_m": (0.25, 2.0)}, (313.15, 373.15)
 
+#: Load [N] and mean speed [m/s] at the operating point below which there is none but what blurs its sign.
+LEAST = (1.0, 1e-3)
+
 #: Dynamic viscosity [Pa.s] and pressure-viscosity coefficient [1/Pa] at a temperature [K].
 Oil = Callable[[float], tuple[float, float]]
 
@@ -242,7 +245,7 @@ def from_rig(scenario: Scenario, part: str | None, vary: Sequence[str]) -> MapCa
     start = f"{chosen.name}."
     c = chosen.film_contact({k.removeprefix(start): v for k, v in numbers.items() if k.startswith(start)})
     u_m = abs(c.u_1 + c.u_2) / 2
-    if not (c.F > 0 and u_m > 0):
+    if min(c.F / LEAST[0], u_m / LEAST[1]) < 1:
         raise ScenarioError(
             f"{scenario.name}: {chosen.name} carries {c.F:g} N at {u_m:g} m/s at the operating point: a contact "
             "without load or speed has no film. Give the rig an operating point with both."

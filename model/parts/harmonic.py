@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import casadi as ca
+import numpy as np
 
 from ..core.component import Component, Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
@@ -15,6 +16,7 @@ from ..laws.harmonic import conforming_radius, flank_speed_radius, half_width, p
 from ..laws.pad import combined_film, side_leakage, squeeze_factor, wedge_coefficient
 from ..laws.regimes import elasticity_parameter, inside_elastohydrodynamic, viscosity_parameter
 from ..laws.smooth import Num, friction_sign, smooth_abs, smooth_cap, smooth_sign
+from .contacts import FilmContact, fits_map
 from .ports import BearingLoad, Flange, HeatPort, Lubricant
 
 #: Film over the sum of the roughnesses Rz from which the source admits a contact.
@@ -99,6 +101,8 @@ class FlankFilm(Component):
             1 + 1e-9,
             remedy="Give the smaller radius as r_convex; 1/R = 1/r_convex - 1/r_concave has to be positive.",
         )
+        if isinstance(self.film, FilmMap):
+            yield fits_map(self, self.film, self.E_eff)
 
     def pad_terms(self, eta: Num, w: Num, B: Num) -> tuple[Num, Num]:
         """Wedge [N.m2] and squeeze [N.m3] of a pad: load times film squared, load times film cubed.
@@ -223,6 +227,17 @@ class HarmonicMesh(FlankFilm):
         yield self.relation("z_2 is two more than z_1", "(z_2 - z_1) / 2", pairs, 1.0, 10.0, remedy=remedy)
         share, remedy = self.pairs / self.z_1, "Give at most as many pairs as the flexspline has teeth."
         yield self.relation("the pairs are teeth", "pairs / z_1", share, 0.0, 1.0, remedy=remedy)
+
+    def film_contact(self, values: Mapping[str, float]) -> FilmContact:
+        """The contact of a pair of teeth, one flank at rest.
+
+        Args:
+            values: parameters and outputs at an operating point, by key, in SI
+        """
+        sigma = RQ_OVER_RZ * float(np.hypot(values["Rz_1"], values["Rz_2"]))
+        R = self.number_at(self.R, values)
+        speed = abs(values["speed_factor"] * values["v_slide"])
+        return FilmContact(values["F_0"], R, values["L"], speed, 0.0, values["E_eff"], sigma, values["mu_boundary"])
 
     def equations(self) -> Iterator[Equation]:
         """Kinematics, torques, load and friction of the teeth."""

@@ -32,12 +32,12 @@ def loaded(steps: int) -> Film:
     times = np.linspace(0, 3 * hertz(contact).a / contact.u_m, steps + 1)
     swing = 1 + 0.1 * np.sin(np.pi * times / times[-1]) ** 2
     contacts = [replace(contact, F=contact.F * s) for s in swing]
-    return solve_transient(list(times), contacts, n=33, domain=DOMAIN, tolerance=1e-9)[-1]
+    return solve_transient(list(times), contacts, n=33, domain=DOMAIN, tolerance=1e-7)[-1]
 
 
 def test_steps_in_time_are_of_second_order() -> None:
-    h = [loaded(steps).h_c for steps in (6, 12, 24)]
-    assert 2.8 < (h[1] - h[0]) / (h[2] - h[1]) < 6
+    h = [loaded(steps).h_c for steps in (12, 24, 48)]
+    assert 3.3 < (h[1] - h[0]) / (h[2] - h[1]) < 6
 
 
 def test_a_disturbance_of_the_film_moves_with_the_oil() -> None:

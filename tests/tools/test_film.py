@@ -136,6 +136,10 @@ def test_a_bad_case_is_refused(gearheat, case, tmp_path, old, new, says):
         (("helical_two_stage", "-o", "map.csv", "--part", "stage_3"), 'there is no part "stage_3"'),
         (("helical_two_stage", "-o", "map.csv", "--part", "oil"), "oil has no contact with a film"),
         (("harmonic_printed", "-o", "map.csv"), "no part has a contact with a film"),
+        (
+            ("rv_stage", "-o", "map.csv", "--part", "mesh", "--set", "output.tau=0 N.m"),
+            "a contact without load or speed",
+        ),
         (("none.toml", "-o", "map.csv"), "none.toml: there is no such file"),
         (("disc.toml", "-o", "map.txt"), "-o map.txt: unknown kind of file"),
         (("disc.toml", "-o", "map.csv", "--plot", "map.pdf"), "--plot map.pdf: unknown kind of file"),
