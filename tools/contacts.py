@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..model.core.flat import FlatModel
 from ..model.errors import ScenarioError
 from ..model.machines.spec import assemble
-from ..model.parts.contacts import ContactTable, PartWithContacts
+from ..model.parts.contacts import ContactTable, TellsContacts
 from ..model.run.result import Result
 from ..scenarios.scenario import Scenario
 from .console import table
@@ -14,7 +14,7 @@ from .console import table
 SHOWN = 19
 
 
-def part_with_contacts(scenario: Scenario) -> PartWithContacts:
+def part_with_contacts(scenario: Scenario) -> TellsContacts:
     """The part of a rig that tells its contacts.
 
     Args:
@@ -23,11 +23,9 @@ def part_with_contacts(scenario: Scenario) -> PartWithContacts:
     Raises:
         ScenarioError: no part does, or several do
     """
-    parts = [part for part in assemble(scenario.spec).parts if isinstance(part, PartWithContacts)]
+    parts = [part for part in assemble(scenario.spec).parts if isinstance(part, TellsContacts)]
     if not parts:
-        kinds = ", ".join(
-            sorted(kind for kind, cls in scenario.spec.types.items() if issubclass(cls, PartWithContacts))
-        )
+        kinds = ", ".join(sorted(kind for kind, cls in scenario.spec.types.items() if hasattr(cls, "contact_table")))
         raise ScenarioError(
             f"{scenario.name}: no part has a table of contacts. Leave out --contacts, or take a rig with: {kinds}."
         )
@@ -37,7 +35,7 @@ def part_with_contacts(scenario: Scenario) -> PartWithContacts:
     return parts[0]
 
 
-def values_of(part: PartWithContacts, flat: FlatModel, result: Result) -> dict[str, float]:
+def values_of(part: TellsContacts, flat: FlatModel, result: Result) -> dict[str, float]:
     """Parameters and outputs of a part at a steady state, by key, in SI.
 
     Args:

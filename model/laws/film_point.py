@@ -8,7 +8,7 @@ from ..sources import law
 from .smooth import Num, smooth_abs
 
 #: Range of the 34 solved contacts behind the formulas of Hamrock and Dowson.
-SOLVED = {"U": (8e-13, 5.1e-11), "G": (2300.0, 6800.0), "W": (1.1e-7, 1.2e-6), "k": (1.0, 8.0)}
+SOLVED = {"U": (8e-13, 5.1e-11), "G": (2300.0, 6800.0), "W": (1.1e-7, 1.3e-6), "k": (1.0, 8.0)}
 
 
 @law(

@@ -30,30 +30,6 @@ class ContactTable:
 
 
 @dataclass(frozen=True)
-class ContactCase:
-    """One line contact in numbers, as a contact solver needs it.
-
-    `time` of the mesh cycle [s], `theta` angle of the cycle [rad], `F` normal force [N], `length` of the contact [m],
-    `R` reduced radius [m], `u_1` and `u_2` speeds of both surfaces through the contact [m/s], `E_eff` effective modulus
-    [Pa], `eta_0` dynamic viscosity [Pa.s], `alpha_p` pressure-viscosity coefficient [1/Pa], `sigma` composite
-    roughness [m], `mu_boundary` friction coefficient of touching surfaces [1].
-    """
-
-    time: float
-    theta: float
-    F: float
-    length: float
-    R: float
-    u_1: float
-    u_2: float
-    E_eff: float
-    eta_0: float
-    alpha_p: float
-    sigma: float
-    mu_boundary: float
-
-
-@dataclass(frozen=True)
 class FilmContact:
     """The contact of a part at an operating point, as a film map needs it; the oil is that of the part's lubricant.
 
@@ -78,6 +54,23 @@ class FilmContact:
     sigma: float
     mu_boundary: float | None = None
     R_y: float = inf
+
+
+@dataclass(frozen=True, kw_only=True)
+class ContactCase(FilmContact):
+    """A contact at one moment of a mesh cycle, with the oil that it finds.
+
+    Args:
+        time: since the load begins [s]
+        theta: angle of the cycle [rad]
+        eta_0: dynamic viscosity at ambient pressure [Pa.s]
+        alpha_p: pressure-viscosity coefficient [1/Pa]
+    """
+
+    time: float
+    theta: float
+    eta_0: float
+    alpha_p: float
 
 
 #: How far the modulus of a part may be from that of its film map, relative.
@@ -118,8 +111,11 @@ class TellsFilmContact(Protocol):
         ...
 
 
-class PartWithContacts(Component):
-    """Base of parts that tell their contacts. `values` are the part's parameters and outputs by key, in SI."""
+@runtime_checkable
+class TellsContacts(Protocol):
+    """A part that tells its contacts over a mesh cycle in numbers."""
+
+    name: str
 
     def contact_table(self, values: Mapping[str, float]) -> ContactTable:
         """All contacts over a mesh cycle.
@@ -127,22 +123,4 @@ class PartWithContacts(Component):
         Args:
             values: parameters and outputs of the part at an operating point, by key, in SI
         """
-        raise AttributeError(f"{type(self).__name__} has no contact table")
-
-    def contact_case(self, values: Mapping[str, float], theta: float) -> ContactCase:
-        """One contact, for a contact solver.
-
-        Args:
-            values: parameters and outputs of the part at an operating point, by key, in SI
-            theta: angle of the mesh cycle [rad]
-        """
-        raise AttributeError(f"{type(self).__name__} has no contact case")
-
-    def mesh_cycle(self, values: Mapping[str, float], count: int = 15) -> list[ContactCase]:
-        """The way of one contact through its load, in steps of equal time, for a transient contact solver.
-
-        Args:
-            values: parameters and outputs of the part at an operating point, by key, in SI
-            count: number of moments
-        """
-        raise AttributeError(f"{type(self).__name__} has no mesh cycle")
+        ...

@@ -78,5 +78,6 @@ def pin_case(mesh: PinMesh, film: Film, theta: float) -> ContactCase:
     """
     c = mesh.contact(theta, film)
     time = theta / abs(film.w_crank) if film.w_crank else inf
-    numbers = (time, theta, c.F, mesh.b, c.R, c.u_disc, c.u_pin, mesh.E_eff, film.eta, film.alpha_p, mesh.sigma)
-    return ContactCase(*map(float, (*numbers, mesh.mu_boundary)))
+    there = (c.F, c.R, mesh.b, c.u_disc, c.u_pin, mesh.E_eff, mesh.sigma, mesh.mu_boundary)
+    oil = {"eta_0": float(film.eta), "alpha_p": float(film.alpha_p)}
+    return ContactCase(*map(float, there), time=float(time), theta=theta, **oil)

@@ -7,12 +7,12 @@ from dataclasses import replace
 
 import casadi as ca
 
-from ..core.component import Equation, Related, equation
+from ..core.component import Component, Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.cycloid_pin import greatest_curvature, width_coefficient
 from ..laws.film_map import FilmMap
 from ..laws.smooth import Num, friction_sign, smooth_abs
-from .contacts import ContactCase, ContactTable, FilmContact, PartWithContacts, fits_map
+from .contacts import ContactCase, ContactTable, fits_map
 from .pin_mesh import Film, PinContact, PinMesh
 from .pin_table import pin_case, pin_table
 from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading
@@ -23,7 +23,7 @@ DISCS = 2
 UNDERCUT = 1e-6
 
 
-class CycloidPinStage(PartWithContacts):
+class CycloidPinStage(Component):
     """Cranks move two discs round inside a ring of pins; the discs turn the carrier, the pins hold on to the housing.
 
     The flange `crank` is the rotation of all cranks against the carrier, as that of the planets of a `PlanetarySet`:
@@ -197,14 +197,13 @@ class CycloidPinStage(PartWithContacts):
         """
         return pin_case(*self._in_numbers(values), theta)
 
-    def film_contact(self, values: Mapping[str, float]) -> FilmContact:
+    def film_contact(self, values: Mapping[str, float]) -> ContactCase:
         """The contact of the pin across the crank's line.
 
         Args:
             values: parameters and outputs of the stage at an operating point, by key, in SI
         """
-        c = self.contact_case(values, ca.pi / 2)
-        return FilmContact(c.F, c.R, c.length, c.u_1, c.u_2, c.E_eff, c.sigma, c.mu_boundary)
+        return self.contact_case(values, float(ca.pi) / 2)
 
     def mesh_cycle(self, values: Mapping[str, float], count: int = 15) -> list[ContactCase]:
         """The way of a pin through the loaded half, in the middles of equal steps: it carries at every moment.

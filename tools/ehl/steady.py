@@ -15,8 +15,8 @@ from ...model.units import to_si
 from . import cases
 from .rows import Found, Job, row
 
-#: Nodes along a side of the finer of two grids, for the films and for the quick subset; loads from HEAVY on, in the
-#: numbers of Moes, need the finest.
+#: Nodes along a side of the finer of two grids, for the films and for the quick subset. Heavy contacts, with loads from
+#: HEAVY on in the numbers of Moes, need the finest.
 NODES, QUICK, FINEST, HEAVY = 129, 65, 257, 200
 #: Part of the plane in half widths in which the rolling moment is taken: first x, last x, largest y.
 MOMENT_DOMAIN = (-4.5, 1.5, 3.0)
@@ -69,22 +69,23 @@ def _other_reading(M: float, L: float) -> float:
 def _hamrock_dowson(n: int) -> list[Job]:
     data = cases.reference("hamrock_dowson")
 
-    def work(U: float, W: float, G: float, k: float) -> Found:
+    def work(U: float, W: float, G: float, k: float, varied: str) -> Found:
         contact = cases.elliptical(U, W, G, k)
-        film = extrapolated(contact, n)
+        film = extrapolated(contact, FINEST if n > QUICK else n)
         numbers = (U, G, W, k)
         name = f"U {U:g} W {W:g} G {G:g} k {k:g}"
         low, middle = film_point.hamrock_dowson_minimum(*numbers), film_point.hamrock_dowson_central(*numbers)
+        quantity, rel = ("h_min/R_x, corners of the range", 0.0) if varied == "corner" else ("h_min/R_x", data.rel)
         return {
             "rows": [
-                row(name, "h_min/R_x", float(low), film.h_min / contact.R_x, data.rel, film.load_error),
+                row(name, quantity, float(low), film.h_min / contact.R_x, rel, film.load_error),
                 row(name, "h_c/R_x", float(middle), film.h_c / contact.R_x, 0.0, film.load_error),
             ]
         }
 
     found = []
     for i, r in enumerate(data.rows):
-        of = partial(work, r["U"], r["W"], r["G"], r["k"])
+        of = partial(work, r["U"], r["W"], r["G"], r["k"], r["varied"])
         found.append(Job("Hamrock and Dowson", f"{i + 1:02d} {r['varied']}", of, quick=i in (0, 7)))
     return found
 
