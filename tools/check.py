@@ -55,7 +55,8 @@ def main(chosen: Sequence[str] = ()) -> int:
             )
         )
         return BAD_INPUT
-    environment = {**os.environ, "MYPYPATH": str(links())}
+    threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")  # a test a core
+    environment = {**threads, **os.environ, "MYPYPATH": str(links())}
     failed = []
     for name in chosen or known:
         note(f"== {name}: {' '.join(known[name][1:])}")

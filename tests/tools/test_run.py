@@ -124,7 +124,7 @@ def test_other_values_are_played_again(ran, gearheat, tmp_path):
 def test_an_interrupted_run_leaves_finished_tests_and_goes_on(tmp_path):
     out = tmp_path / "out"
     command = [sys.executable, "-m", "gearheat.tools.cli", "run", "planetary", "--out", str(out), "--tests", "1-10"]
-    command += ["--workers", "1", "--step", "3 s"]  # slow enough to be met half-way
+    command += ["--workers", "1", "--step", "1 s"]  # slow enough to be met half-way
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     assert process.stderr is not None
     deadline = time.monotonic() + 60

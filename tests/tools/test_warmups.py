@@ -15,7 +15,8 @@ def test_a_rig_warms_up_as_it_is_simulated(name: str) -> None:
     """At several loads, through a stop of its shaft and a room that cools down."""
     flat = flatten(assemble(load(name).spec))
     batch = Batch(flat)
-    load_name = next(q.name for q in flat.inputs if q.name.endswith(".tau"))
+    torques = [q.name for q in flat.inputs if q.name.endswith(".tau")]
+    load_name = next(iter(torques + [q.name for q in flat.parameters if q.unit == "N"]))
     room = next(q for q in flat.inputs if q.name == "room.T")
     speed = next(q for q in flat.inputs if q.name.endswith(".w"))
     duty = stepped(
