@@ -75,11 +75,11 @@ def _hamrock_dowson(n: int) -> list[Job]:
         numbers = (U, G, W, k)
         name = f"U {U:g} W {W:g} G {G:g} k {k:g}"
         low, middle = film_point.hamrock_dowson_minimum(*numbers), film_point.hamrock_dowson_central(*numbers)
-        quantity, rel = ("h_min/R_x, corners of the range", 0.0) if varied == "corner" else ("h_min/R_x", data.rel)
+        where, rel = (", corners of the range", 0.0) if varied == "corner" else ("", data.rel)
         return {
             "rows": [
-                row(name, quantity, float(low), film.h_min / contact.R_x, rel, film.load_error),
-                row(name, "h_c/R_x", float(middle), film.h_c / contact.R_x, 0.0, film.load_error),
+                row(name, f"h_min/R_x{where}", float(low), film.h_min / contact.R_x, rel, film.load_error),
+                row(name, f"h_c/R_x{where}", float(middle), film.h_c / contact.R_x, 0.0, film.load_error),
             ]
         }
 
