@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from typing import Any
 
 import numpy as np
-from jinja2 import Environment
 from markupsafe import Markup, escape
 
 from ..model.run.result import Outside
@@ -16,6 +14,7 @@ from ..model.sources import LawInfo, sources
 from . import plots
 from .compare import CHANNELS, Comparison, Rows, present
 from .console import cell
+from .pages import page
 from .rivals import Score
 from .summary import error_lines, group_lines
 
@@ -57,9 +56,8 @@ READING = ("point", "test", "direction", "oil", "n_carrier_rpm", "T_carrier_Nm",
 
 def render(study: Study, comparison: Comparison | None, scores: Sequence[Score]) -> str:
     """The page as HTML text, the same bytes for the same study. Without a comparison it shows the simulation alone."""
-    template = files("gearheat.tools").joinpath("templates/report.html").read_text(encoding="utf-8")
-    page = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(template)
-    return page.render(
+    return page(
+        "report.html",
         study=study,
         compared=None if comparison is None else _compared(study.rows, comparison, scores),
         tests=len({row["test"] for row in study.rows}),

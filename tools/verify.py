@@ -20,9 +20,9 @@ from ..scenarios.scenario import Scenario
 from .console import answer, file_of, writable, write
 from .describe import errata_of
 from .model_values import RigValues, single
+from .pages import page
 from .rigs import load
-from .verdicts import NOT_REPRODUCED, Machine, Value, Verdict, counts, judged, kinds
-from .verify_page import render
+from .verdicts import NOT_REPRODUCED, VERDICTS, Machine, Value, Verdict, counts, judged, kinds
 from .verify_table import show
 
 A = TypeVar("A")
@@ -43,7 +43,7 @@ def command(rig: str | None, json: str | None, html: Path | None) -> None:
         verdicts = verified(laws, None, advance)
     found = as_dict(machines, verdicts)
     if html is not None:
-        write(html, render(found))
+        write(html, page("verify.html", found=found, verdicts=VERDICTS))
     answer(found, json, lambda: show(machines, verdicts, found))
     if found["counts"][NOT_REPRODUCED]:
         sys.exit(FAILED)

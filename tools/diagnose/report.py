@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import math
 import re
-from importlib.resources import files
 from typing import Any
 
-from jinja2 import Environment
 from markupsafe import Markup
 
 from ...model.units import from_si, shown
 from ..effects.taxonomy import CAUSES
+from ..pages import page
 from ..report import html_table
 from ..settings import parameter_of
 from . import pictures, words
@@ -37,11 +36,9 @@ PRIORS = {
 
 def render(inputs: Inputs, findings: Findings) -> str:
     """The page as HTML text, the same bytes for the same findings."""
-    template = files("gearheat.tools").joinpath("templates/diagnosis.html").read_text(encoding="utf-8")
-    page = Environment(autoescape=True, trim_blocks=True, lstrip_blocks=True).from_string(template)
     hypothesis = words.applied(findings)
-    return page.render(
-        style=_style(),
+    return page(
+        "diagnosis.html",
         inputs=inputs,
         findings=findings,
         words=words,
@@ -65,12 +62,6 @@ def render(inputs: Inputs, findings: Findings) -> str:
         priors=_priors(inputs),
         calibrated=_calibrated(inputs, findings),
     )
-
-
-def _style() -> Markup:
-    """The look of the project's reports."""
-    text = files("gearheat.tools").joinpath("templates/report.html").read_text(encoding="utf-8")
-    return Markup(text.partition("<style>")[2].partition("</style>")[0])
 
 
 def _bars(findings: Findings) -> list[dict[str, Any]]:
