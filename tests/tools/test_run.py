@@ -10,6 +10,7 @@ import signal
 import subprocess
 import sys
 import time
+from functools import partial
 
 import pytest
 
@@ -124,8 +125,9 @@ def test_other_values_are_played_again(ran, gearheat, tmp_path):
 def test_an_interrupted_run_leaves_finished_tests_and_goes_on(tmp_path):
     out = tmp_path / "out"
     command = [sys.executable, "-m", "gearheat.tools.cli", "run", "planetary", "--out", str(out), "--tests", "1-10"]
-    command += ["--workers", "1", "--step", "1 s"]  # slow enough to be met half-way
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    command += ["--workers", "1", "--step", "3 s"]  # slow enough to be met half-way
+    heeds = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # shells let what runs behind them ignore it
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=heeds)
     assert process.stderr is not None
     deadline = time.monotonic() + 60
     for line in process.stderr:
