@@ -10,7 +10,6 @@ import signal
 import subprocess
 import sys
 import time
-from functools import partial
 
 import pytest
 
@@ -126,8 +125,9 @@ def test_an_interrupted_run_leaves_finished_tests_and_goes_on(tmp_path):
     out = tmp_path / "out"
     command = [sys.executable, "-m", "gearheat.tools.cli", "run", "planetary", "--out", str(out), "--tests", "1-10"]
     command += ["--workers", "1", "--step", "3 s"]  # slow enough to be met half-way
-    heeds = partial(signal.signal, signal.SIGINT, signal.SIG_DFL)  # shells let what runs behind them ignore it
-    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True, preexec_fn=heeds)
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)  # jobs of a shell may be told to ignore it
+    process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
+    signal.signal(signal.SIGINT, before)
     assert process.stderr is not None
     deadline = time.monotonic() + 60
     for line in process.stderr:
