@@ -5,7 +5,7 @@ from __future__ import annotations
 from ..model.core.flat import FlatModel
 from ..model.errors import ScenarioError
 from ..model.machines.spec import assemble
-from ..model.parts.contacts import ContactTable, TellsContacts
+from ..model.parts.contacts import ContactTable, TellsContacts, TellsFilmContact
 from ..model.run.result import Result
 from ..scenarios.scenario import Scenario
 from .console import table
@@ -35,7 +35,7 @@ def part_with_contacts(scenario: Scenario) -> TellsContacts:
     return parts[0]
 
 
-def values_of(part: TellsContacts, flat: FlatModel, result: Result) -> dict[str, float]:
+def values_of(part: TellsContacts | TellsFilmContact, flat: FlatModel, result: Result) -> dict[str, float]:
     """Parameters and outputs of a part at a steady state, by key, in SI.
 
     Args:

@@ -21,6 +21,7 @@ from ..model.units import to_si
 from ..scenarios.document import read_toml, sources_of
 from ..scenarios.scenario import Scenario
 from ..scenarios.values import oil_values
+from .contacts import values_of
 from .points import conditions
 from .sampling import Axis, axes, read
 from .settings import flat_of
@@ -241,9 +242,7 @@ def from_rig(scenario: Scenario, part: str | None, vary: Sequence[str]) -> MapCa
     chosen = told[_chosen(scenario, part, tuple(told))]
     flat = flat_of(scenario)
     result = steady(flat, conditions(scenario, flat))
-    numbers = {q.name: q.start for q in flat.parameters} | {k: float(c[0]) for k, c in result.columns.items()}
-    start = f"{chosen.name}."
-    c = chosen.film_contact({k.removeprefix(start): v for k, v in numbers.items() if k.startswith(start)})
+    c = chosen.film_contact(values_of(chosen, flat, result))
     u_m = abs(c.u_1 + c.u_2) / 2
     if min(c.F / LEAST[0], u_m / LEAST[1]) < 1:
         raise ScenarioError(

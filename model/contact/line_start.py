@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import replace
 from math import copysign, log, sqrt
 
@@ -63,10 +64,8 @@ def _smooth(
     """A solution, from that on a coarser grid where there is one, else from a softer oil at a higher speed."""
     if start is not None and before is not None:
         p = np.interp(moment.grid.x, before.x, start.p)
-        try:
+        with suppress(SolveError):
             return newton(moment, p, start.h_0, tolerance)
-        except SolveError:
-            pass
     M, L = numbers(unit.contact)
     soft, faster = min(1.0, SOFT / max(L, 1e-9)), 1.0 if moment.dry else max(M / EASY, 1.0) ** 2
 

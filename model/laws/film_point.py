@@ -90,14 +90,27 @@ def nijenbanning_central(M: Num, L: Num, D: Num) -> Num:
         L: lubricant number, alpha_p E_eff U^(1/4) [1]
         D: R_x / R_y, 1 for a circular contact [1]
     """
+    H_RI, H_EI, stiff, s = nijenbanning_asymptotes(M, L, D)
+    return ((H_RI**1.5 + H_EI**1.5) ** (2 * s / 3) + stiff**s) ** (1 / s)
+
+
+def nijenbanning_asymptotes(M: Num, L: Num, D: Num) -> tuple[Num, Num, Num, Num]:
+    """Films [1] of rigid and of elastic surfaces in oil of constant viscosity and of piezoviscous oil, and exponent s.
+
+    The elastic film ends at H_00 = 1.8/D, the piezoviscous one joins those of rigid and elastic surfaces.
+
+    Args:
+        M: load number, F / (E_eff R_x^2) U^(-3/4) [1]
+        L: lubricant number, alpha_p E_eff U^(1/4) [1]
+        D: R_x / R_y, 1 for a circular contact [1]
+    """
     shape = 1 + 0.006 * ca.log(D) + 0.63 * D ** (4 / 7)
     H_RI = 145 * (1 + 0.796 * D ** (14 / 15)) ** (-15 / 7) / (D * M**2)
     H_EI = 3.18 * shape ** (-14 / 25) * D ** (-1 / 15) * M ** (-2 / 15)
     H_RP = 1.29 * (1 + 0.691 * D) ** (-2 / 3) * L ** (2 / 3)
     H_EP = 1.48 * shape ** (-7 / 20) * D ** (-1 / 24) * M ** (-1 / 12) * L**0.75
     s = 1.5 * (1 + ca.exp(-1.2 * H_EI / H_RI))
-    isoviscous = H_RI**1.5 + (H_EI**-4 + (1.8 / D) ** -4) ** -0.375
-    return (isoviscous ** (2 * s / 3) + (H_RP**-8 + H_EP**-8) ** (-s / 8)) ** (1 / s)
+    return H_RI, (H_EI**-4 + (1.8 / D) ** -4) ** -0.25, (H_RP**-8 + H_EP**-8) ** -0.125, s
 
 
 def point_film_central(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from math import exp, pi
+from math import pi
 from typing import NamedTuple
 
 import numpy as np
@@ -57,13 +57,9 @@ def extrapolated(contact: Contact, n: int) -> Extrapolated:
 
 def _other_reading(M: float, L: float) -> float:
     """The formula with its isoviscous terms blended as public code has them, D = 1."""
-    shape = 1.63
-    rigid = 145 * 1.796 ** (-15 / 7) / M**2
-    elastic = 3.18 * shape ** (-14 / 25) * M ** (-2 / 15)
-    stiff = 1.29 * 1.691 ** (-2 / 3) * L ** (2 / 3), 1.48 * shape ** (-7 / 20) * M ** (-1 / 12) * L**0.75
-    s = 1.5 * (1 + exp(-1.2 * elastic / rigid))
-    isoviscous = (rigid ** (1.5 * s) + (elastic**-4 + 1.8**-4) ** (-0.375 * s)) ** (2 / (3 * s))
-    return float((isoviscous + (stiff[0] ** -8 + stiff[1] ** -8) ** (-s / 8)) ** (1 / s))
+    H_RI, H_EI, stiff, s = map(float, film_point.nijenbanning_asymptotes(M, L, 1.0))
+    isoviscous = (H_RI ** (1.5 * s) + H_EI ** (1.5 * s)) ** (2 / (3 * s))
+    return float((isoviscous + stiff**s) ** (1 / s))
 
 
 def _hamrock_dowson(n: int) -> list[Job]:
