@@ -1,0 +1,1 @@
+"""From probabilities to answers: decision, sets, gain, design of the next experiment."""

@@ -1,0 +1,118 @@
+"""A campaign as arrays: rows of readings in tests, sensors with roles."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """One instrument: a column of the user's file and what it reads of the model.
+
+    Args:
+        name: stable name of the rig file ("T_oil")
+        column: column of the user's file ("Ölsumpf")
+        reads: path of an input, state or output of the model ("oil.T")
+        kind: "oil_temp", "wall_temp" (any body), "ambient", "torque", "speed" or "power"
+        role: "given" drives the model, "read" is compared
+        unit: of the column
+        repeat_sd: scatter from reading to reading [SI]
+        offset_sd: tolerance that is fixed over the campaign [SI]
+        signs: sign of the model's value in direction +1 and -1 where the column holds magnitudes, else (1, 1)
+    """
+
+    name: str
+    column: str
+    reads: str
+    kind: str
+    role: str
+    unit: str
+    repeat_sd: float
+    offset_sd: float
+    signs: tuple[float, float] = (1.0, 1.0)
+
+    def sign(self, direction: np.ndarray) -> np.ndarray:
+        """Sign of the model's value over that of the column, per row (n,)."""
+        return np.where(direction < 0, self.signs[1], self.signs[0])
+
+
+@dataclass(frozen=True, eq=False)
+class Campaign:
+    """Steady or timed readings of one rig: n rows in n_tests tests, tests in running order, rows of a test in sequence.
+
+    Args:
+        name: of the file
+        sensors: what was measured
+        values: sensor -> column in SI with the signs of the column (n,), NaN where a reading is missing
+        test: index of each row's test (n,), never falling
+        order: running order of each test (n_tests,), as in the file
+        direction: +1, -1, or 0 where there is none (n,)
+        dwell: time each row was held [s] (n,), inf for a steady state
+        stop: time without load before each row [s] (n,), 0 for the first of a test
+        oil: name of each test's oil (n_tests), "" for that of the rig
+        mounting: filling or mounting of each test (n_tests), "" where there is one only
+        T_start: temperature of the whole gearbox at the start of each test [K] (n_tests,), NaN: that of the room
+        room_start: room at the start of each test [K] (n_tests,), NaN: as at the first reading
+        start_by_room: offset of an assumed start from the room, as the card states it [K]
+        humidity: relative humidity [1] (n_tests,), NaN where it is not known
+        date: of each test (n_tests), "" where unknown
+        lines: line of each row in the file (n,)
+        points: number of each row's reading as in the file (n,)
+    """
+
+    name: str
+    sensors: tuple[Sensor, ...]
+    values: Mapping[str, np.ndarray]
+    test: np.ndarray
+    order: np.ndarray
+    direction: np.ndarray
+    dwell: np.ndarray
+    stop: np.ndarray
+    oil: tuple[str, ...]
+    mounting: tuple[str, ...]
+    T_start: np.ndarray
+    room_start: np.ndarray
+    humidity: np.ndarray
+    date: tuple[str, ...]
+    lines: np.ndarray
+    points: np.ndarray
+    start_by_room: float = 0.0
+    warnings: tuple[str, ...] = field(default=())
+
+    @property
+    def n(self) -> int:
+        """Number of rows."""
+        return len(self.test)
+
+    @property
+    def n_tests(self) -> int:
+        """Number of tests."""
+        return len(self.order)
+
+    @property
+    def steady(self) -> bool:
+        """Whether the readings are steady states, not ends of timed dwells."""
+        return bool(np.isinf(self.dwell).all())
+
+    def sensor(self, name: str) -> Sensor:
+        """The sensor of a name."""
+        return next(s for s in self.sensors if s.name == name)
+
+    @property
+    def given(self) -> tuple[Sensor, ...]:
+        """Sensors that drive the model."""
+        return tuple(s for s in self.sensors if s.role == "given")
+
+    @property
+    def read(self) -> tuple[Sensor, ...]:
+        """Sensors that are compared."""
+        return tuple(s for s in self.sensors if s.role == "read")
+
+    @property
+    def progress(self) -> np.ndarray:
+        """Running order of each row from 0 (first test) to 1 (last)."""
+        span = max(float(self.order.max() - self.order.min()), 1.0)
+        return np.asarray((self.order - self.order.min())[self.test] / span)

@@ -1,0 +1,1 @@
+"""From residuals to probabilities: one vector, its fit, its evidence, the search and the alarm."""

@@ -1,0 +1,1 @@
+"""What may be wrong: causes, sensors' faults and nuisances, one file a family."""

@@ -1,0 +1,1 @@
+"""What the user reads: findings as data, words, pages, and the extended rig."""
