@@ -27,9 +27,11 @@ def _text(value: Any) -> Any:
 class Channel(Strict):
     """Accuracy of one sensor."""
 
-    repeat_sd: str | None = Field(None, description='scatter from reading to reading: "0.35 K", or in its unit')
-    offset_sd: str | None = Field(None, description='tolerance fixed over the campaign: "0.3 K", or in its unit')
-    full_scale: float | None = Field(None, description="range of the instrument, for the reader")
+    repeat_sd: str | None = Field(default=None, description='scatter from reading to reading: "0.35 K", or in its unit')
+    offset_sd: str | None = Field(
+        default=None, description='tolerance fixed over the campaign: "0.3 K", or in its unit'
+    )
+    full_scale: float | None = Field(default=None, description="range of the instrument, for the reader")
 
     _numbers = field_validator("repeat_sd", "offset_sd", mode="before")(_text)
 
@@ -37,7 +39,7 @@ class Channel(Strict):
 class CardSensor(SensorTable):
     """A sensor that is added, or keys of one that overrule the rig file's."""
 
-    reads: str = Field("", description='path in the model, for example "oil.T"')
+    reads: str = Field(default="", description='path in the model, for example "oil.T"')
 
     _numbers = field_validator("repeat_sd", "offset_sd", mode="before")(_text)
 
@@ -45,13 +47,25 @@ class CardSensor(SensorTable):
 class Protocol(Strict):
     """How the campaign was run."""
 
-    prose: str = Field("", description='"steady" for steady states, or words for the reader')
-    dwell_min: list[float] = Field([], description="minutes that the rows of a test are held, where no column says it")
-    stop_min: float | None = Field(None, ge=0, description="minutes without load before each further row of a test")
-    T_start_minus_amb_K: float = Field(0.0, description="start of a test over its room, where no column says it [K]")
-    ambient: str = Field("linear between the readings", description='"linear between the readings", the only one known')
-    ambient_start_minus_reading_K: float = Field(0.0, description="room at the start less its first reading [K]")
-    reading: str = Field("last sample of the dwell", description='"last sample of the dwell", the only one known')
+    prose: str = Field(default="", description='"steady" for steady states, or words for the reader')
+    dwell_min: list[float] = Field(
+        default=[], description="minutes that the rows of a test are held, where no column says it"
+    )
+    stop_min: float | None = Field(
+        default=None, ge=0, description="minutes without load before each further row of a test"
+    )
+    T_start_minus_amb_K: float = Field(
+        default=0.0, description="start of a test over its room, where no column says it [K]"
+    )
+    ambient: str = Field(
+        default="linear between the readings", description='"linear between the readings", the only one known'
+    )
+    ambient_start_minus_reading_K: float = Field(
+        default=0.0, description="room at the start less its first reading [K]"
+    )
+    reading: str = Field(
+        default="last sample of the dwell", description='"last sample of the dwell", the only one known'
+    )
 
     @field_validator("dwell_min")
     @classmethod
@@ -64,11 +78,11 @@ class Protocol(Strict):
 class Oil(Strict):
     """An oil of the catalogue, or the data of one that it lacks."""
 
-    name: str = Field("", description="an oil of the catalogue")
-    nu40: float | None = Field(None, gt=0, description="viscosity at 40 degC [mm2/s]")
-    nu100: float | None = Field(None, gt=0, description="viscosity at 100 degC [mm2/s]")
-    rho15: float | None = Field(None, gt=0, description="density at 15 degC [kg/m3]")
-    alpha_T: float | None = Field(None, description="change of the density [kg/(m3.K)]")
+    name: str = Field(default="", description="an oil of the catalogue")
+    nu40: float | None = Field(default=None, gt=0, description="viscosity at 40 degC [mm2/s]")
+    nu100: float | None = Field(default=None, gt=0, description="viscosity at 100 degC [mm2/s]")
+    rho15: float | None = Field(default=None, gt=0, description="density at 15 degC [kg/m3]")
+    alpha_T: float | None = Field(default=None, description="change of the density [kg/(m3.K)]")
 
 
 class Card(Strict):
@@ -77,20 +91,24 @@ class Card(Strict):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, populate_by_name=True)
 
     schema_: Literal["gearheat.card/1", "gearheat.card/2"] = Field(
-        "gearheat.card/2", alias="schema", description='"gearheat.card/2"'
+        default="gearheat.card/2", alias="schema", description='"gearheat.card/2"'
     )
-    columns: dict[str, str] = Field({}, description="sensor, model path or optional column -> column of the table")
-    units: dict[str, str] = Field({}, description="column of the table -> its unit")
-    channels: dict[str, Channel] = Field({}, description="sensor -> its accuracy")
-    sensors: dict[str, CardSensor] = Field({}, description="sensors that the rig file lacks, or keys that overrule it")
-    day_cooling_sd: float = Field(0.015, ge=0, description="relative scatter of the cooling from day to day")
-    prior_sd: dict[str, float] = Field({}, description='relative: "HelicalGearPair.k_mu" -> standard deviation')
-    protocol: Protocol = Field(Protocol(), description="how the campaign was run: a table, or words")
-    lubrication: dict[str, str] = Field({}, description="part, part type or group of parts -> oil or grease")
-    oil: Oil = Field(Oil(), description="an oil of the catalogue, or a table with nu40 and nu100")
-    series: bool = Field(False, description="whether the tests were logged, too")
-    name: str = Field("", exclude=True, description="of the file")
-    warnings: tuple[str, ...] = Field((), exclude=True, description="what the user should know of the file")
+    columns: dict[str, str] = Field(
+        default={}, description="sensor, model path or optional column -> column of the table"
+    )
+    units: dict[str, str] = Field(default={}, description="column of the table -> its unit")
+    channels: dict[str, Channel] = Field(default={}, description="sensor -> its accuracy")
+    sensors: dict[str, CardSensor] = Field(
+        default={}, description="sensors that the rig file lacks, or keys that overrule it"
+    )
+    day_cooling_sd: float = Field(default=0.015, ge=0, description="relative scatter of the cooling from day to day")
+    prior_sd: dict[str, float] = Field(default={}, description='relative: "HelicalGearPair.k_mu" -> standard deviation')
+    protocol: Protocol = Field(default=Protocol(), description="how the campaign was run: a table, or words")
+    lubrication: dict[str, str] = Field(default={}, description="part, part type or group of parts -> oil or grease")
+    oil: Oil = Field(default=Oil(), description="an oil of the catalogue, or a table with nu40 and nu100")
+    series: bool = Field(default=False, description="whether the tests were logged, too")
+    name: str = Field(default="", exclude=True, description="of the file")
+    warnings: tuple[str, ...] = Field(default=(), exclude=True, description="what the user should know of the file")
 
     @model_validator(mode="before")
     @classmethod

@@ -93,7 +93,7 @@ class _Reader:
         for name, column in self.context.items():
             doc, kind, _ = CONTEXT[name]
             options = DIRECTIONS if name == "direction" else ()
-            found.append(Column(column, doc, kind, required=False, options=options))  # type: ignore[arg-type]
+            found.append(Column(column, doc, kind, required=False, options=options))
         return found
 
     def _oils(self) -> Collection[str] | None:
@@ -187,7 +187,7 @@ class _Reader:
         change = self.card.protocol.ambient_start_minus_reading_K
         rooms = [s.name for s in self.sensors if s.kind == "ambient" and s.role == "given"]
         usual = values[rooms[0]][starts] + change if rooms and change else np.full(len(starts), np.nan)
-        return np.where(np.isfinite(stated[starts]), stated[starts], usual)
+        return np.asarray(np.where(np.isfinite(stated[starts]), stated[starts], usual))
 
 
 def _oil_problems(table: Table, column: str | None, known: Collection[str] | None) -> list[str]:
