@@ -353,6 +353,14 @@ class Invisible(Model):
     reason: str = Field(description="what is missing: no column humidity_pct")
 
 
+class Prediction(Model):
+    """What the instruments will show at a point: channel -> value, calibrated without a cause and extended."""
+
+    point: str
+    nominal: dict[str, Number]
+    extended: dict[str, Number]
+
+
 class Said(Model):
     """The first screen, in sentences."""
 
@@ -398,6 +406,8 @@ class Findings(Model):
     rows: Rows = Rows()
     pictures: tuple[Picture, ...] = ()
     calibrated: tuple[Calibrated, ...] = ()
+    predictions: tuple[Prediction, ...] = ()
+    extended_rig: str = Field("", description="rig file (TOML): calibrated, with the causes of the first answer")
     warnings: tuple[str, ...] = ()
 
     @property
