@@ -32,18 +32,14 @@ def tables(findings: Findings) -> list[Table]:
 def quality(findings: Findings) -> list[Table]:
     """Scatter against the card, repeated points, values off."""
     q, unit = findings.data_quality, phrases.with_unit
-    off = (
-        (n.name, phrases.number(n.z, 2), "" if n.factor is None else phrases.number(n.factor), ", ".join(n.paths))
-        for n in q.nuisances
-    )
+    off = ((n.name, phrases.number(n.z, 2), _value(n.factor), ", ".join(n.paths)) for n in q.nuisances)
     scatter = (
         (v.name, v.channel, unit(v.card, v.unit), unit(v.found, v.unit), phrases.number(v.ratio, 2)) for v in q.variance
     )
     repeats = (
-        (p.condition, p.channel, str(r.test), phrases.number(r.order), _value(r.sum, p.unit), _value(r.difference, p.unit))
-        for p in q.repeated
-        for r in p.repeats
-    )  # fmt: skip
+        (p.condition, p.channel, str(r.test), _value(r.order), *(_value(v, p.unit) for v in (r.sum, r.difference)))
+        for p, r in ((p, r) for p in q.repeated for r in p.repeats)
+    )
     return [
         _table("Where the rig differs from its file", ("value", "prior sd off", "factor", "parameters"), off),
         _table("Scatter", ("of", "channel", "card", "found", "ratio"), scatter),
@@ -97,11 +93,10 @@ def gain(findings: Findings) -> list[Table]:
             phrases.scheme(g),
             f"{g.channel} [{g.unit}]",
             str(g.n),
-            phrases.number(g.rmse_before),
-            phrases.number(g.rmse_after),
-            *(("", "") if g.before is None or g.after is None else map(phrases.number, (g.before.with_, g.after.with_))),
-            *(phrases.number(g.rivals[name]) if name in g.rivals else "" for name in rivals),
-            "" if g.noise_floor is None else phrases.number(g.noise_floor),
+            *(phrases.number(v) for v in (g.rmse_before, g.rmse_after)),
+            *(_value(v.with_ if v else None) for v in (g.before, g.after)),
+            *(_value(g.rivals.get(name)) for name in rivals),
+            _value(g.noise_floor),
         )
         for g in found
     )  # fmt: skip
@@ -125,7 +120,7 @@ def gain(findings: Findings) -> list[Table]:
 def experiments(findings: Findings) -> list[Table]:
     """What to measure next, and what would show each probable cause."""
     rows = (
-        (e.what or e.id, names_of(e.separates), phrases.number(e.separation_before, 2), phrases.number(e.separation_after, 2))
+        (e.what or e.id, names_of(e.separates), *map(_sigma, (e.separation_before, e.separation_after)))
         for e in findings.next_experiment[:MOST]
     )  # fmt: skip
     exposing = ((name_of(c.id), c.exposes) for c in findings.causes if c.probability >= LEAST and c.exposes)
@@ -144,7 +139,7 @@ def sets(findings: Findings) -> list[Table]:
             name_of(i.cause),
             phrases.number(i.visible, 2),
             name_of(i.nearest) if i.nearest else "",
-            "" if i.distance is None else phrases.number(i.distance, 2),
+            _value(i.distance),
         )
         for i in findings.isolability
     )
@@ -173,8 +168,12 @@ def _table(title: str, columns: tuple[str, ...], rows: Iterable[tuple[str, ...]]
     return Table(title, columns, tuple(rows), note)
 
 
-def _value(value: float | None, unit: str) -> str:
+def _value(value: float | None, unit: str = "") -> str:
     return "" if value is None else phrases.with_unit(value, unit)
+
+
+def _sigma(value: float) -> str:
+    return phrases.number(value, 2)
 
 
 def _joint(found: Hypothesis) -> str:
