@@ -69,6 +69,7 @@ class Row:
         rise: oil over room as measured [K], or as modelled where it is not measured
         humidity: relative humidity [1]; 0.5 where it is not measured
         second: 1 in the second half (and later ones) of a test, else 0
+        dwell: time the row was held as stated [s]
     """
 
     base: Values
@@ -78,6 +79,7 @@ class Row:
     rise: Num = 30.0
     humidity: Num = 0.5
     second: Num = 0.0
+    dwell: Num = 3600.0
 
 
 @dataclass(frozen=True)
