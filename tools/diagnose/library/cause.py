@@ -166,7 +166,8 @@ class Ranges:
 
     Args:
         low, high, mid: quantity -> 5 %, 95 % and 50 % over the rows: "w" [rad/s] and "tau" [N.m] magnitudes of the
-            first given shaft, "T" of the oil [K], "nu" of the oil [m2/s], "film" = w nu [m2/s2], "order"
+            shaft that `Roles` names (paths `Roles.speed`, `Roles.torque`), "T" of the oil [K], "nu" of the oil [m2/s],
+            "film" = w nu [m2/s2], "order", "direction"; and the magnitude of each sensor's column by the sensor's name
         loss: typical total loss of the nominal [W]
         rise: typical rise of the oil over the room [K]
     """
@@ -181,6 +182,11 @@ class Ranges:
     def conductance(self) -> float:
         """Typical conductance from the oil to the room [W/K]."""
         return self.loss / max(self.rise, 1.0)
+
+    def varies(self, quantity: str, share: float = 0.1) -> bool:
+        """Whether a quantity ranges over more than a share of its middle, so that a threshold of it makes sense."""
+        low, high = self.low.get(quantity, 0.0), self.high.get(quantity, 0.0)
+        return high - low > share * abs(self.mid.get(quantity, 0.0))
 
 
 def as_array(value: Num, n: int) -> np.ndarray:
