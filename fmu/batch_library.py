@@ -88,11 +88,12 @@ def processor() -> frozenset[str]:
     return frozenset(WIDER) & frozenset(flags)
 
 
-def load(source: str) -> ctypes.CDLL:
+def load(source: str, *, optimise: str = "-O2") -> ctypes.CDLL:
     """The library of a C text, compiled once and kept.
 
     Args:
         source: the whole C text
+        optimise: option of the compiler
 
     Raises:
         FmuError: the compiler fails, or what it made does not load
@@ -100,7 +101,7 @@ def load(source: str) -> ctypes.CDLL:
     platform = host_platform()
     handle, name = tempfile.mkstemp(suffix=platform.suffix)
     with os.fdopen(handle, "wb") as file:
-        file.write(binary(source, platform))
+        file.write(binary(source, platform, optimise=optimise))
     try:
         return ctypes.CDLL(name)
     except OSError as error:
