@@ -91,7 +91,7 @@ static int factored(double *a, whole *pivot, whole n) {
     pivot[k] = best;
     if (!(fabs(a[best * n + k]) > 0) || !isfinite(a[best * n + k])) return 0;
     if (best != k)
-      for (whole j = 0; j < n; j++) {
+      for (whole j = k; j < n; j++) {
         const double kept = a[k * n + j];
         a[k * n + j] = a[best * n + j], a[best * n + j] = kept;
       }
