@@ -88,12 +88,11 @@ def processor() -> frozenset[str]:
     return frozenset(WIDER) & frozenset(flags)
 
 
-def load(source: str, *, optimise: str = "-O2") -> ctypes.CDLL:
+def load(source: str) -> ctypes.CDLL:
     """The library of a C text, compiled once and kept.
 
     Args:
         source: the whole C text
-        optimise: option of the compiler
 
     Raises:
         FmuError: the compiler fails, or what it made does not load
@@ -101,7 +100,7 @@ def load(source: str, *, optimise: str = "-O2") -> ctypes.CDLL:
     platform = host_platform()
     handle, name = tempfile.mkstemp(suffix=platform.suffix)
     with os.fdopen(handle, "wb") as file:
-        file.write(binary(source, platform, optimise=optimise))
+        file.write(binary(source, platform))
     try:
         return ctypes.CDLL(name)
     except OSError as error:

@@ -30,7 +30,7 @@ class Compiled:
             generator.add(function)
         #: Of each function and result: where its columns begin (columns + 1), and the row of each entry.
         self.patterns = {name: [_pattern(r) for r in found] for name, found in results.items()}
-        self._library = load(f"#define GCC_HASCLASSVISIBILITY\n{generator.dump()}", optimise="-O1")
+        self._library = load(f"#define GCC_HASCLASSVISIBILITY\n{generator.dump()}")
         self.sizes = [max(getattr(f, f"sz_{kind}")() for f in functions) for kind in ("arg", "res", "iw", "w")]
 
     def place(self, name: str) -> int:

@@ -14,8 +14,8 @@ from .march import Marched, Phases, march
 from .plant import Plant
 
 #: Shares of a dwell, of a stop and of the time to a steady state [s] where steps end.
-DWELL = np.array([0.003, 0.01, 0.022, 0.04, 0.07, 0.11, 0.16, 0.23, 0.32, 0.45, 0.65, 1.0])
-STOP = np.array([0.3, 1.0])
+DWELL = (np.arange(1, 7) / 6) ** 1.5
+STOP = np.array([1.0])
 STEADY = 60.0 * 4.0 ** np.arange(14)
 #: A kind of sensor that reads zero where the machine stands.
 RESTS = ("torque", "speed", "power")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import casadi as ca
@@ -102,4 +103,20 @@ class Plant:
         Raises:
             GearheatError: the superset has no sound equations
         """
-        return Plant(flatten(assemble(superset(spec, forms))), knobs, given, shown)
+        flat, own = flatten(assemble(superset(spec, forms))), {part.name for part in spec.parts}
+        added = {q.name for q in flat.parameters if q.name.partition(".")[0] not in own}
+        return Plant(_settled(flat, added - set(knobs)), knobs, given, shown)
+
+
+def _settled(flat: FlatModel, fixed: Collection[str]) -> FlatModel:
+    """The model with parameters that nothing changes: 0 and 1 are numbers in it, and equal ones of a name are one."""
+    first: dict[tuple[str, float], Any] = {}
+    old, new = [], []
+    for symbol, q in zip(ca.vertsplit(flat.p), flat.parameters, strict=True):
+        if q.name in fixed:
+            old.append(symbol)
+            value = abs(q.start)
+            new.append(ca.SX(q.start) if value in (0.0, 1.0) else first.setdefault((q.name.rpartition(".")[2], q.start), symbol))
+    parts = [flat.ode, flat.residual, flat.y]
+    ode, residual, y = ca.substitute(parts, [ca.vertcat(*old)], [ca.vertcat(*new)]) if old else parts
+    return replace(flat, ode=ode, residual=residual, y=y)
