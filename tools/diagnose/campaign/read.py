@@ -15,11 +15,8 @@ from ...scenarios.entries import catalogue
 from ...scenarios.scenario import Scenario
 from .card import Card
 from .context import CONTEXT, DIRECTIONS, Cells, floats
-from .sensors import sensors_of
+from .sensors import SI, sensors_of
 from .table import Campaign, Sensor
-
-#: SI unit of what a kind of sensor reads.
-SI = {"oil_temp": "K", "wall_temp": "K", "ambient": "K", "torque": "N.m", "speed": "rad/s", "power": "W"}
 
 
 def read_campaign(path: Path, scenario: Scenario, card: Card, *, points: bool = False) -> Campaign:
@@ -180,7 +177,7 @@ class _Reader:
         protocol = self.scenario.protocol
         usual = protocol.stop if protocol else 0.0
         usual = usual if self.card.protocol.stop_min is None else 60.0 * self.card.protocol.stop_min
-        return np.where(first, 0.0, np.where(np.isfinite(stated[rows]), stated[rows], usual))
+        return np.asarray(np.where(first, 0.0, np.where(np.isfinite(stated[rows]), stated[rows], usual)))
 
     def _room_start(self, values: dict[str, np.ndarray], stated: np.ndarray, starts: np.ndarray) -> np.ndarray:
         """Room at the start of each test [K] (n_tests,), NaN for that of the first reading."""

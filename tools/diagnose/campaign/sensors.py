@@ -17,7 +17,7 @@ from ...model.parts.lubrication import OilBath
 from ...model.parts.shaft import ShaftEnd
 from ...model.parts.thermal import Room
 from ...model.run.steady import steady
-from ...model.units import to_si
+from ...model.units import text, to_si
 from ...scenarios.columns import spelled, split_unit
 from ...scenarios.instruments import Instrument
 from ...scenarios.scenario import Scenario
@@ -33,6 +33,15 @@ ACCURACY: Mapping[str, tuple[float, float]] = {
     "torque": (4e-4, 8e-4),
     "speed": (8e-4, 8e-4),
     "power": (5e-3, 5e-3),
+}
+#: SI unit of what a kind of sensor reads.
+SI: Mapping[str, str] = {
+    "oil_temp": "K",
+    "wall_temp": "K",
+    "ambient": "K",
+    "torque": "N.m",
+    "speed": "rad/s",
+    "power": "W",
 }
 #: Kind of a sensor that reads no temperature, by the SI unit of what it reads.
 KINDS: Mapping[str, str] = {"N.m": "torque", "rad/s": "speed", "W": "power"}
@@ -158,13 +167,13 @@ class _Sensors:
                 self.problems.append(f"{self.card.name} {place}.{key} = {table[key]} is below zero.")
             self.found[name] = replace(self.found[name], **{key: value})  # type: ignore[arg-type]
 
-    def _spread(self, text: str, instrument: Instrument, where: str) -> float:
+    def _spread(self, written: str, instrument: Instrument, where: str) -> float:
         """A standard deviation in SI: with its own unit, or in that of the column."""
         si = self.known[instrument.reads].unit
         try:
-            number = float(text)
+            number = float(written)
         except ValueError:
-            return to_si(text, f"{si} (difference)" if si == "K" else si, name=where)
+            return to_si(written, f"{si} (difference)" if si == "K" else si, name=where)
         unit = self._unit(instrument)
         unit = "K" if unit in ("degC", "") and si == "K" else unit
         return to_si(f"{number!r} {unit}".strip(), f"{si} (difference)" if si == "K" else si, name=where)
@@ -206,8 +215,9 @@ class _Sensors:
         repeat, offset = ACCURACY[kind]
         if kind.endswith("_temp") or kind == "ambient":
             return repeat, offset
-        full = abs(self.nominal.value(instrument.reads))
-        return repeat * full, offset * full
+        quantity = self.known[instrument.reads]
+        full = abs(self.nominal.value(instrument.reads)) or quantity.nominal
+        return _rounded(repeat * full, quantity.unit), _rounded(offset * full, quantity.unit)
 
     def _signs(self, instrument: Instrument, kind: str) -> tuple[float, float]:
         """Sign of the model's value where the column holds magnitudes: loads turn round with the direction."""
@@ -220,6 +230,11 @@ class _Sensors:
             return 1.0, 1.0
         sign = -1.0 if self.nominal.value(instrument.reads) < 0 else 1.0
         return sign, -sign if kind == "torque" else sign
+
+
+def _rounded(value: float, unit: str) -> float:
+    """A value with two digits in the unit that a person reads."""
+    return to_si(text(value, unit, 2), unit)
 
 
 def driven_paths(scenario: Scenario) -> set[str]:
