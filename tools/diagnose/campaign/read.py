@@ -169,8 +169,8 @@ class _Reader:
         if self.card.protocol.prose == "steady" or not (minutes or "dwell_min" in self.context):
             return np.full(cells.n, np.inf)
         place = np.arange(cells.n) - np.flatnonzero(np.append(True, np.diff(test) != 0))[test]
-        usual = np.array(minutes or [np.inf])[np.minimum(place, len(minutes or [0]) - 1)] * 60.0
-        return np.where(np.isfinite(stated[rows]), stated[rows], usual)
+        usual = 60.0 * np.array([*minutes, np.inf])[np.minimum(place, max(len(minutes) - 1, 0))]
+        return np.asarray(np.where(np.isfinite(stated[rows]), stated[rows], usual))
 
     def _stop(self, stated: np.ndarray, rows: np.ndarray, first: np.ndarray) -> np.ndarray:
         """Time without load before each row [s] (n,)."""

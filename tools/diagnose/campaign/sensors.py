@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property
-
-import numpy as np
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from ...model.core.declare import State, declared
 from ...model.core.flat import Quantity
-from ...model.core.flatten import flatten
 from ...model.errors import DataError, GearheatError, suggestion
-from ...model.machines.spec import assemble
 from ...model.parts.lubrication import OilBath
 from ...model.parts.shaft import ShaftEnd
 from ...model.parts.thermal import Room
-from ...model.run.steady import steady
 from ...model.units import text, to_si
 from ...scenarios.columns import spelled, split_unit
 from ...scenarios.instruments import Instrument
 from ...scenarios.scenario import Scenario
 from .card import Card
 from .context import CONTEXT
+from .nominal import Nominal
 from .table import Sensor
 
 #: Scatter from reading to reading and fixed tolerance: in K, or relative to the value at the operating point.
@@ -62,21 +57,6 @@ def sensors_of(scenario: Scenario, card: Card) -> tuple[Sensor, ...]:
     return _Sensors(scenario, card).complete()
 
 
-@dataclass(frozen=True)
-class _Nominal:
-    """What the model gives at the rig's operating point, computed only where it is asked for."""
-
-    scenario: Scenario
-
-    @cached_property
-    def values(self) -> Mapping[str, np.ndarray]:
-        return steady(flatten(assemble(self.scenario.spec)), self.scenario.operating_point).columns
-
-    def value(self, path: str) -> float:
-        point = self.scenario.operating_point
-        return float(point[path]) if path in point else float(self.values[path][0])
-
-
 class _Sensors:
     """Completes the sensors of one rig and card, collecting problems; nothing of it outlives the call."""
 
@@ -84,9 +64,10 @@ class _Sensors:
         self.scenario, self.card = scenario, card
         self.known: Mapping[str, Quantity] = scenario.readable()
         self.types = {part.name: scenario.spec.types[part.type] for part in scenario.spec.parts}
-        self.nominal = _Nominal(scenario)
+        self.nominal = Nominal(scenario)
         self.problems: list[str] = []
         self.found = {i.name: i for i in scenario.instruments or default_instruments(scenario)}
+        self.driven: set[str] = set()
 
     def complete(self) -> tuple[Sensor, ...]:
         """The card's keys over the rig's, and what is left out by rule."""
@@ -100,10 +81,26 @@ class _Sensors:
                 self._accuracy(f"channels.{key}", name, channel.model_dump(include={"repeat_sd", "offset_sd"}))
             elif self.card.schema_ == "gearheat.card/2":
                 self._refuse(f"channels.{key}", key)
+        self._drive()
         sensors = [self._completed(instrument) for instrument in self.found.values()] if not self.problems else []
         if self.problems:
             raise DataError(self.problems)
         return tuple(sensors)
+
+    def _drive(self) -> None:
+        """What drives the model: what the card gives at the shaft ends, else the rig's protocol or drive."""
+        named = [i.reads for i in self.found.values() if i.role == "given"]
+        protocol = self.scenario.protocol
+        usual = self.scenario.driven_by(protocol.inputs if protocol else ())
+        driven = usual.driven_by(named)
+        self.driven = driven.driven_paths()
+        shafts = self.scenario.shaft_paths()
+        if len(self.driven & shafts) != len(usual.driven_paths() & shafts) or not shafts & set(named) <= self.driven:
+            self.problems.append(
+                f"{self.card.name}: {', '.join(named)} cannot all be given: {self.scenario.name} is driven by"
+                f" {len(usual.driven_paths() & shafts)} of the speeds and torques of its shaft ends."
+                ' Give some of them the role "read".'
+            )
 
     def _name(self, key: str) -> str | None:
         """The sensor that a key of the card means: its name, its column, or the path that it alone reads."""
@@ -189,7 +186,7 @@ class _Sensors:
             column=instrument.column,
             reads=instrument.reads,
             kind=kind,
-            role=instrument.role or ("given" if instrument.reads in driven_paths(self.scenario) else "read"),
+            role=instrument.role or ("given" if instrument.reads in self.driven else "read"),
             unit=self._unit(instrument),
             repeat_sd=instrument.repeat_sd if instrument.repeat_sd is not None else repeat,
             offset_sd=instrument.offset_sd if instrument.offset_sd is not None else offset,
@@ -216,7 +213,8 @@ class _Sensors:
         if kind.endswith("_temp") or kind == "ambient":
             return repeat, offset
         quantity = self.known[instrument.reads]
-        full = abs(self.nominal.value(instrument.reads)) or quantity.nominal
+        value = abs(self.nominal.value(instrument.reads))
+        full = value if value > 0 else quantity.nominal
         return _rounded(repeat * full, quantity.unit), _rounded(offset * full, quantity.unit)
 
     def _signs(self, instrument: Instrument, kind: str) -> tuple[float, float]:
@@ -237,13 +235,9 @@ def _rounded(value: float, unit: str) -> float:
     return to_si(text(value, unit, 2), unit)
 
 
-def driven_paths(scenario: Scenario) -> set[str]:
-    """Inputs that a campaign of the rig gives: rooms and other surroundings, loads, what drives the shaft ends."""
-    protocol = scenario.protocol
-    shafts = {f"{end}.{key}" for end in scenario.spec.of_type(ShaftEnd.__name__) for key in ("w", "tau")}
-    driven = {f"{end}.{key}" for end, keys in scenario.given.items() for key in keys}
-    driven = {path for path in protocol.inputs if path in shafts} if protocol else driven
-    return {path for path in scenario.inputs() if path not in shafts} | driven
+def driven_by(scenario: Scenario, sensors: Iterable[Sensor]) -> Scenario:
+    """The rig driven by what a campaign gives at its shaft ends."""
+    return scenario.driven_by([sensor.reads for sensor in sensors if sensor.role == "given"])
 
 
 def instrument_of(path: str) -> Instrument:
