@@ -15,11 +15,8 @@ from ...scenarios.entries import catalogue
 from ...scenarios.scenario import Scenario
 from .card import Card
 from .context import CONTEXT, DIRECTIONS, Cells, floats
-from .sensors import sensors_of
+from .sensors import SI, sensors_of
 from .table import Campaign, Sensor
-
-#: SI unit of what a kind of sensor reads.
-SI = {"oil_temp": "K", "wall_temp": "K", "ambient": "K", "torque": "N.m", "speed": "rad/s", "power": "W"}
 
 
 def read_campaign(path: Path, scenario: Scenario, card: Card, *, points: bool = False) -> Campaign:
@@ -172,15 +169,15 @@ class _Reader:
         if self.card.protocol.prose == "steady" or not (minutes or "dwell_min" in self.context):
             return np.full(cells.n, np.inf)
         place = np.arange(cells.n) - np.flatnonzero(np.append(True, np.diff(test) != 0))[test]
-        usual = np.array(minutes or [np.inf])[np.minimum(place, len(minutes or [0]) - 1)] * 60.0
-        return np.where(np.isfinite(stated[rows]), stated[rows], usual)
+        usual = 60.0 * np.array([*minutes, np.inf])[np.minimum(place, max(len(minutes) - 1, 0))]
+        return np.asarray(np.where(np.isfinite(stated[rows]), stated[rows], usual))
 
     def _stop(self, stated: np.ndarray, rows: np.ndarray, first: np.ndarray) -> np.ndarray:
         """Time without load before each row [s] (n,)."""
         protocol = self.scenario.protocol
         usual = protocol.stop if protocol else 0.0
         usual = usual if self.card.protocol.stop_min is None else 60.0 * self.card.protocol.stop_min
-        return np.where(first, 0.0, np.where(np.isfinite(stated[rows]), stated[rows], usual))
+        return np.asarray(np.where(first, 0.0, np.where(np.isfinite(stated[rows]), stated[rows], usual)))
 
 
 def _oil_problems(table: Table, column: str | None, known: Collection[str] | None) -> list[str]:
