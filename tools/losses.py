@@ -19,7 +19,6 @@ from ..scenarios.entries import catalogue
 from ..scenarios.measured import Campaign, Protocol, Reading, read_measured
 from ..scenarios.scenario import Scenario
 from ..scenarios.write import DIAGNOSED
-from ..scenarios.write import DIAGNOSED
 from .console import answer, table
 from .contacts import contacts_at, part_with_contacts, print_contacts
 from .points import conditions, outside_of, tell_outside
