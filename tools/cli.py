@@ -192,30 +192,7 @@ def calibrate(
 
 
 app.command()(cli_diagnosis.diagnose)
-
-
-@app.command()
-@console.guarded
-def plan(
-    rig: Rig,
-    separate: Annotated[
-        str,
-        typer.Option(metavar="CAUSE,CAUSE...", help="Causes to tell apart, such as cooling.air,cooling.emissivity."),
-    ],
-    card: Annotated[Path | None, typer.Option(help="JSON: accuracies, priors and protocol of the campaign.")] = None,
-    points: Annotated[
-        Path | None, typer.Option(help="Points of the campaign there is or will be: CSV. The rig's own if left out.")
-    ] = None,
-    reference: Annotated[
-        bool, typer.Option("--reference", help="There is a healthy campaign of the same points as well.")
-    ] = False,
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="Picture to write, .png or .svg.")] = None,
-    json: Json = None,
-) -> None:
-    """Which experiments would tell causes apart on a rig, before anything is measured."""
-    from .diagnose import plan_command, plan_inputs
-
-    plan_command.command(plan_inputs.PlanRequest(rig, separate, card, points, reference), json, out)
+app.command()(cli_diagnosis.plan)
 
 
 @app.command()

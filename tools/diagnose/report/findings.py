@@ -27,12 +27,12 @@ class Channel(Model):
     """A sensor, as the data and the card have it."""
 
     name: str = Field(description="stable name, the key of all tables by channel")
-    column: str = Field("", description="column of the user's file")
-    kind: str = Field("", description="oil_temp, wall_temp, ambient, torque, speed or power")
+    column: str = Field(default="", description="column of the user's file")
+    kind: str = Field(default="", description="oil_temp, wall_temp, ambient, torque, speed or power")
     role: Literal["given", "read"] = "read"
     unit: str = Field(description="of its readings in this result: degC, N.m, rpm, W")
-    repeat_sd: Number | None = Field(None, description="scatter from reading to reading by the card")
-    offset_sd: Number | None = Field(None, description="fixed tolerance by the card")
+    repeat_sd: Number | None = Field(default=None, description="scatter from reading to reading by the card")
+    offset_sd: Number | None = Field(default=None, description="fixed tolerance by the card")
 
     @property
     def difference(self) -> str:
@@ -43,11 +43,11 @@ class Channel(Model):
 class About(Model):
     """What was diagnosed."""
 
-    data: str = Field("", description="name of the data")
+    data: str = Field(default="", description="name of the data")
     rig: str = ""
     readings: int = 0
     tests: int = 0
-    reference: str = Field("", description="name of the healthy campaign, empty without one")
+    reference: str = Field(default="", description="name of the healthy campaign, empty without one")
     reference_readings: int = 0
     logs: tuple[str, ...] = ()
     log_rows: int = 0
@@ -60,7 +60,9 @@ class Alarm(Model):
 
     alpha: Number
     p_any: P = Field(description="family-wise p of the largest directed score; 1e-6 means at most that")
-    p_omnibus: P | None = Field(None, description="p of the readings under the calibrated model, no cause in mind")
+    p_omnibus: P | None = Field(
+        default=None, description="p of the readings under the calibrated model, no cause in mind"
+    )
     p_adequacy: P = Field(description="p of what is left after the top hypothesis; near 1 is too good to be true")
     null: Literal["bootstrap", "analytic"] = "bootstrap"
     draws: int | None = None
@@ -73,8 +75,8 @@ class Estimate(Model):
     value: Number
     ci95: Interval
     unit: str
-    doc: str = Field("", description="what it is, in words")
-    at_bound: Literal["", "low", "high"] = Field("", description="the bound that the value sits on")
+    doc: str = Field(default="", description="what it is, in words")
+    at_bound: Literal["", "low", "high"] = Field(default="", description="the bound that the value sits on")
 
 
 class Impact(Model):
@@ -83,7 +85,7 @@ class Impact(Model):
     value: Number
     ci95: Interval
     unit: str = ""
-    what: str = Field("", description="what changes, in words: oil temperature, loss")
+    what: str = Field(default="", description="what changes, in words: oil temperature, loss")
 
 
 class FormShare(Model):
@@ -100,22 +102,24 @@ class Cause(Model):
     probability: Probability
     mc_error: Number = 0.0
     detectable: Number | None = Field(
-        None, description="smallest size that would be found in 80 of 100 such campaigns; absent: none is seen"
+        default=None, description="smallest size that would be found in 80 of 100 such campaigns; absent: none is seen"
     )
-    parameters: tuple[Estimate, ...] = Field((), description="the size first, then the shapes")
+    parameters: tuple[Estimate, ...] = Field(default=(), description="the size first, then the shapes")
     regime: dict[str, tuple[Number | None, Number | None]] = Field(
-        {}, description="where it acts: column or quantity with unit -> above, below; absent = everywhere"
+        default={}, description="where it acts: column or quantity with unit -> above, below; absent = everywhere"
     )
-    forms: tuple[FormShare, ...] = Field((), description="most probable first; the name is empty for the general form")
-    impact: dict[str, Impact] = Field({}, description="its own part of the impact")
-    p_split: P | None = Field(None, description="F test on the half of the tests that did not choose its form")
-    q: P | None = Field(None, description="the same, after Benjamini and Hochberg over all causes")
-    doc: str = Field("", description="where it acts and what it does")
-    exposes: str = Field("", description="the experiment that shows it directly")
-    like: str = Field("", description="class of causes that count as one answer, and why")
-    usual: Number | None = Field(None, description="prior standard deviation of its size")
+    forms: tuple[FormShare, ...] = Field(
+        default=(), description="most probable first; the name is empty for the general form"
+    )
+    impact: dict[str, Impact] = Field(default={}, description="its own part of the impact")
+    p_split: P | None = Field(default=None, description="F test on the half of the tests that did not choose its form")
+    q: P | None = Field(default=None, description="the same, after Benjamini and Hochberg over all causes")
+    doc: str = Field(default="", description="where it acts and what it does")
+    exposes: str = Field(default="", description="the experiment that shows it directly")
+    like: str = Field(default="", description="class of causes that count as one answer, and why")
+    usual: Number | None = Field(default=None, description="prior standard deviation of its size")
     unit: str = Field("1", description="of its size")
-    meaning: str = Field("", description="what its size is")
+    meaning: str = Field(default="", description="what its size is")
 
 
 class Hypothesis(Model):
@@ -147,15 +151,15 @@ class Remainder(Model):
 
     probability: Probability
     mc_error: Number = 0.0
-    channels: tuple[RemainderChannel, ...] = Field((), description="largest against its noise first")
+    channels: tuple[RemainderChannel, ...] = Field(default=(), description="largest against its noise first")
 
 
 class GrossReading(Model):
     """A single reading that is wrong."""
 
     row: int = Field(description="row of the data, from 1")
-    line: int | None = Field(None, description="line of the file")
-    point: str = Field("", description="number of the point as in the file")
+    line: int | None = Field(default=None, description="line of the file")
+    point: str = Field(default="", description="number of the point as in the file")
     channel: str
     size_sd: Number = Field(description="distance from what the other readings say, in its standard deviations")
     shown: Number | None = None
@@ -169,7 +173,7 @@ class NuisanceOff(Model):
 
     name: str
     z: Number = Field(description="prior standard deviations off")
-    factor: Number | None = Field(None, description="value found over that of the file")
+    factor: Number | None = Field(default=None, description="value found over that of the file")
     file: Number | None = None
     found: Number | None = None
     unit: str = ""
@@ -185,7 +189,7 @@ class VarianceComponent(Model):
     card: Number
     found: Number
     ratio: Number
-    ci95: Interval | None = Field(None, description="of what was found")
+    ci95: Interval | None = Field(default=None, description="of what was found")
 
 
 class Repeat(Model):
@@ -194,8 +198,10 @@ class Repeat(Model):
     test: int
     order: Number
     date: str = ""
-    sum: Number | None = Field(None, description="half the sum of both directions' deviations; that of one without two")
-    difference: Number | None = Field(None, description="half the difference of both directions' deviations")
+    sum: Number | None = Field(
+        default=None, description="half the sum of both directions' deviations; that of one without two"
+    )
+    difference: Number | None = Field(default=None, description="half the difference of both directions' deviations")
 
 
 class RepeatedPoint(Model):
@@ -206,7 +212,7 @@ class RepeatedPoint(Model):
     unit: str
     repeats: tuple[Repeat, ...]
     sd: Number = Field(description="scatter of the sums")
-    card: Number | None = Field(None, description="the same by the card")
+    card: Number | None = Field(default=None, description="the same by the card")
 
 
 class DataQuality(Model):
@@ -216,7 +222,9 @@ class DataQuality(Model):
     nuisances: tuple[NuisanceOff, ...] = ()
     variance: tuple[VarianceComponent, ...] = ()
     repeated: tuple[RepeatedPoint, ...] = ()
-    adequacy: dict[str, P] = Field({}, description="channel -> p of what is left in it; near 1 is too good to be true")
+    adequacy: dict[str, P] = Field(
+        default={}, description="channel -> p of what is left in it; near 1 is too good to be true"
+    )
 
 
 class Gain(Model):
@@ -235,12 +243,14 @@ class Gain(Model):
     n: int
     rmse_before: Number = Field(description="without the discrepancy term, as in version 1: same as before.without")
     rmse_after: Number = Field(description="the same as after.without")
-    before: Both | None = Field(None, description="calibrated, no cause")
-    after: Both | None = Field(None, description="with the causes chosen without the held-out readings")
-    ratio_ci90: Interval | None = Field(None, description="of rmse_after / rmse_before, tests drawn with replacement")
+    before: Both | None = Field(default=None, description="calibrated, no cause")
+    after: Both | None = Field(default=None, description="with the causes chosen without the held-out readings")
+    ratio_ci90: Interval | None = Field(
+        default=None, description="of rmse_after / rmse_before, tests drawn with replacement"
+    )
     noise_floor: Number | None = None
-    rivals: dict[str, Number] = Field({}, description="plain statistics on the same folds")
-    chosen: dict[str, int] = Field({}, description="cause -> folds that chose it")
+    rivals: dict[str, Number] = Field(default={}, description="plain statistics on the same folds")
+    chosen: dict[str, int] = Field(default={}, description="cause -> folds that chose it")
     folds: int | None = None
 
 
@@ -276,7 +286,7 @@ class Isolability(Model):
     cause: str
     visible: Number = Field(description="distance from no cause")
     nearest: str = ""
-    distance: Number | None = Field(None, description="from the nearest other cause, all forms free")
+    distance: Number | None = Field(default=None, description="from the nearest other cause, all forms free")
 
 
 class View(Model):
@@ -292,13 +302,15 @@ class View(Model):
 
     channel: str
     asks: str = Field(description="torque given the measured temperatures; oil thermometer against the others")
-    p: P | None = Field(None, description="of the channel under the calibrated model")
-    nothing: Probability | None = Field(None, description="probability that nothing is wrong, by this channel alone")
+    p: P | None = Field(default=None, description="of the channel under the calibrated model")
+    nothing: Probability | None = Field(
+        default=None, description="probability that nothing is wrong, by this channel alone"
+    )
     causes: tuple[Said, ...] = ()
     unit: str = ""
-    order: Array = Field((), description="running order of the deviations below")
+    order: Array = Field(default=(), description="running order of the deviations below")
     direction: Array = ()
-    deviation: Array = Field((), description="measured less what the given channels imply")
+    deviation: Array = Field(default=(), description="measured less what the given channels imply")
 
 
 class Rows(Model):
@@ -310,7 +322,9 @@ class Rows(Model):
         measured: Array
         nominal: Array
         extended: Array = ()
-        sd: Number | None = Field(None, description="standard deviation of one reading against the model, as found")
+        sd: Number | None = Field(
+            default=None, description="standard deviation of one reading against the model, as found"
+        )
 
     class Quantity(Model):
         """What readings are drawn against."""
@@ -323,7 +337,7 @@ class Rows(Model):
     test: tuple[int, ...] = ()
     direction: tuple[int, ...] = ()
     channels: dict[str, Values] = {}
-    quantities: dict[str, Quantity] = Field({}, description="sensors, rise, order, time ...")
+    quantities: dict[str, Quantity] = Field(default={}, description="sensors, rise, order, time ...")
 
 
 class Picture(Model):
@@ -369,13 +383,15 @@ class Said(Model):
     size: str = ""
     sure: str = ""
     cannot_be: str = ""
-    data: tuple[str, ...] = Field((), description="what is to be known of the data and the rig, gross readings first")
+    data: tuple[str, ...] = Field(
+        default=(), description="what is to be known of the data and the rig, gross readings first"
+    )
 
 
 class Findings(Model):
     """Result of `gearheat diagnose`."""
 
-    schema_: Literal["gearheat.diagnosis/2"] = Field("gearheat.diagnosis/2", alias="schema")
+    schema_: Literal["gearheat.diagnosis/2"] = Field(default="gearheat.diagnosis/2", alias="schema")
     verdict: Verdict = Field(
         description="consistent: nothing beyond the stated accuracies; explained: one answer > 0.9; "
         "ambiguous: several are needed for 0.9; unexplained: an alarm, most probably outside the library"
@@ -385,18 +401,19 @@ class Findings(Model):
     test: Alarm
     hypotheses: tuple[Hypothesis, ...] = Field(description="no causes = nothing wrong; probabilities sum to <= 1")
     answers: tuple[Answer, ...] = Field(
-        (), description="what the verdict names, most probable first; those of `ambiguous` reach 0.9 together"
+        default=(), description="what the verdict names, most probable first; those of `ambiguous` reach 0.9 together"
     )
     causes: tuple[Cause, ...] = Field(description="marginal, most probable first")
     remainder: Remainder | None = None
     data_quality: DataQuality = DataQuality()
-    confusable: tuple[tuple[str, ...], ...] = Field((), description="the causes of `sets`")
+    confusable: tuple[tuple[str, ...], ...] = Field(default=(), description="the causes of `sets`")
     sets: tuple[CauseSet, ...] = ()
     impact: dict[str, Impact] = Field(
-        {}, description="mean change of the readings that the first answer causes: T_oil_K, T_wall_K, loss_Nm, heat_W"
+        default={},
+        description="mean change of the readings that the first answer causes: T_oil_K, T_wall_K, loss_Nm, heat_W",
     )
     gain: Gain | None = None
-    gain_grouped: tuple[Gain, ...] = Field((), description="the same by other schemes")
+    gain_grouped: tuple[Gain, ...] = Field(default=(), description="the same by other schemes")
     played: dict[str, Played] = {}
     next_experiment: tuple[Experiment, ...] = ()
     isolability: tuple[Isolability, ...] = ()
@@ -407,7 +424,9 @@ class Findings(Model):
     pictures: tuple[Picture, ...] = ()
     calibrated: tuple[Calibrated, ...] = ()
     predictions: tuple[Prediction, ...] = ()
-    extended_rig: str = Field("", description="rig file (TOML): calibrated, with the causes of the first answer")
+    extended_rig: str = Field(
+        default="", description="rig file (TOML): calibrated, with the causes of the first answer"
+    )
     warnings: tuple[str, ...] = ()
 
     @property
