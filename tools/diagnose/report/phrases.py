@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 
-from .findings import Answer, Cause, Estimate, Findings, Gain, GrossReading, Impact, NuisanceOff
+from .estimate import Estimate
+from .findings import Answer, Cause, Findings, Gain, Impact
 from .names import names_of
 from .numbers import LEAST_P
+from .quality import GrossReading, NuisanceOff
 
 #: Units as they are shown.
 SHOWN = {"degC": "°C", "1": ""}

@@ -11,9 +11,9 @@ from pydantic import Field
 
 from . import phrases
 from .drawing import COLOURS, STYLE, empty, legend, svg
-from .findings import Isolability, Model
+from .findings import Isolability
 from .names import listed, name_of, names_of
-from .numbers import Number
+from .numbers import Model, Number
 from .screen import drawn, paragraph
 from .tables import Table
 
