@@ -87,7 +87,7 @@ def draw_instruments(rng: np.random.Generator, octaves: float, *, second_oil: bo
     """Instruments up to some octaves better or worse than usual."""
     scale = {c: 2.0 ** rng.uniform(-octaves, octaves) for c in CLASSES}
     z = {c: rng.normal() for c in CLASSES}
-    channels = [c for c in CLASSES if second_oil or c != "T_oil2_C"]
+    channels = [c for c in CLASSES if c != "T_oil2_C"] + ["T_oil2_C"] * second_oil
     repeat = {c: float(f"{scale[c] * CLASSES[c][0]:.3g}") for c in channels}
     tolerance = {c: float(f"{scale[c] * CLASSES[c][1]:.3g}") for c in channels}
     understated = rough.get("understated", 1.0)
