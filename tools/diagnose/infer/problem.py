@@ -107,7 +107,9 @@ class Noise:
             slopes = [w * ((inverse * C).sum() - a @ C @ a) for w, C in zip(weights, loose, strict=True)]
             return float(value), np.array(slopes) + scales / sd**2
 
-        found = minimize(cost, self.scales, jac=True, method="L-BFGS-B", bounds=[(-1.5, 2.5)] * len(sd), options={"maxiter": 25})
+        found = minimize(
+            cost, self.scales, jac=True, method="L-BFGS-B", bounds=[(-1.5, 2.5)] * len(sd), options={"maxiter": 25}
+        )
         return replace(self, scales=found.x)
 
 

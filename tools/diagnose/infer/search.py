@@ -249,7 +249,9 @@ class Search:
                     # the other forms of each cause count as beside the other
                     spread = sum(logsumexp(list(w.values())) - max(w.values()) for w in h.forms.values())
                     weight = sum(np.log(a.formula.form.weight) for a in fit.look.acting)
-                    new[names] = Hypothesis(causes, fit, fit.evidence + weight + spread + self.prior(causes), None, h.forms)
+                    new[names] = Hypothesis(
+                        causes, fit, fit.evidence + weight + spread + self.prior(causes), None, h.forms
+                    )
             found |= new
             beam = sorted(new.values(), key=lambda h: -h.log_joint)[:2]
             if not beam or beam[0].log_joint < best or size == self.most:

@@ -240,9 +240,7 @@ class _March:
         weights = by[:, :, k:, None] * local[:, None]
         return np.concatenate([own, weights.reshape(self.n, by.shape[1], self.n_local)], axis=2)
 
-    def _read(
-        self, w: np.ndarray, dw: np.ndarray | None, f: int, share: float
-    ) -> tuple[np.ndarray, np.ndarray | None]:
+    def _read(self, w: np.ndarray, dw: np.ndarray | None, f: int, share: float) -> tuple[np.ndarray, np.ndarray | None]:
         row, u = self.phases.row[f], self._inputs(f, share)
         p = self.p[:, row]
         if dw is None:
