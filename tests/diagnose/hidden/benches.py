@@ -5,7 +5,6 @@ Nothing here comes from the diagnosis; what a card says of a bench is what the c
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -85,25 +84,25 @@ class Bench:
         """The instrument of a name."""
         return next(g for g in self.gauges if g.name == name)
 
-    def card(self) -> dict[str, Any]:
-        """What the bench's card says."""
-        card: dict[str, Any] = {
-            "schema": "gearheat.card/2",
-            "columns": {g.name: g.column for g in self.gauges if g.column != g.name and not g.own},
-            "channels": {g.name: {"repeat_sd": g.repeat_sd, "offset_sd": g.offset_sd} for g in self.gauges},
-            "day_cooling_sd": self.day_sd,
-            "prior_sd": dict(self.prior_sd),
-        }
-        if own := [g for g in self.gauges if g.own]:
-            card["sensors"] = {g.name: {"column": g.column, "reads": g.reads, "unit": g.unit} for g in own}
+    def card(self) -> str:
+        """The card as a user writes it: TOML."""
+        lines = ['schema = "gearheat.card/2"', f"day_cooling_sd = {self.day_sd}", "", "[columns]"]
+        lines += [f'{g.name} = "{g.column}"' for g in self.gauges if not g.own]
+        lines += ["", "[channels]"]
+        lines += [f"{g.name} = {{ repeat_sd = {g.repeat_sd}, offset_sd = {g.offset_sd} }}" for g in self.gauges]
+        lines += ["", "[prior_sd]"] + [f'"{key}" = {sd}' for key, sd in self.prior_sd.items()]
+        for g in self.gauges:
+            if g.own:
+                lines += ["", f"[sensors.{g.name}]", f'column = "{g.column}"', f'reads = "{g.reads}"']
+            elif g.magnitude and not self.dwells:
+                lines += ["", f"[sensors.{g.name}]", "magnitude = true"]
         if self.dwells:
-            card["protocol"] = {"dwell_min": [d / 60 for d in self.dwells], "stop_min": self.stop / 60}
-        return card
+            minutes = [d / 60 for d in self.dwells]
+            lines += ["", "[protocol]", f"dwell_min = {minutes}", f"stop_min = {self.stop / 60}"]
+        return "\n".join(lines) + "\n"
 
 
-def drawn(
-    rng: np.random.Generator, speeds: list[float], torques: list[float], again: int
-) -> list[tuple[float, float]]:
+def drawn(rng: np.random.Generator, speeds: list[float], torques: list[float], again: int) -> list[tuple[float, float]]:
     """Points (speed, torque) near every crossing of two lists, some of them twice, in random order."""
     points = [(w * rng.uniform(0.97, 1.03), tau * rng.uniform(0.96, 1.04)) for w in speeds for tau in torques]
     points += [points[k] for k in rng.choice(len(points), again, replace=False)]
@@ -148,12 +147,12 @@ def both_directions(
 HELICAL = Bench(
     "helical_two_stage",
     (
-        Gauge("n_input_rpm", "Drehzahl [rpm]", "input.w", "rpm", 0.3, 0.3, given=True),
-        Gauge("T_output_Nm", "Abtrieb [N.m]", "output.tau", "N.m", 0.3, 0.6, given=True),
+        Gauge("n_input", "Drehzahl [rpm]", "input.w", "rpm", 0.3, 0.3, given=True),
+        Gauge("T_output", "Abtrieb [N.m]", "output.tau", "N.m", 0.3, 0.6, given=True, magnitude=True),
         Gauge("T_input", "Antrieb [N.m]", "input.tau", "N.m", 0.02, 0.04, own=True),
-        Gauge("T_oil_C", "Ölsumpf [degC]", "oil.T", "degC", 0.15, 0.15),
-        Gauge("T_wall_C", "Gehäuse [degC]", "wall.T", "degC", 0.15, 0.15),
-        Gauge("T_amb_C", "Halle [degC]", "room.T", "degC", 0.15, 0.15, given=True),
+        Gauge("T_oil", "Ölsumpf [degC]", "oil.T", "degC", 0.15, 0.15),
+        Gauge("T_wall", "Gehäuse [degC]", "wall.T", "degC", 0.15, 0.15),
+        Gauge("T_amb", "Halle [degC]", "room.T", "degC", 0.15, 0.15, given=True),
     ),
     steady_points("input.w", "output.tau", [500, 900, 1200, 1500], [-100, -220, -340, -460, -590]),
     {
@@ -172,12 +171,12 @@ HELICAL = Bench(
 HARMONIC = Bench(
     "harmonic",
     (
-        Gauge("n_wave_generator_rpm", "speed [rpm]", "wave_generator.w", "rpm", 0.5, 0.5, given=True),
-        Gauge("T_output_Nm", "load [N.m]", "output.tau", "N.m", 0.2, 0.4, given=True),
+        Gauge("n_wave_generator", "speed [rpm]", "wave_generator.w", "rpm", 0.5, 0.5, given=True),
+        Gauge("T_output", "load [N.m]", "output.tau", "N.m", 0.2, 0.4, given=True),
         Gauge("T_wave_generator", "motor torque [N.m]", "wave_generator.tau", "N.m", 0.003, 0.006, own=True),
-        Gauge("T_oil_C", "sump [degC]", "oil.T", "degC", 0.15, 0.15),
-        Gauge("T_wall_C", "case [degC]", "housing.T", "degC", 0.15, 0.15),
-        Gauge("T_amb_C", "lab [degC]", "room.T", "degC", 0.15, 0.15, given=True),
+        Gauge("T_oil", "sump [degC]", "oil.T", "degC", 0.15, 0.15),
+        Gauge("T_wall", "case [degC]", "housing.T", "degC", 0.15, 0.15),
+        Gauge("T_amb", "lab [degC]", "room.T", "degC", 0.15, 0.15, given=True),
     ),
     steady_points("wave_generator.w", "output.tau", [400, 700, 1000, 1500], [30, 75, 120, 165, 210]),
     {
@@ -197,12 +196,12 @@ HARMONIC = Bench(
 PLANETARY = Bench(
     "planetary",
     (
-        Gauge("n_carrier_rpm", "n_carrier_rpm", "carrier.w", "rpm", 0.2, 0.2, given=True),
-        Gauge("T_carrier_Nm", "T_carrier_Nm", "carrier.tau", "N.m", 1.0, 3.0, given=True, magnitude=True),
-        Gauge("T_sun_Nm", "T_sun_Nm", "sun.tau", "N.m", 0.25, 0.75, magnitude=True),
-        Gauge("T_oil_C", "T_oil_C", "oil.T", "degC", 0.25, 0.2),
-        Gauge("T_wall_C", "T_wall_C", "wall.T", "degC", 0.25, 0.2),
-        Gauge("T_amb_C", "T_amb_C", "room.T", "degC", 0.25, 0.2, given=True),
+        Gauge("n_carrier", "n_carrier_rpm", "carrier.w", "rpm", 0.2, 0.2, given=True),
+        Gauge("T_carrier", "T_carrier_Nm", "carrier.tau", "N.m", 1.0, 3.0, given=True, magnitude=True),
+        Gauge("T_sun", "T_sun_Nm", "sun.tau", "N.m", 0.25, 0.75, magnitude=True),
+        Gauge("T_oil", "T_oil_C", "oil.T", "degC", 0.25, 0.2),
+        Gauge("T_wall", "T_wall_C", "wall.T", "degC", 0.25, 0.2),
+        Gauge("T_amb", "T_amb_C", "room.T", "degC", 0.25, 0.2, given=True),
     ),
     both_directions("carrier.w", "carrier.tau", [100, 150, 200, 250], [1600, 1950, 2300, 2650]),
     {

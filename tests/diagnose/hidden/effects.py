@@ -1,4 +1,4 @@
-"""Hidden effects, written without the library of causes: changed parameters, own laws of loss and heat, wrong probes."""
+"""Hidden effects, written without the library of causes: changed parameters, own laws of loss, wrong probes."""
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field

@@ -1,13 +1,13 @@
 """How loud an effect is: its signature in noise units, with everything that the card leaves open fitted as well."""
 
+import csv
 from collections.abc import Mapping, Sequence
 from functools import cache
 
 import numpy as np
-
 from diagnose.hidden.benches import BENCHES, Bench, Gauge, Test
 from diagnose.hidden.effects import Columns, Effect
-from diagnose.hidden.maker import model, run, truth_of
+from diagnose.hidden.maker import Case, model, run, truth_of
 from gearheat.scenarios.load import load
 
 #: Step of a parameter's logarithm, and of an instrument's reading in its tolerance.
@@ -109,3 +109,20 @@ def _as_shown(bench: Bench, tests: Sequence[Test], shown: Columns) -> list[Test]
 
 def _flat(bench: Bench, readings: Mapping[str, np.ndarray]) -> np.ndarray:
     return np.concatenate([readings[g.name] for g in bench.gauges if not g.given])
+
+
+def chi_square(bench: Bench, case: Case, seed: int) -> float:
+    """Squared deviation of a campaign from the rig file's model, over what a clean one is expected to have.
+
+    Args:
+        bench: the rig
+        case: the campaign that `seed` draws
+        seed: of the campaign
+    """
+    with case.data.open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    shown = {g.name: np.array([float(r[g.column]) for r in rows]) * g.scale + g.zero for g in bench.gauges}
+    tests = _tests(bench.rig, seed)
+    expected = _readings(bench, _as_shown(bench, tests, shown), [{}] * len(tests), [])
+    change = _flat(bench, shown) - _flat(bench, expected)
+    return float(change @ np.linalg.solve(covariance(bench.rig, seed), change)) / len(change)

@@ -5,7 +5,6 @@ instruments have a tolerance each that is fixed over the campaign. None of it us
 """
 
 import csv
-import json
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from fnmatch import fnmatchcase
@@ -13,6 +12,8 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from diagnose.hidden.benches import Bench, Test
+from diagnose.hidden.effects import Columns, Effect
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
@@ -22,12 +23,9 @@ from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady_table
 from gearheat.scenarios.load import load
 
-from diagnose.hidden.benches import Bench, Test
-from diagnose.hidden.effects import Columns, Effect
-
 #: Rounds of the heat that depends on the temperatures it changes, and where they end [W].
 ROUNDS, SETTLED = 25, 0.02
-#: Share of a type's uncertainty that its parts have in common.
+#: Correlation of what parts of one type lose over what their law says: its root.
 COMMON = 0.8
 
 
@@ -74,7 +72,7 @@ def make(bench: Bench, effects: Sequence[Effect], seed: int, folder: Path, gross
         readings[gross.sensor][gross.row] += gross.by * (g := bench.gauge(gross.sensor)).repeat_sd * g.scale
     folder.mkdir(parents=True, exist_ok=True)
     truth = {"causes": [e.cause for e in effects], "what": [e.what for e in effects], "seed": seed}
-    case = Case(bench, folder / "data.csv", folder / "card.json", truth | {"gross": gross and vars(gross)})
+    case = Case(bench, folder / "data.csv", folder / "card.toml", truth | {"gross": gross and vars(gross)})
     write(case, tests, readings)
     return case
 
@@ -86,10 +84,9 @@ def drawn_values(bench: Bench, n: int, rng: np.random.Generator) -> list[dict[st
     for key, sd in bench.prior_sd.items():
         kind, _, parameter = key.partition(".")
         paths = [path for part in spec.of_type(kind) if (path := f"{part}.{parameter}") in base]
-        common = rng.standard_normal() * (COMMON if kind != "ThermalConductor" else 0.0)
-        alone = np.sqrt(1 - COMMON**2) if kind != "ThermalConductor" and len(paths) > 1 else 1.0
-        own = rng.standard_normal(len(paths))
-        rig |= {p: base[p] * float(np.exp(sd * (common * (len(paths) > 1) + alone * z))) for p, z in zip(paths, own)}
+        common = COMMON if len(paths) > 1 and parameter.startswith("k_") else 0.0  # one law that is off for all
+        z = common * rng.standard_normal() + np.sqrt(1 - common**2) * rng.standard_normal(len(paths))
+        rig |= {path: base[path] * float(np.exp(sd * deviation)) for path, deviation in zip(paths, z, strict=True)}
     rig = {path: min(v, 0.99) if path.endswith(".emissivity") else v for path, v in rig.items()}
     days = np.exp(bench.day_sd * rng.standard_normal(n))
     return [rig | {path: rig.get(path, base[path]) * float(day) for path in bench.day} for day in days]
@@ -206,9 +203,7 @@ def truth_of(bench: Bench, true: Columns) -> dict[str, np.ndarray]:
     return {g.name: np.abs(found[g.name]) if g.magnitude else found[g.name] for g in bench.gauges}
 
 
-def read(
-    bench: Bench, true: Columns, effects: Sequence[Effect], rng: np.random.Generator
-) -> dict[str, np.ndarray]:
+def read(bench: Bench, true: Columns, effects: Sequence[Effect], rng: np.random.Generator) -> dict[str, np.ndarray]:
     """What the instruments show by sensor [SI]."""
     shown = truth_of(bench, true)
     for effect in effects:
@@ -236,7 +231,7 @@ def write(case: Case, tests: Sequence[Test], readings: Columns) -> None:
         table = csv.DictWriter(file, list(rows[0]))
         table.writeheader()
         table.writerows(rows)
-    case.card.write_text(json.dumps(bench.card(), indent=1, ensure_ascii=False), encoding="utf-8")
+    case.card.write_text(bench.card(), encoding="utf-8")
 
 
 def without_noise(bench: Bench) -> Bench:
