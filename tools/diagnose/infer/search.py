@@ -153,7 +153,7 @@ class Search:
         seen = float(logsumexp(first.log_bf + weights))
         self.critical = float(np.quantile(drawn, 1 - self.alpha))
         self.p_any = float((1 + (drawn >= seen).sum()) / (1 + len(drawn)))
-        self.log_none = max(self.critical, 0.0)
+        self.log_none = self.critical
 
     def _forms(self, log_bf: np.ndarray, known: Mapping[str, int] | None = None) -> list[int]:
         """Formulas worth a fit, best first."""

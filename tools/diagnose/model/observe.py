@@ -62,7 +62,7 @@ class Observed:
         self.sensors = {s.name: _filled(campaign.values[s.name]) for s in campaign.sensors}
         self.signs = {s.name: s.sign(campaign.direction) for s in campaign.sensors}
         self.given, self.read = campaign.given, campaign.read
-        self.shown = [plant.shown.index(s.reads) for s in self.read]
+        self.shown = [plant.shown.index(s.reads) for s in self.read if s.reads in plant.shown]
         self.inputs = [plant.u_place[s.reads] for s in self.given]
         held = [(i, r) for i, s in enumerate(self.read) for r in np.flatnonzero(np.isfinite(campaign.values[s.name]))]
         #: Sensor (its number among those read) and row of each of the m entries.
@@ -176,6 +176,10 @@ class Observed:
             readings hold NaN where the model cannot be run
         """
         return _Look(self, z, parts).seen()
+
+    def outputs(self) -> np.ndarray:
+        """All that the plant shows in each row as its file has it (n, shown), NaN where it cannot be run."""
+        return _Look(self, np.zeros(len(self.nuisances)), ()).outputs()
 
     def tangents(
         self,
@@ -294,6 +298,10 @@ class _Look:
                 own[:, i, plant.place[path]] = value
                 ways[:, i, plant.knobs.index(path)] = slopes[path]
         return np.array([k for k, _, _ in self.apart], dtype=int), own[self.o.rows], ways[self.o.rows]
+
+    def outputs(self) -> np.ndarray:
+        """All that the plant shows (n, shown)."""
+        return self._run(turned=False)[0]
 
     def shown(self) -> np.ndarray:
         """Readings (m,) only."""
