@@ -27,6 +27,12 @@
     [sensors]                             # column of a measured table = path in the model
     T_oil_C = "oil.T"
 
+    [sensors.T_sun]                       # the same in full; what is left out follows from what it reads
+    column = "T_sun_Nm"
+    reads = "sun.tau"
+    signs = [-1, 1]                       # the column holds magnitudes: the model's sign in direction 1 and 2
+    repeat_sd = "0.25 N.m"
+
     [losses]                              # column of the losses table = outputs that are summed
     P_seal_W = ["carrier_seal.P_loss", "sun_seal.P_loss"]
 
@@ -54,6 +60,7 @@ from ..model.parts import PARTS
 from ..model.units import to_si
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
+from .instruments import Instrument, instruments
 from .measured import Campaign, Driven, Protocol, read_measured
 from .scenario import Erratum, Scenario
 from .tables import RigTable, validate
@@ -160,7 +167,7 @@ class _Loader:
         point = self._operating_point()
         given = self._drive()
         spec = self._spec(parts)
-        self._check_paths()
+        sensors = self._sensors()
         protocol = self._protocol()
         campaign = self._campaign(protocol)
         if self.problems:
@@ -174,7 +181,7 @@ class _Loader:
             spec=spec.with_values(point).driven(given),
             given=given,
             operating_point=point,
-            sensors=dict(self.table.sensors),
+            instruments=sensors,
             losses={column: tuple(summed) for column, summed in self.table.losses.items()},
             value_sources=self.value_sources,
             uncertainties={f"{name}.{key}": u for name, part in parts.items() for key, u in part.uncertainties.items()},
@@ -255,14 +262,15 @@ class _Loader:
                     )
         return problems
 
-    def _check_paths(self) -> None:
-        """Sensors and losses name what the model shows."""
+    def _sensors(self) -> tuple[Instrument, ...]:
+        """The instruments; losses and they name what the model shows."""
         known = self._quantities(readable)
-        named = [("sensors", column, path) for column, path in self.table.sensors.items()]
-        named += [("losses", column, path) for column, summed in self.table.losses.items() for path in summed]
-        for table, column, path in named:
+        found, problems = instruments(self.file, self.table.sensors, known)
+        self.problems += problems
+        for column, path in ((column, path) for column, summed in self.table.losses.items() for path in summed):
             if path not in known:
-                self.problems.append(f'{self.file} [{table}] {column}: there is no "{path}".{suggestion(path, known)}')
+                self.problems.append(f'{self.file} [losses] {column}: there is no "{path}".{suggestion(path, known)}')
+        return found
 
     def _quantities(self, kind: Any) -> dict[str, Quantity]:
         return {f"{n}.{k}": d.quantity(f"{n}.{k}") for n, cls in self.types.items() for k, d in kind(cls).items()}

@@ -11,8 +11,9 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.machines.spec import Spec
 from .entries import FILES, Entry, catalogue, unchecked_entry
+from .instruments import Instrument
 from .measured import Campaign, Protocol
-from .values import Override, entry_values, in_range, settable
+from .values import Override, entry_values, in_range, readable, settable
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Scenario:
     Args:
         given: shaft end -> which of w and tau are given there
         operating_point: path of an input -> value in SI
-        sensors: column of a measured table -> path in the model
+        instruments: what measured tables of the rig read
         losses: column of the losses table -> outputs that are summed
         value_sources: path -> where its value is from
         uncertainties: path -> standard uncertainty of its value in SI, where the rig states one
@@ -49,7 +50,7 @@ class Scenario:
     spec: Spec
     given: Mapping[str, tuple[str, ...]]
     operating_point: Mapping[str, float]
-    sensors: Mapping[str, str] = field(default_factory=dict)
+    instruments: tuple[Instrument, ...] = ()
     losses: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     value_sources: Mapping[str, str] = field(default_factory=dict)
     uncertainties: Mapping[str, float] = field(default_factory=dict)
@@ -60,12 +61,25 @@ class Scenario:
     campaign: Campaign | None = None
     reproduces: str = ""
 
+    @property
+    def sensors(self) -> dict[str, str]:
+        """Column of a measured table -> path in the model."""
+        return {instrument.column: instrument.reads for instrument in self.instruments}
+
     def settable(self) -> dict[str, Quantity]:
         """All that may be given a value, by path: parameters, start values of states, inputs."""
         return {
             f"{part.name}.{key}": d.quantity(f"{part.name}.{key}")
             for part in self.spec.parts
             for key, d in settable(self.spec.types[part.type]).items()
+        }
+
+    def readable(self) -> dict[str, Quantity]:
+        """All that a sensor may read, by path: outputs, states, inputs."""
+        return {
+            f"{part.name}.{key}": d.quantity(f"{part.name}.{key}")
+            for part in self.spec.parts
+            for key, d in readable(self.spec.types[part.type]).items()
         }
 
     def inputs(self) -> dict[str, Quantity]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import Any, Literal, get_args
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
 from ..model.errors import suggestion
 
@@ -21,6 +21,24 @@ class DrivenTable(Strict):
 
     column: str = Field(description="name of the column that gives it")
     sign: list[float] = Field([1.0, 1.0], min_length=2, max_length=2, description="two signs, for direction 1 and 2")
+
+
+class SensorTable(Strict):
+    """One instrument; what is left out follows from what it reads."""
+
+    reads: str = Field(description='path in the model, for example "oil.T"')
+    column: str = Field("", description="column of a measured table; the sensor's own name if left out")
+    kind: Literal["oil_temp", "wall_temp", "ambient", "torque", "speed", "power"] | None = Field(
+        None, description='what it is: "oil_temp", "wall_temp", "ambient", "torque", "speed" or "power"'
+    )
+    role: Literal["given", "read"] | None = Field(None, description='"given" drives the model, "read" is compared')
+    unit: str = Field("", description='unit of the column, for example "degC"')
+    magnitude: bool = Field(False, description="true where the column holds magnitudes")
+    signs: list[float] | None = Field(
+        None, min_length=2, max_length=2, description="sign of the model's value in direction 1 and 2, for magnitudes"
+    )
+    repeat_sd: str | None = Field(None, description='scatter from reading to reading, for example "0.35 K"')
+    offset_sd: str | None = Field(None, description='tolerance fixed over a campaign, for example "0.3 K"')
 
 
 class CampaignTable(Strict):
@@ -55,10 +73,20 @@ class RigTable(Strict):
     operating_point: dict[str, Any] = Field(description="input -> value with its unit, and a source")
     part: dict[str, dict[str, Any]] = Field(description="a table [part.NAME] for each part")
     connect: dict[str, list[str]] = Field({}, description="name of a net -> list of the ports that meet")
-    sensors: dict[str, str] = Field({}, description="column of a measured table -> path in the model")
+    sensors: dict[str, SensorTable] = Field(
+        {}, description="column of a measured table = path in the model, or a table [sensors.NAME]"
+    )
     losses: dict[str, list[str]] = Field({}, description="column of the losses table -> outputs that are summed")
     campaign: CampaignTable | None = Field(None, description="measured data and how they were taken")
     errata: list[ErratumTable] = Field([], description="places where the source is wrong")
+
+    @field_validator("sensors", mode="before")
+    @classmethod
+    def _short(cls, written: Any) -> Any:
+        """The short form, column = path, in full."""
+        if not isinstance(written, Mapping):
+            return written
+        return {key: {"reads": value} if isinstance(value, str) else value for key, value in written.items()}
 
 
 #: What stands in for a required key that is missing or wrong, so that the rest of the file is still checked.

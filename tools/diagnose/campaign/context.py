@@ -1,0 +1,58 @@
+"""Columns that a table may have beside its sensors: which test a reading belongs to, when and how it was taken."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+
+from ...scenarios.csv_table import Table
+
+#: Columns that a table may have beside its sensors: name -> what it says, as a cell is read, and its SI unit.
+CONTEXT: Mapping[str, tuple[str, Literal["number", "count", "text"], str]] = {
+    "point": ("number of the reading", "count", ""),
+    "test": ("test that the reading belongs to", "text", ""),
+    "order": ("running order of the test in the campaign", "number", ""),
+    "direction": ("direction of the power (1, or 2 and -1 for the reverse)", "count", ""),
+    "dwell_min": ("time the point was held", "number", "s"),
+    "stop_min": ("stop before this reading's dwell", "number", "s"),
+    "oil": ("name of the oil", "text", ""),
+    "mounting": ("name of the mounting or filling", "text", ""),
+    "grid": ("name of the test grid", "text", ""),
+    "date": ("day of the test", "text", ""),
+    "humidity_pct": ("relative humidity of the room", "number", "1"),
+    "T_start_C": ("temperature of the gearbox at the start of the test", "number", "K"),
+    "T_amb_start_C": ("room temperature at the start of the test", "number", "K"),
+}
+#: Directions as tables write them.
+DIRECTIONS = (1, 2, -1, 0)
+
+
+@dataclass(frozen=True)
+class Cells:
+    """A table, and the column of the file for each column of the context that it has."""
+
+    table: Table
+    context: Mapping[str, str]
+
+    @property
+    def n(self) -> int:
+        """Number of rows."""
+        return len(self.table.lines)
+
+    def texts(self, name: str) -> list[str]:
+        """A context column of text, "" where there is none."""
+        column = self.context.get(name)
+        return [""] * self.n if column is None else [str(cell) for cell in self.table.columns[column]]
+
+    def numbers(self, name: str) -> np.ndarray:
+        """A context column of numbers (n,) in its own unit, NaN where there is none."""
+        column = self.context.get(name)
+        return np.full(self.n, np.nan) if column is None else floats(self.table.columns[column])
+
+
+def floats(cells: Sequence[Any]) -> np.ndarray:
+    """Cells as numbers (n,), NaN where one is wrong or empty."""
+    return np.array([np.nan if cell is None else cell for cell in cells], dtype=float)

@@ -1,0 +1,194 @@
+"""A measured table of any rig as a campaign: its columns found, converted to SI and put in running order."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ...model.errors import GearheatError, ScenarioError, suggestion
+from ...scenarios.columns import in_si, spelled, split_unit
+from ...scenarios.csv_table import Column, Table, parse, raise_all, read_cells
+from ...scenarios.entries import catalogue
+from ...scenarios.scenario import Scenario
+from .card import Card
+from .context import CONTEXT, DIRECTIONS, Cells, floats
+from .sensors import sensors_of
+from .table import Campaign, Sensor
+
+#: SI unit of what a kind of sensor reads.
+SI = {"oil_temp": "K", "wall_temp": "K", "ambient": "K", "torque": "N.m", "speed": "rad/s", "power": "W"}
+
+
+def read_campaign(path: Path, scenario: Scenario, card: Card, *, points: bool = False) -> Campaign:
+    """The campaign in a table of readings, one row a reading.
+
+    Args:
+        path: CSV file
+        scenario: the rig
+        card: how the table is written and was taken
+        points: whether the table holds conditions to predict, which need no readings
+
+    Raises:
+        DataError: everything wrong with the table and the card's sensors, at once
+    """
+    return _Reader(path, scenario, card, points).campaign()
+
+
+class _Reader:
+    """Reads one table, collecting problems all the way; nothing of it outlives the reading."""
+
+    def __init__(self, path: Path, scenario: Scenario, card: Card, points: bool) -> None:
+        self.path, self.scenario, self.card, self.points = path, scenario, card, points
+        self.header, _ = read_cells(path)
+        self.problems: list[str] = []
+        declared = sensors_of(scenario, card)
+        self.sensors = tuple(s for sensor in declared if (s := self._placed(sensor)) is not None)
+        context = {name: card.columns.get(name, name) for name in CONTEXT}
+        self.context = {name: column for name, column in context.items() if column in self.header}
+        self._missing(declared)
+
+    def campaign(self) -> Campaign:
+        """All of the table, or all of its problems."""
+        table, problems = parse(self.path, self._columns())
+        self.problems += problems
+        self.problems += _oil_problems(table, self.context.get("oil"), self._oils())
+        raise_all(self.problems, self.path.name)
+        cells = Cells(table, self.context)
+        values = {s.name: self._values(table, s) for s in self.sensors}
+        minutes = {name: self._si(cells, name) for name, (_, _, si) in CONTEXT.items() if si}
+        raise_all(self.problems, self.path.name)
+        return self._ordered(cells, values, minutes)
+
+    def _placed(self, sensor: Sensor) -> Sensor | None:
+        """The sensor with the column of this table that holds it, None where there is none."""
+        same = [h for h in self.header if h == sensor.column]
+        names = (sensor.column, split_unit(sensor.column)[0])
+        column = next(iter(same or [h for h in self.header if split_unit(h)[0] in names]), None)
+        if column is None:
+            return None
+        unit = self.card.units.get(column, split_unit(column)[1] or sensor.unit)
+        return replace(sensor, column=column, unit=spelled(unit))
+
+    def _missing(self, declared: Sequence[Sensor]) -> None:
+        """Columns that drive the model, and that anything is read."""
+        there = {s.name for s in self.sensors}
+        for sensor in (s for s in declared if s.role == "given" and s.name not in there):
+            close = suggestion(sensor.column, self.header)
+            self.problems.append(
+                f'{self.path.name} line 1: column "{sensor.column}" drives the model ({sensor.reads}) and is missing.'
+                f'{close} Add it, or name yours in the card: columns = {{ "{sensor.name}" = "..." }}.'
+            )
+        if not (self.points or any(s.role == "read" for s in self.sensors)):
+            names = ", ".join(s.column for s in declared if s.role == "read")
+            self.problems.append(f"{self.path.name} line 1: there is nothing to compare. Add at least one of: {names}.")
+
+    def _columns(self) -> list[Column]:
+        found = [
+            Column(s.column, s.reads, required=s.role == "given", at_least=0.0 if s.signs != (1.0, 1.0) else -np.inf)
+            for s in self.sensors
+        ]
+        for name, column in self.context.items():
+            doc, kind, _ = CONTEXT[name]
+            options = DIRECTIONS if name == "direction" else ()
+            found.append(Column(column, doc, kind, required=False, options=options))
+        return found
+
+    def _oils(self) -> Collection[str] | None:
+        """Names that may stand in the column `oil`; None for any, where the card describes one."""
+        return None if self.card.oil.nu40 is not None else list(catalogue("oil"))
+
+    def _values(self, table: Table, sensor: Sensor) -> np.ndarray:
+        """What a sensor shows (n,) in SI."""
+        cells = floats(table.columns[sensor.column])
+        try:
+            return in_si(cells, sensor.unit, SI[sensor.kind], name=f"{self.path.name} {sensor.column}")
+        except GearheatError as error:
+            self.problems += error.problems
+            return cells
+
+    def _si(self, cells: Cells, name: str) -> np.ndarray:
+        """A context column (n,) in SI."""
+        column = self.context.get(name, name)
+        unit = self.card.units.get(column, split_unit(column)[1] or split_unit(name)[1])
+        try:
+            return in_si(cells.numbers(name), spelled(unit), CONTEXT[name][2], name=f"{self.path.name} {column}")
+        except ScenarioError as error:
+            self.problems += error.problems
+            return cells.numbers(name)
+
+    def _ordered(self, cells: Cells, values: dict[str, np.ndarray], si: dict[str, np.ndarray]) -> Campaign:
+        """The campaign with its tests in running order."""
+        names = cells.texts("test") if "test" in self.context else [str(row) for row in range(cells.n)]
+        order = cells.numbers("order")
+        met = {name: row for row, name in reversed(list(enumerate(names)))}
+        position = np.array([met[name] for name in names], dtype=float)
+        order = np.where(np.isfinite(order), order, position + 1)[position.astype(int)]
+        rows = np.lexsort((np.arange(cells.n), position, order))
+        first = np.append(True, np.diff(position[rows]) != 0)
+        test = np.cumsum(first) - 1
+        direction = self._direction(cells, values)[rows]
+        starts = rows[first]
+        points = cells.numbers("point")
+        return Campaign(
+            name=self.path.name,
+            sensors=self.sensors,
+            values={name: column[rows] for name, column in values.items()},
+            test=test,
+            order=order[starts],
+            direction=direction,
+            dwell=self._dwell(cells, si["dwell_min"], rows, test),
+            stop=self._stop(si["stop_min"], rows, first),
+            oil=tuple(cells.texts("oil")[row] for row in starts),
+            mounting=tuple(cells.texts("mounting" if "mounting" in self.context else "grid")[row] for row in starts),
+            T_start=si["T_start_C"][starts],
+            room_start=si["T_amb_start_C"][starts],
+            humidity=si["humidity_pct"][starts],
+            date=tuple(cells.texts("date")[row] for row in starts),
+            lines=np.array(cells.table.lines)[rows],
+            points=np.where(np.isfinite(points), points, np.arange(cells.n) + 1)[rows].astype(int),
+            start_by_room=self.card.protocol.T_start_minus_amb_K,
+            room_begin=self.card.protocol.ambient_start_minus_reading_K,
+            warnings=cells.table.warnings,
+        )
+
+    def _direction(self, cells: Cells, values: dict[str, np.ndarray]) -> np.ndarray:
+        """+1 and -1 (n,): as stated, by the sign of a signed given torque that turns round, else 0."""
+        stated = cells.numbers("direction")
+        if "direction" in self.context:
+            return np.where(stated == 2, -1.0, np.nan_to_num(stated))
+        for sensor in (s for s in self.sensors if s.role == "given" and s.kind == "torque" and s.signs == (1.0, 1.0)):
+            torque = values[sensor.name]
+            if (torque < 0).any() and (torque > 0).any():
+                usual = np.sign(self.scenario.operating_point.get(sensor.reads, 1.0)) or 1.0
+                return np.asarray(np.sign(torque) * usual)
+        return np.zeros(cells.n)
+
+    def _dwell(self, cells: Cells, stated: np.ndarray, rows: np.ndarray, test: np.ndarray) -> np.ndarray:
+        """Time each row was held [s] (n,)."""
+        minutes = self.card.protocol.dwell_min
+        if self.card.protocol.prose == "steady" or not (minutes or "dwell_min" in self.context):
+            return np.full(cells.n, np.inf)
+        place = np.arange(cells.n) - np.flatnonzero(np.append(True, np.diff(test) != 0))[test]
+        usual = np.array(minutes or [np.inf])[np.minimum(place, len(minutes or [0]) - 1)] * 60.0
+        return np.where(np.isfinite(stated[rows]), stated[rows], usual)
+
+    def _stop(self, stated: np.ndarray, rows: np.ndarray, first: np.ndarray) -> np.ndarray:
+        """Time without load before each row [s] (n,)."""
+        protocol = self.scenario.protocol
+        usual = protocol.stop if protocol else 0.0
+        usual = usual if self.card.protocol.stop_min is None else 60.0 * self.card.protocol.stop_min
+        return np.where(first, 0.0, np.where(np.isfinite(stated[rows]), stated[rows], usual))
+
+
+def _oil_problems(table: Table, column: str | None, known: Collection[str] | None) -> list[str]:
+    """Oils that neither the catalogue nor the card has."""
+    if column is None or known is None:
+        return []
+    return [
+        f'{table.place(row)}: unknown oil "{oil}".{suggestion(oil, known) or " Known: " + ", ".join(known) + "."}'
+        for row, oil in enumerate(table.columns[column])
+        if oil and oil not in known
+    ]
