@@ -74,7 +74,7 @@ class Thermostat(Component):
     Its threshold is a state: it falls to T_close when the cooler opens and rises to T_open when it closes.
     """
 
-    role: ClassVar[str] = "thermostat"
+    role: ClassVar[str] = "switch"
 
     sensed = HeatPort()
     opening = Opening()
