@@ -6,12 +6,12 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..campaign.table import Sensor
-from . import cooling, losses
+from . import cooling, heat, losses, procedure, thermal
 from . import sensors as instruments
 from .cause import Cause, Ranges
 from .roles import Roles
 
-FAMILIES = (losses.causes, cooling.causes, instruments.causes)
+FAMILIES = (losses.causes, heat.causes, cooling.causes, thermal.causes, instruments.causes, procedure.causes)
 
 
 def library(

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 from ...model.core.component import Component
-from ...model.core.declare import Port, declared
+from ...model.core.declare import Parameter, Port, declared
 from ...model.errors import ScenarioError
 from ...model.machines.spec import PartSpec, Spec
 from ...model.parts.ports import Flange, HeatPort, Lubricant, ShaftReading
@@ -82,7 +83,22 @@ class Roles:
     @property
     def reading(self) -> str:
         """Port that reads speed and torque of the shaft."""
-        return f"{self.shaft}.{next(iter(declared(self.spec.types[self.spec.part(self.shaft).type], ShaftReading)))}"
+        return self.reading_of(self.shaft)
+
+    def reading_of(self, part: str) -> str:
+        """Port of a part that reads speed and torque."""
+        return f"{part}.{next(iter(declared(self.nets.classes[part], ShaftReading)))}"
+
+    def value(self, path: str) -> Any:
+        """What the rig file says of a parameter, or its default."""
+        part, _, key = path.partition(".")
+        stated = self.spec.part(part).values
+        return stated[key] if key in stated else declared(self.nets.classes[part], Parameter)[key].default
+
+    def conductance(self, conductor: str) -> float:
+        """What the rig file makes of a conductor between bodies [W/K]."""
+        part = self.nets.classes[conductor](conductor, **self.spec.part(conductor).values)
+        return part.number_at(part.conductance(), part.values)
 
     @property
     def ends(self) -> tuple[str, ...]:
@@ -92,7 +108,9 @@ class Roles:
     @property
     def cooling(self) -> tuple[str, ...]:
         """Paths that scale what the machine gives to its surroundings."""
-        return tuple(path for part in (*self.surfaces, *self.foundation, *self.coolers) for path in self.scaled(part))
+        paths = self.scaled(*self.surfaces, *self.foundation, *self.coolers)
+        told = (f"{name}.emissivity" for name in self.surfaces if f"{name}.A" not in paths)
+        return (*paths, *told)
 
     def having(self, *roles: str) -> tuple[str, ...]:
         """Names of all parts with one of the roles that their classes state."""
@@ -146,6 +164,14 @@ class _Nets:
     def met(self, port: str) -> list[str]:
         """The ports of a port's net."""
         return [p for p, number in self.net.items() if number == self.net.get(port)]
+
+    def meet(self, a: str, b: str) -> bool:
+        """Whether two ports meet."""
+        return a in self.net and self.net.get(a) == self.net.get(b)
+
+    def met_by(self, part: str) -> set[int]:
+        """Numbers of the heat nets that a part meets."""
+        return self.heat_nets([part])
 
     def ports(self, part: str, kind: type[Port]) -> list[str]:
         """Connected ports of a kind."""

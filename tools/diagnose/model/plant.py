@@ -12,6 +12,7 @@ from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
 from ...model.machines.spec import Spec, assemble
 from ..library.cause import Form
+from ..library.extra_parts import EXTRA_PARTS
 from .many import Many
 
 
@@ -23,7 +24,7 @@ def superset(spec: Spec, forms: Iterable[Form]) -> Spec:
         if added:
             own = {part.name for part in added}
             nets = [net for net in form.connections if any(port.partition(".")[0] in own for port in net)]
-            spec = spec.with_parts(added, nets)
+            spec = spec.with_parts(added, nets, EXTRA_PARTS)
             known |= own
     return spec
 
