@@ -15,11 +15,8 @@ from ...scenarios.entries import catalogue
 from ...scenarios.scenario import Scenario
 from .card import Card
 from .context import CONTEXT, DIRECTIONS, Cells, floats
-from .sensors import sensors_of
+from .sensors import SI, sensors_of
 from .table import Campaign, Sensor
-
-#: SI unit of what a kind of sensor reads.
-SI = {"oil_temp": "K", "wall_temp": "K", "ambient": "K", "torque": "N.m", "speed": "rad/s", "power": "W"}
 
 
 def read_campaign(path: Path, scenario: Scenario, card: Card, *, points: bool = False) -> Campaign:
@@ -131,7 +128,6 @@ class _Reader:
         test = np.cumsum(first) - 1
         direction = self._direction(cells, values)[rows]
         starts = rows[first]
-        room = self._room_start(values, si["T_amb_start_C"], starts)
         points = cells.numbers("point")
         return Campaign(
             name=self.path.name,
@@ -145,12 +141,13 @@ class _Reader:
             oil=tuple(cells.texts("oil")[row] for row in starts),
             mounting=tuple(cells.texts("mounting" if "mounting" in self.context else "grid")[row] for row in starts),
             T_start=si["T_start_C"][starts],
-            room_start=room,
-            humidity=si["humidity_pct"][rows],
+            room_start=si["T_amb_start_C"][starts],
+            humidity=si["humidity_pct"][starts],
             date=tuple(cells.texts("date")[row] for row in starts),
             lines=np.array(cells.table.lines)[rows],
             points=np.where(np.isfinite(points), points, np.arange(cells.n) + 1)[rows].astype(int),
             start_by_room=self.card.protocol.T_start_minus_amb_K,
+            room_begin=self.card.protocol.ambient_start_minus_reading_K,
             warnings=cells.table.warnings,
         )
 
@@ -172,22 +169,15 @@ class _Reader:
         if self.card.protocol.prose == "steady" or not (minutes or "dwell_min" in self.context):
             return np.full(cells.n, np.inf)
         place = np.arange(cells.n) - np.flatnonzero(np.append(True, np.diff(test) != 0))[test]
-        usual = np.array(minutes or [np.inf])[np.minimum(place, len(minutes or [0]) - 1)] * 60.0
-        return np.where(np.isfinite(stated[rows]), stated[rows], usual)
+        usual = 60.0 * np.array([*minutes, np.inf])[np.minimum(place, max(len(minutes) - 1, 0))]
+        return np.asarray(np.where(np.isfinite(stated[rows]), stated[rows], usual))
 
     def _stop(self, stated: np.ndarray, rows: np.ndarray, first: np.ndarray) -> np.ndarray:
         """Time without load before each row [s] (n,)."""
         protocol = self.scenario.protocol
         usual = protocol.stop if protocol else 0.0
         usual = usual if self.card.protocol.stop_min is None else 60.0 * self.card.protocol.stop_min
-        return np.where(first, 0.0, np.where(np.isfinite(stated[rows]), stated[rows], usual))
-
-    def _room_start(self, values: dict[str, np.ndarray], stated: np.ndarray, starts: np.ndarray) -> np.ndarray:
-        """Room at the start of each test [K] (n_tests,), NaN for that of the first reading."""
-        change = self.card.protocol.ambient_start_minus_reading_K
-        rooms = [s.name for s in self.sensors if s.kind == "ambient" and s.role == "given"]
-        usual = values[rooms[0]][starts] + change if rooms and change else np.full(len(starts), np.nan)
-        return np.asarray(np.where(np.isfinite(stated[starts]), stated[starts], usual))
+        return np.asarray(np.where(first, 0.0, np.where(np.isfinite(stated[rows]), stated[rows], usual)))
 
 
 def _oil_problems(table: Table, column: str | None, known: Collection[str] | None) -> list[str]:

@@ -15,6 +15,8 @@ from .problem import Acting, Look, Noise, Problem
 
 #: Steps at most, tries of each with more damping, gain in log likelihood below which a step is the last.
 STEPS, TRIES, LITTLE = 12, 5, 0.02
+#: Rounds of point and scatter in turn at most, and change of a scale's logarithm below which the last is done.
+ROUNDS, SETTLED = 4, 0.1
 #: Longest step of a nuisance, a size (or that share of it) and a shape; shapes stay inside so many deviations.
 LONGEST, LONGEST_SIZE, LONGEST_SHAPE, FAR = 1.5, 1.0, 0.8, 2.4
 #: Standard deviations of what a form leaves of a true effect, as shares of it, and their probabilities.
@@ -31,7 +33,6 @@ class Fit:
         cost: half the squared misfit, priors included
         evidence: log of the marginal likelihood, without the prior of the hypothesis
         form: standard deviation of what the forms leave, the most likely of `FORM`; 0 without a cause
-        forms: log weights of the forms of each cause that the evidence counts
     """
 
     look: Look
@@ -44,6 +45,28 @@ class Fit:
     def causes(self) -> tuple[str, ...]:
         """Ids of its causes."""
         return tuple(a.id for a in self.look.acting)
+
+
+    def linear(self, problem: Problem) -> tuple[White, np.ndarray]:
+        """The linearised problem beside this hypothesis: whitening by all that is uncertain, and the residual in it.
+
+        Nuisances, shapes and sizes of the hypothesis are uncertain by their priors, sizes by the widest.
+        """
+        vector, J = _Vector(problem, self.look.acting), self.look.jacobian
+        wide = J / np.sqrt(vector.precision)
+        V = self.noise.covariance + wide @ wide.T
+        if self.form:
+            V = V + self.form**2 * _rough(problem, self.look, vector)
+        white = White.of(V)
+        return white, white(problem.measured - self.look.shown + J @ self.look.x)
+
+
+def _rough(problem: Problem, look: Look, vector: _Vector) -> np.ndarray:
+    """Covariance of what forms leave of the effects of their causes, as a smooth share of them (M, M)."""
+    effects = (look.jacobian[:, vector.sizes] * look.x[vector.sizes])[problem.own]
+    rough = np.zeros((problem.m, problem.m))
+    rough[problem.own, problem.own] = (effects @ effects.T) * alike(problem.data)
+    return rough
 
 
 def bounds(acting: Acting) -> tuple[np.ndarray, np.ndarray]:
@@ -108,27 +131,35 @@ def fitted(
     problem: Problem,
     acting: Sequence[Acting],
     z: np.ndarray,
-    noise: Noise | None = None,
     scales: np.ndarray | None = None,
     steps: int = STEPS,
 ) -> Fit:
-    """The most likely point of a hypothesis, and its evidence.
+    """The most likely point of a hypothesis with the most likely scales of its scatter, and its evidence.
 
     Args:
         problem: data and model
         acting: causes where the fit begins
         z: nuisances where it begins
-        noise: the scatter to fit by; that at the start if None
-        scales: logarithms of the scales of its loose terms, where the scatter is taken at the start
+        scales: logarithms of the scales of its loose terms where it begins
         steps: at most
 
     Raises:
         SolveError: the model cannot be run where the fit begins
     """
-    vector = _Vector(problem, acting)
     look = _begun(problem, acting, z)
-    noise = problem.noise(look, scales) if noise is None else noise
-    white = White.of(noise.covariance)
+    noise = problem.noise(look, scales)
+    for _ in range(ROUNDS):
+        look, cost = _settled(problem, look, noise, steps)
+        fit = weighed(problem, look, noise, cost)
+        moved, noise = np.abs(fit.noise.scales - noise.scales).max(initial=0.0), fit.noise
+        if moved < SETTLED:
+            break
+    return fit
+
+
+def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> tuple[Look, float]:
+    """Damped Gauss-Newton to convergence at a given scatter: the look there, and half the squared misfit."""
+    vector, white = _Vector(problem, look.acting), White.of(noise.covariance)
     cost = _cost(problem, vector, white, look.shown, look.x)
     damping = 0.0
     for _ in range(steps):
@@ -137,8 +168,7 @@ def fitted(
         gradient = J.T @ white(problem.measured - look.shown) - vector.precision * look.x
         for _ in range(TRIES):
             new = vector.step(look.x, H + damping * np.diag(np.diag(H)), gradient)
-            shown = problem.shown(*vector.split(new))
-            value = _cost(problem, vector, white, shown, new)
+            value = _cost(problem, vector, white, problem.shown(*vector.split(new)), new)
             if value <= cost + 1e-9:
                 break
             damping = max(5 * damping, 0.3)
@@ -148,7 +178,7 @@ def fitted(
         look, cost = problem.look(*vector.split(new)), value
         if gained < LITTLE:
             break
-    return weighed(problem, look, noise, cost)
+    return look, cost
 
 
 def _begun(problem: Problem, acting: Sequence[Acting], z: np.ndarray) -> Look:
@@ -182,13 +212,10 @@ def weighed(problem: Problem, look: Look, noise: Noise, cost: float) -> Fit:
     wide = known @ known.T + WIDTHS[-1] ** 2 * G @ G.T
     noise = noise.fitted(residual, wide)
     V = noise.covariance + known @ known.T
-    sizes = look.x[vector.sizes]
     if not look.acting:
         white = White.of(V)
         return Fit(look, noise, cost, white.log_density(white(residual)) + noise.log_prior, 0.0)
-    effects = (G * sizes)[problem.own]
-    rough = np.zeros_like(V)
-    rough[problem.own, problem.own] = (effects @ effects.T) * alike(problem.data)
+    rough = _rough(problem, look, vector)
     low, high = (b[vector.sizes] for b in (vector.low, vector.high))
     logs = []
     for share, weight in FORM.items():

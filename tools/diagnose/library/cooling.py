@@ -10,7 +10,7 @@ from ...model.laws.smooth import smooth_abs
 from ..campaign.table import Sensor
 from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 from .extras import Extras
-from .forms import Setting, shared
+from .forms import Context, shared
 from .roles import Roles
 
 AIR = "moving air: a better coefficient and faster air are one answer"
@@ -27,7 +27,7 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
         ranges: of the data
         sensors: of the campaign
     """
-    at = Setting(roles, ranges, sensors)
+    at = Context(roles, ranges, sensors)
     if roles.surfaces:
         yield air(at)
         yield emissivity(roles)
@@ -74,7 +74,7 @@ def each(roles: Roles, parts: Sequence[str], size: str) -> tuple[Form, ...]:
     )
 
 
-def air(at: Setting) -> Cause:
+def air(at: Context) -> Cause:
     """More or less convection."""
     shapes = (
         Shape("e", "1", "exponent of the temperature difference", -0.5, 0.5, 0.05, 0.2),
@@ -111,7 +111,7 @@ def emissivity(roles: Roles) -> Cause:
     )
 
 
-def foundation(at: Setting) -> Cause:
+def foundation(at: Context) -> Cause:
     """Feet and shafts that conduct more or less."""
     roles = at.roles
     ports = [roles.bodies_of(name)[0] for name in roles.foundation] or [f"{roles.surfaces[0]}.surface"]
@@ -166,7 +166,7 @@ def contact(roles: Roles, ranges: Ranges) -> Cause:
     )
 
 
-def oil_wall(at: Setting) -> Cause:
+def oil_wall(at: Context) -> Cause:
     """Oil that gives its heat to bodies better or worse."""
     roles, ranges, speed = at.roles, at.ranges, at.first("speed")
     shapes = (Shape("c", "1", "exponent of the speed in that logarithm", -0.8, 0.8, 0.0, 0.3),)
@@ -196,7 +196,7 @@ def oil_wall(at: Setting) -> Cause:
     )
 
 
-def humidity(at: Setting) -> Cause:
+def humidity(at: Context) -> Cause:
     """Cooling that follows the humidity of the room."""
     extras = Extras("humidity", at)
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from ...model.laws.oil import kinematic_viscosity
 from ...model.machines.spec import PartSpec
 from .cause import Form, Num, Row, Shape, Theta, Values
-from .forms import GENERAL, MOST_PLACES, Regime, Setting
+from .forms import GENERAL, MOST_PLACES, Regime, Context
 from .roles import Place
 
 #: An extra part and what it meets.
@@ -34,7 +34,7 @@ class Extras:
         at: what they are made for
     """
 
-    def __init__(self, kind: str, at: Setting) -> None:
+    def __init__(self, kind: str, at: Context) -> None:
         self.kind, self.roles, self.ranges = kind, at.roles, at.ranges
 
     def open(self) -> dict[str, float]:

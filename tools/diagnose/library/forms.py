@@ -75,7 +75,7 @@ class Regime:
 
 
 @dataclass(frozen=True)
-class Setting:
+class Context:
     """What the causes of a family are made for: roles of the machine, ranges of the data, sensors of the campaign."""
 
     roles: Roles

@@ -8,7 +8,7 @@ from dataclasses import replace
 from ..campaign.table import Sensor
 from .cause import Cause, Ranges, Shape
 from .extras import Extras
-from .forms import GENERAL, Setting
+from .forms import GENERAL, Context
 from .roles import Roles
 
 #: A machine stands below this share of its typical speed, with as gradual a change.
@@ -23,7 +23,7 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
         ranges: of the data
         sensors: of the campaign
     """
-    at = Setting(roles, ranges, sensors)
+    at = Context(roles, ranges, sensors)
     yield external_source(at)
     if "logs" in ranges.known:
         yield parked(at)
@@ -36,7 +36,7 @@ def bodies(roles: Roles) -> tuple[str, tuple[str, ...]]:
     return inside, tuple(f"{name}.heat" for name in roles.outside) or (roles.oil_heat,)
 
 
-def external_source(at: Setting) -> Cause:
+def external_source(at: Context) -> Cause:
     """Heat that comes from beside the machine, into one body of the housing or by the shaft."""
     extras = Extras("source", at)
     inside, outside = bodies(at.roles)
@@ -64,7 +64,7 @@ def external_source(at: Setting) -> Cause:
     )
 
 
-def parked(at: Setting) -> Cause:
+def parked(at: Context) -> Cause:
     """Heat while the machine stands."""
     extras = Extras("parked", at)
     inside, outside = bodies(at.roles)

@@ -16,7 +16,7 @@ import casadi as ca
 from ..campaign.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size, Theta, Values
 from .extras import Extras
-from .forms import INNER_SHARE, Regime, Setting, oil_share
+from .forms import INNER_SHARE, Regime, Context, oil_share
 from .roles import Place, Roles
 
 NO_LOAD = "no-load oil loss: churning, windage and oil level differ only in how the oil is reached"
@@ -34,7 +34,7 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
         ranges: of the data
         sensors: of the campaign
     """
-    at = Setting(roles, ranges, sensors)
+    at = Context(roles, ranges, sensors)
     if wet := roles.places["churning"]:
         yield from no_load(at, wet)
     if roles.bath:
@@ -51,7 +51,7 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
     yield from torque_only(at)
 
 
-def no_load(at: Setting, places: Sequence[Place]) -> Iterator[Cause]:
+def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
     """What moves oil and air."""
     speed = Shape("a", "1", "exponent of the speed", 1.2, 2.8, 2.0, 0.45)
     shapes = (speed, Shape("b", "1", "exponent of the viscosity", 0.0, 0.35), TEETH)
@@ -90,7 +90,7 @@ def no_load(at: Setting, places: Sequence[Place]) -> Iterator[Cause]:
     )
 
 
-def oil_viscosity(at: Setting) -> Cause:
+def oil_viscosity(at: Context) -> Cause:
     """Another oil."""
     bath = at.roles.bath
 
@@ -111,7 +111,7 @@ def oil_viscosity(at: Setting) -> Cause:
     )
 
 
-def bearing_preload(at: Setting, places: Sequence[Place]) -> Cause:
+def bearing_preload(at: Context, places: Sequence[Place]) -> Cause:
     """Bearings that carry more."""
     shapes = (
         Shape("a", "1", "exponent of the speed", 0.8, 1.6, 1.1, 0.18),
@@ -131,7 +131,7 @@ def bearing_preload(at: Setting, places: Sequence[Place]) -> Cause:
     )
 
 
-def seal_drag(at: Setting, places: Sequence[Place]) -> Cause:
+def seal_drag(at: Context, places: Sequence[Place]) -> Cause:
     """Seals that brake more."""
     shapes = (
         Shape("a", "1", "exponent of the speed", 0.6, 1.6, 1.0, 0.2),
@@ -150,7 +150,7 @@ def seal_drag(at: Setting, places: Sequence[Place]) -> Cause:
     )
 
 
-def mesh_friction(at: Setting, places: Sequence[Place]) -> Cause:
+def mesh_friction(at: Context, places: Sequence[Place]) -> Cause:
     """Teeth that rub otherwise."""
     shapes = (
         Shape("a", "1", "exponent of the speed", 0.35, 1.35, 0.85, 0.2),
@@ -168,7 +168,7 @@ def mesh_friction(at: Setting, places: Sequence[Place]) -> Cause:
     )
 
 
-def mesh_direction(at: Setting, places: Sequence[Place]) -> Cause:
+def mesh_direction(at: Context, places: Sequence[Place]) -> Cause:
     """Teeth that rub differently in the two directions of the power flow."""
     shapes = (
         Shape("a", "1", "exponent of the speed", 0.5, 1.4, 1.0, 0.18),
@@ -190,7 +190,7 @@ def mesh_direction(at: Setting, places: Sequence[Place]) -> Cause:
     )
 
 
-def film_starvation(at: Setting, places: Sequence[Place]) -> Cause:
+def film_starvation(at: Context, places: Sequence[Place]) -> Cause:
     """Teeth whose film breaks down where it is hot or fast."""
     film = Shape("p", "1", "exponent of the film (speed times viscosity) by which it falls", 0.3, 2.3, 1.2, 0.6)
     shapes = (
@@ -220,7 +220,7 @@ def film_starvation(at: Setting, places: Sequence[Place]) -> Cause:
     )
 
 
-def torque_only(at: Setting) -> Iterator[Cause]:
+def torque_only(at: Context) -> Iterator[Cause]:
     """Friction between a torque transducer and the machine."""
     if not at.roles.room or not at.roles.ends or not any(s.kind in ("torque", "power") for s in at.sensors):
         return

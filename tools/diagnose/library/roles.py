@@ -177,6 +177,10 @@ class _Nets:
         """Connected ports of a kind."""
         return [path for key in declared(self.classes[part], kind) if (path := f"{part}.{key}") in self.net]
 
+    def ports_of_lubricant(self, part: str) -> list[str]:
+        """Connected ports of a part that carry a lubricant."""
+        return self.ports(part, Lubricant)
+
     def of(self, *roles: str) -> tuple[str, ...]:
         return tuple(name for name, cls in self.classes.items() if cls.role in roles)
 

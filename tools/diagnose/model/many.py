@@ -61,5 +61,24 @@ class Many:
         return [r[:, 0] if r.shape[1] == 1 else r.transpose(0, 2, 1) for r in found]
 
 
+class Slow:
+    """The same without a compiler.
+
+    Args:
+        arguments, results: as for `Many`
+    """
+
+    def __init__(self, arguments: Sequence[Any], results: Sequence[Any]) -> None:
+        self._function = ca.Function("all", list(arguments), [ca.densify(ca.SX(r)) for r in results], {"cse": True})
+        self._shapes = [r.shape for r in results]
+
+    def __call__(self, *values: np.ndarray) -> list[np.ndarray]:
+        """Results at n points, as those of `Many`."""
+        n = len(values[0])
+        found = [np.asarray(r) for r in self._function.call([ca.DM(v.T) for v in values])]
+        whole = [r.reshape(rows, n, columns).swapaxes(0, 1) for r, (rows, columns) in zip(found, self._shapes, strict=True)]
+        return [r[:, :, 0] if r.shape[2] == 1 else r for r in whole]
+
+
 def _address(array: np.ndarray) -> ctypes.c_void_p:
     return ctypes.c_void_p(array.ctypes.data)

@@ -62,7 +62,7 @@ class Observed:
         self.sensors = {s.name: _filled(campaign.values[s.name]) for s in campaign.sensors}
         self.signs = {s.name: s.sign(campaign.direction) for s in campaign.sensors}
         self.given, self.read = campaign.given, campaign.read
-        self.shown = [plant.shown.index(s.reads) for s in self.read]
+        self.shown = [plant.shown.index(s.reads) for s in self.read if s.reads in plant.shown]
         self.inputs = [plant.u_place[s.reads] for s in self.given]
         held = [(i, r) for i, s in enumerate(self.read) for r in np.flatnonzero(np.isfinite(campaign.values[s.name]))]
         #: Sensor (its number among those read) and row of each of the m entries.
@@ -177,6 +177,10 @@ class Observed:
         """
         return _Look(self, z, parts).seen()
 
+    def outputs(self) -> np.ndarray:
+        """All that the plant shows in each row as its file has it (n, shown), NaN where it cannot be run."""
+        return _Look(self, np.zeros(len(self.nuisances)), ()).outputs()
+
     def tangents(
         self,
         z: np.ndarray,
@@ -281,6 +285,10 @@ class _Look:
         if found.by is None or found.local is None:
             return y, np.empty(0), np.empty(0), truth
         return y, found.by[o.campaign.test, o.half], found.local[o.campaign.test, o.half], truth
+
+    def outputs(self) -> np.ndarray:
+        """All that the plant shows (n, shown)."""
+        return self._run(turned=False)[0]
 
     def shown(self) -> np.ndarray:
         """Readings (m,) only."""

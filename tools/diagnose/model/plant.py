@@ -13,7 +13,7 @@ from ...model.core.flatten import flatten
 from ...model.machines.spec import Spec, assemble
 from ..library.cause import Form
 from ..library.extra_parts import EXTRA_PARTS
-from .many import Many
+from .many import Many, Slow
 
 
 def superset(spec: Spec, forms: Iterable[Form]) -> Spec:
@@ -46,9 +46,18 @@ class Plant:
         knobs: parameters that anything changes, the columns of `slopes`
         given: inputs that sensors give, further columns of `slopes`
         shown: states, outputs or inputs that sensors read
+        compiled: whether its functions are compiled to C, which pays where they are used often
     """
 
-    def __init__(self, flat: FlatModel, knobs: Sequence[str], given: Sequence[str], shown: Sequence[str]) -> None:
+    def __init__(
+        self,
+        flat: FlatModel,
+        knobs: Sequence[str],
+        given: Sequence[str],
+        shown: Sequence[str],
+        *,
+        compiled: bool = True,
+    ) -> None:
         self.flat, self.knobs, self.given, self.shown = flat, tuple(knobs), tuple(given), tuple(shown)
         self.nx, self.nz = len(flat.states), len(flat.algebraic)
         self.p = flat.starts("parameter")
@@ -62,10 +71,11 @@ class Plant:
         found = [flat.locate(path) for path in shown]
         y = ca.vertcat(*(groups[kind][i] for kind, i in found))
         arguments = [w, flat.u, flat.p]
-        self.rates = Many(arguments, [both, ca.jacobian(both, w)])
-        self.slopes = Many(arguments, [ca.jacobian(both, by)])
-        self.readings = Many(arguments, [y])
-        self.reading_slopes = Many(arguments, [y, ca.jacobian(y, w), ca.jacobian(y, by)])
+        many = Many if compiled else Slow
+        self.rates = many(arguments, [both, ca.jacobian(both, w)])
+        self.slopes = many(arguments, [ca.jacobian(both, by)])
+        self.readings = many(arguments, [y])
+        self.reading_slopes = many(arguments, [y, ca.jacobian(y, w), ca.jacobian(y, by)])
 
     @staticmethod
     def of(spec: Spec, forms: Iterable[Form], knobs: Sequence[str], given: Sequence[str], shown: Sequence[str]) -> Plant:
