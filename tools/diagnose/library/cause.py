@@ -127,6 +127,7 @@ class Cause:
         exposes: the experiment that would show it
         like: name of the class of causes that count as one answer, and why
         acts_on: what its effect depends on, for the picture of residuals: a sensor, "rise", "order"
+        common: how often it is met, over the causes that are met as a rule
     """
 
     id: str
@@ -136,6 +137,7 @@ class Cause:
     exposes: str = ""
     like: str = ""
     acts_on: str = ""
+    common: float = 1.0
 
     @property
     def family(self) -> str:

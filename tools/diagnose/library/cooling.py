@@ -205,11 +205,12 @@ def humidity(at: Context) -> Cause:
 
     shapes = (Shape("neutral", "1", "humidity at which the nominal holds", 0.2, 0.8, HUMIDITY, 0.08),)
     ports = [f"{name}.surface" for name in at.roles.surfaces]
+    made = [extras.conductor(port, k, len(ports)) for k, port in enumerate(ports)]
     return Cause(
         id="cooling.humidity",
         doc="Cooling that changes from day to day with the humidity of the room.",
         size=at.conductance("change of the conductance for 15 % of humidity", 0.03, -0.25, 0.25),
-        forms=extras.conductors(ports, shapes, as_keys=follows)[:1],
+        forms=(extras.with_parts(made, shapes, as_keys=follows),),
         exposes="humidity logged in every test, two days with the same point",
         like=DAYS,
         acts_on="humidity",

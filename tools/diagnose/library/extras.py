@@ -8,7 +8,7 @@ from dataclasses import replace
 from ...model.laws.oil import kinematic_viscosity
 from ...model.machines.spec import PartSpec
 from .cause import Form, Num, Row, Shape, Theta, Values
-from .forms import GENERAL, MOST_PLACES, Regime, Context
+from .forms import GENERAL, MOST_PLACES, Context, Regime
 from .roles import Place
 
 #: An extra part and what it meets.
@@ -117,7 +117,6 @@ class Extras:
         ports: Sequence[str],
         shapes: Iterable[Shape],
         limits: Sequence[Regime] = (),
-        as_keys: Keys = as_they_are,
     ) -> tuple[Form, ...]:
         """Conductances to the room: one form for all bodies, one for each of several, one for each regime.
 
@@ -125,10 +124,9 @@ class Extras:
             ports: where heat leaves the bodies
             shapes: of all forms; named as parameters of the extra part
             limits: regimes
-            as_keys: size, shapes and row -> parameters of the extra part, where they are not the same
         """
         made = [self.conductor(port, k, len(ports)) for k, port in enumerate(ports)]
-        return self.forms(made, [port.partition(".")[0] for port in ports], tuple(shapes), limits, as_keys=as_keys)
+        return self.forms(made, [port.partition(".")[0] for port in ports], tuple(shapes), limits)
 
     def forms(
         self,

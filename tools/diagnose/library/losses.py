@@ -16,7 +16,7 @@ import casadi as ca
 from ..campaign.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size, Theta, Values
 from .extras import Extras
-from .forms import INNER_SHARE, Regime, Context, oil_share
+from .forms import INNER_SHARE, Context, Regime, oil_share
 from .roles import Place, Roles
 
 NO_LOAD = "no-load oil loss: churning, windage and oil level differ only in how the oil is reached"
