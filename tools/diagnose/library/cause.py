@@ -155,6 +155,7 @@ class Nuisance:
         sd: prior standard deviation of the logarithm
         wide: the same where a healthy reference campaign of the same rig tells the parameters
         refilled: whether another filling or mounting changes it, by half of its sd
+        parts, connections: what is added to the machine for it, neutral
     """
 
     name: str
@@ -162,6 +163,8 @@ class Nuisance:
     sd: float
     wide: float
     refilled: bool = False
+    parts: tuple[PartSpec, ...] = ()
+    connections: tuple[tuple[str, ...], ...] = ()
 
 
 @dataclass(frozen=True)

@@ -53,6 +53,8 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
 
 def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
     """What moves oil and air."""
+    if teeth := at.roles.places["teeth"]:  # what moves the oil keeps a share of the heat
+        places = [replace(place, inner=teeth[0].inner, outer=teeth[0].inner) for place in places]
     speed = Shape("a", "1", "exponent of the speed", 1.2, 2.8, 2.0, 0.45)
     shapes = (speed, Shape("b", "1", "exponent of the viscosity", 0.0, 0.35), TEETH)
     yield Cause(

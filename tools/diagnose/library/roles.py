@@ -42,7 +42,8 @@ class Roles:
 
     Args:
         spec: the machine
-        places: role ("teeth", "bearing", "seal", "churning") -> places with such parts
+        places: role ("teeth", "bearing", "seal", "churning") -> places with such parts; where no part moves the oil,
+            the first shaft end stands for all that does
         bath: the oil that lubricates most parts, or else the grease; "" without any
         oil, viscosity: paths of its temperature and viscosity; of a body and "" where there is no lubricant
         oil_heat: port of its heat
@@ -123,7 +124,7 @@ class Roles:
 
     def at(self, port: str, *roles: str) -> str:
         """Name of the first part with one of the roles that a port meets, "" for none."""
-        met = {p.partition(".")[0] for p in self.nets.met(port)}
+        met = {p.partition(".")[0] for p in (port, *self.nets.met(port))}
         return next((name for name in self.having(*roles) if name in met), "")
 
     def room_of(self, surface: str) -> str:
@@ -196,6 +197,15 @@ class _Nets:
                 return max(found, key=lambda name: sum(self.net[p] in users for p in self.ports(name, Lubricant)))
         return ""
 
+    @property
+    def tap(self) -> str:
+        """Port of the bath's lubricant, "" without a bath."""
+        return (
+            next((f"{self.bath}.{key}" for key in declared(self.classes[self.bath], Lubricant)), "")
+            if self.bath
+            else ""
+        )
+
     def brakes(self, role: str) -> tuple[Place, ...]:
         """The places of a role."""
         found: dict[tuple[int, ...], Place] = {}
@@ -203,9 +213,7 @@ class _Nets:
             shafts, heats = self.ports(part, Flange), self.ports(part, HeatPort)
             if not shafts or not heats:
                 continue
-            lubricant = (
-                next(iter(self.ports(part, Lubricant) or self.ports(self.bath, Lubricant)[:1]), "") if self.bath else ""
-            )
+            lubricant = next(iter(self.ports(part, Lubricant)), self.tap)
             place = Place(part, (part,), min(shafts, key=self.shaft_rank), heats[0], heats[-1], lubricant)
             key = tuple(self.net[port] for port in (place.shaft, place.inner, place.outer))
             if (known := found.get(key)) is not None:
@@ -271,9 +279,16 @@ def _found(nets: _Nets) -> Roles:
         raise ScenarioError(f"{nets.spec.name}: nothing stores heat. Add an OilBath or a HeatCapacity.")
     shaft = nets.shaft()
     clutch = nets.classes[shaft].role == "clutch"
+    places = {role: nets.brakes(role) for role in BRAKES}
+    if (
+        nets.bath
+        and not places["churning"]
+        and (ends := [p for e in nets.of("shaft_end") for p in nets.ports(e, Flange)])
+    ):
+        places["churning"] = (Place(nets.bath, (), ends[0], f"{warm}.heat", f"{warm}.heat", nets.tap),)
     return Roles(
         spec=nets.spec,
-        places={role: nets.brakes(role) for role in BRAKES},
+        places=places,
         bath=nets.bath,
         oil=f"{warm}.T",
         viscosity=f"{nets.bath}.nu" if nets.bath else "",
