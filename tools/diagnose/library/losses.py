@@ -224,7 +224,11 @@ def film_starvation(at: Context, places: Sequence[Place]) -> Cause:
 
 def torque_only(at: Context) -> Iterator[Cause]:
     """Friction between a torque transducer and the machine."""
-    if not at.roles.room or not at.roles.ends or not any(s.kind in ("torque", "power") for s in at.sensors):
+    if (
+        not at.roles.room
+        or not at.roles.ends
+        or not any(s.kind in ("torque", "power") and s.role == "read" for s in at.sensors)
+    ):
         return
     floor = f"{at.roles.room}.floor"
     place = Place("couplings", (), f"{at.roles.ends[0]}.flange", floor, floor, "")

@@ -53,7 +53,7 @@ KINDS: Mapping[str, Kind] = {
     "oil_temp": Kind("oil probe", "K", 4.0, 0.03, 0.4, 0.03, 0.3, BATH),
     "wall_temp": Kind("probe on a body", "K", 4.0, 0.03, 0.4, 0.03, 0.3, BATH),
     "ambient": Kind("room probe", "K", 5.0, 0.035, 0.4, 0.03, 0.3, BATH),
-    "torque": Kind("torque transducer", "N.m", 2.0, 0.0025, 0.03, 0.003, 0.03, TARE),
+    "torque": Kind("torque transducer", "N.m", 2.0, 0.003, 0.03, 0.003, 0.03, TARE),
     "speed": Kind("speed reading", "rad/s", 2.0, 0.01, 0.1, 0.04, 0.15, "a stroboscope"),
     "power": Kind("power meter", "W", 2.0, 0.005, 0.05, 0.01, 0.1, "a second power meter"),
 }

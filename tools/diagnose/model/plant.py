@@ -78,7 +78,9 @@ class Plant:
         self.reading_slopes = many(arguments, [y, ca.jacobian(y, w), ca.jacobian(y, by)])
 
     @staticmethod
-    def of(spec: Spec, forms: Iterable[Form | Nuisance], knobs: Sequence[str], given: Sequence[str], shown: Sequence[str]) -> Plant:
+    def of(
+        spec: Spec, forms: Iterable[Form | Nuisance], knobs: Sequence[str], given: Sequence[str], shown: Sequence[str]
+    ) -> Plant:
         """The superset of a rig and some forms.
 
         Args:
