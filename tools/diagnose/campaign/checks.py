@@ -108,12 +108,13 @@ def _place(campaign: Campaign, row: int | np.intp) -> str:
     return f"{campaign.name} line {campaign.lines[row]}"
 
 
-def _accuracies(campaign: Campaign) -> Iterator[str]:
+def _accuracies(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
     """Accuracies that no instrument has."""
     for sensor in campaign.sensors:
         usual = dict(zip(("repeat_sd", "offset_sd"), ACCURACY[sensor.kind], strict=True))
         if SI[sensor.kind] != "K":
-            usual = {key: part * _size(campaign, sensor) for key, part in usual.items()}
+            size = abs(nominal.value(sensor.reads))
+            usual = {key: part * (size if size > 0 else _size(campaign, sensor)) for key, part in usual.items()}
         for key, value in usual.items():
             stated = getattr(sensor, key)
             if (stated == 0.0 and key == "offset_sd") or value == 0.0 or value / ODD <= stated <= value * ODD:

@@ -76,3 +76,14 @@ def contradictions(cells: Cells) -> list[str]:
             )
         before[test] = (first, oil_before, order)
     return problems
+
+
+def order_warnings(cells: Cells) -> list[str]:
+    """The first row that does not stand in running order."""
+    order = cells.numbers("order")
+    return [
+        f"{cells.table.place(row)}: order goes back ({order[row]:g} after {order[row - 1]:g})."
+        " Tests are taken in this order."
+        for row in range(1, cells.n)
+        if order[row] < order[row - 1]
+    ][:1]

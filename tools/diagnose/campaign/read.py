@@ -14,7 +14,7 @@ from ...scenarios.csv_table import Column, Table, parse, raise_all, read_cells
 from ...scenarios.scenario import Scenario
 from .card import Card
 from .checks import checked
-from .context import CONTEXT, DIRECTIONS, Cells, contradictions, floats
+from .context import CONTEXT, DIRECTIONS, Cells, contradictions, floats, order_warnings
 from .halves import with_unread
 from .lubrication import oil_problems, oil_values, oil_warnings
 from .nominal import Nominal
@@ -126,8 +126,8 @@ class _Reader:
         names = cells.texts("test") if "test" in self.context else [str(row) for row in range(cells.n)]
         order = cells.numbers("order")
         met = {name: row for row, name in reversed(list(enumerate(names)))}
-        position = np.array([met[name] for name in names], dtype=float)
-        order = np.where(np.isfinite(order), order, position + 1)[position.astype(int)]
+        position = np.array([met[name] for name in names])
+        order = np.where(np.isfinite(order), order, np.unique(position, return_inverse=True)[1] + 1)[position]
         rows = np.lexsort((np.arange(cells.n), position, order))
         first = np.append(True, np.diff(position[rows]) != 0)
         test = np.cumsum(first) - 1
@@ -153,7 +153,7 @@ class _Reader:
             lines=np.array(cells.table.lines)[rows],
             points=np.where(np.isfinite(points), points, np.arange(cells.n) + 1)[rows].astype(int),
             start_by_room=self.card.protocol.T_start_minus_amb_K,
-            warnings=cells.table.warnings,
+            warnings=(*cells.table.warnings, *order_warnings(cells)),
         )
 
     def _direction(self, cells: Cells, values: dict[str, np.ndarray]) -> np.ndarray:
