@@ -52,7 +52,7 @@ def checked(campaign: Campaign, nominal: Nominal, oils: Oils, *, points: bool = 
         DataError: all that cannot be
     """
     problems = [
-        *_accuracies(campaign),
+        *_accuracies(campaign, nominal),
         *_temperatures(campaign),
         *_contradictions(campaign),
         *_scales(campaign, nominal),
