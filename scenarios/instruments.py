@@ -71,7 +71,7 @@ def instruments(
                 reads=table.reads,
                 kind=table.kind or "",
                 role=table.role or "",
-                unit=table.unit,
+                unit=table.unit or "",
                 magnitude=table.magnitude or table.signs is not None,
                 signs=None if table.signs is None else (table.signs[0], table.signs[1]),
                 **accuracy,

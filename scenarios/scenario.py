@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from ..model.core.declare import Input, declared
+from ..model.core.declare import Given, Input, declared
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.machines.spec import Spec
@@ -115,6 +115,20 @@ class Scenario:
         fixed = {end: tuple(quantities) for end, quantities in given.items()}
         return replace(self, spec=self.spec.driven(fixed), given=fixed)
 
+    def driven_by(self, names: Iterable[str]) -> Scenario:
+        """The scenario driven by those of the named inputs that are shaft quantities, the rest as the rig says."""
+        shafts = self.shaft_paths()
+        return self.driven(deduced(self.given, [name for name in names if name in shafts]))
+
+    def shaft_paths(self) -> set[str]:
+        """Paths of the quantities that may be given at the shaft ends."""
+        return {f"{p.name}.{key}" for p in self.spec.parts for key in declared(self.spec.types[p.type], Given)}
+
+    def driven_paths(self) -> set[str]:
+        """Paths of the inputs of the model as it is driven: rooms, loads, what is given at the shaft ends."""
+        shafts, given = self.shaft_paths(), {f"{end}.{key}" for end, keys in self.given.items() for key in keys}
+        return {path for path in self.inputs() if path not in shafts or path in given}
+
     def entry_values(self, part: str, name: str) -> dict[str, float]:
         """Values in SI by path that a catalogue entry gives a part.
 
@@ -163,6 +177,22 @@ class Scenario:
             if (entry := unchecked_entry(source)) is not None:
                 found.setdefault(entry, {})[path] = None
         return {entry: tuple(paths) for entry, paths in found.items()}
+
+
+def deduced(given: Mapping[str, tuple[str, ...]], names: Iterable[str]) -> dict[str, tuple[str, ...]]:
+    """The drive that follows from the shaft quantities named ("sun.w"), each kind in place of that of `given`.
+
+    As many quantities as before are given: with two torques named, the speed follows.
+    """
+    named = [tuple(name.rsplit(".", 1)) for name in names]
+    kinds = {quantity for _, quantity in named}
+    before = [(end, quantity) for end, quantities in given.items() for quantity in quantities]
+    spare = [(end, quantity) for end, quantity in before if quantity not in kinds]
+    kept = spare[: max(0, len(before) - len(named))]
+    drive: dict[str, tuple[str, ...]] = {}
+    for end, quantity in (*kept, *named):
+        drive[end] = tuple(dict.fromkeys((*drive.get(end, ()), quantity)))
+    return drive
 
 
 def parse_assignments(target: Scenario | FlatModel, texts: Iterable[str]) -> dict[str, float]:

@@ -27,12 +27,12 @@ class SensorTable(Strict):
     """One instrument; what is left out follows from what it reads."""
 
     reads: str = Field(description='path in the model, for example "oil.T"')
-    column: str = Field("", description="column of a measured table; the sensor's own name if left out")
+    column: str | None = Field(None, description="column of a measured table; the sensor's own name if left out")
     kind: Literal["oil_temp", "wall_temp", "ambient", "torque", "speed", "power"] | None = Field(
         None, description='what it is: "oil_temp", "wall_temp", "ambient", "torque", "speed" or "power"'
     )
     role: Literal["given", "read"] | None = Field(None, description='"given" drives the model, "read" is compared')
-    unit: str = Field("", description='unit of the column, for example "degC"')
+    unit: str | None = Field(None, description='unit of the column, for example "degC"')
     magnitude: bool = Field(False, description="true where the column holds magnitudes")
     signs: list[float] | None = Field(
         None, min_length=2, max_length=2, description="sign of the model's value in direction 1 and 2, for magnitudes"

@@ -23,7 +23,7 @@ from ..model.run.simulate import simulate
 from . import bench_fmu, campaign, throughput
 from .console import answer, note, table
 from .rigs import load
-from .settings import driven_by, flat_of
+from .settings import flat_of
 
 #: Tolerances at which LSODA runs; the cheapest one that is as accurate as the FMU is what the FMU is compared with.
 TOLERANCES = (1e-6, 1e-8, 1e-9)
@@ -146,7 +146,7 @@ def _integration(rig: str, tests: str | None) -> dict[str, Any]:
     """Processor time of the integration alone: all tests through the FMU, and through LSODA, in one process."""
     scenario = load(rig)
     protocol = scenario.campaign.protocol if scenario.campaign else None
-    scenario = driven_by(scenario, protocol.inputs) if protocol else scenario
+    scenario = scenario.driven_by(protocol.inputs) if protocol else scenario
     flat = flat_of(scenario)
     runs = campaign.runs_of(scenario, flat, tests)
     states = [q.name for q in flat.states]

@@ -20,7 +20,7 @@ from ..scenarios.scenario import Scenario
 from . import campaign
 from .console import answer, note, table
 from .rigs import load
-from .settings import adjusted, driven_by, flat_of
+from .settings import adjusted, flat_of
 
 #: Relative step of the difference quotients; well above what the FMU's own tolerance leaves.
 STEP = 1e-3
@@ -52,7 +52,7 @@ def command(
     protocol = scenario.campaign.protocol if scenario.campaign else None
     if protocol is None:
         raise DataError(f"{scenario.name}: there are no measured data to fit to. Give the rig file a table [campaign].")
-    scenario = driven_by(scenario, protocol.inputs)
+    scenario = scenario.driven_by(protocol.inputs)
     flat = flat_of(scenario)
     quantities = _bounded(_checked(flat, free), bounds)
     chosen = _of_grid(campaign.runs_of(scenario, flat), grid)

@@ -23,7 +23,7 @@ from .console import answer, file_of, folder, writable
 from .extras import checked, reference_duty, write_extras
 from .network import network_svg
 from .rigs import load
-from .settings import Drive, adjusted, driven_at, flat_of, given_paths
+from .settings import Drive, adjusted, driven_at, flat_of
 from .transients import first_temperatures
 from .unchecked import print_unchecked, unchecked
 
@@ -52,7 +52,7 @@ def export_command(
     flat = flat_of(setting)
     start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, assignments)
     beside = folder(extras) if extras is not None else None
-    duty = reference_duty(flat, start, given_paths(setting.spec))
+    duty = reference_duty(flat, start, setting.shaft_paths())
     write_fmu(setting, flat, out, platform=platform, start=start, verify=lambda fmu: checked(fmu, flat, duty, start))
     kept = effective(flat, start)
     named = {q.name for q in kept.parameters}
@@ -122,7 +122,7 @@ def operating_start(
         assignments: what the user has set, which stays
     """
     own = flat_of(setting.driven(scenario.given))
-    names = given_paths(setting.spec)
+    names = setting.shaft_paths()
     fixed = {text.partition("=")[0].strip() for text in assignments}
     if {q.name for q in own.inputs} & names == {q.name for q in flat.inputs} & names:
         return {}

@@ -18,11 +18,12 @@ from ..model.run.steady import steady, steady_table
 from ..scenarios.entries import catalogue
 from ..scenarios.measured import Campaign, Protocol, Reading, read_measured
 from ..scenarios.scenario import Scenario
+from ..scenarios.write import DIAGNOSED
 from .console import answer, table
 from .contacts import contacts_at, part_with_contacts, print_contacts
 from .points import conditions, outside_of, tell_outside
 from .rigs import load
-from .settings import DIAGNOSED, SET, adjusted, choice_paths, driven_by, flat_of
+from .settings import SET, adjusted, choice_paths, flat_of
 from .unchecked import print_unchecked, unchecked
 
 
@@ -104,7 +105,7 @@ def at_readings(scenario: Scenario, campaign: Campaign, temperature: str) -> lis
     """
     if (protocol := campaign.protocol) is None:
         raise DataError(f"{campaign.name}: how it was run is not known. Give the rig file a table [campaign].")
-    flat = flat_of(driven_by(scenario, protocol.inputs))
+    flat = flat_of(scenario.driven_by(protocol.inputs))
     values = [given(scenario, protocol, reading) for reading in campaign.readings]
     if temperature == "model":
         result = steady_table(flat, values)

@@ -21,7 +21,7 @@ from .losses import oils_of
 from .readings import sources
 from .report import Study, render
 from .rivals import Score, rivals
-from .settings import adjusted, driven_by, flat_of, loaded
+from .settings import adjusted, flat_of, loaded
 from .unchecked import print_unchecked, unchecked, unchecked_lines
 
 #: First columns of a row, the rest follow in the order they arise.
@@ -49,7 +49,7 @@ def command(
     with campaign.crew(workers) as pool:
         scenario = adjusted(loaded(rig, extended, data, card), assignments)
         protocol = scenario.campaign.protocol if scenario.campaign else None
-        scenario = driven_by(scenario, protocol.inputs) if protocol else scenario
+        scenario = scenario.driven_by(protocol.inputs) if protocol else scenario
         flat = flat_of(scenario)
         found = campaign.runs_of(scenario, flat, tests)
         fmu = write_fmu(scenario, flat, out / f"{scenario.name}.fmu")

@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ..model.core.declare import Choice, Given, Parameter, declared
+from ..model.core.declare import Choice, Parameter, declared
 from ..model.core.flat import FlatModel
 from ..model.core.flatten import flatten
 from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
@@ -15,15 +15,13 @@ from ..model.laws.film_map import FilmMap
 from ..model.machines.spec import Spec, assemble
 from ..scenarios.film_map import map_named, names_map
 from ..scenarios.measured import read_measured
-from ..scenarios.scenario import Scenario, parse_assignments
+from ..scenarios.scenario import Scenario, deduced, parse_assignments
 from .rigs import load
 
 Drive = Mapping[str, tuple[str, ...]]
 
 #: Source of the values that the user sets; they hold for every test, whatever oil it ran with.
 SET = "set on the command line"
-#: Beginning of the source of a value that a diagnosis changed; it holds for every test, too.
-DIAGNOSED = "inferred: diagnosis of"
 
 
 def adjusted(
@@ -57,7 +55,7 @@ def adjusted(
         problems += error.problems
     if problems:
         raise ScenarioError(problems)
-    shafts = given_paths(scenario.spec)
+    shafts = scenario.shaft_paths()
     ends = [name for name in dict.fromkeys((*values, *named)) if name in shafts]
     driven = deduced(scenario.given, ends) if drive is None else drive
     if idle := [name for name in ends if name.rpartition(".")[2] not in driven.get(name.rpartition(".")[0], ())]:
@@ -103,28 +101,6 @@ def flat_of(scenario: Scenario) -> FlatModel:
     return flatten(assemble(scenario.spec))
 
 
-def driven_by(scenario: Scenario, names: Iterable[str]) -> Scenario:
-    """The scenario driven by those of the named inputs that are shaft quantities, the rest as the rig says."""
-    shafts = given_paths(scenario.spec)
-    return scenario.driven(deduced(scenario.given, [name for name in names if name in shafts]))
-
-
-def deduced(given: Drive, names: Iterable[str]) -> dict[str, tuple[str, ...]]:
-    """The drive that follows from the shaft quantities named ("sun.w"), each kind in place of that of `given`.
-
-    As many quantities as before are given: with two torques named, the speed follows.
-    """
-    named = [tuple(name.rsplit(".", 1)) for name in names]
-    kinds = {quantity for _, quantity in named}
-    before = [(end, quantity) for end, quantities in given.items() for quantity in quantities]
-    spare = [(end, quantity) for end, quantity in before if quantity not in kinds]
-    kept = spare[: max(0, len(before) - len(named))]
-    drive: dict[str, tuple[str, ...]] = {}
-    for end, quantity in (*kept, *named):
-        drive[end] = tuple(dict.fromkeys((*drive.get(end, ()), quantity)))
-    return drive
-
-
 def driven_at(scenario: Scenario, shaft: str | None, given: str) -> dict[str, tuple[str, ...]]:
     """The drive of an FMU.
 
@@ -144,11 +120,6 @@ def driven_at(scenario: Scenario, shaft: str | None, given: str) -> dict[str, tu
     if given == "torque":
         return {end: ("tau",) for end in ends}
     return dict(scenario.given) if shaft is None else {shaft: ("w", "tau")}
-
-
-def given_paths(spec: Spec) -> set[str]:
-    """Paths of the quantities that may be given at the shaft ends."""
-    return {f"{part.name}.{key}" for part in spec.parts for key in declared(spec.types[part.type], Given)}
 
 
 def choice_paths(spec: Spec) -> dict[str, Choice]:

@@ -6,7 +6,8 @@ from gearheat.model.errors import ScenarioError
 from gearheat.model.run.design import design
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
-from gearheat.tools.settings import adjusted, deduced, driven_at, driven_by, flat_of
+from gearheat.scenarios.scenario import deduced
+from gearheat.tools.settings import adjusted, driven_at, flat_of
 
 GIVEN = {"carrier": ("w", "tau")}
 
@@ -45,7 +46,7 @@ def test_settings_reach_the_model_in_si():
 
 def test_inputs_that_are_no_shaft_quantities_leave_the_drive_alone():
     scenario = load("planetary")
-    assert driven_by(scenario, ["room.T", "room.air_speed"]).given == scenario.given
+    assert scenario.driven_by(["room.T", "room.air_speed"]).given == scenario.given
 
 
 def test_drives_of_an_fmu():

@@ -17,7 +17,6 @@ from ...scenarios.measured import POINTS, READINGS, Campaign, Protocol, Reading,
 from ...scenarios.scenario import Scenario
 from ..effects.taxonomy import CAUSES
 from ..rigs import load
-from ..settings import driven_by
 from . import card as cards
 from .card import BY_ROOM, Card, read_card
 from .card_checks import card_problems, card_warnings
@@ -192,7 +191,7 @@ def rig_of(name: str, card: Card | None) -> Scenario:
     if doubled := sorted(own & parts):
         raise DataError(f"{scenario.name}: part {', '.join(doubled)} has the name of a cause's part. Rename it.")
     spec = scenario.spec if card is None else lubricated(scenario.spec, card.lubrication)
-    return driven_by(replace(scenario, spec=spec), scenario.protocol.inputs)
+    return replace(scenario, spec=spec).driven_by(scenario.protocol.inputs)
 
 
 def protocol_of(scenario: Scenario | None, card: Card | None) -> Protocol | None:

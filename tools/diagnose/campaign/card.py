@@ -27,10 +27,8 @@ def _text(value: Any) -> Any:
 class Channel(Strict):
     """Accuracy of one sensor."""
 
-    repeat_sd: str | None = Field(default=None, description='scatter from reading to reading: "0.35 K", or in its unit')
-    offset_sd: str | None = Field(
-        default=None, description='tolerance fixed over the campaign: "0.3 K", or in its unit'
-    )
+    repeat_sd: str | None = Field(default=None, description='scatter from reading to reading, "0.35 K"')
+    offset_sd: str | None = Field(default=None, description='tolerance fixed over the campaign, "0.3 K"')
     full_scale: float | None = Field(default=None, description="range of the instrument, for the reader")
 
     _numbers = field_validator("repeat_sd", "offset_sd", mode="before")(_text)
@@ -47,25 +45,13 @@ class CardSensor(SensorTable):
 class Protocol(Strict):
     """How the campaign was run."""
 
-    prose: str = Field(default="", description='"steady" for steady states, or words for the reader')
-    dwell_min: list[float] = Field(
-        default=[], description="minutes that the rows of a test are held, where no column says it"
-    )
-    stop_min: float | None = Field(
-        default=None, ge=0, description="minutes without load before each further row of a test"
-    )
-    T_start_minus_amb_K: float = Field(
-        default=0.0, description="start of a test over its room, where no column says it [K]"
-    )
-    ambient: str = Field(
-        default="linear between the readings", description='"linear between the readings", the only one known'
-    )
-    ambient_start_minus_reading_K: float = Field(
-        default=0.0, description="room at the start less its first reading [K]"
-    )
-    reading: str = Field(
-        default="last sample of the dwell", description='"last sample of the dwell", the only one known'
-    )
+    prose: str = Field(default="", description='"steady" where all readings are steady states; other words are for you')
+    dwell_min: list[float] = Field(default=[], description="[min] that the rows of a test are held; the column leads")
+    stop_min: float | None = Field(default=None, ge=0, description="[min] without load between the rows of a test")
+    T_start_minus_amb_K: float = Field(default=0.0, description="[K] start of a test over its room; the column leads")
+    ambient: str = Field(default="linear between the readings", description="of the room; no other is known")
+    ambient_start_minus_reading_K: float = Field(default=0.0, description="[K] room at the start less its 1st reading")
+    reading: str = Field(default="last sample of the dwell", description="when is read; no other is known")
 
     @field_validator("dwell_min")
     @classmethod
@@ -78,11 +64,11 @@ class Protocol(Strict):
 class Oil(Strict):
     """An oil of the catalogue, or the data of one that it lacks."""
 
-    name: str = Field(default="", description="an oil of the catalogue")
-    nu40: float | None = Field(default=None, gt=0, description="viscosity at 40 degC [mm2/s]")
-    nu100: float | None = Field(default=None, gt=0, description="viscosity at 100 degC [mm2/s]")
-    rho15: float | None = Field(default=None, gt=0, description="density at 15 degC [kg/m3]")
-    alpha_T: float | None = Field(default=None, description="change of the density [kg/(m3.K)]")
+    name: str = Field(default="", description="an oil of the catalogue; that of the rig where it is empty")
+    nu40: float | None = Field(default=None, gt=0, description="[mm2/s] viscosity at 40 degC, if it lacks the oil")
+    nu100: float | None = Field(default=None, gt=0, description="[mm2/s] viscosity at 100 degC")
+    rho15: float | None = Field(default=None, gt=0, description="[kg/m3] density at 15 degC")
+    alpha_T: float | None = Field(default=None, description="[kg/(m3.K)] change of the density")
 
 
 class Card(Strict):
@@ -91,22 +77,18 @@ class Card(Strict):
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, populate_by_name=True)
 
     schema_: Literal["gearheat.card/1", "gearheat.card/2"] = Field(
-        default="gearheat.card/2", alias="schema", description='"gearheat.card/2"'
-    )
-    columns: dict[str, str] = Field(
-        default={}, description="sensor, model path or optional column -> column of the table"
-    )
-    units: dict[str, str] = Field(default={}, description="column of the table -> its unit")
-    channels: dict[str, Channel] = Field(default={}, description="sensor -> its accuracy")
-    sensors: dict[str, CardSensor] = Field(
-        default={}, description="sensors that the rig file lacks, or keys that overrule it"
+        default="gearheat.card/2", alias="schema", description="version of the format"
     )
     day_cooling_sd: float = Field(default=0.015, ge=0, description="relative scatter of the cooling from day to day")
-    prior_sd: dict[str, float] = Field(default={}, description='relative: "HelicalGearPair.k_mu" -> standard deviation')
+    series: bool = Field(default=False, description="whether the tests were logged, too; for the reader")
+    columns: dict[str, str] = Field(default={}, description="sensor, path or optional column = column of your table")
+    units: dict[str, str] = Field(default={}, description="column of the table = its unit")
+    channels: dict[str, Channel] = Field(default={}, description="accuracy of a sensor")
+    sensors: dict[str, CardSensor] = Field(default={}, description="a sensor that the rig lacks, or overruled keys")
+    prior_sd: dict[str, float] = Field(default={}, description="relative uncertainty of the parameters of a part type")
     protocol: Protocol = Field(default=Protocol(), description="how the campaign was run: a table, or words")
-    lubrication: dict[str, str] = Field(default={}, description="part, part type or group of parts -> oil or grease")
-    oil: Oil = Field(default=Oil(), description="an oil of the catalogue, or a table with nu40 and nu100")
-    series: bool = Field(default=False, description="whether the tests were logged, too")
+    lubrication: dict[str, str] = Field(default={}, description="part, part type or group of parts = oil or grease")
+    oil: Oil = Field(default=Oil(), description="an oil of the catalogue, or the data of one that it lacks")
     name: str = Field(default="", exclude=True, description="of the file")
     warnings: tuple[str, ...] = Field(default=(), exclude=True, description="what the user should know of the file")
 
@@ -116,14 +98,9 @@ class Card(Strict):
         """Words in the place of the tables [protocol] and [oil], in full."""
         if not isinstance(raw, Mapping):
             return raw
-        short = {
-            key: {field: raw[key]} for key, field in (("protocol", "prose"), ("oil", "name")) if _is_text(raw, key)
-        }
+        fields = {"protocol": "prose", "oil": "name"}
+        short = {key: {field: raw[key]} for key, field in fields.items() if isinstance(raw.get(key), str)}
         return {key: value for key, value in {**raw, **short}.items() if value is not None}
-
-
-def _is_text(raw: Mapping[str, Any], key: str) -> bool:
-    return isinstance(raw.get(key), str)
 
 
 def read_card(path: Path | None) -> Card:

@@ -2,27 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from functools import cached_property
-
-import numpy as np
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 from ...model.core.declare import State, declared
 from ...model.core.flat import Quantity
-from ...model.core.flatten import flatten
 from ...model.errors import DataError, GearheatError, suggestion
-from ...model.machines.spec import assemble
 from ...model.parts.lubrication import OilBath
 from ...model.parts.shaft import ShaftEnd
 from ...model.parts.thermal import Room
-from ...model.run.steady import steady
-from ...model.units import to_si
+from ...model.units import text, to_si
 from ...scenarios.columns import spelled, split_unit
 from ...scenarios.instruments import Instrument
 from ...scenarios.scenario import Scenario
 from .card import Card
 from .context import CONTEXT
+from .nominal import Nominal
 from .table import Sensor
 
 #: Scatter from reading to reading and fixed tolerance: in K, or relative to the value at the operating point.
@@ -33,6 +28,15 @@ ACCURACY: Mapping[str, tuple[float, float]] = {
     "torque": (4e-4, 8e-4),
     "speed": (8e-4, 8e-4),
     "power": (5e-3, 5e-3),
+}
+#: SI unit of what a kind of sensor reads.
+SI: Mapping[str, str] = {
+    "oil_temp": "K",
+    "wall_temp": "K",
+    "ambient": "K",
+    "torque": "N.m",
+    "speed": "rad/s",
+    "power": "W",
 }
 #: Kind of a sensor that reads no temperature, by the SI unit of what it reads.
 KINDS: Mapping[str, str] = {"N.m": "torque", "rad/s": "speed", "W": "power"}
@@ -53,21 +57,6 @@ def sensors_of(scenario: Scenario, card: Card) -> tuple[Sensor, ...]:
     return _Sensors(scenario, card).complete()
 
 
-@dataclass(frozen=True)
-class _Nominal:
-    """What the model gives at the rig's operating point, computed only where it is asked for."""
-
-    scenario: Scenario
-
-    @cached_property
-    def values(self) -> Mapping[str, np.ndarray]:
-        return steady(flatten(assemble(self.scenario.spec)), self.scenario.operating_point).columns
-
-    def value(self, path: str) -> float:
-        point = self.scenario.operating_point
-        return float(point[path]) if path in point else float(self.values[path][0])
-
-
 class _Sensors:
     """Completes the sensors of one rig and card, collecting problems; nothing of it outlives the call."""
 
@@ -75,9 +64,10 @@ class _Sensors:
         self.scenario, self.card = scenario, card
         self.known: Mapping[str, Quantity] = scenario.readable()
         self.types = {part.name: scenario.spec.types[part.type] for part in scenario.spec.parts}
-        self.nominal = _Nominal(scenario)
+        self.nominal = Nominal(scenario)
         self.problems: list[str] = []
         self.found = {i.name: i for i in scenario.instruments or default_instruments(scenario)}
+        self.driven: set[str] = set()
 
     def complete(self) -> tuple[Sensor, ...]:
         """The card's keys over the rig's, and what is left out by rule."""
@@ -91,10 +81,26 @@ class _Sensors:
                 self._accuracy(f"channels.{key}", name, channel.model_dump(include={"repeat_sd", "offset_sd"}))
             elif self.card.schema_ == "gearheat.card/2":
                 self._refuse(f"channels.{key}", key)
+        self._drive()
         sensors = [self._completed(instrument) for instrument in self.found.values()] if not self.problems else []
         if self.problems:
             raise DataError(self.problems)
         return tuple(sensors)
+
+    def _drive(self) -> None:
+        """What drives the model: what the card gives at the shaft ends, else the rig's protocol or drive."""
+        named = [i.reads for i in self.found.values() if i.role == "given"]
+        protocol = self.scenario.protocol
+        usual = self.scenario.driven_by(protocol.inputs if protocol else ())
+        driven = usual.driven_by(named)
+        self.driven = driven.driven_paths()
+        shafts = self.scenario.shaft_paths()
+        if len(self.driven & shafts) != len(usual.driven_paths() & shafts) or not shafts & set(named) <= self.driven:
+            self.problems.append(
+                f"{self.card.name}: {', '.join(named)} cannot all be given: {self.scenario.name} is driven by"
+                f" {len(usual.driven_paths() & shafts)} of the speeds and torques of its shaft ends."
+                ' Give some of them the role "read".'
+            )
 
     def _name(self, key: str) -> str | None:
         """The sensor that a key of the card means: its name, its column, or the path that it alone reads."""
@@ -158,13 +164,13 @@ class _Sensors:
                 self.problems.append(f"{self.card.name} {place}.{key} = {table[key]} is below zero.")
             self.found[name] = replace(self.found[name], **{key: value})  # type: ignore[arg-type]
 
-    def _spread(self, text: str, instrument: Instrument, where: str) -> float:
+    def _spread(self, written: str, instrument: Instrument, where: str) -> float:
         """A standard deviation in SI: with its own unit, or in that of the column."""
         si = self.known[instrument.reads].unit
         try:
-            number = float(text)
+            number = float(written)
         except ValueError:
-            return to_si(text, f"{si} (difference)" if si == "K" else si, name=where)
+            return to_si(written, f"{si} (difference)" if si == "K" else si, name=where)
         unit = self._unit(instrument)
         unit = "K" if unit in ("degC", "") and si == "K" else unit
         return to_si(f"{number!r} {unit}".strip(), f"{si} (difference)" if si == "K" else si, name=where)
@@ -180,7 +186,7 @@ class _Sensors:
             column=instrument.column,
             reads=instrument.reads,
             kind=kind,
-            role=instrument.role or ("given" if instrument.reads in driven_paths(self.scenario) else "read"),
+            role=instrument.role or ("given" if instrument.reads in self.driven else "read"),
             unit=self._unit(instrument),
             repeat_sd=instrument.repeat_sd if instrument.repeat_sd is not None else repeat,
             offset_sd=instrument.offset_sd if instrument.offset_sd is not None else offset,
@@ -206,8 +212,10 @@ class _Sensors:
         repeat, offset = ACCURACY[kind]
         if kind.endswith("_temp") or kind == "ambient":
             return repeat, offset
-        full = abs(self.nominal.value(instrument.reads))
-        return repeat * full, offset * full
+        quantity = self.known[instrument.reads]
+        value = abs(self.nominal.value(instrument.reads))
+        full = value if value > 0 else quantity.nominal
+        return _rounded(repeat * full, quantity.unit), _rounded(offset * full, quantity.unit)
 
     def _signs(self, instrument: Instrument, kind: str) -> tuple[float, float]:
         """Sign of the model's value where the column holds magnitudes: loads turn round with the direction."""
@@ -222,13 +230,14 @@ class _Sensors:
         return sign, -sign if kind == "torque" else sign
 
 
-def driven_paths(scenario: Scenario) -> set[str]:
-    """Inputs that a campaign of the rig gives: rooms and other surroundings, loads, what drives the shaft ends."""
-    protocol = scenario.protocol
-    shafts = {f"{end}.{key}" for end in scenario.spec.of_type(ShaftEnd.__name__) for key in ("w", "tau")}
-    driven = {f"{end}.{key}" for end, keys in scenario.given.items() for key in keys}
-    driven = {path for path in protocol.inputs if path in shafts} if protocol else driven
-    return {path for path in scenario.inputs() if path not in shafts} | driven
+def _rounded(value: float, unit: str) -> float:
+    """A value with two digits in the unit that a person reads."""
+    return to_si(text(value, unit, 2), unit)
+
+
+def driven_by(scenario: Scenario, sensors: Iterable[Sensor]) -> Scenario:
+    """The rig driven by what a campaign gives at its shaft ends."""
+    return scenario.driven_by([sensor.reads for sensor in sensors if sensor.role == "given"])
 
 
 def instrument_of(path: str) -> Instrument:

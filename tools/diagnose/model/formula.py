@@ -68,7 +68,8 @@ class Formula:
         self.paths, self.given, self.read = tuple(values), tuple(truth), tuple(shown)
         self.paced = form.pace is not None
         self._arguments = [self.t, self._base.column, self._sensors.column, self._reads.column, features]
-        self._physics = self._function("physics", [*values.values(), *truth.values(), pace], [self.t, self._base.column])
+        physics = [*values.values(), *truth.values(), pace]
+        self._physics = self._function("physics", physics, [self.t, self._base.column])
         self._instruments = self._function("instruments", list(shown.values()), [self.t, self._reads.column])
         self._theta = ca.Function("theta", [self.t], [ca.vertcat(*map(ca.SX, theta.values()))])
         self.names = tuple(theta)

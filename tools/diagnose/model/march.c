@@ -22,16 +22,16 @@ typedef struct {
   const double *scale, *guess, *thermal;
 } Plant;
 
-/* What n runs go through: F phases in H rows, K steps in all. */
+/* What n runs go through: F phases in H rows, K steps and R readings in all; derivatives at S settings. */
 typedef struct {
-  whole n, H, F, K, R;
+  whole n, S, H, F, K, R;
   const whole *row, *first, *read;            /* of each phase (F), (F + 1), of each step (K): number of the reading or -1 */
   const double *share;                        /* where each step ends (K) */
-  const double *length, *u0, *u1, *p, *pace;  /* (n, F), (n, F, nu), (n, F, nu), (n, H, np), (n, H) */
+  const double *length, *u0, *u1, *p, *pace;  /* (n, F), (n, F, nu), (n, F, nu), (S, n, H, np), (n, H) */
   const double *local0, *local1, *start, *x0; /* (n, F, given, H), (n, F, given, H), (n, given), (n, nx) */
 } Duty;
 
-/* What is shown (n, R, shown) and its derivatives by knobs and pace (n, H, knobs + 1, R, shown), by given readings
+/* What is shown (n, R, shown) and its derivatives by knobs and pace (n, S, H, knobs + 1, R, shown), by given readings
    (n, given, H, R, shown); those are left out where `by` is none. */
 typedef struct { double *y, *by, *local; } Found;
 
@@ -57,7 +57,7 @@ typedef struct {
 typedef struct {
   const Plant *plant;
   const Duty *duty;
-  whole run, phase, stages;
+  whole run, phase, stages, setting;
   const double **arg;
   double **res, *work, *sparse, *direct, *r, *x, *base, *d, *left, *u, *LU;
   double *w, *last, *trial;         /* unknowns now, those of the stage before, those tried */
@@ -76,8 +76,9 @@ static void inputs(Run *R, double share) {
 }
 
 static void call(Run *R, Formula formula, const double *w, double *first, double *second) {
-  const whole row = R->run * R->duty->H + R->duty->row[R->phase];
-  R->arg[0] = w, R->arg[1] = R->u, R->arg[2] = R->duty->p + row * R->plant->np;
+  const Duty *D = R->duty;
+  const whole row = (R->setting * D->n + R->run) * D->H + D->row[R->phase];
+  R->arg[0] = w, R->arg[1] = R->u, R->arg[2] = D->p + row * R->plant->np;
   R->res[0] = first, R->res[1] = second;
   formula(R->arg, R->res, R->iw, R->work, 0);
 }
@@ -262,7 +263,8 @@ static void added(Run *R, const Found *found, const Stage *s, whole column, doub
   const Duty *D = R->duty;
   const whole width = D->R * P->shown, g = column - P->knobs - 1;
   if (g < 0) {
-    double *by = found->by + ((R->run * D->H + D->row[s->phase]) * (P->knobs + 1) + column) * width + from;
+    const whole row = (R->run * D->S + R->setting) * D->H + D->row[s->phase];
+    double *by = found->by + (row * (P->knobs + 1) + column) * width + from;
     for (whole c = 0; c < to - from; c++) by[c] += part * v[c];
     return;
   }
@@ -281,10 +283,10 @@ static void reading(Run *R, const Found *found, const Stage *s) {
   const whole width = R->duty->R * P->shown, c = s->read * P->shown;
   const double one = 1;
   call(R, P->reading_slopes, s->w, R->sparse, R->direct);
-  for (whole j = 0; j < P->nw; j++)
+  for (whole j = 0; j < P->nw && R->setting == 0; j++)
     for (whole e = P->shown_w.begin[j]; e < P->shown_w.begin[j + 1]; e++)
       R->mu[j * width + c + P->shown_w.row[e]] += R->sparse[e];
-  for (whole j = 0; j < P->knobs + P->given; j++)
+  for (whole j = 0; j < P->knobs + (R->setting ? 0 : P->given); j++)
     for (whole e = P->shown_by.begin[j]; e < P->shown_by.begin[j + 1]; e++) {
       const whole own = c + P->shown_by.row[e];
       added(R, found, s, j + (j >= P->knobs), R->direct[e], &one, own, own + 1);
@@ -299,7 +301,8 @@ static void back(Run *R, const Found *found, const Stage *s, int k, whole from) 
   inputs(R, s->share);
   memset(R->mu, 0, P->nw * width * sizeof *R->mu);
   memset(R->later, 0, all * sizeof *R->later);
-  if (s->read >= 0) reading(R, found, s);
+  for (R->setting = 0; R->setting < R->duty->S && s->read >= 0; R->setting++) reading(R, found, s);
+  R->setting = 0;
   for (int l = k + 1; l < STAGES; l++)
     for (whole i = 0; i < all; i++) R->later[i] += A[l][k] * R->behind[l * all + i];
   if (k == STAGES - 1) {
@@ -312,13 +315,16 @@ static void back(Run *R, const Found *found, const Stage *s, int k, whole from) 
     R->behind[k * all + i] = R->mu[i] - R->later[i];
     R->lambda[i] += R->behind[k * all + i];
   }
-  call(R, P->slopes, s->w, R->sparse, 0);
-  for (whole j = 0; j < P->knobs + P->given; j++)
-    for (whole e = P->rates_by.begin[j]; e < P->rates_by.begin[j + 1]; e++) {
-      const whole i = P->rates_by.row[e];
-      const double part = R->sparse[e] * (i < P->nx ? s->length : -1);
-      if (part != 0) added(R, found, s, j + (j >= P->knobs), part, R->mu + i * width + from, from, width);
-    }
+  for (; R->setting < R->duty->S; R->setting++) {
+    call(R, P->slopes, s->w, R->sparse, 0);
+    for (whole j = 0; j < P->knobs + (R->setting ? 0 : P->given); j++)
+      for (whole e = P->rates_by.begin[j]; e < P->rates_by.begin[j + 1]; e++) {
+        const whole i = P->rates_by.row[e];
+        const double part = R->sparse[e] * (i < P->nx ? s->length : -1);
+        if (part != 0) added(R, found, s, j + (j >= P->knobs), part, R->mu + i * width + from, from, width);
+      }
+  }
+  R->setting = 0;
   for (whole i = 0; i < P->nx; i++)
     added(R, found, s, P->knobs, s->time * s->r[i], R->mu + i * width + from, from, width);
 }
@@ -381,7 +387,7 @@ static void *prepared(Run *R, int kept) {
 __attribute__((visibility("default"))) int march(const Plant *plant, const Duty *duty, const Found *found, whole from,
                                                  whole to) {
   const int kept = found->by != 0;
-  const whole shown = duty->R * plant->shown, by = duty->H * (plant->knobs + 1) * shown;
+  const whole shown = duty->R * plant->shown, by = duty->S * duty->H * (plant->knobs + 1) * shown;
   const whole local = plant->given * duty->H * shown;
   Run R = {.plant = plant, .duty = duty};
   void *block = prepared(&R, kept);

@@ -50,7 +50,7 @@ class Slopes:
     """Derivatives of what is shown.
 
     Args:
-        by: by the plant's knobs in each row, then by its pace (N, H, knobs + 1, reads, shown)
+        by: by the plant's knobs in each row, then by its pace, at each setting (N, S, H, knobs + 1, reads, shown)
         local: by given readings of each row (N, given, H, reads, shown)
     """
 
@@ -78,7 +78,8 @@ def march(
         plant: the model
         phases: N runs
         x0: temperatures and speeds at the start (N, nx)
-        p: parameters of each row (N, H, np)
+        p: parameters of each row at each setting (S, N, H, np): the first is run; the derivatives are taken along its
+            path at each, which is the truth where the settings differ in what has no effect
         pace: share of each row's length that took place (N, H)
         turned: whether derivatives are computed
     """
@@ -86,7 +87,7 @@ def march(
     reads = sum(map(len, phases.read))
     found = {"y": np.empty((n, reads, len(plant.shown)))}
     if turned:
-        found["by"] = np.zeros((n, height, len(plant.knobs) + 1, reads, len(plant.shown)))
+        found["by"] = np.zeros((n, len(p), height, len(plant.knobs) + 1, reads, len(plant.shown)))
         found["local"] = np.zeros((n, given, height, reads, len(plant.shown)))
     result = record(**({"y": 0, "by": 0, "local": 0} | found))
     duty = _duty(phases, x0, p, pace)
@@ -102,6 +103,7 @@ def _duty(phases: Phases, x0: np.ndarray, p: np.ndarray, pace: np.ndarray) -> An
     read[after] = np.arange(len(after))
     return record(
         n=len(x0),
+        S=len(p),
         H=phases.local0.shape[3],
         F=len(phases.row),
         K=len(read),

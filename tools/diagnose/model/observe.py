@@ -21,6 +21,8 @@ STEADY = 60.0 * 4.0 ** np.arange(14)
 RESTS = ("torque", "speed", "power")
 
 
+#: Part -> path -> values of each row (n,).
+_Changes = dict[str, dict[str, np.ndarray]]
 #: Derivatives of a value of each row that are not zero: direction -> of each row (n,).
 _Slope = dict[int, np.ndarray]
 
@@ -86,7 +88,6 @@ class Observed:
         self.starts = 1.0 * by_room[:, None] * room
         self.features = self._features()
         self._phases = self._duty()
-        self._last: tuple[tuple[np.ndarray, ...], Marched] | None = None
 
     @property
     def m(self) -> int:
@@ -153,7 +154,7 @@ class Observed:
             self.starts,
         )
 
-    def _driven(self, truth: np.ndarray) -> tuple[Phases, np.ndarray]:
+    def driven(self, truth: np.ndarray) -> tuple[Phases, np.ndarray]:
         """The duty with inputs by the true values of the given sensors (given, n), and start temperatures (tests,)."""
         c, phases = self.campaign, self._phases
         own = truth[:, self.rows].transpose(1, 0, 2)  # tests, given, H
@@ -167,26 +168,6 @@ class Observed:
             u0[:, 0, self.inputs[room]] = begun
         start = np.where(np.isfinite(c.T_start), c.T_start, begun + c.start_by_room)
         return replace(phases, u0=u0, u1=u1), start
-
-    def run(self, truth: np.ndarray, p: np.ndarray, pace: np.ndarray, turned: bool) -> Marched:
-        """All tests.
-
-        Args:
-            truth: of the given sensors (given, n)
-            p: parameters (tests, H, np)
-            pace: share of each dwell that took place (tests, H)
-            turned: whether derivatives are computed
-        """
-        given = (truth, p, pace)
-        kept = self._last
-        if kept and (kept[1].slopes or not turned) and all(map(np.array_equal, kept[0], given)):
-            return kept[1]
-        phases, start = self._driven(truth)
-        x0 = np.tile(self.plant.flat.starts("state"), (len(p), 1))
-        x0[:, [q.unit == "K" for q in self.plant.flat.states]] = start[:, None]
-        found = march(self.plant, phases, x0, p, pace, turned=turned)
-        self._last = (given, found)
-        return found
 
     def at(self, z: np.ndarray, parts: Sequence[tuple[Formula, np.ndarray]]) -> Seen:
         """Readings and derivatives.
@@ -237,6 +218,10 @@ class _Look:
         self.truth = dict(o.sensors)
         self.truth_slopes: dict[str, _Slope] = {s.name: {} for s in o.given}
         self.pace, self.pace_slopes = np.ones(self.n), _Slope()
+        #: Settings of the parameters beside the one that acts: whether no other candidate may join, what is changed.
+        self.settings: list[tuple[bool, _Changes]] = []
+        #: Slopes of candidates: setting, path, direction, of each row.
+        self.tried_slopes: list[tuple[int, str, int, np.ndarray]] = []
         self._nuisances()
         self.d = len(z)
         for formula, t in parts:
@@ -274,30 +259,56 @@ class _Look:
             if i < len(formula.paths):
                 self.values[name], self.slopes[name] = value[i], slope
             else:
-                self.truth[name], self.truth_slopes[name] = (
-                    value[i],
-                    _sum([(1.0, self.truth_slopes[name]), (1.0, slope)]),
-                )
+                self.truth[name] = self.truth[name] + value[i] - self.o.sensors[name]
+                self.truth_slopes[name] = _sum([(1.0, self.truth_slopes[name]), (1.0, slope)])
         if formula.paced:
             self.pace_slopes = _sum([(value[-1], self.pace_slopes), (self.pace, slopes[-1])])
             self.pace = self.pace * value[-1]
 
     def _try(self, formula: Formula, t: np.ndarray) -> None:
-        """The direction of a candidate's size."""
-        _, by_t, _ = self._physics(formula, _none(t))
-        for i, name in enumerate((*formula.paths, *formula.given)):
-            kept = self.slopes if i < len(formula.paths) else self.truth_slopes
-            kept[name] = _sum([(1.0, kept.get(name, {})), (1.0, {self.d: by_t[i, :, 0]})])
+        """The direction of a candidate's size, at its own shapes."""
+        value, by_t, _ = self._physics(formula, _none(t))
+        slopes, n_paths = by_t[:, :, 0], len(formula.paths)
+        setting = self._setting(dict(zip(formula.paths, value, strict=False)))
+        self.tried_slopes += [(setting, path, self.d, slopes[i]) for i, path in enumerate(formula.paths)]
+        for i, name in enumerate(formula.given, start=n_paths):
+            self.truth_slopes[name] = _sum([(1.0, self.truth_slopes[name]), (1.0, {self.d: slopes[i]})])
         if formula.paced:
-            self.pace_slopes = _sum([(1.0, self.pace_slopes), (self.pace, {self.d: by_t[-1, :, 0]})])
+            self.pace_slopes = _sum([(1.0, self.pace_slopes), (self.pace, {self.d: slopes[-1]})])
+
+    def _setting(self, wanted: Mapping[str, np.ndarray]) -> int:
+        """Which setting of the parameters a candidate is tried at; what it changes of a part, no other there changes.
+
+        Args:
+            wanted: path -> value
+        """
+        changed: _Changes = {}
+        for path, value in wanted.items():
+            if not np.array_equal(value, self._base(path)):
+                changed.setdefault(path.partition(".")[0], {})[path] = value
+        if not changed:
+            return 0
+        alone = bool(changed.keys() & {path.partition(".")[0] for f, _ in self.parts for path in f.paths})
+        for k, (closed, known) in enumerate(self.settings, start=1):
+            if not alone and not closed and all(_same(known[part], changed[part]) for part in known.keys() & changed):
+                known.update(changed)
+                return k
+        self.settings.append((alone, changed))
+        return len(self.settings)
 
     def _run(self, turned: bool) -> Marched:
         o, plant = self.o, self.o.plant
-        p = o.p.copy()
+        p = np.tile(o.p, (1 + len(self.settings), 1, 1))
         for path, value in self.values.items():
-            p[:, plant.place[path]] = value
+            p[:, :, plant.place[path]] = value
+        for own, (_, changes) in zip(p[1:], self.settings, strict=True):
+            for path, value in (item for part in changes.values() for item in part.items()):
+                own[:, plant.place[path]] = value
         truth = np.array([self.truth[s.name] * o.signs[s.name] for s in o.given])
-        return o.run(truth, p[o.rows], self.pace[o.rows], turned)
+        phases, start = o.driven(truth)
+        x0 = np.tile(plant.flat.starts("state"), (o.campaign.n_tests, 1))
+        x0[:, [q.unit == "K" for q in plant.flat.states]] = start[:, None]
+        return march(plant, phases, x0, p[:, o.rows], self.pace[o.rows], turned=turned)
 
     def outputs(self) -> np.ndarray:
         """All that the plant shows (n, shown)."""
@@ -367,12 +378,9 @@ class _Look:
         local = found.slopes.local[test, :, :, o.half]
         signs = np.array([o.signs[s.name] for s in o.given])
         by_truth = local.swapaxes(1, 2) * signs[:, o.rows[test]].transpose(1, 2, 0)[..., None]  # n, H, given, shown
-        all_by = np.concatenate([found.slopes.by[test, :, :, o.half], by_truth], axis=2)
-        kinds = {name: k for k, name in enumerate(o.plant.knobs)}
-        every = [(kinds[name], slope) for name, slope in self.slopes.items() if name in kinds]
-        every.append((len(kinds), self.pace_slopes))
-        every += [(len(kinds) + 1 + g, self.truth_slopes[s.name]) for g, s in enumerate(o.given)]
-        entries = sorted(((i, k, v) for k, slope in every for i, v in slope.items()), key=lambda e: e[:2])
+        by_knobs = found.slopes.by[test, :, :, :, o.half].swapaxes(1, 2)  # n, H, settings, knobs + 1, shown
+        own = by_knobs.reshape(self.n, o.height, -1, found.y.shape[2])
+        all_by, entries = np.concatenate([own, by_truth], axis=2), sorted(self._entries(), key=lambda e: e[0])
         by = np.zeros((self.n, found.y.shape[2], self.d))
         if entries:
             places, first = np.unique([i for i, _, _ in entries], return_index=True)
@@ -380,6 +388,22 @@ class _Look:
             effects = np.einsum("nhes,enh->nse", all_by[:, :, [k for _, k, _ in entries]], ways, optimize=False)
             by[:, :, places] = np.add.reduceat(effects, first, axis=2)
         return found.y[test, o.half], by, local
+
+    def _entries(self) -> list[tuple[int, int, np.ndarray]]:
+        """All slopes: direction, column (knobs and pace of each setting, then the given sensors), of each row."""
+        place = {name: k for k, name in enumerate(self.o.plant.knobs)}
+        wide = len(place) + 1
+        slopes = [(place[name], slope) for name, slope in self.slopes.items() if name in place]
+        slopes.append((len(place), self.pace_slopes))
+        first = wide * (1 + len(self.settings))
+        slopes += [(k, self.truth_slopes[s.name]) for k, s in enumerate(self.o.given, start=first)]
+        tried = [(i, wide * setting + place[path], v) for setting, path, i, v in self.tried_slopes]
+        return [*((i, k, v) for k, slope in slopes for i, v in slope.items()), *tried]
+
+
+def _same(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:
+    """Whether both change the same to the same."""
+    return one.keys() == other.keys() and all(np.array_equal(v, other[path]) for path, v in one.items())
 
 
 def _sum(terms: Sequence[tuple[np.ndarray | float, _Slope]]) -> _Slope:

@@ -54,4 +54,9 @@ def ranges_of(
     whole |= {"order": campaign.progress, "direction": campaign.direction}
     low, mid, high = ({name: float(np.quantile(v[fine], q)) for name, v in whole.items()} for q in (0.05, 0.5, 0.95))
     loss = float(np.median(np.abs(np.sum(power, axis=0)[fine])))
-    return Ranges(low, mid, high, max(loss, 1e-3), max(float(np.median((T - room)[fine])), 1.0))
+    known = {"order"} if campaign.n_tests > 1 else set()
+    known |= {"dwell"} if np.isfinite(campaign.dwell).any() else set()
+    known |= {"humidity"} if np.isfinite(campaign.humidity).any() else set()
+    known |= {"mounting"} if len(set(campaign.mounting)) > 1 else set()
+    rise = max(float(np.median((T - room)[fine])), 1.0)
+    return Ranges(low, mid, high, max(loss, 1e-3), rise, frozenset(known))
