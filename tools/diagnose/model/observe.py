@@ -14,7 +14,7 @@ from .march import Marched, Phases, march
 from .plant import Plant
 
 #: Shares of a dwell, of a stop and of the time to a steady state [s] where steps end.
-DWELL = (np.arange(1, 7) / 6) ** 1.5
+DWELL = (np.arange(1, 8) / 7) ** 1.2
 STOP = np.array([1.0])
 STEADY = 60.0 * 4.0 ** np.arange(14)
 #: A kind of sensor that reads zero where the machine stands.
