@@ -55,7 +55,7 @@ class About(Model):
     seed: int = 0
 
 
-class Test(Model):
+class Alarm(Model):
     """Whether anything is wrong, and whether what is left after the best hypothesis is noise."""
 
     alpha: Number
@@ -382,7 +382,7 @@ class Findings(Model):
     )
     says: Said = Said()
     about: About = About()
-    test: Test
+    test: Alarm
     hypotheses: tuple[Hypothesis, ...] = Field(description="no causes = nothing wrong; probabilities sum to <= 1")
     answers: tuple[Answer, ...] = Field(
         (), description="what the verdict names, most probable first; those of `ambiguous` reach 0.9 together"

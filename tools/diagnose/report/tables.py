@@ -68,7 +68,7 @@ def causes(findings: Findings) -> list[Table]:
         for c in listed
     )
     sizes = (
-        (name_of(c.id), p.name, phrases.estimate(p), p.doc) for c in listed for p in c.parameters
+        (name_of(c.id), p.name, phrases.estimate(p), phrases.meaning(p)) for c in listed for p in c.parameters
     )  # fmt: skip
     joint = sorted(findings.hypotheses, key=lambda h: -h.probability)[:MOST]
     together = ((phrases.percent(h.probability, h.mc_error), _joint(h)) for h in joint)
