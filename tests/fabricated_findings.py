@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from gearheat.diagnose.report.estimate import Estimate
+from gearheat.diagnose.report.evidence import Picture, Rows, View
 from gearheat.diagnose.report.findings import (
     About,
     Alarm,
@@ -13,27 +15,25 @@ from gearheat.diagnose.report.findings import (
     Cause,
     CauseSet,
     Channel,
-    DataQuality,
-    Estimate,
     Experiment,
     Findings,
     FormShare,
     Gain,
-    GrossReading,
     Hypothesis,
     Impact,
     Invisible,
     Isolability,
-    NuisanceOff,
-    Picture,
     Played,
     Remainder,
     RemainderChannel,
+)
+from gearheat.diagnose.report.quality import (
+    DataQuality,
+    GrossReading,
+    NuisanceOff,
     Repeat,
     RepeatedPoint,
-    Rows,
     VarianceComponent,
-    View,
 )
 from gearheat.diagnose.report.words import with_words
 
@@ -153,7 +153,7 @@ def explained(**given: Any) -> Findings:
         "sets": (CauseSet(causes=(CHURNING, WINDAGE), distance=0.8, reason="both are powers of the speed"),),
         "views": (
             View(channel="loss", asks="the torque given the measured temperatures", p=0.3, nothing=0.7,
-                 causes=(View.Said(id=CHURNING, probability=0.2),), unit="N.m"),
+                 causes=(View.Alone(id=CHURNING, probability=0.2),), unit="N.m"),
         ),
         "pictures": (Picture(cause=CHURNING, channel="T_oil", quantity="w", before=before, after=after),),
         "calibrated": (Calibrated(path="housing.C", unit="J/K", file=3600.0, nominal=3500.0, extended=3550.0),),

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -19,7 +19,7 @@ Libraries = Annotated[
 Everything = Annotated[bool, typer.Option("--all", help="Print all tables, not the first screen alone.")]
 
 
-def _logs(text: str) -> typer.models.OptionInfo:
+def _logs(text: str) -> Any:
     return typer.Option(metavar="FILE", help=f"{text} CSV, CSV.gz or Parquet. Repeatable.")
 
 
@@ -54,6 +54,33 @@ def diagnose(
         rig, data, own, card, reference, healthy, siblings, libraries, predict, causes=causes, alpha=alpha, seed=seed
     )
     diagnosing.diagnose_command(request, diagnosing.Outputs(predictions, json, report, extended), everything=everything)
+
+
+@console.guarded
+def plan(
+    rig: Annotated[str, typer.Argument(help="Name of a shipped rig, or path of a rig file.")],
+    separate: Annotated[
+        str, typer.Option(metavar="CAUSE,CAUSE...", help="Causes to tell apart; a table of all causes if left out.")
+    ] = "",
+    card: Card = None,
+    points: Annotated[
+        Path | None, typer.Option(help="Points of the campaign there is or will be: CSV. The rig's own if left out.")
+    ] = None,
+    reference: Annotated[
+        bool, typer.Option("--reference", help="There is a healthy campaign of the same points as well.")
+    ] = False,
+    library: Libraries = None,
+    everything: Everything = False,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="Picture to write, .png or .svg.")] = None,
+    json: Json = None,
+) -> None:
+    """Which causes a campaign can tell apart on a rig, and which experiments would, before anything is measured."""
+    _one_thread()
+    from ..diagnose.request import PlanRequest
+    from . import diagnosing
+
+    request = PlanRequest(rig, separate, card, points, tuple(library or ()), reference)
+    diagnosing.plan_command(request, json, out, everything=everything)
 
 
 def _one_thread() -> None:

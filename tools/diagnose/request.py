@@ -1,13 +1,13 @@
-"""What a diagnosis is asked: files and options, and what the files hold, all their problems at once."""
+"""What a diagnosis or a plan is asked: files and options, and what the files hold, all their problems at once."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
 
-from ..model.errors import DataError, GearheatError
+from ..model.errors import DataError, GearheatError, suggestion
 from ..model.parts import PARTS
 from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
@@ -74,8 +74,7 @@ class Request:
             <= MOST,
             f"--seed {self.seed} is below zero. Give 0 or more.": self.seed < 0,
         }
-        lost = [f"{name} {path}: there is no such file." for name, path in self.files() if not path.is_file()]
-        return [text for text, wrong in checks.items() if wrong] + lost
+        return [text for text, wrong in checks.items() if wrong] + _lost(self.files())
 
 
 @dataclass(frozen=True)
@@ -105,30 +104,120 @@ def read(request: Request) -> Inputs:
     Raises:
         DataError: all problems of files and options at once
     """
-    problems = request.problems()
+    reader = _Reader(request.rig, request.card, request.problems())
+    data, reference = reader.table(request.data), reader.table(request.reference)
+    points = reader.table(request.predict, points=True)
+    return Inputs(request, *reader.checked(), data, reference, points)
 
-    def tried(path: Path | None, step: Callable[[Path], T]) -> T | None:
-        if path is None or not path.is_file():
+
+@dataclass(frozen=True)
+class PlanRequest:
+    """Files and options of a plan.
+
+    Args:
+        rig: name of a shipped rig, or path of a rig file
+        separate: causes to tell apart, with commas between; empty for a table of all causes
+        card: accuracies, priors and protocol
+        points: conditions of the campaign there is or will be; the rig's own without them
+        libraries: files with further causes
+        reference: whether there is a healthy campaign of the same points as well
+    """
+
+    rig: str
+    separate: str = ""
+    card: Path | None = None
+    points: Path | None = None
+    libraries: tuple[Path, ...] = ()
+    reference: bool = False
+
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """The causes to tell apart."""
+        return tuple(name for part in self.separate.split(",") if (name := part.strip()))
+
+    def files(self) -> list[tuple[str, Path]]:
+        """The files that are read, each with the name of its option."""
+        single = [(name, path) for name, path in (("--card", self.card), ("--points", self.points)) if path is not None]
+        return single + [("--library", path) for path in self.libraries]
+
+    def problems(self) -> list[str]:
+        """What is wrong with the options, and files that do not exist."""
+        names = self.causes
+        twice = [n for n in dict.fromkeys(names) if names.count(n) > 1]
+        found = [f"--separate: {name} is there twice. Name each cause once." for name in twice]
+        if len(set(names)) == 1:
+            found.append(f"--separate {names[0]}: there is nothing to tell it from. Name two causes or more.")
+        return found + _lost(self.files())
+
+
+@dataclass(frozen=True)
+class PlanInputs:
+    """What the files of a plan hold."""
+
+    request: PlanRequest
+    scenario: Scenario
+    card: Card
+    points: Campaign | None
+
+
+def read_plan(request: PlanRequest) -> PlanInputs:
+    """Read and check all files of a plan but libraries.
+
+    Args:
+        request: files and options
+
+    Raises:
+        DataError: all problems of files and options at once
+    """
+    reader = _Reader(request.rig, request.card, request.problems())
+    points = reader.table(request.points, points=True)
+    return PlanInputs(request, *reader.checked(), points)
+
+
+def unknown_causes(names: Iterable[str], known: Collection[str]) -> list[str]:
+    """Problems of causes to tell apart that the library of a rig does not have.
+
+    Args:
+        names: as the user gave them
+        known: of the library
+    """
+    problems = []
+    for name in (n for n in names if n not in known):
+        alike = [c for c in known if name in c.split(".")]
+        close = suggestion(name, known) or (f' Did you mean "{alike[0]}"?' if alike else "")
+        problems.append(f'--separate: there is no cause "{name}".{close or " Known: " + ", ".join(known) + "."}')
+    return problems
+
+
+def _lost(files: Iterable[tuple[str, Path]]) -> list[str]:
+    return [f"{name} {path}: there is no such file." for name, path in files if not path.is_file()]
+
+
+class _Reader:
+    """Reads rig, card and tables, collecting problems; nothing of it outlives the reading."""
+
+    def __init__(self, rig: str, card: Path | None, problems: list[str]) -> None:
+        self.problems = problems
+        self.card = self._tried(lambda: read_card(card)) if card is None or card.is_file() else None
+        self.scenario = self._tried(lambda: load(rig, PARTS | EXTRA_PARTS))
+
+    def table(self, path: Path | None, *, points: bool = False) -> Campaign | None:
+        """A table; None where there is none, or something is wrong with it."""
+        scenario = self.scenario
+        if path is None or scenario is None or not path.is_file():
             return None
+        card = self.card or Card()  # a table can be read where the card is wrong, to tell the problems of both
+        return self._tried(lambda: read_campaign(path, scenario, card, points=points))
+
+    def checked(self) -> tuple[Scenario, Card]:
+        """Rig and card, or all problems."""
+        if self.problems or self.scenario is None or self.card is None:
+            raise DataError(self.problems)
+        return self.scenario, self.card
+
+    def _tried(self, step: Callable[[], T]) -> T | None:
         try:
-            return step(path)
+            return step()
         except GearheatError as error:
-            problems.extend(p for p in error.problems if p not in problems)
+            self.problems += [p for p in error.problems if p not in self.problems]
             return None
-
-    card = tried(request.card, read_card) if request.card is not None else read_card(None)
-    scenario: Scenario | None = None
-    try:
-        scenario = load(request.rig, PARTS | EXTRA_PARTS)
-    except GearheatError as error:
-        problems += error.problems
-    if scenario is None:
-        raise DataError(problems)
-    rig, known = scenario, card or Card()  # tables are read against a default card where the user's is wrong
-    data, reference = (
-        tried(p, lambda path: read_campaign(path, rig, known)) for p in (request.data, request.reference)
-    )
-    points = tried(request.predict, lambda path: read_campaign(path, rig, known, points=True))
-    if problems or card is None:
-        raise DataError(problems)
-    return Inputs(request, scenario, card, data, reference, points)

@@ -6,7 +6,8 @@ from importlib.resources import files
 import numpy as np
 import pytest
 from fabricated_findings import KINDS, explained
-from gearheat.diagnose.report.findings import Alarm, Findings, Hypothesis, Rows, as_object, json_schema
+from gearheat.diagnose.report.evidence import Rows
+from gearheat.diagnose.report.findings import Alarm, Findings, Hypothesis, as_object, json_schema
 from pydantic import ValidationError
 
 SHIPPED = files("gearheat.diagnose.report").joinpath("diagnosis.schema.json")

@@ -6,7 +6,7 @@ import re
 
 import pytest
 from fabricated_findings import KINDS, clean, explained, spoiled
-from gearheat.diagnose.report.findings import Rows
+from gearheat.diagnose.report.evidence import Rows
 from gearheat.diagnose.report.page import render
 
 

@@ -5,7 +5,8 @@ import re
 import pytest
 from fabricated_findings import AIR, CHURNING, KINDS, ambiguous, cause, clean, explained, spoiled, unexplained
 from gearheat.diagnose.report import phrases
-from gearheat.diagnose.report.findings import Alarm, Answer, Estimate, Played, Remainder, RemainderChannel
+from gearheat.diagnose.report.estimate import Estimate
+from gearheat.diagnose.report.findings import Alarm, Answer, Played, Remainder, RemainderChannel
 from gearheat.diagnose.report.names import listed, name_of
 from gearheat.diagnose.report.screen import text
 from gearheat.diagnose.report.words import contradictions, with_words

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import math
 
-from .findings import Answer, Cause, Estimate, Findings, Gain, GrossReading, Impact, NuisanceOff
+from .estimate import Estimate
+from .findings import Answer, Cause, Findings, Gain, Impact
 from .names import names_of
 from .numbers import LEAST_P
+from .quality import GrossReading, NuisanceOff
 
 #: Units as they are shown.
 SHOWN = {"degC": "°C", "1": ""}
@@ -114,7 +116,8 @@ def answer(found: Answer) -> str:
 
 def gross(found: GrossReading) -> str:
     """A wrong reading, as a sentence."""
-    where = ", ".join(filter(None, (found.line and f"line {found.line}", found.point and f"point {found.point}")))
+    places = (("line", found.line), ("point", found.point))
+    where = ", ".join(f"{name} {value}" for name, value in places if value)
     text = f"Row {found.row}{f' ({where})' if where else ''}: {found.channel}"
     if found.shown is not None and found.expected is not None:
         shown, expected = (with_unit(v, found.unit, 4) for v in (found.shown, found.expected))
