@@ -89,7 +89,9 @@ def decided(found: Found) -> Decision:
     answers: list[Joint] = []
     if chances.nothing < 0.5 and wrong:
         sure = wrong[0].chance.probability > SURE
-        verdict, answers = ("explained", wrong[:1]) if sure else ("ambiguous", _needed(wrong, SURE * (1 - chances.nothing)))
+        verdict, answers = (
+            ("explained", wrong[:1]) if sure else ("ambiguous", _needed(wrong, SURE * (1 - chances.nothing)))
+        )
         verdict = "unexplained" if wrong[0].causes == (UNEXPLAINED,) else verdict
     leader = answers[0].best if answers else next(h for h in found.hypotheses if not h.causes and h.extra is None)
     members: dict[str, list[Member]] = {}
@@ -170,9 +172,7 @@ def _joints(found: Found, asked: Sequence[tuple[str, ...]], chances: _Chances) -
     return sorted(joints, key=lambda j: -j.chance.probability)
 
 
-def _class(
-    cause: str, members: Sequence[_Shown], family: Mapping[str, str]
-) -> tuple[str, ...]:
+def _class(cause: str, members: Sequence[_Shown], family: Mapping[str, str]) -> tuple[str, ...]:
     """The members of a cause's class among some hypotheses, the cause first."""
     shares: dict[str, float] = {}
     for _, causes, p in members:

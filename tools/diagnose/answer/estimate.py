@@ -189,7 +189,13 @@ def impact(problem: Problem, h: Hypothesis, only: str | None = None) -> dict[str
         return {}
     without = [replace(a, t=np.r_[0.0, a.t[1:]]) if a in moved else a for a in fit.look.acting]
     change = fit.look.shown - problem.shown(fit.look.z, without)
-    places_of = np.concatenate([np.arange(b, b + a.formula.size) for b, a in zip(places(problem, h), fit.look.acting, strict=True) if a in moved])
+    places_of = np.concatenate(
+        [
+            np.arange(b, b + a.formula.size)
+            for b, a in zip(places(problem, h), fit.look.acting, strict=True)
+            if a in moved
+        ]
+    )
     covariance = posterior(problem, h)[1][np.ix_(places_of, places_of)]
     found = {}
     for i, s in enumerate(o.read):

@@ -130,7 +130,9 @@ def _sized(cause: data.Cause, found: Found, decision: Decision) -> data.Cause:
     members = decision.members[cause.id]
     shares = estimate.form_shares(cause.id, members)
     update = {
-        "parameters": tuple(data.Estimate.model_validate(e, from_attributes=True) for e in estimate.estimates(found, cause.id, members)),
+        "parameters": tuple(
+            data.Estimate.model_validate(e, from_attributes=True) for e in estimate.estimates(found, cause.id, members)
+        ),
         "forms": tuple(data.FormShare(name=n, share=s) for n, s in shares.items() if s > LISTED),
     }
     acting = next(((h, a) for h, _ in members for a in h.fit.look.acting if a.id == cause.id), None)
@@ -144,7 +146,11 @@ def _sized(cause: data.Cause, found: Found, decision: Decision) -> data.Cause:
 def _dumped(value: object) -> object:
     if isinstance(value, tuple):
         return [v.model_dump() for v in value]
-    return {k: v.model_dump() if isinstance(v, data.Impact) else v for k, v in value.items()} if isinstance(value, dict) else value
+    return (
+        {k: v.model_dump() if isinstance(v, data.Impact) else v for k, v in value.items()}
+        if isinstance(value, dict)
+        else value
+    )
 
 
 def impacts(found: Found, h: Hypothesis, only: str | None = None) -> dict[str, data.Impact]:
@@ -177,7 +183,12 @@ def remainder(found: Found, decision: Decision) -> data.Remainder | None:
         if s.name in extra.channels and len(rows):
             rms = float(np.sqrt(np.mean(np.diag(extra.covariance)[rows])))
             unit = UNITS[si(s)][0]
-            told.append((rms / s.repeat_sd, data.RemainderChannel(channel=s.name, rms=difference(s, rms), unit="K" if unit == "degC" else unit)))
+            told.append(
+                (
+                    rms / s.repeat_sd,
+                    data.RemainderChannel(channel=s.name, rms=difference(s, rms), unit="K" if unit == "degC" else unit),
+                )
+            )
     told.sort(key=lambda item: -item[0])
     return data.Remainder(probability=chance.probability, mc_error=chance.mc_error, channels=tuple(c for _, c in told))
 
@@ -235,7 +246,13 @@ def _scatter(setting: Setting, s: quality.Scatter) -> data.VarianceComponent:
         card, unit, name = setting.card.day_cooling_sd, "1", ""
     low, high = (card * v for v in s.ci95)
     return data.VarianceComponent(
-        name=s.name, channel=name, unit="K" if unit == "degC" else unit, card=card, found=card * s.ratio, ratio=s.ratio, ci95=(low, high)
+        name=s.name,
+        channel=name,
+        unit="K" if unit == "degC" else unit,
+        card=card,
+        found=card * s.ratio,
+        ratio=s.ratio,
+        ci95=(low, high),
     )
 
 
@@ -275,5 +292,3 @@ def quantities(campaign: Campaign, sensors: Mapping[str, np.ndarray]) -> dict[st
         told["rise"] = data.Rows.Quantity(label="oil over room", unit="K", values=rise)
     told["order"] = data.Rows.Quantity(label="running order", values=campaign.order[campaign.test])
     return told
-
-
