@@ -61,12 +61,14 @@ class Found:
     """Result of a search.
 
     Args:
+        formulas: all forms, those of spreads last
         null: the fit without a cause
         first: all causes at a first look
         hypotheses: all that were fitted, most probable first
         probabilities: of them
         p_any: p of the log Bayes factor of any cause
         critical: its critical value
+        drawn: that log Bayes factor in campaigns without a cause, as drawn
         p_omnibus: chi-square p of the null
     """
 
@@ -78,6 +80,7 @@ class Found:
     probabilities: np.ndarray
     p_any: float
     critical: float
+    drawn: np.ndarray
     p_omnibus: float
 
 
@@ -166,13 +169,14 @@ class Search:
         free = problem.m - len(problem.aside)
         return Found(
             problem,
-            self.formulas,
+            (*self.formulas, *self.spreads),
             self.null,
             self.first,
             tuple(hypotheses),
             np.exp(logs - logsumexp(logs)),
             self.p_any,
             self.critical,
+            self.drawn,
             float(chi2.sf(e @ e, free)),
         )
 
@@ -193,7 +197,7 @@ class Search:
                 for c, k in zip(first.candidates, first.owner, strict=True)
             ]
         )
-        drawn = screen.null_draws(first, weights, self.seed)
+        self.drawn = drawn = screen.null_draws(first, weights, self.seed)
         seen = float(logsumexp(first.log_bf + weights))
         self.critical = float(np.quantile(drawn, 1 - self.alpha))
         self.p_any = float((1 + (drawn >= seen).sum()) / (1 + len(drawn)))
