@@ -46,7 +46,7 @@ def driver(name: str, source: str) -> Any:
     """
     with _LOCK:
         if (name, source) not in _LOADED:
-            function = getattr(_load(source), name)
+            function = getattr(load(source), name)
             function.argtypes, function.restype = _SIGNATURES[name], ctypes.c_int
             _LOADED[name, source] = function
         return _LOADED[name, source]
@@ -88,7 +88,15 @@ def processor() -> frozenset[str]:
     return frozenset(WIDER) & frozenset(flags)
 
 
-def _load(source: str) -> ctypes.CDLL:
+def load(source: str) -> ctypes.CDLL:
+    """The library of a C text, compiled once and kept.
+
+    Args:
+        source: the whole C text
+
+    Raises:
+        FmuError: the compiler fails, or what it made does not load
+    """
     platform = host_platform()
     handle, name = tempfile.mkstemp(suffix=platform.suffix)
     with os.fdopen(handle, "wb") as file:

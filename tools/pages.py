@@ -1,17 +1,10 @@
-"""HTML pages: one frame and one style for all of them."""
+"""HTML pages of the commands, in the frame and style that all pages share."""
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
-from jinja2 import Environment, PackageLoader
-
-
-@cache
-def _templates() -> Environment:
-    loader = PackageLoader("gearheat.tools", "templates")
-    return Environment(loader=loader, autoescape=True, trim_blocks=True, lstrip_blocks=True)
+from ..diagnose.report import frame
 
 
 def page(template: str, **values: Any) -> str:
@@ -21,4 +14,4 @@ def page(template: str, **values: Any) -> str:
         template: file in the folder of templates
         values: what it shows, by the template's own names
     """
-    return _templates().get_template(template).render(**values)
+    return frame.page("gearheat.tools", template, **values)

@@ -2,21 +2,17 @@
 
 from __future__ import annotations
 
-import io
 import math
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-import matplotlib as mpl
 import numpy as np
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
+from ..diagnose.report.drawing import COLOURS, empty, legend, svg
 from .compare import GROUPINGS, Channel, Row, Rows, distinct, errors, numbers
 
-#: Colours that stay apart for colour-blind readers (Okabe and Ito 2008), and shapes for the two directions.
-COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
+#: Shapes for the two directions.
 SHAPES = {1: "o", 2: "^"}
 DIRECTIONS = {1: "1 (multiplier)", 2: "2 (reducer)"}
 
@@ -30,34 +26,6 @@ LOSSES = {
     "P_churn_W": "churning",
 }
 UNITS = {"n_set_rpm": "rpm", "T_set_Nm": "N.m"}
-STYLE: Any = {
-    "svg.hashsalt": "gearheat",
-    "svg.fonttype": "path",
-    "font.size": 10,
-    "axes.titlesize": 10,
-    "axes.grid": True,
-    "grid.color": "#dddddd",
-    "axes.axisbelow": True,
-    "axes.spines.top": False,
-    "axes.spines.right": False,
-    "legend.frameon": False,
-}
-
-
-def svg(figure: Figure) -> str:
-    """A figure as SVG text without prolog and date."""
-    text = io.StringIO()
-    with mpl.rc_context(STYLE):
-        figure.savefig(text, format="svg", metadata={"Date": None, "Creator": None})
-    return re.sub(r"^.*?(?=<svg)", "", text.getvalue(), flags=re.DOTALL)
-
-
-def empty(width: float, height: float, rows: int, columns: int, **kwargs: Any) -> tuple[Figure, list[Axes]]:
-    """An empty figure of so many inches, and its panels row by row."""
-    with mpl.rc_context(STYLE):
-        figure = Figure(figsize=(width, height), layout="constrained")
-        panels = figure.subplots(rows, columns, squeeze=False, **kwargs)
-    return figure, list(panels.ravel())
 
 
 def shown_unit(channel: Channel) -> str:
@@ -135,13 +103,6 @@ def _scatter(panel: Axes, rows: Rows, x: np.ndarray, y: np.ndarray) -> None:
                 colour = COLOURS[i % len(COLOURS)]
                 face = colour if direction == 1 else "none"
                 panel.plot(x[mine], y[mine], shape, color=colour, markerfacecolor=face, markersize=5, label=label)
-
-
-def legend(figure: Figure, panel: Axes) -> None:
-    """One legend under all panels."""
-    handles, labels = panel.get_legend_handles_labels()
-    with mpl.rc_context(STYLE):
-        figure.legend(handles, labels, loc="outside lower center", ncols=4 if len(labels) > 5 else 5, fontsize=9)
 
 
 def warm_up(curves: Mapping[int, Mapping[str, np.ndarray]], rows: Rows) -> str:

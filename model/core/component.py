@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from math import inf, nextafter
-from typing import Any
+from typing import Any, ClassVar
 
 import casadi as ca
 
@@ -47,9 +47,16 @@ class Component:
         name: path of the component in the model, for example "oil"
         values: parameters and choices, and start values of states and inputs, by name
 
+    Attributes:
+        role: what the part is to whoever looks for parts by what they do ("teeth", "bearing", "surface"); "" for none
+        scale: parameters of which a common factor is one on what the part does: its loss, conductance or capacity
+
     Raises:
         ScenarioError: all missing, unknown and out-of-range values at once
     """
+
+    role: ClassVar[str] = ""
+    scale: ClassVar[tuple[str, ...]] = ()
 
     def __init__(self, name: str, **values: Any) -> None:
         self.name = name

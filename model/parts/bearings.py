@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import ClassVar
 
 from ..core.component import Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
@@ -32,6 +33,8 @@ from .ports import BearingLoad, Lubricant
 
 class RollingBearing(Friction):
     """Base of the bearings: carries what the port `load` says, on top of loads of its own."""
+
+    role: ClassVar[str] = "bearing"
 
     load = BearingLoad()
     lubricant = Lubricant()

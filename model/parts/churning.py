@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from ..core.declare import Parameter
 from ..laws.churning import churning_torque
 from ..laws.smooth import Num
@@ -11,6 +13,8 @@ from .ports import Lubricant
 
 class Churning(Friction):
     """No-load loss of what turns in the oil: a power of speed, density and viscosity. Its `inner` body is the oil."""
+
+    role: ClassVar[str] = "churning"
 
     lubricant = Lubricant()
 

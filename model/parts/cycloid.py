@@ -8,6 +8,7 @@ positive speeds. The torque of the discs is that of the output shaft; each disc 
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import ClassVar
 
 import casadi as ca
 
@@ -38,6 +39,13 @@ class CycloidDrive(Component):
 
     The forces are means over a turn, each that of one disc.
     """
+
+    role: ClassVar[str] = "teeth"
+    scale: ClassVar[tuple[str, ...]] = (
+        "mu_r1",
+        "mu_r2",
+        "mu_r3",
+    )
 
     input = Flange()
     output = Flange()
@@ -142,6 +150,8 @@ class CycloidalReducer(CycloidDrive):
     friction `mu_ref` is known. So warm oil and slow turning bring friction up to that of the boundary layer.
     """
 
+    scale: ClassVar[tuple[str, ...]] = ("mu_r1", "mu_r2", "mu_r3", "mu_ref", "mu_fluid", "mu_bl")
+
     lubricant = Lubricant()
 
     mu_ref = Parameter("1", "sliding friction of rollers on pins at the reference", nominal=0.1, above=0.0)
@@ -217,6 +227,8 @@ class MalhotraReducer(CycloidDrive):
     Where the output drives, the same share of the power that enters is lost. How the loss torques are counted is data:
     the discs whose loss is counted, and the turns of the rollers on the pins per turn of the input.
     """
+
+    scale: ClassVar[tuple[str, ...]] = ("mu_r1", "mu_r2", "mu_r3", "mu_s1", "mu_s2")
 
     mu_s1 = Parameter("1", "sliding friction of output rollers on pins", nominal=0.1, at_least=0.0)
     mu_s2 = Parameter("1", "sliding friction of ring rollers on pins", nominal=0.1, at_least=0.0)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import ClassVar
 
 from ..core.component import Component, Equation, equation
 from ..core.declare import Choice, Parameter
@@ -28,6 +29,8 @@ TAU_WIDTH = 0.1
 class DrumOil(OilBath):
     """The oil of a partly filled drum on its side; its volume follows from how much of the drum it wets."""
 
+    scale: ClassVar[tuple[str, ...]] = ("L",)
+
     level = OilLevel()
 
     beta = Parameter("1", "wetted over dry area of the drum's inside; 1 is half full", above=0.0, at_most=1.0)
@@ -50,6 +53,8 @@ class DrumOil(OilBath):
 class DrumChurning(Friction):
     """Churning of what turns in the oil of a drum, whatever the load. Its `inner` body is the oil."""
 
+    role: ClassVar[str] = "churning"
+
     lubricant = Lubricant()
     level = OilLevel()
 
@@ -68,6 +73,8 @@ class DrumChurning(Friction):
 class WettedWall(Conductor):
     """Heat transfer between the oil of a drum and the part of a wall that it wets."""
 
+    scale: ClassVar[tuple[str, ...]] = ("h",)
+
     level = OilLevel()
 
     h = Parameter("W/(m2.K)", "heat transfer coefficient between oil and wall", nominal=100.0, at_least=0.0)
@@ -80,6 +87,8 @@ class WettedWall(Conductor):
 
 class BeltContact(Conductor):
     """Conduction from a drum (a) to the belt that runs over it, which leaves at the temperature of b or warmer."""
+
+    scale: ClassVar[tuple[str, ...]] = ("h",)
 
     h = Parameter("W/(m2.K)", "heat transfer coefficient to the belt, 0 without one", nominal=10.0, at_least=0.0)
     A = Parameter("m2", "area that the heat transfer coefficient counts for", above=0.0)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import ClassVar
 
 from ..core.component import Component, Equation, equation
 from ..core.declare import Output, Parameter
@@ -12,6 +13,8 @@ from .ports import Flange, HeatPort
 
 class Friction(Component):
     """Base of bearings, seals and churning: a torque against the rotation, its heat shared by two bodies."""
+
+    scale: ClassVar[tuple[str, ...]] = ("k_loss",)
 
     shaft = Flange(must_meet=True)
     inner = HeatPort()

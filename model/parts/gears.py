@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import ClassVar
 
 import casadi as ca
 
@@ -55,6 +56,9 @@ class ToothedPart(Component):
     the normal force per length of the contact lines, F_bn/l, which is eps_alpha times less. `line_load` says which,
     and `k_mu` belongs to it: a factor that was fitted with one is wrong with the other by eps_alpha^0.2.
     """
+
+    role: ClassVar[str] = "teeth"
+    scale: ClassVar[tuple[str, ...]] = ("k_mu",)
 
     gears = HeatPort()
     lubricant = Lubricant()

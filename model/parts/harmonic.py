@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from typing import ClassVar
 
 import casadi as ca
 import numpy as np
@@ -36,6 +37,12 @@ class FlankFilm(Component):
     of both is half of what they slide at. The film is a wedge with squeezed oil ("pad"), that of a line contact after
     Moes, which knows rigid flanks ("moes"), or the formula that the source prints ("dowson_higginson_printed").
     """
+
+    role: ClassVar[str] = "teeth"
+    scale: ClassVar[tuple[str, ...]] = (
+        "mu_fluid",
+        "mu_boundary",
+    )
 
     film = Choice(
         ("pad", "moes", "dowson_higginson_printed"),

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
+from typing import ClassVar
 
 from ..core.component import Component, Equation, Related, equation
 from ..core.declare import Output, Parameter
@@ -35,6 +36,9 @@ class RoundHousing(Component):
     treated as the flat walls, whose outer area is given as well. `circumference` is the share of the circumference
     that takes part in the heat transfer at either side; conduction takes all of it.
     """
+
+    role: ClassVar[str] = "conductor"
+    scale: ClassVar[tuple[str, ...]] = ("k",)
 
     flat_inner = HeatPort()
     flat_outer = HeatPort()
@@ -94,6 +98,9 @@ class RoundHousing(Component):
 class OilToHousing(Component):
     """Heat transfer from the lubricant to the walls of a round housing, by one coefficient."""
 
+    role: ClassVar[str] = "conductor"
+    scale: ClassVar[tuple[str, ...]] = ("h",)
+
     oil = HeatPort()
     flat = HeatPort()
     cylinder = HeatPort()
@@ -116,6 +123,8 @@ class OilToHousing(Component):
 
 class WallCooling(Component):
     """Base of a housing wall in a room: convection and radiation over the area that the housing tells."""
+
+    role: ClassVar[str] = "surface"
 
     surface = HeatPort()
     air = AirPort()

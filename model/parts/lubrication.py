@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import ClassVar
 
 from ..core.component import Component, Equation, Related, equation
 from ..core.declare import Input, Output, Parameter, State
@@ -59,6 +60,9 @@ class LubricantProperties(Component):
 class OilBath(LubricantProperties):
     """The oil of a gearbox: a body of one temperature that lubricates."""
 
+    role: ClassVar[str] = "bath"
+    scale: ClassVar[tuple[str, ...]] = ("V",)
+
     T = State("K", "temperature of the oil", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
     V = Parameter("m3", "volume of oil at 15 degC", nominal=1e-3, above=0.0)
     c_p = Parameter("J/(kg.K)", "specific heat", nominal=2000.0, above=0.0)
@@ -90,6 +94,8 @@ class Grease(LubricantProperties):
 
     It has no pour point: the thickener holds it in place at any temperature, and its cold limit is a torque.
     """
+
+    role: ClassVar[str] = "grease"
 
     def equations(self) -> Iterator[Equation]:
         """The body is sensed, not heated."""

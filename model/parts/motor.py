@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import ClassVar
 
 from ..core.component import Component, Equation, equation
 from ..core.declare import Output, Parameter
@@ -18,6 +19,8 @@ class Motor(Component):
     `eta`; elsewhere it follows from a loss of the speed, which heats the stator, and one of the torque, which heats
     the windings. A motor that is driven (a loaded belt that runs down) feeds back what is left.
     """
+
+    role: ClassVar[str] = "motor"
 
     shaft = ShaftReading(must_meet=True)
     windings = HeatPort()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from typing import ClassVar
 
 import casadi as ca
 
@@ -37,6 +38,12 @@ class CycloidPinStage(Component):
 
     `contact_table`, `contact_case` and `mesh_cycle` tell the same contacts in numbers.
     """
+
+    role: ClassVar[str] = "teeth"
+    scale: ClassVar[tuple[str, ...]] = (
+        "mu_fluid",
+        "mu_boundary",
+    )
 
     crank = Flange()
     carrier = Flange()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import ClassVar
+
 from ..core.declare import Parameter
 from ..laws.sealing import lip_seal_torque
 from ..laws.smooth import Num
@@ -10,6 +12,8 @@ from .friction import Friction
 
 class LipSeal(Friction):
     """Radial lip seal: a torque that depends on the shaft's diameter alone."""
+
+    role: ClassVar[str] = "seal"
 
     d_sh = Parameter("m", "diameter of the shaft under the lip", nominal=0.1, above=0.0)
     c_sh = Parameter("N/m", "friction torque per square of the diameter", nominal=50.0, at_least=0.0)

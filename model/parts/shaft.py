@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import ClassVar
 
 from ..core.component import Component, Equation, equation
 from ..core.declare import Choice, Given, Input, Output, Parameter, State
@@ -24,6 +25,8 @@ OPEN_LOOP = (
 
 class ShaftEnd(Component):
     """A shaft that leaves the gearbox. What `given` names ("w", "tau") is an input, the rest follows."""
+
+    role: ClassVar[str] = "shaft_end"
 
     flange = Flange(must_meet=True)
     reading = ShaftReading()
@@ -115,8 +118,11 @@ class LoadingClutch(Component):
     parallel paths it says what one of them carries.
     """
 
+    role: ClassVar[str] = "clutch"
+
     a = Flange()
     b = Flange()
+    reading = ShaftReading()
 
     tau = Input("N.m", "torque passed from a to b; positive power flows from a to b where both turn forwards", 100.0)
     slip = _slip()
@@ -130,6 +136,8 @@ class LoadingClutch(Component):
         yield equation("speed of half a", self.w_a, self.a.w)
         yield equation("speed of half b", self.w_b, self.b.w)
         yield equation("slip", self.slip, self.w_a - self.w_b)
+        yield equation("speed read", self.reading.w, self.w_a)
+        yield equation("torque read", self.reading.tau, self.tau)
 
 
 class TurningFrame(Component):

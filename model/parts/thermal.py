@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from typing import ClassVar
 
 from ..core.component import Component, Equation, Related, equation
 from ..core.declare import Input, Output, Parameter, State
@@ -23,6 +24,9 @@ from .ports import COLDEST, HOTTEST, AirPort, HeatPort
 
 class HeatCapacity(Component):
     """A body of one temperature."""
+
+    role: ClassVar[str] = "body"
+    scale: ClassVar[tuple[str, ...]] = ("C",)
 
     heat = HeatPort()
 
@@ -47,6 +51,8 @@ class HeatCapacity(Component):
 class Conductor(Component):
     """Base of all that conducts: a heat flow proportional to a temperature difference."""
 
+    role: ClassVar[str] = "conductor"
+
     a = HeatPort()
     b = HeatPort()
 
@@ -66,6 +72,8 @@ class Conductor(Component):
 class ThermalConductor(Conductor):
     """A conductance that is known as a whole."""
 
+    scale: ClassVar[tuple[str, ...]] = ("G",)
+
     G = Parameter("W/K", "thermal conductance", at_least=0.0)
 
     def conductance(self) -> Num:
@@ -75,6 +83,8 @@ class ThermalConductor(Conductor):
 
 class PlaneWall(Conductor):
     """A plane wall."""
+
+    scale: ClassVar[tuple[str, ...]] = ("k",)
 
     k = Parameter("W/(m.K)", "thermal conductivity", above=0.0)
     A = Parameter("m2", "area", above=0.0)
@@ -87,6 +97,8 @@ class PlaneWall(Conductor):
 
 class CylinderWall(Conductor):
     """A cylindrical wall, from inside (a) to outside (b)."""
+
+    scale: ClassVar[tuple[str, ...]] = ("k",)
 
     k = Parameter("W/(m.K)", "thermal conductivity", above=0.0)
     L = Parameter("m", "length of the cylinder", above=0.0)
@@ -105,6 +117,8 @@ class CylinderWall(Conductor):
 
 class Room(Component):
     """The surroundings: air of a given temperature and speed, and a floor of the same temperature."""
+
+    role: ClassVar[str] = "room"
 
     air = AirPort(must_meet=False)
     floor = HeatPort(must_meet=False)
@@ -128,6 +142,8 @@ class Room(Component):
 class PrescribedTemperature(Component):
     """Something that keeps its temperature whatever heat it takes or gives, e.g. a thermostat or cooling water."""
 
+    role: ClassVar[str] = "thermostat"
+
     heat = HeatPort()
 
     T = Input("K", "temperature", nominal=10.0, above=0.0, start=298.15)
@@ -145,6 +161,9 @@ class PrescribedTemperature(Component):
 
 class SurfaceCooling(Component):
     """Base of warm surfaces in a room: free and forced convection and radiation, over one effective area."""
+
+    role: ClassVar[str] = "surface"
+    scale: ClassVar[tuple[str, ...]] = ("A",)
 
     surface = HeatPort()
     air = AirPort()
@@ -225,6 +244,11 @@ class CylinderCooling(SurfaceCooling):
 
 class FinnedBoxCooling(BoxCooling):
     """A box with straight fins: they add convecting area, not radiating area."""
+
+    scale: ClassVar[tuple[str, ...]] = (
+        "A",
+        "A_fins",
+    )
 
     A_fins = Parameter("m2", "surface of the fins, both sides", at_least=0.0)
     fin_height = Parameter("m", "height of a fin", nominal=0.01, above=0.0)

@@ -16,8 +16,8 @@ from .card import Card
 from .checks import checked
 from .context import CONTEXT, DIRECTIONS, Cells, contradictions, floats, order_warnings
 from .halves import with_unread
-from .lubrication import oil_problems, oil_values, oil_warnings
 from .nominal import Nominal
+from .oils import oil_problems, oil_values, oil_warnings
 from .sensors import SI, driven_by, sensors_of
 from .table import Campaign, Sensor
 
@@ -133,7 +133,6 @@ class _Reader:
         test = np.cumsum(first) - 1
         direction = self._direction(cells, values)[rows]
         starts = rows[first]
-        room = self._room_start(values, si["T_amb_start_C"], starts)
         points = cells.numbers("point")
         return Campaign(
             name=self.path.name,
@@ -147,12 +146,13 @@ class _Reader:
             oil=tuple(cells.texts("oil")[row] for row in starts),
             mounting=tuple(cells.texts("mounting" if "mounting" in self.context else "grid")[row] for row in starts),
             T_start=si["T_start_C"][starts],
-            room_start=room,
-            humidity=si["humidity_pct"][rows],
+            room_start=si["T_amb_start_C"][starts],
+            humidity=si["humidity_pct"][starts],
             date=tuple(cells.texts("date")[row] for row in starts),
             lines=np.array(cells.table.lines)[rows],
             points=np.where(np.isfinite(points), points, np.arange(cells.n) + 1)[rows].astype(int),
             start_by_room=self.card.protocol.T_start_minus_amb_K,
+            room_begin=self.card.protocol.ambient_start_minus_reading_K,
             warnings=(*cells.table.warnings, *order_warnings(cells)),
         )
 
@@ -183,10 +183,3 @@ class _Reader:
         usual = protocol.stop if protocol else 0.0
         usual = usual if self.card.protocol.stop_min is None else 60.0 * self.card.protocol.stop_min
         return np.asarray(np.where(first, 0.0, np.where(np.isfinite(stated[rows]), stated[rows], usual)))
-
-    def _room_start(self, values: dict[str, np.ndarray], stated: np.ndarray, starts: np.ndarray) -> np.ndarray:
-        """Room at the start of each test [K] (n_tests,), NaN for that of the first reading."""
-        change = self.card.protocol.ambient_start_minus_reading_K
-        rooms = [s.name for s in self.sensors if s.kind == "ambient" and s.role == "given"]
-        usual = values[rooms[0]][starts] + change if rooms and change else np.full(len(starts), np.nan)
-        return np.asarray(np.where(np.isfinite(stated[starts]), stated[starts], usual))

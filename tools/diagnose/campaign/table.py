@@ -56,7 +56,8 @@ class Campaign:
         mounting: filling or mounting of each test (n_tests), "" where there is one only
         T_start: temperature of the whole gearbox at the start of each test [K] (n_tests,), NaN: that of the room
         room_start: room at the start of each test [K] (n_tests,), NaN: as at the first reading
-        start_by_room: offset of an assumed start from the room, as the card states it [K]
+        start_by_room: start temperature less that of the room where it was not measured, as the card states it [K]
+        room_begin: room at the start of a test less its first reading where it was not measured [K]
         humidity: relative humidity [1] (n_tests,), NaN where it is not known
         date: of each test (n_tests), "" where unknown
         lines: line of each row in the file (n,)
@@ -80,6 +81,7 @@ class Campaign:
     lines: np.ndarray
     points: np.ndarray
     start_by_room: float = 0.0
+    room_begin: float = 0.0
     warnings: tuple[str, ...] = field(default=())
 
     @property

@@ -69,6 +69,7 @@ class Row:
         rise: oil over room as measured [K], or as modelled where it is not measured
         humidity: relative humidity [1]; 0.5 where it is not measured
         second: 1 in the second half (and later ones) of a test, else 0
+        dwell: time the row was held as stated [s]
     """
 
     base: Values
@@ -78,6 +79,7 @@ class Row:
     rise: Num = 30.0
     humidity: Num = 0.5
     second: Num = 0.0
+    dwell: Num = 3600.0
 
 
 @dataclass(frozen=True)
@@ -164,7 +166,8 @@ class Ranges:
 
     Args:
         low, high, mid: quantity -> 5 %, 95 % and 50 % over the rows: "w" [rad/s] and "tau" [N.m] magnitudes of the
-            first given shaft, "T" of the oil [K], "nu" of the oil [m2/s], "film" = w nu [m2/s2], "order"
+            shaft that `Roles` names (paths `Roles.speed`, `Roles.torque`), "T" of the oil [K], "nu" of the oil [m2/s],
+            "film" = w nu [m2/s2], "order", "direction"; and the magnitude of each sensor's column by the sensor's name
         loss: typical total loss of the nominal [W]
         rise: typical rise of the oil over the room [K]
     """
@@ -179,6 +182,11 @@ class Ranges:
     def conductance(self) -> float:
         """Typical conductance from the oil to the room [W/K]."""
         return self.loss / max(self.rise, 1.0)
+
+    def varies(self, quantity: str, share: float = 0.1) -> bool:
+        """Whether a quantity ranges over more than a share of its middle, so that a threshold of it makes sense."""
+        low, high = self.low.get(quantity, 0.0), self.high.get(quantity, 0.0)
+        return high - low > share * abs(self.mid.get(quantity, 0.0))
 
 
 def as_array(value: Num, n: int) -> np.ndarray:

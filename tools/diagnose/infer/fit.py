@@ -1,0 +1,230 @@
+"""A hypothesis fitted: nuisances, sizes and shapes of its causes together, by damped Gauss-Newton to convergence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import logsumexp
+
+from ...model.errors import SolveError
+from ..model.noise import alike
+from .evidence import WIDTHS, White, log_bayes_factor
+from .problem import Acting, Look, Noise, Problem
+
+#: Steps at most, tries of each with more damping, gain in log likelihood below which a step is the last.
+STEPS, TRIES, LITTLE = 12, 5, 0.02
+#: Rounds of point and scatter in turn at most, and change of a scale's logarithm below which the last is done.
+ROUNDS, SETTLED = 4, 0.1
+#: Longest step of a nuisance, a size (or that share of it) and a shape; shapes stay inside so many deviations.
+LONGEST, LONGEST_SIZE, LONGEST_SHAPE, FAR = 1.5, 1.0, 0.8, 2.4
+#: Standard deviations of what a form leaves of a true effect, as shares of it, and their probabilities.
+FORM = {0.01: 0.25, 0.03: 0.25, 0.06: 0.25, 0.12: 0.18, 0.24: 0.07}
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A fitted hypothesis: where it is, its scatter, and what it is worth.
+
+    Args:
+        look: readings and Jacobian at the most likely point
+        noise: scatter with its most likely scales
+        cost: half the squared misfit, priors included
+        evidence: log of the marginal likelihood, without the prior of the hypothesis
+        form: standard deviation of what the forms leave, the most likely of `FORM`; 0 without a cause
+    """
+
+    look: Look
+    noise: Noise
+    cost: float
+    evidence: float
+    form: float
+
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """Ids of its causes."""
+        return tuple(a.id for a in self.look.acting)
+
+    def linear(self, problem: Problem) -> tuple[White, np.ndarray]:
+        """The linearised problem beside this hypothesis: whitening by all that is uncertain, and the residual in it.
+
+        Nuisances, shapes and sizes of the hypothesis are uncertain by their priors, sizes by the widest.
+        """
+        vector, J = _Vector(problem, self.look.acting), self.look.jacobian
+        wide = J / np.sqrt(vector.precision)
+        V = self.noise.covariance + wide @ wide.T
+        if self.form:
+            V = V + self.form**2 * _rough(problem, self.look, vector)
+        white = White.of(V)
+        return white, white(problem.measured - self.look.shown + J @ self.look.x)
+
+
+def _rough(problem: Problem, look: Look, vector: _Vector) -> np.ndarray:
+    """Covariance of what forms leave of the effects of their causes, as a smooth share of them (M, M)."""
+    effects = (look.jacobian[:, vector.sizes] * look.x[vector.sizes])[problem.own]
+    rough = np.zeros((problem.m, problem.m))
+    rough[problem.own, problem.own] = (effects @ effects.T) * alike(problem.data)
+    return rough
+
+
+def bounds(acting: Acting) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest parameters of a form."""
+    size = acting.formula.cause.size
+    n = acting.formula.size - 1
+    return np.r_[size.low / size.sd, np.full(n, -FAR)], np.r_[size.high / size.sd, np.full(n, FAR)]
+
+
+class _Vector:
+    """The vector of a problem and some causes: priors, bounds and longest steps."""
+
+    def __init__(self, problem: Problem, acting: Sequence[Acting]) -> None:
+        self.nz, self.acting = problem.nz, tuple(acting)
+        low, high, precision, longest = (
+            [np.full(self.nz, -6.0)],
+            [np.full(self.nz, 6.0)],
+            [np.ones(self.nz)],
+            [np.full(self.nz, LONGEST)],
+        )
+        self.sizes: list[int] = []
+        begin = self.nz
+        for a in acting:
+            a_low, a_high = bounds(a)
+            low.append(a_low)
+            high.append(a_high)
+            n = a.formula.size - 1
+            precision.append(np.r_[1 / WIDTHS[-1] ** 2, np.ones(n)])
+            longest.append(np.r_[LONGEST_SIZE, np.full(n, LONGEST_SHAPE)])
+            self.sizes.append(begin)
+            begin += 1 + n
+        self.low, self.high = np.concatenate(low), np.concatenate(high)
+        self.precision, self.longest = np.concatenate(precision), np.concatenate(longest)
+
+    @property
+    def shapes(self) -> np.ndarray:
+        """Places of the shapes."""
+        places = np.arange(self.nz, len(self.low))
+        return places[~np.isin(places, self.sizes)]
+
+    def split(self, x: np.ndarray) -> tuple[np.ndarray, tuple[Acting, ...]]:
+        """Nuisances and causes."""
+        begin, found = self.nz, []
+        for a in self.acting:
+            found.append(replace(a, t=x[begin : begin + a.formula.size]))
+            begin += a.formula.size
+        return x[: self.nz], tuple(found)
+
+    def step(self, x: np.ndarray, H: np.ndarray, gradient: np.ndarray) -> np.ndarray:
+        """The step downhill that stays inside the bounds."""
+        free = np.ones(len(x), dtype=bool)
+        change = np.zeros(len(x))
+        for _ in range(4):
+            change = np.zeros(len(x))
+            change[free] = np.linalg.solve(H[np.ix_(free, free)], gradient[free])
+            longest = self.longest.copy()
+            longest[self.sizes] = np.maximum(longest[self.sizes], 0.6 * np.abs(x[self.sizes]))
+            change = np.clip(change, -longest, longest)
+            out = free & (((x + change < self.low) & (x <= self.low)) | ((x + change > self.high) & (x >= self.high)))
+            if not out.any():
+                break
+            free &= ~out
+        return np.clip(x + change, self.low, self.high)
+
+
+def fitted(
+    problem: Problem,
+    acting: Sequence[Acting],
+    z: np.ndarray,
+    scales: np.ndarray | None = None,
+    steps: int = STEPS,
+) -> Fit:
+    """The most likely point of a hypothesis with the most likely scales of its scatter, and its evidence.
+
+    Args:
+        problem: data and model
+        acting: causes where the fit begins
+        z: nuisances where it begins
+        scales: logarithms of the scales of its loose terms where it begins
+        steps: at most
+
+    Raises:
+        SolveError: the model cannot be run where the fit begins
+    """
+    look = _begun(problem, acting, z)
+    noise = problem.noise(look, scales)
+    for _ in range(ROUNDS):
+        look, cost = _settled(problem, look, noise, steps)
+        fit = weighed(problem, look, noise, cost)
+        moved, noise = np.abs(fit.noise.scales - noise.scales).max(initial=0.0), fit.noise
+        if moved < SETTLED:
+            break
+    return fit
+
+
+def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> tuple[Look, float]:
+    """Damped Gauss-Newton to convergence at a given scatter: the look there, and half the squared misfit."""
+    vector, white = _Vector(problem, look.acting), White.of(noise.covariance)
+    cost = _cost(problem, vector, white, look.shown, look.x)
+    damping = 0.0
+    for _ in range(steps):
+        J = white(look.jacobian)
+        H = J.T @ J + np.diag(vector.precision)
+        gradient = J.T @ white(problem.measured - look.shown) - vector.precision * look.x
+        for _ in range(TRIES):
+            new = vector.step(look.x, H + damping * np.diag(np.diag(H)), gradient)
+            value = _cost(problem, vector, white, problem.shown(*vector.split(new)), new)
+            if value <= cost + 1e-9:
+                break
+            damping = max(5 * damping, 0.3)
+        else:
+            break
+        gained, damping = cost - value, damping / 5
+        look, cost = problem.look(*vector.split(new)), value
+        if gained < LITTLE:
+            break
+    return look, cost
+
+
+def _begun(problem: Problem, acting: Sequence[Acting], z: np.ndarray) -> Look:
+    """A look where the fit begins, with smaller causes where it cannot be run."""
+    for share in (1.0, 0.5, 0.2, 0.05):
+        try:
+            smaller = [replace(a, t=np.r_[share * a.t[0], a.t[1:]]) for a in acting]
+            return problem.look(z, smaller)
+        except SolveError:
+            if share == 0.05 or not acting:
+                raise
+    raise AssertionError("unreachable")
+
+
+def _cost(problem: Problem, vector: _Vector, white: White, shown: np.ndarray, x: np.ndarray) -> float:
+    """Half the squared misfit, priors included; infinite where the model cannot be run."""
+    if not np.isfinite(shown).all():
+        return float("inf")
+    e = white(problem.measured - shown)
+    return float(0.5 * e @ e + 0.5 * vector.precision @ x**2)
+
+
+def weighed(problem: Problem, look: Look, noise: Noise, cost: float) -> Fit:
+    """A fit with its scales as the data tell them, and its evidence."""
+    vector = _Vector(problem, look.acting)
+    J = look.jacobian
+    linear = np.r_[np.arange(vector.nz), vector.shapes]
+    known, G = J[:, linear], J[:, vector.sizes]
+    residual = problem.measured - look.shown + J @ look.x
+    noise = problem.noise(look, noise.scales)
+    wide = known @ known.T + WIDTHS[-1] ** 2 * G @ G.T
+    noise = noise.fitted(residual, wide)
+    V = noise.covariance + known @ known.T
+    if not look.acting:
+        white = White.of(V)
+        return Fit(look, noise, cost, white.log_density(white(residual)) + noise.log_prior, 0.0)
+    rough = _rough(problem, look, vector)
+    low, high = (b[vector.sizes] for b in (vector.low, vector.high))
+    logs = []
+    for share, weight in FORM.items():
+        white = White.of(V + share**2 * rough)
+        e = white(residual)
+        logs.append(white.log_density(e) + log_bayes_factor(white(G), e, low, high) + np.log(weight))
+    form = list(FORM)[int(np.argmax(logs))]
+    return Fit(look, noise, cost, float(logsumexp(logs)) + noise.log_prior, form)

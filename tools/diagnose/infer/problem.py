@@ -1,0 +1,209 @@
+"""Campaigns and rig as one vector of readings: what is shown, its exact Jacobian, its scatter."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from scipy.optimize import minimize
+
+from ...model.errors import SolveError
+from ..model.formula import Formula
+from ..model.noise import Term, input_scatter, stacked, terms
+from ..model.observe import Observed, Seen
+from .evidence import White
+
+
+
+@dataclass(frozen=True, order=True)
+class Aside:
+    """A reading that is set aside: number of a compared one in the vector, or of a row of a given sensor.
+
+    `sensor` is the given sensor's name, "" for a compared reading; rows of campaigns are numbered one after the other.
+    """
+
+    number: int
+    sensor: str = ""
+
+
+@dataclass(frozen=True)
+class Acting:
+    """A form of a cause with its parameters: the size over its prior's half width, normal numbers of the shapes."""
+
+    formula: Formula
+    t: np.ndarray
+
+    @property
+    def id(self) -> str:
+        """Of the cause."""
+        return self.formula.cause.id
+
+
+@dataclass(frozen=True)
+class Look:
+    """The readings at one point of the vector (z, t...), their Jacobian (M, d) and what each campaign shows."""
+
+    z: np.ndarray
+    acting: tuple[Acting, ...]
+    shown: np.ndarray
+    jacobian: np.ndarray
+    seen: tuple[Seen, ...]
+
+    @property
+    def x(self) -> np.ndarray:
+        """The vector: nuisances, then the parameters of each cause."""
+        return np.concatenate([self.z, *(a.t for a in self.acting)])
+
+
+@dataclass(frozen=True)
+class Noise:
+    """Covariance terms at a linearisation, and logarithms of the scales of those that are loose."""
+
+    terms: tuple[Term, ...]
+    scales: np.ndarray
+
+    @property
+    def loose(self) -> list[Term]:
+        """The terms whose scale the data may change."""
+        return [t for t in self.terms if t.loose > 0]
+
+    @cached_property
+    def parts(self) -> tuple[np.ndarray, list[np.ndarray]]:
+        """The sum of all fixed terms, and each loose one (M, M)."""
+        fixed = [t.matrix for t in self.terms if t.loose == 0]
+        loose = [t.matrix for t in self.loose]
+        return np.sum(fixed, axis=0) if fixed else np.zeros_like(loose[0]), loose
+
+    @cached_property
+    def covariance(self) -> np.ndarray:
+        """The whole (M, M)."""
+        fixed, loose = self.parts
+        return np.asarray(fixed + sum(np.exp(2 * s) * C for s, C in zip(self.scales, loose, strict=True)))
+
+    @property
+    def log_prior(self) -> float:
+        """Of the scales."""
+        sd = np.array([t.loose for t in self.loose])
+        return float(-0.5 * ((self.scales / sd) ** 2).sum())
+
+    def fitted(self, residual: np.ndarray, known: np.ndarray) -> Noise:
+        """With the most likely scales.
+
+        Args:
+            residual: r ~ N(0, known + this) (M,)
+            known: covariance of what else is uncertain (M, M)
+        """
+        fixed, loose = self.parts
+        base, sd = fixed + known, np.array([t.loose for t in self.loose])
+
+        def cost(scales: np.ndarray) -> tuple[float, np.ndarray]:
+            weights = np.exp(2 * scales)
+            white = White.of(base + sum(w * C for w, C in zip(weights, loose, strict=True)))
+            inverse = white.back(np.eye(len(residual)))
+            a = inverse @ residual
+            value = 0.5 * residual @ a + 0.5 * white.log_det + 0.5 * ((scales / sd) ** 2).sum()
+            slopes = [w * ((inverse * C).sum() - a @ C @ a) for w, C in zip(weights, loose, strict=True)]
+            return float(value), np.array(slopes) + scales / sd**2
+
+        found = minimize(
+            cost, self.scales, jac=True, method="L-BFGS-B", bounds=[(-1.5, 2.5)] * len(sd), options={"maxiter": 25}
+        )
+        return replace(self, scales=found.x)
+
+
+class Problem:
+    """Campaigns of one rig; causes act in the first.
+
+    Args:
+        campaigns: the data, then a healthy reference where there is one
+        day_sd: standard deviation of the cooling from day to day; its direction is the last nuisance of a campaign
+    """
+
+    #: A reading that is set aside scatters by so many of its standard deviations.
+    FAR = 1e3
+
+    def __init__(self, campaigns: Sequence[Observed], day_sd: float, aside: frozenset[Aside] = frozenset()) -> None:
+        self.campaigns, self.day_sd, self.aside = tuple(campaigns), day_sd, aside
+        self.data = campaigns[0]
+        self.nz = len(self.data.nuisances) - 1
+        self.measured = np.concatenate([o.measured for o in campaigns])
+        self.repeat = np.concatenate([np.array([s.repeat_sd for s in o.read])[o.kind] for o in campaigns])
+        self.own = slice(0, self.data.m)
+
+    @property
+    def m(self) -> int:
+        """Number of readings."""
+        return len(self.measured)
+
+    def without(self, aside: frozenset[Aside]) -> Problem:
+        """The same with some readings set aside."""
+        return Problem(self.campaigns, self.day_sd, aside)
+
+    def look(self, z: np.ndarray, acting: Sequence[Acting] = ()) -> Look:
+        """Readings and Jacobian.
+
+        Raises:
+            SolveError: the model cannot be run there
+        """
+        whole, seen = np.append(z, 0.0), []
+        blocks = np.zeros((self.m, self.nz + sum(a.formula.size for a in acting)))
+        begin = 0
+        for o in self.campaigns:
+            own = acting if o is self.data else ()
+            found = o.at(whole, [(a.formula, a.t) for a in own])
+            if not np.isfinite(found.shown).all():
+                raise SolveError("the model cannot be run with what its causes make of it.")
+            part = slice(begin, begin + o.m)
+            blocks[part, : self.nz] = found.by[:, : self.nz]
+            if own:
+                blocks[part, self.nz :] = found.by[:, self.nz + 1 :]
+            seen.append(found)
+            begin += o.m
+        return Look(np.array(z), tuple(acting), np.concatenate([s.shown for s in seen]), blocks, tuple(seen))
+
+    def shown(self, z: np.ndarray, acting: Sequence[Acting] = ()) -> np.ndarray:
+        """Readings (M,), NaN where the model cannot be run."""
+        whole = np.append(z, 0.0)
+        parts = [(a.formula, a.t) for a in acting]
+        return np.concatenate([o.shown_by(whole, parts if o is self.data else []) for o in self.campaigns])
+
+    def noise(self, look: Look, scales: np.ndarray | None = None) -> Noise:
+        """The scatter at a look."""
+        found = terms(self.campaigns, look.seen, self.day_sd, self.nz)
+        found += [self.far(aside, look) for aside in sorted(self.aside)]
+        n = sum(t.loose > 0 for t in found)
+        return Noise(tuple(found), np.zeros(n) if scales is None else scales)
+
+    def far(self, aside: Aside, look: Look) -> Term:
+        """The term that makes a reading count for nothing."""
+        if not aside.sensor:
+            variance = np.zeros(self.m)
+            variance[aside.number] = (self.FAR * self.repeat[aside.number]) ** 2
+            return Term("set aside", variance=variance)
+        columns = dict(self.inputs(look))[aside.sensor]
+        return Term("set aside", self.FAR * columns[:, [aside.number]])
+
+    def inputs(self, look: Look) -> list[tuple[str, np.ndarray]]:
+        """Given sensor -> effects (M, rows of all campaigns) of one standard deviation of each of its readings."""
+        found: dict[str, list[tuple[int, np.ndarray]]] = {}
+        for k, (o, seen) in enumerate(zip(self.campaigns, look.seen, strict=True)):
+            for name, columns in input_scatter(o, seen):
+                found.setdefault(name, []).append((k, columns))
+        sizes = [o.m for o in self.campaigns]
+        return [(name, stacked(items, sizes)) for name, items in found.items()]
+
+    def touched(self, aside: Aside, look: Look) -> frozenset[int]:
+        """The compared readings that a reading has to do with."""
+        if not aside.sensor:
+            return frozenset([aside.number])
+        effect = np.abs(dict(self.inputs(look))[aside.sensor][:, aside.number])
+        return frozenset(np.flatnonzero(effect > 0.05 * effect.max(initial=1e-300)).tolist())
+
+    def tangents(self, z: np.ndarray, acting: Sequence[Acting], candidates: Sequence[Acting]) -> np.ndarray:
+        """Effects (M, k) of one prior half width of each candidate beside what acts, to first order at size zero."""
+        found = np.zeros((self.m, len(candidates)))
+        parts = [(a.formula, a.t) for a in acting]
+        found[self.own] = self.data.tangents(np.append(z, 0.0), parts, [(c.formula, c.t) for c in candidates])
+        return found

@@ -1,0 +1,306 @@
+"""The search: all causes at a first look, the leading ones fitted alone, in pairs and more; weighed all alike."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.special import logsumexp
+from scipy.stats import chi2
+
+from ...model.errors import SolveError
+from ..library.cause import Cause
+from ..model.formula import Formula
+from . import screen
+from .extra import Extra, extras
+from .fit import Fit, fitted
+from .gross import MOST as MOST_ASIDE
+from .gross import after_all, gross
+from .problem import Acting, Problem
+
+#: Prior odds of two causes against one, of each further one, and of a remainder beside a hypothesis.
+TWO, MORE, OUTSIDE = 0.22, 0.25, 0.06
+#: Forms fitted: within so many nats of the best, at most so many, of one cause at most, and causes at least.
+WITHIN, FORMS, EACH, LEAST = 9.0, 14, 3, 4
+#: Singles from which pairs are grown, pairs fitted, and how far behind the best hypothesis one may promise to be.
+GROWN, PAIRS, BEHIND = 4, 7, 6.0
+#: p of any cause above which little is fitted.
+QUIET = 0.3
+#: Searches at most, where the leading hypothesis changes which readings are gross.
+LOOKS = 3
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """Causes that act together, the best fit, and the log of their joint probability with the data.
+
+    Args:
+        causes: ids; none: nothing is wrong
+        fit: at the most likely forms
+        log_joint: log evidence, all forms counted, plus log prior
+        extra: a spread of sizes or a remainder beside them
+        forms: log weight of each form of each cause, by id and name
+    """
+
+    causes: tuple[str, ...]
+    fit: Fit
+    log_joint: float
+    extra: Extra | None = None
+    forms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Found:
+    """Result of a search.
+
+    Args:
+        null: the fit without a cause
+        first: all causes at a first look
+        hypotheses: all that were fitted, most probable first
+        probabilities: of them
+        p_any: p of the log Bayes factor of any cause
+        critical: its critical value
+        p_omnibus: chi-square p of the null
+    """
+
+    problem: Problem
+    formulas: tuple[Formula, ...]
+    null: Fit
+    first: screen.Look
+    hypotheses: tuple[Hypothesis, ...]
+    probabilities: np.ndarray
+    p_any: float
+    critical: float
+    p_omnibus: float
+
+
+def searched(
+    problem: Problem,
+    formulas: Sequence[Formula],
+    alpha: float = 0.05,
+    seed: int = 0,
+    most: int = 2,
+    progress: Callable[[str, float], None] = lambda stage, share: None,
+) -> Found:
+    """A search in which gross readings are set aside; arguments as for `Search`."""
+    progress("calibrating without a cause", 0.02)
+    null = fitted(problem, (), np.zeros(problem.nz))
+    problem, null = _cleaned(problem, null)
+    for _ in range(LOOKS):
+        found = Search(problem, formulas, alpha, seed, most, progress).run(null)
+        leader = found.hypotheses[0].fit
+        aside = problem.aside - after_all(problem, leader)
+        if (more := gross(problem, leader)) is not None:
+            aside |= {more.aside}
+        if aside == problem.aside:
+            break
+        problem = problem.without(aside)
+        null = fitted(problem, (), null.look.z, null.noise.scales if len(null.noise.scales) else None)
+    return found
+
+
+def _cleaned(problem: Problem, null: Fit) -> tuple[Problem, Fit]:
+    """The problem without the gross readings that the null shows."""
+    for _ in range(max(2, int(MOST_ASIDE * problem.m))):
+        if (found := gross(problem, null)) is None:
+            break
+        problem = problem.without(problem.aside | {found.aside})
+        null = fitted(problem, (), null.look.z)
+    return problem, null
+
+
+class Search:
+    """One search.
+
+    Args:
+        problem: data and model
+        formulas: all forms of all causes
+        alpha: accepted rate of false alarms: the prior of none is such that its posterior is 1/2 there
+        seed: of the draws
+        most: causes that may act together
+        progress: told of each stage and the share done
+    """
+
+    def __init__(
+        self,
+        problem: Problem,
+        formulas: Sequence[Formula],
+        alpha: float = 0.05,
+        seed: int = 0,
+        most: int = 2,
+        progress: Callable[[str, float], None] = lambda stage, share: None,
+    ) -> None:
+        self.problem, self.alpha, self.seed, self.most, self.progress = problem, alpha, seed, most, progress
+        self.formulas = tuple(f for f in formulas if not f.form.spread)
+        self.spreads = tuple(f for f in formulas if f.form.spread)
+        self.causes: dict[str, Cause] = {f.cause.id: f.cause for f in formulas}
+        families = {c.family for c in self.causes.values()}
+        shared = {name: sum(c.family == name for c in self.causes.values()) for name in families}
+        #: Log share of the prior of one cause that each cause has: classes share theirs.
+        self.share = {c.id: -np.log(len(families) * shared[c.family]) for c in self.causes.values()}
+
+    def run(self, start: Fit | None = None) -> Found:
+        """Everything."""
+        self.progress("calibrating without a cause", 0.05)
+        problem = self.problem
+        self.null = fitted(problem, (), np.zeros(problem.nz)) if start is None else start
+        self.progress("effects of all causes", 0.15)
+        self.first = screen.look(problem, self.null, self.formulas)
+        self._alarm()
+        self.progress("causes one by one", 0.25)
+        singles = self._singles()
+        self.progress("causes two by two", 0.5)
+        grown = [] if self.p_any > QUIET else self._grown(singles)
+        base = [Hypothesis((), self.null, self.null.evidence + self.log_none), *singles, *grown]
+        self.progress("scatter and remainder", 0.8)
+        hypotheses = sorted([*base, *self._beside(base)], key=lambda h: -h.log_joint)
+        logs = np.array([h.log_joint for h in hypotheses])
+        white, e = self.null.linear(problem)
+        free = problem.m - len(problem.aside)
+        return Found(
+            problem,
+            self.formulas,
+            self.null,
+            self.first,
+            tuple(hypotheses),
+            np.exp(logs - logsumexp(logs)),
+            self.p_any,
+            self.critical,
+            float(chi2.sf(e @ e, free)),
+        )
+
+    def prior(self, causes: Iterable[str]) -> float:
+        """Log prior odds of a hypothesis against those of one cause, all together 1."""
+        names = list(causes)
+        n = len(names)
+        pairs = sum(np.log(TWO if k == 1 else MORE) for k in range(1, n))
+        return float(sum(self.share[c] for c in names) + pairs + np.log(float(np.prod(np.arange(1, n + 1)))))
+
+    def _alarm(self) -> None:
+        """p of any cause by draws of the null, and the prior of none that agrees with it."""
+        first = self.first
+        counts = np.bincount(first.owner, minlength=len(self.formulas))
+        weights = np.array(
+            [
+                self.share[c.id] + np.log(c.formula.form.weight) - np.log(counts[k])
+                for c, k in zip(first.candidates, first.owner, strict=True)
+            ]
+        )
+        drawn = screen.null_draws(first, weights, self.seed)
+        seen = float(logsumexp(first.log_bf + weights))
+        self.critical = float(np.quantile(drawn, 1 - self.alpha))
+        self.p_any = float((1 + (drawn >= seen).sum()) / (1 + len(drawn)))
+        self.log_none = self.critical
+
+    def _forms(self, log_bf: np.ndarray, known: Mapping[str, int] | None = None) -> list[int]:
+        """Formulas worth a fit, best first."""
+        value = log_bf + np.array([np.log(f.form.weight) + self.share[f.cause.id] for f in self.formulas])
+        chosen: list[int] = []
+        taken: dict[str, int] = {}
+        for k in np.argsort(-value):
+            cause = self.formulas[k].cause.id
+            far = value[k] < value.max() - WITHIN
+            if taken.get(cause, 0) >= EACH or (far and (len(taken) >= LEAST or cause in taken)):
+                continue
+            chosen.append(int(k))
+            taken[cause] = taken.get(cause, 0) + 1
+            if len(chosen) >= (FORMS if self.p_any < QUIET else LEAST):
+                break
+        return chosen
+
+    def _singles(self) -> list[Hypothesis]:
+        """Every cause alone: its leading forms fitted, the others as they look at first."""
+        log_bf = self.first.by_form(len(self.formulas))
+        fits: dict[int, Fit] = {}
+        for k in self._forms(log_bf):
+            with suppress(SolveError):
+                fits[k] = fitted(self.problem, [self.first.start(k)], self.null.look.z, self.null.noise.scales)
+        found = []
+        for cause in dict.fromkeys(self.formulas[k].cause.id for k in fits):
+            own = {k: fit for k, fit in fits.items() if self.formulas[k].cause.id == cause}
+            best = max(own, key=lambda k: own[k].evidence)
+            logs = {}
+            for k, f in enumerate(self.formulas):
+                if f.cause.id == cause:
+                    at_first = min(self.null.evidence + log_bf[k], own[best].evidence)
+                    logs[f.form.name] = np.log(f.form.weight) + (own[k].evidence if k in own else at_first)
+            total = float(logsumexp(list(logs.values())))
+            weights = {name: value - total for name, value in logs.items()}
+            found.append(Hypothesis((cause,), own[best], total + self.prior([cause]), None, {cause: weights}))
+        return sorted(found, key=lambda h: -h.log_joint)
+
+    def _grown(self, singles: Sequence[Hypothesis]) -> list[Hypothesis]:
+        """Hypotheses of two causes and more, each from a leading one with one cause fewer."""
+        found: dict[frozenset[str], Hypothesis] = {}
+        beam = [h for h in singles if h.log_joint > singles[0].log_joint - 2 * BEHIND][:GROWN]
+        for size in range(2, self.most + 1):
+            best = max(h.log_joint for h in [*singles, *found.values()])
+            promised = sorted((p for h in beam for p in self._beside_causes(h)), key=lambda p: -p[0])
+            new: dict[frozenset[str], Hypothesis] = {}
+            for log, h, k, start in promised:
+                names = frozenset([*h.causes, self.formulas[k].cause.id])
+                if names in new or len(new) >= PAIRS or log < best - BEHIND:
+                    continue
+                with suppress(SolveError):
+                    fit = fitted(self.problem, [*h.fit.look.acting, start], h.fit.look.z, h.fit.noise.scales)
+                    causes = (*h.causes, self.formulas[k].cause.id)
+                    # the other forms of each cause count as beside the other
+                    spread = sum(logsumexp(list(w.values())) - max(w.values()) for w in h.forms.values())
+                    weight = sum(np.log(a.formula.form.weight) for a in fit.look.acting)
+                    new[names] = Hypothesis(
+                        causes, fit, fit.evidence + weight + spread + self.prior(causes), None, h.forms
+                    )
+            found |= new
+            beam = sorted(new.values(), key=lambda h: -h.log_joint)[:2]
+            if not beam or beam[0].log_joint < best or size == self.most:
+                break
+        return list(found.values())
+
+    def _beside_causes(self, h: Hypothesis) -> list[tuple[float, Hypothesis, int, Acting]]:
+        """What each form promises beside a fitted hypothesis: log joint, the hypothesis, the formula and its start."""
+        try:
+            beside = screen.look(self.problem, h.fit, self.formulas)
+        except SolveError:
+            return []
+        log_bf = beside.by_form(len(self.formulas))
+        own = {self.causes[c].family for c in h.causes}
+        best: dict[str, int] = {}
+        for k, f in enumerate(self.formulas):
+            if f.cause.family not in own and log_bf[k] + np.log(f.form.weight) > _value(best, f, log_bf, self.formulas):
+                best[f.cause.id] = k
+        found = []
+        for cause, k in best.items():
+            gain = log_bf[k] + np.log(self.formulas[k].form.weight)
+            log = h.log_joint - self.prior(h.causes) + gain + self.prior([*h.causes, cause])
+            found.append((float(log), h, k, beside.start(k)))
+        return found
+
+    def _beside(self, base: Sequence[Hypothesis]) -> list[Hypothesis]:
+        """The leading hypotheses with a spread of sizes or a remainder beside them."""
+        best = max(h.log_joint for h in base)
+        found = []
+        for h in base:
+            if h.causes and h.log_joint < best - 1.5 * BEHIND:
+                continue
+            for extra, gain in extras(self.problem, h.fit, self.spreads):
+                if extra.cause is None:
+                    log = h.log_joint + gain + np.log(OUTSIDE)
+                    found.append(Hypothesis(h.causes, h.fit, float(log), extra, h.forms))
+                elif extra.cause not in h.causes:
+                    causes = (*h.causes, extra.cause)
+                    log = h.log_joint + gain + self._added(h.causes, extra.cause)
+                    found.append(Hypothesis(causes, h.fit, float(log), extra, h.forms))
+        return found
+
+    def _added(self, causes: Sequence[str], more: str) -> float:
+        """Log prior of a hypothesis with one cause more over that without."""
+        if not causes:
+            return self.prior([more]) - self.log_none
+        return self.prior([*causes, more]) - self.prior(causes)
+
+
+def _value(best: Mapping[str, int], f: Formula, log_bf: np.ndarray, formulas: Sequence[Formula]) -> float:
+    k = best.get(f.cause.id)
+    return -np.inf if k is None else float(log_bf[k] + np.log(formulas[k].form.weight))

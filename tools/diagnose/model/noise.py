@@ -1,0 +1,217 @@
+"""The scatter of all readings: a sum of named covariance terms, each made by one function here.
+
+A term is a set of columns, each the effect of one independent standard normal number, or a variance of every entry of
+its own. A term's scale is what the card states; where it is `loose` the data may change it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+
+import numpy as np
+
+from .observe import Observed, Seen
+
+#: Prior standard deviations of the logarithms of scales: readings of a sensor, of the room, days.
+READING, INPUT, DAY = 0.25, 0.35, 0.35
+#: Share of a nuisance's prior by which another filling or mounting changes it.
+REFILLED = 0.5
+#: A further probe of the same body stands elsewhere: standard deviation of the share of the wall or room it sees.
+ELSEWHERE = 0.08
+#: What the model leaves of a rig that a reference tells: share of the typical reading's rise or torque, per feature.
+REMAINDER = {"temperature": 0.8, "other": 0.0005}
+#: A reading that is set aside scatters by so many of its own standard deviations.
+ASIDE = 1e3
+
+
+@dataclass(frozen=True)
+class Term:
+    """One term: `columns` (m, k) or `variance` (m,); `loose` is the prior's standard deviation of its log scale."""
+
+    name: str
+    columns: np.ndarray | None = None
+    variance: np.ndarray | None = None
+    loose: float = 0.0
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """The covariance it stands for (m, m)."""
+        if self.variance is not None:
+            return np.diag(self.variance)
+        assert self.columns is not None
+        return np.asarray(self.columns @ self.columns.T)
+
+
+def reading_scatter(o: Observed) -> Iterator[tuple[str, np.ndarray]]:
+    """Scatter of each compared sensor from reading to reading: name and variances (m,)."""
+    for i, s in enumerate(o.read):
+        yield s.name, np.where(o.kind == i, s.repeat_sd**2, 0.0)
+
+
+def input_scatter(o: Observed, seen: Seen) -> Iterator[tuple[str, np.ndarray]]:
+    """Scatter of each given sensor, through the model: name and effects of all rows' readings (m, n)."""
+    same = o.campaign.test[o.row][:, None] == o.campaign.test[None, :]
+    for g, s in enumerate(o.given):
+        effect = seen.local[:, g][:, o.half]  # m, n: by the reading of each row's half, in the entry's own test
+        yield s.name, s.repeat_sd * effect * same
+
+
+def read_tolerance(o: Observed) -> Iterator[tuple[str, np.ndarray]]:
+    """Fixed tolerance of each compared sensor: name and effect (m,)."""
+    for i, s in enumerate(o.read):
+        yield s.name, np.where(o.kind == i, s.offset_sd, 0.0)
+
+
+def given_tolerance(o: Observed, seen: Seen) -> Iterator[tuple[str, np.ndarray]]:
+    """Fixed tolerance of each given sensor, through the model: name and effect (m,)."""
+    for g, s in enumerate(o.given):
+        signs = o.signs[s.name][o.rows][o.campaign.test[o.row]]  # m, H
+        yield s.name, -s.offset_sd * (seen.local[:, g] * signs).sum(axis=1)
+
+
+def elsewhere(o: Observed, seen: Seen) -> np.ndarray:
+    """Effects (m, k) of further probes of a body that see something of its surroundings."""
+    columns, known = [], set[str]()
+    walls = [i for i, s in enumerate(o.read) if s.kind == "wall_temp"]
+    for i, s in enumerate(o.read):
+        if s.kind.endswith("_temp") and s.reads in known and walls:
+            own, wall = (dict(zip(o.row[k], seen.shown[k], strict=True)) for k in (o.kind == i, o.kind == walls[0]))
+            effect = np.array([own[r] - wall.get(r, own[r]) if r in own else 0.0 for r in o.row])
+            columns.append(np.where(o.kind == i, ELSEWHERE * effect, 0.0))
+        known.add(s.reads)
+    return np.array(columns).reshape(len(columns), o.m).T
+
+
+def per_group(effect: np.ndarray, groups: np.ndarray) -> np.ndarray:
+    """One column for each group of entries (m, groups)."""
+    labels = np.unique(groups)
+    return np.asarray(effect[:, None] * (groups[:, None] == labels))
+
+
+def walk(effect: np.ndarray, test: np.ndarray) -> np.ndarray:
+    """Effects (m, tests - 1) of the steps from each test to the next."""
+    return np.asarray(effect[:, None] * (test[:, None] > np.arange(int(test.max()))))
+
+
+def conditions(o: Observed) -> np.ndarray:
+    """What a smooth remainder depends on, in units of its spread: given sensors but the room's, and direction (n, k)."""
+    columns = [o.sensors[s.name] for s in o.given if s.kind != "ambient"]
+    columns = [c for c in columns if np.ptp(c) > 1e-9 * max(abs(c).max(), 1e-300)]
+    own = [(c - c.mean()) / max(c.std(), 1e-12) for c in columns]
+    if np.any(o.campaign.direction != o.campaign.direction[0]):
+        own.append(o.campaign.direction)
+    return np.array(own).reshape(len(own), o.campaign.n).T
+
+
+def smooth_features(campaigns: Sequence[Observed]) -> list[np.ndarray]:
+    """Features of a smooth remainder, the same in all campaigns (n, k) each: constant, linear, products, squares."""
+    raw = []
+    for o in campaigns:
+        given = [o.sensors[s.name] for s in o.given]
+        raw.append(np.array([*given, o.campaign.direction]))
+    whole = np.concatenate(raw, axis=1)
+    centre, spread = whole.mean(axis=1, keepdims=True), whole.std(axis=1, keepdims=True)
+    kept = (spread > 1e-9 * np.maximum(abs(whole).max(axis=1, keepdims=True), 1e-12))[:, 0]
+    room = [s.kind == "ambient" for s in campaigns[0].given] + [False]
+    found = []
+    for values in raw:
+        z = ((values - centre) / np.maximum(spread, 1e-12))[kept]
+        quiet = np.array(room)[kept]
+        own = [np.ones(values.shape[1]), *z]
+        moving = z[~quiet]
+        own += [
+            a * b for i, a in enumerate(moving) for b in moving[i:] if not np.array_equal(a, b) or len(np.unique(a)) > 2
+        ]
+        found.append(np.array(own).T)
+    return found
+
+
+def remainder(campaigns: Sequence[Observed]) -> np.ndarray:
+    """Effects (M, k) of what no parameter removes of a rig that is not the model, the same in all its campaigns."""
+    blocks = []
+    features = smooth_features(campaigns)
+    sensors = [s.name for s in campaigns[0].read]
+    for o, own in zip(campaigns, features, strict=True):
+        columns = []
+        for name in sensors:
+            index = next((i for i, s in enumerate(o.read) if s.name == name), -1)
+            sd = _remainder_sd(campaigns, name)
+            columns.append(np.where((o.kind == index)[:, None], sd * own[o.row], 0.0))
+        blocks.append(np.concatenate(columns, axis=1))
+    return np.concatenate(blocks)
+
+
+def _remainder_sd(campaigns: Sequence[Observed], name: str) -> float:
+    kinds = [(s.kind, np.nanmean(np.abs(o.campaign.values[name]))) for o in campaigns for s in o.read if s.name == name]
+    kind, size = kinds[0]
+    return REMAINDER["temperature"] if kind.endswith("_temp") else float(REMAINDER["other"] * size)
+
+
+def alike(o: Observed, length: float = 1.3) -> np.ndarray:
+    """Correlation (m, m) of what is smooth in the conditions and the running order, for one sensor."""
+    features = np.column_stack([conditions(o), 2.0 * o.campaign.progress])[o.row]
+    distance = ((features[:, None, :] - features[None, :, :]) ** 2).sum(axis=2)
+    return np.asarray(np.exp(-0.5 * distance / length**2))
+
+
+def stacked(parts: Sequence[tuple[int, np.ndarray]], sizes: Sequence[int]) -> np.ndarray:
+    """Columns of campaigns side by side in the whole vector (M, sum k): (number of the campaign, its columns)."""
+    begins = np.concatenate([[0], np.cumsum(sizes)])
+    whole = np.zeros((int(begins[-1]), sum(c.shape[1] for _, c in parts)))
+    at = 0
+    for k, columns in parts:
+        whole[begins[k] : begins[k + 1], at : at + columns.shape[1]] = columns
+        at += columns.shape[1]
+    return whole
+
+
+def tied(parts: Sequence[tuple[str, int, np.ndarray]], sizes: Sequence[int]) -> dict[str, np.ndarray]:
+    """Columns that several campaigns share by name: name -> effect in the whole vector (M,)."""
+    begins = np.concatenate([[0], np.cumsum(sizes)])
+    found: dict[str, np.ndarray] = {}
+    for name, k, column in parts:
+        found.setdefault(name, np.zeros(int(begins[-1])))[begins[k] : begins[k + 1]] += column
+    return found
+
+
+def terms(campaigns: Sequence[Observed], seen: Sequence[Seen], day_sd: float, day: int) -> list[Term]:
+    """All terms of some campaigns of one rig with the same instruments, at a linearisation.
+
+    Args:
+        campaigns: the first is the one in which causes act
+        seen: what each shows there
+        day_sd: standard deviation of the cooling from day to day
+        day: number of the direction that is the cooling of a day
+    """
+    sizes = [o.m for o in campaigns]
+    scatter = [(name, k, v) for k, o in enumerate(campaigns) for name, v in reading_scatter(o)]
+    found = [Term(f"readings of {name}", variance=v, loose=READING) for name, v in tied(scatter, sizes).items()]
+    inputs = [(n, k, c) for k, (o, s) in enumerate(zip(campaigns, seen, strict=True)) for n, c in input_scatter(o, s)]
+    for name, items in groupby(sorted(inputs, key=lambda i: i[0]), key=lambda i: i[0]):
+        found.append(Term(f"readings of {name}", stacked([(k, c) for _, k, c in items], sizes), loose=INPUT))
+    fixed = [(n, k, c) for k, o in enumerate(campaigns) for n, c in read_tolerance(o)]
+    fixed += [(n, k, c) for k, (o, s) in enumerate(zip(campaigns, seen, strict=True)) for n, c in given_tolerance(o, s)]
+    for name, column in tied(fixed, sizes).items():
+        found.append(Term(f"tolerance of {name}", column[:, None]))
+    pairs = list(enumerate(zip(campaigns, seen, strict=True)))
+    days = [(k, day_sd * per_group(s.by[:, day], o.campaign.test[o.row])) for k, (o, s) in pairs]
+    found.append(Term("days", stacked(days, sizes), loose=DAY))
+    found.append(Term("further probes", stacked([(k, elsewhere(o, s)) for k, (o, s) in pairs], sizes)))
+    fillings = [(k, c) for k, (o, s) in pairs for c in _fillings(o, s)]
+    if fillings:
+        found.append(Term("fillings", stacked(fillings, sizes)))
+    if len(campaigns) > 1:
+        found.append(Term("remainder", remainder(campaigns)))
+    return found
+
+
+def _fillings(o: Observed, seen: Seen) -> Iterator[np.ndarray]:
+    """Effects (m, fillings) of what another filling or mounting changes."""
+    labels = np.unique(o.campaign.mounting, return_inverse=True)[1]
+    if labels.max() == 0:
+        return
+    for k, nuisance in enumerate(o.nuisances):
+        if nuisance.refilled:
+            yield REFILLED * per_group(seen.by[:, k], labels[o.campaign.test[o.row]])

@@ -1,0 +1,138 @@
+"""The static pictures of a diagnosis, as SVG text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+import numpy as np
+from matplotlib.axes import Axes
+
+from . import phrases
+from .drawing import COLOURS, empty, legend, svg
+from .evidence import Picture, Rows, View
+from .findings import Channel, Findings
+
+BEFORE, AFTER = COLOURS[1], COLOURS[0]
+#: Direction -> its mark.
+MARKS = {1: "o", -1: "^", 0: "s"}
+DIRECTIONS = {1: "direction +1", -1: "direction -1", 0: ""}
+#: Readings that are drawn, at most; more than these groups of readings have no line through their means.
+MOST, GROUPS = 600, 8
+
+
+def picture(findings: Findings, found: Picture) -> str:
+    """What is left in a channel against the quantity that a cause acts on, without and with the cause."""
+    quantity = findings.rows.quantities[found.quantity]
+    x, direction = _numbers(quantity.values), np.array(findings.rows.direction or [0] * len(found.before))
+    figure, panels = empty(10.0, 3.4, 1, 2, sharex=True, sharey=True)
+    sides = (("without this cause", found.before, BEFORE), ("with this cause", found.after, AFTER))
+    for panel, (title, values, colour) in zip(panels, sides, strict=True):
+        _residuals(panel, x, _numbers(values), direction, colour, _scatter(findings.rows, found.channel))
+        panel.set_title(title)
+        panel.set_xlabel(_label(quantity))
+    panels[0].set_ylabel(_left(findings.channel(found.channel), found.channel))
+    _directions(panels[0], figure_of=direction)
+    return svg(figure)
+
+
+def overview(findings: Findings) -> str:
+    """What is left in every channel against every quantity, before and after; empty without readings."""
+    rows = findings.rows
+    axes = [q for q in rows.quantities.values() if np.ptp(_finite(q.values)) > 0]
+    if not rows.channels or not axes:
+        return ""
+    direction = np.array(rows.direction or [0] * len(axes[0].values))
+    size = max(3.0 * len(axes), 5.0), 2.4 * len(rows.channels) + 0.4
+    figure, panels = empty(*size, len(rows.channels), len(axes), sharex="col", sharey="row")
+    for i, (name, values) in enumerate(rows.channels.items()):
+        line = panels[i * len(axes) : (i + 1) * len(axes)]
+        for panel, axis in zip(line, axes, strict=True):
+            for model, colour, word in sides(values):
+                left = _numbers(values.measured) - _numbers(model)
+                _residuals(panel, _numbers(axis.values), left, direction, colour, values.sd, word)
+            panel.set_xlabel(_label(axis))
+            panel.label_outer()
+        line[0].set_ylabel(_left(findings.channel(name), name))
+    legend(figure, panels[0])
+    return svg(figure)
+
+
+def sides(values: Rows.Values) -> list[tuple[Sequence[float | None], str, str]]:
+    """The models that readings are compared with: values, colour, word."""
+    found: list[tuple[Sequence[float | None], str, str]] = [(values.nominal, BEFORE, "calibrated model")]
+    return [*found, (values.extended, AFTER, "with the causes")] if values.extended else found
+
+
+def views(found: Sequence[View]) -> str:
+    """Deviation of each channel from what the others imply, in running order; empty where none has any."""
+    drawn = [v for v in found if v.deviation]
+    if not drawn:
+        return ""
+    figure, panels = empty(10.0, 2.2 * len(drawn) + 0.4, len(drawn), 1, sharex=True)
+    for panel, view in zip(panels, drawn, strict=True):
+        direction = _numbers(view.direction) if view.direction else np.zeros(len(view.deviation))
+        _residuals(panel, _numbers(view.order), _numbers(view.deviation), direction, COLOURS[0], None)
+        panel.set_ylabel(f"{view.channel} [{phrases.SHOWN.get(view.unit, view.unit)}]")
+        panel.set_title(view.asks)
+    panels[-1].set_xlabel("running order")
+    _directions(panels[0], figure_of=_numbers(drawn[0].direction))
+    return svg(figure)
+
+
+def _residuals(
+    panel: Axes, x: np.ndarray, y: np.ndarray, direction: np.ndarray, colour: str, sd: float | None, word: str = ""
+) -> None:
+    """Points by direction, a line through the means of groups, and a band of two standard deviations."""
+    if sd is not None:
+        panel.axhspan(-2 * sd, 2 * sd, color="#eeeeee", zorder=0)
+    panel.axhline(0, color="#888888", linewidth=1)
+    thin = slice(None, None, -(-len(x) // MOST))
+    for way, mark in MARKS.items():
+        mine = (direction[thin] == way) & np.isfinite(x[thin]) & np.isfinite(y[thin])
+        if mine.any():
+            label = ", ".join(filter(None, (word, DIRECTIONS[way])))
+            face = colour if way >= 0 else "none"
+            panel.plot(
+                x[thin][mine], y[thin][mine], mark, color=colour, markerfacecolor=face, markersize=4, label=label
+            )
+    _trend(panel, x, y, colour)
+
+
+def _trend(panel: Axes, x: np.ndarray, y: np.ndarray, colour: str) -> None:
+    """A line through the means of readings that stand close together, where there are a few such groups."""
+    good = np.isfinite(x) & np.isfinite(y)
+    x, y = x[good], y[good]
+    order = np.argsort(x, kind="stable")
+    gaps = np.diff(x[order]) > 0.05 * np.ptp(x) if len(x) else np.zeros(0, dtype=bool)
+    groups = np.split(order, np.flatnonzero(gaps) + 1)
+    if 1 < len(groups) <= GROUPS:
+        panel.plot([x[g].mean() for g in groups], [y[g].mean() for g in groups], color=colour, linewidth=1.5)
+
+
+def _directions(panel: Axes, *, figure_of: np.ndarray) -> None:
+    """A legend of the directions where there are two."""
+    if len(set(figure_of)) > 1:
+        panel.legend(fontsize=8)
+
+
+def _label(quantity: Rows.Quantity) -> str:
+    unit = phrases.SHOWN.get(quantity.unit, quantity.unit)
+    return f"{quantity.label} [{unit}]" if unit else quantity.label
+
+
+def _left(channel: Channel | None, name: str) -> str:
+    unit = f" [{channel.difference}]" if channel else ""
+    return f"{name}\nmeasured - simulated{unit}"
+
+
+def _scatter(rows: Rows, channel: str) -> float | None:
+    return rows.channels[channel].sd if channel in rows.channels else None
+
+
+def _numbers(values: Iterable[float | None]) -> np.ndarray:
+    return np.array([np.nan if v is None else v for v in values], dtype=float)
+
+
+def _finite(values: Iterable[float | None]) -> np.ndarray:
+    found = _numbers(values)
+    return found[np.isfinite(found)] if np.isfinite(found).any() else np.zeros(1)

@@ -1,0 +1,111 @@
+"""One self-contained HTML page about a diagnosis: what is wrong, what to do, how big, how sure, then the evidence."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from functools import cache
+from importlib.resources import files
+from typing import Any
+
+from markupsafe import Markup
+
+from . import figures, frame, phrases, tables
+from .findings import Findings
+from .names import name_of
+
+#: Readings of the interactive plot, at most.
+MOST = 5000
+
+
+def render(findings: Findings) -> str:
+    """The page as HTML text, the same bytes for the same findings."""
+    return frame.page(
+        frame.OWN,
+        "diagnosis.html",
+        findings=findings,
+        said=findings.says,
+        about=findings.about,
+        bars=_bars(findings),
+        pictures=[_picture(findings, i) for i in range(len(findings.pictures))],
+        overview=Markup(figures.overview(findings)),
+        views=Markup(figures.views(findings.views)),
+        gain=f"{phrases.gain(findings.gain)}." if findings.gain else "",
+        doubt=phrases.gains_nothing(findings),
+        **{name: _sections(made(findings)) for name, made in SECTIONS.items()},
+        plot=_data(findings),
+        script=_vendor("uPlot.iife.min.js"),
+        licence=_vendor("uPlot.LICENSE"),
+        css=_vendor("uPlot.min.css"),
+    )
+
+
+#: Name in the template -> its tables.
+SECTIONS = {
+    "quality": tables.quality,
+    "causes": tables.causes,
+    "gains": tables.gain,
+    "experiments": tables.experiments,
+    "sets": tables.sets,
+}
+
+
+def _sections(found: Sequence[tables.Table]) -> list[dict[str, Any]]:
+    return [{"title": t.title, "note": t.note, "table": frame.html_table(t.columns, t.rows)} for t in found if t.rows]
+
+
+def _bars(findings: Findings) -> list[dict[str, str]]:
+    """Probabilities of the causes, and what else may be."""
+    rest = max(0.0, 1.0 - sum(h.probability for h in findings.hypotheses))
+    rows = [(name_of(c.id), c.id, c.probability, c.mc_error) for c in findings.causes if c.probability >= tables.LEAST]
+    if findings.remainder is not None:
+        rows.append(("something outside the library", "", findings.remainder.probability, findings.remainder.mc_error))
+    rows += [("nothing wrong", "", findings.nothing, 0.0), ("less probable than those listed", "", rest, 0.0)]
+    return [
+        {"name": name, "id": id, "percent": phrases.percent(p, error), "width": f"{100 * min(p, 1.0):.1f}"}
+        for name, id, p, error in rows
+        if p >= tables.LEAST
+    ]
+
+
+def _picture(findings: Findings, index: int) -> dict[str, Any]:
+    """A picture of a cause and the sentences beside it."""
+    found = findings.pictures[index]
+    cause = findings.cause(found.cause)
+    size = phrases.estimate(cause.parameters[0]) if cause and cause.parameters else ""
+    where = phrases.regime(cause) if cause else ""
+    return {
+        "name": name_of(found.cause),
+        "svg": Markup(figures.picture(findings, found)),
+        "size": ", ".join(filter(None, (size, where))),
+        "doc": cause.doc if cause else "",
+        "percent": phrases.percent(cause.probability, cause.mc_error) if cause else "",
+    }
+
+
+def _data(findings: Findings) -> Markup:
+    """What the interactive plot shows, as JSON that may stand in a page."""
+    rows = findings.rows
+    every = slice(None, None, max(1, -(-len(rows.row) // MOST)))
+    channels = {}
+    for name, values in rows.channels.items():
+        known = findings.channel(name)
+        models = {word: _left(values.measured, model)[every] for model, _, word in figures.sides(values)}
+        channels[name] = {"unit": known.difference if known else "", "sd": values.sd, "left": models}
+    quantities = {
+        key: {"label": q.label, "unit": phrases.SHOWN.get(q.unit, q.unit), "values": q.values[every]}
+        for key, q in rows.quantities.items()
+    }
+    shown = {"row": rows.row[every], "test": rows.test[every], "direction": rows.direction[every]}
+    text = json.dumps(shown | {"channels": channels, "quantities": quantities}, ensure_ascii=False, allow_nan=False)
+    return Markup(text.replace("<", "\\u003c")) if channels and quantities else Markup("")
+
+
+def _left(measured: Sequence[float | None], model: Sequence[float | None]) -> list[float | None]:
+    pairs = zip(measured, model, strict=True)
+    return [None if m is None or s is None else float(f"{m - s:.4g}") for m, s in pairs]
+
+
+@cache
+def _vendor(name: str) -> Markup:
+    return Markup(files(frame.OWN).joinpath("vendor", name).read_text(encoding="utf-8").strip())

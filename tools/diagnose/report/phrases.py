@@ -1,0 +1,181 @@
+"""Numbers, probabilities and estimates as people write them."""
+
+from __future__ import annotations
+
+import math
+
+from .estimate import Estimate
+from .findings import Answer, Cause, Findings, Gain, Impact
+from .names import names_of
+from .numbers import LEAST_P
+from .quality import GrossReading, NuisanceOff
+
+#: Units as they are shown.
+SHOWN = {"degC": "°C", "1": ""}
+SCHEMES = {
+    "leave-one-operating-point": "each test left out in turn",
+    "leave-one-speed": "each speed left out in turn",
+    "leave-one-load": "each torque left out in turn",
+    "leave-one-oil": "each oil left out in turn",
+    "leave-one-segment": "each stretch of the logs left out in turn",
+    "first-oil-to-others": "the other oils predicted from the first",
+    "split": "half of the tests left out",
+}
+#: Ending of a column in which a regime is stated -> its unit; quantities say it as "speed [rpm]".
+ENDINGS = {"_rpm": "rpm", "_Nm": "N.m", "_C": "°C", "_K": "K", "_W": "W", "_mm2_s2": "mm²/s²", "_kW": "kW"}
+
+
+#: How the name of a parameter begins that is a logarithm.
+LOGARITHM = "ln_"
+
+
+def number(value: float, digits: int = 3) -> str:
+    """A number with so many digits, without an exponent where people would not write one."""
+    text = f"{value:.{digits}g}"
+    if "e" in text and 1e-4 < abs(value) < 1e7:
+        text = f"{value:.0f}" if abs(value) >= 1 else f"{value:.{digits + 3}f}"
+    return "0" if text == "-0" else text
+
+
+def with_unit(value: float, unit: str, digits: int = 3) -> str:
+    """A number and its unit."""
+    return f"{number(value, digits)} {SHOWN.get(unit, unit)}".strip()
+
+
+def percent(probability: float, error: float = 0.0) -> str:
+    """A probability with its Monte-Carlo error, never surer than it is computed."""
+    if probability > 0.995:
+        return "> 99 %"
+    if 0.0 <= probability < 0.005:
+        return "< 1 %"
+    return f"{100 * probability:.0f} %" if error < 0.005 else f"{100 * probability:.0f} ± {100 * error:.0f} %"
+
+
+def p_value(p: float) -> str:
+    """p = 0.03, p = 0.998, p = 2e-5 or p < 1e-6."""
+    if p <= LEAST_P:
+        return "p < 1e-6"
+    digits = 2 if p < 0.99 else 4
+    return f"p = {p:.0e}".replace("e-0", "e-") if p < 1e-3 else f"p = {min(p, 0.9999):.{digits}g}"
+
+
+def chance(p: float) -> str:
+    """How often chance alone does as much."""
+    for out_of in (100, 1000):
+        if p * out_of >= 1:
+            return f"{out_of * p:.0f} of {out_of} campaigns without a fault deviate as much ({p_value(p)})"
+    return f"fewer than 1 of 1000 campaigns without a fault deviate as much ({p_value(p)})"
+
+
+def estimate(found: Estimate) -> str:
+    """A parameter with unit and interval, and the bound it sits on; logarithms as factors."""
+    value, (low, high) = found.value, found.ci95
+    said = with_unit(value, found.unit)
+    if found.name.startswith(LOGARITHM):
+        value, low, high = (math.exp(v) for v in (value, low, high))
+        said = f"{number(value)} times"
+    inside = f"{number(low)} to {number(high)}" if low < high else ""
+    bound = {"low": "at its lower bound", "high": "at its upper bound"}.get(found.at_bound, "")
+    text = "; ".join(filter(None, (inside, bound)))
+    return said + (f" ({text})" if text else "")
+
+
+def meaning(found: Estimate) -> str:
+    """What a parameter is, in words; that of a logarithm without the word."""
+    return found.doc.removeprefix("logarithm of the ").removeprefix("logarithm of ") or found.name.replace("_", " ")
+
+
+def impact(found: Impact) -> str:
+    """A mean change with its interval: oil temperature 3.2 K higher (2.9 to 3.5)."""
+    low, high = sorted(abs(v) for v in found.ci95)
+    more = "higher" if found.value >= 0 else "lower"
+    if found.ci95[0] * found.ci95[1] <= 0:
+        low, high = found.ci95 if found.value >= 0 else (-found.ci95[1], -found.ci95[0])
+    value = with_unit(abs(found.value), found.unit, 2)
+    return f"{found.what} {value} {more} ({number(low, 2)} to {number(high, 2)})"
+
+
+def regime(found: Cause) -> str:
+    """Where a cause acts; empty where it acts everywhere."""
+    parts = []
+    for quantity, (low, high) in found.regime.items():
+        ending = next((e for e in ENDINGS if quantity.endswith(e)), "")
+        name, _, unit = quantity.removesuffix(ending).removesuffix("]").partition(" [")
+        unit = unit or ENDINGS.get(ending, "")
+        ends = [("above", low), ("below", high)]
+        said = " and ".join(with_unit(end, unit).join((f"{word} ", "")) for word, end in ends if end is not None)
+        parts.append(f"{name} {said}")
+    return f"only at {', '.join(parts)}" if parts else ""
+
+
+def answer(found: Answer) -> str:
+    """The causes of an answer; members of one class with "or" between."""
+    classes = [names_of(group, "or") for group in found.causes]
+    return " together with ".join(classes) if len(classes) > 1 else "".join(classes)
+
+
+def gross(found: GrossReading) -> str:
+    """A wrong reading, as a sentence."""
+    places = (("line", found.line), ("point", found.point))
+    where = ", ".join(f"{name} {value}" for name, value in places if value)
+    text = f"Row {found.row}{f' ({where})' if where else ''}: {found.channel}"
+    if found.shown is not None and found.expected is not None:
+        shown, expected = (with_unit(v, found.unit, 4) for v in (found.shown, found.expected))
+        text += f" shows {shown}, the other readings say {expected}"
+    aside = "It is set aside." if found.set_aside else "It is kept."
+    return f"{text}, {number(abs(found.size_sd), 2)} standard deviations off. {aside}"
+
+
+def nuisance(found: NuisanceOff) -> str:
+    """A value far from that of the file, as the end of a sentence."""
+    off = f"{number(abs(found.z), 2)} prior standard deviations {'up' if found.z > 0 else 'down'}"
+    values = ""
+    if found.file is not None and found.found is not None:
+        values = f"{with_unit(found.found, found.unit)} instead of {with_unit(found.file, found.unit)}, "
+    elif found.factor is not None:
+        values = f"{number(found.factor)} times that of the file, "
+    return f"{found.name} ({values}{off})"
+
+
+def scheme(gain: Gain) -> str:
+    """How readings were held out."""
+    return SCHEMES.get(gain.scheme, gain.scheme)
+
+
+def gain(found: Gain) -> str:
+    """What the causes gain where they were not fitted, and what plain statistics reach."""
+    unit = found.unit
+    text = f"{found.channel}: {with_unit(found.rmse_before, unit)} before, {with_unit(found.rmse_after, unit)} after"
+    if found.ratio_ci90 is not None:
+        low, high = (number(v, 2) for v in found.ratio_ci90)
+        text += f" (ratio {number(found.rmse_after / (found.rmse_before or 1.0), 2)}, {low} to {high})"
+    text += f", {scheme(found)}"
+    said = [text]
+    if found.before is not None and found.after is not None:
+        before, after = number(found.before.with_), with_unit(found.after.with_, unit)
+        said.append(f"both with the discrepancy term {before} and {after}")
+    said += [f"{name} {with_unit(value, unit)}" for name, value in found.rivals.items()]
+    if found.noise_floor is not None:
+        said.append(f"one reading scatters by {with_unit(found.noise_floor, unit)}")
+    return "; ".join(said)
+
+
+def gains_nothing(findings: Findings) -> str:
+    """Why the extended rig must not be trusted, as a sentence; empty where it is better everywhere."""
+    worse = [
+        f"{channel} {number(p.rms_calibrated)} calibrated, {with_unit(p.rms_extended, p.unit)} extended"
+        for channel, p in findings.played.items()
+        if p.rms_extended > 1.005 * p.rms_calibrated
+    ]
+    if worse:
+        return f"Played over these data the extended rig is worse than the calibrated one ({'; '.join(worse)})."
+    found = findings.gain
+    if found is None:
+        return ""
+    if found.rmse_after >= found.rmse_before:
+        return f"On readings left out the causes predict no better ({gain(found)})."
+    best = min(found.rivals, key=lambda name: found.rivals[name], default="")
+    if best and found.rivals[best] < found.rmse_after:
+        rival, after = number(found.rivals[best]), with_unit(found.rmse_after, found.unit)
+        return f"On readings left out plain statistics ({best}) predict better: {rival} against {after}."
+    return ""

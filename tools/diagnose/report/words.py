@@ -1,0 +1,242 @@
+"""The first screen in sentences: verdict, what to do, how big, how sure, what it cannot be.
+
+The verdict itself is decided elsewhere; here it is put in words, and every sentence is of the same probabilities.
+"""
+
+from __future__ import annotations
+
+from . import phrases
+from .findings import UNEXPLAINED, Answer, Cause, Findings, Said
+from .names import name_of, names_of, sentence
+
+#: Below this probability a cause that would be seen is ruled out; the tail of p where what is left is not noise, and
+#: the other tail.
+RULED_OUT, ADEQUATE, TOO_GOOD = 0.01, 0.01, 0.99
+#: A scatter is told where it is so many times the card's, or as much less.
+SCATTER = 1.5
+#: Distances below this are none [standard deviations].
+APART = 3.0
+#: What is listed on the first screen.
+MOST = 5
+
+
+def with_words(findings: Findings) -> Findings:
+    """The findings with the sentences of the first screen, and with a warning for each contradiction in them."""
+    said = Said(
+        verdict=_verdict(findings),
+        do=_do(findings),
+        size=_size(findings),
+        sure=_sure(findings),
+        cannot_be=_cannot_be(findings),
+        data=_data(findings),
+    )
+    wrong = [w for text in contradictions(findings) if (w := f"the result contradicts itself: {text}")]
+    warnings = tuple(dict.fromkeys((*wrong, *findings.warnings)))
+    return findings.model_copy(update={"says": said, "warnings": warnings})
+
+
+def contradictions(findings: Findings) -> list[str]:
+    """Where verdict, alarm and probabilities do not agree; none of a sound decision."""
+    total, calm = sum(h.probability for h in findings.hypotheses), findings.verdict == "consistent"
+    best = findings.answers[0].probability if findings.answers else 0.0
+    known = {c.id for c in findings.causes}
+    named = {c for a in findings.answers for group in a.causes for c in group} - {UNEXPLAINED}
+    alarm = findings.test.p_any < findings.test.alpha
+    checks = {
+        f"the probabilities add up to {total:.3f}": total > 1 + 1e-6,
+        f"nothing is wrong, yet {phrases.p_value(findings.test.p_any)} is an alarm": calm and alarm,
+        f"something is wrong, yet {phrases.p_value(findings.test.p_any)} is none": not calm and not alarm,
+        f"nothing is wrong, with {phrases.percent(findings.nothing)}": calm and findings.nothing < 0.5,
+        f"something is wrong, yet nothing has {phrases.percent(findings.nothing)}": not calm and findings.nothing > 0.5,
+        "one answer explains it, and there are none or several": findings.verdict == "explained"
+        and len(findings.answers) != 1,
+        f"one answer explains it with {phrases.percent(best)}": findings.verdict == "explained" and best < 0.9,
+        "nothing is wrong, and there is an answer": calm and bool(findings.answers),
+        f"{', '.join(sorted(named - known))} is named and not listed": bool(named - known),
+    }
+    return [text for text, wrong in checks.items() if wrong]
+
+
+def _verdict(findings: Findings) -> str:
+    answers = findings.answers
+    if findings.verdict == "consistent":
+        return "The data agree with the model within the stated accuracies."
+    if findings.verdict == "unexplained" or not answers:
+        return _unexplained(findings)
+    if findings.verdict == "ambiguous":
+        parts = [f"{phrases.answer(a)} ({_probability(a)})" for a in answers]
+        more = f"; or {len(parts) - MOST} less probable ones" if len(parts) > MOST else ""
+        return f"Something is wrong, and the data leave open what: {'; '.join(parts[:MOST])}{more}."
+    first = answers[0]
+    if limits := _at_bound(findings, first):
+        name = names_of(limits)
+        return (
+            f"{sentence(phrases.answer(first))} fits best ({_probability(first)}), yet only at the limit of the size"
+            f" that {name} can have: this is a pointer, not yet a finding."
+        )
+    several = len(first.causes) > 1
+    subject = f"{_count(len(first.causes))} causes together explain" if several else "One cause explains"
+    return f"{subject} the data: {phrases.answer(first)} ({_probability(first)}).{_beyond(findings)}"
+
+
+def _unexplained(findings: Findings) -> str:
+    left = findings.remainder
+    where = f", seen in {_remainder_channels(findings)}" if left and left.channels else ""
+    sure = f" ({phrases.percent(left.probability, left.mc_error)})" if left else ""
+    best = next((a for a in findings.answers if a.causes != ((UNEXPLAINED,),)), None)
+    closest = f" The closest known cause is {phrases.answer(best)} ({_probability(best)})." if best else ""
+    return f"Something is wrong that no cause of the library explains{sure}{where}.{closest}"
+
+
+def _beyond(findings: Findings) -> str:
+    """That something else acts beside a named cause."""
+    left = findings.remainder
+    if left is None or left.probability < 0.5:
+        return ""
+    where = _remainder_channels(findings)
+    return f" Something that the library lacks acts beside it{f', seen in {where}' if where else ''}."
+
+
+def _remainder_channels(findings: Findings) -> str:
+    left = findings.remainder
+    found = left.channels[:2] if left else ()
+    return " and ".join(f"{c.channel} ({phrases.with_unit(c.rms, c.unit, 2)})" for c in found)
+
+
+def _do(findings: Findings) -> str:
+    """What to do now, the most pressing first."""
+    steps = []
+    if findings.data_quality.gross:
+        steps.append(f"Check {_readings(findings)} in your records.")
+    if findings.verdict == "consistent":
+        steps.append("Nothing else needs doing." if steps else "Nothing needs doing.")
+        return " ".join(steps)
+    if warning := phrases.gains_nothing(findings):
+        steps.append(f"{warning} Do not use the extended rig for predictions yet.")
+    exposing = _exposing(findings)
+    if findings.verdict == "explained" and exposing:
+        steps.append(f"To confirm it: {exposing}")
+    elif findings.next_experiment:
+        e = findings.next_experiment[0]
+        before, after = phrases.number(e.separation_before, 2), phrases.number(e.separation_after, 2)
+        steps.append(
+            f"Measure next: {e.what or e.id}. That separates {names_of(e.separates)}: {before} standard"
+            f" deviations now, {after} then."
+        )
+    elif exposing:
+        steps.append(f"To test the most probable cause: {exposing}")
+    else:
+        steps.append("Look at the channel that deviates most before any part is changed.")
+    return " ".join(steps)
+
+
+def _readings(findings: Findings) -> str:
+    found = findings.data_quality.gross
+    rows = ", ".join(f"row {g.row} ({g.channel})" for g in found[:MOST])
+    return f"the reading in {rows}" if len(found) == 1 else f"the readings in {rows}"
+
+
+def _exposing(findings: Findings) -> str:
+    """The experiment that would show the causes of the first answer."""
+    members = [c for group in findings.answers[0].causes for c in group] if findings.answers else []
+    texts = [c.exposes for m in members if (c := findings.cause(m)) is not None and c.exposes]
+    return "; ".join(f"{t.rstrip('.')}" for t in dict.fromkeys(texts)) + "." if texts else ""
+
+
+def _size(findings: Findings) -> str:
+    """Effect in degC and W of the first answer, and the size of each of its causes."""
+    if findings.verdict == "consistent":
+        return ""
+    said = []
+    if findings.impact:
+        which = f"if it is {phrases.answer(findings.answers[0])}: " if findings.verdict == "ambiguous" else ""
+        effects = "; ".join(phrases.impact(i) for i in findings.impact.values())
+        said.append(f"{sentence(which + effects)}, on average.")
+    for answer in findings.answers[: 1 if findings.verdict != "ambiguous" else 2]:
+        for group in answer.causes:
+            found = [c for member in group if (c := findings.cause(member)) is not None]
+            if sizes := [text for c in found if (text := _sized(c))]:
+                said.append(f"{sentence('; or '.join(sizes))}.")
+    return " ".join(said)
+
+
+def _sized(cause: Cause) -> str:
+    if not cause.parameters:
+        return ""
+    where = ", ".join(filter(None, (cause.forms[0].name if cause.forms else "", phrases.regime(cause))))
+    place = f" ({where})" if where else ""
+    return f"{name_of(cause.id)}{place}: {phrases.meaning(cause.parameters[0])} {phrases.estimate(cause.parameters[0])}"
+
+
+def _sure(findings: Findings) -> str:
+    test = findings.test
+    said = [f"{sentence(phrases.chance(test.p_any))}; the alarm is set at {phrases.number(test.alpha, 2)}."]
+    nothing = next((h for h in findings.hypotheses if not h.causes), None)
+    if nothing is not None:
+        said.append(f"Probability that nothing is wrong: {phrases.percent(nothing.probability, nothing.mc_error)}.")
+    if test.p_adequacy < ADEQUATE:
+        said.append(f"What is left is not noise ({phrases.p_value(test.p_adequacy)}): another effect is in the data.")
+    elif test.p_adequacy > TOO_GOOD:
+        said.append(
+            f"What is left is smaller than the stated scatter ({phrases.p_value(test.p_adequacy)}): the accuracies"
+            " of the card are too wide, or part of the effect is taken for noise."
+        )
+    else:
+        said.append(f"What is left looks like noise ({phrases.p_value(test.p_adequacy)}).")
+    return " ".join(said)
+
+
+def _cannot_be(findings: Findings) -> str:
+    """Causes that would show and do not; those that these data cannot tell from the answer, or cannot show."""
+    said = []
+    named = {c for a in findings.answers for group in a.causes for c in group}
+    out = [c.id for c in findings.causes if _ruled_out(findings, c) and c.id not in named]
+    if out:
+        said.append(f"Ruled out at their usual size: {names_of(out, most=2 * MOST)}.")
+    for group in findings.sets:
+        first, *others = (c for c in group.causes if c == group.causes[0] or c not in named)
+        if first in named and others and group.distance < APART:
+            said.append(f"These data cannot tell {name_of(first)} from {names_of(others, 'or')}.")
+    if findings.invisible:
+        blind = names_of((i.cause for i in findings.invisible), "or", MOST)
+        said.append(f"These data cannot show {blind}.")
+    return " ".join(said)
+
+
+def _ruled_out(findings: Findings, cause: Cause) -> bool:
+    seen = cause.detectable is not None and cause.usual is not None and cause.detectable <= cause.usual
+    alike = any(cause.id in s.causes and s.distance < APART for s in findings.sets)
+    return seen and not alike and cause.probability < RULED_OUT
+
+
+def _data(findings: Findings) -> tuple[str, ...]:
+    """What is to be known of data and rig before any cause."""
+    quality = findings.data_quality
+    said = [phrases.gross(g) for g in quality.gross]
+    if quality.nuisances:
+        said.append(f"The rig differs from its file: {'; '.join(map(phrases.nuisance, quality.nuisances))}.")
+    for v in quality.variance:
+        if v.ratio > SCATTER or v.ratio < 1 / SCATTER:
+            card, found = phrases.number(v.card, 2), phrases.with_unit(v.found, v.unit, 2)
+            ratio = phrases.number(v.ratio, 2)
+            said.append(f"{sentence(v.name)} scatters by {found}; the card says {card} ({ratio} times).")
+    for channel, p in quality.adequacy.items():
+        if p < ADEQUATE:
+            said.append(f"What is left in {channel} is not noise ({phrases.p_value(p)}).")
+        elif p > TOO_GOOD:
+            said.append(f"What is left in {channel} is smaller than its stated scatter ({phrases.p_value(p)}).")
+    return tuple(said)
+
+
+def _at_bound(findings: Findings, answer: Answer) -> list[str]:
+    """Causes of an answer whose size sits on its bound."""
+    found = [findings.cause(c) for group in answer.causes for c in group[:1]]
+    return [c.id for c in found if c is not None and c.parameters and c.parameters[0].at_bound]
+
+
+def _probability(answer: Answer) -> str:
+    return phrases.percent(answer.probability, answer.mc_error)
+
+
+def _count(n: int) -> str:
+    return {2: "Two", 3: "Three", 4: "Four"}.get(n, str(n))

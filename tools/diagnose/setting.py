@@ -1,0 +1,102 @@
+"""From files to a problem: the rig as the campaign drives it, its causes, everything compiled."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+from ..model.machines.spec import Spec
+from ..scenarios.scenario import Scenario
+from .campaign.card import Card
+from .campaign.table import Campaign
+from .infer.problem import Problem
+from .library.cause import Cause, Nuisance, Ranges
+from .library.nuisances import nuisances
+from .library.registry import library
+from .library.roles import Roles
+from .model.formula import Formula
+from .model.lubrication import lubricated, oils_of
+from .model.observe import Observed
+from .model.plant import Plant
+from .model.ranges import ranges_of
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A rig, its causes and its campaigns, ready to be searched.
+
+    Args:
+        scenario: the rig as its file has it
+        spec: driven and lubricated as in the campaign
+        formulas: all forms of all causes
+        problem: data, and a reference where there is one
+    """
+
+    scenario: Scenario
+    spec: Spec
+    card: Card
+    roles: Roles
+    ranges: Ranges
+    causes: tuple[Cause, ...]
+    nuisances: tuple[Nuisance, ...]
+    formulas: tuple[Formula, ...]
+    plant: Plant
+    problem: Problem
+    oils: dict[str, dict[str, float]]
+
+
+def setting(
+    scenario: Scenario,
+    card: Card,
+    data: Campaign,
+    reference: Campaign | None = None,
+    libraries: Sequence[Path] = (),
+    others: Sequence[Campaign] = (),
+) -> Setting:
+    """Everything compiled.
+
+    Args:
+        scenario: the rig
+        card: what is known of campaign and instruments
+        data: the campaign in which causes act
+        reference: a healthy campaign of the same rig with the same instruments
+        libraries: files with further causes
+        others: further campaigns whose oils must be known
+
+    Raises:
+        GearheatError: rig, card and data do not go together
+    """
+    driven = _driven(scenario, data)
+    spec = lubricated(driven.spec, card.lubrication)
+    roles = Roles.of(spec)
+    campaigns = [c for c in (data, reference, *others) if c is not None]
+    oils = oils_of(driven, card, [name for c in campaigns for name in c.oil])
+    point = driven.operating_point
+    ranges = ranges_of(spec, roles, data, oils, point)
+    sensors = data.sensors
+    causes = library(roles, ranges, sensors, libraries)
+    wide = reference is not None
+    known = nuisances(roles, card.prior_sd, driven.uncertainties)
+    known = tuple(replace(n, sd=n.wide) if wide else n for n in known if wide or n.sd > 0)
+    day = Nuisance("day", dict.fromkeys(roles.cooling, 1.0), 1.0, 1.0)
+    names, reads = [s.name for s in sensors], [s.name for s in data.read]
+    formulas = tuple(Formula(cause, form, names, reads) for cause in causes for form in cause.forms)
+    knobs = dict.fromkeys([p for n in (*known, day) for p in n.paths] + [p for f in formulas for p in f.paths])
+    forms = [f.form for f in formulas]
+    shown = tuple(dict.fromkeys(s.reads for c in campaigns for s in c.read))
+    plant = Plant.of(spec, forms, tuple(knobs), [s.reads for s in data.given], shown)
+    observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
+    problem = Problem(observed, card.day_cooling_sd)
+    return Setting(scenario, spec, card, roles, ranges, causes, known, formulas, plant, problem, oils)
+
+
+def _driven(scenario: Scenario, data: Campaign) -> Scenario:
+    """The rig driven at its shaft ends by what the campaign's sensors give."""
+    ends = scenario.spec.of_type("ShaftEnd")
+    given: dict[str, tuple[str, ...]] = {}
+    for s in data.given:
+        end, _, quantity = s.reads.rpartition(".")
+        if end in ends:
+            given[end] = (*given.get(end, ()), quantity)
+    return scenario.driven(given) if given else scenario
