@@ -14,20 +14,22 @@ from ...scenarios.scenario import Scenario
 from ..campaign.logs import Log
 from ..library.knobs import Knob, knobs
 from ..library.roles import Roles
-from ..model.logs import NOISE, Filter, Passed, Windows, windows
+from ..model.logs import Filter, Passed, Windows, windows
 from ..model.plant import Plant
 from .levels import Effect, Levels, Quadratics, Target, estimate, first_levels
 
 #: Passes over the healthy logs, and over those in question; each begins where the last one ended.
 PASSES, TARGET_PASSES = 4, 2
 #: State noise [K] of one sample of bodies that no sensor reads, and of states that are no body's.
-QUIET, SWITCH = 0.1, 1.0
+QUIET, SWITCH = 0.05, 0.8
 #: Dates from which on something may have moved: at most so many, and windows on either side at least.
 DATES, SIDE = 6, 3
 #: Prior probabilities of no cause and of two.
 NOTHING, TWO = 0.5, 0.08
 #: Causes that are tried together with others.
 LEADING = 4
+#: Correlations of errors are summed over so many samples at most, and down to so much.
+MEMORY, CORRELATED = 144, 0.05
 #: Length of a year in time that is no calendar's [s].
 YEAR = 365.25 * 86400.0
 
@@ -44,6 +46,7 @@ class Fleet:
         machine_of: machine of each machine-year
         labels: of each machine-year, in words
         levels: what the healthy logs say
+        independent: share of their samples that count as independent, 0 without any
     """
 
     filter: Filter
@@ -53,6 +56,7 @@ class Fleet:
     machine_of: np.ndarray
     labels: tuple[str, ...]
     levels: Levels
+    independent: float
 
 
 @dataclass(frozen=True)
@@ -114,8 +118,8 @@ def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
     noise = []
     for i, q in enumerate(plant.flat.states):
         body = q.name.rpartition(".")[2] == "T"
-        noise.append(NOISE if i in own.state_of else 0.0 if q.unit != "K" else QUIET if body else SWITCH)
-    own.noise = np.array(noise)
+        noise.append(0.0 if q.unit != "K" else QUIET if body else SWITCH)
+    own.drift = np.array(noise)
     return own, found
 
 
@@ -154,7 +158,7 @@ def fleet(
     begun = first_levels(sd, machines)
     if not logs:
         empty = windows([all_sensors], own.given, own.read).some(np.zeros(0, dtype=int))
-        return Fleet(own, found, empty, np.zeros(0, dtype=int), np.zeros(0, dtype=int), (), begun)
+        return Fleet(own, found, empty, np.zeros(0, dtype=int), np.zeros(0, dtype=int), (), begun, 0.0)
     past = windows(logs, own.given, own.read)
     years = year_of(past.time, all(log.dated for log in logs))
     machine = np.array(machine_of_log)[past.machine]
@@ -164,30 +168,40 @@ def fleet(
     machine_of = np.array([m for m, _ in keys])
     names = {m: log.name for log, m in zip(reversed(logs), reversed(machine_of_log), strict=True)}
     labels = tuple(f"{names[m]} {y}" for m, y in keys)
-    z, levels = np.zeros((machines, len(sd))), begun
+    z, levels, thin = np.zeros((machines, len(sd))), begun, 1.0
     for n in range(PASSES):
         at = z[machine]
         progress(f"healthy logs, pass {n + 1} of {PASSES}")
         passed = own.run(past, at)
-        own.noise = _noise(own, passed)
-        levels = estimate(_quadratics(passed, at), year, machine_of, begun)
+        own.scatter, thin = _scatter(own, passed), independent(passed)
+        levels = estimate(_quadratics(passed, at, thin), year, machine_of, begun)
         z = z + np.clip(levels.mean - z, -sd, sd)
-    return Fleet(own, found, past, year, machine_of, labels, levels)
+    return Fleet(own, found, past, year, machine_of, labels, levels, thin)
 
 
-def _quadratics(passed: Passed, at: np.ndarray) -> Quadratics:
-    """Log likelihoods about zero from slopes and curvatures at z (n, k)."""
-    return Quadratics(passed.slope + (passed.curvature @ at[:, :, None])[:, :, 0], passed.curvature)
+def _quadratics(passed: Passed, at: np.ndarray, thin: float) -> Quadratics:
+    """Log likelihoods about zero from slopes and curvatures at z (n, k), of which a share counts."""
+    curvature = thin * passed.curvature
+    return Quadratics(thin * passed.slope + (curvature @ at[:, :, None])[:, :, 0], curvature)
 
 
-def _noise(own: Filter, passed: Passed) -> np.ndarray:
-    """State noise that makes the prediction errors as large as they are."""
-    noise = own.noise.copy()
+def _scatter(own: Filter, passed: Passed) -> np.ndarray:
+    """Scatter of the readings that makes the prediction errors as large as they are."""
     usual = np.nanmedian(passed.error**2 / passed.variance, axis=(0, 1)) / 0.455
-    for j, state in enumerate(own.state_of):
-        if state >= 0 and np.isfinite(usual[j]):
-            noise[state] *= np.clip(usual[j], 0.25, 4.0) ** 0.5
-    return noise
+    return np.asarray(own.scatter * np.clip(np.where(np.isfinite(usual), usual, 1.0), 0.25, 4.0) ** 0.5)
+
+
+def independent(passed: Passed) -> float:
+    """Share of the samples that count as independent: one over the sum of the errors' correlations in time."""
+    e = np.clip(passed.error / np.sqrt(passed.variance), -3.0, 3.0)
+    e = e - np.nanmean(e, axis=(0, 1))
+    own = np.nanmean(e**2, axis=(0, 1))
+    shares = []
+    for j in range(e.shape[2]):
+        lags = [float(np.nanmean(e[:, k:, j] * e[:, :-k, j]) / own[j]) for k in range(1, min(MEMORY, e.shape[1] - 1))]
+        first = next((k for k, rho in enumerate(lags) if rho < CORRELATED), len(lags))
+        shares.append(1 / (1 + 2 * sum(lags[:first])))
+    return float(np.mean(shares))
 
 
 @dataclass(frozen=True, eq=False)
@@ -219,7 +233,7 @@ def question(found: Fleet, logs: Sequence[Log], progress: Callable[[str], None] 
     for n in range(TARGET_PASSES):
         progress(f"logs in question, pass {n + 1} of {TARGET_PASSES}")
         passed = own.run(data, at)
-        quadratics = _quadratics(passed, at)
+        quadratics = _quadratics(passed, at, found.independent or independent(passed))
         if n + 1 < TARGET_PASSES:
             by_year = quadratics.spread(found.levels.window).summed(year, len(named))
             wide = np.linalg.inv(found.levels.covariance[0] + np.diag(found.levels.year + sd**2))
