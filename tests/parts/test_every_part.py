@@ -117,6 +117,7 @@ GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level", "BeltPull.load"} 
     "HelicalGearPair.force",
 }
 GIVES |= {"Thermostat.opening"}
+GIVES |= {"LoadingClutch.reading"}
 GIVES |= {f"PlanetarySet.{k}" for k in ("carrier_load", "sun_load", "planet_load")}
 GIVES |= {f"HarmonicMesh.{k}" for k in ("wave_load", "shaft_load")}
 GIVES |= {f"CycloidPinStage.{k}" for k in ("eccentric_load", "crank_load", "main_load")}
