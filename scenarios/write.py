@@ -16,6 +16,8 @@ from .values import UNCERTAINTIES, settable
 #: Choices that follow from [drive].
 _DRIVEN = ("given", "dynamic")
 
+#: Beginning of the source of a value that a diagnosis changed; it holds for every test, whatever oil it ran with.
+DIAGNOSED = "inferred: diagnosis of"
 #: Source of a value that an extension set without saying more.
 _EXTENSION = "assumed: set by an extension of the rig"
 

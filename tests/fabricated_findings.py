@@ -5,35 +5,35 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from gearheat.diagnose.report.estimate import Estimate
+from gearheat.diagnose.report.evidence import Picture, Rows, View
 from gearheat.diagnose.report.findings import (
     About,
+    Alarm,
     Answer,
     Calibrated,
     Cause,
     CauseSet,
     Channel,
-    DataQuality,
-    Estimate,
     Experiment,
     Findings,
     FormShare,
     Gain,
-    GrossReading,
     Hypothesis,
     Impact,
     Invisible,
     Isolability,
-    NuisanceOff,
-    Picture,
     Played,
     Remainder,
     RemainderChannel,
+)
+from gearheat.diagnose.report.quality import (
+    DataQuality,
+    GrossReading,
+    NuisanceOff,
     Repeat,
     RepeatedPoint,
-    Rows,
-    Test,
     VarianceComponent,
-    View,
 )
 from gearheat.diagnose.report.words import with_words
 
@@ -42,8 +42,14 @@ OFFSET = "sensor.torque.offset"
 SIZES = {
     CHURNING: ("power", 120.0, "W", "power at the middle of the range", "compare two oil levels"),
     WINDAGE: ("power", 30.0, "W", "power at the middle of the range", "run it without oil"),
-    AIR: ("ln_factor", -0.4, "1", "logarithm of the factor", "blow at the housing"),
-    EMISSIVITY: ("ln_factor", -0.5, "1", "logarithm of the factor", "heat it in a still, cold room"),
+    AIR: ("ln_factor", -0.4, "1", "logarithm of the coefficient over that of the file", "blow at the housing"),
+    EMISSIVITY: (
+        "ln_factor",
+        -0.5,
+        "1",
+        "logarithm of the emissivity over that of the file",
+        "heat it in a still, cold room",
+    ),
     OFFSET: ("offset", 4.0, "N.m", "zero of the transducer", "tare the transducers"),
 }
 
@@ -95,7 +101,7 @@ def findings(verdict: str, **given: Any) -> Findings:
     """Findings with what all kinds share, and their words."""
     common: dict[str, Any] = {
         "about": About(data="campaign.csv", rig="planetary", readings=24, tests=12, seed=0),
-        "test": Test(alpha=0.05, p_any=0.4, p_omnibus=0.5, p_adequacy=0.4, draws=400),
+        "test": Alarm(alpha=0.05, p_any=0.4, p_omnibus=0.5, p_adequacy=0.4, draws=400),
         "channels": (
             Channel(name="T_oil", column="T_oil_C", kind="oil_temp", unit="degC", repeat_sd=0.35, offset_sd=0.15),
             Channel(name="loss", column="T_carrier_Nm", kind="torque", unit="N.m", repeat_sd=0.3, offset_sd=0.5),
@@ -121,7 +127,7 @@ def explained(**given: Any) -> Findings:
     oil = made.channels["T_oil"]
     before, after = (np.subtract(oil.measured, model) for model in (oil.nominal, oil.extended))
     full: dict[str, Any] = {
-        "test": Test(alpha=0.05, p_any=2.7e-190, p_omnibus=1e-60, p_adequacy=0.4, draws=400),
+        "test": Alarm(alpha=0.05, p_any=2.7e-190, p_omnibus=1e-60, p_adequacy=0.4, draws=400),
         "hypotheses": (
             Hypothesis(causes=(CHURNING,), probability=0.96, mc_error=0.012),
             Hypothesis(causes=(AIR,), probability=0.02),
@@ -147,7 +153,7 @@ def explained(**given: Any) -> Findings:
         "sets": (CauseSet(causes=(CHURNING, WINDAGE), distance=0.8, reason="both are powers of the speed"),),
         "views": (
             View(channel="loss", asks="the torque given the measured temperatures", p=0.3, nothing=0.7,
-                 causes=(View.Said(id=CHURNING, probability=0.2),), unit="N.m"),
+                 causes=(View.Alone(id=CHURNING, probability=0.2),), unit="N.m"),
         ),
         "pictures": (Picture(cause=CHURNING, channel="T_oil", quantity="w", before=before, after=after),),
         "calibrated": (Calibrated(path="housing.C", unit="J/K", file=3600.0, nominal=3500.0, extended=3550.0),),
@@ -158,7 +164,7 @@ def explained(**given: Any) -> Findings:
 def ambiguous(**given: Any) -> Findings:
     """Air or emissivity."""
     full: dict[str, Any] = {
-        "test": Test(alpha=0.05, p_any=0.001, p_adequacy=0.3, draws=400),
+        "test": Alarm(alpha=0.05, p_any=0.001, p_adequacy=0.3, draws=400),
         "hypotheses": (
             Hypothesis(causes=(AIR,), probability=0.55, mc_error=0.03),
             Hypothesis(causes=(EMISSIVITY,), probability=0.41, mc_error=0.03),
@@ -180,7 +186,7 @@ def ambiguous(**given: Any) -> Findings:
 def unexplained(**given: Any) -> Findings:
     """Something outside the library."""
     full: dict[str, Any] = {
-        "test": Test(alpha=0.05, p_any=1e-5, p_adequacy=0.2, draws=400),
+        "test": Alarm(alpha=0.05, p_any=1e-5, p_adequacy=0.2, draws=400),
         "hypotheses": (
             Hypothesis(causes=("model.unexplained",), probability=0.94),
             Hypothesis(causes=(CHURNING,), probability=0.05),

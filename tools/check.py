@@ -17,18 +17,19 @@ from ..model.errors import suggestion
 from .console import BAD_INPUT, note
 
 ROOT = Path(__file__).resolve().parents[1]
-PACKAGES = ("model", "fmu", "scenarios", "tools")
+#: Importable name below `gearheat` -> folder.
+PACKAGES = {"model": "model", "fmu": "fmu", "scenarios": "scenarios", "diagnose": "tools/diagnose", "tools": "tools"}
 
 
 def links(root: Path = ROOT) -> Path:
     """A folder that holds the packages under their importable names; mypy does not follow an editable install."""
     place = root / "build" / "mypy"
     (place / "gearheat").mkdir(parents=True, exist_ok=True)
-    for package in PACKAGES:
+    for package, folder in PACKAGES.items():
         link = place / "gearheat" / package
         if not link.exists():
             link.unlink(missing_ok=True)
-            link.symlink_to(root / package, target_is_directory=True)
+            link.symlink_to(root / folder, target_is_directory=True)
     return place
 
 

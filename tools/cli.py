@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from . import cli_contact, console
+from . import cli_contact, cli_diagnosis, console
 from .cli_options import Json, Set
 
 app = typer.Typer(
@@ -191,82 +191,36 @@ def calibrate(
     calibrate.command(rig, grid, free, bounds or [], set_ or [], json)
 
 
-@app.command()
-@console.guarded
-def diagnose(
-    data: Annotated[Path, typer.Argument(help="Measured readings: CSV, one row per steady reading.")],
-    rig: Annotated[str, typer.Option(help="Name of a shipped rig, or path of a rig file.")] = "planetary",
-    card: Annotated[Path | None, typer.Option(help="JSON: accuracies, priors and protocol of the campaign.")] = None,
-    series: Annotated[Path | None, typer.Option(help="Logged samples of the tests: CSV.")] = None,
-    reference: Annotated[
-        Path | None, typer.Option(help="Readings of a healthy campaign of the same rig: CSV as DATA.")
-    ] = None,
-    reference_series: Annotated[Path | None, typer.Option(help="Logged samples of the reference's tests: CSV.")] = None,
-    predict: Annotated[Path | None, typer.Option(help="Points whose oil temperature is predicted: CSV.")] = None,
-    predictions: Annotated[Path | None, typer.Option(help="CSV to write with the predictions.")] = None,
-    causes: Annotated[int, typer.Option(help="Largest number of simultaneous causes.")] = 2,
-    repeatability: Annotated[
-        str, typer.Option(help="Scatter of a reading: of the card, or what repeated points show where that is more.")
-    ] = "card",
-    alpha: Annotated[float, typer.Option(help="Accepted rate of false alarms.")] = 0.05,
-    seed: Annotated[int, typer.Option(help="The same seed gives the same result.")] = 0,
-    json: Json = None,
-    report: Annotated[Path | None, typer.Option(help="HTML page to write.")] = None,
-    extended: Annotated[Path | None, typer.Option(help="Rig file to write: the rig with what was found.")] = None,
-) -> None:
-    """What the model gets wrong in measured data: the causes by name, how big, how sure, and what to measure next."""
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # its matrices are small
-        os.environ.setdefault(name, "1")
-    from .diagnose import command, inputs
-
-    request = inputs.Request(data, rig, card, series, reference, reference_series, predict, causes, repeatability)
-    command.command(request, command.Outputs(predictions, json, report, extended), alpha, seed)
-
-
-@app.command()
-@console.guarded
-def plan(
-    rig: Rig,
-    separate: Annotated[
-        str,
-        typer.Option(metavar="CAUSE,CAUSE...", help="Causes to tell apart, such as cooling.air,cooling.emissivity."),
-    ],
-    card: Annotated[Path | None, typer.Option(help="JSON: accuracies, priors and protocol of the campaign.")] = None,
-    points: Annotated[
-        Path | None, typer.Option(help="Points of the campaign there is or will be: CSV. The rig's own if left out.")
-    ] = None,
-    reference: Annotated[
-        bool, typer.Option("--reference", help="There is a healthy campaign of the same points as well.")
-    ] = False,
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="Picture to write, .png or .svg.")] = None,
-    json: Json = None,
-) -> None:
-    """Which experiments would tell causes apart on a rig, before anything is measured."""
-    from .diagnose import plan_command, plan_inputs
-
-    plan_command.command(plan_inputs.PlanRequest(rig, separate, card, points, reference), json, out)
+app.command()(cli_diagnosis.diagnose)
+app.command()(cli_diagnosis.plan)
 
 
 @app.command()
 @console.guarded
 def challenge(
     sheet: Annotated[
-        Literal["own", "foreign"],
-        typer.Option(help="own: the rig behaves as the model; foreign: another simulator, with a healthy reference."),
+        Literal["own", "foreign", "textbook", "practice", "all"],
+        typer.Option(
+            help="own: the rig behaves as the model; foreign: another simulator, with a healthy reference; textbook: a "
+            "frozen third one with rough readings; practice: the campaigns of --practice; all: these, pooled."
+        ),
     ],
-    n: Annotated[int, typer.Option("--n", help="Number of cases.")] = 150,
+    n: Annotated[int, typer.Option("--n", help="Number of cases of each sheet.")] = 150,
     seed: Annotated[int, typer.Option(help="The same seed hides the same.")] = 0,
     jobs: Annotated[int, typer.Option(min=0, help="Processes to use; 0 for one per core.")] = 0,
     out: Annotated[
         Path | None, typer.Option(help="Folder for cases and answers; a run that was interrupted goes on from there.")
     ] = None,
     only: Annotated[str | None, typer.Option(help='One kind of cases, for example "clean".')] = None,
+    practice: Annotated[
+        Path | None, typer.Option(help="Folder of campaigns: data.csv, card.json and key.json in a folder each.")
+    ] = None,
     json: Json = None,
 ) -> None:
     """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
     from .challenge import command
 
-    command.command(sheet, n, seed, jobs, out, only, json)
+    command.command(sheet, n, seed, jobs, out, only, practice, json)
 
 
 @app.command("list")

@@ -18,11 +18,12 @@ from ..model.run.steady import steady, steady_table
 from ..scenarios.entries import catalogue
 from ..scenarios.measured import Campaign, Protocol, Reading, read_measured
 from ..scenarios.scenario import Scenario
+from ..scenarios.write import DIAGNOSED
 from .console import answer, table
 from .contacts import contacts_at, part_with_contacts, print_contacts
 from .points import conditions, outside_of, tell_outside
 from .rigs import load
-from .settings import DIAGNOSED, SET, adjusted, choice_paths, flat_of
+from .settings import SET, adjusted, choice_paths, flat_of
 from .unchecked import print_unchecked, unchecked
 
 

@@ -26,6 +26,8 @@ LOSSES = {
     "P_churn_W": "churning",
 }
 UNITS = {"n_set_rpm": "rpm", "T_set_Nm": "N.m"}
+
+
 def shown_unit(channel: Channel) -> str:
     """The unit of a channel's values; its errors have `channel.unit`."""
     return "°C" if channel.unit == "K" else channel.unit

@@ -22,8 +22,6 @@ Drive = Mapping[str, tuple[str, ...]]
 
 #: Source of the values that the user sets; they hold for every test, whatever oil it ran with.
 SET = "set on the command line"
-#: Beginning of the source of a value that a diagnosis changed; it holds for every test, too.
-DIAGNOSED = "inferred: diagnosis of"
 
 
 def adjusted(

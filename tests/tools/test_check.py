@@ -4,9 +4,9 @@ from gearheat.tools.check import PACKAGES, links, main, steps
 
 
 def test_types_are_checked_through_links_to_every_package(tmp_path):
-    for package in PACKAGES:
-        (tmp_path / package).mkdir()
-        (tmp_path / package / "__init__.py").touch()
+    for folder in PACKAGES.values():
+        (tmp_path / folder).mkdir(parents=True, exist_ok=True)
+        (tmp_path / folder / "__init__.py").touch()
     for _ in range(2):
         place = links(tmp_path)
     for package in PACKAGES:

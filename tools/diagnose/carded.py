@@ -9,7 +9,7 @@ from ...model.errors import DataError
 from ...scenarios.entries import catalogue
 from ...scenarios.measured import read_measured
 from ...scenarios.scenario import Scenario
-from ..settings import DIAGNOSED
+from ...scenarios.write import DIAGNOSED
 from .card import Card, read_card
 from .card_checks import card_problems
 from .inputs import protocol_of, with_starts

@@ -46,7 +46,6 @@ class Fit:
         """Ids of its causes."""
         return tuple(a.id for a in self.look.acting)
 
-
     def linear(self, problem: Problem) -> tuple[White, np.ndarray]:
         """The linearised problem beside this hypothesis: whitening by all that is uncertain, and the residual in it.
 
@@ -81,7 +80,12 @@ class _Vector:
 
     def __init__(self, problem: Problem, acting: Sequence[Acting]) -> None:
         self.nz, self.acting = problem.nz, tuple(acting)
-        low, high, precision, longest = [np.full(self.nz, -6.0)], [np.full(self.nz, 6.0)], [np.ones(self.nz)], [np.full(self.nz, LONGEST)]
+        low, high, precision, longest = (
+            [np.full(self.nz, -6.0)],
+            [np.full(self.nz, 6.0)],
+            [np.ones(self.nz)],
+            [np.full(self.nz, LONGEST)],
+        )
         self.sizes: list[int] = []
         begin = self.nz
         for a in acting:

@@ -16,6 +16,8 @@ from ..model.formula import Formula
 from . import screen
 from .extra import Extra, extras
 from .fit import Fit, fitted
+from .gross import MOST as MOST_ASIDE
+from .gross import after_all, gross
 from .problem import Acting, Problem
 
 #: Prior odds of two causes against one, of each further one, and of a remainder beside a hypothesis.
@@ -26,6 +28,8 @@ WITHIN, FORMS, EACH, LEAST = 9.0, 14, 3, 4
 GROWN, PAIRS, BEHIND = 4, 7, 6.0
 #: p of any cause above which little is fitted.
 QUIET = 0.3
+#: Searches at most, where the leading hypothesis changes which readings are gross.
+LOOKS = 3
 
 
 @dataclass(frozen=True)
@@ -70,6 +74,41 @@ class Found:
     p_any: float
     critical: float
     p_omnibus: float
+
+
+def searched(
+    problem: Problem,
+    formulas: Sequence[Formula],
+    alpha: float = 0.05,
+    seed: int = 0,
+    most: int = 2,
+    progress: Callable[[str, float], None] = lambda stage, share: None,
+) -> Found:
+    """A search in which gross readings are set aside; arguments as for `Search`."""
+    progress("calibrating without a cause", 0.02)
+    null = fitted(problem, (), np.zeros(problem.nz))
+    problem, null = _cleaned(problem, null)
+    for _ in range(LOOKS):
+        found = Search(problem, formulas, alpha, seed, most, progress).run(null)
+        leader = found.hypotheses[0].fit
+        aside = problem.aside - after_all(problem, leader)
+        if (more := gross(problem, leader)) is not None:
+            aside |= {more.aside}
+        if aside == problem.aside:
+            break
+        problem = problem.without(aside)
+        null = fitted(problem, (), null.look.z, null.noise.scales if len(null.noise.scales) else None)
+    return found
+
+
+def _cleaned(problem: Problem, null: Fit) -> tuple[Problem, Fit]:
+    """The problem without the gross readings that the null shows."""
+    for _ in range(max(2, int(MOST_ASIDE * problem.m))):
+        if (found := gross(problem, null)) is None:
+            break
+        problem = problem.without(problem.aside | {found.aside})
+        null = fitted(problem, (), null.look.z)
+    return problem, null
 
 
 class Search:
@@ -210,7 +249,9 @@ class Search:
                     # the other forms of each cause count as beside the other
                     spread = sum(logsumexp(list(w.values())) - max(w.values()) for w in h.forms.values())
                     weight = sum(np.log(a.formula.form.weight) for a in fit.look.acting)
-                    new[names] = Hypothesis(causes, fit, fit.evidence + weight + spread + self.prior(causes), None, h.forms)
+                    new[names] = Hypothesis(
+                        causes, fit, fit.evidence + weight + spread + self.prior(causes), None, h.forms
+                    )
             found |= new
             beam = sorted(new.values(), key=lambda h: -h.log_joint)[:2]
             if not beam or beam[0].log_joint < best or size == self.most:
@@ -241,7 +282,7 @@ class Search:
         best = max(h.log_joint for h in base)
         found = []
         for h in base:
-            if h.causes and h.log_joint < best - 4 * BEHIND:
+            if h.causes and h.log_joint < best - 1.5 * BEHIND:
                 continue
             for extra, gain in extras(self.problem, h.fit, self.spreads):
                 if extra.cause is None:

@@ -160,9 +160,7 @@ class Observed:
         if room is not None and not c.steady:
             u0[:, 0, self.inputs[room]] = begun
         start = np.where(np.isfinite(c.T_start), c.T_start, begun + c.start_by_room)
-        phases = Phases(
-            phases.length, u0, u1, phases.row, phases.steps, phases.read, phases.local0, phases.local1
-        )
+        phases = Phases(phases.length, u0, u1, phases.row, phases.steps, phases.read, phases.local0, phases.local1)
         return phases, start
 
     def at(self, z: np.ndarray, parts: Sequence[tuple[Formula, np.ndarray]]) -> Seen:

@@ -84,7 +84,9 @@ class Plant:
         self.reading_push = many([*arguments, way], [ca.jtimes(y, flat.p, along)])
 
     @staticmethod
-    def of(spec: Spec, forms: Iterable[Form], knobs: Sequence[str], given: Sequence[str], shown: Sequence[str]) -> Plant:
+    def of(
+        spec: Spec, forms: Iterable[Form], knobs: Sequence[str], given: Sequence[str], shown: Sequence[str]
+    ) -> Plant:
         """The superset of a rig and some forms.
 
         Args:

@@ -9,7 +9,8 @@ from matplotlib.axes import Axes
 
 from . import phrases
 from .drawing import COLOURS, empty, legend, svg
-from .findings import Channel, Findings, Picture, Rows, View
+from .evidence import Picture, Rows, View
+from .findings import Channel, Findings
 
 BEFORE, AFTER = COLOURS[1], COLOURS[0]
 #: Direction -> its mark.

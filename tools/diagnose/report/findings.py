@@ -8,31 +8,28 @@ from __future__ import annotations
 
 from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import Field
 
-from .numbers import Array, Interval, Number, P, Probability
+from .estimate import Estimate
+from .evidence import Picture, Rows, View
+from .numbers import Interval, Model, Number, P, Probability
+from .quality import DataQuality
 
 #: The name of whatever the library lacks.
 UNEXPLAINED = "model.unexplained"
 Verdict = Literal["consistent", "explained", "ambiguous", "unexplained"]
 
 
-class Model(BaseModel):
-    """Frozen, and without keys that nobody knows."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
-
-
 class Channel(Model):
     """A sensor, as the data and the card have it."""
 
     name: str = Field(description="stable name, the key of all tables by channel")
-    column: str = Field("", description="column of the user's file")
-    kind: str = Field("", description="oil_temp, wall_temp, ambient, torque, speed or power")
+    column: str = Field(default="", description="column of the user's file")
+    kind: str = Field(default="", description="oil_temp, wall_temp, ambient, torque, speed or power")
     role: Literal["given", "read"] = "read"
     unit: str = Field(description="of its readings in this result: degC, N.m, rpm, W")
-    repeat_sd: Number | None = Field(None, description="scatter from reading to reading by the card")
-    offset_sd: Number | None = Field(None, description="fixed tolerance by the card")
+    repeat_sd: Number | None = Field(default=None, description="scatter from reading to reading by the card")
+    offset_sd: Number | None = Field(default=None, description="fixed tolerance by the card")
 
     @property
     def difference(self) -> str:
@@ -43,11 +40,11 @@ class Channel(Model):
 class About(Model):
     """What was diagnosed."""
 
-    data: str = Field("", description="name of the data")
+    data: str = Field(default="", description="name of the data")
     rig: str = ""
     readings: int = 0
     tests: int = 0
-    reference: str = Field("", description="name of the healthy campaign, empty without one")
+    reference: str = Field(default="", description="name of the healthy campaign, empty without one")
     reference_readings: int = 0
     logs: tuple[str, ...] = ()
     log_rows: int = 0
@@ -55,26 +52,17 @@ class About(Model):
     seed: int = 0
 
 
-class Test(Model):
+class Alarm(Model):
     """Whether anything is wrong, and whether what is left after the best hypothesis is noise."""
 
     alpha: Number
     p_any: P = Field(description="family-wise p of the largest directed score; 1e-6 means at most that")
-    p_omnibus: P | None = Field(None, description="p of the readings under the calibrated model, no cause in mind")
+    p_omnibus: P | None = Field(
+        default=None, description="p of the readings under the calibrated model, no cause in mind"
+    )
     p_adequacy: P = Field(description="p of what is left after the top hypothesis; near 1 is too good to be true")
     null: Literal["bootstrap", "analytic"] = "bootstrap"
     draws: int | None = None
-
-
-class Estimate(Model):
-    """A fitted parameter with its 95 % interval."""
-
-    name: str
-    value: Number
-    ci95: Interval
-    unit: str
-    doc: str = Field("", description="what it is, in words")
-    at_bound: Literal["", "low", "high"] = Field("", description="the bound that the value sits on")
 
 
 class Impact(Model):
@@ -83,7 +71,7 @@ class Impact(Model):
     value: Number
     ci95: Interval
     unit: str = ""
-    what: str = Field("", description="what changes, in words: oil temperature, loss")
+    what: str = Field(default="", description="what changes, in words: oil temperature, loss")
 
 
 class FormShare(Model):
@@ -100,22 +88,24 @@ class Cause(Model):
     probability: Probability
     mc_error: Number = 0.0
     detectable: Number | None = Field(
-        None, description="smallest size that would be found in 80 of 100 such campaigns; absent: none is seen"
+        default=None, description="smallest size that would be found in 80 of 100 such campaigns; absent: none is seen"
     )
-    parameters: tuple[Estimate, ...] = Field((), description="the size first, then the shapes")
+    parameters: tuple[Estimate, ...] = Field(default=(), description="the size first, then the shapes")
     regime: dict[str, tuple[Number | None, Number | None]] = Field(
-        {}, description="where it acts: column or quantity with unit -> above, below; absent = everywhere"
+        default={}, description="where it acts: column or quantity with unit -> above, below; absent = everywhere"
     )
-    forms: tuple[FormShare, ...] = Field((), description="most probable first; the name is empty for the general form")
-    impact: dict[str, Impact] = Field({}, description="its own part of the impact")
-    p_split: P | None = Field(None, description="F test on the half of the tests that did not choose its form")
-    q: P | None = Field(None, description="the same, after Benjamini and Hochberg over all causes")
-    doc: str = Field("", description="where it acts and what it does")
-    exposes: str = Field("", description="the experiment that shows it directly")
-    like: str = Field("", description="class of causes that count as one answer, and why")
-    usual: Number | None = Field(None, description="prior standard deviation of its size")
+    forms: tuple[FormShare, ...] = Field(
+        default=(), description="most probable first; the name is empty for the general form"
+    )
+    impact: dict[str, Impact] = Field(default={}, description="its own part of the impact")
+    p_split: P | None = Field(default=None, description="F test on the half of the tests that did not choose its form")
+    q: P | None = Field(default=None, description="the same, after Benjamini and Hochberg over all causes")
+    doc: str = Field(default="", description="where it acts and what it does")
+    exposes: str = Field(default="", description="the experiment that shows it directly")
+    like: str = Field(default="", description="class of causes that count as one answer, and why")
+    usual: Number | None = Field(default=None, description="prior standard deviation of its size")
     unit: str = Field("1", description="of its size")
-    meaning: str = Field("", description="what its size is")
+    meaning: str = Field(default="", description="what its size is")
 
 
 class Hypothesis(Model):
@@ -147,76 +137,7 @@ class Remainder(Model):
 
     probability: Probability
     mc_error: Number = 0.0
-    channels: tuple[RemainderChannel, ...] = Field((), description="largest against its noise first")
-
-
-class GrossReading(Model):
-    """A single reading that is wrong."""
-
-    row: int = Field(description="row of the data, from 1")
-    line: int | None = Field(None, description="line of the file")
-    point: str = Field("", description="number of the point as in the file")
-    channel: str
-    size_sd: Number = Field(description="distance from what the other readings say, in its standard deviations")
-    shown: Number | None = None
-    expected: Number | None = None
-    unit: str = ""
-    set_aside: bool = True
-
-
-class NuisanceOff(Model):
-    """An uncertain value of the rig, or a tolerance, further off than 2.5 prior standard deviations."""
-
-    name: str
-    z: Number = Field(description="prior standard deviations off")
-    factor: Number | None = Field(None, description="value found over that of the file")
-    file: Number | None = None
-    found: Number | None = None
-    unit: str = ""
-    paths: tuple[str, ...] = ()
-
-
-class VarianceComponent(Model):
-    """A scatter as the card states it and as the data show it."""
-
-    name: str = Field(description="room, day, mounting, reading of a channel")
-    channel: str = ""
-    unit: str = ""
-    card: Number
-    found: Number
-    ratio: Number
-    ci95: Interval | None = Field(None, description="of what was found")
-
-
-class Repeat(Model):
-    """One repetition of a point."""
-
-    test: int
-    order: Number
-    date: str = ""
-    sum: Number | None = Field(None, description="half the sum of both directions' deviations; that of one without two")
-    difference: Number | None = Field(None, description="half the difference of both directions' deviations")
-
-
-class RepeatedPoint(Model):
-    """A point that was measured more than once, in running order; deviations from the calibrated model."""
-
-    condition: str
-    channel: str
-    unit: str
-    repeats: tuple[Repeat, ...]
-    sd: Number = Field(description="scatter of the sums")
-    card: Number | None = Field(None, description="the same by the card")
-
-
-class DataQuality(Model):
-    """What is to be known of the data before any cause is named."""
-
-    gross: tuple[GrossReading, ...] = ()
-    nuisances: tuple[NuisanceOff, ...] = ()
-    variance: tuple[VarianceComponent, ...] = ()
-    repeated: tuple[RepeatedPoint, ...] = ()
-    adequacy: dict[str, P] = Field({}, description="channel -> p of what is left in it; near 1 is too good to be true")
+    channels: tuple[RemainderChannel, ...] = Field(default=(), description="largest against its noise first")
 
 
 class Gain(Model):
@@ -235,12 +156,14 @@ class Gain(Model):
     n: int
     rmse_before: Number = Field(description="without the discrepancy term, as in version 1: same as before.without")
     rmse_after: Number = Field(description="the same as after.without")
-    before: Both | None = Field(None, description="calibrated, no cause")
-    after: Both | None = Field(None, description="with the causes chosen without the held-out readings")
-    ratio_ci90: Interval | None = Field(None, description="of rmse_after / rmse_before, tests drawn with replacement")
+    before: Both | None = Field(default=None, description="calibrated, no cause")
+    after: Both | None = Field(default=None, description="with the causes chosen without the held-out readings")
+    ratio_ci90: Interval | None = Field(
+        default=None, description="of rmse_after / rmse_before, tests drawn with replacement"
+    )
     noise_floor: Number | None = None
-    rivals: dict[str, Number] = Field({}, description="plain statistics on the same folds")
-    chosen: dict[str, int] = Field({}, description="cause -> folds that chose it")
+    rivals: dict[str, Number] = Field(default={}, description="plain statistics on the same folds")
+    chosen: dict[str, int] = Field(default={}, description="cause -> folds that chose it")
     folds: int | None = None
 
 
@@ -276,64 +199,7 @@ class Isolability(Model):
     cause: str
     visible: Number = Field(description="distance from no cause")
     nearest: str = ""
-    distance: Number | None = Field(None, description="from the nearest other cause, all forms free")
-
-
-class View(Model):
-    """What one channel says on its own."""
-
-    class Said(Model):
-        """A cause, by this channel alone."""
-
-        id: str
-        probability: Probability
-        mc_error: Number = 0.0
-        parameters: tuple[Estimate, ...] = ()
-
-    channel: str
-    asks: str = Field(description="torque given the measured temperatures; oil thermometer against the others")
-    p: P | None = Field(None, description="of the channel under the calibrated model")
-    nothing: Probability | None = Field(None, description="probability that nothing is wrong, by this channel alone")
-    causes: tuple[Said, ...] = ()
-    unit: str = ""
-    order: Array = Field((), description="running order of the deviations below")
-    direction: Array = ()
-    deviation: Array = Field((), description="measured less what the given channels imply")
-
-
-class Rows(Model):
-    """The readings for pictures: one entry a row."""
-
-    class Values(Model):
-        """A channel's readings: measured, calibrated without a cause, with the top hypothesis."""
-
-        measured: Array
-        nominal: Array
-        extended: Array = ()
-        sd: Number | None = Field(None, description="standard deviation of one reading against the model, as found")
-
-    class Quantity(Model):
-        """What readings are drawn against."""
-
-        label: str
-        unit: str = ""
-        values: Array
-
-    row: tuple[int, ...] = ()
-    test: tuple[int, ...] = ()
-    direction: tuple[int, ...] = ()
-    channels: dict[str, Values] = {}
-    quantities: dict[str, Quantity] = Field({}, description="sensors, rise, order, time ...")
-
-
-class Picture(Model):
-    """Measured less simulated against what a cause acts on, without and with that cause, the other causes in both."""
-
-    cause: str
-    channel: str = Field(description="the channel that shows it best")
-    quantity: str = Field(description="key of rows.quantities")
-    before: Array
-    after: Array
+    distance: Number | None = Field(default=None, description="from the nearest other cause, all forms free")
 
 
 class Calibrated(Model):
@@ -369,34 +235,37 @@ class Said(Model):
     size: str = ""
     sure: str = ""
     cannot_be: str = ""
-    data: tuple[str, ...] = Field((), description="what is to be known of the data and the rig, gross readings first")
+    data: tuple[str, ...] = Field(
+        default=(), description="what is to be known of the data and the rig, gross readings first"
+    )
 
 
 class Findings(Model):
     """Result of `gearheat diagnose`."""
 
-    schema_: Literal["gearheat.diagnosis/2"] = Field("gearheat.diagnosis/2", alias="schema")
+    schema_: Literal["gearheat.diagnosis/2"] = Field(default="gearheat.diagnosis/2", alias="schema")
     verdict: Verdict = Field(
         description="consistent: nothing beyond the stated accuracies; explained: one answer > 0.9; "
         "ambiguous: several are needed for 0.9; unexplained: an alarm, most probably outside the library"
     )
     says: Said = Said()
     about: About = About()
-    test: Test
+    test: Alarm
     hypotheses: tuple[Hypothesis, ...] = Field(description="no causes = nothing wrong; probabilities sum to <= 1")
     answers: tuple[Answer, ...] = Field(
-        (), description="what the verdict names, most probable first; those of `ambiguous` reach 0.9 together"
+        default=(), description="what the verdict names, most probable first; those of `ambiguous` reach 0.9 together"
     )
     causes: tuple[Cause, ...] = Field(description="marginal, most probable first")
     remainder: Remainder | None = None
     data_quality: DataQuality = DataQuality()
-    confusable: tuple[tuple[str, ...], ...] = Field((), description="the causes of `sets`")
+    confusable: tuple[tuple[str, ...], ...] = Field(default=(), description="the causes of `sets`")
     sets: tuple[CauseSet, ...] = ()
     impact: dict[str, Impact] = Field(
-        {}, description="mean change of the readings that the first answer causes: T_oil_K, T_wall_K, loss_Nm, heat_W"
+        default={},
+        description="mean change of the readings that the first answer causes: T_oil_K, T_wall_K, loss_Nm, heat_W",
     )
     gain: Gain | None = None
-    gain_grouped: tuple[Gain, ...] = Field((), description="the same by other schemes")
+    gain_grouped: tuple[Gain, ...] = Field(default=(), description="the same by other schemes")
     played: dict[str, Played] = {}
     next_experiment: tuple[Experiment, ...] = ()
     isolability: tuple[Isolability, ...] = ()
@@ -407,7 +276,9 @@ class Findings(Model):
     pictures: tuple[Picture, ...] = ()
     calibrated: tuple[Calibrated, ...] = ()
     predictions: tuple[Prediction, ...] = ()
-    extended_rig: str = Field("", description="rig file (TOML): calibrated, with the causes of the first answer")
+    extended_rig: str = Field(
+        default="", description="rig file (TOML): calibrated, with the causes of the first answer"
+    )
     warnings: tuple[str, ...] = ()
 
     @property

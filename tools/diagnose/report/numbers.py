@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
 #: Significant digits of a number and of the numbers of an array: beyond them the order of sums shows.
 DIGITS, ARRAY_DIGITS = 6, 5
@@ -46,3 +46,9 @@ P = Annotated[float, AfterValidator(_p), Field(ge=0, le=1)]
 Interval = tuple[Number, Number]
 #: A row of numbers, null where one is missing; takes arrays.
 Array = Annotated[tuple[float | None, ...], BeforeValidator(_listed)]
+
+
+class Model(BaseModel):
+    """Frozen, and without keys that nobody knows."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)

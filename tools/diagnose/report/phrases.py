@@ -2,9 +2,13 @@
 
 from __future__ import annotations
 
-from .findings import Answer, Cause, Estimate, Findings, Gain, GrossReading, Impact, NuisanceOff
+import math
+
+from .estimate import Estimate
+from .findings import Answer, Cause, Findings, Gain, Impact
 from .names import names_of
 from .numbers import LEAST_P
+from .quality import GrossReading, NuisanceOff
 
 #: Units as they are shown.
 SHOWN = {"degC": "°C", "1": ""}
@@ -17,8 +21,12 @@ SCHEMES = {
     "first-oil-to-others": "the other oils predicted from the first",
     "split": "half of the tests left out",
 }
-#: Columns and quantities in which a regime is stated -> words and unit; the column's own ending tells others.
+#: Ending of a column in which a regime is stated -> its unit; quantities say it as "speed [rpm]".
 ENDINGS = {"_rpm": "rpm", "_Nm": "N.m", "_C": "°C", "_K": "K", "_W": "W", "_mm2_s2": "mm²/s²", "_kW": "kW"}
+
+
+#: How the name of a parameter begins that is a logarithm.
+LOGARITHM = "ln_"
 
 
 def number(value: float, digits: int = 3) -> str:
@@ -44,8 +52,11 @@ def percent(probability: float, error: float = 0.0) -> str:
 
 
 def p_value(p: float) -> str:
-    """p = 0.03, or p < 1e-6."""
-    return "p < 1e-6" if p <= LEAST_P else f"p = {number(p, 2)}"
+    """p = 0.03, p = 0.998, p = 2e-5 or p < 1e-6."""
+    if p <= LEAST_P:
+        return "p < 1e-6"
+    digits = 2 if p < 0.99 else 4
+    return f"p = {p:.0e}".replace("e-0", "e-") if p < 1e-3 else f"p = {min(p, 0.9999):.{digits}g}"
 
 
 def chance(p: float) -> str:
@@ -56,17 +67,22 @@ def chance(p: float) -> str:
     return f"fewer than 1 of 1000 campaigns without a fault deviate as much ({p_value(p)})"
 
 
-def interval(ci95: tuple[float, float]) -> str:
-    """An interval; a parameter that was held has none."""
-    return f"{number(ci95[0])} to {number(ci95[1])}" if ci95[0] < ci95[1] else "held"
-
-
 def estimate(found: Estimate) -> str:
-    """A parameter with unit and interval, and the bound it sits on."""
-    inside = interval(found.ci95) if found.ci95[0] < found.ci95[1] else ""
+    """A parameter with unit and interval, and the bound it sits on; logarithms as factors."""
+    value, (low, high) = found.value, found.ci95
+    said = with_unit(value, found.unit)
+    if found.name.startswith(LOGARITHM):
+        value, low, high = (math.exp(v) for v in (value, low, high))
+        said = f"{number(value)} times"
+    inside = f"{number(low)} to {number(high)}" if low < high else ""
     bound = {"low": "at its lower bound", "high": "at its upper bound"}.get(found.at_bound, "")
     text = "; ".join(filter(None, (inside, bound)))
-    return with_unit(found.value, found.unit) + (f" ({text})" if text else "")
+    return said + (f" ({text})" if text else "")
+
+
+def meaning(found: Estimate) -> str:
+    """What a parameter is, in words; that of a logarithm without the word."""
+    return found.doc.removeprefix("logarithm of the ").removeprefix("logarithm of ") or found.name.replace("_", " ")
 
 
 def impact(found: Impact) -> str:
@@ -84,7 +100,8 @@ def regime(found: Cause) -> str:
     parts = []
     for quantity, (low, high) in found.regime.items():
         ending = next((e for e in ENDINGS if quantity.endswith(e)), "")
-        name, unit = quantity.removesuffix(ending), ENDINGS.get(ending, "")
+        name, _, unit = quantity.removesuffix(ending).removesuffix("]").partition(" [")
+        unit = unit or ENDINGS.get(ending, "")
         ends = [("above", low), ("below", high)]
         said = " and ".join(with_unit(end, unit).join((f"{word} ", "")) for word, end in ends if end is not None)
         parts.append(f"{name} {said}")
@@ -99,7 +116,8 @@ def answer(found: Answer) -> str:
 
 def gross(found: GrossReading) -> str:
     """A wrong reading, as a sentence."""
-    where = ", ".join(filter(None, (found.line and f"line {found.line}", found.point and f"point {found.point}")))
+    places = (("line", found.line), ("point", found.point))
+    where = ", ".join(f"{name} {value}" for name, value in places if value)
     text = f"Row {found.row}{f' ({where})' if where else ''}: {found.channel}"
     if found.shown is not None and found.expected is not None:
         shown, expected = (with_unit(v, found.unit, 4) for v in (found.shown, found.expected))

@@ -33,13 +33,14 @@ def text(findings: Findings, *, everything: bool = False) -> str:
     lines += [("warning", w) for w in shown]
     if more := len(findings.warnings) - len(shown):
         lines.append(("", f"{more} more warnings: --all"))
-    found = [_paragraph(word, line) for word, line in lines if line]
+    found = [paragraph(word, line) for word, line in lines if line]
     if everything:
         found += [drawn(t) for t in tables(findings)]
     return "\n".join(found) + "\n"
 
 
-def _paragraph(word: str, line: str) -> str:
+def paragraph(word: str, line: str) -> str:
+    """A text with a word to its left."""
     return textwrap.fill(line, WIDTH, initial_indent=f"{word:<{LEFT}}", subsequent_indent=" " * LEFT)
 
 

@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 
 from . import phrases
-from .findings import Findings, Hypothesis, View
+from .evidence import View
+from .findings import Findings, Hypothesis
 from .names import name_of, names_of
 
 #: Causes and hypotheses in a table have at least this probability; experiments and rows at most this many.
@@ -68,7 +69,7 @@ def causes(findings: Findings) -> list[Table]:
         for c in listed
     )
     sizes = (
-        (name_of(c.id), p.name, phrases.estimate(p), p.doc) for c in listed for p in c.parameters
+        (name_of(c.id), p.name, phrases.estimate(p), phrases.meaning(p)) for c in listed for p in c.parameters
     )  # fmt: skip
     joint = sorted(findings.hypotheses, key=lambda h: -h.probability)[:MOST]
     together = ((phrases.percent(h.probability, h.mc_error), _joint(h)) for h in joint)
@@ -184,5 +185,5 @@ def _said(probability: float | None) -> str:
     return "" if probability is None else phrases.percent(probability)
 
 
-def _leading(said: Iterable[View.Said]) -> str:
+def _leading(said: Iterable[View.Alone]) -> str:
     return ", ".join(f"{name_of(s.id)} {phrases.percent(s.probability, s.mc_error)}" for s in list(said)[:3])

@@ -149,12 +149,14 @@ def _size(findings: Findings) -> str:
         return ""
     said = []
     if findings.impact:
-        said.append(f"{sentence('; '.join(phrases.impact(i) for i in findings.impact.values()))}, on average.")
+        which = f"if it is {phrases.answer(findings.answers[0])}: " if findings.verdict == "ambiguous" else ""
+        effects = "; ".join(phrases.impact(i) for i in findings.impact.values())
+        said.append(f"{sentence(which + effects)}, on average.")
     for answer in findings.answers[: 1 if findings.verdict != "ambiguous" else 2]:
-        found = [findings.cause(c) for group in answer.causes for c in group]
-        sizes = [text for c in found if c is not None and (text := _sized(c))]
-        if sizes:
-            said.append(f"{sentence('; '.join(sizes))}.")
+        for group in answer.causes:
+            found = [c for member in group if (c := findings.cause(member)) is not None]
+            if sizes := [text for c in found if (text := _sized(c))]:
+                said.append(f"{sentence('; or '.join(sizes))}.")
     return " ".join(said)
 
 
@@ -162,9 +164,8 @@ def _sized(cause: Cause) -> str:
     if not cause.parameters:
         return ""
     where = ", ".join(filter(None, (cause.forms[0].name if cause.forms else "", phrases.regime(cause))))
-    what = cause.parameters[0].doc or cause.meaning or cause.parameters[0].name
-    place = f" [{where}]" if where else ""
-    return f"{name_of(cause.id)}{place}: {what} {phrases.estimate(cause.parameters[0])}"
+    place = f" ({where})" if where else ""
+    return f"{name_of(cause.id)}{place}: {phrases.meaning(cause.parameters[0])} {phrases.estimate(cause.parameters[0])}"
 
 
 def _sure(findings: Findings) -> str:
@@ -193,7 +194,7 @@ def _cannot_be(findings: Findings) -> str:
     if out:
         said.append(f"Ruled out at their usual size: {names_of(out, most=2 * MOST)}.")
     for group in findings.sets:
-        first, *others = group.causes
+        first, *others = (c for c in group.causes if c == group.causes[0] or c not in named)
         if first in named and others and group.distance < APART:
             said.append(f"These data cannot tell {name_of(first)} from {names_of(others, 'or')}.")
     if findings.invisible:

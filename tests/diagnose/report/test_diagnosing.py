@@ -1,0 +1,95 @@
+"""The command `diagnose` around an inference: all problems at once, files whole or not at all."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+from fabricated_findings import explained
+from gearheat.diagnose.report.findings import Findings, Prediction, json_schema
+from gearheat.diagnose.request import Inputs, Request
+from gearheat.model.errors import DataError
+from gearheat.scenarios.load import RIGS
+from gearheat.tools import cli, diagnosing
+from gearheat.tools.diagnosing import Outputs, Progress, diagnose_command
+from jsonschema import validate
+from typer.testing import CliRunner
+
+RIG = "planetary"
+DATA = next((RIGS / RIG).glob("*.csv"))
+
+
+def infer(inputs: Inputs, progress: Progress) -> Findings:
+    """Findings that need no work."""
+    progress("thinking", 0.5)
+    said = explained(
+        extended_rig='kind = "network"\n',
+        predictions=(Prediction(point="1", nominal={"T_oil": 60.0}, extended={"T_oil": 61.5}),),
+    )
+    return said.model_copy(update={"about": said.about.model_copy(update={"readings": inputs.data.n})})  # type: ignore[union-attr]
+
+
+def test_everything_is_written_whole(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    outputs = Outputs(tmp_path / "p.csv", str(tmp_path / "o.json"), tmp_path / "o.html", tmp_path / "o.toml")
+    diagnose_command(Request(RIG, DATA, predict=DATA), outputs, infer)
+    assert (tmp_path / "p.csv").read_text() == "point,T_oil_nominal_C,T_oil_extended_C\n1,60.000,61.500\n"
+    found = json.loads((tmp_path / "o.json").read_text())
+    validate(found, json_schema())
+    assert found["about"]["readings"] > 10
+    assert (tmp_path / "o.html").read_text().startswith("<!doctype html>")
+    assert (tmp_path / "o.toml").read_text() == 'kind = "network"\n'
+    shown = capsys.readouterr()
+    assert shown.out.startswith("verdict    One cause explains the data")
+    assert shown.err == "", "no bar where there is no terminal"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["o.html", "o.json", "o.toml", "p.csv"]
+
+
+def test_json_alone_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -> None:
+    diagnose_command(Request(RIG, DATA), Outputs(json="-"), infer)
+    assert json.loads(capsys.readouterr().out)["verdict"] == "explained"
+
+
+def test_all_problems_at_once(tmp_path: Path) -> None:
+    (card := tmp_path / "card.toml").write_text("day_cooling_sd = -1.0\n")
+    request = Request(RIG, DATA, card=card, reference=tmp_path / "none.csv", causes=0, alpha=1.5, seed=-1)
+    page = tmp_path / "page"
+    outputs = Outputs(page, str(tmp_path / "nowhere" / "o.json"), page, card)
+    with pytest.raises(DataError) as caught:
+        diagnose_command(request, outputs, infer)
+    told = "\n".join(caught.value.problems)
+    words = ("--alpha 1.5", "--causes 0", "--seed -1", "--reference", "there is no such file", "day_cooling_sd")
+    words += ("--predictions needs the points", "nowhere", "is the file of --card", "is the file of --predictions")
+    for word in words:
+        assert word in told, word
+    assert list(tmp_path.iterdir()) == [card]
+
+
+def test_no_data_and_no_rig_are_told_together() -> None:
+    with pytest.raises(DataError) as caught:
+        diagnose_command(Request("planetry"), Outputs(), infer)
+    told = "\n".join(caught.value.problems)
+    assert "no data are given" in told
+    assert "planetary" in told
+
+
+def test_an_interrupted_run_writes_nothing(tmp_path: Path) -> None:
+    def interrupted(inputs: Inputs, progress: Progress) -> Findings:
+        raise KeyboardInterrupt
+
+    before = tmp_path / "o.json"
+    before.write_text("earlier")
+    with pytest.raises(KeyboardInterrupt):
+        diagnose_command(Request(RIG, DATA), Outputs(None, str(before), tmp_path / "o.html"), interrupted)
+    assert before.read_text() == "earlier"
+    assert list(tmp_path.iterdir()) == [before]
+
+
+def test_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(diagnosing, "_inference", lambda: infer)
+    done = CliRunner().invoke(cli.app, ["diagnose", str(DATA), "--rig", RIG, "--all", "--seed", "3"])
+    assert done.exit_code == 0, done.output
+    assert "Smallest size found in 80 of 100 such campaigns" in done.output
+    wrong = CliRunner().invoke(cli.app, ["diagnose", "--rig", RIG, "--logs", str(tmp_path / "no.csv")])
+    assert wrong.exit_code == 2
+    assert "--logs" in wrong.output

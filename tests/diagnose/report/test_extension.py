@@ -1,0 +1,92 @@
+"""The extended rig: a rig file that every command reads, with what is no matter of the machine in comments."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import casadi as ca
+import pytest
+from gearheat.diagnose.library.cause import Cause, Form, Row, Size, Theta, Values
+from gearheat.diagnose.report.extension import Applied, extended_rig
+from gearheat.model.machines.spec import PartSpec
+from gearheat.model.parts import PARTS
+from gearheat.scenarios.load import load
+from gearheat.scenarios.write import DIAGNOSED
+
+RIG = load("helical_two_stage")
+OIL = next(name for name, kinds in RIG.entries.items() if "oil" in kinds)
+SIZE = Size("G", "W/K", "conductance", 2.0, 0.0, 20.0)
+
+
+def applied(form: Form, id: str = "cooling.air", **theta: float) -> Applied:
+    return Applied(Cause(id, "It cools.", SIZE, (form,)), form, theta)
+
+
+def beside(theta: Theta, row: Row) -> Values:
+    """The added conductor gets its conductance."""
+    return {"extra_air.G": theta["G"]}
+
+
+@pytest.fixture
+def conductor() -> Form:
+    """A conductance between two bodies of the rig that have conductors already."""
+    net = RIG.spec.connections[0]
+    ports = [port for net in RIG.spec.connections for port in net if port.endswith((".heat", ".floor"))]
+    assert len(ports) >= 2, net
+    parts = (PartSpec("extra_air", "ThermalConductor", {"G": 0.0}),)
+    nets = ((ports[0], "extra_air.a"), ("extra_air.b", ports[1]))
+    return Form(parts=parts, connections=nets, values=beside)
+
+
+def written(tmp_path: Path, text: str) -> Path:
+    (path := tmp_path / "extended.toml").write_text(text, encoding="utf-8")
+    return path
+
+
+def test_a_cause_adds_its_part_under_a_free_name(tmp_path: Path, conductor: Form) -> None:
+    one = applied(conductor, G=3.0)
+    path = written(tmp_path, extended_rig(RIG, {}, [one], "mine.csv", PARTS))
+    again = load(path)
+    assert again.spec.part("found_air").values["G"] == 3.0
+    assert again.value_sources["found_air.G"] == f"{DIAGNOSED} mine.csv, cooling.air"
+    twice = load(written(tmp_path, extended_rig(again, {}, [one], "later.csv", PARTS)))
+    assert twice.spec.part("found_air_2").values["G"] == 3.0
+    assert "cooling by the air (cooling.air)" in twice.doc
+
+
+def test_calibrated_values_come_first_and_stay_within_their_range(tmp_path: Path) -> None:
+    path, quantity = next((p, q) for p, q in RIG.settable().items() if q.high == 1.0 and not q.high_open)
+    factor = Form(values=lambda theta, row: {f"{OIL}.nu_40": row.base[f"{OIL}.nu_40"] * ca.exp(theta["G"])})
+    text = extended_rig(RIG, {path: 1.3, f"{OIL}.nu_40": 1e-4}, [applied(factor, G=0.5)], "mine.csv", PARTS)
+    again = load(written(tmp_path, text))
+    assert again.spec.part(path.rpartition(".")[0]).values[quantity.name.rpartition(".")[2]] == 1.0
+    assert f"# {path} would be 1.3; no more than this is possible." in text
+    assert again.spec.part(OIL).values["nu_40"] == pytest.approx(1e-4 * float(ca.exp(0.5)))
+
+
+def test_several_oils_keep_their_own_values(tmp_path: Path) -> None:
+    factor = Form(values=lambda theta, row: {f"{OIL}.nu_40": row.base[f"{OIL}.nu_40"] * theta["G"]})
+    text = extended_rig(RIG, {}, [applied(factor, G=1.5)], "mine.csv", PARTS, oils=3)
+    assert "of the rig's own oil" in text.splitlines()[1]
+    assert not load(written(tmp_path, text)).value_sources[f"{OIL}.nu_40"].startswith(DIAGNOSED)
+
+
+@pytest.mark.parametrize(
+    "form",
+    [
+        Form("T_oil", shown=lambda theta, row, true: {"T_oil": true["T_oil"] + theta["G"]}),
+        Form(values=lambda theta, row: {f"{OIL}.nu_40": 1e-4 * (1 + theta["G"] * row.order)}),
+        Form(values=lambda theta, row: {f"{OIL}.nu_40": 1e-6 * (row.sensors["T_amb"] - 200)}),
+        Form(values=lambda theta, row: {f"{OIL}.nu_40": 1e-4 * theta["G"]}, spread="test"),
+    ],
+)
+def test_instruments_and_days_are_comments(tmp_path: Path, form: Form) -> None:
+    text = extended_rig(RIG, {}, [applied(form, "sensor.oil_temp.offset", G=2.0)], "mine.csv", PARTS)
+    assert "# Not a matter of the machine, hence not below: sensor.oil_temp.offset" in text
+    assert "G = 2" in text.splitlines()[1]
+    assert load(written(tmp_path, text)).spec.parts == RIG.spec.parts
+
+
+def test_the_same_findings_give_the_same_bytes(conductor: Form) -> None:
+    one = applied(conductor, G=3.0)
+    assert extended_rig(RIG, {}, [one], "a.csv", PARTS) == extended_rig(RIG, {}, [one], "a.csv", PARTS)

@@ -1,0 +1,135 @@
+"""A plan: in one sentence, as a table, as a picture, and the command around it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fabricated_findings import AIR, CHURNING, EMISSIVITY, OFFSET, WINDAGE
+from gearheat.diagnose.report.findings import Isolability
+from gearheat.diagnose.report.plan import (
+    Outlook,
+    Plan,
+    Planned,
+    PlannedCause,
+    PlannedPair,
+    as_object,
+    picture,
+    sentence,
+)
+from gearheat.diagnose.report.plan import text as printed
+from gearheat.diagnose.request import PlanInputs, PlanRequest, unknown_causes
+from gearheat.model.errors import DataError
+from gearheat.tools import cli, diagnosing
+from gearheat.tools.diagnosing import Progress, plan_command
+from typer.testing import CliRunner
+
+PAIR = (AIR, EMISSIVITY)
+
+
+def outlook(after: float, *names: str) -> Outlook:
+    pair = Outlook.Pair(causes=PAIR, before=2.0, after=after)
+    return Outlook(
+        experiments=names, smallest=after, nearest=PAIR, gain=after - 2.0, separates=after >= 3, pairs=(pair,)
+    )
+
+
+def plan(verdict: str = "one", best: float = 3.6, **given: Any) -> Plan:
+    """Air and emissivity, which a cold room tells apart."""
+    cause = {"size": "ln_factor", "usual": 0.4, "visible": 4.0}
+    full: dict[str, Any] = {
+        "rig": "mine",
+        "verdict": verdict,
+        "causes": tuple(PlannedCause(id=c, exposes="blow at it" if c == AIR else "", **cause) for c in PAIR),
+        "pairs": (PlannedPair(causes=PAIR, distance=2.0),),
+        "now": outlook(2.0),
+        "catalogue": (Planned(id="cold", what="some points at 5 degC"), Planned(id="fast", what="more speed")),
+        "outlooks": (outlook(best, "cold"), outlook(2.01, "fast")),
+        "together": (outlook(best, "cold"),),
+        "isolability": (
+            Isolability(cause=AIR, visible=4.1, nearest=EMISSIVITY, distance=2.0),
+            Isolability(cause=OFFSET, visible=8.0, nearest=AIR, distance=6.0),
+        ),
+    }
+    return Plan(**(full | given))
+
+
+@pytest.mark.parametrize(
+    ("made", "words"),
+    [
+        (plan("apart", now=outlook(3.3)), "tells them apart as it is: 3.3 standard deviations"),
+        (plan(), "Do cold, some points at 5 degC: from 2.0 to 3.6 standard deviations."),
+        (
+            plan("several", together=(outlook(2.8, "cold"), outlook(3.2, "cold", "fast"))),
+            "but cold and fast together do",
+        ),
+        (plan("none", 2.4), "No experiment here tells them apart at 3 standard deviations. The best is some points"),
+        (plan("same", now=None, outlooks=(), together=()), "they are one answer"),
+        (plan(verdict=None), ""),
+    ],
+)
+def test_the_answer_is_one_sentence(made: Plan, words: str) -> None:
+    assert words in sentence(made)
+
+
+def test_the_screen() -> None:
+    said = printed(plan())
+    assert "more speed" not in said, "what adds nothing is left out"
+    assert "more speed" in printed(plan(), everything=True)
+    assert "the campaign as it is" in said
+    assert "What this design can tell" not in said
+
+
+def test_a_table_of_all_causes_where_none_are_named() -> None:
+    said = printed(plan(None, causes=(), pairs=(), now=None, outlooks=(), together=()))
+    rows = [line.split() for line in said.splitlines() if line.strip().startswith((AIR, OFFSET))]
+    assert [row[-1] for row in rows] == ["no", "yes"]
+
+
+def test_classes_and_faint_causes_are_told() -> None:
+    faint = PlannedCause(id=CHURNING, size="P_ref", usual=60.0, unit="W", visible=1.7, exposes="drain the oil")
+    pairs = (PlannedPair(causes=(CHURNING, WINDAGE), distance=0.0, one_answer="powers of the speed"),)
+    said = printed(plan(causes=(faint,), pairs=pairs))
+    assert "churning of the oil and windage (powers of the speed). What would tell: churning of the oil: drain" in said
+    assert "usual size (P_ref 60 W) would show at only 1.7" in said
+
+
+def test_pictures_have_the_same_bytes_twice() -> None:
+    assert picture(plan(), "svg") == picture(plan(), "svg")
+    assert picture(plan(), "png").startswith(b"\x89PNG")
+
+
+def find(inputs: PlanInputs, progress: Progress) -> Plan:
+    """A plan that needs no work."""
+    return plan(rig=inputs.scenario.name)
+
+
+def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(diagnosing, "_planning", lambda: find)
+    out, file = tmp_path / "plan.svg", tmp_path / "plan.json"
+    arguments = ["plan", "helical_two_stage", "--separate", ",".join(PAIR), "--out", str(out), "--json", str(file)]
+    done = CliRunner().invoke(cli.app, arguments)
+    assert done.exit_code == 0, done.output
+    assert done.output.startswith("answer     Do cold")
+    assert json.loads(file.read_text()) == as_object(plan(rig="helical_two_stage"))
+    assert out.read_text().startswith("<svg")
+
+
+def test_all_problems_at_once(tmp_path: Path) -> None:
+    request = PlanRequest("nowhere", f"{AIR},{AIR}", card=tmp_path / "no.toml")
+    with pytest.raises(DataError) as caught:
+        plan_command(request, str(tmp_path / "no" / "o.json"), tmp_path / "picture.gif", find)
+    told = "\n".join(caught.value.problems)
+    for word in ("picture.gif", "there twice", "nothing to tell it from", "no.toml", "nowhere", "o.json"):
+        assert word in told
+
+
+def test_unknown_causes_are_met_with_what_was_meant() -> None:
+    known = (AIR, EMISSIVITY, CHURNING)
+    told = unknown_causes(("cooling.ari", "churning", AIR, "zzz"), known)
+    assert len(told) == 3
+    assert 'Did you mean "cooling.air"' in told[0]
+    assert 'Did you mean "losses.churning"' in told[1]
+    assert "Known: cooling.air" in told[2]

@@ -1,0 +1,160 @@
+"""The first screen: plain sentences that agree with the probabilities beside them."""
+
+import re
+
+import pytest
+from fabricated_findings import AIR, CHURNING, KINDS, ambiguous, cause, clean, explained, spoiled, unexplained
+from gearheat.diagnose.report import phrases
+from gearheat.diagnose.report.estimate import Estimate
+from gearheat.diagnose.report.findings import Alarm, Answer, Played, Remainder, RemainderChannel
+from gearheat.diagnose.report.names import listed, name_of
+from gearheat.diagnose.report.screen import text
+from gearheat.diagnose.report.words import contradictions, with_words
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_what_is_printed_is_plain(kind: str) -> None:
+    said = text(KINDS[kind](), everything=True)
+    assert not re.search(r"\d[eE]-?\d\d", said), "nobody reads 2.7e-190"
+    assert not re.search(r"\bnan\b|\bNone\b|\binf\b|array\(", said)
+    assert "  ." not in said
+    assert "((" not in said
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_the_first_screen_is_a_screen(kind: str) -> None:
+    lines = text(KINDS[kind]()).splitlines()
+    assert len(lines) <= 30
+    assert max(map(len, lines)) <= 110
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_sound_findings_do_not_contradict_themselves(kind: str) -> None:
+    assert contradictions(KINDS[kind]()) == []
+
+
+def test_a_clean_campaign_names_no_cause() -> None:
+    said = clean().says
+    assert said.verdict == "The data agree with the model within the stated accuracies."
+    assert said.do == "Nothing needs doing."
+    assert said.size == ""
+    assert "93 ± 1 %" in said.sure
+
+
+def test_an_explanation_names_its_class_and_its_size_in_degrees_and_watts() -> None:
+    said = explained().says
+    assert said.verdict == "One cause explains the data: churning of the oil or windage (97 ± 1 %)."
+    assert "2.1 K higher (1.8 to 2.4)" in said.size
+    assert "118 W higher (100 to 131)" in said.size
+    assert "p < 1e-6" in said.sure
+    assert "zero error of the torque transducer" in said.cannot_be
+    assert "windage" not in said.cannot_be.partition(".")[0], "what is named is not ruled out"
+
+
+def test_a_set_is_left_open_with_the_experiment_that_closes_it() -> None:
+    said = ambiguous().says
+    assert "leave open what: cooling by the air (55 ± 3 %); cooling by radiation (41 ± 3 %)" in said.verdict
+    assert "some points in a room of 5 degC" in said.do
+
+
+def test_what_is_outside_the_library_names_its_channel() -> None:
+    said = unexplained().says
+    assert "no cause of the library explains (94 %), seen in T_oil (1.9 K)" in said.verdict
+    assert "closest known cause is churning of the oil (5 %)" in said.verdict
+
+
+def test_the_data_come_before_the_cause() -> None:
+    said = spoiled().says
+    assert said.do.startswith("Check the reading in row 17 (T_oil)")
+    assert said.data[0].startswith("Row 17 (line 18, point 17): T_oil shows 84.2 °C, the other readings say 71.3 °C")
+    assert said.data[1].startswith("The rig differs from its file: heat capacity of the gears (0.17 times")
+    assert "scatters by 1 K; the card says 0.4 (2.5 times)" in said.data[2]
+    assert "smaller than its stated scatter (p = 0.998)" in said.data[3]
+
+
+def test_a_size_at_its_bound_is_no_headline() -> None:
+    said = explained(causes=(cause(CHURNING, 0.96, at_bound="high"), cause("losses.windage", 0.01))).says
+    assert "One cause explains" not in said.verdict
+    assert "only at the limit of the size" in said.verdict
+    assert "at its upper bound" in said.size
+
+
+def test_a_remainder_beside_a_named_cause_is_said() -> None:
+    left = Remainder(probability=0.9, channels=(RemainderChannel(channel="T_wall", rms=0.8, unit="K"),))
+    said = explained(remainder=left).says
+    assert "One cause explains" in said.verdict
+    assert "Something that the library lacks acts beside it, seen in T_wall (0.8 K)." in said.verdict
+
+
+def test_an_extension_that_is_worse_is_told_first() -> None:
+    said = explained(played={"T_oil": Played(rms_calibrated=2.7, rms_extended=2.9, unit="K")}).says
+    assert said.do.startswith("Played over these data the extended rig is worse")
+    assert "Do not use the extended rig" in said.do
+
+
+def test_plain_statistics_that_are_better_are_told() -> None:
+    gain = explained().gain
+    assert gain is not None
+    worse = gain.model_copy(update={"rmse_after": 1.4})
+    assert (
+        "plain statistics (linear in speed and load) predict better: 1.1 against 1.4 K" in explained(gain=worse).says.do
+    )
+    assert phrases.gains_nothing(explained()) == ""
+
+
+def test_left_overs_that_are_no_noise_or_too_small_are_told() -> None:
+    for p, words in ((1e-4, "is not noise (p = 1e-4)"), (0.9999, "is smaller than the stated scatter")):
+        assert words in explained(test=Alarm(alpha=0.05, p_any=1e-4, p_adequacy=p)).says.sure
+
+
+@pytest.mark.parametrize(
+    ("found", "words"),
+    [
+        (lambda: clean(test=Alarm(alpha=0.05, p_any=1e-4, p_adequacy=0.5)), "is an alarm"),
+        (lambda: explained(test=Alarm(alpha=0.05, p_any=0.3, p_adequacy=0.5)), "is none"),
+        (lambda: explained(answers=(Answer(causes=((AIR,),), probability=0.4),)), "explains it with 40 %"),
+        (lambda: explained(answers=()), "none or several"),
+        (lambda: ambiguous(hypotheses=clean().hypotheses), "yet nothing has 93 %"),
+        (lambda: ambiguous(causes=()), "is named and not listed"),
+        (lambda: clean(answers=(Answer(causes=((AIR,),), probability=0.03),)), "there is an answer"),
+    ],
+)
+def test_contradictions_are_found_and_printed(found: object, words: str) -> None:
+    made = found()  # type: ignore[operator]
+    assert any(words in text for text in contradictions(made))
+    assert "warning    the result contradicts itself" in text(made)
+
+
+def test_words_are_the_same_twice() -> None:
+    found = explained()
+    assert with_words(found) == found
+
+
+def test_numbers_as_people_write_them() -> None:
+    assert [phrases.number(v) for v in (0.0, -0.0, 1234.5, 1e5, 0.00123, 2.5e-9)] == [
+        "0", "0", "1234", "100000", "0.00123", "2.5e-09",
+    ]  # fmt: skip
+    assert [phrases.percent(p) for p in (1.0, 0.996, 0.5, 0.001, 0.0)] == ["> 99 %", "> 99 %", "50 %", "< 1 %", "< 1 %"]
+    assert [phrases.p_value(p) for p in (0.4, 0.9984, 1.0, 2e-5, 1e-6)] == [
+        "p = 0.4", "p = 0.9984", "p = 0.9999", "p = 2e-5", "p < 1e-6",
+    ]  # fmt: skip
+
+
+def test_logarithms_are_told_as_factors() -> None:
+    found = Estimate(name="ln_factor", value=-0.4, ci95=(-0.5, -0.3), unit="1", doc="logarithm of the coefficient")
+    assert phrases.estimate(found) == "0.67 times (0.607 to 0.741)"
+    assert phrases.meaning(found) == "coefficient"
+
+
+def test_a_regime_names_its_sides() -> None:
+    both = cause(CHURNING, 0.5).model_copy(
+        update={"regime": {"n_carrier_rpm": (120.0, None), "film [mm²/s²]": (None, 3.0)}}
+    )
+    assert phrases.regime(both) == "only at n_carrier above 120 rpm, film below 3 mm²/s²"
+
+
+def test_names() -> None:
+    assert name_of("sensor.oil_temp.lag") == "lag of the oil thermometer"
+    assert name_of("mine.sticky_valve") == "sticky valve"
+    assert [listed("abc"[:n]) for n in range(4)] == ["", "a", "a and b", "a, b and c"]
+    assert listed("abcd", most=2) == "a, b and 2 more"

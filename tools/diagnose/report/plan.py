@@ -1,0 +1,252 @@
+"""What a plan found, as plain data (the JSON schema `gearheat.plan/2`), on the screen, and as a picture."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Iterable
+from typing import Any, Literal
+
+import matplotlib as mpl
+from pydantic import Field
+
+from . import phrases
+from .drawing import COLOURS, STYLE, empty, legend, svg
+from .findings import Isolability
+from .names import listed, name_of, names_of
+from .numbers import Model, Number
+from .screen import drawn, paragraph
+from .tables import Table
+
+#: Standard deviations from which two causes are told apart.
+APART = 3.0
+#: Experiments on the screen and in the picture; what they have to add to count.
+SHOWN, LEAST = 10, 0.05
+#: More pairs than these are drawn by their smallest distance alone; the axis ends here [standard deviations].
+PAIRS, END = 3, 12.0
+
+
+class PlannedCause(Model):
+    """A cause to tell from others; `visible` is its distance from none at its usual size."""
+
+    id: str
+    size: str = Field(default="", description="name of its size")
+    usual: Number
+    unit: str = "1"
+    visible: Number
+    exposes: str = ""
+
+
+class PlannedPair(Model):
+    """Two causes, their distance, and why no experiment here tells them apart where none does."""
+
+    causes: tuple[str, str]
+    distance: Number
+    one_answer: str | None = None
+
+
+class Outlook(Model):
+    """Experiments that are done, and the distances behind them."""
+
+    class Pair(Model):
+        """A pair of causes."""
+
+        causes: tuple[str, str]
+        before: Number
+        after: Number
+
+    experiments: tuple[str, ...] = Field(description="ids; none: the campaign as it is")
+    smallest: Number
+    nearest: tuple[str, str]
+    gain: Number = 0.0
+    separates: bool
+    pairs: tuple[Pair, ...] = ()
+
+
+class Planned(Model):
+    """An experiment that was considered: `tests` hold its inputs, `checks` the instruments it checks."""
+
+    id: str
+    what: str
+    tests: tuple[dict[str, Number], ...] = ()
+    checks: tuple[str, ...] = ()
+
+
+class Plan(Model):
+    """Result of `gearheat plan`; distances in standard deviations of what is read."""
+
+    schema_: Literal["gearheat.plan/2"] = Field(default="gearheat.plan/2", alias="schema")
+    rig: str
+    campaign: str = ""
+    readings: int = 0
+    reference: bool = False
+    apart: Number = APART
+    verdict: Literal["apart", "one", "several", "none", "same"] | None = Field(
+        default=None, description="absent where no causes were named"
+    )
+    causes: tuple[PlannedCause, ...] = ()
+    pairs: tuple[PlannedPair, ...] = ()
+    now: Outlook | None = None
+    catalogue: tuple[Planned, ...] = Field(default=(), description="the experiments")
+    outlooks: tuple[Outlook, ...] = Field(default=(), description="single experiments, the best first")
+    together: tuple[Outlook, ...] = Field(default=(), description="the best with a second and a third")
+    isolability: tuple[Isolability, ...] = Field(default=(), description="all causes of the library with this design")
+    warnings: tuple[str, ...] = ()
+
+    def what(self, id: str) -> str:
+        """An experiment in words."""
+        return next((e.what for e in self.catalogue if e.id == id), id)
+
+    @property
+    def ids(self) -> list[str]:
+        """The causes."""
+        return [c.id for c in self.causes]
+
+
+def as_object(plan: Plan) -> dict[str, Any]:
+    """The JSON object of a plan, without what is not known."""
+    return plan.model_dump(mode="json", by_alias=True, exclude_none=True)
+
+
+def sentence(plan: Plan) -> str:
+    """The answer in one sentence; empty where no causes were named."""
+    if plan.verdict is None:
+        return ""
+    if plan.now is None or plan.verdict == "same" or not plan.outlooks:
+        return f"No experiment here tells {names_of(plan.ids)} apart: they are one answer."
+    best, last = plan.outlooks[0].experiments[0], (plan.together or plan.outlooks)[-1]
+    several = len(last.experiments) > 1
+    what = f"{listed(last.experiments)} together" if several else plan.what(last.experiments[0])
+    reach = f"from {plan.now.smallest:.1f} to {last.smallest:.1f} standard deviations"
+    limit = f"{plan.apart:g} standard deviations"
+    found = {
+        "apart": f"The campaign tells them apart as it is: {plan.now.smallest:.1f} standard deviations at least.",
+        "one": f"Do {best}, {plan.what(best)}: {reach}.",
+        "several": f"No single experiment here tells them apart, but {what} do: {reach}.",
+        "none": f"No experiment here tells them apart at {limit}. The best is {what}: {reach}.",
+    }
+    rest = [f"Nothing here tells {names_of(ids)} apart." for ids in _classes(plan).values()]
+    return " ".join([found[plan.verdict], *rest])
+
+
+def _classes(plan: Plan) -> dict[str, list[str]]:
+    """Why causes are one answer -> which."""
+    found: dict[str, list[str]] = {}
+    for pair in plan.pairs:
+        if pair.one_answer is not None:
+            found[pair.one_answer] = list(dict.fromkeys([*found.get(pair.one_answer, []), *pair.causes]))
+    return found
+
+
+def text(plan: Plan, *, everything: bool = False) -> str:
+    """The plan as text.
+
+    Args:
+        plan: the plan
+        everything: all experiments, and all causes in the table of what the design tells
+    """
+    found = [paragraph("answer", sentence(plan))] if plan.verdict else []
+    if plan.now is not None:
+        found.append(drawn(_experiments(plan, everything)))
+    for why, ids in _classes(plan).items():
+        found.append(paragraph("one answer", f"{names_of(ids)} ({why}). What would tell: {_exposes(plan, ids)}."))
+    for c in (c for c in plan.causes if c.visible < plan.apart):
+        size = phrases.with_unit(c.usual, c.unit)
+        seen = phrases.number(c.visible, 2)
+        line = f"{name_of(c.id)} of usual size ({c.size} {size}) would show at only {seen} standard deviations."
+        found.append(paragraph("faint", line))
+    if plan.isolability and (everything or plan.verdict is None):
+        found.append(drawn(isolability(plan.isolability)))
+    found += [paragraph("warning", w) for w in plan.warnings]
+    return "\n".join(found) + "\n"
+
+
+def isolability(found: Iterable[Isolability]) -> Table:
+    """What a design tells of each cause, as a table.
+
+    Args:
+        found: of each cause
+    """
+    rows = [
+        (
+            i.cause,
+            phrases.number(i.visible, 2),
+            "yes" if i.visible >= APART else "no",
+            name_of(i.nearest) if i.nearest else "",
+            "" if i.distance is None else phrases.number(i.distance, 2),
+            "yes" if i.distance is not None and min(i.distance, i.visible) >= APART else "no",
+        )
+        for i in found
+    ]
+    head = ("cause", "from none", "seen", "nearest cause", "from it", "told apart")
+    note = f"Distances in standard deviations at the usual size of each cause; seen and told apart from {APART:g} on."
+    return Table("What this design can tell", head, tuple(rows), note)
+
+
+def _experiments(plan: Plan, everything: bool) -> Table:
+    several = len(plan.causes) > 2
+    head = ("experiment", "distance", "tells apart", *(("nearest",) if several else ()), "what")
+    rows = [
+        (
+            name,
+            f"{o.smallest:.2f}",
+            "yes" if o.separates else "no",
+            *((" / ".join(o.nearest),) if several else ()),
+            what,
+        )
+        for name, what, o in _listed(plan, everything)
+    ]
+    return Table("", head, tuple(rows), "Smallest distance of two causes, in standard deviations.")
+
+
+def _listed(plan: Plan, everything: bool = False) -> list[tuple[str, str, Outlook]]:
+    """The campaign as it is, experiments that add something, several together: name, words, outlook."""
+    now = [("", "the campaign as it is", plan.now)] if plan.now is not None else []
+    kept = plan.outlooks if everything else [o for o in plan.outlooks if o.gain >= LEAST][:SHOWN]
+    single = [(o.experiments[0], plan.what(o.experiments[0]), o) for o in kept]
+    return [
+        *now,
+        *single,
+        *((" + ".join(o.experiments), "together", o) for o in plan.together if len(o.experiments) > 1),
+    ]
+
+
+def _exposes(plan: Plan, ids: Iterable[str]) -> str:
+    wanted = set(ids)
+    return "; ".join(f"{name_of(c.id)}: {c.exposes}" for c in plan.causes if c.id in wanted and c.exposes)
+
+
+def picture(plan: Plan, form: Literal["png", "svg"]) -> bytes:
+    """Bars of the distances now and behind each experiment.
+
+    Args:
+        plan: the plan
+        form: of the file
+    """
+    rows = _listed(plan)
+    pairs: list[tuple[str, str] | None] = [p.causes for p in plan.pairs if p.one_answer is None]
+    if len(pairs) > PAIRS:
+        pairs = [None]
+    figure, (panel,) = empty(9.0, 1.4 + 0.34 * len(rows) * max(len(pairs), 1) ** 0.5, 1, 1)
+    height = 0.8 / max(len(pairs), 1)
+    for k, pair in enumerate(pairs):
+        values = [o.smallest if pair is None else _after(o, pair) for _, _, o in rows]
+        places = [i + (k - (len(pairs) - 1) / 2) * height for i in range(len(rows))]
+        label = "nearest pair" if pair is None else " / ".join(pair)
+        bars = panel.barh(places, [min(v, END) for v in values], height, color=COLOURS[k], label=label)
+        panel.bar_label(bars, [f"{v:.1f}" for v in values], padding=3, fontsize=8)
+    panel.set_yticks(range(len(rows)), [name or "as it is" for name, _, _ in rows])
+    panel.invert_yaxis()
+    panel.axvline(plan.apart, color="#888888", linewidth=1, linestyle="--")
+    panel.set(xlim=(0, END), xlabel="distance [standard deviations]")
+    panel.grid(False, axis="y")
+    legend(figure, panel)
+    if form == "svg":
+        return svg(figure).encode()
+    data = io.BytesIO()
+    with mpl.rc_context(STYLE):
+        figure.savefig(data, format="png", dpi=150, metadata={"Software": None})
+    return data.getvalue()
+
+
+def _after(outlook: Outlook, pair: tuple[str, str]) -> float:
+    return next((p.after for p in outlook.pairs if p.causes == pair), outlook.smallest)

@@ -1,0 +1,223 @@
+"""What a diagnosis or a plan is asked: files and options, and what the files hold, all their problems at once."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+from ..model.errors import DataError, GearheatError, suggestion
+from ..model.parts import PARTS
+from ..scenarios.load import load
+from ..scenarios.scenario import Scenario
+from .campaign.card import Card, read_card
+from .campaign.read import read_campaign
+from .campaign.table import Campaign
+from .library.extra_parts import EXTRA_PARTS
+
+T = TypeVar("T")
+
+#: Causes that may be looked for together.
+MOST = 8
+
+
+@dataclass(frozen=True)
+class Request:
+    """Files and options of a diagnosis.
+
+    Args:
+        rig: name of a shipped rig, or path of a rig file
+        data: table of readings, one row each
+        logs: tables of logged samples of the same machine
+        card: accuracies, priors and protocol
+        reference: readings of the same machine when it was healthy; `reference_logs` are its logs then
+        sibling_logs: logs of other machines of its type
+        libraries: files with further causes
+        predict: points to predict
+        causes: how many may act together
+        alpha: accepted rate of false alarms
+        seed: of everything that is drawn
+    """
+
+    rig: str
+    data: Path | None = None
+    logs: tuple[Path, ...] = ()
+    card: Path | None = None
+    reference: Path | None = None
+    reference_logs: tuple[Path, ...] = ()
+    sibling_logs: tuple[Path, ...] = ()
+    libraries: tuple[Path, ...] = ()
+    predict: Path | None = None
+    causes: int = 2
+    alpha: float = 0.05
+    seed: int = 0
+
+    def files(self) -> list[tuple[str, Path]]:
+        """The files that are read, each with the name of its option."""
+        single = {"DATA": self.data, "--card": self.card, "--reference": self.reference, "--predict": self.predict}
+        several = {"--logs": self.logs, "--reference-logs": self.reference_logs, "--sibling-logs": self.sibling_logs}
+        several["--library"] = self.libraries
+        found = [(name, path) for name, path in single.items() if path is not None]
+        return found + [(name, path) for name, paths in several.items() for path in paths]
+
+    def problems(self) -> list[str]:
+        """What is wrong with the options, and files that do not exist."""
+        checks = {
+            "no data are given. Name a table of readings, or logs with --logs FILE.": self.data is None
+            and not self.logs,
+            f"--alpha {self.alpha:g} is no rate of false alarms. Give a number between 0 and 1, such as 0.05.": not (
+                0.0 < self.alpha < 1.0
+            ),
+            f"--causes {self.causes}: how many causes may act together. Give 1 to {MOST}.": not 1
+            <= self.causes
+            <= MOST,
+            f"--seed {self.seed} is below zero. Give 0 or more.": self.seed < 0,
+        }
+        return [text for text, wrong in checks.items() if wrong] + _lost(self.files())
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """What the files of a request hold."""
+
+    request: Request
+    scenario: Scenario
+    card: Card
+    data: Campaign | None
+    reference: Campaign | None
+    points: Campaign | None
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """What the user should know of the files."""
+        tables = [c.warnings for c in (self.data, self.reference, self.points) if c is not None]
+        return tuple(dict.fromkeys(text for found in (self.card.warnings, *tables) for text in found))
+
+
+def read(request: Request) -> Inputs:
+    """Read and check all files but logs and libraries.
+
+    Args:
+        request: files and options
+
+    Raises:
+        DataError: all problems of files and options at once
+    """
+    reader = _Reader(request.rig, request.card, request.problems())
+    data, reference = reader.table(request.data), reader.table(request.reference)
+    points = reader.table(request.predict, points=True)
+    return Inputs(request, *reader.checked(), data, reference, points)
+
+
+@dataclass(frozen=True)
+class PlanRequest:
+    """Files and options of a plan.
+
+    Args:
+        rig: name of a shipped rig, or path of a rig file
+        separate: causes to tell apart, with commas between; empty for a table of all causes
+        card: accuracies, priors and protocol
+        points: conditions of the campaign there is or will be; the rig's own without them
+        libraries: files with further causes
+        reference: whether there is a healthy campaign of the same points as well
+    """
+
+    rig: str
+    separate: str = ""
+    card: Path | None = None
+    points: Path | None = None
+    libraries: tuple[Path, ...] = ()
+    reference: bool = False
+
+    @property
+    def causes(self) -> tuple[str, ...]:
+        """The causes to tell apart."""
+        return tuple(name for part in self.separate.split(",") if (name := part.strip()))
+
+    def files(self) -> list[tuple[str, Path]]:
+        """The files that are read, each with the name of its option."""
+        single = [(name, path) for name, path in (("--card", self.card), ("--points", self.points)) if path is not None]
+        return single + [("--library", path) for path in self.libraries]
+
+    def problems(self) -> list[str]:
+        """What is wrong with the options, and files that do not exist."""
+        names = self.causes
+        twice = [n for n in dict.fromkeys(names) if names.count(n) > 1]
+        found = [f"--separate: {name} is there twice. Name each cause once." for name in twice]
+        if len(set(names)) == 1:
+            found.append(f"--separate {names[0]}: there is nothing to tell it from. Name two causes or more.")
+        return found + _lost(self.files())
+
+
+@dataclass(frozen=True)
+class PlanInputs:
+    """What the files of a plan hold."""
+
+    request: PlanRequest
+    scenario: Scenario
+    card: Card
+    points: Campaign | None
+
+
+def read_plan(request: PlanRequest) -> PlanInputs:
+    """Read and check all files of a plan but libraries.
+
+    Args:
+        request: files and options
+
+    Raises:
+        DataError: all problems of files and options at once
+    """
+    reader = _Reader(request.rig, request.card, request.problems())
+    points = reader.table(request.points, points=True)
+    return PlanInputs(request, *reader.checked(), points)
+
+
+def unknown_causes(names: Iterable[str], known: Collection[str]) -> list[str]:
+    """Problems of causes to tell apart that the library of a rig does not have.
+
+    Args:
+        names: as the user gave them
+        known: of the library
+    """
+    problems = []
+    for name in (n for n in names if n not in known):
+        alike = [c for c in known if name in c.split(".")]
+        close = suggestion(name, known) or (f' Did you mean "{alike[0]}"?' if alike else "")
+        problems.append(f'--separate: there is no cause "{name}".{close or " Known: " + ", ".join(known) + "."}')
+    return problems
+
+
+def _lost(files: Iterable[tuple[str, Path]]) -> list[str]:
+    return [f"{name} {path}: there is no such file." for name, path in files if not path.is_file()]
+
+
+class _Reader:
+    """Reads rig, card and tables, collecting problems; nothing of it outlives the reading."""
+
+    def __init__(self, rig: str, card: Path | None, problems: list[str]) -> None:
+        self.problems = problems
+        self.card = self._tried(lambda: read_card(card)) if card is None or card.is_file() else None
+        self.scenario = self._tried(lambda: load(rig, PARTS | EXTRA_PARTS))
+
+    def table(self, path: Path | None, *, points: bool = False) -> Campaign | None:
+        """A table; None where there is none, or something is wrong with it."""
+        scenario = self.scenario
+        if path is None or scenario is None or not path.is_file():
+            return None
+        card = self.card or Card()  # a table can be read where the card is wrong, to tell the problems of both
+        return self._tried(lambda: read_campaign(path, scenario, card, points=points))
+
+    def checked(self) -> tuple[Scenario, Card]:
+        """Rig and card, or all problems."""
+        if self.problems or self.scenario is None or self.card is None:
+            raise DataError(self.problems)
+        return self.scenario, self.card
+
+    def _tried(self, step: Callable[[], T]) -> T | None:
+        try:
+            return step()
+        except GearheatError as error:
+            self.problems += [p for p in error.problems if p not in self.problems]
+            return None
