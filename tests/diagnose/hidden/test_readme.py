@@ -9,7 +9,8 @@ from diagnose.hidden.benches import HELICAL
 from diagnose.hidden.cases import HIDDEN
 from diagnose.hidden.maker import make
 from gearheat.scenarios.load import RIGS
-from gearheat.tools.cli import main
+from gearheat.tools.cli import app
+from typer.testing import CliRunner
 
 ROOT = Path(__file__).parents[3]
 PAGE = (ROOT / "tools" / "diagnose" / "README.md").read_text("utf-8")
@@ -37,5 +38,6 @@ def test_the_page_for_ones_own_gearbox(tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     words = block("sh").split()
     assert words.pop(0) == "gearheat"
-    assert main(words) == 0
+    run = CliRunner().invoke(app, words)
+    assert run.exit_code == 0, run.output
     assert "cooling.air" in (tmp_path / "diagnosis.html").read_text("utf-8")
