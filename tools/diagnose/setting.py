@@ -12,7 +12,8 @@ from .campaign.card import Card
 from .campaign.table import Campaign
 from .infer.problem import Problem
 from .library.cause import Cause, Nuisance, Ranges
-from .library.nuisances import nuisances
+from .library.forms import Context
+from .library.nuisances import habit, nuisances
 from .library.registry import library
 from .library.roles import Roles
 from .model.formula import Formula
@@ -77,7 +78,8 @@ def setting(
     sensors = data.sensors
     causes = library(roles, ranges, sensors, libraries)
     wide = reference is not None
-    known = nuisances(roles, card.prior_sd, driven.uncertainties)
+    films = habit(Context(roles, ranges, sensors))
+    known = (*nuisances(roles, card.prior_sd, driven.uncertainties), *([films] if films else ()))
     known = tuple(replace(n, sd=n.wide) if wide else n for n in known if wide or n.sd > 0)
     day = Nuisance("day", dict.fromkeys(roles.cooling, 1.0), 1.0, 1.0)
     names, reads = [s.name for s in sensors], [s.name for s in data.read]
@@ -85,7 +87,7 @@ def setting(
     knobs = dict.fromkeys([p for n in (*known, day) for p in n.paths] + [p for f in formulas for p in f.paths])
     forms = [f.form for f in formulas]
     shown = tuple(dict.fromkeys(s.reads for c in campaigns for s in c.read))
-    plant = Plant.of(spec, forms, tuple(knobs), [s.reads for s in data.given], shown)
+    plant = Plant.of(spec, [*forms, *known], tuple(knobs), [s.reads for s in data.given], shown)
     observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
     problem = Problem(observed, card.day_cooling_sd)
     return Setting(

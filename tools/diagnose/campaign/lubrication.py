@@ -111,27 +111,48 @@ def bath_of(scenario: Scenario) -> str:
 
 
 def oil_values(scenario: Scenario, name: str, card: Card) -> dict[str, float]:
-    """Values by path of the oil of a name: the catalogue's, or else the card's; none for the oil of the rig.
+    """Values by path of the oil of a name: the catalogue's, or else the card's, completed by those of the rig's oil.
 
     Args:
         scenario: the rig
         name: as in the column `oil`, "" for the card's oil or else that of the rig
-        card: which may describe an oil that the catalogue lacks
-
-    Raises:
-        DataError: an oil that neither has
+        card: which may describe or name the oil that the tables' own name stands for
     """
-    bath = bath_of(scenario)
-    own = card.oil.nu40 is not None
-    name = name or ("" if own else card.oil.name)
-    if not bath or not (name or own):
+    bath, known = bath_of(scenario), catalogue("oil")
+    if not bath:
         return {}
-    if name in catalogue("oil"):
+    if name in known:
         return scenario.entry_values(bath, name)
-    if not own:
-        close = suggestion(name, catalogue("oil")) or f" Known: {', '.join(catalogue('oil'))}."
-        raise DataError(f'unknown oil "{name}".{close} Or describe it in the card\'s table [oil].')
-    return {f"{bath}.{key}": value for key, value in card_oil(card.oil).items()}
+    if card.oil.nu40 is None and card.oil.name:
+        return scenario.entry_values(bath, card.oil.name)
+    keys = [path.rpartition(".")[2] for path in scenario.entry_values(bath, next(iter(known)))]
+    own = {f"{bath}.{key}": float(scenario.spec.part(bath).values[key]) for key in keys}
+    return own | {f"{bath}.{key}": value for key, value in card_oil(card.oil).items()}
+
+
+def oil_problems(name: str, places: Mapping[str, str], card: Card) -> list[str]:
+    """Oils that neither the catalogue nor the card has, or that one card cannot describe.
+
+    Args:
+        name: of the table
+        places: name of an oil -> where it stands first
+        card: which describes or names one oil at most
+    """
+    known = catalogue("oil")
+    if card.oil.nu40 is None and card.oil.name and card.oil.name not in known:
+        return [f'{card.name} oil: unknown oil "{card.oil.name}".{suggestion(card.oil.name, known)}']
+    unknown = [oil for oil in places if oil and oil not in known]
+    if card.oil.nu40 is None and not card.oil.name:
+        return [
+            f'{places[oil]}: unknown oil "{oil}".{suggestion(oil, known) or " Known: " + ", ".join(known) + "."}'
+            for oil in unknown
+        ]
+    if len(unknown) < 2:
+        return []
+    return [
+        f"the card describes one oil, {name} names {len(unknown)} that the catalogue lacks:"
+        f" {', '.join(sorted(unknown))}. Use one name for it."
+    ]
 
 
 def card_oil(oil: Oil) -> dict[str, float]:

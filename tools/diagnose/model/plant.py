@@ -11,12 +11,12 @@ import numpy as np
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
 from ...model.machines.spec import Spec, assemble
-from ..library.cause import Form
+from ..library.cause import Form, Nuisance
 from ..library.extra_parts import EXTRA_PARTS
 from .many import Many, Slow
 
 
-def superset(spec: Spec, forms: Iterable[Form]) -> Spec:
+def superset(spec: Spec, forms: Iterable[Form | Nuisance]) -> Spec:
     """The rig with the parts of all forms, neutral."""
     known = {part.name for part in spec.parts}
     for form in forms:
@@ -85,13 +85,13 @@ class Plant:
 
     @staticmethod
     def of(
-        spec: Spec, forms: Iterable[Form], knobs: Sequence[str], given: Sequence[str], shown: Sequence[str]
+        spec: Spec, forms: Iterable[Form | Nuisance], knobs: Sequence[str], given: Sequence[str], shown: Sequence[str]
     ) -> Plant:
         """The superset of a rig and some forms.
 
         Args:
             spec: the rig, driven as the campaign drives it
-            forms: what may act in it
+            forms: what may act in it, and nuisances that need parts
             knobs, given, shown: see the class
 
         Raises:
