@@ -144,10 +144,8 @@ class Search:
         self.formulas = tuple(f for f in formulas if not f.form.spread)
         self.spreads = tuple(f for f in formulas if f.form.spread)
         self.causes: dict[str, Cause] = {f.cause.id: f.cause for f in formulas}
-        families = {c.family for c in self.causes.values()}
-        shared = {name: sum(c.family == name for c in self.causes.values()) for name in families}
         #: Log share of the prior of one cause that each cause has: classes share theirs.
-        self.share = {c.id: -np.log(len(families) * shared[c.family]) for c in self.causes.values()}
+        self.share = shares(self.causes.values())
 
     def run(self, start: Fit | None = None) -> Found:
         """Everything."""
@@ -319,6 +317,20 @@ class Search:
         if not causes:
             return self.prior([more]) - self.log_none
         return self.prior([*causes, more]) - self.prior(causes)
+
+
+def shares(causes: Iterable[Cause]) -> dict[str, float]:
+    """Log share of the prior of one cause that each cause has: those of a class share that of its most usual one."""
+    families: dict[str, list[Cause]] = {}
+    for cause in causes:
+        families.setdefault(cause.family, []).append(cause)
+    weight = {name: max(c.common for c in own) for name, own in families.items()}
+    whole = sum(weight.values())
+    return {
+        c.id: float(np.log(weight[name] / whole * c.common / sum(o.common for o in own)))
+        for name, own in families.items()
+        for c in own
+    }
 
 
 def _value(best: Mapping[str, int], f: Formula, log_bf: np.ndarray, formulas: Sequence[Formula]) -> float:
