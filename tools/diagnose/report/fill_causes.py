@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from typing import Any, Literal
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from ..infer.problem import Acting, Problem
 from ..infer.search import Found
 from ..infer.search import Hypothesis as Fitted
 from ..library.cause import Cause as Entry
-from ..library.cause import Form
+from ..library.cause import Form, Shape, Size
 from .estimate import Estimate
 from .findings import UNEXPLAINED, Cause, FormShare, Hypothesis, Remainder, RemainderChannel
 from .shown import of_parameter, of_sensor
@@ -41,13 +42,16 @@ def estimates(acting: Acting, covariance: np.ndarray) -> tuple[Estimate, ...]:
     sd, (low, high) = np.sqrt(np.maximum(np.diag(covariance), 0.0)), bounds(acting)
     size, shapes = formula.cause.size, formula.form.shapes
     found = []
-    for k, (name, unit, doc) in enumerate((q.name, q.unit, q.doc) for q in (size, *shapes)):
+    quantities: tuple[Size | Shape, ...] = (size, *shapes)
+    for k, (name, unit, doc) in enumerate((q.name, q.unit, q.doc) for q in quantities):
         ends = (np.clip(t[k] + s * HALF * sd[k], low[k], high[k]) for s in (-1, 1))
         values = [formula.theta(np.r_[t[:k], v, t[k + 1 :]])[name] for v in (t[k], *ends)]
-        value, *ci = of_parameter(unit, shapes[k - 1].high if k else 0.0)(np.array(values)).tolist()
-        bound = "low" if t[k] - low[k] < NEAR and low[k] < 0 else "high" if high[k] - t[k] < NEAR else ""
         scale = of_parameter(unit, shapes[k - 1].high if k else 0.0)
-        found.append(Estimate(name=name, value=value, ci95=tuple(sorted(ci)), unit=scale.unit, doc=doc, at_bound=bound))
+        value, one, other = scale(np.array(values)).tolist()
+        bound: Literal["", "low", "high"] = "low" if low[k] < 0 and t[k] - low[k] < NEAR else ""
+        bound = "high" if high[k] - t[k] < NEAR else bound
+        ci95 = (min(one, other), max(one, other))
+        found.append(Estimate(name=name, value=value, ci95=ci95, unit=scale.unit, doc=doc, at_bound=bound))
     return tuple(found)
 
 
@@ -89,6 +93,7 @@ def causes(found: Found, detectable: Mapping[str, float]) -> tuple[Cause, ...]:
     for id, entry in entries.items():
         own = [(h, float(p)) for h, p in weighed if id in h.causes]
         best = next((h for h, _ in own if id in h.fit.causes), None)
+        fitted = {} if best is None else _fitted(found.problem, best, id)
         scale = of_parameter(entry.size.unit, 0.0)
         smallest = detectable.get(id)
         made.append(
@@ -102,13 +107,12 @@ def causes(found: Found, detectable: Mapping[str, float]) -> tuple[Cause, ...]:
                 doc=entry.doc,
                 exposes=entry.exposes,
                 like=entry.like,
-                **({} if best is None else _fitted(found.problem, best, id)),
-            )
+            ).model_copy(update=fitted)
         )
     return tuple(sorted(made, key=lambda c: -c.probability))
 
 
-def _fitted(problem: Problem, hypothesis: Fitted, id: str) -> dict[str, object]:
+def _fitted(problem: Problem, hypothesis: Fitted, id: str) -> dict[str, Any]:
     """Parameters, regime and forms of a cause in the most probable hypothesis that has it."""
     covariance, begin = posterior(problem, hypothesis.fit), problem.nz
     for acting in hypothesis.fit.look.acting:

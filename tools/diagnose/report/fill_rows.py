@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from typing import Literal
 
 import numpy as np
 
@@ -13,6 +14,7 @@ from ..model.observe import Observed
 from .evidence import Picture, Rows
 from .fill_causes import HALF, posterior
 from .findings import Channel, Impact
+from .numbers import array
 from .shown import WHAT, Scale, key_of, of_sensor
 
 #: What a cause may act on -> the kind of the first given sensor, or of any, that reads it.
@@ -26,9 +28,10 @@ def channels(campaign: Campaign) -> tuple[Channel, ...]:
 
 def _channel(s: Sensor, scale: Scale) -> Channel:
     repeat, offset = scale.factor * s.repeat_sd, scale.factor * s.offset_sd
+    role: Literal["given", "read"] = "given" if s.role == "given" else "read"
     return Channel(
-        name=s.name, column=s.column, kind=s.kind, role=s.role, unit=scale.unit, repeat_sd=repeat, offset_sd=offset
-    )  # fmt: skip
+        name=s.name, column=s.column, kind=s.kind, role=role, unit=scale.unit, repeat_sd=repeat, offset_sd=offset
+    )
 
 
 def by_row(o: Observed, values: np.ndarray, sensor: int) -> np.ndarray:
@@ -53,7 +56,7 @@ def rows(problem: Problem, null: Fit, best: Fit) -> Rows:
     for i, sensor in enumerate(o.read):
         scale = of_sensor(sensor)
         measured, nominal, extended = (
-            scale(by_row(o, v, i)) for v in (o.measured, null.look.shown[own], best.look.shown[own])
+            array(scale(by_row(o, v, i))) for v in (o.measured, null.look.shown[own], best.look.shown[own])
         )
         sd = scale.factor * float(np.median(total[o.kind == i])) if (o.kind == i).any() else None
         shown = extended if best.look.acting else ()
@@ -72,16 +75,20 @@ def quantities(c: Campaign) -> dict[str, Rows.Quantity]:
     found = {}
     for s in c.given:
         scale = of_sensor(s)
-        found[s.name] = Rows.Quantity(label=s.column, unit=scale.unit, values=scale(c.values[s.name]))
+        found[s.name] = Rows.Quantity(
+            label=f"{WHAT[s.kind]} {s.name}", unit=scale.unit, values=array(scale(c.values[s.name]))
+        )
     oil, room = (next((s for s in c.sensors if s.kind == kind), None) for kind in ("oil_temp", "ambient"))
     if oil is not None:
-        found[oil.name] = Rows.Quantity(label=oil.column, unit="degC", values=of_sensor(oil)(c.values[oil.name]))
+        found[oil.name] = Rows.Quantity(
+            label=f"{WHAT[oil.kind]} {oil.name}", unit="degC", values=array(of_sensor(oil)(c.values[oil.name]))
+        )
         if room is not None:
-            rise = c.values[oil.name] - c.values[room.name]
+            rise = array(c.values[oil.name] - c.values[room.name])
             found["rise"] = Rows.Quantity(label="oil over room", unit="K", values=rise)
-    found["order"] = Rows.Quantity(label="running order", values=c.order[c.test])
+    found["order"] = Rows.Quantity(label="running order", values=array(c.order[c.test]))
     if len(set(c.direction)) > 1:
-        found["direction"] = Rows.Quantity(label="direction", values=c.direction)
+        found["direction"] = Rows.Quantity(label="direction", values=array(c.direction))
     return found
 
 
@@ -105,7 +112,7 @@ def pictures(problem: Problem, fit: Fit) -> tuple[Picture, ...]:
         i = max(shares, key=lambda k: shares[k])
         scale = of_sensor(o.read[i]).difference
         after = o.measured - fit.look.shown[own]
-        before, left = (scale(by_row(o, v, i)) for v in (after + effect, after))
+        before, left = (array(scale(by_row(o, v, i))) for v in (after + effect, after))
         quantity = quantity_of(acting.formula.cause.acts_on, o.campaign)
         made.append(Picture(cause=acting.id, channel=o.read[i].name, quantity=quantity, before=before, after=left))
     return tuple(made)
@@ -148,7 +155,8 @@ def impact(problem: Problem, fit: Fit, only: Sequence[Acting] = ()) -> dict[str,
 
 def _places(problem: Problem, fit: Fit, chosen: Iterable[Acting]) -> list[int]:
     """Places of the parameters of some causes in the vector."""
-    ids, begin, found = {a.id for a in chosen}, problem.nz, []
+    ids, begin = {a.id for a in chosen}, problem.nz
+    found: list[int] = []
     for a in fit.look.acting:
         if a.id in ids:
             found += range(begin, begin + a.formula.size)

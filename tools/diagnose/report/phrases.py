@@ -119,7 +119,7 @@ def where(found: Cause) -> str:
 def answer(found: Answer) -> str:
     """The causes of an answer; members of one class with "or" between."""
     classes = [names_of(group, "or") for group in found.causes]
-    return " together with ".join(classes) if len(classes) > 1 else "".join(classes)
+    return ("; and " if any(len(group) > 1 for group in found.causes) else " and ").join(classes)
 
 
 def gross(found: GrossReading) -> str:
