@@ -17,6 +17,8 @@ from .document import read_text
 #: Most problems that one message lists; the rest are counted.
 SHOWN = 30
 
+#: A number with a decimal comma, in a table whose columns semicolons separate.
+_COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 
 
@@ -70,6 +72,8 @@ def raise_all(problems: Sequence[str], name: str) -> None:
 def read_cells(path: Path, comments: bool = False) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """Header and rows (line number, cells) of a CSV file; blank lines are left out.
 
+    Where semicolons separate the columns, decimals may have a comma; the cells given back have a point.
+
     Args:
         path: the file
         comments: whether lines that begin with # are left out as well
@@ -82,10 +86,8 @@ def read_cells(path: Path, comments: bool = False) -> tuple[list[str], list[tupl
     if not lines:
         raise DataError(f"{name}: the file is empty. It needs a line of column names and at least one row.")
     (_, header), *rows = lines
-    if len(header) == 1 and re.search(r"[;\t]", header[0]):
-        raise DataError(
-            f"{name} line 1: the columns are not separated by commas. Write commas, and a point in decimals."
-        )
+    if len(header) == 1 and "\t" in header[0]:
+        raise DataError(f"{name} line 1: the columns are separated by tabs. Write commas or semicolons.")
     problems = [
         f'{name} line 1: column "{h}" is there twice. Keep one.'
         for h in sorted({h for h in header if header.count(h) > 1})
@@ -105,12 +107,21 @@ def read_cells(path: Path, comments: bool = False) -> tuple[list[str], list[tupl
 
 def _lines(path: Path) -> list[tuple[int, list[str]]]:
     text = read_text(path, "CSV", DataError)
-    reader = csv.reader(text.replace("\x00", "\ufffd").splitlines())
+    written = text.replace("\x00", "\ufffd").splitlines()
+    head = next((line for line in written if line.strip() and not line.startswith("#")), "")
+    semicolons = head.count(";") > head.count(",")
+    reader = csv.reader(written, delimiter=";" if semicolons else ",")
     try:
-        cells = [(reader.line_num, [cell.strip() for cell in row]) for row in reader]
+        cells = [(reader.line_num, [_cell(cell, semicolons) for cell in row]) for row in reader]
     except csv.Error as error:
         raise DataError(f"{path.name} line {reader.line_num}: is no CSV ({error}).") from None
     return [(line, row) for line, row in cells if any(row)]
+
+
+def _cell(cell: str, semicolons: bool) -> str:
+    """A cell without spaces round it, its decimal comma as a point."""
+    cell = cell.strip()
+    return f"{match[1]}.{match[2]}" if semicolons and (match := _COMMA.fullmatch(cell)) else cell
 
 
 def number(cell: str) -> float:

@@ -193,28 +193,35 @@ def calibrate(
 
 app.command()(cli_diagnosis.diagnose)
 app.command()(cli_diagnosis.plan)
+app.command()(cli_diagnosis.card)
 
 
 @app.command()
 @console.guarded
 def challenge(
     sheet: Annotated[
-        Literal["own", "foreign"],
-        typer.Option(help="own: the rig behaves as the model; foreign: another simulator, with a healthy reference."),
+        Literal["own", "foreign", "textbook", "practice", "all"],
+        typer.Option(
+            help="own: the rig behaves as the model; foreign: another simulator, with a healthy reference; textbook: a "
+            "frozen third one with rough readings; practice: the campaigns of --practice; all: these, pooled."
+        ),
     ],
-    n: Annotated[int, typer.Option("--n", help="Number of cases.")] = 150,
+    n: Annotated[int, typer.Option("--n", help="Number of cases of each sheet.")] = 150,
     seed: Annotated[int, typer.Option(help="The same seed hides the same.")] = 0,
     jobs: Annotated[int, typer.Option(min=0, help="Processes to use; 0 for one per core.")] = 0,
     out: Annotated[
         Path | None, typer.Option(help="Folder for cases and answers; a run that was interrupted goes on from there.")
     ] = None,
     only: Annotated[str | None, typer.Option(help='One kind of cases, for example "clean".')] = None,
+    practice: Annotated[
+        Path | None, typer.Option(help="Folder of campaigns: data.csv, card.json and key.json in a folder each.")
+    ] = None,
     json: Json = None,
 ) -> None:
     """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
     from .challenge import command
 
-    command.command(sheet, n, seed, jobs, out, only, json)
+    command.command(sheet, n, seed, jobs, out, only, practice, json)
 
 
 @app.command("list")

@@ -6,6 +6,7 @@ from .churning import Churning
 from .cycloid import CycloidalReducer, MalhotraReducer
 from .drum import BeltContact, BeltPull, DrumChurning, DrumCooling, DrumOil, WettedWall
 from .gears import HelicalGearPair, PlanetarySet
+from .grey import Cooler, FlowConductor, GreyBearing, GreyTeeth, OilJet, Thermostat
 from .harmonic import HarmonicContact, HarmonicMesh
 from .housing import (
     FlatWallCooling,
@@ -83,5 +84,11 @@ PARTS: dict[str, type[Component]] = {
         LinearShellCooling,
         Room,
         PrescribedTemperature,
+        GreyTeeth,
+        GreyBearing,
+        FlowConductor,
+        OilJet,
+        Thermostat,
+        Cooler,
     )
 }

@@ -67,10 +67,18 @@ class RoundHousing(Component):
         remedy = "Give a thinner wall or a larger R_o."
         yield self.relation("d leaves room inside", "d / R_o", self.d / self.R_o, high=0.95, remedy=remedy)
 
+    def conductances(self) -> tuple[Num, Num]:
+        """Of the flat walls and of the cylinder [W/K]."""
+        flat = plane_wall(self.k, (self.A_flat_inner + self.A_flat_outer) / 2, self.d)
+        return flat, cylinder_wall(self.k, self.L, self.R_o - self.d, self.R_o)
+
+    def conductance(self) -> Num:
+        """Of both side by side [W/K]."""
+        return sum(self.conductances())
+
     def conduction(self) -> Iterator[Equation]:
         """Both walls side by side."""
-        flat = plane_wall(self.k, (self.A_flat_inner + self.A_flat_outer) / 2, self.d)
-        shell = cylinder_wall(self.k, self.L, self.R_o - self.d, self.R_o)
+        flat, shell = self.conductances()
         for key, flow, G, inner, outer in (
             ("flat walls", self.Q_flow_flat, flat, self.flat_inner, self.flat_outer),
             ("cylinder", self.Q_flow_cylinder, shell, self.cylinder_inner, self.cylinder_outer),
@@ -125,12 +133,14 @@ class WallCooling(Component):
     """Base of a housing wall in a room: convection and radiation over the area that the housing tells."""
 
     role: ClassVar[str] = "surface"
+    scale: ClassVar[tuple[str, ...]] = ("k_conv",)
 
     surface = HeatPort()
     air = AirPort()
     size = WallSize()
 
     emissivity = Parameter("1", "emissivity of the surface", at_least=0.0, at_most=1.0)
+    k_conv = Parameter("1", "factor on the convection, 1 for the law as it is", default=1.0, at_least=0.0)
     h = Output("W/(m2.K)", "convective heat transfer coefficient", nominal=10.0)
     Q_flow_convection = Output("W", "heat flow rate by convection", nominal=100.0)
     Q_flow_radiation = Output("W", "heat flow rate by radiation", nominal=100.0)
@@ -145,7 +155,7 @@ class WallCooling(Component):
 
     def equations(self) -> Iterator[Equation]:
         """Convection and radiation side by side."""
-        yield equation("heat transfer coefficient", self.h, self.coefficient())
+        yield equation("heat transfer coefficient", self.h, self.k_conv * self.coefficient())
         convection = self.h * self.size.A * (self.surface.T - self.air.T)
         yield equation("convection", self.Q_flow_convection, convection)
         yield equation("radiation", self.Q_flow_radiation, self.radiation())

@@ -1,4 +1,4 @@
-"""The ports of the parts: two that carry power, and five that carry information only."""
+"""The ports of the parts: two that carry power, and six that carry information only."""
 
 from __future__ import annotations
 
@@ -105,6 +105,15 @@ class OilLevel(Port):
     source = "the level of a DrumOil"
 
     share = Potential("1", "share of the drum's inside that the oil wets", nominal=0.4)
+
+
+class Opening(Port):
+    """How far a thermostat opens a cooler: information, not power."""
+
+    missing = "nothing says how far it is open"
+    source = "the opening of a Thermostat"
+
+    share = Potential("1", "0 closed, 1 open", nominal=0.5)
 
 
 class ShaftReading(Port):

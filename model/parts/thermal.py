@@ -125,12 +125,13 @@ class Room(Component):
 
     T = Input("K", "temperature of the room", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
     air_speed = Input("m/s", "speed of the air along the housing", at_least=0.0)
+    k_air = Parameter("1", "factor on the speed of the air, 1 for the speed as given", default=1.0, at_least=0.0)
     Q_flow = Output("W", "heat flow rate into the room", nominal=100.0)
 
     def equations(self) -> Iterator[Equation]:
         """The room keeps its temperature whatever it takes."""
         yield equation("air temperature", self.air.T, self.T)
-        yield equation("air speed", self.air.v, self.air_speed)
+        yield equation("air speed", self.air.v, self.k_air * self.air_speed)
         yield equation("floor temperature", self.floor.T, self.T)
         yield equation("heat to the room", self.Q_flow, self.air.Q_flow + self.floor.Q_flow)
 
@@ -147,11 +148,12 @@ class PrescribedTemperature(Component):
     heat = HeatPort()
 
     T = Input("K", "temperature", nominal=10.0, above=0.0, start=298.15)
+    dT = Parameter("K (difference)", "how much warmer than given it keeps itself", nominal=1.0, default=0.0)
     Q_flow = Output("W", "heat flow rate it takes", nominal=100.0)
 
     def equations(self) -> Iterator[Equation]:
         """The temperature is given, the heat follows."""
-        yield equation("temperature kept", self.heat.T, self.T)
+        yield equation("temperature kept", self.heat.T, self.T + self.dT)
         yield equation("heat taken", self.Q_flow, self.heat.Q_flow)
 
     def supplied_power(self) -> Iterable[Num]:

@@ -25,6 +25,7 @@ PARTS = PHYSICS | FIT_PARTS
 
 OIL = dict(nu_40=3.2438e-4, nu_100=3.527e-5, rho_15=859.0, alpha_T=-5.6e-4, s_p=7.382, t_p=0.1335, X_L=0.666)
 FRICTION = dict(count=2.0, inner_share=0.4)
+GREY = FRICTION | dict(a=5000.0, b=0.01, m=1.5, e=0.4, w_ref=188.0, nu_ref=1.5e-4)
 BEARING = FRICTION | dict(d_m=0.14, F_r_0=100.0, F_a_0=50.0)
 SKF = BEARING | dict(d=0.11, D=0.17, K_Z=6.0, K_rs=6e-8, mu_bl=0.1, mu_EHL=0.002, H=0.03)
 TEETH = dict(z_1=36.0, z_2=36.0, m_n=0.002, alpha_n=math.radians(20), beta=math.radians(10), b=0.042, a_w=0.073035)
@@ -96,6 +97,12 @@ EXAMPLES: dict[str, dict] = {
     "LinearShellCooling": LINEAR | dict(k_air=0.0257, nu_air=1.511e-5, Pr_air=0.713),
     "Room": {},
     "PrescribedTemperature": {},
+    "GreyTeeth": GREY,
+    "GreyBearing": GREY,
+    "FlowConductor": dict(G_rest=100.0, G_ref=1000.0, e=0.3, w_ref=188.0, nu_ref=1.5e-4),
+    "OilJet": dict(G_ref=500.0, e=0.3, w_ref=188.0, nu_ref=1.5e-4),
+    "Thermostat": dict(T_open=333.0, T_close=328.0, T_width=0.4, t_switch=300.0),
+    "Cooler": dict(G_closed=50.0, G_open=900.0),
     "ExtraLoss": EXTRA,
     "ExtraHeat": EXTRA | dict(wall_share=0.3, inside_share=0.2),
     "ExtraConductor": dict(G_ref=2.0, dT_ref=35.0, e=0.3, w_ref=20.0, c=0.5, T_on=330.0, T_side=1.0, T_width=1.5)
@@ -109,6 +116,8 @@ GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level", "BeltPull.load"} 
     "Grease.lubricant",
     "HelicalGearPair.force",
 }
+GIVES |= {"Thermostat.opening"}
+GIVES |= {"LoadingClutch.reading"}
 GIVES |= {f"PlanetarySet.{k}" for k in ("carrier_load", "sun_load", "planet_load")}
 GIVES |= {f"HarmonicMesh.{k}" for k in ("wave_load", "shaft_load")}
 GIVES |= {f"CycloidPinStage.{k}" for k in ("eccentric_load", "crank_load", "main_load")}

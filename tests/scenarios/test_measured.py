@@ -149,10 +149,9 @@ class TestBadTables:
         (path := tmp_path / "data.csv").write_bytes(b"\xff\xfe\x00\x81")
         assert problems(path) == ("data.csv: is not UTF-8 text. Save it as a CSV file.",)
 
-    def test_semicolons(self, tmp_path: Path) -> None:
-        path = table(tmp_path, ROWS[0].replace(",", ";"), header=HEADER.replace(",", ";"))
-        expected = "data.csv line 1: the columns are not separated by commas. Write commas, and a point in decimals."
-        assert problems(path) == (expected,)
+    def test_tabs(self, tmp_path: Path) -> None:
+        path = table(tmp_path, ROWS[0].replace(",", "\t"), header=HEADER.replace(",", "\t"))
+        assert problems(path) == ("data.csv line 1: the columns are separated by tabs. Write commas or semicolons.",)
 
     def test_a_decimal_comma(self, tmp_path: Path) -> None:
         found = problems(table(tmp_path, ROWS[0].replace("45", "45,3"), ROWS[1]))
@@ -209,6 +208,11 @@ class TestBadTables:
 
 
 class TestTolerantReading:
+    def test_semicolons_with_decimal_commas(self, tmp_path: Path) -> None:
+        row = ROWS[0].replace(",", ";").replace(";45;", ";45,25;")
+        campaign = read_measured(table(tmp_path, row, header=HEADER.replace(",", ";")))
+        assert campaign.readings[0].values["T_oil_C"] == 45.25
+
     def test_unknown_columns_warn(self, tmp_path: Path) -> None:
         path = table(tmp_path, *(row + ",7,8" for row in ROWS), header=HEADER + ",T_oil2,colour")
         assert read_measured(path).warnings == (

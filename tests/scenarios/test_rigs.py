@@ -53,6 +53,7 @@ def test_all_are_listed() -> None:
         "helical_two_stage",
         "planetary",
         "rv_stage",
+        "wind_turbine",
     )
     assert all(list_rigs().values())
     assert all(list_rigs("reproduces").values())

@@ -1,4 +1,4 @@
-"""Asking a diagnosis about a case, and reading what it answers."""
+"""Asking a diagnosis about a case, and reading what it answers: only the command, and stable fields of its JSON."""
 
 from __future__ import annotations
 
@@ -12,13 +12,20 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from ...model.errors import DataError
-from .causes import merged_all
+from .classes import merged_all
 
-#: Gets the folder of a case; returns its result (JSON) and its predictions (CSV), which may be missing.
-Diagnoser = Callable[[Path], tuple[Path, Path | None]]
+#: Gets the files of a case by what they are, and a folder for answers; writes RESULT.json there, and
+#: PREDICTIONS.csv and SECONDS (its processor time) if it can.
+Diagnoser = Callable[[Mapping[str, Path], Path], None]
+
+#: The command, in a process that notes its processor time [s].
+PROGRAM = """
+import atexit, os, pathlib, sys
+from gearheat.tools.cli import main
+atexit.register(lambda: pathlib.Path(os.environ["SECONDS_FILE"]).write_text(str(sum(os.times()[:4]))))
+main()
+"""
 
 #: Longest time for one case [s].
 PATIENCE = 1800.0
@@ -26,50 +33,32 @@ PATIENCE = 1800.0
 #: Variables that tell linear algebra how many threads to use.
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
-#: What is no claim of a cause.
 UNNAMED = frozenset({"model.unexplained"})
 
-#: Files of a case and the options that name them, where they exist.
-OPTIONS: Mapping[str, str] = {
-    "CARD.json": "--card",
-    "SERIES.csv": "--series",
-    "REF.csv": "--reference",
-    "REF_SERIES.csv": "--reference-series",
-    "POINTS.csv": "--predict",
-}
+OPTIONS: Mapping[str, str] = {"card": "--card", "reference": "--reference", "points": "--predict"}
 
 
-def ask_command(case: Path) -> tuple[Path, Path | None]:
-    """Run `gearheat diagnose` on the files of a case, in a process of its own.
+def ask_command(files: Mapping[str, Path], place: Path, seed: int = 0) -> None:
+    """Run `gearheat diagnose` on the files of a case, in a process of its own with one thread.
 
     Raises:
         DataError: it ends with another exit code than 0, or takes too long
     """
-    place = case.parent / "answer"
-    place.mkdir(exist_ok=True)
-    result, predictions = place / "RESULT.json", place / "PREDICTIONS.csv"
-    words = ["diagnose", str(case / "DATA.csv"), "--rig", "planetary", "--seed", "0", "--json", str(result)]
+    words = ["diagnose", str(files["data"]), "--rig", "planetary", "--seed", str(seed)]
+    words += ["--json", str(place / "RESULT.json")]
     for name, option in OPTIONS.items():
-        if (case / name).exists():
-            words += [option, str(case / name)]
-    words += ["--predictions", str(predictions)]
-    program = [sys.executable, "-c", "from gearheat.tools.cli import main; main()"]
-    limits = dict.fromkeys(THREADS, "1")
+        if name in files:
+            words += [option, str(files[name])]
+    words += ["--predictions", str(place / "PREDICTIONS.csv")] if "points" in files else []
+    program = [sys.executable, "-c", PROGRAM, *words]
+    env = {**os.environ, **dict.fromkeys(THREADS, "1"), "SECONDS_FILE": str(place / "SECONDS")}
     try:
-        done = subprocess.run(
-            [*program, *words],
-            env={**os.environ, **limits},
-            capture_output=True,
-            text=True,
-            timeout=PATIENCE,
-            check=False,
-        )
+        done = subprocess.run(program, env=env, capture_output=True, text=True, timeout=PATIENCE, check=False)
     except subprocess.TimeoutExpired:
         raise DataError(f"diagnose took more than {PATIENCE:g} s") from None
     if done.returncode != 0:
         said = done.stderr.strip().splitlines()[-1:] or ["no message"]
         raise DataError(f"diagnose ended with code {done.returncode}: {said[0]}")
-    return result, predictions if predictions.exists() else None
 
 
 @dataclass(frozen=True)
@@ -82,18 +71,27 @@ class Hypothesis:
     @property
     def claims(self) -> bool:
         """Whether it names a cause."""
-        return bool(self.names) and self.names != UNNAMED
+        return bool(self.names - UNNAMED)
 
 
 @dataclass(frozen=True)
 class Answer:
-    """What a diagnosis said: look-alikes that count as one are merged, likeliest hypothesis first."""
+    """What a diagnosis said: look-alikes that count as one are merged, likeliest hypothesis first.
+
+    Args:
+        verdict: its word; anything but "consistent" is an alarm
+        hypotheses: of causes
+        impact: mean change of the readings
+        nominal, extended: predicted oil temperatures by point
+        gross: points and channels of single readings that it calls wrong; None where it says nothing of them
+    """
 
     verdict: str
     hypotheses: tuple[Hypothesis, ...]
     impact: Mapping[str, float] = field(default_factory=dict)
     nominal: Mapping[int, float] = field(default_factory=dict)
     extended: Mapping[int, float] = field(default_factory=dict)
+    gross: frozenset[tuple[int, str]] | None = None
 
     @property
     def alarm(self) -> bool:
@@ -116,33 +114,42 @@ class Answer:
         return found
 
 
-def read_answer(result: Path, predictions: Path | None) -> Answer:
-    """The answer in two files.
+def read_answer(place: Path) -> Answer:
+    """The answer in a folder; of a hypothesis with a remainder beside causes, the causes count.
 
     Raises:
         DataError: the result is no JSON of the schema
     """
     try:
-        said = json.loads(result.read_text(encoding="utf-8"))
+        said = json.loads((place / "RESULT.json").read_text(encoding="utf-8"))
         weights: dict[frozenset[str], float] = {}
         for h in said["hypotheses"]:
             names = merged_all(h["causes"])
+            names = names - UNNAMED or names
             weights[names] = weights.get(names, 0.0) + float(h["probability"])
         verdict, impact = str(said["verdict"]), {k: _estimate(v) for k, v in said.get("impact", {}).items()}
+        gross = _gross(said.get("data_quality"))
     except (OSError, ValueError, KeyError, TypeError) as error:
-        raise DataError(f"{result.name}: not a result of a diagnosis ({type(error).__name__}: {error})") from None
+        raise DataError(f"{place.name}: not a result of a diagnosis ({type(error).__name__}: {error})") from None
     ranked = sorted(weights.items(), key=lambda item: (-item[1], sorted(item[0])))
-    hypotheses = tuple(Hypothesis(names, p) for names, p in ranked)
-    nominal, extended = _predictions(predictions)
-    return Answer(verdict, hypotheses, impact, nominal, extended)
+    nominal, extended = _predictions(place / "PREDICTIONS.csv")
+    return Answer(verdict, tuple(Hypothesis(*h) for h in ranked), impact, nominal, extended, gross)
 
 
 def _estimate(value: Any) -> float:
     return float(value["value"] if isinstance(value, Mapping) else value)
 
 
-def _predictions(path: Path | None) -> tuple[dict[int, float], dict[int, float]]:
-    if path is None or not path.exists():
+def _gross(quality: Mapping[str, Any] | None) -> frozenset[tuple[int, str]] | None:
+    """Rows of the data, from 1, and channels."""
+    if quality is None:
+        return None
+    found = quality.get("gross_readings", quality.get("gross", ()))
+    return frozenset((int(g["row"]), str(g["channel"])) for g in found)
+
+
+def _predictions(path: Path) -> tuple[dict[int, float], dict[int, float]]:
+    if not path.exists():
         return {}, {}
     with path.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
@@ -152,8 +159,3 @@ def _predictions(path: Path | None) -> tuple[dict[int, float], dict[int, float]]
     except (KeyError, TypeError, ValueError) as error:
         raise DataError(f"{path.name}: not a table of predictions ({type(error).__name__}: {error})") from None
     return nominal, extended
-
-
-def rms(values: list[float]) -> float:
-    """Root of the mean square."""
-    return float(np.sqrt(np.mean(np.square(values))))

@@ -1,23 +1,23 @@
-"""Runs a sheet: makes the cases, asks the diagnosis, scores; over several processes, going on where it stopped."""
+"""Runs cases: makes them, asks the diagnosis, scores; several at a time, going on where it stopped."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-import multiprocessing
-import os
+import threading
 import time
-from collections.abc import Callable, Iterable, Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ...model.errors import DataError
-from .answers import THREADS, Answer, Diagnoser, ask_command, read_answer
-from .case import make_case
+from . import practice
+from .answers import Answer, Diagnoser, ask_command, read_answer
+from .cases import make_case
 from .scoring import Outcome, score
+from .sheets import SHEETS
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -25,19 +25,52 @@ ROOT = Path(__file__).resolve().parents[2]
 CASE_SOURCES = ("model", "scenarios", "tools/challenge")
 ANSWER_SOURCES = ("fmu", "tools")
 
+#: Files of a made case by what they are.
+FILES = {"data": "DATA.csv", "card": "CARD.json", "reference": "REF.csv", "points": "POINTS.csv"}
+
+#: Cases are made one at a time: simulators keep buffers.
+_MAKING = threading.Lock()
+
 
 @dataclass(frozen=True)
 class Task:
-    """One case to make, ask about and score."""
+    """One case.
+
+    Args:
+        sheet: that it belongs to
+        k, seed, kind: of a case to make
+        folder: for its files and answers
+        given: the folder of a case that is there already
+        stamps: of what the case and the answer follow from
+    """
 
     sheet: str
-    seed: int
     k: int
-    folder: Path
+    seed: int
     kind: str | None
-    case_stamp: str
-    answer_stamp: str
+    folder: Path
+    given: Path | None
+    stamps: tuple[str, str]
     diagnose: Diagnoser
+
+
+def tasks(
+    sheet: str,
+    n: int,
+    seed: int,
+    out: Path,
+    *,
+    kind: str | None = None,
+    given: Path | None = None,
+    diagnose: Diagnoser = ask_command,
+) -> list[Task]:
+    """The cases 0 ... n - 1 of a sheet, or the first n in the folder `given`."""
+    case_stamp = f"{fingerprint(*CASE_SOURCES)} {sheet} {seed} {kind}"
+    stamps = case_stamp, f"{case_stamp} {diagnose.__module__} {fingerprint(*ANSWER_SOURCES)}"
+    if given is not None:
+        found = practice.folders(given)[:n]
+        return [Task(sheet, k, seed, None, out / p.name, p, stamps, diagnose) for k, p in enumerate(found)]
+    return [Task(sheet, k, seed, kind, out / f"{k:04d}", None, stamps, diagnose) for k in range(n)]
 
 
 def fingerprint(*folders: str) -> str:
@@ -45,120 +78,67 @@ def fingerprint(*folders: str) -> str:
     digest = hashlib.sha256()
     for folder in folders:
         for path in sorted((ROOT / folder).rglob("*")):
-            if path.suffix in (".py", ".toml", ".c", ".h") and path.is_file():
+            if path.suffix in (".py", ".toml") and path.is_file():
                 digest.update(path.relative_to(ROOT).as_posix().encode() + b"\0" + path.read_bytes())
     return digest.hexdigest()[:16]
 
 
-def run_sheet(
-    sheet: str,
-    seed: int,
-    n: int,
-    out: Path,
-    *,
-    jobs: int = 0,
-    kind: str | None = None,
-    diagnose: Diagnoser = ask_command,
-    progress: Callable[[int, Outcome], None] = lambda done, outcome: None,
-) -> list[Outcome]:
-    """Outcomes of cases 0 ... n - 1.
-
-    Args:
-        sheet: "own" or "foreign"
-        seed: of the challenge
-        n: number of cases
-        out: folder; cases and answers that it holds already are used if the sources are still the same
-        jobs: processes with one thread each, for which `diagnose` must be a function of a module; 0 for this one
-        kind: only this kind of case; drawn per case if left out
-        diagnose: what is asked
-        progress: called after each case with how many are done and the outcome
-    """
-    case_stamp = f"{fingerprint(*CASE_SOURCES)} {kind}"
-    name = f"{diagnose.__module__}.{getattr(diagnose, '__qualname__', type(diagnose).__name__)}"
-    answer_stamp = f"{case_stamp} {name} {fingerprint(*ANSWER_SOURCES)}"
-    tasks = [Task(sheet, seed, k, out / f"{k:04d}", kind, case_stamp, answer_stamp, diagnose) for k in range(n)]
-    outcomes = []
-    for outcome in _results(tasks, jobs):
-        outcomes.append(outcome)
-        progress(len(outcomes), outcome)
-    return sorted(outcomes, key=lambda o: o.case)
-
-
-def _results(tasks: list[Task], jobs: int) -> Iterable[Outcome]:
-    if jobs < 1:
-        yield from map(solve, tasks)
-        return
-    with _one_thread(), ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
-        futures = [pool.submit(solve, task) for task in tasks]
+def run(todo: list[Task], jobs: int, progress: Callable[[int, Outcome], None] = lambda k, o: None) -> list[Outcome]:
+    """Outcomes in the order of the cases; `jobs` diagnoses at a time, each a process of its own."""
+    with ThreadPoolExecutor(max(jobs, 1)) as pool:
+        futures = [pool.submit(solve, task) for task in todo]
         try:
-            yield from (future.result() for future in as_completed(futures))
+            for done, future in enumerate(as_completed(futures), 1):
+                progress(done, future.result())
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
-
-
-@contextmanager
-def _one_thread() -> Iterator[None]:
-    """Processes that start meanwhile do their linear algebra in one thread each: several at once are faster so."""
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+    return [future.result() for future in futures]
 
 
 def solve(task: Task) -> Outcome:
     """Make a case unless it is there, ask unless it is answered, and score."""
-    truth = _truth(task)
-    done = task.folder / "answer" / "DONE.json"
-    state = _read(done)
-    if state.get("stamp") != task.answer_stamp:
-        state = _ask(task)
-        done.write_text(json.dumps(state) + "\n", encoding="utf-8")
+    truth = practice.truth(task.given) if task.given else _truth(task)
+    place = task.folder / "answer"
+    state = _read(place / "DONE.json")
+    if state.get("stamp") != task.stamps[1]:
+        state = _ask(task, place)
+        (place / "DONE.json").write_text(json.dumps(state) + "\n", encoding="utf-8")
     answer: Answer | None = None
     problem = str(state["problem"])
     if not problem:
         try:
-            predictions = task.folder / state["predictions"] if state["predictions"] else None
-            answer = read_answer(task.folder / state["result"], predictions)
+            answer = read_answer(place)
         except DataError as error:
             problem = str(error)
-    return score(truth, answer, float(state["seconds"]), problem)
+    return score({**truth, "sheet": task.sheet}, answer, float(state["seconds"]), problem)
 
 
 def _truth(task: Task) -> dict[str, Any]:
     stamp = task.folder / "STAMP"
-    if not stamp.exists() or stamp.read_text(encoding="utf-8") != task.case_stamp:
+    if not stamp.exists() or stamp.read_text(encoding="utf-8") != task.stamps[0]:
         stamp.unlink(missing_ok=True)
-        case = task.folder / "case"
-        for old in case.glob("*") if case.is_dir() else ():
-            old.unlink()
-        make_case(task.sheet, task.seed, task.k, task.folder, kind=task.kind)
-        stamp.write_text(task.case_stamp, encoding="utf-8")
+        number, draw = list(SHEETS).index(task.sheet), SHEETS[task.sheet]
+        with _MAKING:
+            make_case(draw, number, task.seed, task.k, task.folder, kind=task.kind)
+        stamp.write_text(task.stamps[0], encoding="utf-8")
     return _read(task.folder / "TRUTH.json")
 
 
-def _ask(task: Task) -> dict[str, Any]:
-    """Ask, and note how long it took and what went wrong."""
-    place = task.folder / "answer"
-    place.mkdir(exist_ok=True)
+def _ask(task: Task, place: Path) -> dict[str, Any]:
+    """Ask, and note the processor time (of the clock, where the diagnosis does not state it) and what went wrong."""
+    place.mkdir(parents=True, exist_ok=True)
     for old in place.glob("*"):
         old.unlink()
-    state: dict[str, Any] = {"stamp": task.answer_stamp, "problem": "", "result": "", "predictions": ""}
-    began = time.perf_counter()
+    case = task.folder / "case"
+    made = {what: case / name for what, name in FILES.items() if (case / name).exists()}
+    problem, began, noted = "", time.perf_counter(), place / "SECONDS"
     try:
-        result, predictions = task.diagnose(task.folder / "case")
-        state["result"] = os.path.relpath(result, task.folder)
-        state["predictions"] = os.path.relpath(predictions, task.folder) if predictions else ""
+        task.diagnose(practice.files(task.given) if task.given else made, place)
     except Exception as error:  # whatever goes wrong in a diagnosis is an answer that is missing
-        state["problem"] = f"{type(error).__name__}: {error}"
-    state["seconds"] = round(time.perf_counter() - began, 3)
-    return state
+        problem = f"{type(error).__name__}: {error}"
+    seconds = float(noted.read_text()) if noted.exists() else time.perf_counter() - began
+    return {"stamp": task.stamps[1], "problem": problem, "seconds": round(seconds, 3)}
 
 
 def _read(path: Path) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""`gearheat challenge`: hides effects, asks the diagnosis without telling it, and prints how well it did."""
+"""`gearheat challenge`: hides faults, asks the diagnosis without telling it, and prints how well it did."""
 
 from __future__ import annotations
 
@@ -9,10 +9,15 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
-from ...model.errors import ScenarioError
+from ...model.errors import ScenarioError, suggestion
 from .. import console
-from .bench import run_sheet
+from .bench import run, tasks
+from .hide import KINDS
 from .scoring import Outcome, report
+from .sheets import SHEETS
+
+#: Columns of the table of cases.
+CASES = ("case", "kind", "S/N", "rival", "truth", "p", "answer", "p", "")
 
 
 def command(
@@ -22,44 +27,55 @@ def command(
     jobs: int = 0,
     out: Path | None = None,
     only: str | None = None,
+    practice: Path | None = None,
     json: str | None = None,
 ) -> None:
-    """Run a sheet and give its table.
+    """Run sheets and give their pooled table.
 
     Args:
-        sheet: "own" or "foreign"
-        n: number of cases
+        sheet: one of `SHEETS`, "practice", or "all" for these
+        n: number of cases of each sheet
         seed: of the challenge
         jobs: processes, 0 for one per core
         out: folder for cases and answers; a run that was interrupted goes on from there. A passing one if left out
         only: one kind of cases, e.g. "clean"
+        practice: folder of campaigns with their keys
         json: where to write the report; - for stdout
 
     Raises:
-        ScenarioError: an unknown sheet or kind, or no cases
+        ScenarioError: an unknown kind, no cases, or no folder to practise on
     """
-    from .case import check
-
-    check(sheet, only, None)
+    problems = []
+    if only is not None and only not in KINDS:
+        problems.append(f'challenge: unknown kind "{only}".{suggestion(only, KINDS)} Kinds: {", ".join(KINDS)}.')
     if n < 1:
-        raise ScenarioError(f"challenge: --n {n}: ask for at least one case.")
+        problems.append(f"challenge: --n {n}: ask for at least one case.")
+    if sheet == "practice" and practice is None:
+        problems.append("challenge: --sheet practice needs --practice FOLDER, a folder of campaigns with their keys.")
+    if problems:
+        raise ScenarioError(problems)
     console.writable(console.file_of(json))
-    workers = min(jobs or os.cpu_count() or 1, n)
+    with _folder(out) as place:
+        todo = []
+        for name in SHEETS if sheet == "all" else (sheet,):
+            if name in SHEETS:
+                todo += tasks(name, n, seed, place / f"{name}-{seed}", kind=only)
+        if practice is not None and sheet in ("all", "practice"):
+            todo += tasks("practice", n, seed, place / "practice", given=practice)
 
-    def progress(done: int, outcome: Outcome) -> None:
-        trouble = f": {outcome.problem}" if outcome.problem else ""
-        console.note(f"{done}/{n}: case {outcome.case} in {outcome.seconds:.1f} s{trouble}")
+        def progress(done: int, o: Outcome) -> None:
+            trouble = f": {o.problem}" if o.problem else ""
+            console.note(f"{done}/{len(todo)}: {o.sheet} {o.case}, {o.seconds:.1f} s of processor time{trouble}")
 
-    with _folder(out, sheet, seed) as place:
-        outcomes = run_sheet(sheet, seed, n, place, jobs=workers, kind=only, progress=progress)
-    found = report(outcomes, sheet, seed)
+        outcomes = run(todo, min(jobs or os.cpu_count() or 1, len(todo)), progress)
+    found = report(outcomes, seed)
     console.answer(found, json, lambda: show(found))
 
 
 @contextmanager
-def _folder(out: Path | None, sheet: str, seed: int) -> Iterator[Path]:
+def _folder(out: Path | None) -> Iterator[Path]:
     if out is not None:
-        yield console.folder(out / f"{sheet}-{seed}")
+        yield console.folder(out)
         return
     with tempfile.TemporaryDirectory(prefix="gearheat-challenge-") as passing:
         yield Path(passing)
@@ -67,45 +83,60 @@ def _folder(out: Path | None, sheet: str, seed: int) -> Iterator[Path]:
 
 def show(found: Mapping[str, Any]) -> None:
     """Print the report as tables."""
-    kinds = ", ".join(f"{count} {kind}" for kind, count in found["kinds"].items())
-    rows = [_row(m) for m in found["metrics"]]
+    wrong = [_case(c) for c in found["cases"] if _missed(c)]
+    console.table("cases that are not as they should be", CASES, wrong)
     head = ("metric", "value", "95 % interval", "cases", "must", "", "ambitious", "")
-    console.table(f"{found['sheet']} sheet, seed {found['seed']}: {found['n']} cases ({kinds})", head, rows)
-    answers = [
-        (truth if i == 0 else "", top, count)
-        for truth, row in found["confusion"].items()
-        for i, (top, count) in enumerate(sorted(row.items(), key=lambda item: (-item[1], item[0])))
-    ]
-    console.table("what was hidden, and the likeliest answer", ("hidden", "answer", "cases"), answers)
-    loudness = [_loudness(r) for r in found["by_loudness"] if r["n"]]
-    columns = ("signal-to-noise", "cases", "detected", "95 % interval", "exact name", "95 % interval")
-    console.table("one cause, by how loud it is", columns, loudness)
+    sheets = ", ".join(f"{count} {sheet}" for sheet, count in found["sheets"].items())
+    kinds = ", ".join(f"{count} {kind}" for kind, count in found["kinds"].items())
+    if len(found["sheets"]) > 1:
+        by_sheet = [(m["name"], *(_value(f[i]) for f in found["by_sheet"].values())) for i, m in _all(found)]
+        console.table("by sheet: value (cases)", ("metric", *found["sheets"]), by_sheet)
+    console.table(f"{sheets}, seed {found['seed']} ({kinds})", head, [_row(m) for m in found["metrics"]])
+    print(f"{found['by_name']} single causes lie 3 sigma or more from every rival; {found['by_set']} are told by a set")
     seconds = found["seconds"]
     if seconds["median"] is not None:
-        print(f"time per case: median {seconds['median']:.1f} s, longest {seconds['longest']:.1f} s")
-    if found["answered"] < found["n"]:
-        print(f"{found['n'] - found['answered']} cases without an answer count as missed")
+        print(f"processor time per case: median {seconds['median']:.1f} s, longest {seconds['longest']:.1f} s")
+    missing = sum(found["sheets"].values()) - found["answered"]
+    if missing:
+        print(f"{missing} cases without an answer count as missed")
 
 
-def _loudness(r: Mapping[str, Any]) -> tuple[str, ...]:
-    low, high = r["snr"]
-    span = f"{low:g} ... {high:g}" if high < 1e6 else f"above {low:g}"
-    detected, exact = (f"{r[name] / r['n']:.2f}" for name in ("detected", "exact"))
-    spans = [" ... ".join(f"{v:.2f}" for v in r[f"{name}_interval"]) for name in ("detected", "exact")]
-    return span, str(r["n"]), detected, spans[0], exact, spans[1]
+def _all(found: Mapping[str, Any]) -> Iterator[tuple[int, Mapping[str, Any]]]:
+    return iter(enumerate(found["metrics"]))
+
+
+def _missed(c: Mapping[str, Any]) -> bool:
+    if not c["answered"] or c["sure_wrong"]:
+        return True
+    if c["kind"] in ("clean", "weak", "outside"):
+        return bool(c["kind"] == "clean" and c["alarm"])
+    return not c["exact"]
+
+
+def _case(c: Mapping[str, Any]) -> tuple[str, ...]:
+    rival = "" if c["distance"] is None else f"{c['distance']:.1f}"
+    remarks = [
+        "no answer" if not c["answered"] else "",
+        "sure" if c["sure_wrong"] else "",
+        "in the set" if c["covered"] else "",
+    ]
+    name = f"{c['sheet']} {c['case']}"
+    numbers = f"{c['snr']:.1f}", rival, c["truth"], f"{c['p_truth']:.2f}", c["top"], f"{c['p_top']:.2f}"
+    return name, c["kind"], *numbers, ", ".join(r for r in remarks if r)
+
+
+def _value(m: Mapping[str, Any]) -> str:
+    return "" if m["value"] is None else f"{m['value']:.2f} ({m['n']})"
 
 
 def _row(m: Mapping[str, Any]) -> tuple[str, ...]:
-    def number(value: float) -> str:
-        return f"{value:.2f}"
-
     def bar(value: float | None) -> str:
         return "" if value is None else f"{'<=' if m['at_most'] else '>='} {value:.2f}"
 
     def met(reached: bool | None) -> str:
         return "" if reached is None else "reached" if reached else "missed"
 
-    value = "" if m["value"] is None else number(m["value"])
-    interval = "" if m["interval"] is None else f"{number(m['interval'][0])} ... {number(m['interval'][1])}"
+    value = "" if m["value"] is None else f"{m['value']:.2f}"
+    interval = "" if m["interval"] is None else f"{m['interval'][0]:.2f} ... {m['interval'][1]:.2f}"
     bars = (bar(m["must"]), met(m["must_met"]), bar(m["ambitious"]), met(m["ambitious_met"]))
     return m["name"], value, interval, str(m["n"]), *bars

@@ -1,143 +1,398 @@
-"""Forms of every cause that stand for its whole family, and the forms next to one.
+"""Faults of the sheets "own" and "foreign": every cause is a family of forms, drawn freely.
 
-A form follows from a seed, which decides everything that is no number between two, and from where each such number of
-its shape lies between its ends. Forms that a seed decides alike are of one kind.
+A family states what it does with numbers that are drawn (f): a pair is an even range, a list a choice. Faults of the
+torque transducers act on the columns of the files, which are magnitudes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
-from functools import cached_property
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 
-from .causes import CAUSES, REGIMES
-from .hidden import Draw, Effect, Surroundings
+from .plan import Plan
+from .rig import CHANNELS, RATIO, Scene
+from .textbook.rig import Fault
 
-#: Draws to choose from: everywhere, and limited to a regime.
-DRAWS = (40, 120)
+#: Conditions at which amounts are stated: speed [rpm], torque [N.m], viscosity [mm2/s], oil temperature [degC].
+N, LOAD, NU, T_OIL = 175.0, 2100.0, 80.0, 60.0
 
-#: Forms of a cause, shared among its kinds, but at least and at most so many of one kind; of one that is limited to a
-#: regime; and of a fault of instruments, which costs no simulation.
-FORMS, OF_A_KIND, LIMITED, FREE = 8, (2, 6), 3, 16
-
-
-@dataclass(frozen=True)
-class _Shaped(Draw):
-    """A draw whose shapes lie at given shares between their ends, where there are any given.
-
-    It notes the shares, and whatever is drawn that is no number between two and no sign.
-    """
-
-    given: Sequence[float] = ()
-    shares: list[float] = field(default_factory=list)
-    words: list[object] = field(default_factory=list)
-
-    def uniform(self, low: float, high: float) -> float:
-        """A number between two, to four digits."""
-        share = float(self.rng.random())
-        if len(self.shares) < len(self.given):
-            share = self.given[len(self.shares)]
-        self.shares.append(share)
-        return float(f"{low + share * (high - low):.4g}")
-
-    def pick(self, *choices: str, p: Sequence[float] | None = None) -> str:
-        """One of several names."""
-        picked = super().pick(*choices, p=p)
-        self.words.append(picked)
-        return picked
-
-    def chance(self, p: float) -> bool:
-        """True with some probability."""
-        happened = super().chance(p)
-        self.words.append(happened)
-        return happened
-
-    def either(self, positive: float = 0.5) -> float:
-        """A sign."""
-        return 1.0 if super().chance(positive) else -1.0
+ROW = {c: i for i, c in enumerate(CHANNELS)}
+UP, BOTH = (1,), (1, -1)
 
 
 @dataclass(frozen=True)
-class Form:
-    """One form of a cause.
+class Draw:
+    """Chance, and what a draw may know of the campaign.
 
     Args:
-        cause: identifier
-        around: what a draw may know of the campaign
-        seed: of all that is no number
-        limited: whether it is limited to a regime
-        given: where its shapes lie between their ends, 0 ... 1; from the seed if empty
+        rng: source of chance
+        n, load, oil: speeds, torques and healthy oil temperatures of the readings
+        tests: number of tests
+        inner: share of gears and shafts in the heat capacity of all but the oil
     """
 
-    cause: str
-    around: Surroundings
-    seed: tuple[int, ...]
-    limited: bool
-    given: tuple[float, ...] = ()
+    rng: np.random.Generator
+    n: np.ndarray
+    load: np.ndarray
+    oil: np.ndarray
+    tests: int
+    inner: float
 
-    @cached_property
-    def _drawn(self) -> tuple[Effect, _Shaped]:
-        notes = _Shaped(np.random.default_rng(self.seed), self.around, given=self.given)
-        draw = notes.limited(REGIMES[self.cause]) if self.limited else notes
-        return CAUSES[self.cause](draw), notes
-
-    @property
-    def effect(self) -> Effect:
-        """The effect."""
-        return self._drawn[0]
-
-    @property
-    def largest(self) -> float:
-        """Largest sensible amplitude, with its sign."""
-        return self.effect.sign * self.effect.high
-
-    @property
-    def shares(self) -> list[float]:
-        """Where its shapes lie between their ends."""
-        return self._drawn[1].shares
-
-    @property
-    def kind(self) -> tuple[object, ...]:
-        """What it has in common with the other forms of its kind, but for the sign: words, and place of a regime."""
-        limits = [(k, v) for k, v in self.effect.regime.items() if k not in ("threshold", "width")]
-        return self.limited, *limits, *self._drawn[1].words
-
-    def at(self, shares: np.ndarray) -> Form:
-        """The form of other shapes."""
-        return replace(self, given=tuple(float(s) for s in shares))
+    def numbers(self, spans: Mapping[str, Any]) -> SimpleNamespace:
+        """One of each list, a number of each pair, a middling quantile of "n", "load", "oil"; and chance by test."""
+        found: dict[str, Any] = {"z": self.rng.normal(0.0, 1.0, self.tests), "inner": self.inner}
+        for name, span in spans.items():
+            if isinstance(span, list):
+                found[name] = span[int(self.rng.integers(len(span)))]
+            elif isinstance(span, str):
+                found[name] = float(np.quantile(getattr(self, span), self.rng.uniform(0.3, 0.7)))
+            else:
+                found[name] = float(f"{self.rng.uniform(*span):.4g}")
+        return SimpleNamespace(**found)
 
 
-def kinds_of(cause: str, around: Surroundings, seed: Sequence[int]) -> list[tuple[Form, ...]]:
-    """Some forms of every kind and sign of a cause, far apart; of both signs, where there are two, the same shapes."""
-    found = []
-    for limited in (False, True) if cause in REGIMES else (False,):
-        kinds: dict[tuple[object, ...], dict[float, list[Form]]] = {}
-        for i in range(DRAWS[limited]):
-            form = Form(cause, around, (*seed, int(limited), i), limited)
-            kinds.setdefault(form.kind, {}).setdefault(form.effect.sign, []).append(form)
-        for signs in kinds.values():
-            chosen = _far_apart(max(signs.values(), key=len), _count(form, len(kinds)))
-            found += [tuple(forms[0].at(np.array(c.shares)) for c in chosen) for forms in signs.values()]
-    return found
+Family = Callable[[Draw], Fault]
+Act = Callable[[Scene, np.ndarray, SimpleNamespace], Any]
+Read = Callable[[np.ndarray, Plan, np.ndarray, SimpleNamespace], Any]
 
 
-def _count(form: Form, kinds: int) -> int:
-    """Forms of one kind, where a cause has some kinds."""
-    if form.effect.read is not None:
-        return FREE
-    return LIMITED if form.limited else int(np.clip(FORMS // kinds, *OF_A_KIND))
+def _family(high: float, unit: str, signs: tuple[int, ...], stage: str, what: Any, spans: Mapping[str, Any]) -> Family:
+    """Of faults that do something at a stage with the numbers that are drawn."""
+
+    def draw(d: Draw) -> Fault:
+        f = d.numbers(spans)
+        form = {name: getattr(f, name) for name in spans}
+        return Fault("", high, unit, {stage: lambda *arguments: what(*arguments, f)}, form, signs)
+
+    return draw
 
 
-def _far_apart(forms: Sequence[Form], count: int) -> list[Form]:
-    """One in the middle, then always the one farthest from those taken."""
-    same = [f for f in forms if len(f.shares) == max(len(g.shares) for g in forms)]
-    x = np.array([f.shares for f in same]).reshape(len(same), -1) - 0.5
-    taken = [int(np.argmin((x**2).sum(axis=1)))]
-    while len(taken) < count:
-        gaps = np.min([((x - x[i]) ** 2).sum(axis=1) for i in taken], axis=0)
-        if not gaps.max() > 0:
-            break
-        taken.append(int(np.argmax(gaps)))
-    return [same[i] for i in taken]
+def _brake(high: float, shape: Callable[[Scene, Any], Any], *places: str, unit: str = "W", **spans: Any) -> Family:
+    """A power, or a torque, that brakes; its heat goes to the first place by the share f.to, evenly to the others."""
+
+    def act(s: Scene, a: np.ndarray, f: SimpleNamespace) -> None:
+        power = a * shape(s, f) * (s.running if unit == "W" else s.w)
+        first, *others = places
+        s.brake(power, {first: f.to, **{place: (1 - f.to) / len(others) for place in others}})
+
+    return _family(high, unit, UP, "act", act, spans)
+
+
+def _scale(high: float, names: str, shape: Callable[[Scene, Any], Any], signs: Any = BOTH, **spans: Any) -> Family:
+    """Factors that are an exponential of the amount times a shape."""
+
+    def act(s: Scene, a: np.ndarray, f: SimpleNamespace) -> None:
+        for name in (names or f.what).split():
+            s.scale(name, np.exp(np.clip(a * shape(s, f), -4.0, 2.0)))
+
+    return _family(high, "ln", signs, "act", act, spans)
+
+
+def _at(table: np.ndarray, order: np.ndarray) -> np.ndarray:
+    return np.asarray(table[order.astype(int) - 1])
+
+
+def step(x: np.ndarray, threshold: float, width: float) -> np.ndarray:
+    """0 far below, 1 far above the threshold."""
+    return np.asarray(0.5 + 0.5 * np.tanh((x - threshold) / width))
+
+
+def _churned(s: Scene, f: Any) -> np.ndarray:
+    """Power of speed, a sum of two powers, or what sets in at some speed."""
+    x = s.n / N
+    speed = {
+        "power": x**f.p,
+        "two": 0.5 * x**1.3 + 0.5 * x**3,
+        "onset": (0.08 * np.logaddexp(0.0, (s.n - f.n_0) / 8.0)) ** (0.6 * f.p),
+    }[f.kind]
+    return np.asarray(speed * (s.nu / NU) ** f.q)
+
+
+def _overfilled(s: Scene, a: np.ndarray, f: Any) -> None:
+    """More oil is churned, stores heat and wets more."""
+    s.brake(a * (s.n / N) ** f.p * (s.nu / NU) ** f.q * s.running, {"oil": 0.9, "gears": 0.1})
+    s.scale("cap_oil", 1 + a / 400.0)
+    s.scale("oil_inner", 1 + f.wet * a / 200.0)
+
+
+def _rubbing(s: Scene, f: Any) -> np.ndarray:
+    """By a power of speed and an exponential of the oil's temperature."""
+    return np.asarray((np.maximum(s.n, 1.0) / N) ** f.p * np.exp(f.tilt * (s.T["oil"] - T_OIL) / 40.0))
+
+
+def _teeth(s: Scene, f: Any) -> np.ndarray:
+    """By powers of load and speed."""
+    return np.asarray(np.minimum((np.maximum(s.load, 50.0) / LOAD) ** f.p * (np.maximum(s.n, 1.0) / N) ** f.q, 4.0))
+
+
+def _starved(s: Scene, a: np.ndarray, f: Any) -> None:
+    """Teeth rub more where the film is thin: by a power of speed times viscosity, or below some value of it."""
+    film = np.maximum(s.n, 20.0) * s.nu / (N * NU)
+    below = 0.5 - 0.5 * np.tanh(np.log(film / f.ratio) / f.width)
+    s.scale("mesh", 1 + a * (np.minimum(film**-f.p, 5.0) if f.kind == "power" else below))
+
+
+def _neighbour(s: Scene, a: np.ndarray, f: Any) -> None:
+    """Heat at the housing, little of it in the oil, by a power of speed."""
+    power = a * (np.maximum(s.n, 1.0) / N) ** f.p * (s.running if f.p > 0.3 else 1.0)
+    s.warm("oil", f.oil * power)
+    s.warm("wall", (1 - f.oil) * f.wall * power)
+    s.warm(f.place, (1 - f.oil) * (1 - f.wall) * power)
+
+
+def _tilted(place: str) -> Callable[[Scene, Any], Any]:
+    return lambda s, f: 1 + f.p * (s.T[place] - 50.0) / 40.0
+
+
+def _humid(s: Scene, f: Any) -> np.ndarray:
+    x = (s.humidity - 50.0) / 20.0
+    return np.asarray(np.clip(x + f.p * x * x, -3.0, 3.0))
+
+
+def _split(s: Scene, a: np.ndarray, f: Any) -> None:
+    """Heat capacity that belongs to the housing instead of to gears and shafts, or the other way round; same sum."""
+    inner = np.clip(f.inner * np.exp(a), 0.02, 0.95)
+    s.scale("cap_in", inner / f.inner)
+    s.scale("cap_out", (1 - inner) / (1 - f.inner))
+
+
+def _early(dwell: np.ndarray, plan: Plan, a: np.ndarray, f: Any) -> None:
+    """Readings before the stated time: in both halves or one, evenly or by chance."""
+    hurry = np.abs(_at(f.z, plan.order)) if f.chance else 1.0
+    dwell *= np.exp(-np.minimum(a * np.array(f.halves)[:, None] * hurry, 3.5))
+
+
+#: Columns of a kind of instrument with their scale, and its largest error.
+KINDS: Mapping[str, tuple[list[tuple[str, float]], float]] = {
+    "torque": ([("T_carrier_Nm", 1.0), ("T_sun_Nm", 1.0 / RATIO)], 22.0),
+    "oil_temp": ([("T_oil_C", 1.0)], 9.0),
+    "wall_temp": ([("T_wall_C", 1.0)], 9.0),
+    "ambient": ([("T_amb_C", 1.0)], 9.0),
+}
+
+
+def _added(kind: str, weight: Callable[[Plan, Any], Any], **spans: Any) -> Family:
+    """An error of an instrument [N.m at the carrier, or K] that is an amount times a weight over tests (2, columns)."""
+    columns, high = KINDS[kind]
+
+    def read(shown: np.ndarray, plan: Plan, a: np.ndarray, f: SimpleNamespace) -> None:
+        column, scale = f.column
+        shown[ROW[column]] += scale * a * weight(plan, f)
+
+    return _family(high, "N.m" if kind == "torque" else "K", BOTH, "read", read, {"column": columns, **spans})
+
+
+def _constant(kind: str) -> Family:
+    return _added(kind, lambda plan, f: 1.0)
+
+
+def _since(kind: str) -> Family:
+    """From a test on, creeping back or not."""
+
+    def weight(plan: Plan, f: SimpleNamespace) -> np.ndarray:
+        since = plan.progress - f.at
+        return np.where(since > 0, np.exp(-f.creep * np.maximum(since, 0.0)), 0.0)
+
+    return _added(kind, weight, at=(0.25, 0.75), creep=[0.0, 0.0, 0.3])
+
+
+def _one_way(kind: str) -> Family:
+    return _added(kind, lambda plan, f: np.array(f.parts)[:, None], parts=[(1.0, 0.0), (0.0, 1.0), (1.0, -1.0)])
+
+
+def _walk(kind: str) -> Family:
+    return _added(kind, lambda plan, f: _at(np.cumsum(f.z), plan.order) / np.sqrt(plan.tests / 2.0))
+
+
+def _mixed(high: float, what: Callable[[np.ndarray, Any], tuple[str, Any]], signs: Any = BOTH, **spans: Any) -> Family:
+    """An error that follows other readings: a column, and what an amount of one adds to it."""
+
+    def read(shown: np.ndarray, plan: Plan, a: np.ndarray, f: SimpleNamespace) -> None:
+        column, error = what(shown, f)
+        shown[ROW[column]] += a * error
+
+    return _family(high, "1", signs, "read", read, spans)
+
+
+def _gain(high: float, columns: list[str], about: list[float]) -> Family:
+    return _mixed(high, lambda y, f: (f.column, y[ROW[f.column]] - f.about), column=columns, about=about)
+
+
+_RUB: dict[str, Any] = {"to": (0.2, 0.95), "unit": "N.m"}
+_HEATED = lambda y, f: ("T_amb_C", 35.0 * (np.maximum(y[ROW["T_wall_C"]] - y[ROW["T_amb_C"]], 0.0) / 35.0) ** f.p)  # noqa: E731
+
+CAUSES: Mapping[str, Family] = {
+    "losses.churning": _brake(
+        450.0,
+        _churned,
+        "oil",
+        "gears",
+        to=(0.55, 1.0),
+        kind=["power", "power", "two", "onset"],
+        p=(1.35, 3.0),
+        q=(-0.1, 0.45),
+        n_0=(50.0, 150.0),
+    ),
+    "losses.oil_viscosity": _scale(1.6, "viscosity", lambda s, f: 1 + f.p * (s.T["oil"] - T_OIL) / 40, p=(-0.5, 0.5)),
+    "losses.oil_level": _family(
+        400.0, "W", UP, "act", _overfilled, {"p": (1.4, 2.6), "q": (0.0, 0.4), "wet": (0.0, 0.3)}
+    ),
+    "losses.bearing_preload": _brake(14.0, _rubbing, "oil", "body", "wall", p=(0.0, 0.35), tilt=(-0.65, 0.45), **_RUB),
+    "losses.seal_drag": _brake(14.0, _rubbing, "oil", "body", "wall", p=(-0.3, 0.5), tilt=(-0.7, 0.0), **_RUB),
+    "losses.mesh_friction": _scale(0.9, "mesh", _teeth, p=(-0.4, 1.0), q=(-0.35, 0.35)),
+    "losses.mesh_direction": _scale(
+        0.8,
+        "mesh",
+        lambda s, f: _teeth(s, f) * np.where(s.direction == 1, *f.parts),
+        p=(-0.3, 0.7),
+        q=[0.0],
+        parts=[(0.0, 1.0), (1.0, 0.0), (-0.5, 0.5)],
+    ),
+    "losses.film_starvation": _family(
+        1.4,
+        "1",
+        UP,
+        "act",
+        _starved,
+        {"kind": ["power", "threshold"], "p": (0.7, 2.2), "ratio": (0.6, 1.6), "width": (0.15, 0.5)},
+    ),
+    "losses.windage": _brake(
+        400.0,
+        lambda s, f: (s.n / N) ** f.p * 330.0 / (273.15 + s.T["wall"]),
+        "oil",
+        "gears",
+        "wall",
+        to=(0.2, 0.8),
+        p=(2.1, 3.3),
+    ),
+    "heat.external_source": _family(
+        400.0,
+        "W",
+        UP,
+        "act",
+        _neighbour,
+        {"p": (0.0, 2.0), "oil": (0.0, 0.3), "wall": (0.0, 1.0), "place": ["surface", "surface", "body"]},
+    ),
+    "cooling.air": _scale(1.2, "conv", lambda s, f: (s.rise / 35.0) ** f.p, p=(-0.5, 0.5)),
+    "cooling.emissivity": _scale(2.6, "rad", _tilted("surface"), (-1,), p=(-0.2, 0.2)),
+    "cooling.foundation": _scale(1.8, "foot", lambda s, f: (s.rise / 35.0) ** f.p, p=(-0.3, 0.3)),
+    "cooling.contact": _scale(4.0, "contact", _tilted("wall"), (-1,), p=(-0.3, 0.3)),
+    "cooling.oil_wall": _scale(2.2, "oil_wall", lambda s, f: (np.maximum(s.n, 20.0) / N) ** f.p, p=(-0.5, 0.6)),
+    "cooling.humidity": _scale(0.35, "conv", _humid, p=(-0.4, 0.4)),
+    "thermal.mass": _scale(1.0, "", lambda s, f: 1.0, what=["cap_out cap_in", "cap_out cap_in", "cap_out"]),
+    "thermal.split": _family(1.2, "ln", BOTH, "act", _split, {}),
+    "sensor.torque.offset": _constant("torque"),
+    "sensor.torque.gain": _gain(0.015, ["T_carrier_Nm", "T_sun_Nm"], [0.0]),
+    "sensor.torque.drift": _added("torque", lambda plan, f: plan.progress**f.p, p=[0.5, 0.7, 1.0]),
+    "sensor.torque.step": _since("torque"),
+    "sensor.torque.by_direction": _one_way("torque"),
+    "sensor.torque.random_walk": _walk("torque"),
+    "sensor.oil_temp.offset": _constant("oil_temp"),
+    "sensor.oil_temp.gain": _gain(0.15, ["T_oil_C"], [0.0, 20.0, 25.0]),
+    "sensor.oil_temp.position": _mixed(
+        0.5, lambda y, f: ("T_oil_C", y[ROW[f.other]] - y[ROW["T_oil_C"]]), UP, other=["T_wall_C", "T_amb_C"]
+    ),
+    "sensor.oil_temp.since": _since("oil_temp"),
+    "sensor.oil_temp.by_direction": _one_way("oil_temp"),
+    "sensor.wall_temp.offset": _constant("wall_temp"),
+    "sensor.wall_temp.since": _since("wall_temp"),
+    "sensor.ambient.bias": _constant("ambient"),
+    "sensor.ambient.heated": _mixed(0.35, _HEATED, UP, p=(0.8, 1.4)),
+    "sensor.ambient.since": _since("ambient"),
+    "sensor.speed.gain": _gain(0.12, ["n_carrier_rpm"], [0.0]),
+    "procedure.not_stationary": _family(
+        2.6, "ln", UP, "pace", _early, {"halves": [(1, 1), (1, 1), (1, 0), (0, 1)], "chance": [False, False, True]}
+    ),
+    "procedure.order": _scale(
+        0.6,
+        "",
+        lambda s, f: s.progress if f.tau is None else np.exp(-s.progress / f.tau),
+        what=["mesh", "mesh bearing seal", "conv rad"],
+        tau=[None, 0.2, 0.4],
+    ),
+    "procedure.day_scatter": _scale(0.25, "conv rad", lambda s, f: _at(f.z, s.order), UP),
+}
+
+#: What has no name: a fan by thermostat on some days, a seal that rubs in waves, resonance, a transducer
+#: that remembers where its load came from, an oil sensor that the drive disturbs.
+OUTSIDE: Mapping[str, Family] = {
+    "outside.thermostat_fan": _scale(
+        1.3, "conv", lambda s, f: (_at(f.z, s.order) > 0) * step(s.T["wall"], f.on - 3.0, 1.5), UP, on="oil"
+    ),
+    "outside.swinging_seal": _brake(
+        14.0,
+        lambda s, f: 1 + np.sin(f.phase + 2 * np.pi * f.periods * s.progress),
+        "oil",
+        "body",
+        "wall",
+        unit="N.m",
+        to=[0.3],
+        periods=(1.5, 5.0),
+        phase=(0.0, 6.28),
+    ),
+    "outside.resonance": _brake(
+        500.0,
+        lambda s, f: np.exp(-(((s.n - f.at) / f.width) ** 2)) * s.load / LOAD,
+        "wall",
+        "body",
+        to=[0.7],
+        at="n",
+        width=(8.0, 20.0),
+    ),
+    "outside.hysteresis": _added(
+        "torque",
+        lambda p, f: np.sign(_at(f.z, p.order)) * np.array([[1.0], [-0.6]]) * 4 * (x := p.load / 3000.0) * (1 - x),
+    ),
+    "outside.crosstalk": _added(
+        "oil_temp", lambda p, f: (p.n * p.load / (N * LOAD)) ** 2 * np.array([[1.0], [f.back]]), back=(-1.0, -0.3)
+    ),
+}
+
+#: Causes that may act in a part of the conditions only -> what may limit them.
+REGIMES: Mapping[str, list[str]] = {
+    "losses.churning": ["speed", "temperature"],
+    "losses.windage": ["speed"],
+    "losses.mesh_friction": ["speed", "load", "temperature"],
+    "losses.seal_drag": ["speed", "temperature", "direction"],
+    "losses.bearing_preload": ["load", "temperature", "direction"],
+    "heat.external_source": ["speed", "load", "direction"],
+    "cooling.air": ["temperature", "direction"],
+}
+
+
+def names(kind: str) -> Sequence[str]:
+    """Causes that a kind of case may hide."""
+    return list({"regime": REGIMES, "outside": OUTSIDE}.get(kind, CAUSES))
+
+
+def draw(plan: Plan, inner: float, cause: str, kind: str, oil: np.ndarray, rng: np.random.Generator) -> Fault:
+    """A fault of a cause in a form for a kind of case; oil: healthy oil temperatures."""
+    d = Draw(rng, plan.n.ravel(), plan.load.ravel(), oil.ravel(), plan.tests, inner)
+    fault = replace({**CAUSES, **OUTSIDE}[cause](d), cause=cause)
+    return _limited(fault, d) if kind == "regime" else fault
+
+
+#: Where a regime may end, and how soft; of a direction between 1 and 2.
+BORDERS: Mapping[str, tuple[Any, tuple[float, float]]] = {
+    "speed": ("n", (2.0, 14.0)),
+    "load": ("load", (20.0, 130.0)),
+    "temperature": ("oil", (1.0, 4.0)),
+    "direction": ([1.5], (0.05, 0.06)),
+}
+
+
+def _limited(fault: Fault, d: Draw) -> Fault:
+    """The same on one side of a threshold inside the campaign's range, or in one direction."""
+    kind = str(d.rng.choice(REGIMES[fault.cause]))
+    f, stage = d.numbers({"at": BORDERS[kind][0], "width": BORDERS[kind][1], "side": [1, -1]}), fault.stages["act"]
+
+    def act(s: Scene, a: np.ndarray) -> None:
+        x = {"speed": s.n, "load": s.load, "temperature": s.T["oil"], "direction": s.direction}[kind]
+        stage(s, a * step(f.side * x, f.side * f.at, f.width))
+
+    regime = {kind: "above" if f.side > 0 else "below", "threshold": f.at, "width": f.width}
+    return replace(fault, stages={"act": act}, regime=regime)

@@ -1,12 +1,13 @@
-"""The project's planetary model as a rig: flattened, with factors on its parameters and heat into its bodies.
+"""The "own" sheet: the project's planetary model as a rig, with unequal parameters and no reference campaign.
 
-Hidden effects never use the parts and effects of the project: they act on factors and heat flows around its equations.
+The model is flattened, with factors on its parameters and heat into its bodies. Hidden faults never use causes of the
+project: they act on factors and heat flows around its equations.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, lru_cache, partial
 
 import casadi as ca
 import numpy as np
@@ -14,8 +15,11 @@ import numpy as np
 from ...model.core.flatten import flatten
 from ...model.machines.spec import assemble
 from ...scenarios.load import load
-from .columns import over_columns
-from .scene import FACTORS, PLACES, RATIO, Changes, Scene
+from . import files, forms
+from .cases import Drawn
+from .columns import Columns
+from .plan import draw_plan, draw_points
+from .rig import CHANNELS, FACTORS, PLACES, RATIO, Scene, run
 
 KELVIN = 273.15
 
@@ -37,14 +41,21 @@ PARAMETERS: Mapping[str, tuple[str, ...]] = {
 }
 
 #: Place -> body of the model.
-#: Newton's corrections of the implicit losses.
+BODIES = dict(zip(PLACES, ("oil", "gears", "carrier_body", "wall", "surface"), strict=True))
+
+#: Newton's corrections of the implicit losses: as many as leave round-off at the loads of a campaign.
 NEWTON_STEPS = 3
-BODIES: Mapping[str, str] = {
-    "oil": "oil",
-    "gears": "gears",
-    "body": "carrier_body",
-    "wall": "wall",
-    "surface": "surface",
+
+#: Factors that belong together, and how uncertain the card says they are.
+PRIOR_SD: Mapping[str, float] = {
+    "mesh": files.PRIOR_SD["mu"],
+    "bearing": files.PRIOR_SD["brg"],
+    "seal": files.PRIOR_SD["seal"],
+    "conv": files.PRIOR_SD["hconv"],
+    "rad": files.PRIOR_SD["rad"],
+    "oil_wall oil_inner": files.PRIOR_SD["gow"],
+    "contact": files.PRIOR_SD["gwh"],
+    "cap_oil cap_in cap_out": files.PRIOR_SD["cap"],
 }
 
 
@@ -74,26 +85,19 @@ class OwnRig:
             [flat.ode, y, flat.residual, ca.jacobian(flat.residual, flat.z)], [flat.u, flat.p], [u, p]
         )
         z = ca.SX(flat.starts("algebraic"))
-        for _ in range(NEWTON_STEPS):  # as many as leave round-off at the loads of a campaign
+        for _ in range(NEWTON_STEPS):
             z -= ca.solve(*ca.substitute([slope, residual], [flat.z], [z]))
         ode, sun = ca.substitute([ode, sun], [flat.z], [z])
         given = ca.vertcat(n, tau, room, heat, factors)
-        self._rows = given.numel()
-        self._function = ca.Function("own", [flat.x, given], [ode, sun], {"cse": True})
-        nu = flat.y[flat.locate("oil.nu")[1]]
-        (nu,) = ca.substitute([nu], [flat.u, flat.p], [u, p])
-        parts = [flat.x[flat.locate("oil.T")[1]], factors]
-        self._nu_function = ca.Function("nu", parts, [nu])
-        self._viscosities = self._table()
+        function = ca.Function("own", [flat.x, given], [ode, sun], {"cse": True})
+        self._columns = lru_cache(8)(partial(Columns, function))
+        (nu,) = ca.substitute([flat.y[flat.locate("oil.nu")[1]]], [flat.u, flat.p], [u, p])
+        of_T = ca.Function("nu", [flat.x[flat.locate("oil.T")[1]], factors], [nu])
+        self._T = np.arange(-20.0, 201.0, 2.0)
+        self._log_nu = np.log([1e6 * float(of_T(t + KELVIN, np.ones(len(FACTORS)))) for t in self._T])
         starts = {q.name: q.start for q in flat.parameters}
         inner, outer = (sum(starts[name] for name in PARAMETERS[f]) for f in ("cap_in", "cap_out"))
         self.inner_share = inner / (inner + outer)
-
-    def _table(self) -> tuple[np.ndarray, np.ndarray]:
-        """Temperatures [degC] and the logarithm of the oil's viscosity [mm2/s] there."""
-        T = np.arange(-20.0, 201.0, 2.0)
-        nu = [float(self._nu_function(t + KELVIN, np.ones(len(FACTORS)))) for t in T]
-        return T, np.log(1e6 * np.array(nu))
 
     def temperatures(self, T: np.ndarray) -> dict[str, np.ndarray]:
         """Temperature of every place."""
@@ -101,40 +105,57 @@ class OwnRig:
 
     def viscosity(self, T_oil: np.ndarray) -> np.ndarray:
         """Kinematic viscosity of the oil [mm2/s]."""
-        T, log_nu = self._viscosities
-        nu: np.ndarray = np.exp(np.interp(T_oil, T, log_nu))
-        return nu
+        return np.asarray(np.exp(np.interp(T_oil, self._T, self._log_nu)))
 
     def second_oil(self, places: Mapping[str, np.ndarray]) -> np.ndarray:
         """The model knows one oil temperature."""
         return places["oil"]
 
-    def rate(self, T: np.ndarray, scene: Scene, changes: Changes) -> np.ndarray:
+    def rate(self, T: np.ndarray, scene: Scene) -> np.ndarray:
         """Slopes of all bodies [K/s]."""
-        return self._evaluate(T, scene, changes)[0]
+        return self._evaluate(T, scene)[0]
 
-    def loss_torque(self, T: np.ndarray, scene: Scene, changes: Changes) -> np.ndarray:
+    def loss_torque(self, T: np.ndarray, scene: Scene) -> np.ndarray:
         """What lacks between the torques of carrier and sun [N.m]."""
-        sun = np.abs(self._evaluate(T, scene, changes)[1])
-        sign = 1.0 if scene.direction == 1 else -1.0
-        loss: np.ndarray = sign * (scene.load - RATIO * sun)
-        return loss
+        sun = np.abs(self._evaluate(T, scene)[1][0])
+        return np.asarray(np.where(scene.direction == 1, 1.0, -1.0) * (scene.load - RATIO * sun))
 
-    def _evaluate(self, T: np.ndarray, scene: Scene, changes: Changes) -> tuple[np.ndarray, np.ndarray]:
-        m = T.shape[1]
-        given = np.empty((self._rows, m))
-        given[0] = scene.w
-        given[1] = scene.load if scene.direction == 1 else -scene.load
-        given[2] = scene.room + KELVIN
-        for i, place in enumerate(PLACES):
-            given[3 + i] = changes.heat.get(place, 0.0)
-        for i, name in enumerate(FACTORS):
-            given[3 + len(PLACES) + i] = changes.factor(name)
-        ode, sun = over_columns(self._function, m)(T + KELVIN, given)
-        return ode, sun[0]
+    def _evaluate(self, T: np.ndarray, scene: Scene) -> list[np.ndarray]:
+        tau = np.where(scene.direction == 1, scene.load, -scene.load)
+        heats, factors = (scene.heat[p] for p in PLACES), (scene.factor[f] for f in FACTORS)
+        given = np.array([scene.w, tau, scene.room + KELVIN, *heats, *factors])
+        return self._columns(T.shape[1])(T + KELVIN, given)
 
 
 @cache
 def own_rig() -> OwnRig:
     """The one rig of this sheet; flattened once."""
     return OwnRig()
+
+
+def draw(rng: np.random.Generator) -> Drawn:
+    """The rig with unequal parameters, and its campaign."""
+    rig, second = own_rig(), bool(rng.random() < 0.5)
+    warm = bool(rng.random() < 0.15)
+    plan = draw_plan(rng, warm_start=warm)
+    base = {name: f for names, sd in PRIOR_SD.items() for f in [np.exp(rng.normal(0.0, sd))] for name in names.split()}
+    day = np.exp(rng.normal(0.0, files.DAY_COOLING_SD, plan.columns))
+    return Drawn(
+        run=partial(run, rig, len(CHANNELS) - (not second)),
+        plan=plan,
+        points=draw_points(rng, plan),
+        reference=None,
+        base=base,
+        cooling=("conv", "rad"),
+        days=(day, day),
+        day_sd=files.DAY_COOLING_SD,
+        prior=PRIOR_SD,
+        instruments=files.draw_instruments(rng, 0.25, second_oil=second),
+        columns=files.Columns(humidity=True, start=warm, date=bool(rng.random() < 0.5)),
+        bearing_oil=False,
+        room_drift=0.0,
+        band=(5.0, 40.0),
+        names=forms.names,
+        draw=partial(forms.draw, plan, rig.inner_share),
+        facts={"nodes": rig.nodes},
+    )

@@ -1,26 +1,109 @@
-"""A rig under test, whatever its physics: runs the protocol of a plan with hidden effects, reads the instruments."""
+"""A rig of the sheets "own" and "foreign" under test, whatever its physics: protocol, hidden faults, instruments."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from typing import Protocol
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, fields, replace
+from typing import Any, Protocol
 
 import numpy as np
 
-from .hidden import Effect
-from .plan import CHANNELS, Plan
-from .scene import PLACES, RATIO, Changes, Scene
-from .stepping import Clock, graded, march
+from .plan import Plan
+from .textbook.rig import Acting
 
-#: An effect and how much of it each column has.
-Acting = tuple[Effect, np.ndarray]
-
-#: Steps of the protocol, and fewer for what is only compared with each other at the ends of the halves.
-CLOCK = Clock((graded(240 * 60.0), graded(90 * 60.0)), graded(5 * 60.0, 20.0, 1.6), 5)
-COARSE = Clock(
-    (graded(240 * 60.0, 20.0, 1.6, 900.0), graded(90 * 60.0, 20.0, 1.6, 900.0)), graded(5 * 60.0, 40.0, 2.0), 3
+#: What can be scaled: losses, viscosity of the oil, heat paths to and from the housing, heat capacities.
+FACTORS = (
+    "mesh",
+    "bearing",
+    "seal",
+    "viscosity",
+    "conv",
+    "rad",
+    "foot",
+    "contact",
+    "oil_wall",
+    "oil_inner",
+    "cap_oil",
+    "cap_in",
+    "cap_out",
 )
+
+#: Places that heat can go to.
+PLACES = ("oil", "gears", "body", "wall", "surface")
+
+#: Sun speed over carrier speed.
+RATIO = 4.0
+
+#: Readings, in the order of the rows of what is shown.
+CHANNELS = ("n_carrier_rpm", "T_carrier_Nm", "T_sun_Nm", "T_oil_C", "T_wall_C", "T_amb_C", "T_oil2_C")
+
+#: L-stable choice of the two-stage method, and every how many steps its matrix is refreshed.
+GAMMA, REFRESH = 1.0 - 1.0 / np.sqrt(2.0), 4
+
+
+@dataclass
+class Scene:
+    """The rig at one moment, arrays over columns; faults change factors, heats and the power they brake in place.
+
+    Args:
+        n, load: carrier speed [rpm] and torque, a magnitude [N.m]
+        direction: 1 multiplier, 2 reducer
+        order, progress: running order of the test, 1 ..., and as a share of the campaign
+        humidity: of the room [%]
+        room, T: temperatures of the room and of every place [degC]
+        nu: viscosity of the oil before any change [mm2/s]
+        factor, heat, power: what faults change; heat [W] of every place, power [W] taken from the shafts
+    """
+
+    n: np.ndarray
+    load: np.ndarray
+    direction: np.ndarray
+    order: np.ndarray
+    progress: np.ndarray
+    humidity: np.ndarray
+    room: np.ndarray
+    T: Mapping[str, np.ndarray]
+    nu: np.ndarray
+    factor: dict[str, np.ndarray]
+    heat: dict[str, np.ndarray]
+    power: np.ndarray
+
+    @property
+    def w(self) -> np.ndarray:
+        """Carrier speed [rad/s]."""
+        return np.asarray(self.n * (np.pi / 30.0))
+
+    @property
+    def running(self) -> np.ndarray:
+        """1 where the shafts turn, else 0."""
+        return np.where(self.n > 1.0, 1.0, 0.0)
+
+    @property
+    def rise(self) -> np.ndarray:
+        """Surface above the room, at least 3 K [K]."""
+        return np.asarray(np.maximum(self.T["surface"] - self.room, 3.0))
+
+    def cut(self, s: slice) -> Scene:
+        """Views of some columns."""
+        views: dict[str, Any] = {}
+        for f in fields(self):
+            value = getattr(self, f.name)
+            views[f.name] = {k: a[s] for k, a in value.items()} if isinstance(value, dict) else value[s]
+        return Scene(**views)
+
+    def scale(self, name: str, factor: np.ndarray) -> None:
+        """Multiply what the name stands for."""
+        self.factor[name] *= factor
+
+    def warm(self, place: str, power: np.ndarray) -> None:
+        """Bring heat [W] to a place, without any torque."""
+        self.heat[place] += power
+
+    def brake(self, power: np.ndarray, shares: Mapping[str, float]) -> None:
+        """Take power [W] from the shafts and make it heat, by shares of places."""
+        self.power += power
+        for place, share in shares.items():
+            self.warm(place, share * power)
 
 
 class Rig(Protocol):
@@ -34,212 +117,140 @@ class Rig(Protocol):
     def viscosity(self, T_oil: np.ndarray) -> np.ndarray:
         """Kinematic viscosity of the oil [mm2/s]."""
 
-    def rate(self, T: np.ndarray, scene: Scene, changes: Changes) -> np.ndarray:
+    def rate(self, T: np.ndarray, scene: Scene) -> np.ndarray:
         """Slopes of the nodes [K/s]."""
 
-    def loss_torque(self, T: np.ndarray, scene: Scene, changes: Changes) -> np.ndarray:
-        """Loss torque at the carrier without what `changes` brakes [N.m]."""
+    def loss_torque(self, T: np.ndarray, scene: Scene) -> np.ndarray:
+        """Loss torque at the carrier without what faults brake [N.m]."""
 
     def second_oil(self, places: Mapping[str, np.ndarray]) -> np.ndarray:
         """Oil temperature at the second place [degC]."""
 
 
-@dataclass
-class Readings:
-    """What instruments show: `values` per channel (rows, columns), `true` temperatures of the places and the rest.
-
-    Rows are the ends of both halves, or moments of a time series; `direction` is a column of the rows' directions.
-    Instrument effects change `values` in place.
-    """
-
-    values: dict[str, np.ndarray]
-    true: dict[str, np.ndarray]
-    direction: np.ndarray
-    order: np.ndarray
-    progress: np.ndarray
-    minutes: np.ndarray
-
-    @property
-    def loss(self) -> np.ndarray:
-        """Loss torque at the carrier as the torque readings say [N.m]."""
-        sign = np.where(self.direction == 1, 1.0, -1.0)
-        return sign * (self.values["T_carrier_Nm"] - RATIO * self.values["T_sun_Nm"])
-
-    def tiled(self, copies: int) -> Readings:
-        """The same columns several times over, one copy behind the other; arrays of their own."""
-        return replace(
-            self,
-            values={c: np.tile(v, copies) for c, v in self.values.items()},
-            true={c: np.tile(v, copies) for c, v in self.true.items()},
-            order=np.tile(self.order, copies),
-            progress=np.tile(self.progress, copies),
-            minutes=np.tile(self.minutes, copies),
-        )
-
-    def stacked(self, channels: Sequence[str]) -> np.ndarray:
-        """Channels, rows and columns as one array."""
-        return np.array([self.values[c] for c in channels])
-
-
-@dataclass(frozen=True)
-class Run:
-    """A simulated plan: the readings at the ends of the halves, and those at every step of both halves."""
-
-    ends: Readings
-    steps: Readings
-
-
-def simulate(
-    rig: Rig,
-    plan: Plan,
-    base: Mapping[str, np.ndarray | float],
-    acting: Sequence[Acting] = (),
-    *,
-    series: bool = False,
-    clock: Clock = CLOCK,
-) -> Run:
-    """Run all columns of a plan through half, stop and half.
+def run(rig: Rig, channels: int, plan: Plan, base: Mapping[str, Any], acting: Sequence[Acting]) -> np.ndarray:
+    """True readings at the ends of both halves (channels, 2, columns), instruments' faults among them.
 
     Args:
         rig: the physics
-        plan: the tests
-        base: factors that hold throughout, e.g. the unequal nominal or the cooling of the day
-        acting: hidden effects with their amplitude per column
-        series: whether to read at every step; else `steps` are the ends, too
-        clock: the steps
+        channels: how many of `CHANNELS` there are
+        plan, base: the tests, and factors that hold throughout
+        acting: hidden faults, their columns, and how much of them in each
     """
-    T = np.tile(plan.start, (rig.nodes, 1))
-    rooms = _rooms(plan)
-    parts: list[Readings] = []
-    now = np.zeros(plan.columns)
-    for half in (0, 1):
-        if half == 1:
-            stage = _Stage(rig, plan, base, acting, half, *rooms[1], stopped=True)
-            T = march(stage.rate, T, clock.stop, 60.0 * plan.stop, clock.refresh)[-1]
-        stage = _Stage(rig, plan, base, acting, half, *rooms[2 * half])
-        minutes = plan.dwell[half] * _paces(acting, plan, half)
-        path = march(stage.rate, T, clock.halves[half], 60.0 * minutes, clock.refresh)
-        T = path[-1]
-        which = slice(None) if series else slice(-1, None)
-        parts.append(stage.read(path[which], clock.halves[half][which], now, minutes))
-        now = now + minutes + plan.stop
-    ends = joined([rows(part, slice(-1, None)) for part in parts])
-    return Run(ends, joined(parts))
-
-
-def misread(run: Run, effect: Effect, amounts: np.ndarray) -> Run:
-    """A run as an effect of the instruments shows it, for several amounts: one per column, as many copies as they fill.
-
-    The physics need not run again for that.
-    """
-    copies = len(amounts) // len(run.ends.order)
-    shown = Run(run.ends.tiled(copies), run.steps.tiled(copies))
-    if effect.read is not None:
-        for readings in (shown.ends, shown.steps):
-            effect.read(readings, amounts)
-    return shown
-
-
-def joined(parts: Sequence[Readings]) -> Readings:
-    """Readings below each other."""
-    first = parts[0]
-    values = {c: np.concatenate([p.values[c] for p in parts]) for c in first.values}
-    true = {c: np.concatenate([p.true[c] for p in parts]) for c in first.true}
-    direction = np.concatenate([p.direction for p in parts])
-    return replace(
-        first, values=values, true=true, direction=direction, minutes=np.concatenate([p.minutes for p in parts])
-    )
-
-
-def rows(readings: Readings, which: slice | np.ndarray) -> Readings:
-    """Some rows of readings."""
-    return replace(
-        readings,
-        values={c: v[which] for c, v in readings.values.items()},
-        true={c: v[which] for c, v in readings.true.items()},
-        direction=readings.direction[which],
-        minutes=readings.minutes[which],
-    )
-
-
-def _rooms(plan: Plan) -> list[tuple[np.ndarray, np.ndarray]]:
-    """Room at both ends of first half, stop and second half: a line up to the first reading, one to the second."""
+    m = plan.columns
+    dwell = plan.dwell * np.ones((2, m))
+    for fault, s, amount in acting:
+        if "pace" in fault.stages:
+            fault.stages["pace"](dwell[:, s], cut(plan, s), amount)
     begin, first, second = plan.room
     restart = first + (second - first) * plan.stop / (plan.stop + plan.dwell[1])
-    return [(begin, first), (first, restart), (restart, second)]
+    rooms = [(begin, first), (first, restart), (restart, second)]
+    shown = np.empty((len(CHANNELS), 2, m))
+    T = np.tile(plan.start, (rig.nodes, 1))
+    for stretch, (half, minutes) in enumerate(((0, dwell[0]), (None, plan.stop), (1, dwell[1]))):
+        stage = _Stage(rig, plan, base, acting, half, rooms[stretch])
+        T = march(stage.rate, T, _ENDS[stretch], 60.0 * minutes)
+        if half is not None:
+            shown[:, half] = stage.read(T)
+    for fault, s, amount in acting:
+        if "read" in fault.stages:
+            fault.stages["read"](shown[:, :, s], cut(plan, s), amount)
+    return shown[:channels]
 
 
-def _paces(acting: Sequence[Acting], plan: Plan, half: int) -> np.ndarray:
-    """Length of a half over what is stated."""
-    pace = np.ones(plan.columns)
-    for effect, amplitude in acting:
-        if effect.pace is not None:
-            pace = pace * effect.pace(plan, half, amplitude)
-    return pace
+def cut(plan: Plan, s: slice) -> Plan:
+    """Some columns of a plan."""
+    arrays = [f.name for f in fields(plan) if isinstance(getattr(plan, f.name), np.ndarray)]
+    return replace(plan, **{name: getattr(plan, name)[..., s] for name in arrays})
 
 
 class _Stage:
-    """A stretch of the protocol: constant speed and load, the room on a line."""
+    """A stretch of the protocol: constant speed and load, the room on a line. `half` None: a stop."""
 
     def __init__(
         self,
         rig: Rig,
         plan: Plan,
-        base: Mapping[str, np.ndarray | float],
+        base: Mapping[str, Any],
         acting: Sequence[Acting],
-        half: int,
-        room_begin: np.ndarray,
-        room_end: np.ndarray,
-        stopped: bool = False,
+        half: int | None,
+        room: tuple[np.ndarray, np.ndarray],
     ) -> None:
-        self.rig, self.plan, self.base, self.acting, self.half = rig, plan, base, acting, half
-        self.room_begin, self.room_end = room_begin, room_end
-        self.n = np.zeros(plan.columns) if stopped else plan.n[half]
-        self.load = np.zeros(plan.columns) if stopped else plan.load[half]
+        self.rig, self.plan, self.half, self.room = rig, plan, half, room
+        self.base = {name: base.get(name, 1.0) * np.ones(plan.columns) for name in FACTORS}
+        self.acting = [(fault, s, amount) for fault, s, amount in acting if "act" in fault.stages]
 
-    def situation(self, T: np.ndarray, share: float) -> tuple[Scene, Changes]:
-        """What effects see, and what they make of it."""
-        places, plan = self.rig.temperatures(T), self.plan
-        room = self.room_begin + share * (self.room_end - self.room_begin)
+    def _scene(self, T: np.ndarray, share: float) -> Scene:
+        plan, m, places = self.plan, self.plan.columns, self.rig.temperatures(T)
+        stopped = self.half is None
+        half = self.half or 0
         scene = Scene(
-            self.n,
-            self.load,
-            self.half + 1.0,
-            plan.order,
-            plan.progress,
-            plan.humidity,
-            places,
-            room,
-            self.rig.viscosity(places["oil"]),
-            plan.future,
+            n=np.zeros(m) if stopped else plan.n[half],
+            load=np.zeros(m) if stopped else plan.load[half],
+            direction=np.full(m, half + 1.0),
+            order=plan.order,
+            progress=plan.progress,
+            humidity=plan.humidity,
+            room=self.room[0] + share * (self.room[1] - self.room[0]),
+            T=places,
+            nu=self.rig.viscosity(places["oil"]),
+            factor={name: f.copy() for name, f in self.base.items()},
+            heat={place: np.zeros(m) for place in PLACES},
+            power=np.zeros(m),
         )
-        changes = Changes(factors=dict(self.base))
-        for effect, amplitude in self.acting:
-            if effect.act is not None:
-                effect.act(scene, amplitude, changes)
-        return scene, changes
+        for fault, s, amount in self.acting:
+            fault.stages["act"](scene.cut(s), amount)
+        return scene
 
     def rate(self, T: np.ndarray, share: float) -> np.ndarray:
         """Slopes of the nodes."""
-        return self.rig.rate(T, *self.situation(T, share))
+        return self.rig.rate(T, self._scene(T, share))
 
-    def read(self, path: np.ndarray, shares: np.ndarray, begin: np.ndarray, minutes: np.ndarray) -> Readings:
-        """Readings at some steps, with the faults of instruments."""
-        moments = [self._moment(T, float(share)) for T, share in zip(path, shares, strict=True)]
-        values = {c: np.array([v[c] for v, _ in moments]) for c in CHANNELS}
-        true = {c: np.array([t[c] for _, t in moments]) for c in (*PLACES, "room", "load")}
-        direction = np.full((len(shares), 1), self.half + 1.0)
-        clock = begin + shares[:, None] * minutes
-        readings = Readings(values, true, direction, self.plan.order, self.plan.progress, clock)
-        for effect, amplitude in self.acting:
-            if effect.read is not None:
-                effect.read(readings, amplitude)
-        return readings
+    def read(self, T: np.ndarray) -> np.ndarray:
+        """All channels at the end (channels, columns)."""
+        scene = self._scene(T, 1.0)
+        loss = self.rig.loss_torque(T, scene) + scene.power / scene.w
+        sun = (scene.load - loss if self.half == 0 else scene.load + loss) / RATIO
+        places = scene.T
+        second = self.rig.second_oil(places)
+        return np.array([scene.n, scene.load, sun, places["oil"], places["wall"], scene.room, second])
 
-    def _moment(self, T: np.ndarray, share: float) -> tuple[dict[str, np.ndarray], dict[str, np.ndarray]]:
-        scene, changes = self.situation(T, share)
-        loss = self.rig.loss_torque(T, scene, changes) + changes.brake_power / scene.w
-        passed = scene.load - loss if self.half == 0 else scene.load + loss
-        oil_2 = self.rig.second_oil(scene.T)
-        shown = (scene.n, scene.load, passed / RATIO, scene.T["oil"], oil_2, scene.T["wall"], scene.room)
-        return dict(zip(CHANNELS, shown, strict=True)), {**scene.T, "room": scene.room, "load": scene.load}
+
+def graded(duration: float, first: float, growth: float, largest: float) -> np.ndarray:
+    """Shares of a stretch [s] at which steps end: small after the jump at its beginning, growing to `largest`."""
+    ends, step = [0.0], first
+    while ends[-1] < duration:
+        ends.append(ends[-1] + step)
+        step = min(step * growth, largest)
+    return np.array(ends) / ends[-1]
+
+
+_ENDS = (graded(14400.0, 15.0, 1.45, 700.0), graded(300.0, 25.0, 1.7, 700.0), graded(5400.0, 15.0, 1.45, 600.0))
+
+
+def march(
+    rate: Callable[[np.ndarray, float], np.ndarray], T: np.ndarray, shares: np.ndarray, duration: np.ndarray
+) -> np.ndarray:
+    """Temperatures at the end of a stretch (nodes, columns).
+
+    The two-stage Rosenbrock method of Verwer: second order whatever matrix it is given, so the matrix (by differences)
+    is refreshed now and then only.
+
+    Args:
+        rate: slope of all columns: (temperatures (nodes, columns), share of the stretch gone by) -> K/s
+        T: temperatures at the beginning
+        shares: where steps end, from 0 to 1
+        duration: length of the stretch per column [s]
+    """
+    unit, matrix = np.eye(len(T)), np.zeros(0)
+    for i, step in enumerate(np.diff(shares)):
+        share = float(shares[i])
+        slope = rate(T, share)
+        if i % REFRESH == 0:
+            columns = [(rate(T + 1e-3 * unit[:, [j]], share) - slope) / 1e-3 for j in range(len(T))]
+            matrix = np.array(columns).transpose(2, 1, 0)
+        dt = step * duration
+        inverse = np.linalg.inv(unit - (GAMMA * dt)[:, None, None] * matrix)
+        k_1 = np.einsum("cij,jc->ic", inverse, slope)
+        k_2 = np.einsum("cij,jc->ic", inverse, rate(T + dt * k_1, share + step) - 2.0 * k_1)
+        T = T + dt * (1.5 * k_1 + 0.5 * k_2)
+    return T

@@ -1,11 +1,10 @@
-"""Scores of answers: one outcome per case, and the metrics of a sheet beside their bars.
+"""Scores of answers: one outcome per case, and the metrics of many, pooled over sheets, beside their bars.
 
 Names count by class: causes that no data of this kind can separate are one answer. "Exact" is equality of sets of
 names: a true cause with a second one beside it is not exact.
 
-Single and regime-limited causes lie far from every rival: they must be told by their name. Of a cause that is alike
-another one nobody could tell more than a set that holds it: there the set counts, and not to be sure of the wrong
-name; how often the right name comes first there is told without a bar, alone and together with all other single ones.
+Single and regime-limited causes at least 3 sigma from every rival must be told by their name. Of the others nobody
+could tell more than a set that holds the cause: there the set counts, and not to be sure of the wrong name.
 """
 
 from __future__ import annotations
@@ -17,10 +16,13 @@ from typing import Any
 
 import numpy as np
 
-from .answers import Answer, rms
+from .answers import Answer
 
 #: Probability above which an answer is sure.
 SURE = 0.9
+
+#: Distance to the nearest rival from which a cause must be told by its name [sigma].
+APART = 3.0
 
 #: Kinds of cases whose causes have names.
 NAMED = ("single", "regime", "pair", "alike")
@@ -31,26 +33,31 @@ class Outcome:
     """What an answer to a case is worth. Without an answer everything counts as missed, and a clean case as an alarm.
 
     Args:
-        case, kind: of the case
-        snr: signal-to-noise of the quietest hidden effect; 0 for none
+        sheet, case, kind: of the case
+        snr, distance: signal-to-noise of the quietest hidden fault, and distance of the nearest rival; None: unknown
         truth, top: names as they count, joined by " + "; "nothing" for none
+        p_truth, p_top: probabilities of these hypotheses
         answered: whether there was an answer
         alarm: whether it said that something is wrong
-        exact: whether the likeliest hypothesis is the truth
+        exact: whether the likeliest hypothesis is the truth, or one as fair
         shared: how many of the true names the likeliest hypothesis holds
-        covered: whether the truth is among the hypotheses that make 0.9 together
-        size: how many those are
+        covered: whether the truth is among the hypotheses that make 0.9 together; size: how many those are
         sure_wrong: whether it names a cause with more than 0.9 that is not the truth
         impact_error: error of the stated change of the readings over that change; None where there is hardly any
         gain: error of the extended prediction over that of the nominal one; None where the oil hardly changes
-        seconds: time the diagnosis took
+        gross: whether the one gross reading was pointed at; None without one
+        seconds: processor time of the diagnosis
     """
 
-    case: int
+    sheet: str
+    case: str
     kind: str
     snr: float
+    distance: float | None
     truth: str
     top: str
+    p_truth: float
+    p_top: float
     answered: bool
     alarm: bool
     exact: bool
@@ -60,31 +67,49 @@ class Outcome:
     sure_wrong: bool
     impact_error: float | None
     gain: float | None
+    gross: bool | None
     seconds: float
     problem: str = ""
+
+    @property
+    def by_name(self) -> bool:
+        """Whether a single cause must be told by its name."""
+        return self.kind in ("single", "regime") and (self.distance is None or self.distance >= APART)
+
+    @property
+    def by_set(self) -> bool:
+        """Whether nobody could tell more than a set that holds the single cause."""
+        return self.kind in ("single", "regime", "alike") and not self.by_name
 
 
 def score(truth: Mapping[str, Any], answer: Answer | None, seconds: float, problem: str = "") -> Outcome:
     """The outcome of one case."""
     names = frozenset(str(n) for n in truth["answer"])
+    right = [names, *({n} for n in truth.get("fair", ()))]
     told = answer or Answer("consistent", ())
     top, credible = told.top, told.credible()
-    wrong = top.claims and told.alarm and top.probability > SURE and top.names != names
+    named = truth["kind"] in NAMED
+    gross = truth.get("gross", {}).get("DATA")
     return Outcome(
-        case=int(truth["case"]),
+        sheet=str(truth.get("sheet", "")),
+        case=str(truth["case"]),
         kind=str(truth["kind"]),
         snr=min((float(e["snr"]) for e in truth["effects"]), default=0.0),
+        distance=float(truth["rival"]["distance"]) if truth.get("rival") else None,
         truth=_joined(names),
         top=_joined(top.names) if told.alarm or not top.claims else "nothing",
+        p_truth=sum(h.probability for h in told.hypotheses if h.names == names),
+        p_top=top.probability,
         answered=answer is not None,
         alarm=told.alarm,
-        exact=told.alarm and top.names == names,
+        exact=told.alarm and top.names in right,
         shared=len(top.names & names) if told.alarm else 0,
-        covered=any(h.names == names for h in credible),
+        covered=any(h.names in right for h in credible),
         size=len(credible),
-        sure_wrong=wrong,
-        impact_error=_impact_error(truth, told) if truth["kind"] in NAMED else None,
-        gain=_gain(truth, told) if truth["kind"] in NAMED else None,
+        sure_wrong=top.claims and told.alarm and top.probability > SURE and top.names not in right,
+        impact_error=_impact_error(truth, told) if named else None,
+        gain=_gain(truth, told) if named else None,
+        gross=(int(gross["row"]), str(gross["channel"])) in (told.gross or ()) if gross else None,
         seconds=seconds,
         problem=problem,
     )
@@ -110,13 +135,17 @@ def _gain(truth: Mapping[str, Any], told: Answer) -> float | None:
     Points at which the rig runs away count for nothing.
     """
     points = [p for p in truth["points"] if math.isfinite(p["T_oil_C"])]
-    if rms([p["T_oil_C"] - p["T_oil_without_C"] for p in points]) < truth["repeat_sd"]["T_oil_K"]:
+    if _rms([p["T_oil_C"] - p["T_oil_without_C"] for p in points]) < truth["repeat_sd"]["T_oil_K"]:
         return None
     if any(p["point"] not in told.nominal or p["point"] not in told.extended for p in points):
         return 1.0
-    before = rms([told.nominal[p["point"]] - p["T_oil_C"] for p in points])
-    after = rms([told.extended[p["point"]] - p["T_oil_C"] for p in points])
+    before = _rms([told.nominal[p["point"]] - p["T_oil_C"] for p in points])
+    after = _rms([told.extended[p["point"]] - p["T_oil_C"] for p in points])
     return after / max(before, 1e-6)
+
+
+def _rms(values: list[float]) -> float:
+    return float(np.sqrt(np.mean(np.square(values))))
 
 
 def wilson(hits: int, n: int, z: float = 1.959964) -> tuple[float, float]:
@@ -126,66 +155,62 @@ def wilson(hits: int, n: int, z: float = 1.959964) -> tuple[float, float]:
     rate, square = hits / n, z * z
     middle = (rate + square / (2 * n)) / (1 + square / n)
     half = z / (1 + square / n) * math.sqrt(rate * (1 - rate) / n + square / (4 * n * n))
-    low, high = max(middle - half, 0.0), min(middle + half, 1.0)
-    return (0.0 if hits == 0 else low), (1.0 if hits == n else high)
+    return (0.0 if hits == 0 else max(middle - half, 0.0)), (1.0 if hits == n else min(middle + half, 1.0))
 
 
 def median_interval(values: Sequence[float], z: float = 1.959964) -> tuple[float, float]:
     """95 % interval of a median from the ordered values."""
     ordered, n = sorted(values), len(values)
-    if n == 0:
-        return math.nan, math.nan
-    low = math.floor(n / 2 - z * math.sqrt(n) / 2)
-    return ordered[max(low, 0)], ordered[min(n - 1 - low, n - 1)]
+    low = max(math.floor(n / 2 - z * math.sqrt(n) / 2), 0)
+    return ordered[low], ordered[n - 1 - low]
 
 
 @dataclass(frozen=True)
 class Bar:
-    """A metric of a sheet: the kinds of cases it is over, what it takes of them, and what it must reach.
+    """A metric: what it takes of each case, None where it says nothing, and what it must reach.
 
-    `bars` is what it must reach, the ambition on the own sheet, and that on the foreign one; None for what has no bar.
+    `bars` is what it must reach, the ambition on the own sheet, and that on others; None for what has no bar.
     """
 
     name: str
-    kinds: tuple[str, ...]
     take: Callable[[Outcome], float | bool | None]
-    bars: tuple[float, float, float] | None
+    bars: tuple[float, float, float] | None = None
     how: str = "rate"
     at_most: bool = False
 
-    def on(self, sheet: str) -> tuple[float | None, float | None]:
-        """What it must reach on a sheet, and the ambition."""
-        return (None, None) if self.bars is None else (self.bars[0], self.bars[1 if sheet == "own" else 2])
 
+def _if(applies: bool, value: float | bool | None) -> float | bool | None:
+    return value if applies else None
 
-#: One cause that can be told by its name, one that cannot, and both.
-ONE = ("single", "regime")
-ALIKE = ("alike",)
-ANY = (*ONE, *ALIKE)
-
-#: Ranges of signal-to-noise to tell apart.
-LOUDNESS = ((0.0, 8.0), (8.0, 16.0), (16.0, 1e9))
 
 BARS: tuple[Bar, ...] = (
     Bar(
-        "false alarms on clean data", ("clean",), lambda o: o.alarm or not o.answered, (0.10, 0.05, 0.05), at_most=True
+        "false alarms on clean data",
+        lambda o: _if(o.kind == "clean", o.alarm or not o.answered),
+        (0.10, 0.05, 0.05),
+        at_most=True,
     ),
-    Bar("detection", NAMED, lambda o: o.alarm, (0.93, 0.98, 0.99)),
-    Bar("exact name first", ONE, lambda o: o.exact, (0.80, 0.90, 0.92)),
-    Bar("truth in the 90 % set", ONE, lambda o: o.covered, (0.88, 0.93, 0.95)),
-    Bar("size of the 90 % set, mean", ONE, lambda o: o.size if o.answered else None, (2.5, 2.0, 1.6), "mean", True),
-    Bar("two causes: both", ("pair",), lambda o: o.exact, (0.60, 0.75, 0.85)),
-    Bar("two causes: at least one", ("pair",), lambda o: o.shared > 0, (0.90, 0.95, 0.97)),
-    Bar("regime-limited cause first", ("regime",), lambda o: o.exact, (0.80, 0.90, 0.94)),
-    Bar("outside: not claimed > .9", ("outside",), lambda o: o.answered and not o.sure_wrong, (0.50, 0.75, 0.80)),
-    Bar("single or regime wrong with > .9", ONE, lambda o: o.sure_wrong, (0.08, 0.03, 0.03), at_most=True),
-    Bar("alike: truth in the 90 % set", ALIKE, lambda o: o.covered, (0.88, 0.93, 0.95)),
-    Bar("alike: wrong with > .9", ALIKE, lambda o: o.sure_wrong, (0.08, 0.03, 0.03), at_most=True),
-    Bar("alike: exact name first", ALIKE, lambda o: o.exact, None),
-    Bar("exact name first, alike among them", ANY, lambda o: o.exact, None),
-    Bar("weak: wrong with > .9", ("weak",), lambda o: o.sure_wrong, (0.10, 0.05, 0.05), at_most=True),
-    Bar("impact error, median", NAMED, lambda o: o.impact_error, (0.20, 0.10, 0.05), "median", True),
-    Bar("held-out RMSE after/before, median", NAMED, lambda o: o.gain, (0.35, 0.25, 0.15), "median", True),
+    Bar("detection", lambda o: _if(o.kind in NAMED, o.alarm), (0.93, 0.98, 0.99)),
+    Bar("exact name first", lambda o: _if(o.by_name, o.exact), (0.80, 0.90, 0.92)),
+    Bar("truth in the 90 % set", lambda o: _if(o.by_name, o.covered), (0.88, 0.93, 0.95)),
+    Bar("size of the 90 % set, mean", lambda o: _if(o.by_name and o.answered, o.size), (2.5, 2.0, 1.6), "mean", True),
+    Bar("two causes: both", lambda o: _if(o.kind == "pair", o.exact), (0.60, 0.75, 0.85)),
+    Bar("two causes: at least one", lambda o: _if(o.kind == "pair", o.shared > 0), (0.90, 0.95, 0.97)),
+    Bar("regime-limited cause first", lambda o: _if(o.by_name and o.kind == "regime", o.exact), (0.80, 0.90, 0.94)),
+    Bar(
+        "outside: not claimed > .9",
+        lambda o: _if(o.kind == "outside", o.answered and not o.sure_wrong),
+        (0.50, 0.75, 0.80),
+    ),
+    Bar("single or regime wrong with > .9", lambda o: _if(o.by_name, o.sure_wrong), (0.08, 0.03, 0.03), at_most=True),
+    Bar("nearer than 3 sigma: truth in the 90 % set", lambda o: _if(o.by_set, o.covered), (0.88, 0.93, 0.95)),
+    Bar(
+        "nearer than 3 sigma: wrong with > .9", lambda o: _if(o.by_set, o.sure_wrong), (0.08, 0.03, 0.03), at_most=True
+    ),
+    Bar("weak: wrong with > .9", lambda o: _if(o.kind == "weak", o.sure_wrong), (0.10, 0.05, 0.05), at_most=True),
+    Bar("impact error, median", lambda o: o.impact_error, (0.20, 0.10, 0.05), "median", True),
+    Bar("held-out RMSE after/before, median", lambda o: o.gain, (0.35, 0.25, 0.15), "median", True),
+    Bar("gross reading named by row and channel", lambda o: o.gross),
 )
 
 
@@ -204,14 +229,14 @@ class Metric:
     ambitious_met: bool | None
 
 
-def metrics(outcomes: Sequence[Outcome], sheet: str) -> list[Metric]:
-    """All metrics of a sheet."""
+def metrics(outcomes: Sequence[Outcome]) -> list[Metric]:
+    """All metrics of some cases; the ambition is that of the own sheet where all of them are of it."""
+    column = 1 if {o.sheet for o in outcomes} == {"own"} else 2
     found = []
     for bar in BARS:
-        taken = [bar.take(o) for o in outcomes if o.kind in bar.kinds]
-        values = [float(v) for v in taken if v is not None]
+        values = [float(v) for v in map(bar.take, outcomes) if v is not None]
         value, interval = _summary(values, bar.how)
-        must, ambitious = bar.on(sheet)
+        must, ambitious = (bar.bars[0], bar.bars[column]) if bar.bars else (None, None)
         met = [_reached(value, b, bar.at_most) for b in (must, ambitious)]
         found.append(Metric(bar.name, value, interval, len(values), bar.at_most, must, met[0], ambitious, met[1]))
     return found
@@ -234,55 +259,20 @@ def _reached(value: float | None, bar: float | None, at_most: bool) -> bool | No
     return value <= bar + 1e-12 if at_most else value >= bar - 1e-12
 
 
-def confusion(outcomes: Sequence[Outcome]) -> dict[str, dict[str, int]]:
-    """Truth -> likeliest answer -> number of cases; without the weak ones, which nobody need find."""
-    found: dict[str, dict[str, int]] = {}
-    for o in sorted(outcomes, key=lambda o: (o.truth, o.top)):
-        if o.kind != "weak":
-            row = found.setdefault(o.truth, {})
-            answer = o.top if o.answered else "no answer"
-            row[answer] = row.get(answer, 0) + 1
-    return found
-
-
-def by_loudness(outcomes: Sequence[Outcome]) -> list[dict[str, Any]]:
-    """Detection and exact names of single and regime-limited causes, by signal-to-noise."""
-    found = []
-    for low, high in LOUDNESS:
-        here = [o for o in outcomes if o.kind in ONE and low <= o.snr < high]
-        detected, exact = sum(o.alarm for o in here), sum(o.exact for o in here)
-        found.append(
-            {
-                "snr": [low, high],
-                "n": len(here),
-                "detected": detected,
-                "exact": exact,
-                "detected_interval": wilson(detected, len(here)),
-                "exact_interval": wilson(exact, len(here)),
-            }
-        )
-    return found
-
-
-def report(outcomes: Sequence[Outcome], sheet: str, seed: int) -> dict[str, Any]:
-    """Everything for the JSON file; times stand apart, all else is the same for the same code, sheet and seed."""
-    ordered = sorted(outcomes, key=lambda o: o.case)
-    times = [o.seconds for o in ordered if o.answered]
-    cases = [{k: v for k, v in asdict(o).items() if k != "seconds"} for o in ordered]
+def report(outcomes: Sequence[Outcome], seed: int) -> dict[str, Any]:
+    """Everything for the JSON file: pooled, by sheet, and every case."""
+    sheets = list(dict.fromkeys(o.sheet for o in outcomes))
+    times = [o.seconds for o in outcomes if o.answered]
     return {
-        "schema": "gearheat.challenge/1",
-        "sheet": sheet,
+        "schema": "gearheat.challenge/2",
         "seed": seed,
-        "n": len(ordered),
-        "kinds": {kind: sum(o.kind == kind for o in ordered) for kind in dict.fromkeys(o.kind for o in ordered)},
-        "answered": sum(o.answered for o in ordered),
-        "metrics": [asdict(m) for m in metrics(ordered, sheet)],
-        "by_loudness": by_loudness(ordered),
-        "confusion": confusion(ordered),
-        "cases": cases,
-        "seconds": {
-            "median": float(np.median(times)) if times else None,
-            "longest": max(times, default=None),
-            "each": [round(o.seconds, 2) for o in ordered],
-        },
+        "sheets": {s: sum(o.sheet == s for o in outcomes) for s in sheets},
+        "kinds": {kind: sum(o.kind == kind for o in outcomes) for kind in dict.fromkeys(o.kind for o in outcomes)},
+        "answered": sum(o.answered for o in outcomes),
+        "by_name": sum(o.by_name for o in outcomes),
+        "by_set": sum(o.by_set for o in outcomes),
+        "metrics": [asdict(m) for m in metrics(outcomes)],
+        "by_sheet": {s: [asdict(m) for m in metrics([o for o in outcomes if o.sheet == s])] for s in sheets},
+        "cases": [asdict(o) for o in outcomes],
+        "seconds": {"median": float(np.median(times)) if times else None, "longest": max(times, default=None)},
     }

@@ -12,7 +12,8 @@ from .campaign.card import Card
 from .campaign.table import Campaign
 from .infer.problem import Problem
 from .library.cause import Cause, Nuisance, Ranges
-from .library.nuisances import nuisances
+from .library.forms import Context
+from .library.nuisances import habit, nuisances
 from .library.registry import library
 from .library.roles import Roles
 from .model.formula import Formula
@@ -71,13 +72,14 @@ def setting(
     spec = lubricated(driven.spec, card.lubrication)
     roles = Roles.of(spec)
     campaigns = [c for c in (data, reference, *others) if c is not None]
-    oils = oils_of(driven, roles, card, [name for c in campaigns for name in c.oil])
+    oils = oils_of(driven, card, [name for c in campaigns for name in c.oil])
     point = driven.operating_point
     ranges = ranges_of(spec, roles, data, oils, point)
     sensors = data.sensors
     causes = library(roles, ranges, sensors, libraries)
     wide = reference is not None
-    known = nuisances(roles, card.prior_sd, driven.uncertainties)
+    films = habit(Context(roles, ranges, sensors))
+    known = (*nuisances(roles, card.prior_sd, driven.uncertainties), *([films] if films else ()))
     known = tuple(replace(n, sd=n.wide) if wide else n for n in known if wide or n.sd > 0)
     day = Nuisance("day", dict.fromkeys(roles.cooling, 1.0), 1.0, 1.0)
     names, reads = [s.name for s in sensors], [s.name for s in data.read]
@@ -85,12 +87,10 @@ def setting(
     knobs = dict.fromkeys([p for n in (*known, day) for p in n.paths] + [p for f in formulas for p in f.paths])
     forms = [f.form for f in formulas]
     shown = tuple(dict.fromkeys(s.reads for c in campaigns for s in c.read))
-    plant = Plant.of(spec, forms, tuple(knobs), [s.reads for s in data.given], shown)
+    plant = Plant.of(spec, [*forms, *known], tuple(knobs), [s.reads for s in data.given], shown)
     observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
     problem = Problem(observed, card.day_cooling_sd)
-    return Setting(
-        scenario, spec, card, roles, ranges, causes, known, formulas, plant, problem, oils
-    )
+    return Setting(scenario, spec, card, roles, ranges, causes, known, formulas, plant, problem, oils)
 
 
 def _driven(scenario: Scenario, data: Campaign) -> Scenario:

@@ -56,3 +56,34 @@ class Cells:
 def floats(cells: Sequence[Any]) -> np.ndarray:
     """Cells as numbers (n,), NaN where one is wrong or empty."""
     return np.array([np.nan if cell is None else cell for cell in cells], dtype=float)
+
+
+def contradictions(cells: Cells) -> list[str]:
+    """Rows of one test that contradict each other: another oil, or an earlier order."""
+    problems: list[str] = []
+    before: dict[str, tuple[int, str, float]] = {}
+    if "test" not in cells.context:
+        return problems
+    rows = zip(cells.texts("test"), cells.texts("oil"), cells.numbers("order"), strict=True)
+    for row, (test, oil, order) in enumerate(rows):
+        first, oil_before, order_before = before.setdefault(test, (row, oil, order))
+        place, line = cells.table.place(row), cells.table.lines[first]
+        if oil != oil_before:
+            problems.append(f"{place}: test {test} has oil {oil_before} in line {line}, here {oil}. Mend one of them.")
+        if order < order_before:
+            problems.append(
+                f"{place}: order goes back within test {test} ({order:g} after {order_before:g}). Sort its rows."
+            )
+        before[test] = (first, oil_before, order)
+    return problems
+
+
+def order_warnings(cells: Cells) -> list[str]:
+    """The first row that does not stand in running order."""
+    order = cells.numbers("order")
+    return [
+        f"{cells.table.place(row)}: order goes back ({order[row]:g} after {order[row - 1]:g})."
+        " Tests are taken in this order."
+        for row in range(1, cells.n)
+        if order[row] < order[row - 1]
+    ][:1]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,11 +11,14 @@ import numpy as np
 from ...model.errors import GearheatError, ScenarioError, suggestion
 from ...scenarios.columns import in_si, spelled, split_unit
 from ...scenarios.csv_table import Column, Table, parse, raise_all, read_cells
-from ...scenarios.entries import catalogue
 from ...scenarios.scenario import Scenario
 from .card import Card
-from .context import CONTEXT, DIRECTIONS, Cells, floats
-from .sensors import SI, sensors_of
+from .checks import checked
+from .context import CONTEXT, DIRECTIONS, Cells, contradictions, floats, order_warnings
+from .halves import with_unread
+from .nominal import Nominal
+from .oils import oil_problems, oil_values, oil_warnings
+from .sensors import SI, driven_by, sensors_of
 from .table import Campaign, Sensor
 
 
@@ -51,13 +54,19 @@ class _Reader:
         """All of the table, or all of its problems."""
         table, problems = parse(self.path, self._columns())
         self.problems += problems
-        self.problems += _oil_problems(table, self.context.get("oil"), self._oils())
-        raise_all(self.problems, self.path.name)
         cells = Cells(table, self.context)
+        self.problems += contradictions(cells)
+        oils = {oil: table.place(row) for row, oil in reversed(list(enumerate(cells.texts("oil"))))}
+        self.problems += oil_problems(self.path.name, oils, self.card)
+        raise_all(self.problems, self.path.name)
         values = {s.name: self._values(table, s) for s in self.sensors}
         minutes = {name: self._si(cells, name) for name, (_, _, si) in CONTEXT.items() if si}
         raise_all(self.problems, self.path.name)
-        return self._ordered(cells, values, minutes)
+        found = self._ordered(cells, values, minutes)
+        nominal = Nominal(driven_by(self.scenario, self.sensors))
+        known = {oil: oil_values(self.scenario, oil, self.card) for oil in oils}
+        warned = replace(found, warnings=(*found.warnings, *oil_warnings(self.scenario, found.oil, self.card)))
+        return with_unread(checked(warned, nominal, known, points=self.points))
 
     def _placed(self, sensor: Sensor) -> Sensor | None:
         """The sensor with the column of this table that holds it, None where there is none."""
@@ -93,10 +102,6 @@ class _Reader:
             found.append(Column(column, doc, kind, required=False, options=options))
         return found
 
-    def _oils(self) -> Collection[str] | None:
-        """Names that may stand in the column `oil`; None for any, where the card describes one."""
-        return None if self.card.oil.nu40 is not None else list(catalogue("oil"))
-
     def _values(self, table: Table, sensor: Sensor) -> np.ndarray:
         """What a sensor shows (n,) in SI."""
         cells = floats(table.columns[sensor.column])
@@ -121,8 +126,8 @@ class _Reader:
         names = cells.texts("test") if "test" in self.context else [str(row) for row in range(cells.n)]
         order = cells.numbers("order")
         met = {name: row for row, name in reversed(list(enumerate(names)))}
-        position = np.array([met[name] for name in names], dtype=float)
-        order = np.where(np.isfinite(order), order, position + 1)[position.astype(int)]
+        position = np.array([met[name] for name in names])
+        order = np.where(np.isfinite(order), order, np.unique(position, return_inverse=True)[1] + 1)[position]
         rows = np.lexsort((np.arange(cells.n), position, order))
         first = np.append(True, np.diff(position[rows]) != 0)
         test = np.cumsum(first) - 1
@@ -131,7 +136,7 @@ class _Reader:
         points = cells.numbers("point")
         return Campaign(
             name=self.path.name,
-            sensors=self.sensors,
+            sensors=tuple(_one_way(s, direction) for s in self.sensors),
             values={name: column[rows] for name, column in values.items()},
             test=test,
             order=order[starts],
@@ -148,7 +153,7 @@ class _Reader:
             points=np.where(np.isfinite(points), points, np.arange(cells.n) + 1)[rows].astype(int),
             start_by_room=self.card.protocol.T_start_minus_amb_K,
             room_begin=self.card.protocol.ambient_start_minus_reading_K,
-            warnings=cells.table.warnings,
+            warnings=(*cells.table.warnings, *order_warnings(cells)),
         )
 
     def _direction(self, cells: Cells, values: dict[str, np.ndarray]) -> np.ndarray:
@@ -180,12 +185,10 @@ class _Reader:
         return np.asarray(np.where(first, 0.0, np.where(np.isfinite(stated[rows]), stated[rows], usual)))
 
 
-def _oil_problems(table: Table, column: str | None, known: Collection[str] | None) -> list[str]:
-    """Oils that neither the catalogue nor the card has."""
-    if column is None or known is None:
-        return []
-    return [
-        f'{table.place(row)}: unknown oil "{oil}".{suggestion(oil, known) or " Known: " + ", ".join(known) + "."}'
-        for row, oil in enumerate(table.columns[column])
-        if oil and oil not in known
-    ]
+def _one_way(sensor: Sensor, direction: np.ndarray) -> Sensor:
+    """The sensor with one sign where the power flows one way in all rows (n,)."""
+    if (direction < 0).any() and (direction >= 0).any():
+        return sensor
+    sign = sensor.signs[1] if (direction < 0).any() else sensor.signs[0]
+    return replace(sensor, signs=(sign, sign))
+

@@ -82,7 +82,11 @@ def _remainders(problem: Problem, V: np.ndarray, r: np.ndarray, without: float) 
     o = problem.data
     warm = [i for i, s in enumerate(o.read) if s.kind.endswith("_temp")]
     other = [i for i in range(len(o.read)) if i not in warm]
-    groups = [g for g in ([warm] + ([[i] for i in warm] if len(warm) > 1 else []) + ([other, warm + other] if other else [])) if g]
+    groups = [
+        g
+        for g in ([warm] + ([[i] for i in warm] if len(warm) > 1 else []) + ([other, warm + other] if other else []))
+        if g
+    ]
     sd = np.array([s.repeat_sd for s in o.read])[o.kind]
     near = alike(o)
     same = o.kind[:, None] == o.kind

@@ -11,12 +11,21 @@ from scipy.optimize import minimize
 
 from ...model.errors import SolveError
 from ..model.formula import Formula
-from ..model.noise import Term, terms
+from ..model.noise import Term, input_scatter, stacked, terms
 from ..model.observe import Observed, Seen
 from .evidence import White
 
-#: A reading that is set aside scatters by so many of its standard deviations.
-ASIDE = 1e4
+
+
+@dataclass(frozen=True, order=True)
+class Aside:
+    """A reading that is set aside: number of a compared one in the vector, or of a row of a given sensor.
+
+    `sensor` is the given sensor's name, "" for a compared reading; rows of campaigns are numbered one after the other.
+    """
+
+    number: int
+    sensor: str = ""
 
 
 @dataclass(frozen=True)
@@ -98,7 +107,9 @@ class Noise:
             slopes = [w * ((inverse * C).sum() - a @ C @ a) for w, C in zip(weights, loose, strict=True)]
             return float(value), np.array(slopes) + scales / sd**2
 
-        found = minimize(cost, self.scales, jac=True, method="L-BFGS-B", bounds=[(-1.5, 2.5)] * len(sd), options={"maxiter": 25})
+        found = minimize(
+            cost, self.scales, jac=True, method="L-BFGS-B", bounds=[(-1.5, 2.5)] * len(sd), options={"maxiter": 25}
+        )
         return replace(self, scales=found.x)
 
 
@@ -110,11 +121,15 @@ class Problem:
         day_sd: standard deviation of the cooling from day to day; its direction is the last nuisance of a campaign
     """
 
-    def __init__(self, campaigns: Sequence[Observed], day_sd: float, aside: frozenset[int] = frozenset()) -> None:
+    #: A reading that is set aside scatters by so many of its standard deviations.
+    FAR = 1e3
+
+    def __init__(self, campaigns: Sequence[Observed], day_sd: float, aside: frozenset[Aside] = frozenset()) -> None:
         self.campaigns, self.day_sd, self.aside = tuple(campaigns), day_sd, aside
         self.data = campaigns[0]
         self.nz = len(self.data.nuisances) - 1
         self.measured = np.concatenate([o.measured for o in campaigns])
+        self.repeat = np.concatenate([np.array([s.repeat_sd for s in o.read])[o.kind] for o in campaigns])
         self.own = slice(0, self.data.m)
 
     @property
@@ -122,8 +137,8 @@ class Problem:
         """Number of readings."""
         return len(self.measured)
 
-    def without(self, aside: frozenset[int]) -> Problem:
-        """The same with some readings set aside, by their numbers."""
+    def without(self, aside: frozenset[Aside]) -> Problem:
+        """The same with some readings set aside."""
         return Problem(self.campaigns, self.day_sd, aside)
 
     def look(self, z: np.ndarray, acting: Sequence[Acting] = ()) -> Look:
@@ -157,18 +172,34 @@ class Problem:
     def noise(self, look: Look, scales: np.ndarray | None = None) -> Noise:
         """The scatter at a look."""
         found = terms(self.campaigns, look.seen, self.day_sd, self.nz)
-        if self.aside:
-            variance = np.zeros(self.m)
-            variance[list(self.aside)] = self.far
-            found.append(Term("set aside", variance=variance))
+        found += [self.far(aside, look) for aside in sorted(self.aside)]
         n = sum(t.loose > 0 for t in found)
         return Noise(tuple(found), np.zeros(n) if scales is None else scales)
 
-    @property
-    def far(self) -> np.ndarray:
-        """Variances of readings that are set aside."""
-        sd = np.concatenate([np.array([s.repeat_sd for s in o.read])[o.kind] for o in self.campaigns])
-        return np.asarray((ASIDE * sd[list(self.aside)]) ** 2)
+    def far(self, aside: Aside, look: Look) -> Term:
+        """The term that makes a reading count for nothing."""
+        if not aside.sensor:
+            variance = np.zeros(self.m)
+            variance[aside.number] = (self.FAR * self.repeat[aside.number]) ** 2
+            return Term("set aside", variance=variance)
+        columns = dict(self.inputs(look))[aside.sensor]
+        return Term("set aside", self.FAR * columns[:, [aside.number]])
+
+    def inputs(self, look: Look) -> list[tuple[str, np.ndarray]]:
+        """Given sensor -> effects (M, rows of all campaigns) of one standard deviation of each of its readings."""
+        found: dict[str, list[tuple[int, np.ndarray]]] = {}
+        for k, (o, seen) in enumerate(zip(self.campaigns, look.seen, strict=True)):
+            for name, columns in input_scatter(o, seen):
+                found.setdefault(name, []).append((k, columns))
+        sizes = [o.m for o in self.campaigns]
+        return [(name, stacked(items, sizes)) for name, items in found.items()]
+
+    def touched(self, aside: Aside, look: Look) -> frozenset[int]:
+        """The compared readings that a reading has to do with."""
+        if not aside.sensor:
+            return frozenset([aside.number])
+        effect = np.abs(dict(self.inputs(look))[aside.sensor][:, aside.number])
+        return frozenset(np.flatnonzero(effect > 0.05 * effect.max(initial=1e-300)).tolist())
 
     def tangents(self, z: np.ndarray, acting: Sequence[Acting], candidates: Sequence[Acting]) -> np.ndarray:
         """Effects (M, k) of one prior half width of each candidate beside what acts, to first order at size zero."""

@@ -87,9 +87,7 @@ def look(problem: Problem, fit: Fit, formulas: Sequence[Formula]) -> Look:
     return judged(candidates, owner, effects, white, e)
 
 
-def judged(
-    candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarray, white: White, e: np.ndarray
-) -> Look:
+def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarray, white: White, e: np.ndarray) -> Look:
     """Effects weighed against a whitened residual."""
     g = white(effects)
     s, q = g.T @ e, (g**2).sum(axis=0)

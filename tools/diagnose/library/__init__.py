@@ -1,1 +1,9 @@
-"""What may be wrong: causes, sensors' faults and nuisances, one file a family."""
+"""What may be wrong: causes, sensors' faults and nuisances, one file a family. README.md shows how to add a cause."""
+
+from ..campaign.table import Sensor
+from .cause import Cause, Form, Ranges, Row, Shape, Size
+from .extras import Extras
+from .forms import Context
+from .roles import Roles
+
+__all__ = ["Cause", "Context", "Extras", "Form", "Ranges", "Roles", "Row", "Sensor", "Shape", "Size"]

@@ -70,6 +70,7 @@ class Row:
         humidity: relative humidity [1]; 0.5 where it is not measured
         second: 1 in the second half (and later ones) of a test, else 0
         dwell: time the row was held as stated [s]
+        rates: sensor -> how fast what it reads changes [1/s], in logs
     """
 
     base: Values
@@ -80,6 +81,7 @@ class Row:
     humidity: Num = 0.5
     second: Num = 0.0
     dwell: Num = 3600.0
+    rates: Values = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -125,6 +127,7 @@ class Cause:
         exposes: the experiment that would show it
         like: name of the class of causes that count as one answer, and why
         acts_on: what its effect depends on, for the picture of residuals: a sensor, "rise", "order"
+        common: how often it is met, over the causes that are met as a rule
     """
 
     id: str
@@ -134,6 +137,7 @@ class Cause:
     exposes: str = ""
     like: str = ""
     acts_on: str = ""
+    common: float = 1.0
 
     @property
     def family(self) -> str:
@@ -151,6 +155,7 @@ class Nuisance:
         sd: prior standard deviation of the logarithm
         wide: the same where a healthy reference campaign of the same rig tells the parameters
         refilled: whether another filling or mounting changes it, by half of its sd
+        parts, connections: what is added to the machine for it, neutral
     """
 
     name: str
@@ -158,6 +163,8 @@ class Nuisance:
     sd: float
     wide: float
     refilled: bool = False
+    parts: tuple[PartSpec, ...] = ()
+    connections: tuple[tuple[str, ...], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -170,6 +177,7 @@ class Ranges:
             "film" = w nu [m2/s2], "order", "direction"; and the magnitude of each sensor's column by the sensor's name
         loss: typical total loss of the nominal [W]
         rise: typical rise of the oil over the room [K]
+        known: what else is known of the rows: "order", "dwell" (timed ones), "mounting", "humidity", "logs"
     """
 
     low: Mapping[str, float]
@@ -177,6 +185,7 @@ class Ranges:
     high: Mapping[str, float]
     loss: float
     rise: float
+    known: frozenset[str] = frozenset({"order", "dwell"})
 
     @property
     def conductance(self) -> float:
@@ -190,5 +199,6 @@ class Ranges:
 
 
 def as_array(value: Num, n: int) -> np.ndarray:
-    """A number or an array as an array of n."""
-    return np.broadcast_to(np.asarray(value, dtype=float).ravel(), n) if np.size(value) in (1, n) else np.asarray(value)
+    """What a formula gives for n rows as an array of n: numbers, arrays or CasADi numbers."""
+    flat = value.full().ravel() if isinstance(value, ca.DM) else np.asarray(value, dtype=float).ravel()
+    return np.broadcast_to(flat, n)

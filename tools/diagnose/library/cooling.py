@@ -2,14 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
+import casadi as ca
+
+from ...model.laws.smooth import smooth_abs
 from ..campaign.table import Sensor
-from .cause import Cause, Ranges, Shape, Size
-from .forms import Extras, regimes
+from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
+from .extras import Extras
+from .forms import Context, shared
 from .roles import Roles
 
-AIR = "moving air: more air and a better coefficient are one answer"
+AIR = "moving air: a better coefficient and faster air are one answer"
+DAYS = "day to day: humidity and other scatter of the days are one answer unless humidity is measured"
+#: Change of relative humidity at which the size of its effect is stated [1], and a reference.
+HUMIDITY_SPAN, HUMIDITY = 0.15, 0.5
 
 
 def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
@@ -20,36 +27,234 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
         ranges: of the data
         sensors: of the campaign
     """
-    both = any(s.signs[0] != s.signs[1] for s in sensors) or ranges.varies("direction")
+    at = Context(roles, ranges, sensors)
     if roles.surfaces:
-        yield air(roles, ranges, both)
+        yield air(at)
+        yield emissivity(roles)
+    if roles.room and (roles.foundation or roles.surfaces):
+        yield foundation(at)
+    if roles.contacts:
+        yield contact(roles, ranges)
+    if roles.oil_side:
+        yield oil_wall(at)
+    if roles.surfaces and "humidity" in ranges.known:
+        yield humidity(at)
+    if roles.coolers:
+        yield cooler(roles)
+    if roles.thermostats:
+        yield thermostat(roles, ranges)
+    if roles.surfaces:
+        yield fan(roles)
 
 
-def conductance(ranges: Ranges, doc: str, sd: float, low: float, high: float) -> Size:
-    """A conductance [W/K] at the typical temperature difference.
+def factors(paths: Sequence[str], size: str) -> Callable[[Theta, Row], Values]:
+    """Values times the exponential of the size.
 
     Args:
-        ranges: of the data
-        doc: in words
-        sd, low, high: in shares of the typical conductance from oil to room
+        paths: of the values
+        size: its name
     """
-    G = ranges.conductance
-    return Size("G_ref", "W/K", doc, sd * G, low * G, high * G)
+
+    def values(theta: Theta, row: Row) -> Values:
+        return {path: row.base[path] * ca.exp(theta[size]) for path in paths}
+
+    return values
 
 
-def air(roles: Roles, ranges: Ranges, both: bool) -> Cause:
+def each(roles: Roles, parts: Sequence[str], size: str) -> tuple[Form, ...]:
+    """Factors on what all parts do together, and on what each of several does.
+
+    Args:
+        roles: of the machine
+        parts: their names
+        size: name of the factor's logarithm
+    """
+    return shared(
+        [(parts, factors(roles.scaled(*parts), size))], [((p,), factors(roles.scaled(p), size)) for p in parts]
+    )
+
+
+def air(at: Context) -> Cause:
     """More or less convection."""
     shapes = (
         Shape("e", "1", "exponent of the temperature difference", -0.5, 0.5, 0.05, 0.2),
         Shape("c", "1", "exponent of the speed: a fan on the shaft", -0.2, 1.0, 0.0, 0.2),
     )
-    ports = [f"{name}.surface" for name in roles.surfaces]
+    ports = [f"{name}.surface" for name in at.roles.surfaces]
     return Cause(
         id="cooling.air",
         doc="More or less convection: draught, a cover, a fan.",
-        size=conductance(ranges, "conductance to the air more than assumed", 0.14, -0.45, 1.15),
-        forms=Extras("air", roles, ranges).conductors(ports, shapes, regimes(("T", "direction"), ranges, both)),
+        size=at.conductance("conductance to the air more than assumed", 0.14, -0.45, 1.15),
+        forms=Extras("air", at).conductors(ports, shapes, at.regimes(("T", "direction"))),
         exposes="a fan switched on and off at one point; a cold room",
+        like=AIR,
+        acts_on="rise",
+    )
+
+
+def emissivity(roles: Roles) -> Cause:
+    """A surface that radiates differently."""
+
+    def values(names: Sequence[str]) -> Callable[[Theta, Row], Values]:
+        paths = [f"{name}.emissivity" for name in names]
+        return lambda theta, row: {path: row.base[path] * (1 + theta["factor"]) for path in paths}
+
+    brightest = max(float(roles.spec.part(name).values["emissivity"]) for name in roles.surfaces)
+    single = [((name,), values([name])) for name in roles.surfaces]
+    return Cause(
+        id="cooling.emissivity",
+        doc="Another emissivity: bare metal instead of paint, dust, a shiny cover.",
+        size=Size("factor", "1", "relative change of the emissivity", 0.35, -0.95, max(1 / brightest - 1, 0.02)),
+        forms=shared([(roles.surfaces, values(roles.surfaces))], single),
+        exposes="a cold room; a painted patch",
+        acts_on="rise",
+    )
+
+
+def foundation(at: Context) -> Cause:
+    """Feet and shafts that conduct more or less."""
+    roles = at.roles
+    ports = [roles.bodies_of(name)[0] for name in roles.foundation] or [f"{roles.surfaces[0]}.surface"]
+    shapes = (Shape("e", "1", "exponent of the temperature difference", -0.35, 0.35, 0.0, 0.15),)
+    return Cause(
+        id="cooling.foundation",
+        doc="Another conductance of feet and shafts to the foundation.",
+        size=at.conductance("conductance more than assumed", 0.14, -0.6, 1.15),
+        forms=Extras("foundation", at).conductors(ports, shapes),
+        exposes="transients in a cold room; the temperature of the foundation",
+        acts_on="rise",
+    )
+
+
+def contact(roles: Roles, ranges: Ranges) -> Cause:
+    """A resistance between bodies, most likely next to the outer surface."""
+    outer = {p for name in (*roles.surfaces, *roles.foundation) for p in roles.nets.met_by(name)}
+
+    def values(name: str) -> Callable[[Theta, Row], Values]:
+        G, paths = roles.conductance(name), roles.scaled(name)
+
+        def changed(theta: Theta, row: Row) -> Values:
+            R = theta["R"] * ca.exp(theta["e"] * (row.rise / ranges.rise - 1))
+            return {path: row.base[path] / smooth_abs(1 + R * G, 0.05) * smooth_abs(1.0, 0.05) for path in paths}
+
+        return changed
+
+    weights = [2.0 if outer & set(roles.nets.met_by(name)) else 1.0 for name in roles.contacts]
+    stiffest = max(roles.conductance(name) for name in roles.contacts)
+    return Cause(
+        id="cooling.contact",
+        doc="A gap, gasket or loose seat between bodies.",
+        size=Size(
+            "R",
+            "K/W",
+            "resistance more than assumed, at the typical rise",
+            0.1 / ranges.conductance,
+            -min(0.9 / stiffest, 0.05 / ranges.conductance),
+            1.4 / ranges.conductance,
+        ),
+        forms=tuple(
+            Form(
+                name if len(roles.contacts) > 1 else "",
+                weight / sum(weights),
+                (Shape("e", "1", "change of its logarithm by as much rise more", -2.0, 1.2, 0.0, 0.8),),
+                values=values(name),
+            )
+            for name, weight in zip(roles.contacts, weights, strict=True)
+        ),
+        exposes="transients; a second probe on the outer surface",
+        acts_on="rise",
+    )
+
+
+def oil_wall(at: Context) -> Cause:
+    """Oil that gives its heat to bodies better or worse."""
+    roles, ranges, speed = at.roles, at.ranges, at.first("speed")
+    shapes = (Shape("c", "1", "exponent of the speed in that logarithm", -0.8, 0.8, 0.0, 0.3),)
+
+    def values(names: Sequence[str]) -> Callable[[Theta, Row], Values]:
+        paths = roles.scaled(*names)
+
+        def changed(theta: Theta, row: Row) -> Values:
+            log: Num = theta["ln_factor"]
+            if speed:
+                ratio = smooth_abs(row.sensors[speed] / max(ranges.mid.get(speed, 1.0), 1e-9), 0.05)
+                log = log * ca.exp(theta["c"] * ca.log(ratio))
+            return {path: row.base[path] * ca.exp(3 * ca.tanh(log / 3)) for path in paths}
+
+        return changed
+
+    walls = tuple(c for c in roles.oil_side if {roles.at(p, "body") for p in roles.bodies_of(c)} & set(roles.outside))
+    together = [(names, values(names)) for names in dict.fromkeys((walls, roles.oil_side)) if names]
+    single = [((name,), values((name,))) for name in roles.oil_side if (name,) != walls]
+    return Cause(
+        id="cooling.oil_wall",
+        doc="Another conductance between oil and bodies: level, foam, deposits.",
+        size=Size("ln_factor", "1", "logarithm of the factor on the conductance", 0.5, -3.0, 2.2),
+        forms=shared(together, single, shapes if speed else ()),
+        exposes="transients; a second probe in the wall",
+        acts_on=speed,
+    )
+
+
+def humidity(at: Context) -> Cause:
+    """Cooling that follows the humidity of the room."""
+    extras = Extras("humidity", at)
+
+    def follows(theta: Theta, row: Row) -> Theta:
+        return {**theta, "G_ref": theta["G_ref"] * (row.humidity - theta["neutral"]) / HUMIDITY_SPAN}
+
+    shapes = (Shape("neutral", "1", "humidity at which the nominal holds", 0.2, 0.8, HUMIDITY, 0.08),)
+    ports = [f"{name}.surface" for name in at.roles.surfaces]
+    made = [extras.conductor(port, k, len(ports)) for k, port in enumerate(ports)]
+    return Cause(
+        id="cooling.humidity",
+        doc="Cooling that changes from day to day with the humidity of the room.",
+        size=at.conductance("change of the conductance for 15 % of humidity", 0.03, -0.25, 0.25),
+        forms=(extras.with_parts(made, shapes, as_keys=follows),),
+        exposes="humidity logged in every test, two days with the same point",
+        like=DAYS,
+        acts_on="humidity",
+    )
+
+
+def cooler(roles: Roles) -> Cause:
+    """A cooler that takes less or more."""
+    return Cause(
+        id="cooling.cooler",
+        doc="Another conductance of a cooler: fouled on the air or the oil side, less flow.",
+        size=Size("ln_factor", "1", "logarithm of the factor on the conductance", 0.4, -4.0, 1.5),
+        forms=each(roles, roles.coolers, "ln_factor"),
+        exposes="inlet and outlet temperatures of the cooler on both sides",
+        acts_on="rise",
+    )
+
+
+def thermostat(roles: Roles, ranges: Ranges) -> Cause:
+    """A thermostat that keeps another temperature."""
+
+    def values(names: Sequence[str]) -> Callable[[Theta, Row], Values]:
+        return lambda theta, row: {f"{n}.dT": row.base[f"{n}.dT"] + theta["dT"] for n in names}
+
+    span = ranges.rise
+    return Cause(
+        id="cooling.thermostat",
+        doc="A thermostat that keeps a higher or lower temperature than it is set to.",
+        size=Size("dT", "K", "temperature kept less that set", 0.1 * span, -0.8 * span, 0.8 * span),
+        forms=shared(
+            [(roles.thermostats, values(roles.thermostats))], [((n,), values((n,))) for n in roles.thermostats]
+        ),
+        exposes="a probe where the thermostat measures; the set point moved",
+    )
+
+
+def fan(roles: Roles) -> Cause:
+    """Air that is faster or slower than stated."""
+    return Cause(
+        id="cooling.fan",
+        doc="The air along the surfaces is faster or slower than stated: a fan that fails, ducts, a draught.",
+        size=Size("ln_factor", "1", "logarithm of the factor on the speed of the air", 0.5, -4.0, 2.5),
+        forms=(Form(values=factors([f"{room}.k_air" for room in roles.having("room")], "ln_factor")),),
+        exposes="the speed of the air measured; the fan switched off at one point",
         like=AIR,
         acts_on="rise",
     )

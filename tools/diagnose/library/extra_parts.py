@@ -143,6 +143,16 @@ class ExtraLoss(ExtraDryLoss):
         return super().regime() * step((ca.log(self.film_on) - film) / FILM_STEP)
 
 
+class ExtraHabit(ExtraLoss):
+    """A loss that is none where `k` is 1, and changes sign there: power times the logarithm of k."""
+
+    k = Parameter("1", "1 for none", above=0.0, default=1.0)
+
+    def power(self) -> Num:
+        """With the factor."""
+        return super().power() * ca.log(self.k)
+
+
 class ExtraConductor(Component):
     """A conductance beside another: it follows powers of the temperature difference and of a shaft's speed.
 
@@ -229,5 +239,6 @@ def step(x: Num) -> Num:
 
 #: The added types by name, as `gearheat.model.parts.PARTS` holds those of the physics.
 EXTRA_PARTS: dict[str, type[Component]] = {
-    part.__name__: part for part in (ExtraHeat, ExtraDryLoss, ExtraLoss, ExtraConductor, HeatMove, HeatMoveOfTwo)
+    part.__name__: part
+    for part in (ExtraHeat, ExtraDryLoss, ExtraLoss, ExtraHabit, ExtraConductor, HeatMove, HeatMoveOfTwo)
 }

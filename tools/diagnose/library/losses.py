@@ -8,13 +8,15 @@ are n F, in elastohydrodynamic contact up to n^0.7 F^1.3, with shared load and c
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import casadi as ca
 
 from ..campaign.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size, Theta, Values
-from .forms import INNER_SHARE, Extras, Regime, oil_share, regimes
+from .extras import Extras
+from .forms import INNER_SHARE, Context, Regime, oil_share
 from .roles import Place, Roles
 
 NO_LOAD = "no-load oil loss: churning, windage and oil level differ only in how the oil is reached"
@@ -32,44 +34,37 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
         ranges: of the data
         sensors: of the campaign
     """
-    both = any(s.signs[0] != s.signs[1] for s in sensors) or ranges.varies("direction")
+    at = Context(roles, ranges, sensors)
     if wet := roles.places["churning"]:
-        yield from no_load(wet, roles, ranges)
+        yield from no_load(at, wet)
     if roles.bath:
-        yield oil_viscosity(roles)
+        yield oil_viscosity(at)
     if bearings := roles.places["bearing"]:
-        yield bearing_preload(bearings, roles, ranges, both)
+        yield bearing_preload(at, bearings)
     if seals := roles.places["seal"]:
-        yield seal_drag(seals, roles, ranges, both)
+        yield seal_drag(at, seals)
     if teeth := roles.places["teeth"]:
-        yield from mesh(teeth, roles, ranges, both)
-    yield from torque_only(roles, ranges, sensors)
+        yield mesh_friction(at, teeth)
+        if at.both_ways:
+            yield mesh_direction(at, teeth)
+        yield film_starvation(at, teeth)
+    yield from torque_only(at)
 
 
-def power(ranges: Ranges, doc: str, sd: float, low: float, high: float) -> Size:
-    """A power [W] at the middle of the data.
-
-    Args:
-        ranges: of the data
-        doc: in words
-        sd, low, high: in shares of the typical loss
-    """
-    P = ranges.loss
-    return Size("P_ref", "W", f"{doc}, at the middle of the data", sd * P, low * P, high * P)
-
-
-def no_load(places: Sequence[Place], roles: Roles, ranges: Ranges) -> Iterator[Cause]:
+def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
     """What moves oil and air."""
+    if teeth := at.roles.places["teeth"]:  # what moves the oil keeps a share of the heat
+        places = [replace(place, inner=teeth[0].inner, outer=teeth[0].inner) for place in places]
     speed = Shape("a", "1", "exponent of the speed", 1.2, 2.8, 2.0, 0.45)
     shapes = (speed, Shape("b", "1", "exponent of the viscosity", 0.0, 0.35), TEETH)
     yield Cause(
         id="losses.churning",
         doc="A loss without load that grows with speed: what turns in the oil moves it.",
-        size=power(ranges, "loss", 0.085, 0.0, 0.6),
-        forms=Extras("churning", roles, ranges).losses(places, shapes, regimes(("w", "T"), ranges, False)),
+        size=at.power("loss", 0.085, 0.0, 0.6),
+        forms=Extras("churning", at).losses(places, shapes, at.regimes(("w", "T"))),
         exposes="points at higher speed and little load; a coast-down without load",
         like=NO_LOAD,
-        acts_on="w",
+        acts_on=at.first("speed"),
     )
     shapes = (
         Shape("a", "1", "exponent of the speed", 1.0, 2.5, 1.6, 0.4),
@@ -79,27 +74,27 @@ def no_load(places: Sequence[Place], roles: Roles, ranges: Ranges) -> Iterator[C
     yield Cause(
         id="losses.oil_level",
         doc="Oil level off its mark: a no-load loss that follows viscosity and, less, speed.",
-        size=power(ranges, "loss", 0.07, -0.15, 0.6),
-        forms=Extras("level", roles, ranges).losses(places[:1], shapes),
+        size=at.power("loss", 0.07, -0.15, 0.6),
+        forms=Extras("level", at).losses(places[:1], shapes),
         exposes="the same point at two oil levels",
         like=NO_LOAD,
-        acts_on="w",
+        acts_on=at.first("speed"),
     )
     shapes = (Shape("a", "1", "exponent of the speed", 2.6, 3.4, 3.0, 0.2), MIST)
     yield Cause(
         id="losses.windage",
         doc="A loss without load, steep in speed and without viscosity: air and mist are moved.",
-        size=power(ranges, "loss", 0.057, 0.0, 0.6),
-        forms=Extras("windage", roles, ranges).losses(places[:1], shapes, regimes(("w",), ranges, False)),
+        size=at.power("loss", 0.057, 0.0, 0.6),
+        forms=Extras("windage", at).losses(places[:1], shapes, at.regimes(("w",))),
         exposes="points at higher speed and little load, at two oil levels",
         like=NO_LOAD,
-        acts_on="w",
+        acts_on=at.first("speed"),
     )
 
 
-def oil_viscosity(roles: Roles) -> Cause:
+def oil_viscosity(at: Context) -> Cause:
     """Another oil."""
-    bath = roles.bath
+    bath = at.roles.bath
 
     def values(theta: Theta, row: Row) -> Values:
         return {
@@ -114,11 +109,11 @@ def oil_viscosity(roles: Roles) -> Cause:
         size=Size("ln_factor", "1", "logarithm of the factor on the viscosity", 0.4, -1.6, 1.6),
         forms=(Form(shapes=(slope,), values=values),),
         exposes="a viscosity measurement of a sample; a warm-up from cold",
-        acts_on="T",
+        acts_on=at.first("oil_temp"),
     )
 
 
-def bearing_preload(places: Sequence[Place], roles: Roles, ranges: Ranges, both: bool) -> Cause:
+def bearing_preload(at: Context, places: Sequence[Place]) -> Cause:
     """Bearings that carry more."""
     shapes = (
         Shape("a", "1", "exponent of the speed", 0.8, 1.6, 1.1, 0.18),
@@ -130,17 +125,15 @@ def bearing_preload(places: Sequence[Place], roles: Roles, ranges: Ranges, both:
     return Cause(
         id="losses.bearing_preload",
         doc="A friction torque that hardly follows load: bearings preloaded more or less than assumed.",
-        size=power(ranges, "loss of all bearings", 0.07, -0.2, 0.6),
-        forms=Extras("preload", roles, ranges).losses(
-            places, shapes, regimes(("w", "tau", "T", "direction"), ranges, both)
-        ),
+        size=at.power("loss of all bearings", 0.07, -0.2, 0.6),
+        forms=Extras("preload", at).losses(places, shapes, at.regimes(("w", "tau", "T", "direction"))),
         exposes="drag torque measured by hand, temperature at the bearings",
         like=SHAFTS,
-        acts_on="w",
+        acts_on=at.first("speed"),
     )
 
 
-def seal_drag(places: Sequence[Place], roles: Roles, ranges: Ranges, both: bool) -> Cause:
+def seal_drag(at: Context, places: Sequence[Place]) -> Cause:
     """Seals that brake more."""
     shapes = (
         Shape("a", "1", "exponent of the speed", 0.6, 1.6, 1.0, 0.2),
@@ -151,15 +144,15 @@ def seal_drag(places: Sequence[Place], roles: Roles, ranges: Ranges, both: bool)
     return Cause(
         id="losses.seal_drag",
         doc="A friction torque without load dependence: lips that press more, or run dry.",
-        size=power(ranges, "loss of all seals", 0.057, -0.12, 0.45),
-        forms=Extras("seal", roles, ranges).losses(places, shapes, regimes(("w", "T", "direction"), ranges, both)),
+        size=at.power("loss of all seals", 0.057, -0.12, 0.45),
+        forms=Extras("seal", at).losses(places, shapes, at.regimes(("w", "T", "direction"))),
         exposes="drag torque measured by hand, temperature at the lips",
         like=SHAFTS,
-        acts_on="w",
+        acts_on=at.first("speed"),
     )
 
 
-def mesh(places: Sequence[Place], roles: Roles, ranges: Ranges, both: bool) -> Iterator[Cause]:
+def mesh_friction(at: Context, places: Sequence[Place]) -> Cause:
     """Teeth that rub otherwise."""
     shapes = (
         Shape("a", "1", "exponent of the speed", 0.35, 1.35, 0.85, 0.2),
@@ -167,20 +160,17 @@ def mesh(places: Sequence[Place], roles: Roles, ranges: Ranges, both: bool) -> I
         Shape("c", "1", "exponent of the load", 0.6, 2.1, 1.25, 0.35),
         TEETH,
     )
-    yield Cause(
+    return Cause(
         id="losses.mesh_friction",
         doc="A loss that grows with load: friction of the teeth, roughness, additives.",
-        size=power(ranges, "loss of all teeth", 0.07, -0.2, 0.6),
-        forms=Extras("mesh", roles, ranges).losses(places, shapes, regimes(("w", "tau", "T"), ranges, False)),
+        size=at.power("loss of all teeth", 0.07, -0.2, 0.6),
+        forms=Extras("mesh", at).losses(places, shapes, at.regimes(("w", "tau", "T"))),
         exposes="points at small and at large load, at one speed",
-        acts_on="tau",
+        acts_on=at.first("torque"),
     )
-    if both:
-        yield mesh_direction(places, roles, ranges)
-    yield film_starvation(places, roles, ranges)
 
 
-def mesh_direction(places: Sequence[Place], roles: Roles, ranges: Ranges) -> Cause:
+def mesh_direction(at: Context, places: Sequence[Place]) -> Cause:
     """Teeth that rub differently in the two directions of the power flow."""
     shapes = (
         Shape("a", "1", "exponent of the speed", 0.5, 1.4, 1.0, 0.18),
@@ -189,20 +179,20 @@ def mesh_direction(places: Sequence[Place], roles: Roles, ranges: Ranges) -> Cau
         TEETH,
     )
 
-    def sides(theta: Theta) -> Theta:
+    def sides(theta: Theta, row: Row) -> Theta:
         return {**theta, "forward": theta["driven"] - 1.0, "backward": theta["driven"]}
 
     return Cause(
         id="losses.mesh_direction",
         doc="A loss under load in one direction of the power flow only.",
-        size=power(ranges, "loss where the shaft is driven less that where it drives", 0.07, -0.45, 0.45),
-        forms=Extras("direction", roles, ranges).losses(places, shapes, as_keys=sides),
+        size=at.power("loss where the shaft is driven less that where it drives", 0.07, -0.45, 0.45),
+        forms=Extras("direction", at).losses(places, shapes, as_keys=sides),
         exposes="the halves of a test in reversed order",
-        acts_on="direction",
+        acts_on=at.first("torque"),
     )
 
 
-def film_starvation(places: Sequence[Place], roles: Roles, ranges: Ranges) -> Cause:
+def film_starvation(at: Context, places: Sequence[Place]) -> Cause:
     """Teeth whose film breaks down where it is hot or fast."""
     film = Shape("p", "1", "exponent of the film (speed times viscosity) by which it falls", 0.3, 2.3, 1.2, 0.6)
     shapes = (
@@ -211,32 +201,37 @@ def film_starvation(places: Sequence[Place], roles: Roles, ranges: Ranges) -> Ca
         TEETH,
     )
 
-    def thin(theta: Theta) -> Theta:
+    def thin(theta: Theta, row: Row) -> Theta:
         return {**theta, "a": theta["a"] - theta["p"], "b": -theta["p"]}
 
-    extras = Extras("starvation", roles, ranges)
-    wet = all(place.lubricant for place in places)
-    kinds: list[Form] = []
-    if wet:
-        kinds += extras.losses(places, (film, *shapes), weight=STARVED[0], as_keys=thin)
-        kinds += extras.limited(places, shapes, Regime("film", above=False), STARVED[1])
-    kinds += extras.limited(places, shapes, Regime("w", above=True), STARVED[2] if wet else 1.0)
+    extras = Extras("starvation", at)
+    made = [extras.loss(place, k, len(places)) for k, place in enumerate(places)]
+    fast = extras.with_parts(made, shapes, Regime("w", above=True))
+    kinds = [fast]
+    if all(place.lubricant for place in places):
+        kinds = [*extras.losses(places, (film, *shapes), weight=STARVED[0], as_keys=thin)]
+        kinds += [replace(extras.with_parts(made, shapes, Regime("film", above=False)), weight=STARVED[1])]
+        kinds += [replace(fast, weight=STARVED[2])]
     return Cause(
         id="losses.film_starvation",
         doc="A loss under load that grows where films are thin: slow and hot, or so fast that they are starved.",
-        size=power(ranges, "loss where it acts", 0.085, 0.0, 0.9),
+        size=at.power("loss where it acts", 0.085, 0.0, 0.9),
         forms=tuple(kinds),
         exposes="points at high load and low viscosity, with and without fresh oil",
-        acts_on="film",
+        acts_on=at.first("oil_temp"),
     )
 
 
-def torque_only(roles: Roles, ranges: Ranges, sensors: Iterable[Sensor]) -> Iterator[Cause]:
+def torque_only(at: Context) -> Iterator[Cause]:
     """Friction between a torque transducer and the machine."""
-    if not roles.room or not roles.ends or not any(s.kind in ("torque", "power") for s in sensors):
+    if (
+        not at.roles.room
+        or not at.roles.ends
+        or not any(s.kind in ("torque", "power") and s.role == "read" for s in at.sensors)
+    ):
         return
-    floor = f"{roles.room}.floor"
-    place = Place("couplings", (), f"{roles.ends[0]}.flange", floor, floor, "")
+    floor = f"{at.roles.room}.floor"
+    place = Place("couplings", (), f"{at.roles.ends[0]}.flange", floor, floor, "")
     shapes = (
         Shape("a", "1", "exponent of the speed", 0.8, 2.5, 1.1, 0.4),
         Shape("c", "1", "exponent of the load", 0.0, 1.3, 0.0, 0.5),
@@ -244,8 +239,8 @@ def torque_only(roles: Roles, ranges: Ranges, sensors: Iterable[Sensor]) -> Iter
     yield Cause(
         id="losses.torque_only",
         doc="A loss that the torques show and the machine does not feel as heat: couplings, bearings of the test rig.",
-        size=power(ranges, "loss", 0.07, -0.2, 0.6),
-        forms=Extras("torque_only", roles, ranges).losses([place], shapes, heats=floor),
+        size=at.power("loss", 0.07, -0.2, 0.6),
+        forms=Extras("torque_only", at).losses([place], shapes, heats=floor),
         exposes="a run with the gearbox taken out; a transducer at the gearbox's shaft",
-        acts_on="w",
+        acts_on=at.first("speed"),
     )

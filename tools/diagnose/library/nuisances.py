@@ -5,8 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from ...model.machines.spec import PartSpec
 from .cause import Nuisance
+from .extras import Extras
+from .forms import Context
 from .roles import Roles
+
+#: Friction in thin films that is the machine's own: share of the typical loss, and its exponents of speed, viscosity
+#: and load, in the middle of what starved teeth do.
+THIN_FILMS, EXPONENTS = 0.057, {"a": -0.35, "b": -1.2, "c": 1.2, "oil_share": 0.8}
 
 #: Relative standard deviations where neither card nor rig file says more, by the key of a card.
 DEFAULT_SD: Mapping[str, float] = {
@@ -97,7 +104,7 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
 
     Args:
         roles: of the machine
-        prior_sd: of the card: relative standard deviations by key ("mu") or by "PartType.parameter"
+        prior_sd: of the card: relative standard deviations by key ("mu"), by "PartType.parameter" or by "part.parameter"
         uncertainties: path -> standard uncertainty that the rig file states, in SI; what the card says counts more
     """
     found: list[Nuisance] = []
@@ -110,7 +117,7 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
             part, _, key = path.partition(".")
             if base.get(path) == 0.0:
                 continue  # no factor changes it
-            own = prior_sd.get(f"{kinds[part]}.{key}")
+            own = prior_sd.get(path, prior_sd.get(f"{kinds[part]}.{key}"))
             stated = uncertainties.get(path)
             if own is None and stated and group.key not in prior_sd and exponent > 0:
                 own = abs(stated / float(base[path]))
@@ -125,3 +132,24 @@ def _normed(nuisance: Nuisance) -> Nuisance:
     most = max(abs(e) for e in nuisance.paths.values())
     paths = {path: e / most for path, e in nuisance.paths.items()}
     return replace(nuisance, paths=paths, sd=nuisance.sd * most)
+
+
+def habit(at: Context) -> Nuisance | None:
+    """Friction of the teeth that grows as films get thin, more or less than the model's, as a healthy campaign tells.
+
+    A cause that warms the oil takes the machine to films thinner than any of its healthy days. What its teeth make of
+    them the model knows but roughly, and the difference would be taken for a second cause.
+
+    Args:
+        at: machine and data
+    """
+    places = [place for place in at.roles.places["teeth"] if place.lubricant]
+    if not places:
+        return None
+    extras = Extras("habit", at)
+    made = [extras.loss(place, k, len(places)) for k, place in enumerate(places)]
+    power = {"P_ref": THIN_FILMS * at.ranges.loss / len(places), "k": 1.0}
+    parts = tuple(PartSpec(part.name, "ExtraHabit", {**part.values, **EXPONENTS, **power}) for part, _ in made)
+    connections = tuple(net for _, nets in made for net in nets)
+    paths = {f"{part.name}.k": 1.0 for part in parts}
+    return Nuisance("thin films", paths, 0.0, 1.0, parts=parts, connections=connections)

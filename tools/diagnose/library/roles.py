@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 from ...model.core.component import Component
-from ...model.core.declare import Port, declared
+from ...model.core.declare import Parameter, Port, declared
 from ...model.errors import ScenarioError
 from ...model.machines.spec import PartSpec, Spec
 from ...model.parts.ports import Flange, HeatPort, Lubricant, ShaftReading
@@ -41,7 +42,8 @@ class Roles:
 
     Args:
         spec: the machine
-        places: role ("teeth", "bearing", "seal", "churning") -> places with such parts
+        places: role ("teeth", "bearing", "seal", "churning") -> places with such parts; where no part moves the oil,
+            the first shaft end stands for all that does
         bath: the oil that lubricates most parts, or else the grease; "" without any
         oil, viscosity: paths of its temperature and viscosity; of a body and "" where there is no lubricant
         oil_heat: port of its heat
@@ -82,7 +84,22 @@ class Roles:
     @property
     def reading(self) -> str:
         """Port that reads speed and torque of the shaft."""
-        return f"{self.shaft}.{next(iter(declared(self.spec.types[self.spec.part(self.shaft).type], ShaftReading)))}"
+        return self.reading_of(self.shaft)
+
+    def reading_of(self, part: str) -> str:
+        """Port of a part that reads speed and torque."""
+        return f"{part}.{next(iter(declared(self.nets.classes[part], ShaftReading)))}"
+
+    def value(self, path: str) -> Any:
+        """What the rig file says of a parameter, or its default."""
+        part, _, key = path.partition(".")
+        stated = self.spec.part(part).values
+        return stated[key] if key in stated else declared(self.nets.classes[part], Parameter)[key].default
+
+    def conductance(self, conductor: str) -> float:
+        """What the rig file makes of a conductor between bodies [W/K]."""
+        part = self.nets.classes[conductor](conductor, **self.spec.part(conductor).values)
+        return part.number_at(part.conductance(), part.values)
 
     @property
     def ends(self) -> tuple[str, ...]:
@@ -92,7 +109,9 @@ class Roles:
     @property
     def cooling(self) -> tuple[str, ...]:
         """Paths that scale what the machine gives to its surroundings."""
-        return tuple(path for part in (*self.surfaces, *self.foundation, *self.coolers) for path in self.scaled(part))
+        paths = self.scaled(*self.surfaces, *self.foundation, *self.coolers)
+        told = (f"{name}.emissivity" for name in self.surfaces if f"{name}.A" not in paths)
+        return (*paths, *told)
 
     def having(self, *roles: str) -> tuple[str, ...]:
         """Names of all parts with one of the roles that their classes state."""
@@ -105,7 +124,7 @@ class Roles:
 
     def at(self, port: str, *roles: str) -> str:
         """Name of the first part with one of the roles that a port meets, "" for none."""
-        met = {p.partition(".")[0] for p in self.nets.met(port)}
+        met = {p.partition(".")[0] for p in (port, *self.nets.met(port))}
         return next((name for name in self.having(*roles) if name in met), "")
 
     def room_of(self, surface: str) -> str:
@@ -147,6 +166,14 @@ class _Nets:
         """The ports of a port's net."""
         return [p for p, number in self.net.items() if number == self.net.get(port)]
 
+    def meet(self, a: str, b: str) -> bool:
+        """Whether two ports meet."""
+        return a in self.net and self.net.get(a) == self.net.get(b)
+
+    def met_by(self, part: str) -> set[int]:
+        """Numbers of the heat nets that a part meets."""
+        return self.heat_nets([part])
+
     def ports(self, part: str, kind: type[Port]) -> list[str]:
         """Connected ports of a kind."""
         return [path for key in declared(self.classes[part], kind) if (path := f"{part}.{key}") in self.net]
@@ -170,6 +197,15 @@ class _Nets:
                 return max(found, key=lambda name: sum(self.net[p] in users for p in self.ports(name, Lubricant)))
         return ""
 
+    @property
+    def tap(self) -> str:
+        """Port of the bath's lubricant, "" without a bath."""
+        return (
+            next((f"{self.bath}.{key}" for key in declared(self.classes[self.bath], Lubricant)), "")
+            if self.bath
+            else ""
+        )
+
     def brakes(self, role: str) -> tuple[Place, ...]:
         """The places of a role."""
         found: dict[tuple[int, ...], Place] = {}
@@ -177,9 +213,7 @@ class _Nets:
             shafts, heats = self.ports(part, Flange), self.ports(part, HeatPort)
             if not shafts or not heats:
                 continue
-            lubricant = (
-                next(iter(self.ports(part, Lubricant) or self.ports(self.bath, Lubricant)[:1]), "") if self.bath else ""
-            )
+            lubricant = next(iter(self.ports(part, Lubricant)), self.tap)
             place = Place(part, (part,), min(shafts, key=self.shaft_rank), heats[0], heats[-1], lubricant)
             key = tuple(self.net[port] for port in (place.shaft, place.inner, place.outer))
             if (known := found.get(key)) is not None:
@@ -245,9 +279,16 @@ def _found(nets: _Nets) -> Roles:
         raise ScenarioError(f"{nets.spec.name}: nothing stores heat. Add an OilBath or a HeatCapacity.")
     shaft = nets.shaft()
     clutch = nets.classes[shaft].role == "clutch"
+    places = {role: nets.brakes(role) for role in BRAKES}
+    if (
+        nets.bath
+        and not places["churning"]
+        and (ends := [p for e in nets.of("shaft_end") for p in nets.ports(e, Flange)])
+    ):
+        places["churning"] = (Place(nets.bath, (), ends[0], f"{warm}.heat", f"{warm}.heat", nets.tap),)
     return Roles(
         spec=nets.spec,
-        places={role: nets.brakes(role) for role in BRAKES},
+        places=places,
         bath=nets.bath,
         oil=f"{warm}.T",
         viscosity=f"{nets.bath}.nu" if nets.bath else "",

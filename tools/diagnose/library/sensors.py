@@ -1,4 +1,9 @@
-"""Instruments that do not show what is: one set of errors for every kind of probe and transducer."""
+"""Instruments that do not show what is: one set of errors for every kind of probe and transducer.
+
+An error is a size times a factor of the row: constant, in proportion to the reading, on one side of a speed or load,
+by direction, from a test on, moving steadily; or it is drawn anew with each mounting, or wanders from test to test.
+What drives the machine was truly the reading less the error, what is compared shows the true value plus the error.
+"""
 
 from __future__ import annotations
 
@@ -6,29 +11,66 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ..campaign.table import Sensor
-from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
+from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta
 from .extra_parts import step
-from .forms import GENERAL, USUAL, WIDTH
+from .forms import GENERAL, USUAL, WIDTH, Context
+from .probes import heated, lag, position, swapped
+from .readings import one_of, sign, wrong
 from .roles import Roles
 
 #: How gradually something sets in with the running order, which goes from 0 to 1.
 ORDER_STEP = 0.02
-#: Kind -> name in words, share of the typical reading (of the rise, for thermometers) that an error usually has at
-#: least, times the instrument's own tolerance, largest share; relative error of the gain, and its bound.
-KINDS: Mapping[str, tuple[str, float, float, float, float, float]] = {
-    "oil_temp": ("oil probe", 0.03, 4.0, 0.4, 0.03, 0.3),
-    "wall_temp": ("probe on a body", 0.03, 4.0, 0.4, 0.03, 0.3),
-    "ambient": ("room probe", 0.035, 5.0, 0.4, 0.03, 0.3),
-    "torque": ("torque transducer", 0.0025, 2.0, 0.05, 0.003, 0.03),
-    "speed": ("speed reading", 0.01, 2.0, 0.1, 0.04, 0.15),
-    "power": ("power meter", 0.005, 2.0, 0.05, 0.01, 0.1),
+
+
+@dataclass(frozen=True)
+class Kind:
+    """A kind of instrument.
+
+    Args:
+        words: what it is
+        unit: of its errors
+        tolerance: how many of the card's fixed tolerances an error usually is
+        share, most: share of the typical reading (of the oil's rise, for thermometers) that an error usually is at
+            least, and at most
+        gain, gain_most: the same for an error of the gain
+        calibrate: what shows its offset and gain
+    """
+
+    words: str
+    unit: str
+    tolerance: float
+    share: float
+    most: float
+    gain: float
+    gain_most: float
+    calibrate: str
+
+
+BATH = "all probes in one bath at two temperatures; readings at rest in a room of constant temperature"
+TARE = "a tare with the shafts uncoupled; a calibration with a lever arm; points at small load"
+REPEAT = "the first point repeated at the end; a check of the zero before each test"
+KINDS: Mapping[str, Kind] = {
+    "oil_temp": Kind("oil probe", "K", 4.0, 0.03, 0.4, 0.03, 0.3, BATH),
+    "wall_temp": Kind("probe on a body", "K", 4.0, 0.03, 0.4, 0.03, 0.3, BATH),
+    "ambient": Kind("room probe", "K", 5.0, 0.035, 0.4, 0.03, 0.3, BATH),
+    "torque": Kind("torque transducer", "N.m", 2.0, 0.003, 0.03, 0.003, 0.03, TARE),
+    "speed": Kind("speed reading", "rad/s", 2.0, 0.01, 0.1, 0.04, 0.15, "a stroboscope"),
+    "power": Kind("power meter", "W", 2.0, 0.005, 0.05, 0.01, 0.1, "a second power meter"),
 }
 #: Stable identifiers that are not named as the others.
 NAMES = {"sensor.ambient.offset": "sensor.ambient.bias", "sensor.torque.since": "sensor.torque.step"}
-THERMOMETERS = ("oil_temp", "wall_temp", "ambient")
 
-#: (size and shapes, row, what the sensor shows or should show) -> error of the reading over the size.
-Error = Callable[[Theta, Row, Num], Num]
+
+@dataclass(frozen=True)
+class Mode:
+    """One way to err: factor on the size by (theta, row, true value), its shapes, and what else a form says."""
+
+    name: str
+    weight: float
+    factor: Callable[[Theta, Row, Num], Num]
+    shapes: tuple[Shape, ...] = ()
+    spread: str = ""
+    regime: Mapping[str, str] | None = None
 
 
 def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
@@ -39,242 +81,172 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
         ranges: of the data
         sensors: of the campaign
     """
-    for kind in dict.fromkeys(s.kind for s in sensors if s.kind in KINDS):
-        yield from _Instruments(kind, [s for s in sensors if s.kind == kind], sensors, roles, ranges).causes()
-
-
-@dataclass(frozen=True)
-class _Mode:
-    """One way of an instrument to err: a factor on the size, its shapes, and what else a form says."""
-
-    name: str
-    weight: float
-    error: Error
-    shapes: tuple[Shape, ...] = ()
-    spread: str = ""
-    regime: Mapping[str, str] | None = None
-
-
-def wrong(sensor: Sensor, size: str, error: Error) -> Form:
-    """A form in which one instrument errs: what it shows is wrong, or what drove the machine.
-
-    Args:
-        sensor: the instrument
-        size: name of the cause's size
-        error: of its reading, over the size
-    """
-    if sensor.role == "given":
-
-        def truth(theta: Theta, row: Row) -> Values:
-            reading = row.sensors[sensor.name]
-            return {sensor.name: reading - theta[size] * error(theta, row, reading)}
-
-        return Form(truth=truth)
-
-    def shown(theta: Theta, row: Row, true: Values) -> Values:
-        return {sensor.name: true[sensor.name] + theta[size] * error(theta, row, true[sensor.name])}
-
-    return Form(shown=shown)
-
-
-def sign(sensor: Sensor, row: Row) -> Num:
-    """What the column of a magnitude does where the true value rises: +1 or -1 by direction."""
-    forward, backward = sensor.signs
-    return forward if forward == backward else forward * row.direction
+    at = Context(roles, ranges, sensors)
+    for name in dict.fromkeys(s.kind for s in sensors if s.kind in KINDS):
+        own = [s for s in sensors if s.kind == name]
+        yield from _Instruments(name, own, at).causes()
+        if name == "oil_temp":
+            yield from position(at, own)
+        if name == "ambient":
+            yield from heated(at, own)
+        yield from swapped(at, own)
+        yield from lag(at, own)
 
 
 class _Instruments:
     """All errors of one kind of instrument."""
 
-    def __init__(
-        self, kind: str, own: Sequence[Sensor], sensors: Sequence[Sensor], roles: Roles, ranges: Ranges
-    ) -> None:
-        self.kind, self.own, self.all, self.roles, self.ranges = kind, own, sensors, roles, ranges
-        self.words, self.share, self.tolerances, self.most, self.gain, self.gain_most = KINDS[kind]
-        self.both = any(s.signs[0] != s.signs[1] for s in sensors) or ranges.varies("direction")
-        self.unit = {"torque": "N.m", "speed": "rad/s", "power": "W"}.get(kind, "K")
+    def __init__(self, name: str, own: Sequence[Sensor], at: Context) -> None:
+        self.name, self.own, self.at, self.kind = name, own, at, KINDS[name]
+        typical = {s.name: at.ranges.mid.get(s.name, 0.0) for s in own}
+        most = max(typical.values())
+        #: Errors of several transducers of a kind are in proportion to what they read.
+        self.scale = {s.name: 1.0 if self.kind.unit == "K" or not most else typical[s.name] / most for s in own}
+        self.typical = at.ranges.rise if self.kind.unit == "K" else most
 
-    def size(self, name: str, doc: str, share: float = 1.0, signed: bool = True) -> Size:
-        """An error in the unit of the reading."""
-        typical = self.ranges.rise if self.unit == "K" else max(self.ranges.mid.get(s.name, 0.0) for s in self.own)
-        offset = max(s.offset_sd for s in self.own)
-        typical = typical or offset / self.share
-        sd = share * max(self.tolerances * offset, self.share * typical)
-        high = max(self.most * typical, 8 * sd)
-        return Size(name, self.unit, doc, sd, -high if signed else 0.0, high)
+    def size(self, doc: str, share: float = 1.0, signed: bool = True) -> Size:
+        """An error in the unit of the reading.
 
-    def forms(self, size: str, modes: Sequence[_Mode]) -> tuple[Form, ...]:
-        """Each mode for each instrument of the kind; several share the weight."""
+        Args:
+            doc: in words
+            share: of what it usually is
+            signed: whether it may be negative; no standard deviation is
+        """
+        offset, kind = max(s.offset_sd / max(self.scale[s.name], 0.1) for s in self.own), self.kind
+        sd = share * max(kind.tolerance * offset, kind.share * self.typical, 1e-9)
+        high = max(kind.most * self.typical, 8 * sd)
+        larger = "" if len(set(self.scale.values())) == 1 else ", of the one that reads most, others in proportion"
+        return Size("error", kind.unit, doc + larger, sd, -high if signed else 0.0, high)
+
+    def forms(self, modes: Sequence[Mode], size: str = "error") -> tuple[Form, ...]:
+        """Each mode of each instrument of the kind; instruments share the weight."""
         found = []
         for sensor in self.own:
             for mode in modes:
-                name = ", ".join(part for part in (sensor.name if len(self.own) > 1 else "", mode.name) if part)
-
-                def error(theta: Theta, row: Row, value: Num, s: Sensor = sensor, m: _Mode = mode) -> Num:
-                    return sign(s, row) * m.error(theta, row, value)
-
-                form = wrong(sensor, size, error)
-                weight = mode.weight / len(self.own)
-                regime = mode.regime or {}
-                found.append(
-                    replace(form, name=name, weight=weight, shapes=mode.shapes, spread=mode.spread, regime=regime)
-                )
+                form = wrong(sensor, size, self._error(sensor, mode, size))
+                name = ", ".join(filter(None, (sensor.name if len(self.own) > 1 else "", mode.name)))
+                weight, regime = mode.weight / len(self.own), mode.regime or {}
+                form = replace(form, name=name, weight=weight, shapes=mode.shapes, spread=mode.spread, regime=regime)
+                found.append(form)
         return tuple(found)
 
-    def one_side(self) -> list[_Mode]:
-        """Errors above or below a speed or load that an instrument shows."""
-        modes = []
-        for quantity, word in (("speed", "speed"), ("torque", "load")):
-            other = next((s for s in self.all if s.kind == quantity and s.role == "given"), None)
-            if other is None or not self.ranges.varies(other.name):
-                continue
-            low, high = self.ranges.low[other.name], self.ranges.high[other.name]
-            threshold = Shape("threshold", "rad/s" if word == "speed" else "N.m", f"threshold of the {word}", low, high)
-            for side in (1.0, -1.0):
+    def _error(self, sensor: Sensor, mode: Mode, size: str) -> Callable[[Theta, Row, Num], Num]:
+        if size == "gain":
+            return mode.factor
+        scale = self.scale[sensor.name]
+        return lambda theta, row, value: scale * sign(sensor, row) * mode.factor(theta, row, value)
 
-                def error(theta: Theta, row: Row, value: Num, o: Sensor = other, s: float = side) -> Num:
-                    width = USUAL * (self.ranges.high[o.name] - self.ranges.low[o.name]) * theta["width"]
-                    return step(s * (row.sensors[o.name] - theta["threshold"]) / width)
-
-                name = "above" if side > 0 else "below"
-                told = {"quantity": f"{word} {name}", "shape": "threshold"}
-                modes.append(_Mode(f"{name} a {word}", 1.0, error, (threshold, WIDTH), regime=told))
-        share = (1 - GENERAL) / max(len(modes), 1)
-        return [replace(mode, weight=share) for mode in modes]
-
-    def causes(self) -> Iterator[Cause]:
-        """Offset, gain, and errors that change with the running order, the direction and the mounting."""
-        sides = self.one_side()
-        general = _Mode("", GENERAL if sides else 1.0, lambda theta, row, value: 1.0)
-        zero = f"the {self.words} reads too high or too low"
-        yield self._cause(
-            "offset", f"Offset: {zero}.", "reading less truth", [general, *sides], exposes=CALIBRATE[self.unit]
-        )
-        yield self._gain()
-        yield from self._over_time()
-        if self.both:
-            yield self._by_direction()
-
-    def _cause(
+    def cause(
         self,
         key: str,
         doc: str,
-        size: str,
-        modes: Sequence[_Mode],
-        *,
-        share: float = 1.0,
-        signed: bool = True,
-        exposes: str = "",
+        size: Size,
+        modes: Sequence[Mode],
+        exposes: str,
         acts_on: str = "",
+        common: float = 1.0,
     ) -> Cause:
-        known = f"sensor.{self.kind}.{key}"
-        return Cause(
-            id=NAMES.get(known, known),
-            doc=doc,
-            size=self.size("error", size, share, signed),
-            forms=self.forms("error", modes),
-            exposes=exposes,
-            acts_on=acts_on,
-        )
+        """A cause of this kind.
 
-    def _gain(self) -> Cause:
+        Args:
+            key: end of its identifier
+            doc: in words
+            size: how much
+            modes: its forms
+            exposes: the experiment that shows it
+            acts_on: see `Cause`
+            common: see `Cause`
+        """
+        known = f"sensor.{self.name}.{key}"
+        forms = self.forms(modes, size.name)
+        return Cause(NAMES.get(known, known), doc, size, forms, exposes, acts_on=acts_on, common=common)
+
+    def causes(self) -> Iterator[Cause]:
+        """All of them."""
+        words, known = self.kind.words, self.at.ranges.known
+        sides = one_side(self.at)
+        general = Mode("", GENERAL if sides else 1.0, _one)
+        doc = f"Offset: the {words} reads too high or too low."
+        yield self.cause("offset", doc, self.size("reading less truth"), [general, *sides], self.kind.calibrate)
+        yield self.gain()
+        if self.at.both_ways:
+            doc = f"The {words} errs with the direction of the power flow."
+            yield self.cause("by_direction", doc, self.size("reading less truth"), DIRECTIONS, HALVES, common=0.5)
+        if "order" in known:
+            yield from self.over_time()
+        if "mounting" in known:
+            doc, size = f"The {words} errs anew with each mounting or filling.", "standard deviation of the errors"
+            mode = Mode("", 1.0, _one, spread="mounting")
+            yield self.cause("mounting", doc, self.size(size, signed=False), [mode], MOUNTINGS, "order", 0.5)
+
+    def gain(self) -> Cause:
         """In proportion to the reading; a thermometer's from a fixed point."""
-        if self.unit == "K":
-            shapes: tuple[Shape, ...] = (Shape("fixed", "K", "temperature at which it reads right", 273.15, 303.15),)
-            mode = _Mode("", 1.0, lambda theta, row, value: value - theta["fixed"], shapes)
-            doc = f"Gain of the {self.words}."
-        else:
-            mode = _Mode("", 1.0, lambda theta, row, value: value)
-            doc = f"Gain of the {self.words}: it is wrong by a share of what it reads."
-        size = Size("gain", "1", "relative error of the reading", self.gain, -self.gain_most, self.gain_most)
-        forms = tuple(
-            replace(
-                wrong(s, "gain", mode.error),
-                name=s.name if len(self.own) > 1 else "",
-                weight=1 / len(self.own),
-                shapes=mode.shapes,
-            )
-            for s in self.own
-        )
-        return Cause(f"sensor.{self.kind}.gain", doc, size, forms, CALIBRATE[self.unit], acts_on=self.own[0].name)
+        words, most = self.kind.words, self.kind.gain_most
+        mode = Mode("", 1.0, lambda theta, row, value: value)
+        if self.kind.unit == "K":
+            fixed = Shape("fixed", "K", "temperature at which it reads right", 273.15, 303.15)
+            mode = Mode("", 1.0, lambda theta, row, value: value - theta["fixed"], (fixed,))
+        size = Size("gain", "1", "relative error of the reading", self.kind.gain, -most, most)
+        return self.cause("gain", f"Gain of the {words}.", size, [mode], self.kind.calibrate, self.own[0].name)
 
-    def _over_time(self) -> Iterator[Cause]:
-        """What changes from test to test."""
-        power = Shape("power", "1", "exponent of the running order", 0.5, 2.0, 1.0, 0.3)
-        zero = Shape("zero", "1", "where the reading is right: 0 before the change, 1 after", 0.0, 1.0)
-        moves = _Mode(
-            "", 1.0, lambda theta, row, value: (row.order + 1e-9) ** theta["power"] - theta["zero"], (power, zero)
+    def over_time(self) -> Iterator[Cause]:
+        """What changes with the running order."""
+        words = self.kind.words
+        size = self.size("error at the last test less that at the first", 1.3)
+        yield self.cause(
+            "drift", f"Zero of the {words} that moves steadily over the campaign.", size, [DRIFT], REPEAT, "order", 0.5
         )
-        yield self._cause(
-            "drift",
-            f"Zero of the {self.words} that moves steadily over the campaign.",
-            "zero at the last test less zero at the first",
-            [moves],
-            share=1.3,
-            exposes=REPEAT,
-            acts_on="order",
-        )
+        size = self.size("error after the change less that before", 1.3)
+        modes = [SINCE, *(DIRECTED if self.at.both_ways else ())]
+        total = sum(m.weight for m in modes)
+        modes = [replace(m, weight=m.weight / total) for m in modes]
+        yield self.cause("since", f"The {words} is wrong from one test on.", size, modes, REPEAT, "order", 0.5)
+        size = self.size("standard deviation of a step", 0.5, signed=False)
+        mode = Mode("", 1.0, _one, spread="walk")
+        doc = f"The error of the {words} wanders from test to test."
+        yield self.cause("random_walk", doc, size, [mode], REPEAT, "order", 0.3)
+        if any(s.role == "read" for s in self.own):
+            yield self.frozen()
+
+    def frozen(self) -> Cause:
+        """A reading that no longer moves."""
+        ranges, read = self.at.ranges, [s for s in self.own if s.role == "read"]
         place = Shape("threshold", "1", "where in the running order: 0 first test, 1 last", 0.0, 1.0)
-        told = {"quantity": "order above", "shape": "threshold"}
-        jump = _Mode(
-            "",
-            0.7 if self.both else 1.0,
-            lambda theta, row, value: since(theta, row) - theta["zero"],
-            (place, zero),
-            regime=told,
-        )
-        modes = [jump]
-        for side, name in ((1, "driving"), (-1, "driven")) if self.both else ():
+        forms = []
+        for s in read:
+            low, high = (bound.get(s.name, 0.0) for bound in (ranges.low, ranges.high))
+            held = Shape("held", self.kind.unit, "what it keeps showing", min(low, high - 1e-6), high)
+            form = wrong(s, "share", lambda theta, row, value: since(theta, row) * (theta["held"] - value))
+            told = {"quantity": "order above", "shape": "threshold"}
+            forms.append(replace(form, name=one_of(s, read), weight=1 / len(read), shapes=(place, held), regime=told))
+        size = Size("share", "1", "1 where it does not follow at all", 0.6, 0.0, 1.0)
+        doc = f"The {self.kind.words} hangs: from one test on it shows the same whatever happens."
+        return Cause(f"sensor.{self.name}.frozen", doc, size, tuple(forms), REPEAT, acts_on="order", common=0.2)
 
-            def error(theta: Theta, row: Row, value: Num, s: int = side) -> Num:
-                return (since(theta, row) - theta["zero"]) * (1 + s * row.direction) / 2
 
-            modes.append(_Mode(f"{name} only", 0.15, error, (place, zero), regime=told))
-        yield self._cause(
-            "since",
-            f"The {self.words} is wrong from one test on.",
-            "error after the change less that before",
-            modes,
-            share=1.3,
-            exposes=REPEAT,
-            acts_on="order",
-        )
-        same = _Mode("", 1.0, lambda theta, row, value: 1.0)
-        yield self._cause(
-            "mounting",
-            f"The {self.words} errs anew with each mounting or filling.",
-            "standard deviation of the errors",
-            [replace(same, spread="mounting")],
-            signed=False,
-            exposes="the same point in two mountings",
-            acts_on="order",
-        )
-        yield self._cause(
-            "random_walk",
-            f"The error of the {self.words} wanders from test to test.",
-            "standard deviation of a step",
-            [replace(same, spread="walk")],
-            share=0.5,
-            signed=False,
-            exposes=REPEAT,
-            acts_on="order",
-        )
+def one_side(at: Context) -> list[Mode]:
+    """Errors above or below a speed or load that an instrument shows.
 
-    def _by_direction(self) -> Cause:
-        """An error that changes with the direction of the power flow."""
-        modes = [
-            _Mode("opposite signs", 0.4, lambda theta, row, value: row.direction),
-            _Mode("driving only", 0.3, lambda theta, row, value: (1 + row.direction) / 2),
-            _Mode("driven only", 0.3, lambda theta, row, value: (1 - row.direction) / 2),
-        ]
-        return self._cause(
-            "by_direction",
-            f"The {self.words} errs with the direction of the power flow.",
-            "reading less truth",
-            modes,
-            exposes="the halves of a test in reversed order",
-            acts_on="direction",
-        )
+    Args:
+        at: what they are made for
+    """
+    modes = []
+    for quantity, word in (("speed", "speed"), ("torque", "load")):
+        other = at.first(quantity)
+        if not other or not at.ranges.varies(other):
+            continue
+        low, high = at.ranges.low[other], at.ranges.high[other]
+        threshold = Shape("threshold", KINDS[quantity].unit, f"threshold of the {word}", low, high)
+        for side, name in ((1.0, "above"), (-1.0, "below")):
+
+            def factor(
+                theta: Theta, row: Row, value: Num, o: str = other, s: float = side, width: float = USUAL * (high - low)
+            ) -> Num:
+                return step(s * (row.sensors[o] - theta["threshold"]) / (width * theta["width"]))
+
+            told = {"quantity": f"{word} {name}", "shape": "threshold"}
+            modes.append(Mode(f"{name} a {word}", 1.0, factor, (threshold, WIDTH), regime=told))
+    return [replace(mode, weight=(1 - GENERAL) / len(modes)) for mode in modes]
 
 
 def since(theta: Theta, row: Row) -> Num:
@@ -282,10 +254,41 @@ def since(theta: Theta, row: Row) -> Num:
     return step((row.order - theta["threshold"]) / ORDER_STEP)
 
 
-REPEAT = "the first point repeated at the end; a check of the zero before each test"
-CALIBRATE = {
-    "K": "all probes in one bath at two temperatures; readings at rest in a room of constant temperature",
-    "N.m": "a tare with the shafts uncoupled; a calibration with a lever arm; points at small load",
-    "rad/s": "a stroboscope",
-    "W": "a second power meter",
-}
+def _one(theta: Theta, row: Row, value: Num) -> Num:
+    """The same in every row."""
+    return 1.0
+
+
+def _changed(theta: Theta, row: Row, value: Num) -> Num:
+    """By a change at one test, of which part lies before it."""
+    return since(theta, row) - theta["zero"]
+
+
+ZERO = Shape("zero", "1", "where the reading is right: 0 before the change, 1 after", 0.0, 1.0)
+PLACE = Shape("threshold", "1", "where in the running order: 0 first test, 1 last", 0.0, 1.0)
+FROM_THEN = {"quantity": "order above", "shape": "threshold"}
+SINCE = Mode("", 0.7, _changed, (PLACE, ZERO), regime=FROM_THEN)
+#: The same in one direction of the power flow only.
+DIRECTED = tuple(
+    Mode(
+        name,
+        0.15,
+        lambda theta, row, value, side=side: _changed(theta, row, value) * (1 + side * row.direction) / 2,
+        (PLACE, ZERO),
+        regime=FROM_THEN,
+    )
+    for side, name in ((1, "driving only"), (-1, "driven only"))
+)
+DIRECTIONS = (
+    Mode("opposite signs", 0.4, lambda theta, row, value: row.direction),
+    Mode("driving only", 0.3, lambda theta, row, value: (1 + row.direction) / 2),
+    Mode("driven only", 0.3, lambda theta, row, value: (1 - row.direction) / 2),
+)
+DRIFT = Mode(
+    "",
+    1.0,
+    lambda theta, row, value: (row.order + 1e-9) ** theta["power"] - theta["zero"],
+    (Shape("power", "1", "exponent of the running order", 0.5, 2.0, 1.0, 0.3), ZERO),
+)
+HALVES = "the halves of a test in reversed order"
+MOUNTINGS = "the same point in two mountings or with two fillings"

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...model.run.algebra import algebra
+from .many import Many
 from .plant import Plant
 
 #: The method: L-stable, stiffly accurate.
@@ -54,12 +55,18 @@ class Turned:
         knobs: places of the K knobs among the plant's
         pace: of each row (N, H, d)
         start: of the start temperatures by the given readings of the first row (N, given)
+        apart: directions (c,) that are taken at parameters of their own
+        apart_p: those parameters (N, H, c, np)
+        apart_way: by what all knobs change along them (N, H, c, knobs)
     """
 
     p: np.ndarray
     knobs: np.ndarray
     pace: np.ndarray
     start: np.ndarray
+    apart: np.ndarray
+    apart_p: np.ndarray
+    apart_way: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -221,8 +228,10 @@ class _March:
         """Slopes of the unknowns of a solved stage (N, n_w, width)."""
         assert self.turned is not None
         row, lengths = self.phases.row[f], h * GAMMA * self.pace[:, self.phases.row[f]]
-        (by,) = self.plant.slopes(w, self._inputs(f, share), self.p[:, row])
+        u = self._inputs(f, share)
+        (by,) = self.plant.slopes(w, u, self.p[:, row])
         own = self._directed(by, row, f, share)
+        self._apart(self.plant.push, own, w, u, row)
         b = np.empty((self.n, self.n_w, self.width))
         d = self.width - self.n_local
         own[:, : self.nx] *= lengths[:, None, None]
@@ -240,15 +249,25 @@ class _March:
         weights = by[:, :, k:, None] * local[:, None]
         return np.concatenate([own, weights.reshape(self.n, by.shape[1], self.n_local)], axis=2)
 
-    def _read(
-        self, w: np.ndarray, dw: np.ndarray | None, f: int, share: float
-    ) -> tuple[np.ndarray, np.ndarray | None]:
+    def _apart(self, push: Many, own: np.ndarray, w: np.ndarray, u: np.ndarray, row: int) -> None:
+        """Add slopes (N, rows, width) along the directions that are taken at parameters of their own."""
+        assert self.turned is not None
+        c = len(self.turned.apart)
+        if not c:
+            return
+        p, way = (a[:, row].reshape(self.n * c, a.shape[3]) for a in (self.turned.apart_p, self.turned.apart_way))
+        (found,) = push(np.repeat(w, c, axis=0), np.repeat(u, c, axis=0), p, way)
+        own[:, :, self.turned.apart] += found.reshape(self.n, c, own.shape[1]).swapaxes(1, 2)
+
+    def _read(self, w: np.ndarray, dw: np.ndarray | None, f: int, share: float) -> tuple[np.ndarray, np.ndarray | None]:
         row, u = self.phases.row[f], self._inputs(f, share)
         p = self.p[:, row]
         if dw is None:
             return self.plant.readings(w, u, p)[0], None
         y, by_w, by = self.plant.reading_slopes(w, u, p)
-        return y, by_w @ dw + self._directed(by, row, f, share)
+        own = self._directed(by, row, f, share)
+        self._apart(self.plant.reading_push, own, w, u, row)
+        return y, by_w @ dw + own
 
     def _joined(self, y: list[np.ndarray], dy: list[np.ndarray | None]) -> Marched:
         values = np.stack(y, axis=1)

@@ -121,7 +121,9 @@ def smooth_features(campaigns: Sequence[Observed]) -> list[np.ndarray]:
         quiet = np.array(room)[kept]
         own = [np.ones(values.shape[1]), *z]
         moving = z[~quiet]
-        own += [a * b for i, a in enumerate(moving) for b in moving[i:] if not np.array_equal(a, b) or len(np.unique(a)) > 2]
+        own += [
+            a * b for i, a in enumerate(moving) for b in moving[i:] if not np.array_equal(a, b) or len(np.unique(a)) > 2
+        ]
         found.append(np.array(own).T)
     return found
 

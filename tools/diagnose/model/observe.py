@@ -160,9 +160,7 @@ class Observed:
         if room is not None and not c.steady:
             u0[:, 0, self.inputs[room]] = begun
         start = np.where(np.isfinite(c.T_start), c.T_start, begun + c.start_by_room)
-        phases = Phases(
-            phases.length, u0, u1, phases.row, phases.steps, phases.read, phases.local0, phases.local1
-        )
+        phases = Phases(phases.length, u0, u1, phases.row, phases.steps, phases.read, phases.local0, phases.local1)
         return phases, start
 
     def at(self, z: np.ndarray, parts: Sequence[tuple[Formula, np.ndarray]]) -> Seen:
@@ -214,6 +212,8 @@ class _Look:
         self.truth = dict(o.sensors)
         self.truth_slopes = {s.name: np.zeros((self.n, self.d)) for s in o.given}
         self.pace, self.pace_slopes = np.ones(self.n), np.zeros((self.n, self.d))
+        #: Directions of candidates that change parameters: number, values and slopes by path.
+        self.apart: list[tuple[int, dict[str, np.ndarray], dict[str, np.ndarray]]] = []
         self._nuisances()
         begin = len(z)
         for formula, t in parts:
@@ -223,17 +223,17 @@ class _Look:
             self._try(formula, t, k)
 
     def _try(self, formula: Formula, t: np.ndarray, k: int) -> None:
-        """The direction of a candidate's size."""
+        """The direction of a candidate's size, at its own shapes."""
         base = {name: self._base(name) for name in formula.bases}
-        _, by_t, _ = formula.physics(_none(t), base, self.o.sensors, self.o.features)
-        names = (*formula.paths, *formula.given)
-        for name, by in zip(names, by_t[:, :, 0], strict=False):
-            if name in self.truth_slopes and name in formula.given:
-                self.truth_slopes[name][:, k] += by
-            else:
-                self.slopes.setdefault(name, np.zeros((self.n, self.d)))[:, k] += by
+        value, by_t, _ = formula.physics(_none(t), base, self.o.sensors, self.o.features)
+        slopes, n_paths = by_t[:, :, 0], len(formula.paths)
+        if n_paths:
+            values = dict(zip(formula.paths, value[:n_paths], strict=True))
+            self.apart.append((k, values, dict(zip(formula.paths, slopes[:n_paths], strict=True))))
+        for i, name in enumerate(formula.given, start=n_paths):
+            self.truth_slopes[name][:, k] += slopes[i]
         if formula.paced:
-            self.pace_slopes[:, k] += by_t[len(names), :, 0]
+            self.pace_slopes[:, k] += slopes[n_paths + len(formula.given)]
 
     def _base(self, path: str) -> np.ndarray:
         return self.values[path] if path in self.values else self.o.p[:, self.o.plant.place[path]]
@@ -279,12 +279,23 @@ class _Look:
             touched = [k for k in plant.knobs if k in self.slopes]
             by = np.stack([self.slopes[k] for k in touched], axis=1) if touched else np.zeros((self.n, 0, self.d))
             places = np.array([plant.knobs.index(k) for k in touched], dtype=int)
-            ways = Turned(by[rows], places, self.pace_slopes[rows], o.starts)
+            ways = Turned(by[rows], places, self.pace_slopes[rows], o.starts, *self._apart(p))
         found = march(plant, phases, x0, p[rows], self.pace[rows], ways)
         y = found.y[o.campaign.test, o.half]  # n, shown
         if found.by is None or found.local is None:
             return y, np.empty(0), np.empty(0), truth
         return y, found.by[o.campaign.test, o.half], found.local[o.campaign.test, o.half], truth
+
+    def _apart(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Directions of candidates (c,), their parameters (tests, H, c, np) and ways (tests, H, c, knobs)."""
+        plant, c = self.o.plant, len(self.apart)
+        own = np.repeat(p[:, None], c, axis=1)
+        ways = np.zeros((self.n, c, len(plant.knobs)))
+        for i, (_, values, slopes) in enumerate(self.apart):
+            for path, value in values.items():
+                own[:, i, plant.place[path]] = value
+                ways[:, i, plant.knobs.index(path)] = slopes[path]
+        return np.array([k for k, _, _ in self.apart], dtype=int), own[self.o.rows], ways[self.o.rows]
 
     def outputs(self) -> np.ndarray:
         """All that the plant shows (n, shown)."""

@@ -11,12 +11,12 @@ import numpy as np
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
 from ...model.machines.spec import Spec, assemble
-from ..library.cause import Form
+from ..library.cause import Form, Nuisance
 from ..library.extra_parts import EXTRA_PARTS
 from .many import Many, Slow
 
 
-def superset(spec: Spec, forms: Iterable[Form]) -> Spec:
+def superset(spec: Spec, forms: Iterable[Form | Nuisance]) -> Spec:
     """The rig with the parts of all forms, neutral."""
     known = {part.name for part in spec.parts}
     for form in forms:
@@ -66,6 +66,9 @@ class Plant:
         self.u = flat.starts("input")
         self.scale = np.array([q.nominal for q in (*flat.states, *flat.algebraic)])
         w, both = ca.vertcat(flat.x, flat.z), ca.vertcat(flat.ode, flat.residual)
+        way, along = ca.SX.sym("way", len(knobs)), ca.SX(len(flat.parameters), 1)
+        for i, knob in enumerate(knobs):
+            along[self.place[knob]] = way[i]
         by = ca.vertcat(*(flat.p[self.place[k]] for k in knobs), *(flat.u[self.u_place[g]] for g in given))
         groups = {"state": flat.x, "input": flat.u, "output": flat.y}
         found = [flat.locate(path) for path in shown]
@@ -76,14 +79,19 @@ class Plant:
         self.slopes = many(arguments, [ca.jacobian(both, by)])
         self.readings = many(arguments, [y])
         self.reading_slopes = many(arguments, [y, ca.jacobian(y, w), ca.jacobian(y, by)])
+        #: Slopes of rates and of readings along one direction of the knobs each.
+        self.push = many([*arguments, way], [ca.jtimes(both, flat.p, along)])
+        self.reading_push = many([*arguments, way], [ca.jtimes(y, flat.p, along)])
 
     @staticmethod
-    def of(spec: Spec, forms: Iterable[Form], knobs: Sequence[str], given: Sequence[str], shown: Sequence[str]) -> Plant:
+    def of(
+        spec: Spec, forms: Iterable[Form | Nuisance], knobs: Sequence[str], given: Sequence[str], shown: Sequence[str]
+    ) -> Plant:
         """The superset of a rig and some forms.
 
         Args:
             spec: the rig, driven as the campaign drives it
-            forms: what may act in it
+            forms: what may act in it, and nuisances that need parts
             knobs, given, shown: see the class
 
         Raises:

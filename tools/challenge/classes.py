@@ -1,0 +1,24 @@
+"""Causes that no data of this kind can separate: they count as one answer."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+#: The first name of a class stands for it.
+CLASSES: tuple[tuple[str, ...], ...] = (
+    ("losses.bearing_preload", "losses.seal_drag"),
+    ("losses.churning", "losses.windage", "losses.oil_level"),
+    ("cooling.humidity", "procedure.day_scatter"),
+    ("sensor.torque.step", "sensor.torque.since"),
+)
+_FIRST = {name: names[0] for names in CLASSES for name in names}
+
+
+def merged(cause: str) -> str:
+    """The name that a cause counts as."""
+    return _FIRST.get(cause, cause)
+
+
+def merged_all(causes: Iterable[str]) -> frozenset[str]:
+    """The names that causes count as."""
+    return frozenset(merged(c) for c in causes)

@@ -1,0 +1,264 @@
+"""How loud a hidden fault is, and how far from what could be taken for it: for any simulator of rigs.
+
+The signature of a fault is what it changes in the readings without noise. Its signal-to-noise is the norm of the
+whitened signature, sqrt(s' S^-1 s) with S = R + J Sigma J'. R holds the repeatabilities squared; each column of J is
+what a nuisance does to the readings, by differences; Sigma is its variance: the fixed tolerance of every channel; the
+rig's parameters; the cooling of every day; the true speed, torque and room of every half, practically free, since only
+their readings tell them; with a reference campaign also a smooth remainder over speed, load and room in both campaigns.
+A reference adds its readings, in which the signature is zero; parameters and tolerances are shared.
+
+A rival is a fault of another class in any form. Its distance is what the best non-negative mixture of drawn forms and
+amounts of one cause leaves of the whitened signature: shapes, heat locations and sizes are free. Below 2.5 to 3 the
+right answer names both.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+import numpy as np
+from scipy.linalg import block_diag, solve_triangular
+from scipy.optimize import nnls
+
+from .classes import merged
+from .plan import Plan
+
+
+class Fault(Protocol):
+    """What can be hidden: a cause in a drawn form."""
+
+    @property
+    def cause(self) -> str:
+        """Its stable name."""
+
+    @property
+    def high(self) -> float:
+        """Largest sensible amount."""
+
+    @property
+    def signs(self) -> tuple[int, ...]:
+        """Signs that the amount may have."""
+
+    @property
+    def stages(self) -> Mapping[str, Callable[..., None]]:
+        """What it does where; "read" (readings, plan, amounts) misreads."""
+
+
+#: A fault, the columns in which it acts, and how much of it in each of them.
+Acting = tuple[Any, slice, np.ndarray]
+
+#: Readings without noise (channels, 2, columns) of tests with factors of the rig and acting faults.
+Run = Callable[[Plan, Mapping[str, Any], Sequence[Acting]], np.ndarray]
+
+#: Practically free: true speed [rpm], torque [N.m] and room [K] of a half; steps of them.
+FREE = {"n": (300.0, 2.0), "load": (3000.0, 20.0), "room": (100.0, 1.0)}
+
+#: Remainder of a rig that is not the model: sun torque [N.m], oil and wall [K].
+REMAINDER_SD = {"T_sun_Nm": 0.25, "T_oil_C": 1.0, "T_oil2_C": 1.0, "T_wall_C": 1.0}
+
+#: Change of an oil temperature at which a rig would be stopped [K].
+OBVIOUS = 35.0
+
+#: Tests in one run of several variants.
+BATCH = 4000
+
+_STEP = 0.05
+
+
+@dataclass(frozen=True)
+class Setting:
+    """A campaign for the yardstick.
+
+    Args:
+        run: the simulator
+        channels: of its readings
+        plan, base: the campaign's tests and factors of the rig
+        reference: the healthy campaign's tests, if there is one
+        repeat_sd, offset_sd: of every channel, as they are
+        prior: standard deviations of factors of the rig; several names of one parameter joined by a blank
+        days, day_sd: factors of cooling that a day changes, and by how much
+    """
+
+    run: Run
+    channels: tuple[str, ...]
+    plan: Plan
+    base: Mapping[str, Any]
+    reference: Plan | None
+    repeat_sd: Mapping[str, float]
+    offset_sd: Mapping[str, float]
+    prior: Mapping[str, float]
+    days: tuple[str, ...]
+    day_sd: float
+
+
+def tiled(base: Mapping[str, Any], copies: int) -> dict[str, Any]:
+    """Factors for several copies of the tests."""
+    return {name: np.tile(f, copies) if np.ndim(f) else f for name, f in base.items()}
+
+
+class Yardstick:
+    """Signal-to-noise of faults in one campaign."""
+
+    def __init__(self, setting: Setting) -> None:
+        self.setting = setting
+        plans = [p for p in (setting.plan, setting.reference) if p is not None]
+        blocks = [self._block(plan) for plan in plans]
+        self.quiet = blocks[0][0]
+        shared, local = np.vstack([b[1] for b in blocks]), block_diag(*(b[2] for b in blocks))
+        S = shared @ shared.T + local @ local.T
+        sd = [np.repeat([setting.repeat_sd[c] for c in setting.channels], 2 * p.columns) for p in plans]
+        S[np.diag_indices_from(S)] += np.concatenate(sd) ** 2
+        self._root = np.linalg.cholesky(S)
+
+    def _block(self, plan: Plan) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Readings (channels, 2, tests); shared and local sensitivities (readings, columns), scaled by their sd."""
+        s = self.setting
+        names = [*s.prior, " ".join(s.days)]
+        moves = [(name, rows) for name in ("n", "load") for rows in ((0,), (1,))] + [("room", (0, 1)), ("room", (2,))]
+        m, copies = plan.columns, 1 + len(names) + len(moves)
+        big, base = plan.tiled(copies), tiled(s.base, copies)
+        here = [slice(i * m, (i + 1) * m) for i in range(copies)]
+        for part, joined in zip(here[1:], names, strict=False):
+            for name in joined.split():
+                base[name] = base.get(name, 1.0) * np.ones(copies * m)
+                base[name][part] *= 1.0 + _STEP
+        for part, (name, rows) in zip(here[1 + len(names) :], moves, strict=True):
+            for row in rows:
+                getattr(big, name)[row, part] += FREE[name][1]
+        y = s.run(big, base, ())
+        y = y.reshape(*y.shape[:2], copies, m)
+        change = np.moveaxis(y[:, :, 1:] - y[:, :, :1], 2, 0)
+        shared = [change[i].ravel() / _STEP * sd for i, sd in enumerate(s.prior.values())]
+        for i, c in enumerate(s.channels):
+            zero = np.zeros_like(y[:, :, 0])
+            zero[i] = s.offset_sd[c]
+            shared.append(zero.ravel())
+        shared += _remainder(plan, s.channels) if s.reference is not None else []
+        local = [change[len(s.prior)] / _STEP * s.day_sd]
+        local += [c / FREE[name][1] * FREE[name][0] for c, (name, _) in zip(change[len(names) :], moves, strict=True)]
+        per_test = [(e[..., None] * np.eye(m)).reshape(-1, m) for e in local]
+        return y[:, :, 0], np.array(shared).T, np.hstack(per_test)
+
+    def signatures(self, faults: Sequence[Any], amounts: np.ndarray) -> np.ndarray:
+        """What each fault changes with its amount (faults, channels, 2, tests); not finite where the rig runs away."""
+        s, m, size = self.setting, self.setting.plan.columns, max(BATCH // self.setting.plan.columns, 1)
+        found = np.empty((len(faults), *self.quiet.shape))
+        physical = [i for i, fault in enumerate(faults) if set(fault.stages) != {"read"}]
+        for i in set(range(len(faults))) - set(physical):  # what only misreads needs no other run
+            shown = self.quiet.copy()
+            faults[i].stages["read"](shown, s.plan, np.full(m, amounts[i]))
+            found[i] = shown - self.quiet
+        for some in (physical[k : k + size] for k in range(0, len(physical), size)):
+            acting = [(faults[i], slice(k * m, (k + 1) * m), np.full(m, amounts[i])) for k, i in enumerate(some)]
+            with np.errstate(all="ignore"):
+                y = s.run(s.plan.tiled(len(some)), tiled(s.base, len(some)), acting)
+            found[some] = np.moveaxis(y.reshape(*y.shape[:2], len(some), m) - self.quiet[:, :, None], 2, 0)
+        return found
+
+    def whitened(self, signatures: np.ndarray) -> np.ndarray:
+        """Whitened signatures (readings of all campaigns, faults); zero for what is not finite."""
+        padded = np.zeros((len(self._root), len(signatures)))
+        flat = signatures.reshape(len(signatures), -1)
+        padded[: flat.shape[1]] = np.where(np.isfinite(flat).all(axis=1)[:, None], flat, 0.0).T
+        return np.asarray(solve_triangular(self._root, padded, lower=True))
+
+    def survey(self, fault: Any, amounts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Signal-to-noise for some amounts, and which of them change no oil temperature by more than `OBVIOUS`."""
+        change = self.signatures([fault] * len(amounts), amounts)
+        oil = change[:, self.setting.channels.index("T_oil_C")]
+        with np.errstate(invalid="ignore"):
+            sensible = (np.abs(oil) < OBVIOUS).all(axis=(1, 2))
+        return np.linalg.norm(self.whitened(change), axis=0), sensible
+
+
+def _remainder(plan: Plan, channels: tuple[str, ...]) -> list[np.ndarray]:
+    """Smooth terms of the conditions, per channel and direction, flat over readings."""
+    x, y = (plan.n[0] - 175.0) / 75.0, (plan.load[0] - 2130.0) / 580.0
+    terms = [np.ones_like(x), x, y, x * y, x * x, y * y, (plan.room[1] - 24.0) / 5.0]
+    found = []
+    for i, c in enumerate(channels):
+        for half in (0, 1):
+            for term in terms if c in REMAINDER_SD else ():
+                one = np.zeros((len(channels), 2, plan.columns))
+                one[i, half] = REMAINDER_SD[c] * term
+                found.append(one.ravel())
+    return found
+
+
+@dataclass(frozen=True)
+class Rival:
+    """The nearest cause of another class, and how far it is [sigma]."""
+
+    cause: str
+    distance: float
+
+
+#: Forms drawn of each cause, and amounts of each over the largest sensible.
+FORMS, AMOUNTS = 4, (0.1, 0.5)
+
+
+@dataclass
+class Rivals:
+    """Nearest rivals in one campaign.
+
+    Args:
+        yard: of the campaign
+        families: draw a form of each cause
+        rng: source of forms
+    """
+
+    yard: Yardstick
+    families: Mapping[str, Callable[[np.random.Generator], Any]]
+    rng: np.random.Generator
+    _known: dict[str, np.ndarray] = field(default_factory=dict)
+
+    def _white(self) -> Mapping[str, np.ndarray]:
+        """Whitened signatures (readings, forms) of every cause."""
+        if not self._known:
+            faults, amounts, causes = [], [], []
+            for cause, family in self.families.items():
+                for _ in range(FORMS):
+                    fault = family(self.rng)
+                    for a in (sign * share * fault.high for sign in fault.signs for share in AMOUNTS):
+                        faults.append(fault)
+                        amounts.append(a)
+                        causes.append(cause)
+            white, named = self.yard.whitened(self.yard.signatures(faults, np.array(amounts))), np.array(causes)
+            self._known = {cause: white[:, named == cause] for cause in self.families}
+        return self._known
+
+    def nearest(self, fault: Any, amount: float, beside: Iterable[tuple[Any, float]] = ()) -> tuple[float, Rival]:
+        """Signal-to-noise of a fault, and its nearest rival.
+
+        Args:
+            fault, amount: what is judged
+            beside: other faults that act as well, of unknown size
+        """
+        others = list(beside)
+        faults, amounts = [fault, *(f for f, _ in others)], np.array([amount, *(a for _, a in others)])
+        white = self.yard.whitened(self.yard.signatures(faults, amounts))
+        t, rest = white[:, 0], white[:, 1:]
+        if others:
+            q = np.linalg.qr(rest)[0]
+            t = t - q @ (q.T @ t)
+        own = {merged(f.cause) for f in faults}
+        found = [Rival("nothing", float(np.linalg.norm(t)))]
+        for cause, columns in self._white().items():
+            if merged(cause) not in own:
+                apart = columns - q @ (q.T @ columns) if others else columns
+                found.append(Rival(cause, _left(apart, t)))
+        return found[0].distance, min(found[1:], key=lambda r: r.distance)
+
+
+def _left(columns: np.ndarray, t: np.ndarray) -> float:
+    """Norm of what the best non-negative mixture leaves of a vector."""
+    scale = np.linalg.norm(columns, axis=0)
+    used = columns[:, scale > 1e-9] / scale[scale > 1e-9]
+    if not used.shape[1]:
+        return float(np.linalg.norm(t))
+    Q, R = np.linalg.qr(used)
+    inside = Q.T @ t
+    beyond = max(float(t @ t - inside @ inside), 0.0)
+    return float(np.hypot(nnls(R, inside)[1], np.sqrt(beyond)))

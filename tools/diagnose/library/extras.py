@@ -1,0 +1,188 @@
+"""Extra parts of a cause at the places where it may act, and the forms that use them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import replace
+
+from ...model.laws.oil import kinematic_viscosity
+from ...model.machines.spec import PartSpec
+from .cause import Form, Num, Row, Shape, Theta, Values
+from .forms import GENERAL, MOST_PLACES, Context, Regime
+from .roles import Place
+
+#: An extra part and what it meets.
+Made = tuple[PartSpec, tuple[tuple[str, ...], ...]]
+#: Size, shapes and row -> parameters of an extra part.
+Keys = Callable[[Theta, Row], Mapping[str, Num]]
+#: So far below everything that its side does not matter, and a film above every other.
+NEVER, THICK = -1e9, 1e9
+#: Parameters of an extra part that shapes of a form may hold.
+KEYS = ("a", "b", "c", "e", "forward", "backward", "oil_share", "inner_share")
+
+
+def as_they_are(theta: Theta, row: Row) -> Theta:
+    """Shapes that are named as the parameters."""
+    return theta
+
+
+class Extras:
+    """Makes the extra parts of one cause, and forms that use them.
+
+    Args:
+        kind: short name of the cause, in the names of its parts
+        at: what they are made for
+    """
+
+    def __init__(self, kind: str, at: Context) -> None:
+        self.kind, self.roles, self.ranges = kind, at.roles, at.ranges
+
+    def open(self) -> dict[str, float]:
+        """Values of an extra part that acts everywhere, and of which there is nothing."""
+        r = self.ranges
+        values = {"P_ref": 0.0, "w_ref": r.mid["w"], "tau_ref": r.mid["tau"], "a": 1.0, "c": 0.0}
+        values |= {"forward": 1.0, "backward": 1.0, "oil_share": 0.5, "inner_share": 0.5}
+        for quantity in ("w", "tau", "T"):
+            values |= {f"{quantity}_on": NEVER, f"{quantity}_side": 1.0, f"{quantity}_width": 1.0}
+        return values
+
+    def nu_ref(self, lubricant: str) -> float:
+        """Viscosity of a lubricant at the middle of the data [m2/s]."""
+        bath = self.roles.at(lubricant, "bath", "grease")
+        if bath == self.roles.bath:
+            return self.ranges.mid["nu"]
+        values = self.roles.spec.part(bath).values
+        return float(kinematic_viscosity(self.ranges.mid["T"], float(values["nu_40"]), float(values["nu_100"])))
+
+    def _name(self, number: int, of: int) -> str:
+        """Of one of several parts."""
+        return f"extra_{self.kind}" + (f"_{number + 1}" if of > 1 else "")
+
+    def loss(self, place: Place, number: int, of: int, heats: str = "") -> Made:
+        """An extra loss at a place, and what it meets; `heats` is a port that takes the oil's share of the heat."""
+        oil = heats or self.roles.oil_heat
+        name = self._name(number, of)
+        values, nets = self.open(), [(f"{name}.shaft", place.shaft), (f"{name}.reading", self.roles.reading)]
+        nets += [(f"{name}.oil", oil), (f"{name}.inner", place.inner), (f"{name}.outer", place.outer)]
+        if not place.lubricant:
+            return PartSpec(name, "ExtraDryLoss", values), tuple(nets)
+        values |= {"b": 0.0, "nu_ref": self.nu_ref(place.lubricant), "film_on": THICK}
+        return PartSpec(name, "ExtraLoss", values), (*nets, (f"{name}.lubricant", place.lubricant))
+
+    def heat(self, inner: str, outer: str, number: int, of: int) -> Made:
+        """A heat source, and what it meets.
+
+        Args:
+            inner, outer: ports of the bodies it heats beside the oil
+            number, of: which of how many such sources
+        """
+        name, roles = self._name(number, of), self.roles
+        nets = ((f"{name}.oil", roles.oil_heat), (f"{name}.inner", inner), (f"{name}.outer", outer))
+        return PartSpec(name, "ExtraHeat", self.open()), (*nets, (f"{name}.reading", roles.reading))
+
+    def conductor(self, port: str, number: int, of: int) -> Made:
+        """A conductance from a body to the room, and what it meets."""
+        name, room = self._name(number, of), self.roles.room_of(port)
+        keys = ("w_ref", "tau_ref", "c", "forward", "backward", "T_on", "T_side", "T_width")
+        values = {key: value for key, value in self.open().items() if key in keys}
+        values |= {"G_ref": 0.0, "dT_ref": self.ranges.rise, "e": 0.0}
+        nets = ((f"{name}.a", port), (f"{name}.b", f"{room}.floor"), (f"{name}.reading", self.roles.reading))
+        return PartSpec(name, "ExtraConductor", values), nets
+
+    def losses(
+        self,
+        places: Sequence[Place],
+        shapes: Iterable[Shape],
+        limits: Sequence[Regime] = (),
+        weight: float = 1.0,
+        as_keys: Keys = as_they_are,
+        heats: str = "",
+    ) -> tuple[Form, ...]:
+        """Losses: one form for all places, one for each of several, one for each regime; they share the weight.
+
+        Args:
+            places: where it may act
+            shapes: of all forms; named as parameters of the extra part
+            limits: regimes
+            weight: of all forms together
+            as_keys: size, shapes and row -> parameters of the extra part, where they are not the same
+            heats: port that takes the oil's share of the heat, where it is not the oil
+        """
+        made = [self.loss(place, k, len(places), heats) for k, place in enumerate(places)]
+        kept = tuple(s for s in shapes if s.name != "b" or all(place.lubricant for place in places))
+        return self.forms(made, [place.name for place in places], kept, limits, weight, as_keys)
+
+    def conductors(
+        self,
+        ports: Sequence[str],
+        shapes: Iterable[Shape],
+        limits: Sequence[Regime] = (),
+    ) -> tuple[Form, ...]:
+        """Conductances to the room: one form for all bodies, one for each of several, one for each regime.
+
+        Args:
+            ports: where heat leaves the bodies
+            shapes: of all forms; named as parameters of the extra part
+            limits: regimes
+        """
+        made = [self.conductor(port, k, len(ports)) for k, port in enumerate(ports)]
+        return self.forms(made, [port.partition(".")[0] for port in ports], tuple(shapes), limits)
+
+    def forms(
+        self,
+        made: Sequence[Made],
+        names: Sequence[str],
+        shapes: tuple[Shape, ...],
+        limits: Sequence[Regime] = (),
+        weight: float = 1.0,
+        as_keys: Keys = as_they_are,
+    ) -> tuple[Form, ...]:
+        """One form for all parts, one for each of several, one for each regime; they share the weight.
+
+        Args:
+            made: the parts
+            names: of their places
+            shapes: of all forms
+            limits: regimes
+            weight: of all forms together
+            as_keys: size, shapes and row -> parameters of the extra part
+        """
+        single = list(zip(names, made, strict=True)) if 1 < len(made) <= MOST_PLACES else []
+        rest = (1 - GENERAL) * weight / max(len(single) + len(limits), 1)
+        general = GENERAL * weight if single or limits else weight
+        found = [replace(self.with_parts(made, shapes, None, as_keys), weight=general)]
+        found += [
+            replace(self.with_parts([part], shapes, None, as_keys), name=name, weight=rest) for name, part in single
+        ]
+        found += [replace(self.with_parts(made, shapes, limit, as_keys), weight=rest) for limit in limits]
+        return tuple(found)
+
+    def with_parts(
+        self, made: Sequence[Made], shapes: Iterable[Shape], limit: Regime | None = None, as_keys: Keys = as_they_are
+    ) -> Form:
+        """One form in which some parts share the size.
+
+        Args:
+            made: the parts
+            shapes: of the form
+            limit: the regime, if any
+            as_keys: size, shapes and row -> parameters of the extra part
+        """
+        names = [part.name for part, _ in made]
+
+        def values(theta: Theta, row: Row) -> Values:
+            given = as_keys(theta, row)
+            keys = {key: given[key] for key in KEYS if key in given}
+            keys |= {size: given[size] / len(names) for size in ("P_ref", "G_ref") if size in given}
+            if limit is not None:
+                keys |= limit.limits(theta, self.ranges)
+            return {f"{name}.{key}": value for name in names for key, value in keys.items()}
+
+        return Form(
+            name=limit.name if limit else "",
+            shapes=(*shapes, *(limit.shapes(self.ranges) if limit else ())),
+            parts=tuple(part for part, _ in made),
+            connections=tuple(net for _, nets in made for net in nets),
+            values=values,
+            regime=limit.told if limit else {},
+        )

@@ -1,0 +1,141 @@
+"""Probes that stand where they should not, are exchanged, or lag behind."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
+
+import casadi as ca
+
+from ...model.laws.smooth import smooth_abs
+from ..campaign.table import Sensor
+from .cause import Cause, Form, Num, Row, Shape, Size, Theta, Values
+from .forms import Context
+from .readings import one_of, wrong
+
+THERMOMETERS = ("oil_temp", "wall_temp", "ambient")
+#: Excess over a body is smaller than over the room: a probe that is drawn to a body loses this much more of it.
+BODY = 3.0
+
+
+def position(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
+    """Oil probes that see something between the oil and the room, or the oil and a body.
+
+    Args:
+        at: what the causes are made for
+        own: the oil probes
+    """
+    others = [(s, 1.0) for s in at.sensors if s.kind == "ambient"][:1]
+    others += [(s, BODY) for s in at.sensors if s.kind == "wall_temp" and s.role == "read"][:1]
+    read = [s for s in own if s.role == "read"]
+    speed = at.first("speed")
+    shapes = (Shape("a", "1", "exponent of the speed", -1.0, 1.0, 0.0, 0.2),) if speed else ()
+    forms = []
+    for probe in read:
+        for other, more in others:
+            name = ", ".join(filter(None, (one_of(probe, read), f"towards {other.name}")))
+            weight = (1.0 if len(others) == 1 else 0.6 if more == 1.0 else 0.4) / len(read)
+            forms.append(Form(name, weight, shapes, shown=_drawn(at, probe, other, more, speed)))
+    if forms:
+        yield Cause(
+            id="sensor.oil_temp.position",
+            doc="The oil probe sees oil between the sump's and a wall's or the room's temperature, or a hot jet.",
+            size=Size("share", "1", "share of the excess over the room that it loses", 0.08, -0.05, 0.35),
+            forms=tuple(forms),
+            exposes="a second probe in the oil; the probe moved",
+            acts_on="rise",
+        )
+
+
+def _drawn(
+    at: Context, probe: Sensor, other: Sensor, more: float, speed: str
+) -> Callable[[Theta, Row, Values], Values]:
+    """What a probe shows that is drawn towards what another reads."""
+
+    def shown(theta: Theta, row: Row, true: Values) -> Values:
+        place = row.sensors[other.name] if other.role == "given" else true[other.name]
+        share: Num = more * theta["share"]
+        if speed:
+            ratio = smooth_abs(row.sensors[speed] / max(at.ranges.mid.get(speed, 1.0), 1e-9), 0.05)
+            share = share * ca.exp(theta["a"] * ca.log(ratio))
+        return {probe.name: true[probe.name] - share * (true[probe.name] - place)}
+
+    return shown
+
+
+def heated(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
+    """Room probes in the warm air of the machine.
+
+    Args:
+        at: what the causes are made for
+        own: the room probes
+    """
+    rise = at.ranges.rise
+
+    def error(theta: Theta, row: Row, value: Num) -> Num:
+        return ca.exp(theta["e"] * ca.log(smooth_abs(row.rise / rise, 0.02)))
+
+    shape = Shape("e", "1", "exponent of the rise", 0.6, 1.8, 1.1, 0.25)
+    forms = [replace(wrong(s, "bias", error), name=one_of(s, own), weight=1 / len(own), shapes=(shape,)) for s in own]
+    yield Cause(
+        id="sensor.ambient.heated",
+        doc="The room probe stands in the warm air of the gearbox: it reads the more too high the warmer the gearbox.",
+        size=Size("bias", "K", "reading less truth at the typical rise", 0.05 * rise, -0.025 * rise, 0.5 * rise),
+        forms=tuple(forms),
+        exposes="the room probe moved away; transients",
+        acts_on="rise",
+    )
+
+
+def swapped(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
+    """Thermometers that are exchanged with others.
+
+    Args:
+        at: what the causes are made for
+        own: those of one kind
+    """
+    warm = [s for s in at.sensors if s.kind in THERMOMETERS and s.role == "read"]
+    pairs = [(a, b) for i, a in enumerate(warm) for b in warm[i + 1 :] if a in own and a.reads != b.reads]
+
+    def exchanged(a: str, b: str) -> Callable[[Theta, Row, Values], Values]:
+        def shown(theta: Theta, row: Row, true: Values) -> Values:
+            moved = theta["share"] * (true[b] - true[a])
+            return {a: true[a] + moved, b: true[b] - moved}
+
+        return shown
+
+    if pairs:
+        yield Cause(
+            id=f"sensor.{own[0].kind}.swapped",
+            doc="Two thermometers are exchanged: each shows what the other should.",
+            size=Size("share", "1", "1 where they are exchanged", 0.6, 0.0, 1.0),
+            forms=tuple(
+                Form(f"{a.name} with {b.name}", 1 / len(pairs), shown=exchanged(a.name, b.name)) for a, b in pairs
+            ),
+            exposes="one probe warmed by hand",
+            common=0.2,
+        )
+
+
+def lag(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
+    """Thermometers that follow late; only logs know how fast what they read changes.
+
+    Args:
+        at: what the causes are made for
+        own: those of one kind
+    """
+    read = [s for s in own if s.kind in THERMOMETERS and s.role == "read"]
+    if not read or "logs" not in at.ranges.known:
+        return
+
+    def late(sensor: Sensor) -> Form:
+        return wrong(sensor, "time", lambda theta, row, value: -row.rates.get(sensor.name, 0.0))
+
+    yield Cause(
+        id=f"sensor.{own[0].kind}.lag",
+        doc="The probe follows late: a pocket, a thick well, paste that is missing.",
+        size=Size("time", "s", "time constant of the probe", 300.0, 0.0, 7200.0),
+        forms=tuple(replace(late(s), name=one_of(s, read), weight=1 / len(read)) for s in read),
+        exposes="a logged step of the load",
+        common=0.3,
+    )

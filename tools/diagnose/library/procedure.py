@@ -1,0 +1,112 @@
+"""How the campaign was run: readings taken early, and what changes with the days and the running order."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+
+import casadi as ca
+
+from ...model.laws.smooth import smooth_max
+from ..campaign.table import Sensor
+from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
+from .cooling import DAYS, factors
+from .roles import Roles
+
+#: What early readings are a share of where they are early by a time [s], and rounding of a pace near zero.
+EARLY, ROUND = 7200.0, 0.1
+#: How much of the size each half has, by the form's name, and the forms' weights.
+HALVES = {"": (1.0, 1.0, 0.6), "first half": (1.0, 0.0, 0.25), "later halves": (0.0, 1.0, 0.15)}
+
+
+def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
+    """All causes of the family.
+
+    Args:
+        roles: of the machine
+        ranges: of the data
+        sensors: of the campaign
+    """
+    if "dwell" in ranges.known:
+        yield not_stationary()
+    if "order" in ranges.known:
+        yield order(roles)
+        if roles.cooling:
+            yield day_scatter(roles)
+
+
+def _pace(missing: Num) -> Num:
+    """Share of the dwell that took place, never below zero, one where nothing is missing."""
+    return smooth_max(1 - missing, 0.0, ROUND) / smooth_max(1.0, 0.0, ROUND)
+
+
+def not_stationary() -> Cause:
+    """Readings taken too early: by a share of the dwell or by some minutes."""
+
+    def pace(first: float, later: float, minutes: bool) -> Callable[[Theta, Row], Num]:
+        def of(theta: Theta, row: Row) -> Num:
+            missing = theta["missing"] * (first * (1 - row.second) + later * row.second)
+            return _pace(missing * EARLY / row.dwell if minutes else missing)
+
+        return of
+
+    forms = []
+    for minutes, words in ((False, ""), (True, "by minutes")):
+        for name, (first, later, weight) in HALVES.items():
+            known = ", ".join(filter(None, (words, name)))
+            forms.append(Form(known, weight / 2, pace=pace(first, later, minutes)))
+    return Cause(
+        id="procedure.not_stationary",
+        doc="Readings taken earlier than the protocol says, while the gearbox still warms.",
+        size=Size("missing", "1", "share of the dwell that is missing; by minutes: of two hours", 0.3, 0.0, 0.95),
+        forms=tuple(forms),
+        exposes="a logged warm-up; a longer dwell",
+        acts_on="order",
+    )
+
+
+def order(roles: Roles) -> Cause:
+    """Something that changes steadily from the first test to the last."""
+    teeth = roles.scaled(*roles.parts("teeth"))
+    shafts = roles.scaled(*roles.parts("bearing"), *roles.parts("seal"))
+    targets = {"cooling": (roles.cooling, 0.4), "teeth": (teeth, 0.3), "all losses": ((*teeth, *shafts), 0.3)}
+    if not shafts:
+        del targets["all losses"]
+    kept = {name: (paths, weight) for name, (paths, weight) in targets.items() if paths}
+
+    def changing(paths: Sequence[str]) -> Callable[[Theta, Row], Values]:
+        def values(theta: Theta, row: Row) -> Values:
+            progress = (row.order + 1e-9) ** theta["power"] - theta["zero"]
+            return {path: row.base[path] * ca.exp(theta["change"] * progress) for path in paths}
+
+        return values
+
+    shapes = (
+        Shape("power", "1", "exponent of the running order", 0.3, 2.0, 0.9, 0.35),
+        Shape("zero", "1", "value of the order term at which the nominal holds: 0 first test, 1 last", 0.0, 1.0),
+    )
+    total = sum(weight for _, weight in kept.values())
+    return Cause(
+        id="procedure.order",
+        doc="Cooling or losses that change steadily over the campaign: dirt, season, running in, what stands around.",
+        size=Size("change", "1", "logarithm of the factor from the first test to the last", 0.12, -1.5, 1.0),
+        forms=tuple(
+            Form(name, weight / total, shapes, values=changing(paths)) for name, (paths, weight) in kept.items()
+        ),
+        exposes="the first point repeated at the end; tests in random order",
+        acts_on="order",
+    )
+
+
+def day_scatter(roles: Roles) -> Cause:
+    """Days that differ more than stated."""
+    return Cause(
+        id="procedure.day_scatter",
+        doc="Cooling that differs from day to day more than the card states, without a pattern.",
+        size=Size(
+            "sd", "1", "relative standard deviation of the days' cooling beside what the card states", 0.05, 0.0, 0.6
+        ),
+        forms=(Form(spread="test", values=factors(roles.cooling, "sd")),),
+        exposes="the same point on several days; draught and neighbours logged",
+        like=DAYS,
+        acts_on="order",
+    )

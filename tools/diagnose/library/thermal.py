@@ -1,0 +1,126 @@
+"""Heat that is stored or appears elsewhere than assumed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import casadi as ca
+import numpy as np
+
+from ...model.machines.spec import PartSpec
+from ..campaign.table import Sensor
+from .cause import Cause, Form, Ranges, Row, Size, Theta, Values
+from .cooling import factors
+from .extra_parts import step
+from .heat import bodies
+from .roles import Roles
+
+#: A body gives no more than this share of its capacity.
+LEFT = 0.95
+
+
+def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
+    """All causes of the family.
+
+    Args:
+        roles: of the machine
+        ranges: of the data
+        sensors: of the campaign
+    """
+    if roles.inside or roles.outside:
+        yield mass(roles)
+    if forms := [*capacity_moved(roles), *heat_moved(roles), *losses_moved(roles)]:
+        yield Cause(
+            id="thermal.split",
+            doc="Capacity, or the heat of losses, belongs to what turns instead of to the housing or the oil.",
+            size=Size("shift", "1", "share of all capacity, or of that heat, moved to what turns", 0.2, -0.6, 0.6),
+            forms=tuple(
+                Form(f.name, 1 / len(forms), values=f.values, parts=f.parts, connections=f.connections) for f in forms
+            ),
+            exposes="a probe on the shaft; a logged warm-up",
+        )
+
+
+def mass(roles: Roles) -> Cause:
+    """Other capacities."""
+    groups = {"": (*roles.inside, *roles.outside), "housing": roles.outside, "what turns": roles.inside}
+    groups = {name: parts for name, parts in groups.items() if parts}
+    if len(groups) == 2:  # one of the groups is all there is
+        groups = {"": groups[""]}
+    weights = {"": 0.6 if len(groups) > 1 else 1.0, "housing": 0.25, "what turns": 0.15}
+    return Cause(
+        id="thermal.mass",
+        doc="Other heat capacities: warm-ups last longer or shorter.",
+        size=Size("ln_factor", "1", "logarithm of the factor on the heat capacities", 0.35, -1.5, 1.5),
+        forms=tuple(
+            Form(name, weights[name], values=factors(roles.scaled(*parts), "ln_factor"))
+            for name, parts in groups.items()
+        ),
+        exposes="a logged warm-up",
+    )
+
+
+def capacity_moved(roles: Roles) -> Iterator[Form]:
+    """Capacity of the housing to what turns."""
+    inside, outside = roles.scaled(*roles.inside), roles.scaled(*roles.outside)
+    if not inside or not outside:
+        return
+
+    def values(theta: Theta, row: Row) -> Values:
+        within, around = (sum(row.base[path] for path in paths) for paths in (inside, outside))
+        wanted = theta["shift"] * (within + around)
+        most = LEFT * (within + (around - within) * step(wanted / (0.05 * within)))  # of the side that gives
+        moved = wanted * (1 + (wanted / most) ** 8) ** (-1 / 8)
+        up, down = 1 + moved / within, 1 - moved / around
+        return {p: row.base[p] * up for p in inside} | {p: row.base[p] * down for p in outside}
+
+    yield Form("capacity", values=values)
+
+
+def heat_moved(roles: Roles) -> Iterator[Form]:
+    """Heat of bearings and seals from the outer body to the inner."""
+    places = [p for role in ("bearing", "seal") for p in roles.places[role]]
+    paths = [f"{n}.inner_share" for p in places if not roles.nets.meet(p.inner, p.outer) for n in p.parts]
+    if not paths:
+        return
+    stated = {path: float(roles.value(path)) for path in paths}
+
+    def values(theta: Theta, row: Row) -> Values:
+        return {path: row.base[path] + _shifted(stated[path], theta["shift"]) for path in paths}
+
+    yield Form("heat of bearings and seals", values=values)
+
+
+def _shifted(share: float, shift: object) -> object:
+    """What a share between 0 and 1 gains by a shift, which it follows with slope one in its middle."""
+    s = float(np.clip(share, 0.02, 0.98))
+    at = float(np.log(s / (1 - s)))
+    return 1 / (1 + ca.exp(-(at + 4 * shift))) - s
+
+
+def losses_moved(roles: Roles) -> Iterator[Form]:
+    """Heat of all losses from the housing or the oil to what turns."""
+    inside, outside = bodies(roles)
+    ends = roles.ends
+    if not 1 <= len(ends) <= 2:
+        return
+    for name, place in (
+        ("heat of all losses, from the housing", outside[0]),
+        ("heat of all losses, from the oil", roles.oil_heat),
+    ):
+        if roles.nets.meet(place, inside):
+            continue
+        yield _move(roles, name, f"extra_move_{'oil' if place == roles.oil_heat else 'housing'}", place, inside)
+
+
+def _move(roles: Roles, name: str, part: str, a: str, b: str) -> Form:
+    """A share of the loss taken from a to b."""
+    readings = [roles.reading_of(end) for end in roles.ends]
+    kind = "HeatMove" if len(readings) == 1 else "HeatMoveOfTwo"
+    nets = [(f"{part}.a", a), (f"{part}.b", b)]
+    nets += [(f"{part}.{key}", reading) for key, reading in zip(("first", "second"), readings, strict=False)]
+
+    def values(theta: Theta, row: Row) -> Values:
+        return {f"{part}.share": theta["shift"]}
+
+    return Form(name, parts=(PartSpec(part, kind, {"share": 0.0}),), connections=tuple(nets), values=values)
