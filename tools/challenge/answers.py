@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import os
-import resource
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
@@ -16,8 +15,17 @@ from typing import Any
 from ...model.errors import DataError
 from .classes import merged_all
 
-#: Gets the files of a case by what they are, and a folder for answers; writes RESULT.json and PREDICTIONS.csv there.
+#: Gets the files of a case by what they are, and a folder for answers; writes RESULT.json there, and
+#: PREDICTIONS.csv and SECONDS (its processor time) if it can.
 Diagnoser = Callable[[Mapping[str, Path], Path], None]
+
+#: The command, in a process that notes its processor time [s].
+PROGRAM = """
+import atexit, os, pathlib, sys
+from gearheat.tools.cli import main
+atexit.register(lambda: pathlib.Path(os.environ["SECONDS_FILE"]).write_text(str(sum(os.times()[:4]))))
+main()
+"""
 
 #: Longest time for one case [s].
 PATIENCE = 1800.0
@@ -42,23 +50,15 @@ def ask_command(files: Mapping[str, Path], place: Path, seed: int = 0) -> None:
         if name in files:
             words += [option, str(files[name])]
     words += ["--predictions", str(place / "PREDICTIONS.csv")] if "points" in files else []
-    program = [sys.executable, "-c", "from gearheat.tools.cli import main; main()"]
-    env = {**os.environ, **dict.fromkeys(THREADS, "1")}
+    program = [sys.executable, "-c", PROGRAM, *words]
+    env = {**os.environ, **dict.fromkeys(THREADS, "1"), "SECONDS_FILE": str(place / "SECONDS")}
     try:
-        done = subprocess.run(
-            [*program, *words], env=env, capture_output=True, text=True, timeout=PATIENCE, check=False
-        )
+        done = subprocess.run(program, env=env, capture_output=True, text=True, timeout=PATIENCE, check=False)
     except subprocess.TimeoutExpired:
         raise DataError(f"diagnose took more than {PATIENCE:g} s") from None
     if done.returncode != 0:
         said = done.stderr.strip().splitlines()[-1:] or ["no message"]
         raise DataError(f"diagnose ended with code {done.returncode}: {said[0]}")
-
-
-def processor_seconds() -> float:
-    """Processor time of all processes that this one has waited for [s]."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
 
 
 @dataclass(frozen=True)

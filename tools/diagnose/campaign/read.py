@@ -16,8 +16,8 @@ from .card import Card
 from .checks import checked
 from .context import CONTEXT, DIRECTIONS, Cells, contradictions, floats, order_warnings
 from .halves import with_unread
-from .lubrication import oil_problems, oil_values, oil_warnings
 from .nominal import Nominal
+from .oils import oil_problems, oil_values, oil_warnings
 from .sensors import SI, driven_by, sensors_of
 from .table import Campaign, Sensor
 
