@@ -1,4 +1,4 @@
-"""Repeated points in running order: what each sensor shows at the same conditions, against the accuracy it is said to have."""
+"""Repeated points in running order: what each sensor shows at the same conditions, against its stated accuracy."""
 
 from __future__ import annotations
 

@@ -259,9 +259,7 @@ class _March:
         (found,) = push(np.repeat(w, c, axis=0), np.repeat(u, c, axis=0), p, way)
         own[:, :, self.turned.apart] += found.reshape(self.n, c, own.shape[1]).swapaxes(1, 2)
 
-    def _read(
-        self, w: np.ndarray, dw: np.ndarray | None, f: int, share: float
-    ) -> tuple[np.ndarray, np.ndarray | None]:
+    def _read(self, w: np.ndarray, dw: np.ndarray | None, f: int, share: float) -> tuple[np.ndarray, np.ndarray | None]:
         row, u = self.phases.row[f], self._inputs(f, share)
         p = self.p[:, row]
         if dw is None:
