@@ -111,7 +111,8 @@ class Observed:
         absent = np.arange(self.height) >= np.bincount(c.test)[:, None]
         dwell = np.where(absent, 0.0, np.where(np.isinf(c.dwell), STEADY.sum(), c.dwell)[rows])
         stop = np.where(absent, 0.0, c.stop[rows])
-        lengths, row, steps, read = [], [], [], []
+        lengths, row, steps = [], [], []
+        read: list[tuple[int, ...]] = []
         local = []
         one = np.eye(self.height)
         room = np.array([s.kind == "ambient" for s in self.given], dtype=bool)
