@@ -53,6 +53,7 @@ class Plant:
         self.place = {q.name: i for i, q in enumerate(flat.parameters)}
         self.u_place = {q.name: i for i, q in enumerate(flat.inputs)}
         self.u = flat.starts("input")
+        self.scale = np.array([q.nominal for q in (*flat.states, *flat.algebraic)])
         w, both = ca.vertcat(flat.x, flat.z), ca.densify(ca.vertcat(flat.ode, flat.residual))
         by = ca.vertcat(*(flat.p[self.place[k]] for k in knobs), *(flat.u[self.u_place[g]] for g in given))
         groups = {"state": flat.x, "input": flat.u, "output": flat.y}
@@ -110,7 +111,7 @@ class Plant:
             most=max(len(entries) for entries in patterns),
             **{name: compiled.place(name) for name in compiled.patterns},
             **{f"pattern{k}": entries for k, entries in enumerate(patterns)},
-            scale=np.array([q.nominal for q in unknowns]),
+            scale=self.scale,
             guess=self.flat.starts("algebraic"),
             thermal=np.array([float(q.unit == "K") for q in unknowns]),
         )
