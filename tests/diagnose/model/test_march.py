@@ -12,17 +12,18 @@ from gearheat.diagnose.campaign.read import read_campaign
 from gearheat.diagnose.campaign.table import Campaign
 from gearheat.diagnose.library.cause import Cause, Form, Nuisance, Shape, Size
 from gearheat.diagnose.library.roles import Roles
-from gearheat.diagnose.model import observe
+from gearheat.diagnose.model import duty
+from gearheat.diagnose.model.duty import STEADY
 from gearheat.diagnose.model.formula import Formula
 from gearheat.diagnose.model.march import Phases, march
-from gearheat.diagnose.model.observe import STEADY, Observed
+from gearheat.diagnose.model.observe import Observed
 from gearheat.diagnose.model.plant import Plant
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import PartSpec, assemble
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 
-FOLDER = Path(observe.__file__).parents[3] / "scenarios" / "rigs" / "planetary"
+FOLDER = Path(duty.__file__).parents[3] / "scenarios" / "rigs" / "planetary"
 SIZE = Size("size", "1", "", 0.1, -1.0, 1.0)
 FRICTION, BATH = Nuisance("mu", {"gear_set.k_mu": 1.0}, 0.2, 0.2), Nuisance("c", {"oil.c_p": 1.0}, 0.3, 0.3)
 EXTRA = {"G_ref": 0.0, "dT_ref": 30.0, "e": 0.0, "w_ref": 10.0, "tau_ref": 1000.0, "c": 0.0, "forward": 1.0}
@@ -129,8 +130,8 @@ def test_candidates_of_one_part_with_other_shapes_keep_apart(made, planetary) ->
 
 def test_few_steps_are_enough(made, acting, monkeypatch) -> None:
     found = made().shown_by(Z, acting)
-    monkeypatch.setattr(observe, "DWELL", np.linspace(0, 1, 201)[1:] ** 2)
-    monkeypatch.setattr(observe, "STOP", np.linspace(0, 1, 41)[1:] ** 2)
+    monkeypatch.setattr(duty, "DWELL", np.linspace(0, 1, 201)[1:] ** 2)
+    monkeypatch.setattr(duty, "STOP", np.linspace(0, 1, 41)[1:] ** 2)
     assert found == pytest.approx(made().shown_by(Z, acting), abs=0.01)
 
 
