@@ -128,7 +128,7 @@ class _Chances:
         spread = np.sqrt(max(share * (1 - share), 1 / n) / n)
         low, high = np.quantile(found.drawn, np.clip([1 - share - spread, 1 - share + spread], 0, 1))
         #: Sources of error: which hypotheses share one, and the standard error of their log evidence.
-        self.sources = [(np.array([not h.fit.causes for h in found.hypotheses]), 0.5 * float(high - low))]
+        self.sources = [(np.array([not h.causes for h in found.hypotheses]), 0.5 * float(high - low))]
         for fit in {id(h.fit): h.fit for h in found.hypotheses}.values():
             own = np.array([h.fit is fit for h in found.hypotheses])
             self.sources.append((own, found.hypotheses[int(np.argmax(own))].error))
