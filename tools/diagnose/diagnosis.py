@@ -6,8 +6,10 @@ from collections.abc import Callable
 
 from ..model.errors import DataError
 from .answer.decide import decided
+from .answer.gain import gains
 from .infer.search import searched
-from .report import compose
+from .report import compose, compose_data
+from .report.channels import channel
 from .report.findings import Findings
 from .report.words import with_words
 from .request import Inputs
@@ -41,19 +43,28 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         lambda stage, share: progress(stage, 0.05 + 0.75 * share),
     )
     decision = decided(found)
-    progress("what was found", 0.9)
+    told = (
+        []
+        if decision.verdict == "consistent"
+        else gains(found, request.seed, lambda s: progress("held-out readings", 0.82 + 0.13 * s))
+    )
+    gain, grouped = compose.gains(found, told)
+    progress("what was found", 0.95)
+    leader = decision.leader
     findings = Findings(
         verdict=decision.verdict,
-        about=compose.about(made, inputs.reference, request.seed),
-        test=compose.test(found, decision, request.alpha),
+        about=compose.about(data, made.scenario.name, inputs.reference, request.seed),
+        test=compose.alarm(found, decision, request.alpha),
         hypotheses=compose.hypotheses(decision),
         answers=compose.answers(decision.answers),
-        causes=compose.causes(made, found, decision),
+        causes=compose.causes(made.causes, found, decision),
         remainder=compose.remainder(found, decision),
-        data_quality=compose.data_quality(made, found, decision),
-        impact=compose.impacts(found, decision.leader),
-        channels=tuple(compose.channel(s) for s in data.sensors),
-        rows=compose.rows(found, decision),
+        data_quality=compose_data.data_quality(made, found, leader),
+        impact=compose.impacts(found, leader),
+        channels=tuple(channel(s) for s in data.sensors),
+        gain=gain,
+        gain_grouped=grouped,
+        rows=compose_data.rows(found, leader),
         warnings=inputs.warnings,
     )
     progress("done", 1.0)

@@ -189,20 +189,15 @@ def impact(problem: Problem, h: Hypothesis, only: str | None = None) -> dict[str
         return {}
     without = [replace(a, t=np.r_[0.0, a.t[1:]]) if a in moved else a for a in fit.look.acting]
     change = fit.look.shown - problem.shown(fit.look.z, without)
-    places_of = np.concatenate(
-        [
-            np.arange(b, b + a.formula.size)
-            for b, a in zip(places(problem, h), fit.look.acting, strict=True)
-            if a in moved
-        ]
-    )
-    covariance = posterior(problem, h)[1][np.ix_(places_of, places_of)]
+    spans = zip(places(problem, h), fit.look.acting, strict=True)
+    own = np.concatenate([np.arange(begin, begin + a.formula.size) for begin, a in spans if a in moved])
+    covariance = posterior(problem, h)[1][np.ix_(own, own)]
     found = {}
     for i, s in enumerate(o.read):
         rows = np.flatnonzero(o.kind == i)
         if not len(rows):
             continue
-        slope = fit.look.jacobian[np.ix_(rows, places_of)].mean(axis=0)
+        slope = fit.look.jacobian[np.ix_(rows, own)].mean(axis=0)
         value, sd = float(change[rows].mean()), float(np.sqrt(slope @ covariance @ slope))
         found[s.name] = Impact(value, (value - WIDE * sd, value + WIDE * sd))
     return found

@@ -101,6 +101,5 @@ def scale_sds(found: Found, h: Hypothesis) -> np.ndarray:
 def adequacy(found: Found, h: Hypothesis) -> dict[str, float]:
     """Compared sensor -> p of what a hypothesis leaves in it."""
     o = found.problem.data
-    return {
-        s.name: p_adequacy(found, h, np.flatnonzero(o.kind == i)) for i, s in enumerate(o.read) if (o.kind == i).any()
-    }
+    own = {s.name: np.flatnonzero(o.kind == i) for i, s in enumerate(o.read)}
+    return {name: p_adequacy(found, h, entries) for name, entries in own.items() if len(entries)}
