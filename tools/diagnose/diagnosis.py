@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from ..model.errors import DataError
 from .answer.decide import decided
+from .answer.gain import gains
 from .infer.search import searched
 from .report import compose, compose_data
 from .report.channels import channel
@@ -42,7 +43,13 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         lambda stage, share: progress(stage, 0.05 + 0.75 * share),
     )
     decision = decided(found)
-    progress("what was found", 0.9)
+    told = (
+        []
+        if decision.verdict == "consistent"
+        else gains(found, request.seed, lambda s: progress("held-out readings", 0.82 + 0.13 * s))
+    )
+    gain, grouped = compose.gains(found, told)
+    progress("what was found", 0.95)
     leader = decision.leader
     findings = Findings(
         verdict=decision.verdict,
@@ -55,6 +62,8 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         data_quality=compose_data.data_quality(made, found, leader),
         impact=compose.impacts(found, leader),
         channels=tuple(channel(s) for s in data.sensors),
+        gain=gain,
+        gain_grouped=grouped,
         rows=compose_data.rows(found, leader),
         warnings=inputs.warnings,
     )
