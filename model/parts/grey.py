@@ -53,6 +53,8 @@ class GreyBearing(GreyLoss):
 class FlowConductor(Conductor):
     """Oil that a pump on a shaft moves between two places: its capacity flow, which cold oil throttles."""
 
+    scale: ClassVar[tuple[str, ...]] = ("G_rest", "G_ref")
+
     reading = ShaftReading(must_meet=True)
     lubricant = Lubricant()
 
@@ -117,6 +119,9 @@ class Cooler(Conductor):
 
 class OilJet(Component):
     """Oil from a line that cools a body and runs off into the sump: the body feels the line, the sump gets the heat."""
+
+    role: ClassVar[str] = "conductor"
+    scale: ClassVar[tuple[str, ...]] = ("G_ref",)
 
     body = HeatPort()
     line = HeatPort()
