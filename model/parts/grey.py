@@ -120,7 +120,7 @@ class Cooler(Conductor):
 class OilJet(Component):
     """Oil from a line that cools a body and runs off into the sump: the body feels the line, the sump gets the heat."""
 
-    role: ClassVar[str] = "conductor"
+    role: ClassVar[str] = "jet"
     scale: ClassVar[tuple[str, ...]] = ("G_ref",)
 
     body = HeatPort()

@@ -10,7 +10,7 @@ from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 import numpy as np
 
@@ -27,8 +27,9 @@ from .table import Sensor
 TIMES = ("time", "time_utc", "timestamp", "datetime", "date_time", "t")
 #: A gap of more than so many samples starts a new stretch.
 GAP = 1.5
-#: A single sample this far from both its neighbours is a gross reading: standard deviations of that distance, and [K].
-SPIKE_SD, SPIKE_K = 12.0, 8.0
+#: A single sample further than all of these from both its neighbours is a gross reading: standard deviations of steps,
+#: [K], and times what one sample in a thousand exceeds.
+SPIKE_SD, SPIKE_K, SPIKE_TAIL = 12.0, 8.0, 2.5
 #: Temperatures outside of this are none of a machine that runs [K].
 COLDEST, HOTTEST = 213.15, 473.15
 
@@ -127,10 +128,7 @@ def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]
     try:
         if path.suffix in (".parquet", ".pq"):
             return _parquet(path)
-        opened = (
-            gzip.open(path, "rt", encoding="utf-8-sig") if path.suffix == ".gz" else path.open(encoding="utf-8-sig")
-        )
-        with opened as file:
+        with _opened(path) as file:
             reader = csv.reader(file)
             header = [h.strip() for h in next(reader, [])]
             rows = [(reader.line_num, row) for row in reader if any(row)]
@@ -145,6 +143,12 @@ def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]
         raise DataError([f"{path.name}: holds no samples."])
     columns = dict(zip(header, zip(*(row for _, row in rows), strict=True), strict=True))
     return header, columns, np.array([line for line, _ in rows])
+
+
+def _opened(path: Path) -> IO[str]:
+    if path.suffix == ".gz":
+        return gzip.open(path, "rt", encoding="utf-8-sig")
+    return path.open(encoding="utf-8-sig")
 
 
 def _parquet(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]:
@@ -251,7 +255,8 @@ def _set_aside(
         off = np.where(inside, np.minimum(np.abs(column - before), np.abs(column - after)), np.nan)
         off = np.where(np.sign(column - before) == np.sign(column - after), off, 0.0)
         sd = 1.4826 * float(np.nanmedian(np.abs(np.diff(column)))) + 0.05
-        spiked = wrong | (off > max(SPIKE_SD * sd, SPIKE_K))
+        usual = SPIKE_TAIL * float(np.nanquantile(off, 0.999))
+        spiked = wrong | (off > max(SPIKE_SD * sd, SPIKE_K, usual))
         expected = np.where(np.isfinite(before + after), (before + after) / 2, np.nanmedian(column))
         gross += [
             Gross(int(lines[k]), sensor.column, float(column[k]), float(expected[k]), abs(column[k] - expected[k]) / sd)

@@ -266,7 +266,7 @@ def _found(nets: _Nets) -> Roles:
     rooms, keeping = nets.of("room"), nets.of("thermostat")
     air, kept = nets.heat_nets(rooms), nets.heat_nets(keeping)
     oil = nets.net.get(f"{nets.bath}.heat", -1)
-    conductors = nets.of("conductor")
+    conductors = nets.of("conductor", "jet")
     ends = {c: nets.heat_nets([c]) for c in conductors}
     foundation = tuple(c for c in conductors if ends[c] & air)
     kept_by = tuple(c for c in conductors if ends[c] & kept and c not in foundation)

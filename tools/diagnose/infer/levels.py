@@ -1,0 +1,248 @@
+"""Knobs that scatter on three levels: machines of a type, years of a machine, windows of a year.
+
+What the samples of a window say of its knobs is a quadratic, exp(eta z - z H z / 2). Deviations of windows from their
+year, of years from their machine and of machines from their type are independent and normal; their variances are
+estimated. Healthy machines differ from year to year, and only what differs by more is a change.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+#: Standard deviations of years and windows that are expected before any data, as shares of that of machines, and how
+#: many deviations this expectation counts for.
+YEAR, WINDOW, COUNTS = 0.25, 0.25, 2.0
+#: Rounds of the estimate of the variances.
+ROUNDS = 40
+
+
+@dataclass(frozen=True, eq=False)
+class Quadratics:
+    """What n groups say of k knobs: eta (n, k), H (n, k, k)."""
+
+    eta: np.ndarray
+    H: np.ndarray
+
+    def spread(self, variance: np.ndarray) -> Quadratics:
+        """The same of what the groups scatter about, with a variance (k,)."""
+        A = np.eye(self.H.shape[1]) + self.H * variance
+        return Quadratics(np.linalg.solve(A, self.eta[:, :, None])[:, :, 0], _even(np.linalg.solve(A, self.H)))
+
+    def summed(self, group: np.ndarray, n: int) -> Quadratics:
+        """Summed over the members of each of n groups."""
+        eta, H = np.zeros((n, self.eta.shape[1])), np.zeros((n, *self.H.shape[1:]))
+        np.add.at(eta, group, self.eta)
+        np.add.at(H, group, self.H)
+        return Quadratics(eta, H)
+
+    def some(self, keep: np.ndarray) -> Quadratics:
+        """Some of the groups."""
+        return Quadratics(self.eta[keep], self.H[keep])
+
+
+def _even(H: np.ndarray) -> np.ndarray:
+    return np.asarray((H + H.transpose(0, 2, 1)) / 2)
+
+
+@dataclass(frozen=True, eq=False)
+class Levels:
+    """Variances of the knobs (k,) on each level, and what is known of each machine.
+
+    Args:
+        root: prior variance of the type about the rig file
+        machine, year, window: variances of the deviations
+        freedom: degrees of freedom of the year's variances
+        mean, covariance: of each machine's knobs (machines, k), (machines, k, k)
+        years: mean deviation of each year (years, k) and its standard deviation
+    """
+
+    root: np.ndarray
+    machine: np.ndarray
+    year: np.ndarray
+    window: np.ndarray
+    freedom: float
+    mean: np.ndarray
+    covariance: np.ndarray
+    years: np.ndarray
+    years_sd: np.ndarray
+
+
+def first_levels(sd: np.ndarray, machines: int) -> Levels:
+    """Levels before any data.
+
+    Args:
+        sd: of the knobs between machines (k,)
+        machines: their number
+    """
+    k = len(sd)
+    root, machine = (1.5 * sd) ** 2, sd**2
+    C = np.tile(np.diag(root + machine), (machines, 1, 1))
+    empty = np.zeros((0, k))
+    return Levels(
+        root, machine, (YEAR * sd) ** 2, (WINDOW * sd) ** 2, COUNTS, np.zeros((machines, k)), C, empty, empty
+    )
+
+
+def estimate(found: Quadratics, year: np.ndarray, machine_of: np.ndarray, begun: Levels) -> Levels:
+    """Variances of years and windows, and the knobs of machines, from healthy logs.
+
+    Args:
+        found: of the windows (n)
+        year: number of each window's machine-year (n,)
+        machine_of: machine of each machine-year
+        begun: levels to begin with; its expectations count as data
+    """
+    levels = begun
+    machines = len(begun.mean)
+    for _ in range(ROUNDS):
+        windows = found.spread(levels.window).summed(year, len(machine_of))
+        years = windows.spread(levels.year).summed(machine_of, machines)
+        top = years.spread(levels.machine).summed(np.zeros(machines, dtype=int), 1)
+        C = np.linalg.inv(top.H + np.diag(1 / levels.root))
+        m = (C @ top.eta[:, :, None])[:, :, 0]
+        parents = np.zeros(machines, dtype=int)
+        z, Cz, _, _ = _down(years, levels.machine, m[parents], C[parents])
+        zy, Cy, dy, vy = _down(windows, levels.year, z[machine_of], Cz[machine_of])
+        _, _, dw, vw = _down(found, levels.window, zy[year], Cy[year])
+        levels = replace(
+            levels,
+            year=_variance(dy, vy, begun.year),
+            window=_variance(dw, vw, begun.window),
+            freedom=max(len(machine_of) - len(np.unique(machine_of)), 0) + COUNTS,
+            mean=z,
+            covariance=Cz,
+            years=dy,
+            years_sd=np.sqrt(vy),
+        )
+    return levels
+
+
+def _down(
+    own: Quadratics, variance: np.ndarray, m: np.ndarray, C: np.ndarray
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Values (n, k) with covariance, and deviations from the parents (n, k) with variances, given the parents'."""
+    inverse = np.linalg.inv(own.H + np.diag(1 / variance))
+    mean = (inverse @ (own.eta - (own.H @ m[:, :, None])[:, :, 0])[:, :, None])[:, :, 0]
+    share = inverse @ own.H
+    cov = inverse + share @ C @ share.transpose(0, 2, 1)
+    keep = np.eye(len(variance)) - share
+    return m + mean, inverse + keep @ C @ keep.transpose(0, 2, 1), mean, np.einsum("nii->ni", cov)
+
+
+def _variance(mean: np.ndarray, variance: np.ndarray, expected: np.ndarray) -> np.ndarray:
+    return np.asarray(((mean**2 + variance).sum(axis=0) + COUNTS * expected) / (len(mean) + COUNTS))
+
+
+@dataclass(frozen=True)
+class Effect:
+    """A knob that has moved: its number, the share of its move in each window (n,), and what this share is in words."""
+
+    knob: int
+    share: np.ndarray
+    when: str
+
+
+class Target:
+    """Logs in which causes act: windows of some years of one machine.
+
+    Args:
+        found: quadratics of the windows (n)
+        year: number of each window's year (n,)
+        mean, covariance: of the machine's knobs by its healthy logs
+        levels: variances
+    """
+
+    def __init__(
+        self, found: Quadratics, year: np.ndarray, mean: np.ndarray, covariance: np.ndarray, levels: Levels
+    ) -> None:
+        self.found, self.year, self.levels = found.spread(levels.window), year, levels
+        self.k, self.years = len(mean), int(year.max()) + 1
+        self.precision = np.linalg.inv(covariance)
+        self.pull = self.precision @ mean
+
+    def columns(self, share: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Cross terms with the unknowns (d, k), own terms (k, k) and pull (k,) of all knobs moved by a share."""
+        by_year = Quadratics(self.found.eta * share[:, None], self.found.H * share[:, None, None])
+        summed = by_year.summed(self.year, self.years)
+        cross = np.concatenate([summed.H.sum(axis=0), *summed.H])
+        own = (self.found.H * (share**2)[:, None, None]).sum(axis=0)
+        return cross, own, summed.eta.sum(axis=0)
+
+    def base(self, year_variance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Precision (d, d) and pull (d,) of the unknowns: the machine's knobs, then each year's deviations."""
+        summed, k = self.found.summed(self.year, self.years), self.k
+        d = k * (1 + self.years)
+        A, b = np.zeros((d, d)), np.zeros(d)
+        A[:k, :k], b[:k] = self.precision + summed.H.sum(axis=0), self.pull + summed.eta.sum(axis=0)
+        for y in range(self.years):
+            own = slice(k * (y + 1), k * (y + 2))
+            A[own, own] = summed.H[y] + np.diag(1 / year_variance)
+            A[own, :k] = A[:k, own] = summed.H[y]
+            b[own] = summed.eta[y]
+        return A, b
+
+    def with_effects(
+        self, effects: Sequence[Effect], sd: Sequence[float], year_variance: np.ndarray
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Precision and pull with the sizes of effects as further unknowns, each with its prior."""
+        A, b = self.base(year_variance)
+        d, e = len(b), len(effects)
+        whole, pull = np.zeros((d + e, d + e)), np.concatenate([b, np.zeros(e)])
+        whole[:d, :d] = A
+        for i, effect in enumerate(effects):
+            cross, own, eta = self.columns(effect.share)
+            whole[:d, d + i] = whole[d + i, :d] = cross[:, effect.knob]
+            whole[d + i, d + i] = own[effect.knob, effect.knob] + 1 / sd[i] ** 2
+            pull[d + i] = eta[effect.knob]
+            for j, other in enumerate(effects[:i]):
+                common = (self.found.H[:, effect.knob, other.knob] * effect.share * other.share).sum()
+                whole[d + i, d + j] = whole[d + j, d + i] = common
+        return whole, pull
+
+    def evidence(self, effects: Sequence[Effect], sd: Sequence[float]) -> tuple[float, np.ndarray, np.ndarray]:
+        """Logarithm of the evidence less that of no effect, sizes (e,) and their covariance.
+
+        The year's variances of the knobs in question are known to some degrees of freedom only, and are averaged over.
+        """
+        scales, weights = scale_grid(self.levels.freedom)
+        knobs = np.unique([e.knob for e in effects])
+        logs, nulls, sizes, covariances = [], [], [], []
+        for scale in scales:
+            variance = self.levels.year.copy()
+            variance[knobs] *= scale
+            A, b = self.with_effects(effects, sd, variance)
+            d = len(b) - len(effects)
+            prior = -0.5 * self.years * np.log(variance).sum()
+            logs.append(prior + _log_integral(A, b) - np.log(sd).sum())
+            nulls.append(prior + _log_integral(A[:d, :d], b[:d]))
+            C = np.linalg.inv(A)
+            sizes.append((C @ b)[d:])
+            covariances.append(C[d:, d:])
+        top = max(logs)
+        share = np.exp(np.array(logs) - top) * weights
+        null_top = max(nulls)
+        null = null_top + np.log((np.exp(np.array(nulls) - null_top) * weights).sum())
+        value = top + np.log(share.sum()) - null
+        share /= share.sum()
+        mean = np.einsum("s,se->e", share, np.array(sizes))
+        off = np.array(sizes) - mean
+        cov = np.einsum("s,sef->ef", share, np.array(covariances)) + np.einsum("s,se,sf->ef", share, off, off)
+        return float(value), mean, cov
+
+
+def scale_grid(freedom: float) -> tuple[np.ndarray, np.ndarray]:
+    """Factors on an estimated variance and their weights: an inverse gamma distribution."""
+    scales = 2.0 ** np.arange(-2.0, 5.0)
+    density = -(freedom / 2) * np.log(scales) - freedom / (2 * scales)
+    weights = np.exp(density - density.max())
+    return scales, weights / weights.sum()
+
+
+def _log_integral(A: np.ndarray, b: np.ndarray) -> float:
+    """Logarithm of the integral of exp(b x - x A x / 2), up to a constant of the number of unknowns that cancels."""
+    L = np.linalg.cholesky(A)
+    y = np.linalg.solve(L, b)
+    return float(0.5 * y @ y - np.log(np.diag(L)).sum())

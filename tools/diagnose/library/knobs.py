@@ -1,0 +1,130 @@
+"""Causes for logs: what may differ between machines of one type, from year to year, and since a date.
+
+Each knob changes one parameter or one instrument by a number z. Over logs a cause is a knob that has moved: in all of
+the log, from a date on, or as a drift.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from ...model.parts.grey import GreyLoss
+from ..campaign.table import Sensor
+from .roles import Roles
+
+
+@dataclass(frozen=True)
+class Knob:
+    """Something that may differ between machines and years: its value z changes paths or sensors.
+
+    Args:
+        name: in words
+        cause: identifier of the cause that it is where it has moved
+        doc: what has happened then
+        unit: of z; "1" for the logarithm of a factor
+        usual: size of the cause that is usual [unit]
+        sd: standard deviation between machines of one type [unit]
+        scaled: parameters multiplied by exp(exponent z): path -> exponent
+        shifted: parameters to which z times the factor is added [SI]: path -> factor
+        sensor: a sensor that shows z too much; with `gain` exp(z) times what is there
+        gain: see above
+        sign: +1 or -1 where a fault goes one way only
+    """
+
+    name: str
+    cause: str
+    doc: str
+    unit: str = "1"
+    usual: float = 0.3
+    sd: float = 0.3
+    scaled: Mapping[str, float] = field(default_factory=dict)
+    shifted: Mapping[str, float] = field(default_factory=dict)
+    sensor: str = ""
+    gain: bool = False
+    sign: int = 0
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """Parameters it changes."""
+        return (*self.scaled, *self.shifted)
+
+
+#: Cause of a sensor's error by the sensor's kind, and in words.
+OFFSETS = {
+    "oil_temp": ("sensor.oil_temp.offset", "the oil probe reads too high or too low"),
+    "wall_temp": ("sensor.wall_temp.offset", "the probe on a body reads too high or too low"),
+    "ambient": ("sensor.ambient.bias", "the room probe reads too high or too low"),
+}
+GAINS = {
+    "torque": ("sensor.torque.gain", "the torque reading is wrong by a share of itself", 0.03, 0.02),
+    "speed": ("sensor.speed.gain", "the speed reading is wrong by a share of itself", 0.02, 0.003),
+    "power": ("sensor.power.gain", "the power reading is wrong by a share of itself", 0.03, 0.02),
+}
+
+
+def knobs(roles: Roles, sensors: Sequence[Sensor]) -> tuple[Knob, ...]:
+    """All knobs that the machine and its sensors have.
+
+    Args:
+        roles: of the machine
+        sensors: of the log
+    """
+    return (*_losses(roles), *_cooling(roles), *_bodies(roles), *_sensors(sensors))
+
+
+def _losses(roles: Roles) -> Iterator[Knob]:
+    types = roles.spec.types
+    for name in roles.having("teeth"):
+        if issubclass(types[roles.spec.part(name).type], GreyLoss):
+            yield _factor(f"{name}: loss without load", "losses.churning", "More or less loss without load.", f"{name}.a")
+            yield _factor(f"{name}: loss of load", "losses.mesh_friction", "More or less loss with load.", f"{name}.b")
+        else:
+            yield _factor(f"{name}: friction", "losses.mesh_friction", "More or less friction.", *roles.scaled(name))
+    kinds = {"bearing": "losses.bearing_preload", "seal": "losses.seal_drag", "churning": "losses.churning"}
+    for role, cause in kinds.items():
+        for name in roles.having(role):
+            yield _factor(f"{name}: loss", cause, f"A {role} that loses more or less.", *roles.scaled(name))
+
+
+def _factor(name: str, cause: str, doc: str, *paths: str, usual: float = 0.3, sd: float = 0.3, sign: int = 0) -> Knob:
+    return Knob(name, cause, doc, usual=usual, sd=sd, scaled=dict.fromkeys(paths, 1.0), sign=sign)
+
+
+def _cooling(roles: Roles) -> Iterator[Knob]:
+    for name in roles.having("cooler"):
+        doc = "The cooler takes less heat: dirt on its air side or its oil side, a weak fan."
+        yield _factor(f"{name}: conductance", "cooling.cooler", doc, *roles.scaled(name), sd=0.2)
+    for name in roles.having("switch"):
+        paths = {f"{name}.T_open": 1.0, f"{name}.T_close": 1.0}
+        doc = "The thermostat opens at another temperature."
+        yield Knob(f"{name}: set point", "cooling.thermostat", doc, "K", 3.0, 1.0, shifted=paths)
+    for name in roles.having("jet"):
+        yield _factor(f"{name}: oil flow", "cooling.oil_wall", "Less or more oil reaches a body.", *roles.scaled(name))
+    families = {
+        "cooling.air": (roles.surfaces, "The air takes more or less heat."),
+        "cooling.foundation": (roles.foundation, "More or less heat flows to what the machine stands in."),
+        "cooling.oil_wall": (roles.oil_side, "Another heat transfer or flow between the oil and what it meets."),
+        "cooling.contact": (roles.contacts, "Another conductance between bodies."),
+    }
+    for cause, (names, doc) in families.items():
+        for name in names:
+            yield _factor(f"{name}: conductance", cause, doc, *roles.scaled(name), usual=0.4)
+
+
+def _bodies(roles: Roles) -> Iterator[Knob]:
+    for name in roles.having("bath"):
+        yield _factor(f"{name}: level", "losses.oil_level", "More or less oil.", *roles.scaled(name), sd=0.1, usual=0.25)
+    for name in roles.having("body"):
+        doc = "A heat capacity that is not the model's."
+        yield _factor(f"{name}: heat capacity", "thermal.mass", doc, *roles.scaled(name))
+
+
+def _sensors(sensors: Sequence[Sensor]) -> Iterator[Knob]:
+    for s in sensors:
+        if s.kind in OFFSETS:
+            cause, doc = OFFSETS[s.kind]
+            yield Knob(f"{s.name}: offset", cause, f"{doc[0].upper()}{doc[1:]}.", "K", 2.0, 0.7, sensor=s.name)
+        elif s.kind in GAINS and s.role == "given":
+            cause, doc, usual, sd = GAINS[s.kind]
+            yield Knob(f"{s.name}: gain", cause, f"{doc[0].upper()}{doc[1:]}.", "1", usual, sd, sensor=s.name, gain=True)
