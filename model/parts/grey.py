@@ -96,20 +96,23 @@ class Thermostat(Component):
 
 
 class Cooler(Conductor):
-    """A cooler whose fan or valve a thermostat opens."""
+    """A cooler whose fan or valve a thermostat opens; its fan runs only where the read shaft turns."""
 
     role: ClassVar[str] = "cooler"
     scale: ClassVar[tuple[str, ...]] = ("G_open",)
 
     opening = Opening()
+    reading = ShaftReading(must_meet=True)
 
     G_closed = Parameter("W/K", "conductance while closed", at_least=0.0)
     G_open = Parameter("W/K", "what opening adds to it", nominal=1000.0, at_least=0.0)
+    w_on = Parameter("rad/s", "speed above which it works", nominal=10.0, above=0.0)
     share = Output("1", "how far it is open")
 
     def conductance(self) -> Num:
         """Between closed and open."""
-        return self.G_closed + self.G_open * self.opening.share
+        turning = self.reading.w**2 / (self.reading.w**2 + self.w_on**2)
+        return self.G_closed + self.G_open * self.opening.share * turning
 
     def equations(self) -> Iterator[Equation]:
         """A conductor that shows how far it is open."""
