@@ -13,7 +13,7 @@ from ..model.errors import suggestion
 class Strict(BaseModel):
     """Base: no unknown keys, no silent conversion."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True)
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
 
 
 class DrivenTable(Strict):

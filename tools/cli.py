@@ -193,6 +193,7 @@ def calibrate(
 
 app.command()(cli_diagnosis.diagnose)
 app.command()(cli_diagnosis.plan)
+app.command()(cli_diagnosis.card)
 
 
 @app.command()

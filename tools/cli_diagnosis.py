@@ -83,6 +83,20 @@ def plan(
     diagnosing.plan_command(request, json, out, everything=everything)
 
 
+@console.guarded
+def card(
+    rig: Annotated[str, typer.Argument(help="Name of a shipped rig, or path of a rig file.")],
+    out: Annotated[
+        Path | None, typer.Option("-o", "--out", help="Card to write, .toml or .json; stdout without.")
+    ] = None,
+    json: Json = None,
+) -> None:
+    """A card for the campaigns of a rig: every key with its default and what it means."""
+    from . import cards
+
+    cards.command(rig, out, json)
+
+
 def _one_thread() -> None:
     """Its matrices are small: more threads only wait for each other."""
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import json
 import os
-import resource
 import subprocess
 import sys
 from collections.abc import Callable, Mapping
@@ -16,8 +15,17 @@ from typing import Any
 from ...model.errors import DataError
 from .classes import merged_all
 
-#: Gets the files of a case by what they are, and a folder for answers; writes RESULT.json and PREDICTIONS.csv there.
+#: Gets the files of a case by what they are, and a folder for answers; writes RESULT.json there, and
+#: PREDICTIONS.csv and SECONDS (its processor time) if it can.
 Diagnoser = Callable[[Mapping[str, Path], Path], None]
+
+#: The command, in a process that notes its processor time [s].
+PROGRAM = """
+import atexit, os, pathlib, sys
+from gearheat.tools.cli import main
+atexit.register(lambda: pathlib.Path(os.environ["SECONDS_FILE"]).write_text(str(sum(os.times()[:4]))))
+main()
+"""
 
 #: Longest time for one case [s].
 PATIENCE = 1800.0
@@ -42,23 +50,15 @@ def ask_command(files: Mapping[str, Path], place: Path, seed: int = 0) -> None:
         if name in files:
             words += [option, str(files[name])]
     words += ["--predictions", str(place / "PREDICTIONS.csv")] if "points" in files else []
-    program = [sys.executable, "-c", "from gearheat.tools.cli import main; main()"]
-    env = {**os.environ, **dict.fromkeys(THREADS, "1")}
+    program = [sys.executable, "-c", PROGRAM, *words]
+    env = {**os.environ, **dict.fromkeys(THREADS, "1"), "SECONDS_FILE": str(place / "SECONDS")}
     try:
-        done = subprocess.run(
-            [*program, *words], env=env, capture_output=True, text=True, timeout=PATIENCE, check=False
-        )
+        done = subprocess.run(program, env=env, capture_output=True, text=True, timeout=PATIENCE, check=False)
     except subprocess.TimeoutExpired:
         raise DataError(f"diagnose took more than {PATIENCE:g} s") from None
     if done.returncode != 0:
         said = done.stderr.strip().splitlines()[-1:] or ["no message"]
         raise DataError(f"diagnose ended with code {done.returncode}: {said[0]}")
-
-
-def processor_seconds() -> float:
-    """Processor time of all processes that this one has waited for [s]."""
-    used = resource.getrusage(resource.RUSAGE_CHILDREN)
-    return used.ru_utime + used.ru_stime
 
 
 @dataclass(frozen=True)
@@ -83,7 +83,7 @@ class Answer:
         hypotheses: of causes
         impact: mean change of the readings
         nominal, extended: predicted oil temperatures by point
-        gross: points and channels of single readings that it calls wrong; None where it says nothing of them
+        gross: rows and columns of single readings that it calls wrong; None where it says nothing of them
     """
 
     verdict: str
@@ -128,7 +128,7 @@ def read_answer(place: Path) -> Answer:
             names = names - UNNAMED or names
             weights[names] = weights.get(names, 0.0) + float(h["probability"])
         verdict, impact = str(said["verdict"]), {k: _estimate(v) for k, v in said.get("impact", {}).items()}
-        gross = _gross(said.get("data_quality"))
+        gross = _gross(said)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise DataError(f"{place.name}: not a result of a diagnosis ({type(error).__name__}: {error})") from None
     ranked = sorted(weights.items(), key=lambda item: (-item[1], sorted(item[0])))
@@ -140,12 +140,13 @@ def _estimate(value: Any) -> float:
     return float(value["value"] if isinstance(value, Mapping) else value)
 
 
-def _gross(quality: Mapping[str, Any] | None) -> frozenset[tuple[int, str]] | None:
-    """Rows of the data, from 1, and channels."""
-    if quality is None:
+def _gross(said: Mapping[str, Any]) -> frozenset[tuple[int, str]] | None:
+    """Rows of the data, from 1, and columns."""
+    if "data_quality" not in said:
         return None
-    found = quality.get("gross_readings", quality.get("gross", ()))
-    return frozenset((int(g["row"]), str(g["channel"])) for g in found)
+    columns = {c["name"]: c.get("column") or c["name"] for c in said.get("channels", ())}
+    found = said["data_quality"].get("gross", ())
+    return frozenset((int(g["row"]), str(columns.get(g["channel"], g["channel"]))) for g in found)
 
 
 def _predictions(path: Path) -> tuple[dict[int, float], dict[int, float]]:

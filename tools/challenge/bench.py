@@ -1,22 +1,20 @@
-"""Runs cases: makes them, asks the diagnosis, scores; over several processes, going on where it stopped."""
+"""Runs cases: makes them, asks the diagnosis, scores; several at a time, going on where it stopped."""
 
 from __future__ import annotations
 
 import hashlib
 import json
-import multiprocessing
-import os
+import threading
 import time
-from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
-from contextlib import contextmanager
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ...model.errors import DataError
 from . import practice
-from .answers import THREADS, Answer, Diagnoser, ask_command, processor_seconds, read_answer
+from .answers import Answer, Diagnoser, ask_command, read_answer
 from .cases import make_case
 from .scoring import Outcome, score
 from .sheets import SHEETS
@@ -29,6 +27,9 @@ ANSWER_SOURCES = ("fmu", "tools")
 
 #: Files of a made case by what they are.
 FILES = {"data": "DATA.csv", "card": "CARD.json", "reference": "REF.csv", "points": "POINTS.csv"}
+
+#: Cases are made one at a time: simulators keep buffers.
+_MAKING = threading.Lock()
 
 
 @dataclass(frozen=True)
@@ -83,40 +84,16 @@ def fingerprint(*folders: str) -> str:
 
 
 def run(todo: list[Task], jobs: int, progress: Callable[[int, Outcome], None] = lambda k, o: None) -> list[Outcome]:
-    """Outcomes in the order of the cases; `jobs` processes with one thread each, 0 for this one."""
-    found = []
-    for i, outcome in _results(todo, jobs):
-        found.append((i, outcome))
-        progress(len(found), outcome)
-    return [outcome for _, outcome in sorted(found, key=lambda item: item[0])]
-
-
-def _results(todo: list[Task], jobs: int) -> Iterator[tuple[int, Outcome]]:
-    if jobs < 1:
-        yield from ((i, solve(task)) for i, task in enumerate(todo))
-        return
-    with _one_thread(), ProcessPoolExecutor(jobs, mp_context=multiprocessing.get_context("spawn")) as pool:
-        futures = {pool.submit(solve, task): i for i, task in enumerate(todo)}
+    """Outcomes in the order of the cases; `jobs` diagnoses at a time, each a process of its own."""
+    with ThreadPoolExecutor(max(jobs, 1)) as pool:
+        futures = [pool.submit(solve, task) for task in todo]
         try:
-            yield from ((futures[future], future.result()) for future in as_completed(futures))
+            for done, future in enumerate(as_completed(futures), 1):
+                progress(done, future.result())
         except BaseException:
             pool.shutdown(wait=False, cancel_futures=True)
             raise
-
-
-@contextmanager
-def _one_thread() -> Iterator[None]:
-    """Processes that start meanwhile do their linear algebra in one thread each: several at once are faster so."""
-    before = {name: os.environ.get(name) for name in THREADS}
-    os.environ.update(dict.fromkeys(THREADS, "1"))
-    try:
-        yield
-    finally:
-        for name, value in before.items():
-            if value is None:
-                del os.environ[name]
-            else:
-                os.environ[name] = value
+    return [future.result() for future in futures]
 
 
 def solve(task: Task) -> Outcome:
@@ -142,24 +119,25 @@ def _truth(task: Task) -> dict[str, Any]:
     if not stamp.exists() or stamp.read_text(encoding="utf-8") != task.stamps[0]:
         stamp.unlink(missing_ok=True)
         number, draw = list(SHEETS).index(task.sheet), SHEETS[task.sheet]
-        make_case(draw, number, task.seed, task.k, task.folder, kind=task.kind)
+        with _MAKING:
+            make_case(draw, number, task.seed, task.k, task.folder, kind=task.kind)
         stamp.write_text(task.stamps[0], encoding="utf-8")
     return _read(task.folder / "TRUTH.json")
 
 
 def _ask(task: Task, place: Path) -> dict[str, Any]:
-    """Ask, and note the processor time (of the clock, where the diagnosis is no child) and what went wrong."""
+    """Ask, and note the processor time (of the clock, where the diagnosis does not state it) and what went wrong."""
     place.mkdir(parents=True, exist_ok=True)
     for old in place.glob("*"):
         old.unlink()
     case = task.folder / "case"
     made = {what: case / name for what, name in FILES.items() if (case / name).exists()}
-    problem, began, used = "", time.perf_counter(), processor_seconds()
+    problem, began, noted = "", time.perf_counter(), place / "SECONDS"
     try:
         task.diagnose(practice.files(task.given) if task.given else made, place)
     except Exception as error:  # whatever goes wrong in a diagnosis is an answer that is missing
         problem = f"{type(error).__name__}: {error}"
-    seconds = processor_seconds() - used or time.perf_counter() - began
+    seconds = float(noted.read_text()) if noted.exists() else time.perf_counter() - began
     return {"stamp": task.stamps[1], "problem": problem, "seconds": round(seconds, 3)}
 
 

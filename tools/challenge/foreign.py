@@ -124,7 +124,7 @@ class ForeignRig:
 
     def viscosity(self, T_oil: np.ndarray) -> np.ndarray:
         """Kinematic viscosity after Vogel, through both catalogue values [mm2/s]."""
-        return np.exp(self._vogel_A + self._vogel_B / (np.maximum(T_oil, -40.0) + self.sizes.even["vogel"]))
+        return np.asarray(np.exp(self._vogel_A + self._vogel_B / (np.maximum(T_oil, -40.0) + self.sizes.even["vogel"])))
 
     def second_oil(self, places: Mapping[str, np.ndarray]) -> np.ndarray:
         """Oil nearer to the wall."""
@@ -172,7 +172,7 @@ class ForeignRig:
             flows[a] -= flow
             flows[b] += flow
         flows[place["surface"]] -= self.cooling(T[place["surface"]], scene)
-        return flows / np.array([C * scene.factor[name] for C, name in self._capacities])
+        return np.asarray(flows / np.array([C * scene.factor[name] for C, name in self._capacities]))
 
     def cooling(self, T: np.ndarray, s: Scene) -> np.ndarray:
         """Heat from the surface to the room [W]."""
@@ -213,6 +213,6 @@ def draw(rng: np.random.Generator) -> Drawn:
         room_drift=drift,
         band=(5.0, 60.0),
         names=forms.names,
-        draw=partial(forms.draw, plan, rig.inner_share, False),
+        draw=partial(forms.draw, plan, rig.inner_share),
         facts={"nodes": rig.nodes},
     )

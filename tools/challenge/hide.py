@@ -12,15 +12,7 @@ from .classes import merged
 from .yardstick import Rival, Rivals, Yardstick
 
 #: Kinds in every 25 cases; 150 cases hold 42 clean ones. "alike" has a rival so near that the right answer is a set.
-SHARES: Mapping[str, int] = {
-    "clean": 7,
-    "single": 6,
-    "alike": 1,
-    "regime": 4,
-    "pair": 3,
-    "outside": 2,
-    "weak": 2,
-}
+SHARES: Mapping[str, int] = {"clean": 7, "single": 6, "alike": 1, "regime": 4, "pair": 3, "outside": 2, "weak": 2}
 KINDS = tuple(SHARES)
 BLOCK = sum(SHARES.values())
 

@@ -105,7 +105,7 @@ class OwnRig:
 
     def viscosity(self, T_oil: np.ndarray) -> np.ndarray:
         """Kinematic viscosity of the oil [mm2/s]."""
-        return np.exp(np.interp(T_oil, self._T, self._log_nu))
+        return np.asarray(np.exp(np.interp(T_oil, self._T, self._log_nu)))
 
     def second_oil(self, places: Mapping[str, np.ndarray]) -> np.ndarray:
         """The model knows one oil temperature."""
@@ -118,7 +118,7 @@ class OwnRig:
     def loss_torque(self, T: np.ndarray, scene: Scene) -> np.ndarray:
         """What lacks between the torques of carrier and sun [N.m]."""
         sun = np.abs(self._evaluate(T, scene)[1][0])
-        return np.where(scene.direction == 1, 1.0, -1.0) * (scene.load - RATIO * sun)
+        return np.asarray(np.where(scene.direction == 1, 1.0, -1.0) * (scene.load - RATIO * sun))
 
     def _evaluate(self, T: np.ndarray, scene: Scene) -> list[np.ndarray]:
         tau = np.where(scene.direction == 1, scene.load, -scene.load)
@@ -156,6 +156,6 @@ def draw(rng: np.random.Generator) -> Drawn:
         room_drift=0.0,
         band=(5.0, 40.0),
         names=forms.names,
-        draw=partial(forms.draw, plan, rig.inner_share, True),
+        draw=partial(forms.draw, plan, rig.inner_share),
         facts={"nodes": rig.nodes},
     )

@@ -81,7 +81,7 @@ class Scene:
     @property
     def rise(self) -> np.ndarray:
         """Surface above the room, at least 3 K [K]."""
-        return np.maximum(self.T["surface"] - self.room, 3.0)
+        return np.asarray(np.maximum(self.T["surface"] - self.room, 3.0))
 
     def cut(self, s: slice) -> Scene:
         """Views of some columns."""

@@ -72,7 +72,7 @@ def setting(
     spec = lubricated(driven.spec, card.lubrication)
     roles = Roles.of(spec)
     campaigns = [c for c in (data, reference, *others) if c is not None]
-    oils = oils_of(driven, roles, card, [name for c in campaigns for name in c.oil])
+    oils = oils_of(driven, card, [name for c in campaigns for name in c.oil])
     point = driven.operating_point
     ranges = ranges_of(spec, roles, data, oils, point)
     sensors = data.sensors
@@ -90,9 +90,7 @@ def setting(
     plant = Plant.of(spec, [*forms, *known], tuple(knobs), [s.reads for s in data.given], shown)
     observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
     problem = Problem(observed, card.day_cooling_sd)
-    return Setting(
-        scenario, spec, card, roles, ranges, causes, known, formulas, plant, problem, oils
-    )
+    return Setting(scenario, spec, card, roles, ranges, causes, known, formulas, plant, problem, oils)
 
 
 def _driven(scenario: Scenario, data: Campaign) -> Scenario:

@@ -15,8 +15,8 @@ from ...scenarios.tables import SensorTable, Strict, problem_of
 
 #: Versions of the format that are read.
 SCHEMAS = ("gearheat.card/1", "gearheat.card/2")
-#: Prior standard deviations that a card of version 1 names, for parts of a kind.
-GROUPS = ("mu", "brg", "seal", "hconv", "rad", "gow", "gwh", "cap")
+#: Largest prior standard deviation of a parameter, relative to its value.
+WIDEST = 3.0
 
 
 def _text(value: Any) -> Any:
@@ -74,7 +74,7 @@ class Oil(Strict):
 class Card(Strict):
     """The whole card. Every key has a default."""
 
-    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, populate_by_name=True)
+    model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False, populate_by_name=True)
 
     schema_: Literal["gearheat.card/1", "gearheat.card/2"] = Field(
         default="gearheat.card/2", alias="schema", description="version of the format"
@@ -85,7 +85,7 @@ class Card(Strict):
     units: dict[str, str] = Field(default={}, description="column of the table = its unit")
     channels: dict[str, Channel] = Field(default={}, description="accuracy of a sensor")
     sensors: dict[str, CardSensor] = Field(default={}, description="a sensor that the rig lacks, or overruled keys")
-    prior_sd: dict[str, float] = Field(default={}, description="relative uncertainty of the parameters of a part type")
+    prior_sd: dict[str, float] = Field(default={}, description="relative: PartType.parameter or part.parameter = sd")
     protocol: Protocol = Field(default=Protocol(), description="how the campaign was run: a table, or words")
     lubrication: dict[str, str] = Field(default={}, description="part, part type or group of parts = oil or grease")
     oil: Oil = Field(default=Oil(), description="an oil of the catalogue, or the data of one that it lacks")
@@ -165,7 +165,11 @@ def _known_only(name: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list
 def _problems(card: Card) -> list[str]:
     """Values that cannot be."""
     name, oil = card.name, card.oil
-    problems = [f"{name} prior_sd.{k} = {v:g} is not above 0." for k, v in card.prior_sd.items() if not v > 0]
+    problems = [
+        f"{name} prior_sd.{k} = {v:g} is not above 0 and at most {WIDEST:g}. Give a part of the parameter's value."
+        for k, v in card.prior_sd.items()
+        if not 0 < v <= WIDEST
+    ]
     if (oil.nu40 is None) != (oil.nu100 is None):
         problems.append(f"{name} oil: give both nu40 and nu100 [mm2/s], or the name of an oil of the catalogue.")
     if oil.nu40 is not None and oil.nu100 is not None:

@@ -69,7 +69,6 @@ def _built(campaign: Campaign, plan: Sequence[tuple[int, Step | None]], change: 
     own = np.where(campaign.stop[source] > 0, campaign.stop[source], stop)
     tests = sorted({int(test) for test in campaign.test[source[unread]]})
     numbers = ", ".join(str(int(campaign.order[test])) for test in tests)
-    starts = _room_starts(campaign, unread, first, change)
     return replace(
         campaign,
         values={s.name: _column(campaign, s, source, unread, turned, change) for s in campaign.sensors},
@@ -77,8 +76,6 @@ def _built(campaign: Campaign, plan: Sequence[tuple[int, Step | None]], change: 
         direction=np.array([campaign.direction[row] if step is None else step[0] for row, step in plan]),
         dwell=np.array([campaign.dwell[row] if step is None else step[1] for row, step in plan]),
         stop=np.where(first, 0.0, own),
-        room_start=starts,
-        humidity=campaign.humidity[source],
         lines=np.where(unread, UNREAD, campaign.lines[source]),
         points=np.where(unread, UNREAD, campaign.points[source]),
         warnings=(
@@ -104,9 +101,3 @@ def _column(
     signed = sensor.kind == "torque" and sensor.signs == (1.0, 1.0)
     made = values * (turned if signed else 1.0) - change.get(sensor.name, 0.0)
     return np.asarray(np.where(unread, made, values))
-
-
-def _room_starts(campaign: Campaign, unread: np.ndarray, first: np.ndarray, change: Mapping[str, float]) -> np.ndarray:
-    """Room at the start of each test [K] (n_tests,), earlier where its first row was not read."""
-    earlier = next(iter(change.values()), 0.0)
-    return np.asarray(campaign.room_start - np.where(unread[first], earlier, 0.0))

@@ -39,7 +39,7 @@ def _columns(campaign: Campaign) -> Iterator[tuple[str, str]]:
         yield "cooling.humidity", "no humidity_pct: it cannot be told from a scatter of the days"
     if not any(campaign.date):
         yield "procedure.day_scatter", "no date: each test counts as a day of its own"
-    if campaign.n_tests < campaign.n and len(set(campaign.order)) == 1 or campaign.n_tests == 1:
+    if (campaign.n_tests < campaign.n and len(set(campaign.order)) == 1) or campaign.n_tests == 1:
         yield "procedure.order", "all readings have the same order"
         yield from ((f"sensor.{kind}.{form}", "all readings have the same order") for kind in kinds for form in ORDERED)
     if len(set(np.sign(campaign.direction))) < 2:
@@ -47,7 +47,9 @@ def _columns(campaign: Campaign) -> Iterator[tuple[str, str]]:
         yield "sensor.torque.offset", "one direction only: it cannot be told from a loss that no load changes"
         yield from ((f"sensor.{kind}.by_direction", "one direction only") for kind in kinds)
     if len(set(campaign.mounting)) < 2:
-        yield from ((f"sensor.{kind}.mounting", "one mounting only: it is part of the fixed tolerance") for kind in kinds)
+        yield from (
+            (f"sensor.{kind}.mounting", "one mounting only: it is part of the fixed tolerance") for kind in kinds
+        )
 
 
 def _sensors(campaign: Campaign) -> Iterator[tuple[str, str]]:

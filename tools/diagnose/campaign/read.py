@@ -16,8 +16,8 @@ from .card import Card
 from .checks import checked
 from .context import CONTEXT, DIRECTIONS, Cells, contradictions, floats, order_warnings
 from .halves import with_unread
-from .lubrication import oil_problems, oil_values, oil_warnings
 from .nominal import Nominal
+from .oils import oil_problems, oil_values, oil_warnings
 from .sensors import SI, driven_by, sensors_of
 from .table import Campaign, Sensor
 
@@ -136,7 +136,7 @@ class _Reader:
         points = cells.numbers("point")
         return Campaign(
             name=self.path.name,
-            sensors=self.sensors,
+            sensors=tuple(_one_way(s, direction) for s in self.sensors),
             values={name: column[rows] for name, column in values.items()},
             test=test,
             order=order[starts],
@@ -183,3 +183,12 @@ class _Reader:
         usual = protocol.stop if protocol else 0.0
         usual = usual if self.card.protocol.stop_min is None else 60.0 * self.card.protocol.stop_min
         return np.asarray(np.where(first, 0.0, np.where(np.isfinite(stated[rows]), stated[rows], usual)))
+
+
+def _one_way(sensor: Sensor, direction: np.ndarray) -> Sensor:
+    """The sensor with one sign where the power flows one way in all rows (n,)."""
+    if (direction < 0).any() and (direction >= 0).any():
+        return sensor
+    sign = sensor.signs[1] if (direction < 0).any() else sensor.signs[0]
+    return replace(sensor, signs=(sign, sign))
+

@@ -13,7 +13,7 @@ from ...scenarios.scenario import Scenario
 from ...scenarios.tables import Strict
 from .card import Card, CardSensor, Channel, Protocol
 from .context import CONTEXT
-from .lubrication import lubricants
+from .oils import lubricants
 from .sensors import SI, sensors_of
 from .table import Sensor
 

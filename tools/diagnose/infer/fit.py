@@ -46,6 +46,10 @@ class Fit:
         """Ids of its causes."""
         return tuple(a.id for a in self.look.acting)
 
+    def split(self, problem: Problem, x: np.ndarray) -> tuple[np.ndarray, tuple[Acting, ...]]:
+        """Nuisances and causes of another point of the same vector."""
+        return _Vector(problem, self.look.acting).split(x)
+
     def linear(self, problem: Problem) -> tuple[White, np.ndarray]:
         """The linearised problem beside this hypothesis: whitening by all that is uncertain, and the residual in it.
 
@@ -58,6 +62,11 @@ class Fit:
             V = V + self.form**2 * _rough(problem, self.look, vector)
         white = White.of(V)
         return white, white(problem.measured - self.look.shown + J @ self.look.x)
+
+
+def prior_precision(problem: Problem, acting: Sequence[Acting]) -> np.ndarray:
+    """Of the vector's entries by their priors, sizes by the widest."""
+    return _Vector(problem, acting).precision
 
 
 def _rough(problem: Problem, look: Look, vector: _Vector) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 from scipy.special import logsumexp
@@ -14,6 +14,7 @@ from ...model.errors import SolveError
 from ..library.cause import Cause
 from ..model.formula import Formula
 from . import screen
+from .draws import correction
 from .extra import Extra, extras
 from .fit import Fit, fitted
 from .gross import MOST as MOST_ASIDE
@@ -28,6 +29,8 @@ WITHIN, FORMS, EACH, LEAST = 9.0, 14, 3, 4
 GROWN, PAIRS, BEHIND = 4, 7, 6.0
 #: p of any cause above which little is fitted.
 QUIET = 0.3
+#: Hypotheses within so many nats of the best are weighed by draws of the exact model.
+NEAR = 4.0
 #: Searches at most, where the leading hypothesis changes which readings are gross.
 LOOKS = 3
 
@@ -42,6 +45,7 @@ class Hypothesis:
         log_joint: log evidence, all forms counted, plus log prior
         extra: a spread of sizes or a remainder beside them
         forms: log weight of each form of each cause, by id and name
+        error: standard error of the log evidence by importance sampling; 0 where none was needed
     """
 
     causes: tuple[str, ...]
@@ -49,6 +53,7 @@ class Hypothesis:
     log_joint: float
     extra: Extra | None = None
     forms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    error: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -56,12 +61,14 @@ class Found:
     """Result of a search.
 
     Args:
+        formulas: all forms, those of spreads last
         null: the fit without a cause
         first: all causes at a first look
         hypotheses: all that were fitted, most probable first
         probabilities: of them
         p_any: p of the log Bayes factor of any cause
         critical: its critical value
+        drawn: that log Bayes factor in campaigns without a cause, as drawn
         p_omnibus: chi-square p of the null
     """
 
@@ -73,6 +80,7 @@ class Found:
     probabilities: np.ndarray
     p_any: float
     critical: float
+    drawn: np.ndarray
     p_omnibus: float
 
 
@@ -136,10 +144,8 @@ class Search:
         self.formulas = tuple(f for f in formulas if not f.form.spread)
         self.spreads = tuple(f for f in formulas if f.form.spread)
         self.causes: dict[str, Cause] = {f.cause.id: f.cause for f in formulas}
-        families = {c.family for c in self.causes.values()}
-        shared = {name: sum(c.family == name for c in self.causes.values()) for name in families}
         #: Log share of the prior of one cause that each cause has: classes share theirs.
-        self.share = {c.id: -np.log(len(families) * shared[c.family]) for c in self.causes.values()}
+        self.share = shares(self.causes.values())
 
     def run(self, start: Fit | None = None) -> Found:
         """Everything."""
@@ -153,7 +159,7 @@ class Search:
         singles = self._singles()
         self.progress("causes two by two", 0.5)
         grown = [] if self.p_any > QUIET else self._grown(singles)
-        base = [Hypothesis((), self.null, self.null.evidence + self.log_none), *singles, *grown]
+        base = self._corrected([Hypothesis((), self.null, self.null.evidence + self.log_none), *singles, *grown])
         self.progress("scatter and remainder", 0.8)
         hypotheses = sorted([*base, *self._beside(base)], key=lambda h: -h.log_joint)
         logs = np.array([h.log_joint for h in hypotheses])
@@ -161,13 +167,14 @@ class Search:
         free = problem.m - len(problem.aside)
         return Found(
             problem,
-            self.formulas,
+            (*self.formulas, *self.spreads),
             self.null,
             self.first,
             tuple(hypotheses),
             np.exp(logs - logsumexp(logs)),
             self.p_any,
             self.critical,
+            self.drawn,
             float(chi2.sf(e @ e, free)),
         )
 
@@ -188,7 +195,7 @@ class Search:
                 for c, k in zip(first.candidates, first.owner, strict=True)
             ]
         )
-        drawn = screen.null_draws(first, weights, self.seed)
+        self.drawn = drawn = screen.null_draws(first, weights, self.seed)
         seen = float(logsumexp(first.log_bf + weights))
         self.critical = float(np.quantile(drawn, 1 - self.alpha))
         self.p_any = float((1 + (drawn >= seen).sum()) / (1 + len(drawn)))
@@ -277,6 +284,17 @@ class Search:
             found.append((float(log), h, k, beside.start(k)))
         return found
 
+    def _corrected(self, base: Sequence[Hypothesis]) -> list[Hypothesis]:
+        """The leading hypotheses with what importance sampling makes of their evidence."""
+        best = max(h.log_joint for h in base)
+        found = []
+        for h in base:
+            if h.log_joint > best - NEAR:
+                by = correction(self.problem, h.fit, self.seed)
+                h = replace(h, log_joint=h.log_joint + by.log, error=by.error)
+            found.append(h)
+        return found
+
     def _beside(self, base: Sequence[Hypothesis]) -> list[Hypothesis]:
         """The leading hypotheses with a spread of sizes or a remainder beside them."""
         best = max(h.log_joint for h in base)
@@ -287,11 +305,11 @@ class Search:
             for extra, gain in extras(self.problem, h.fit, self.spreads):
                 if extra.cause is None:
                     log = h.log_joint + gain + np.log(OUTSIDE)
-                    found.append(Hypothesis(h.causes, h.fit, float(log), extra, h.forms))
+                    found.append(replace(h, log_joint=float(log), extra=extra))
                 elif extra.cause not in h.causes:
                     causes = (*h.causes, extra.cause)
                     log = h.log_joint + gain + self._added(h.causes, extra.cause)
-                    found.append(Hypothesis(causes, h.fit, float(log), extra, h.forms))
+                    found.append(replace(h, causes=causes, log_joint=float(log), extra=extra))
         return found
 
     def _added(self, causes: Sequence[str], more: str) -> float:
@@ -299,6 +317,20 @@ class Search:
         if not causes:
             return self.prior([more]) - self.log_none
         return self.prior([*causes, more]) - self.prior(causes)
+
+
+def shares(causes: Iterable[Cause]) -> dict[str, float]:
+    """Log share of the prior of one cause that each cause has: those of a class share that of its most usual one."""
+    families: dict[str, list[Cause]] = {}
+    for cause in causes:
+        families.setdefault(cause.family, []).append(cause)
+    weight = {name: max(c.common for c in own) for name, own in families.items()}
+    whole = sum(weight.values())
+    return {
+        c.id: float(np.log(weight[name] / whole * c.common / sum(o.common for o in own)))
+        for name, own in families.items()
+        for c in own
+    }
 
 
 def _value(best: Mapping[str, int], f: Formula, log_bf: np.ndarray, formulas: Sequence[Formula]) -> float:

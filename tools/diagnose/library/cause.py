@@ -199,5 +199,6 @@ class Ranges:
 
 
 def as_array(value: Num, n: int) -> np.ndarray:
-    """A number or an array as an array of n."""
-    return np.broadcast_to(np.asarray(value, dtype=float).ravel(), n) if np.size(value) in (1, n) else np.asarray(value)
+    """What a formula gives for n rows as an array of n: numbers, arrays or CasADi numbers."""
+    flat = value.full().ravel() if isinstance(value, ca.DM) else np.asarray(value, dtype=float).ravel()
+    return np.broadcast_to(flat, n)

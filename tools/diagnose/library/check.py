@@ -60,8 +60,9 @@ def problems(cause: Cause, spec: Spec, sensors: Sequence[Sensor], ranges: Ranges
     names = [form.name for form in cause.forms]
     if twice := {name for name in names if names.count(name) > 1}:
         found.append(f"several forms are named {', '.join(map(repr, sorted(twice)))}. Give each its own name.")
+    stated = parameters(spec)
     for form in cause.forms:
-        found += [f"form {form.name!r}: {problem}" for problem in _of_form(cause, form, spec, sensors, ranges)]
+        found += [f"form {form.name!r}: {problem}" for problem in _of_form(cause, form, spec, stated, sensors, ranges)]
     return [f"cause {cause.id}: {problem}" for problem in found]
 
 
@@ -81,13 +82,21 @@ def middle(shapes: Sequence[Shape]) -> dict[str, float]:
     return {shape.name: float(shape.at(0.0)) for shape in shapes}
 
 
-def _of_form(cause: Cause, form: Form, spec: Spec, sensors: Sequence[Sensor], ranges: Ranges) -> Iterator[str]:
+def _of_form(
+    cause: Cause,
+    form: Form,
+    spec: Spec,
+    stated: Mapping[str, float],
+    sensors: Sequence[Sensor],
+    ranges: Ranges,
+) -> Iterator[str]:
     """What is wrong with a form: it cannot be evaluated, or acts at size zero."""
     wide = spec.with_parts(form.parts, form.connections, EXTRA_PARTS)
     if unknown := [part.type for part in form.parts if part.type not in wide.types]:
         yield f"there is no part type {', '.join(unknown)}.{suggestion(unknown[0], wide.types)}"
         return
-    base = _Known("parameter", parameters(wide))
+    added = {f"{part.name}.{key}": value for part in form.parts for key, value in part.values.items()}
+    base = _Known("parameter", {**stated, **added})
     shown = _Known("sensor", {s.name: ranges.mid.get(s.name, 300.0) for s in sensors})
     read = _Known("compared sensor", {s.name: shown[s.name] for s in sensors if s.role == "read"})
     theta = {cause.size.name: 0.0} | middle(form.shapes)

@@ -104,7 +104,7 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
 
     Args:
         roles: of the machine
-        prior_sd: of the card: relative standard deviations by key ("mu") or by "PartType.parameter"
+        prior_sd: of the card: relative standard deviations by key ("mu"), by "PartType.parameter" or by "part.parameter"
         uncertainties: path -> standard uncertainty that the rig file states, in SI; what the card says counts more
     """
     found: list[Nuisance] = []
@@ -117,7 +117,7 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
             part, _, key = path.partition(".")
             if base.get(path) == 0.0:
                 continue  # no factor changes it
-            own = prior_sd.get(f"{kinds[part]}.{key}")
+            own = prior_sd.get(path, prior_sd.get(f"{kinds[part]}.{key}"))
             stated = uncertainties.get(path)
             if own is None and stated and group.key not in prior_sd and exponent > 0:
                 own = abs(stated / float(base[path]))

@@ -11,8 +11,12 @@ from ...model.machines.spec import PartSpec
 from ..campaign.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Size, Theta, Values
 from .cooling import factors
+from .extra_parts import step
 from .heat import bodies
 from .roles import Roles
+
+#: A body gives no more than this share of its capacity.
+LEFT = 0.95
 
 
 def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
@@ -64,9 +68,11 @@ def capacity_moved(roles: Roles) -> Iterator[Form]:
 
     def values(theta: Theta, row: Row) -> Values:
         within, around = (sum(row.base[path] for path in paths) for paths in (inside, outside))
-        moved = theta["shift"] * (within + around)
-        up, down = (0.95 * ca.tanh(s * moved / body / 0.95) for s, body in ((1, within), (-1, around)))
-        return {p: row.base[p] * (1 + up) for p in inside} | {p: row.base[p] * (1 + down) for p in outside}
+        wanted = theta["shift"] * (within + around)
+        most = LEFT * (within + (around - within) * step(wanted / (0.05 * within)))  # of the side that gives
+        moved = wanted * (1 + (wanted / most) ** 8) ** (-1 / 8)
+        up, down = 1 + moved / within, 1 - moved / around
+        return {p: row.base[p] * up for p in inside} | {p: row.base[p] * down for p in outside}
 
     yield Form("capacity", values=values)
 

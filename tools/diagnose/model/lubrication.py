@@ -7,9 +7,9 @@ from dataclasses import replace
 
 from ...model.errors import DataError, suggestion
 from ...model.machines.spec import Spec
-from ...scenarios.entries import catalogue
 from ...scenarios.scenario import Scenario
 from ..campaign.card import Card
+from ..campaign.oils import oil_values
 from ..library.roles import Roles
 
 #: What a card calls groups of parts.
@@ -38,6 +38,8 @@ def lubricated(spec: Spec, lubrication: Mapping[str, str]) -> Spec:
             problems.append(f'card lubrication: unknown part "{name}".{suggestion(name, known)}')
         elif lubricant not in LUBRICANTS:
             problems.append(f'card lubrication: {name} = "{lubricant}" is not known. Write "oil" or "grease".')
+        elif lubricant == "grease" and set(parts) & set(roles.having("teeth")):
+            problems.append(f'card lubrication: {name} = "grease" is not modelled. The teeth run in the oil.')
         elif not sources and any(roles.nets.ports_of_lubricant(p) for p in parts):
             problems.append(f"card lubrication: {spec.name} has no {lubricant}. Leave out {name}.")
         else:
@@ -68,28 +70,13 @@ def _parts(roles: Roles, name: str) -> tuple[str, ...] | None:
     return found or None
 
 
-def oils_of(scenario: Scenario, roles: Roles, card: Card, names: Iterable[str]) -> dict[str, dict[str, float]]:
-    """Oil of a test -> values by path: the catalogue's, or else the card's, completed by the rig's own oil.
+def oils_of(scenario: Scenario, card: Card, names: Iterable[str]) -> dict[str, dict[str, float]]:
+    """Oil of a test -> values by path, without those that the rig is filled with.
 
     Args:
         scenario: the rig
-        roles: of its parts
         card: it may describe an oil that the catalogue does not have
         names: of all oils in the tables; "" is that of the rig
     """
-    found: dict[str, dict[str, float]] = {}
-    bath, oil = roles.bath, card.oil
-    for name in dict.fromkeys(names):
-        if not bath or (not name and not oil.name and oil.nu40 is None):
-            continue
-        stated = oil.name if oil.name in catalogue("oil") else None
-        if name in catalogue("oil") or (stated and not name):
-            found[name] = scenario.entry_values(bath, name or str(stated))
-        elif oil.nu40 is not None and oil.nu100 is not None:
-            values = {"nu_40": oil.nu40 * 1e-6, "nu_100": oil.nu100 * 1e-6}
-            values |= {} if oil.rho15 is None else {"rho_15": oil.rho15}
-            values |= {} if oil.alpha_T is None else {"alpha_T": -abs(oil.alpha_T)}
-            found[name] = {f"{bath}.{key}": value for key, value in values.items()}
-        elif stated:
-            found[name] = scenario.entry_values(bath, stated)
-    return found
+    found = {name: oil_values(scenario, name, card) for name in dict.fromkeys(names)}
+    return {name: values for name, values in found.items() if values}

@@ -18,6 +18,8 @@ MARKS = {1: "o", -1: "^", 0: "s"}
 DIRECTIONS = {1: "direction +1", -1: "direction -1", 0: ""}
 #: Readings that are drawn, at most; more than these groups of readings have no line through their means.
 MOST, GROUPS = 600, 8
+#: Values of a quantity that each have a tick.
+FEW = 3
 
 
 def picture(findings: Findings, found: Picture) -> str:
@@ -29,7 +31,7 @@ def picture(findings: Findings, found: Picture) -> str:
     for panel, (title, values, colour) in zip(panels, sides, strict=True):
         _residuals(panel, x, _numbers(values), direction, colour, _scatter(findings.rows, found.channel))
         panel.set_title(title)
-        panel.set_xlabel(_label(quantity))
+        _along(panel, quantity)
     panels[0].set_ylabel(_left(findings.channel(found.channel), found.channel))
     _directions(panels[0], figure_of=direction)
     return svg(figure)
@@ -50,7 +52,7 @@ def overview(findings: Findings) -> str:
             for model, colour, word in sides(values):
                 left = _numbers(values.measured) - _numbers(model)
                 _residuals(panel, _numbers(axis.values), left, direction, colour, values.sd, word)
-            panel.set_xlabel(_label(axis))
+            _along(panel, axis)
             panel.label_outer()
         line[0].set_ylabel(_left(findings.channel(name), name))
     legend(figure, panels[0])
@@ -115,9 +117,14 @@ def _directions(panel: Axes, *, figure_of: np.ndarray) -> None:
         panel.legend(fontsize=8)
 
 
-def _label(quantity: Rows.Quantity) -> str:
+def _along(panel: Axes, quantity: Rows.Quantity) -> None:
+    """Label of the axis; a tick for each value where there are but a few."""
     unit = phrases.SHOWN.get(quantity.unit, quantity.unit)
-    return f"{quantity.label} [{unit}]" if unit else quantity.label
+    panel.set_xlabel(f"{quantity.label} [{unit}]" if unit else quantity.label)
+    places = sorted({v for v in quantity.values if v is not None})
+    if len(places) <= FEW:
+        panel.set_xticks(places)
+        panel.margins(x=0.25)
 
 
 def _left(channel: Channel | None, name: str) -> str:

@@ -28,12 +28,15 @@ def _p(value: float) -> float:
     return rounded(min(max(float(value), LEAST_P), 1.0), 4)
 
 
-def _listed(values: Any) -> Any:
-    """An array of any kind as numbers, None where there is none."""
-    if not isinstance(values, Iterable) or isinstance(values, str):
-        return values
+def array(values: Iterable[Any]) -> tuple[float | None, ...]:
+    """Numbers to the digits that are kept, None where there is none."""
     numbers = (None if v is None else float(v) for v in values)
     return tuple(rounded(v, ARRAY_DIGITS) if v is not None and math.isfinite(v) else None for v in numbers)
+
+
+def _listed(values: Any) -> Any:
+    """An array of any kind as numbers."""
+    return array(values) if isinstance(values, Iterable) and not isinstance(values, str) else values
 
 
 #: A finite number.

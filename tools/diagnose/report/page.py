@@ -73,7 +73,7 @@ def _picture(findings: Findings, index: int) -> dict[str, Any]:
     found = findings.pictures[index]
     cause = findings.cause(found.cause)
     size = phrases.estimate(cause.parameters[0]) if cause and cause.parameters else ""
-    where = phrases.regime(cause) if cause else ""
+    where = phrases.where(cause) if cause else ""
     return {
         "name": name_of(found.cause),
         "svg": Markup(figures.picture(findings, found)),

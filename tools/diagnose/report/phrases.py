@@ -108,10 +108,18 @@ def regime(found: Cause) -> str:
     return f"only at {', '.join(parts)}" if parts else ""
 
 
+def where(found: Cause) -> str:
+    """In which parts and where a cause acts; empty where it acts in all of them everywhere."""
+    limits = regime(found)
+    name = found.forms[0].name if found.forms else ""
+    parts = [part for part in name.split(", ") if not (limits and part.startswith(("above a", "below a")))]
+    return ", ".join(filter(None, (*parts, limits)))
+
+
 def answer(found: Answer) -> str:
     """The causes of an answer; members of one class with "or" between."""
     classes = [names_of(group, "or") for group in found.causes]
-    return " together with ".join(classes) if len(classes) > 1 else "".join(classes)
+    return ("; and " if any(len(group) > 1 for group in found.causes) else " and ").join(classes)
 
 
 def gross(found: GrossReading) -> str:

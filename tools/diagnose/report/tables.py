@@ -62,7 +62,7 @@ def causes(findings: Findings) -> list[Table]:
             phrases.percent(c.probability, c.mc_error),
             name_of(c.id),
             phrases.estimate(c.parameters[0]) if c.parameters else "",
-            ", ".join(filter(None, (c.forms[0].name if c.forms else "", phrases.regime(c)))),
+            phrases.where(c),
             "" if c.q is None else phrases.p_value(c.q).replace("p", "q", 1),
             c.id,
         )
@@ -147,7 +147,7 @@ def sets(findings: Findings) -> list[Table]:
     smallest = (
         (name_of(c.id), *(_value(v, c.unit) or "not visible" for v in (c.detectable, c.usual)), c.meaning)
         for c in findings.causes
-        if c.usual is not None
+        if c.usual is not None and any(other.detectable is not None for other in findings.causes)
     )
     blind = ((name_of(i.cause), i.reason) for i in findings.invisible)
     values = ((v.path, *(_value(x, v.unit) for x in (v.file, v.nominal, v.extended))) for v in findings.calibrated)

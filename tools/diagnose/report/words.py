@@ -163,8 +163,7 @@ def _size(findings: Findings) -> str:
 def _sized(cause: Cause) -> str:
     if not cause.parameters:
         return ""
-    where = ", ".join(filter(None, (cause.forms[0].name if cause.forms else "", phrases.regime(cause))))
-    place = f" ({where})" if where else ""
+    place = f" ({where})" if (where := phrases.where(cause)) else ""
     return f"{name_of(cause.id)}{place}: {phrases.meaning(cause.parameters[0])} {phrases.estimate(cause.parameters[0])}"
 
 

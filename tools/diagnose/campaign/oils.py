@@ -1,22 +1,17 @@
-"""Which lubricant reaches which part, and the oils of a campaign: what a card says beside the rig and the catalogue."""
+"""Lubricants and oils of a campaign: what a card says beside the rig and the catalogue."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
 
-from ...model.core.component import Component
-from ...model.errors import DataError, suggestion
+from ...model.errors import suggestion
 from ...model.machines.spec import Spec
-from ...model.parts.bearings import NeedleBearing, RollingBearing, SkfBearing
-from ...model.parts.gears import ToothedPart
+from ...model.parts.bearings import RollingBearing
 from ...model.parts.lubrication import LubricantProperties, OilBath
 from ...scenarios.entries import catalogue
 from ...scenarios.scenario import Scenario
 from .card import Card, Oil
 
-#: Groups of parts by what they are, as a card may call them.
-GROUPS: Mapping[str, type[Component]] = {"gears": ToothedPart, "bearings": SkfBearing, "needles": NeedleBearing}
 #: Port by which a part is lubricated, and by which a lubricant reaches it.
 PORT = "lubricant"
 #: Relative difference of a viscosity from the catalogue's that is worth a warning.
@@ -36,67 +31,7 @@ def lubricants(spec: Spec) -> dict[str, str]:
     return found
 
 
-def lubricated(spec: Spec, lubrication: Mapping[str, str]) -> Spec:
-    """The machine with parts connected to the lubricants that a card names.
-
-    Args:
-        spec: the machine
-        lubrication: part, part type or group of parts -> "oil", "grease" or the part that holds the lubricant;
-            what is left out stays as it is
-
-    Raises:
-        DataError: unknown parts or lubricants
-    """
-    wanted, problems = _wanted(spec, lubrication)
-    if problems:
-        raise DataError(problems)
-    moved = {f"{part}.{PORT}": f"{source}.{PORT}" for part, source in wanted.items()}
-    nets = []
-    for net in spec.connections:
-        users = [port for port in net if port not in moved]
-        nets.append((*users, *(port for port, source in moved.items() if source in users)))
-    missing = {source for source in moved.values() if not any(source in net for net in nets)}
-    nets += [(source, *(port for port, of in moved.items() if of == source)) for source in sorted(missing)]
-    return replace(spec, connections=tuple(net for net in nets if len(net) > 1))  # a lubricant without users goes
-
-
-def _wanted(spec: Spec, lubrication: Mapping[str, str]) -> tuple[dict[str, str], list[str]]:
-    """Part -> part that holds its lubricant, and what is wrong."""
-    users = {port.removesuffix(f".{PORT}") for net in spec.connections for port in net if port.endswith(f".{PORT}")}
-    sources = [part.name for part in spec.parts if _is(spec, part.name, LubricantProperties)]
-    users -= set(sources)
-    wanted: dict[str, str] = {}
-    problems: list[str] = []
-    for key, lubricant in lubrication.items():
-        parts = sorted(part for part in users if _means(spec, part, key))
-        source = [s for s in sources if s == lubricant or _kind(spec, s) == lubricant]
-        if not parts and key not in GROUPS:
-            names = [*GROUPS, *sorted(users)]
-            problems.append(
-                f'card lubrication: {spec.name} has no lubricated part "{key}".{suggestion(key, names)}'
-                f" Known: {', '.join(names)}."
-            )
-        elif parts and len(source) != 1:
-            problems.append(
-                f'card lubrication: {key} = "{lubricant}" is not known. {spec.name} has {", ".join(sources)}.'
-            )
-        elif parts and _kind(spec, source[0]) == "grease" and any(_is(spec, part, ToothedPart) for part in parts):
-            problems.append(f'card lubrication: {key} = "{lubricant}" is not modelled. The teeth run in the oil.')
-        else:
-            wanted |= dict.fromkeys(parts, source[0]) if parts else {}
-    return wanted, problems
-
-
-def _means(spec: Spec, part: str, key: str) -> bool:
-    """Whether a key of the card means a part: its name, its type or its group."""
-    return key in (part, spec.part(part).type) or (key in GROUPS and _is(spec, part, GROUPS[key]))
-
-
-def _kind(spec: Spec, part: str) -> str:
-    return "oil" if _is(spec, part, OilBath) else "grease"
-
-
-def _is(spec: Spec, part: str, cls: type[Component]) -> bool:
+def _is(spec: Spec, part: str, cls: type) -> bool:
     return issubclass(spec.types[spec.part(part).type], cls)
 
 
@@ -113,13 +48,15 @@ def bath_of(scenario: Scenario) -> str:
 def oil_values(scenario: Scenario, name: str, card: Card) -> dict[str, float]:
     """Values by path of the oil of a name: the catalogue's, or else the card's, completed by those of the rig's oil.
 
+    There are none for the rig's own oil, which it is filled with.
+
     Args:
         scenario: the rig
         name: as in the column `oil`, "" for the card's oil or else that of the rig
         card: which may describe or name the oil that the tables' own name stands for
     """
     bath, known = bath_of(scenario), catalogue("oil")
-    if not bath:
+    if not bath or not (name or card.oil.name or card.oil.nu40):
         return {}
     if name in known:
         return scenario.entry_values(bath, name)

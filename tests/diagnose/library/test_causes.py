@@ -1,0 +1,222 @@
+"""Every cause on every rig: sound forms, symbols and numbers alike, nothing at size zero."""
+
+from collections.abc import Mapping
+
+import casadi as ca
+import numpy as np
+import pytest
+from gearheat.diagnose.library.cause import Row, as_array
+from gearheat.diagnose.library.check import parameters, problems
+from gearheat.diagnose.library.extra_parts import EXTRA_PARTS
+from gearheat.model.core.flatten import flatten
+from gearheat.model.machines.spec import assemble
+from gearheat.model.run.steady import steady
+from gearheat.scenarios.load import list_rigs
+
+RIGS = tuple(list_rigs())
+ROWS = 4
+FEATURES = {
+    "order": np.linspace(0, 1, ROWS),
+    "direction": np.array([1.0, -1.0, 1.0, -1.0]),
+    "rise": np.array([12.0, 30.0, 41.0, 55.0]),
+    "humidity": np.array([0.3, 0.5, 0.6, 0.4]),
+    "second": np.array([0.0, 1.0, 0.0, 1.0]),
+    "dwell": np.array([14400.0, 5400.0, 14400.0, 5400.0]),
+}
+
+
+@pytest.mark.parametrize("rig", RIGS)
+def test_forms_are_sound_and_neutral_at_size_zero(case, rig):
+    c = case(rig)
+    assert len({x.id for x in c.causes}) == len(c.causes)
+    assert [p for x in c.causes for p in problems(x, c.scenario.spec, c.sensors, c.ranges)] == []
+
+
+class Symbols(Mapping):
+    """A symbol for every name that is asked for, of known numbers."""
+
+    def __init__(self, numbers):
+        self.numbers, self.made = numbers, {}
+
+    def __getitem__(self, name):
+        self.numbers[name]
+        return self.made.setdefault(name, ca.SX.sym(name.replace(".", "_")))
+
+    def __iter__(self):
+        return iter(self.numbers)
+
+    def __len__(self):
+        return len(self.numbers)
+
+
+def said(form, theta, row, read):
+    """All that a form says, by name."""
+    found = dict(form.values(theta, row)) if form.values else {}
+    found |= form.truth(theta, row) if form.truth else {}
+    found |= form.shown(theta, row, read) if form.shown else {}
+    return found | ({"pace": form.pace(theta, row)} if form.pace else {})
+
+
+@pytest.mark.parametrize("rig", RIGS)
+def test_symbols_and_arrays_of_rows_give_the_same(case, rig):
+    c, rng = case(rig), np.random.default_rng(1)
+    own = parameters(c.scenario.spec)
+    for cause in c.causes:
+        for form in cause.forms:
+            added = {f"{p.name}.{key}": v for p in form.parts for key, v in p.values.items()}
+            base = {path: np.full(ROWS, v) for path, v in (own | added).items()}
+            shows = {s.name: c.ranges.mid[s.name] * rng.uniform(0.8, 1.2, ROWS) for s in c.sensors}
+            theta = {cause.size.name: 0.4 * cause.size.sd}
+            theta |= {shape.name: float(shape.at(rng.normal())) for shape in form.shapes}
+            numbers = said(form, theta, Row(base=base, sensors=shows, **FEATURES), shows)
+            b, s, r = Symbols(base), Symbols(shows), Symbols(shows)
+            f = {name: ca.SX.sym(name) for name in FEATURES}
+            t = {name: ca.SX.sym(name) for name in theta}
+            symbols = said(form, t, Row(base=b, sensors=s, **f), r)
+            assert symbols.keys() == numbers.keys()
+            whole = ca.vertcat(*(ca.SX(v) for v in symbols.values()))
+            made = [*b.made.values(), *s.made.values(), *r.made.values(), *f.values(), *t.values()]
+            function = ca.Function("form", made, [whole, ca.jacobian(whole, ca.vertcat(*t.values()))])
+            given = [base[k] for k in b.made] + [shows[k] for k in s.made] + [shows[k] for k in r.made]
+            for k in range(ROWS):
+                at = [v[k] for v in (*given, *FEATURES.values())] + list(theta.values())
+                value, slope = function(*at)
+                expected = [as_array(v, ROWS)[k] for v in numbers.values()]
+                np.testing.assert_allclose(value.full().ravel(), expected, rtol=1e-9, atol=1e-12, err_msg=cause.id)
+                assert np.isfinite(slope.full()).all(), (cause.id, form.name)
+
+
+@pytest.mark.parametrize("rig", RIGS)
+def test_extra_parts_of_all_causes_change_nothing(case, rig):
+    c = case(rig)
+    parts = {p.name: p for x in c.causes for f in x.forms for p in f.parts}
+    nets = dict.fromkeys(net for x in c.causes for f in x.forms for net in f.connections)
+    flat = flatten(assemble(c.scenario.spec.with_parts(parts.values(), nets, EXTRA_PARTS)))
+    found = steady(flat, c.scenario.operating_point)
+    for q in flat.states:
+        assert found[q.name][0] == pytest.approx(c.nominal[q.name][0], abs=1e-4), q.name
+
+
+@pytest.mark.parametrize(
+    ("rig", "cause"),
+    [
+        ("planetary", "losses.bearing_preload"),
+        ("helical_two_stage", "losses.churning"),
+        ("helical_two_stage", "losses.seal_drag"),
+        ("harmonic", "losses.mesh_friction"),
+        ("fzg_four_square", "losses.seal_drag"),
+    ],
+)
+def test_the_size_is_the_power_of_all_parts_at_the_reference(case, rig, cause):
+    c = case(rig)
+    x = c.cause(cause)
+    for form in [f for f in x.forms if not f.regime][:2]:
+        spec = c.scenario.spec.with_parts(form.parts, form.connections, EXTRA_PARTS)
+        theta = {"P_ref": 0.01 * c.ranges.loss} | {s.name: float(s.at(0.0)) for s in form.shapes}
+        row = Row(base=parameters(spec), sensors=dict(c.ranges.mid))
+        values = {k: float(v) for k, v in form.values(theta, row).items()}
+        found = steady(flatten(assemble(spec)), {**c.scenario.operating_point, **values})
+        power = sum(found[f"{p.name}.P"][0] for p in form.parts)
+        acting = {k.partition(".")[0] for k in values}
+        assert acting <= {p.name for p in form.parts}
+        assert power == pytest.approx(theta["P_ref"], rel=0.05)
+        assert found[c.roles.oil][0] >= c.nominal[c.roles.oil][0] - 1e-3
+
+
+def test_which_causes_a_rig_has(case):
+    helical = {x.id for x in case("helical_two_stage").causes}
+    assert {"losses.churning", "losses.seal_drag", "cooling.air", "cooling.contact", "thermal.split"} <= helical
+    assert not {"losses.mesh_direction", "cooling.thermostat", "sensor.oil_temp.by_direction"} & helical
+    assert "losses.torque_only" not in helical  # no torque is compared
+    assert {"losses.mesh_direction", "losses.torque_only", "sensor.torque.step"} <= {
+        x.id for x in case("planetary").causes
+    }
+    assert {"cooling.thermostat", "cooling.cooler"} <= {x.id for x in case("fzg_four_square").causes}
+
+
+def test_what_is_not_known_of_the_rows_is_left_out(without):
+    everything = without("planetary", "order", "dwell", "mounting", "humidity", "logs")
+    for known, ids in {
+        "humidity": ["cooling.humidity"],
+        "dwell": ["procedure.not_stationary"],
+        "mounting": ["sensor.torque.mounting"],
+        "logs": ["heat.parked", "sensor.wall_temp.lag"],
+        "order": ["procedure.order", "sensor.torque.drift", "sensor.oil_temp.frozen"],
+    }.items():
+        others = {"order", "dwell", "mounting", "humidity", "logs"} - {known}
+        assert set(ids) <= set(everything) and not set(ids) & set(without("planetary", *others))
+
+
+def test_one_of_several_parts_is_a_form(case):
+    names = {f.name for f in case("helical_two_stage").cause("losses.bearing_preload").forms}
+    assert {"", "input_bearing_a, input_bearing_b", "middle_bearing_a, middle_bearing_b"} <= names
+    assert {"above a speed", "below a speed", "above a temperature"} <= names
+
+
+def test_sizes_follow_the_loss_and_the_cooling_of_the_rig(case):
+    for rig in ("planetary", "harmonic"):
+        c = case(rig)
+        assert c.cause("losses.churning").size.sd == pytest.approx(0.085 * c.ranges.loss)
+        assert c.cause("cooling.air").size.sd == pytest.approx(0.14 * c.ranges.loss / c.ranges.rise)
+
+
+def test_thresholds_lie_in_the_range_of_the_data(case):
+    c = case("planetary")
+    for x in c.causes:
+        for form in x.forms:
+            for shape in form.shapes:
+                if shape.name == "threshold" and x.id.startswith("losses") and form.regime["quantity"][:5] == "speed":
+                    assert (shape.low, shape.high) == (c.ranges.low["w"], c.ranges.high["w"])
+
+
+def test_early_readings_never_end_before_they_begin(case):
+    c = case("planetary")
+    for form in c.cause("procedure.not_stationary").forms:
+        row = Row(base={}, sensors={}, second=np.array([0.0, 1.0]), dwell=np.array([14400.0, 1800.0]))
+        early, most = (as_array(form.pace({"missing": size}, row), 2) for size in (0.2, 0.95))
+        assert (most > 0).all() and (early <= 1 + 1e-12).all() and early.min() < 0.96
+        if "minutes" in form.name and form.name == "by minutes":
+            assert early[0] == pytest.approx(1 - 0.2 * 7200 / 14400, abs=0.01)
+
+
+def test_capacity_is_moved_not_made(case):
+    c = case("helical_two_stage")
+    form = next(f for f in c.cause("thermal.split").forms if f.name == "capacity")
+    base = parameters(c.scenario.spec)
+    moved = form.values({"shift": 0.1}, Row(base=base, sensors={}))
+    total = sum(base[path] for path in moved)
+    assert sum(float(v) for v in moved.values()) == pytest.approx(total, rel=1e-9)
+    inside = c.roles.scaled(*c.roles.inside)
+    gained = sum(float(moved[p]) - base[p] for p in inside)
+    assert gained == pytest.approx(0.1 * total, rel=1e-3)
+
+
+@pytest.mark.parametrize("form", ["heat of all losses, from the housing", "heat of all losses, from the oil"])
+def test_moved_heat_warms_what_turns_and_loses_none(case, form):
+    c = case("planetary")
+    f = next(f for f in c.cause("thermal.split").forms if f.name == form)
+    flat = flatten(assemble(c.scenario.spec.with_parts(f.parts, f.connections, EXTRA_PARTS)))
+    values = {k: float(v) for k, v in f.values({"shift": 0.2}, Row(base={}, sensors={})).items()}
+    found = steady(flat, {**c.scenario.operating_point, **values})
+    assert found["gears.T"][0] > c.nominal["gears.T"][0] + 0.5
+    assert found["room.Q_flow"][0] == pytest.approx(found["efficiency.P_loss"][0], rel=1e-6)
+
+
+def test_a_loss_of_the_couplings_is_seen_by_torque_and_not_by_heat(case):
+    c = case("planetary")
+    f = c.cause("losses.torque_only").forms[0]
+    flat = flatten(assemble(c.scenario.spec.with_parts(f.parts, f.connections, EXTRA_PARTS)))
+    theta = {"P_ref": 50.0} | {s.name: float(s.at(0.0)) for s in f.shapes}
+    values = {k: float(v) for k, v in f.values(theta, Row(base={}, sensors={})).items()}
+    found = steady(flat, {**c.scenario.operating_point, **values})
+    more = found["efficiency.P_loss"][0] - c.nominal["efficiency.P_loss"][0]
+    assert more == pytest.approx(50.0, rel=0.1)
+    assert found["oil.T"][0] == pytest.approx(c.nominal["oil.T"][0], abs=0.5)
+
+
+def test_a_thermostat_keeps_another_temperature(case):
+    c = case("fzg_four_square")
+    x = c.cause("cooling.thermostat")
+    values = x.forms[0].values({"dT": 5.0}, Row(base={"thermostat.dT": 0.0}, sensors={}))
+    found = steady(flatten(assemble(c.scenario.spec)), {**c.scenario.operating_point, **values})
+    assert found["oil.T"][0] - c.nominal["oil.T"][0] == pytest.approx(5.0, abs=1.0)

@@ -1,0 +1,141 @@
+"""What wrong instruments show, and what drove the machine when they were wrong."""
+
+import numpy as np
+import pytest
+from gearheat.diagnose.library.cause import Row, as_array
+
+ORDER = np.array([0.0, 0.0, 0.5, 0.5, 1.0, 1.0])
+DIRECTION = np.array([1.0, -1.0] * 3)
+
+
+@pytest.fixture(scope="module")
+def planetary(case):
+    return case("planetary")
+
+
+def row(c, **readings):
+    shows = {s.name: np.full(6, c.ranges.mid[s.name]) for s in c.sensors} | readings
+    rise = np.array([20.0, 20.0, 30.0, 30.0, 40.0, 40.0])
+    return Row(base={}, sensors=shows, order=ORDER, direction=DIRECTION, rise=rise)
+
+
+def form_of(cause, *words):
+    return next(f for f in cause.forms if all(w in f.name.split(", ") for w in words))
+
+
+def shown(c, cause, form, size, **shapes):
+    """What the sensors show beyond the true values."""
+    here = row(c)
+    true = {s.name: here.sensors[s.name] for s in c.sensors if s.role == "read"}
+    theta = {cause.size.name: size} | shapes
+    found = form.shown(theta, here, true)
+    return {name: as_array(value, 6) - true[name] for name, value in found.items()}
+
+
+def truth(c, cause, form, size, **shapes):
+    """What truly was, less what was shown."""
+    here = row(c)
+    found = form.truth({cause.size.name: size} | shapes, here)
+    return {name: as_array(value, 6) - here.sensors[name] for name, value in found.items()}
+
+
+def test_a_probe_that_is_compared_shows_too_much(planetary):
+    cause = planetary.cause("sensor.wall_temp.offset")
+    assert shown(planetary, cause, cause.forms[0], 2.0) == {"T_wall": pytest.approx(np.full(6, 2.0))}
+
+
+def test_where_a_room_probe_reads_too_much_the_room_was_colder(planetary):
+    cause = planetary.cause("sensor.ambient.bias")
+    assert truth(planetary, cause, cause.forms[0], 2.0) == {"T_amb": pytest.approx(np.full(6, -2.0))}
+
+
+def test_the_zero_of_a_transducer_has_opposite_signs_on_magnitudes(planetary):
+    cause = planetary.cause("sensor.torque.offset")
+    assert truth(planetary, cause, form_of(cause, "T_carrier"), 4.0)["T_carrier"] == pytest.approx(-4.0 * DIRECTION)
+    wrong = shown(planetary, cause, form_of(cause, "T_sun"), 4.0)["T_sun"]
+    share = planetary.ranges.mid["T_sun"] / planetary.ranges.mid["T_carrier"]
+    assert wrong == pytest.approx(-4.0 * share * DIRECTION)
+
+
+def test_a_gain_is_a_share_of_the_magnitude_in_both_directions(planetary):
+    cause = planetary.cause("sensor.torque.gain")
+    wrong = shown(planetary, cause, form_of(cause, "T_sun"), 0.01)["T_sun"]
+    assert wrong == pytest.approx(np.full(6, 0.01 * planetary.ranges.mid["T_sun"]))
+
+
+def test_from_one_test_on_and_in_one_direction_only(planetary):
+    cause = planetary.cause("sensor.wall_temp.since")
+    at = {"threshold": 0.25, "zero": 0.0}
+    wrong = shown(planetary, cause, cause.forms[0], 2.0, **at)["T_wall"]
+    assert wrong == pytest.approx([0, 0, 2, 2, 2, 2], abs=1e-6)
+    directed = shown(planetary, cause, form_of(cause, "driven only"), 2.0, **at)["T_wall"]
+    assert directed == pytest.approx([0, 0, 0, 2, 0, 2], abs=1e-6)
+
+
+def test_a_probe_that_drifts(planetary):
+    cause = planetary.cause("sensor.wall_temp.drift")
+    wrong = shown(planetary, cause, cause.forms[0], 2.0, power=1.0, zero=0.0)["T_wall"]
+    assert wrong == pytest.approx(2.0 * ORDER, abs=1e-6)
+
+
+def test_a_probe_by_direction(planetary):
+    cause = planetary.cause("sensor.oil_temp.by_direction")
+    wrong = shown(planetary, cause, form_of(cause, "T_oil", "driving only"), 2.0)["T_oil"]
+    assert wrong == pytest.approx([2, 0] * 3)
+
+
+def test_on_one_side_of_a_speed(planetary):
+    c = planetary
+    cause = c.cause("sensor.wall_temp.offset")
+    form = form_of(cause, "above a speed")
+    low, high = c.ranges.low["n_carrier"], c.ranges.high["n_carrier"]
+    here = row(c, n_carrier=np.array([low, high] * 3))
+    true = {s.name: here.sensors[s.name] for s in c.sensors if s.role == "read"}
+    found = form.shown({"error": 2.0, "threshold": (low + high) / 2, "width": 1.0}, here, true)
+    assert as_array(found["T_wall"], 6) - true["T_wall"] == pytest.approx([0, 2] * 3, abs=1e-6)
+
+
+def test_exchanged_probes_show_each_others_temperature(planetary):
+    c = planetary
+    cause = c.cause("sensor.oil_temp.swapped")
+    here = row(c)
+    true = {"T_oil": np.full(6, 350.0), "T_wall": np.full(6, 330.0)}
+    found = form_of(cause, "T_oil with T_wall").shown({"share": 1.0}, here, true)
+    assert as_array(found["T_oil"], 6) == pytest.approx(true["T_wall"])
+    assert as_array(found["T_wall"], 6) == pytest.approx(true["T_oil"])
+
+
+def test_a_frozen_probe_shows_the_same_from_one_test_on(planetary):
+    cause = planetary.cause("sensor.wall_temp.frozen")
+    wrong = shown(planetary, cause, cause.forms[0], 1.0, threshold=0.75, held=333.0)["T_wall"]
+    assert wrong[:4] == pytest.approx(np.zeros(4), abs=1e-6)
+    assert wrong[4:] + planetary.ranges.mid["T_wall"] == pytest.approx(np.full(2, 333.0))
+
+
+def test_a_probe_drawn_to_the_room_loses_a_share_of_its_excess(planetary):
+    c = planetary
+    cause = c.cause("sensor.oil_temp.position")
+    wrong = shown(c, cause, form_of(cause, "T_oil", "towards T_amb"), 0.1, a=0.0)["T_oil"]
+    assert wrong == pytest.approx(np.full(6, -0.1 * (c.ranges.mid["T_oil"] - c.ranges.mid["T_amb"])))
+
+
+def test_a_room_probe_in_the_warm_air_reads_the_more_too_high_the_warmer_the_machine(planetary):
+    c = planetary
+    cause = c.cause("sensor.ambient.heated")
+    wrong = -truth(c, cause, cause.forms[0], 2.0, e=1.0)["T_amb"]
+    assert wrong == pytest.approx(2.0 * row(c).rise / c.ranges.rise, rel=1e-2)
+
+
+def test_spreads_are_told(planetary):
+    assert {f.spread for f in planetary.cause("sensor.torque.random_walk").forms} == {"walk"}
+    assert {f.spread for f in planetary.cause("sensor.torque.mounting").forms} == {"mounting"}
+    assert {f.spread for f in planetary.cause("procedure.day_scatter").forms} == {"test"}
+
+
+def test_every_kind_of_instrument_has_the_same_errors(planetary):
+    ids = {x.id for x in planetary.causes}
+    for kind in ("oil_temp", "wall_temp", "ambient", "torque", "speed"):
+        offset = "bias" if kind == "ambient" else "offset"
+        since = "step" if kind == "torque" else "since"
+        for key in (offset, since, "gain", "drift", "by_direction", "mounting", "random_walk"):
+            assert f"sensor.{kind}.{key}" in ids

@@ -1,0 +1,101 @@
+"""What may differ without being a fault, by roles."""
+
+import math
+from dataclasses import replace
+
+import pytest
+from gearheat.diagnose.library.extra_parts import EXTRA_PARTS
+from gearheat.diagnose.library.forms import Context
+from gearheat.diagnose.library.nuisances import habit, nuisances
+from gearheat.model.core.flatten import flatten
+from gearheat.model.machines.spec import assemble
+from gearheat.model.run.rows import evaluate_at
+from gearheat.model.run.steady import steady
+from gearheat.scenarios.load import list_rigs
+
+RIGS = tuple(list_rigs())
+
+
+def named(case, rig, prior=None, uncertainties=None):
+    return {n.name: n for n in nuisances(case(rig).roles, prior or {}, uncertainties or {})}
+
+
+def test_groups_of_the_planetary_gearbox(case):
+    found = named(case, "planetary")
+    assert {name: set(n.paths) for name, n in found.items()} == {
+        "mesh friction": {"gear_set.k_mu"},
+        "bearing loss": {"carrier_bearing.k_loss", "sun_bearing.k_loss", "planet_bearing.k_loss"},
+        "seal loss": {"carrier_seal.k_loss", "sun_seal.k_loss"},
+        "churning": {"churning.k_loss"},
+        "radiation": {"cooling.emissivity"},
+        "oil to what turns": {"oil_gears.G"},
+        "oil to other bodies": {"oil_carrier_body.G", "oil_wall.G"},
+        "between bodies": {"carrier_body_wall.G", "wall_surface.G"},
+        "capacities": {"gears.C", "carrier_body.C", "wall.C", "surface.C", "oil.V"},
+        "capacities inside": {"gears.C", "carrier_body.C"},
+        "foundation": {"foot.G"},
+        "convection": {"cooling.A", "cooling.emissivity"},
+    }
+
+
+def test_what_is_zero_has_no_uncertain_factor(case):
+    c = case("planetary")
+    without = replace(c.roles, spec=c.scenario.spec.with_values({"foot.G": 0.0}))
+    assert "foundation" not in {n.name for n in nuisances(without, {}, {})}
+
+
+def test_the_card_says_how_uncertain(case):
+    assert named(case, "planetary")["mesh friction"].sd == 0.1
+    assert named(case, "planetary", {"mu": 0.15})["mesh friction"].sd == 0.15
+    both = named(case, "rv_stage", {"HelicalGearPair.k_mu": 0.05})["mesh friction"]
+    assert both.sd == 0.1 and both.paths["stage_1.k_mu"] == pytest.approx(0.5)
+    least = named(case, "helical_two_stage", {"HelicalGearPair.k_mu": 0.3})["mesh friction"]
+    assert least.sd == pytest.approx(0.3) and set(least.paths.values()) == {1.0}
+
+
+def test_the_rig_file_says_how_uncertain_unless_the_card_does(case):
+    stated = {"foot.G": 0.19}
+    assert named(case, "planetary", None, stated)["foundation"].sd == pytest.approx(0.19 / 9.332)
+    assert named(case, "planetary", {"hconv": 0.3}, stated)["foundation"].sd == pytest.approx(0.15)
+
+
+@pytest.mark.parametrize("rig", ["planetary", "helical_two_stage", "cycloidal"])
+def test_more_convection_does_not_radiate_more(case, rig):
+    c = case(rig)
+    flat = flatten(assemble(c.scenario.spec))
+    convection = named(case, rig)["convection"]
+    own = dict(zip([q.name for q in flat.parameters], flat.starts("parameter"), strict=True))
+    factor = {path: own[path] * math.exp(0.2 * e) for path, e in convection.paths.items()}
+
+    def flows(values):
+        """Convected and radiated at the same temperatures."""
+        x = [c.nominal[q.name][0] for q in flat.states]
+        u = [c.scenario.operating_point.get(q.name, q.start) for q in flat.inputs]
+        found = evaluate_at(flat, x, u, list((own | values).values()))
+        y = dict(zip([q.name for q in flat.outputs], found["y"], strict=True))
+        return [sum(float(y[f"{s}.Q_flow_{way}"]) for s in c.roles.surfaces) for way in ("convection", "radiation")]
+
+    (convected, radiated), (more, same) = flows({}), flows(factor)
+    assert same == pytest.approx(radiated, rel=1e-9)
+    assert more / convected == pytest.approx(math.exp(0.2), rel=0.12)
+
+
+@pytest.mark.parametrize("rig", RIGS)
+def test_every_path_is_a_parameter_of_the_rig(case, rig):
+    c = case(rig)
+    known = {q.name for q in flatten(assemble(c.scenario.spec)).parameters}
+    for n in nuisances(c.roles, {}, {}):
+        assert set(n.paths) <= known and n.sd > 0 and n.wide > 0
+
+
+def test_friction_in_thin_films_is_none_until_a_reference_tells_it(case):
+    c = case("helical_two_stage")
+    films = habit(Context(c.roles, c.ranges, c.sensors))
+    assert films.sd == 0.0 and films.wide == 1.0
+    flat = flatten(assemble(c.scenario.spec.with_parts(films.parts, films.connections, EXTRA_PARTS)))
+    none, some = (
+        steady(flat, {**c.scenario.operating_point, **{path: math.exp(z) for path in films.paths}}) for z in (0.0, 0.5)
+    )
+    assert none["oil.T"][0] == pytest.approx(c.nominal["oil.T"][0], abs=1e-4)
+    assert some["oil.T"][0] > none["oil.T"][0] + 0.1
+    assert habit(Context(case("harmonic_printed").roles, c.ranges, c.sensors)) is None

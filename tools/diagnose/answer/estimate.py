@@ -1,0 +1,229 @@
+"""How big: sizes and shapes of causes with intervals, what they change on average, and what would have been seen."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+from scipy.special import logsumexp
+from scipy.stats import norm
+
+from ..infer.evidence import WIDTHS, White, log_bayes_factors
+from ..infer.fit import bounds
+from ..infer.problem import Acting, Problem
+from ..infer.search import Found, Hypothesis, Search
+from ..library.cause import Cause, Form, Shape
+from .decide import Member
+
+Bound = Literal["", "low", "high"]
+#: Half width of a 95 % interval in standard deviations, and the power of the detectable size.
+WIDE, POWER = 1.96, 0.8
+#: How near to a bound a value sits on it, as a share of its range; hypotheses that share an estimate, as a share.
+NEAR, COUNTS = 0.02, 0.01
+#: Standard deviations of a spread that are weighed, in half widths of the prior.
+SPREADS = np.geomspace(0.1, 8.0, 25)
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A parameter with its 95 % interval, in the unit beside it."""
+
+    name: str
+    value: float
+    ci95: tuple[float, float]
+    unit: str
+    doc: str
+    at_bound: Bound
+
+
+@dataclass(frozen=True)
+class Impact:
+    """Mean change of a compared sensor over the rows of the data, with 95 % interval [SI]."""
+
+    value: float
+    ci95: tuple[float, float]
+
+
+def posterior(problem: Problem, h: Hypothesis) -> tuple[np.ndarray, np.ndarray]:
+    """Mean (d,) and covariance (d, d) of the vector of a hypothesis, linearised where it was fitted."""
+    fit, J = h.fit, h.fit.look.jacobian
+    V = fit.noise.covariance if h.extra is None else fit.noise.covariance + h.extra.covariance
+    white = White.of(V)
+    precision = np.ones(J.shape[1])
+    sizes = places(problem, h)
+    precision[sizes] = WIDTHS[-1] ** -2
+    G = white(J)
+    covariance = np.linalg.inv(G.T @ G + np.diag(precision))
+    x = fit.look.x
+    if h.extra is not None:
+        x = covariance @ (G.T @ white(problem.measured - fit.look.shown + J @ x))
+    covariance[sizes, sizes] += (fit.form * x[sizes]) ** 2
+    return x, covariance
+
+
+def places(problem: Problem, h: Hypothesis) -> list[int]:
+    """Where the sizes of its causes stand in its vector."""
+    lengths = [a.formula.size for a in h.fit.look.acting]
+    return [problem.nz + sum(lengths[:k]) for k in range(len(lengths))]
+
+
+def estimates(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estimate, ...]:
+    """Size, averaged over the hypotheses that hold a cause, and shapes of the most probable one."""
+    total = sum(p for _, p in members)
+    acting = [(h, p) for h, p in members if cause in h.fit.causes and p >= COUNTS * total]
+    if not acting:
+        return _spread(found, cause, members)
+    means, variances, weights = [], [], []
+    for h, p in acting:
+        place = places(found.problem, h)[h.fit.causes.index(cause)]
+        x, covariance = posterior(found.problem, h)
+        means.append(x[place])
+        variances.append(covariance[place, place])
+        weights.append(p)
+    w, m = np.array(weights) / sum(weights), np.array(means)
+    centre = float(w @ m)
+    spread = float(np.sqrt(w @ (np.array(variances) + (m - centre) ** 2)))
+    best = max(acting, key=lambda member: member[1])[0]
+    one = best.fit.look.acting[best.fit.causes.index(cause)]
+    size = _size(one.formula.cause, centre, spread)
+    return (size, *_shapes(found.problem, best, one))
+
+
+def _size(cause: Cause, centre: float, spread: float) -> Estimate:
+    """A size by its mean and standard deviation, in half widths of its prior."""
+    s = cause.size
+    low, value, high = (float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE))
+    return Estimate(s.name, value, (low, high), s.unit, s.doc, at_bound(value, s.low, s.high))
+
+
+def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
+    """The shapes of a cause in a hypothesis."""
+    begin = places(problem, h)[h.fit.causes.index(one.id)]
+    x, covariance = posterior(problem, h)
+    found = []
+    for k, shape in enumerate(one.formula.form.shapes, start=1):
+        sd = min(float(np.sqrt(covariance[begin + k, begin + k])), 1.0)
+        values = []
+        for step in (-WIDE * sd, 0.0, WIDE * sd):
+            t = one.t.copy()
+            t[k] = np.clip(x[begin + k] + step, -3.0, 3.0)
+            values.append(one.formula.theta(t)[shape.name])
+        low, value, high = values
+        unit, (low, value, high) = shown(shape, [low, value, high])
+        bound = at_bound(values[1], shape.low, shape.high)
+        found.append(Estimate(shape.name, value, (low, high), unit, shape.doc, bound))
+    return found
+
+
+def shown(shape: Shape, values: Sequence[float]) -> tuple[str, list[float]]:
+    """Values of a shape in the unit people read: degC and rpm."""
+    if shape.unit == "K" and shape.low > 150.0:
+        return "degC", [v - 273.15 for v in values]
+    if shape.unit == "rad/s":
+        return "rpm", [v * 30 / np.pi for v in values]
+    return shape.unit, list(values)
+
+
+def at_bound(value: float, low: float, high: float) -> Bound:
+    """The bound that a value sits on."""
+    near = NEAR * (high - low)
+    return "low" if value <= low + near and low != 0.0 else "high" if value >= high - near else ""
+
+
+def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estimate, ...]:
+    """The standard deviation of sizes that differ, as the most probable hypothesis has it."""
+    own = [h for h, _ in members if h.extra is not None and h.extra.cause == cause]
+    if not own:
+        return ()
+    h = own[0]
+    assert h.extra is not None
+    white, e = h.fit.linear(found.problem)
+    V, r, one = white.L @ white.L.T, white.L @ e, h.extra.covariance / h.extra.size**2
+    logs = []
+    for size in SPREADS:
+        beside = White.of(V + size**2 * one)
+        logs.append(beside.log_density(beside(r)))
+    share = np.cumsum(np.exp(np.array(logs) - logsumexp(logs)))
+    low, value, high = (float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975))
+    size_of = next(f.cause.size for f in found.formulas if f.cause.id == cause)
+    sd = size_of.sd
+    doc = f"standard deviation of: {size_of.doc}"
+    return (Estimate(size_of.name, sd * value, (sd * low, sd * high), size_of.unit, doc, ""),)
+
+
+def form_shares(cause: str, members: Sequence[Member]) -> dict[str, float]:
+    """Form -> its share of the cause's probability, most probable first."""
+    total: dict[str, float] = {}
+    for h, p in members:
+        if h.extra is not None and h.extra.cause == cause:
+            own = {h.extra.form: 1.0}
+        elif cause in h.forms:
+            logs = h.forms[cause]
+            scale = logsumexp(list(logs.values()))
+            own = {name: float(np.exp(value - scale)) for name, value in logs.items()}
+        else:
+            own = {h.fit.look.acting[h.fit.causes.index(cause)].formula.form.name: 1.0}
+        for name, share in own.items():
+            total[name] = total.get(name, 0.0) + p * share
+    whole = sum(total.values()) or 1.0
+    return dict(sorted(((n, v / whole) for n, v in total.items()), key=lambda item: (-item[1], item[0])))
+
+
+def regime(form: Form, theta: Mapping[str, float]) -> dict[str, tuple[float | None, float | None]]:
+    """Where a form acts: quantity with unit -> above, below; empty where it acts everywhere."""
+    shape = next((s for s in form.shapes if s.name == form.regime.get("shape")), None)
+    if shape is None:
+        return {}
+    quantity, _, side = form.regime["quantity"].rpartition(" ")
+    unit, (value,) = shown(shape, [theta[shape.name]])
+    return {f"{quantity} [{unit}]": (value, None) if side == "above" else (None, value)}
+
+
+def impact(problem: Problem, h: Hypothesis, only: str | None = None) -> dict[str, Impact]:
+    """Mean change of each compared sensor by the causes of a hypothesis, or by one of them."""
+    fit, o = h.fit, problem.data
+    moved = [a for a in fit.look.acting if only is None or a.id == only]
+    if not moved:
+        return {}
+    without = [replace(a, t=np.r_[0.0, a.t[1:]]) if a in moved else a for a in fit.look.acting]
+    change = fit.look.shown - problem.shown(fit.look.z, without)
+    spans = zip(places(problem, h), fit.look.acting, strict=True)
+    own = np.concatenate([np.arange(begin, begin + a.formula.size) for begin, a in spans if a in moved])
+    covariance = posterior(problem, h)[1][np.ix_(own, own)]
+    found = {}
+    for i, s in enumerate(o.read):
+        rows = np.flatnonzero(o.kind == i)
+        if not len(rows):
+            continue
+        slope = fit.look.jacobian[np.ix_(rows, own)].mean(axis=0)
+        value, sd = float(change[rows].mean()), float(np.sqrt(slope @ covariance @ slope))
+        found[s.name] = Impact(value, (value - WIDE * sd, value + WIDE * sd))
+    return found
+
+
+def detectable(found: Found) -> dict[str, float]:
+    """Smallest size of each cause, in its unit, that would be an alarm in 80 of 100 such campaigns; none: never."""
+    share = Search(found.problem, found.formulas).share
+    first: dict[str, int] = {}
+    for k, c in enumerate(found.first.candidates):
+        first.setdefault(c.id, k)
+    places_of = list(first.values())
+    candidates = [found.first.candidates[k] for k in places_of]
+    q = (found.first.white[:, places_of] ** 2).sum(axis=0)
+    low, high = (np.array([bounds(c)[i][0] for c in candidates]) for i in (0, 1))
+    needed = np.array([found.critical - share[c.id] for c in candidates])
+    sign = np.where(high > 0, 1.0, -1.0)
+    below, above = np.zeros(len(q)), np.where(sign > 0, high, -low)
+
+    def seen(size: np.ndarray) -> np.ndarray:
+        s = sign * (size * q - norm.ppf(POWER) * np.sqrt(q))
+        return np.asarray(log_bayes_factors(s, q, low, high) > needed)
+
+    known = seen(above)
+    for _ in range(30):
+        middle = 0.5 * (below + above)
+        enough = seen(middle)
+        below, above = np.where(enough, below, middle), np.where(enough, middle, above)
+    return {c.id: float(a * c.formula.cause.size.sd) for c, a, k in zip(candidates, above, known, strict=True) if k}

@@ -1,0 +1,75 @@
+"""The public interface: what the model gets wrong in measured data."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+from .diagnosis import diagnosed
+from .report.findings import Findings
+from .request import Request, read
+
+File = str | Path
+Files = File | Sequence[File] | None
+
+
+def diagnose(
+    data: File | None,
+    rig: File,
+    *,
+    card: File | None = None,
+    logs: Files = None,
+    reference: File | None = None,
+    reference_logs: Files = None,
+    sibling_logs: Files = None,
+    library: Files = None,
+    predict: File | None = None,
+    causes: int = 2,
+    alpha: float = 0.05,
+    seed: int = 0,
+    progress: Callable[[str, float], None] = lambda stage, share: None,
+) -> Findings:
+    """Compare measured data with the model of a rig, and name what explains the difference.
+
+    Args:
+        data: table of readings, one row each; None with logs only
+        rig: name of a shipped rig, or path of a rig file
+        card: accuracies, priors and protocol
+        logs: tables of logged samples
+        reference: readings of the same rig when it was healthy; `reference_logs` are its logs then
+        sibling_logs: logs of other machines of its type
+        library: files with further causes
+        predict: points to predict
+        causes: how many may act together
+        alpha: accepted rate of false alarms
+        seed: of everything that is drawn
+        progress: told of each stage and the share done
+
+    Raises:
+        GearheatError: all problems of files and options at once
+    """
+    request = Request(
+        str(rig),
+        _path(data),
+        _paths(logs),
+        _path(card),
+        _path(reference),
+        _paths(reference_logs),
+        _paths(sibling_logs),
+        _paths(library),
+        _path(predict),
+        causes=causes,
+        alpha=alpha,
+        seed=seed,
+    )
+    return diagnosed(read(request), progress)
+
+
+def _path(file: File | None) -> Path | None:
+    return None if file is None else Path(file)
+
+
+def _paths(files: Files) -> tuple[Path, ...]:
+    if files is None:
+        return ()
+    return tuple(Path(f) for f in ([files] if isinstance(files, str | Path) else files))

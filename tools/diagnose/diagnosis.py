@@ -1,0 +1,62 @@
+"""The whole diagnosis: search, decide, and everything that the report shows."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from ..model.errors import DataError
+from .answer.decide import decided
+from .infer.search import searched
+from .report import compose, compose_data
+from .report.channels import channel
+from .report.findings import Findings
+from .report.words import with_words
+from .request import Inputs
+from .setting import setting
+
+Progress = Callable[[str, float], None]
+
+
+def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
+    """What the data of a request say.
+
+    Args:
+        inputs: what its files hold
+        progress: told of each stage and the share done
+
+    Raises:
+        GearheatError: rig, card and data do not go together
+    """
+    request, data = inputs.request, inputs.data
+    if data is None:
+        raise DataError("there is no table of readings. Name one.")
+    progress("compiling the rig", 0.01)
+    others = [inputs.points] if inputs.points is not None else []
+    made = setting(inputs.scenario, inputs.card, data, inputs.reference, request.libraries, others)
+    found = searched(
+        made.problem,
+        made.formulas,
+        request.alpha,
+        request.seed,
+        request.causes,
+        lambda stage, share: progress(stage, 0.05 + 0.75 * share),
+    )
+    decision = decided(found)
+    progress("what was found", 0.9)
+    leader = decision.leader
+    findings = Findings(
+        verdict=decision.verdict,
+        about=compose.about(data, made.scenario.name, inputs.reference, request.seed),
+        test=compose.alarm(found, decision, request.alpha),
+        hypotheses=compose.hypotheses(decision),
+        answers=compose.answers(decision.answers),
+        causes=compose.causes(made.causes, found, decision),
+        remainder=compose.remainder(found, decision),
+        data_quality=compose_data.data_quality(made, found, leader),
+        impact=compose.impacts(found, leader),
+        channels=tuple(channel(s) for s in data.sensors),
+        rows=compose_data.rows(found, leader),
+        warnings=inputs.warnings,
+    )
+    progress("done", 1.0)
+    return with_words(findings)

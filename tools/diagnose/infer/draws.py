@@ -1,0 +1,86 @@
+"""How far the Gaussian approximation of an evidence is off: importance sampling with smoothed weights."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+from scipy.stats import genpareto, norm, qmc
+
+from .evidence import White
+from .fit import Fit, prior_precision
+from .problem import Problem
+
+#: Draws of a hypothesis, and how much wider than the fit says they are taken.
+DRAWS, WIDER = 32, 1.1
+
+
+@dataclass(frozen=True)
+class Correction:
+    """What importance sampling adds to a log evidence, and the standard error of that."""
+
+    log: float
+    error: float
+
+
+def correction(problem: Problem, fit: Fit, seed: int) -> Correction:
+    """The ratio of a hypothesis' evidence to that of its Gaussian approximation, by draws of the exact model.
+
+    Args:
+        problem: data and model
+        fit: the hypothesis
+        seed: of the draws
+    """
+    look, white = fit.look, White.of(fit.noise.covariance)
+    precision = prior_precision(problem, look.acting)
+    J = white(look.jacobian)
+    root = np.linalg.cholesky(np.linalg.inv(J.T @ J + np.diag(precision)))
+    normal = norm.ppf(np.clip(qmc.Sobol(len(look.x), seed=seed).random(DRAWS), 1e-6, 1 - 1e-6))
+    at_mode = _log_joint(problem, white, precision, look.shown, look.x)
+    logs = []
+    for u in WIDER * normal:
+        x = look.x + root @ u
+        shown = problem.shown(*fit.split(problem, x))
+        log = _log_joint(problem, white, precision, shown, x) - at_mode
+        logs.append(log + 0.5 * (u / WIDER) @ (u / WIDER) + len(u) * np.log(WIDER))
+    return smoothed(np.array(logs))
+
+
+def smoothed(logs: np.ndarray) -> Correction:
+    """Mean of importance weights whose largest are replaced by quantiles of a Pareto tail (Vehtari and others, 2024).
+
+    Args:
+        logs: logarithms of the weights (n,), -inf where the model cannot be run
+    """
+    n = len(logs)
+    order = np.argsort(logs)
+    tail = order[-max(int(min(0.2 * n, 3 * n**0.5)), 5) :]
+    top = float(logs[order[-1]])
+    weights = np.exp(logs - top)
+    cut = float(weights[order[-len(tail) - 1]])
+    excess = weights[tail] - cut
+    if excess.max() > 1e-12:
+        shape, _, scale = genpareto.fit(np.maximum(excess, 1e-15), floc=0.0)
+        ranks = (np.arange(len(tail)) + 0.5) / len(tail)
+        weights[tail] = np.minimum(cut + genpareto.ppf(ranks, min(shape, 0.9), scale=scale), 1.0)
+    mean = float(weights.mean())
+    return Correction(top + float(np.log(mean)), float(weights.std(ddof=1) / mean / n**0.5))
+
+
+def _log_joint(problem: Problem, white: White, precision: np.ndarray, shown: np.ndarray, x: np.ndarray) -> float:
+    if not np.isfinite(shown).all():
+        return -np.inf
+    e = white(problem.measured - shown)
+    return float(-0.5 * e @ e - 0.5 * precision @ x**2)
+
+
+def errors(log_joints: np.ndarray, log_errors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Probabilities of hypotheses, and how they change (n, n) with the log joint of each times its error.
+
+    Args:
+        log_joints: log joint probabilities (n,)
+        log_errors: their standard errors (n,)
+    """
+    p = np.exp(log_joints - logsumexp(log_joints))
+    return p, (np.diag(p) - np.outer(p, p)) * log_errors

@@ -1,0 +1,64 @@
+"""Sensors in the units of a result."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ..campaign.table import Sensor
+from .findings import Channel
+
+#: Kind of a sensor -> unit of a result, by how much its numbers are larger than SI, and what it measures in words.
+KINDS = {
+    "oil_temp": ("degC", 1.0, "oil temperature"),
+    "wall_temp": ("degC", 1.0, "body temperature"),
+    "ambient": ("degC", 1.0, "room temperature"),
+    "torque": ("N.m", 1.0, "torque"),
+    "speed": ("rpm", 30 / np.pi, "speed"),
+    "power": ("W", 1.0, "power"),
+}
+#: Unit of a result -> ending of a channel's name, and of the name of a change of it.
+ENDINGS = {"degC": ("_C", "_K"), "N.m": ("_Nm", "_Nm"), "W": ("_W", "_W"), "rpm": ("_rpm", "_rpm")}
+
+
+def unit(sensor: Sensor) -> str:
+    """Unit of its readings."""
+    return KINDS[sensor.kind][0]
+
+
+def unit_of_difference(sensor: Sensor) -> str:
+    """Unit of a difference of its readings."""
+    return "K" if unit(sensor) == "degC" else unit(sensor)
+
+
+def words(sensor: Sensor) -> str:
+    """What it measures."""
+    return f"{KINDS[sensor.kind][2]} {sensor.name}"
+
+
+def in_unit(sensor: Sensor, values: np.ndarray) -> np.ndarray:
+    """Readings [SI] in its unit."""
+    return np.asarray(values - 273.15 if unit(sensor) == "degC" else values * KINDS[sensor.kind][1])
+
+
+def difference(sensor: Sensor, value: float) -> float:
+    """A difference of readings [SI] in its unit."""
+    return float(value * KINDS[sensor.kind][1])
+
+
+def change_name(sensor: Sensor) -> str:
+    """Name of a change of its readings: T_oil_K."""
+    ending, changed = ENDINGS[unit(sensor)]
+    return sensor.name.removesuffix(ending) + changed
+
+
+def channel(sensor: Sensor) -> Channel:
+    """A sensor with its accuracies."""
+    return Channel(
+        name=sensor.name,
+        column=sensor.column,
+        kind=sensor.kind,
+        role="given" if sensor.role == "given" else "read",
+        unit=unit(sensor),
+        repeat_sd=difference(sensor, sensor.repeat_sd),
+        offset_sd=difference(sensor, sensor.offset_sd),
+    )

@@ -1,0 +1,141 @@
+"""From what a search found to the result as data: hypotheses, answers, causes, impact, remainder."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from ..answer import estimate
+from ..answer.decide import UNEXPLAINED, Chance, Decision, Joint
+from ..campaign.table import Campaign
+from ..infer.search import Found, Hypothesis
+from ..library.cause import Cause
+from . import channels, findings
+from .estimate import Estimate
+
+#: Hypotheses that are listed, and the least probability of one.
+MOST, LISTED = 12, 0.005
+
+
+def about(own: Campaign, rig: str, reference: Campaign | None, seed: int) -> findings.About:
+    """What was diagnosed."""
+    return findings.About(
+        data=own.name,
+        rig=rig,
+        readings=own.n,
+        tests=own.n_tests,
+        reference=reference.name if reference else "",
+        reference_readings=reference.n if reference else 0,
+        seed=seed,
+    )
+
+
+def alarm(found: Found, decision: Decision, alpha: float) -> findings.Alarm:
+    """The alarm and what is left."""
+    return findings.Alarm(
+        alpha=alpha,
+        p_any=decision.p_any,
+        p_omnibus=found.p_omnibus,
+        p_adequacy=decision.p_adequacy,
+        draws=len(found.drawn),
+    )
+
+
+def hypotheses(decision: Decision) -> tuple[findings.Hypothesis, ...]:
+    """The most probable ones, nothing always among them."""
+    listed = [j for k, j in enumerate(decision.joints) if not j.causes or (k < MOST and j.chance.probability > LISTED)]
+    return tuple(
+        findings.Hypothesis(causes=j.causes, probability=j.chance.probability, mc_error=j.chance.mc_error)
+        for j in listed
+    )
+
+
+def answers(joints: Sequence[Joint]) -> tuple[findings.Answer, ...]:
+    """What the verdict names."""
+    return tuple(
+        findings.Answer(causes=j.classes, probability=j.chance.probability, mc_error=j.chance.mc_error) for j in joints
+    )
+
+
+def causes(library: Sequence[Cause], found: Found, decision: Decision) -> tuple[findings.Cause, ...]:
+    """All causes, most probable first."""
+    smallest = estimate.detectable(found)
+    none = Chance(0.0, 0.0)
+    told = []
+    for cause in library:
+        chance = decision.marginal.get(cause.id, none)
+        size = _sized(cause.id, found, decision) if chance.probability > LISTED else {}
+        told.append(
+            findings.Cause(
+                id=cause.id,
+                probability=chance.probability,
+                mc_error=chance.mc_error,
+                detectable=smallest.get(cause.id),
+                doc=cause.doc,
+                exposes=cause.exposes,
+                like=cause.like,
+                usual=cause.size.sd,
+                unit=cause.size.unit,
+                meaning=cause.size.doc,
+                **size,
+            )
+        )
+    outside = decision.marginal.get(UNEXPLAINED, none)
+    told.append(findings.Cause(id=UNEXPLAINED, probability=outside.probability, mc_error=outside.mc_error))
+    return tuple(sorted(told, key=lambda c: (-c.probability, c.id)))
+
+
+def _sized(cause: str, found: Found, decision: Decision) -> dict[str, Any]:
+    """Size, shapes and forms of a cause, and what it alone changes."""
+    members = decision.members[cause]
+    shares = estimate.form_shares(cause, members)
+    own: dict[str, Any] = {
+        "parameters": [
+            Estimate.model_validate(e, from_attributes=True) for e in estimate.estimates(found, cause, members)
+        ],
+        "forms": [findings.FormShare(name=name, share=share) for name, share in shares.items() if share > LISTED],
+    }
+    acting = next(((h, a) for h, _ in members for a in h.fit.look.acting if a.id == cause), None)
+    if acting is not None:
+        h, one = acting
+        own["regime"] = estimate.regime(one.formula.form, one.formula.theta(one.t))
+        own["impact"] = impacts(found, h, cause)
+    return own
+
+
+def impacts(found: Found, h: Hypothesis, only: str | None = None) -> dict[str, findings.Impact]:
+    """Mean change of each compared sensor by a hypothesis, or by one of its causes."""
+    known = {s.name: s for s in found.problem.data.read}
+    told = {}
+    for name, change in estimate.impact(found.problem, h, only).items():
+        s = known[name]
+        low, high = (channels.difference(s, v) for v in change.ci95)
+        told[channels.change_name(s)] = findings.Impact(
+            value=channels.difference(s, change.value),
+            ci95=(low, high),
+            unit=channels.unit_of_difference(s),
+            what=channels.words(s),
+        )
+    return told
+
+
+def remainder(found: Found, decision: Decision) -> findings.Remainder | None:
+    """What the library lacks, by channel: beside the most probable hypothesis that holds it."""
+    chance = decision.marginal.get(UNEXPLAINED)
+    own = [h.extra for h, _ in decision.members.get(UNEXPLAINED, ()) if h.extra is not None]
+    if chance is None or chance.probability < LISTED or not own:
+        return None
+    o, told = found.problem.data, []
+    for i, s in enumerate(o.read):
+        rows = np.flatnonzero(o.kind == i)
+        if s.name in own[0].channels and len(rows):
+            rms = float(np.sqrt(np.mean(np.diag(own[0].covariance)[rows])))
+            value = channels.difference(s, rms)
+            one = findings.RemainderChannel(channel=s.name, rms=value, unit=channels.unit_of_difference(s))
+            told.append((rms / s.repeat_sd, one))
+    told.sort(key=lambda item: -item[0])
+    return findings.Remainder(
+        probability=chance.probability, mc_error=chance.mc_error, channels=tuple(c for _, c in told)
+    )
