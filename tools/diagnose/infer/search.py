@@ -18,19 +18,19 @@ from .draws import correction
 from .extra import Extra, extras
 from .fit import Fit, fitted
 from .gross import MOST as MOST_ASIDE
-from .gross import after_all, gross
-from .problem import Acting, Problem
+from .gross import after_all, outliers
+from .problem import Acting, Aside, Problem
 
 #: Prior odds of two causes against one, of each further one, and of a remainder beside a hypothesis.
 TWO, MORE, OUTSIDE = 0.22, 0.25, 0.06
 #: Forms fitted: within so many nats of the best, at most so many, of one cause at most, and causes at least.
 WITHIN, FORMS, EACH, LEAST = 9.0, 14, 3, 4
 #: Singles from which pairs are grown, pairs fitted, and how far behind the best hypothesis one may promise to be.
-GROWN, PAIRS, BEHIND = 4, 7, 6.0
+GROWN, PAIRS, BEHIND = 4, 6, 5.0
 #: p of any cause above which little is fitted.
 QUIET = 0.3
 #: Hypotheses within so many nats of the best are weighed by draws of the exact model.
-NEAR = 4.0
+NEAR = 3.0
 #: Searches at most, where the leading hypothesis changes which readings are gross.
 LOOKS = 3
 
@@ -94,27 +94,35 @@ def searched(
 ) -> Found:
     """A search in which gross readings are set aside; arguments as for `Search`."""
     progress("calibrating without a cause", 0.02)
-    null = fitted(problem, (), np.zeros(problem.nz))
-    problem, null = _cleaned(problem, null)
+    problem, null = _cleaned(problem, fitted(problem, (), np.zeros(problem.nz)))
+    progress("gross readings", 0.05)
+    search = Search(problem, formulas, null, alpha, seed, most, progress)
+    leader = search.leader()
     for _ in range(LOOKS):
-        found = Search(problem, formulas, alpha, seed, most, progress).run(null)
+        aside = _aside(problem, leader)
+        if aside != problem.aside:
+            problem = problem.without(aside)
+            search = Search(problem, formulas, fitted(problem, (), null.look.z), alpha, seed, most, progress)
+        found = search.run()
         leader = found.hypotheses[0].fit
-        aside = problem.aside - after_all(problem, leader)
-        if (more := gross(problem, leader)) is not None:
-            aside |= {more.aside}
-        if aside == problem.aside:
+        if _aside(problem, leader) == problem.aside:
             break
-        problem = problem.without(aside)
-        null = fitted(problem, (), null.look.z, null.noise.scales if len(null.noise.scales) else None)
     return found
+
+
+def _aside(problem: Problem, fit: Fit) -> frozenset[Aside]:
+    """The gross readings beside a hypothesis: those that it does not explain, and others that show beside it."""
+    aside = problem.aside - after_all(problem, fit)
+    found = [s.aside for s in outliers(problem, fit)]
+    return aside | frozenset(found[: max(2, int(MOST_ASIDE * problem.m))])
 
 
 def _cleaned(problem: Problem, null: Fit) -> tuple[Problem, Fit]:
     """The problem without the gross readings that the null shows."""
     for _ in range(max(2, int(MOST_ASIDE * problem.m))):
-        if (found := gross(problem, null)) is None:
+        if not (found := outliers(problem, null)):
             break
-        problem = problem.without(problem.aside | {found.aside})
+        problem = problem.without(problem.aside | {found[0].aside})
         null = fitted(problem, (), null.look.z)
     return problem, null
 
@@ -125,6 +133,7 @@ class Search:
     Args:
         problem: data and model
         formulas: all forms of all causes
+        null: the fit without a cause
         alpha: accepted rate of false alarms: the prior of none is such that its posterior is 1/2 there
         seed: of the draws
         most: causes that may act together
@@ -135,6 +144,7 @@ class Search:
         self,
         problem: Problem,
         formulas: Sequence[Formula],
+        null: Fit,
         alpha: float = 0.05,
         seed: int = 0,
         most: int = 2,
@@ -146,15 +156,15 @@ class Search:
         self.causes: dict[str, Cause] = {f.cause.id: f.cause for f in formulas}
         #: Log share of the prior of one cause that each cause has: classes share theirs.
         self.share = shares(self.causes.values())
-
-    def run(self, start: Fit | None = None) -> Found:
-        """Everything."""
-        self.progress("calibrating without a cause", 0.05)
-        problem = self.problem
-        self.null = fitted(problem, (), np.zeros(problem.nz)) if start is None else start
-        self.progress("effects of all causes", 0.15)
-        self.first = screen.look(problem, self.null, self.formulas)
+        self.null = null
+        progress("effects of all causes", 0.1)
+        self.first = screen.look(problem, null, self.formulas)
         self._alarm()
+        self._fits: dict[int, Fit | None] = {}
+
+    def run(self) -> Found:
+        """Everything."""
+        problem = self.problem
         self.progress("causes one by one", 0.25)
         singles = self._singles()
         self.progress("causes two by two", 0.5)
@@ -177,6 +187,22 @@ class Search:
             self.drawn,
             float(chi2.sf(e @ e, free)),
         )
+
+    def leader(self) -> Fit:
+        """The likeliest of no cause and a few alone, quickly."""
+        log_bf = self.first.by_form(len(self.formulas))
+        fits = [self._alone(k) for k in self._forms(log_bf, LEAST - 1)]
+        return max([self.null, *(f for f in fits if f is not None)], key=lambda fit: fit.evidence)
+
+    def _alone(self, k: int) -> Fit | None:
+        """A form fitted alone, None where it cannot be run."""
+        if k not in self._fits:
+            try:
+                start = self.first.start(k)
+                self._fits[k] = fitted(self.problem, [start], self.null.look.z, self.null.noise.scales)
+            except SolveError:
+                self._fits[k] = None
+        return self._fits[k]
 
     def prior(self, causes: Iterable[str]) -> float:
         """Log prior odds of a hypothesis against those of one cause, all together 1."""
@@ -201,8 +227,8 @@ class Search:
         self.p_any = float((1 + (drawn >= seen).sum()) / (1 + len(drawn)))
         self.log_none = self.critical
 
-    def _forms(self, log_bf: np.ndarray, known: Mapping[str, int] | None = None) -> list[int]:
-        """Formulas worth a fit, best first."""
+    def _forms(self, log_bf: np.ndarray, most: int) -> list[int]:
+        """Formulas worth a fit, so many at most, best first."""
         value = log_bf + np.array([np.log(f.form.weight) + self.share[f.cause.id] for f in self.formulas])
         chosen: list[int] = []
         taken: dict[str, int] = {}
@@ -213,17 +239,15 @@ class Search:
                 continue
             chosen.append(int(k))
             taken[cause] = taken.get(cause, 0) + 1
-            if len(chosen) >= (FORMS if self.p_any < QUIET else LEAST):
+            if len(chosen) >= most:
                 break
         return chosen
 
     def _singles(self) -> list[Hypothesis]:
         """Every cause alone: its leading forms fitted, the others as they look at first."""
         log_bf = self.first.by_form(len(self.formulas))
-        fits: dict[int, Fit] = {}
-        for k in self._forms(log_bf):
-            with suppress(SolveError):
-                fits[k] = fitted(self.problem, [self.first.start(k)], self.null.look.z, self.null.noise.scales)
+        chosen = self._forms(log_bf, FORMS if self.p_any < QUIET else LEAST)
+        fits = {k: fit for k in chosen if (fit := self._alone(k)) is not None}
         found = []
         for cause in dict.fromkeys(self.formulas[k].cause.id for k in fits):
             own = {k: fit for k, fit in fits.items() if self.formulas[k].cause.id == cause}
