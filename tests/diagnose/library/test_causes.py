@@ -134,6 +134,29 @@ def test_which_causes_a_rig_has(case):
     assert {"cooling.thermostat", "cooling.cooler"} <= {x.id for x in case("fzg_four_square").causes}
 
 
+def test_every_cause_says_what_it_is_and_what_exposes_it(case):
+    c = case("planetary")
+    names = {s.name for s in c.sensors}
+    for x in c.causes:
+        assert x.doc.endswith(".") and x.exposes and x.size.doc and 0 < x.common <= 1
+        assert x.acts_on in {"", "rise", "order", "humidity", *names}
+        assert not x.like or ": " in x.like  # the class and why
+        assert all(shape.doc and shape.low < shape.high for f in x.forms for shape in f.shapes)
+
+
+def test_classes_that_count_as_one_answer(case):
+    families = {}
+    for x in case("planetary").causes:
+        families.setdefault(x.family, set()).add(x.id)
+    shared = {frozenset(ids) for ids in families.values() if len(ids) > 1}
+    assert shared == {
+        frozenset({"losses.churning", "losses.windage", "losses.oil_level"}),
+        frozenset({"losses.bearing_preload", "losses.seal_drag"}),
+        frozenset({"cooling.air", "cooling.fan"}),
+        frozenset({"cooling.humidity", "procedure.day_scatter"}),
+    }
+
+
 def test_what_is_not_known_of_the_rows_is_left_out(without):
     everything = without("planetary", "order", "dwell", "mounting", "humidity", "logs")
     for known, ids in {

@@ -122,9 +122,7 @@ def test_candidates_of_one_part_with_other_shapes_keep_apart(made, planetary) ->
     candidates = [(known[3], np.array([0.7, u])) for u in (-1.0, 0.0, 1.0)] + [(known[2], np.array([0.0]))]
     found = o.tangents(Z, beside, candidates)
     for k, (formula, t) in enumerate(candidates):
-        expected = central(
-            lambda h, f=formula, t=t: o.shown_by(Z, [*beside, (f, np.concatenate([[h], t[1:]]))]), 1e-3
-        )
+        expected = central(lambda h, f=formula, t=t: o.shown_by(Z, [*beside, (f, np.concatenate([[h], t[1:]]))]), 1e-3)
         assert found[:, k] == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
     assert np.abs(found[:, 0] - found[:, 2]).max() > 0.01 * np.abs(found[:, 0]).max()
 
