@@ -1,6 +1,7 @@
 """Every cause on every rig: sound forms, symbols and numbers alike, nothing at size zero."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from gearheat.diagnose.library.cause import Row, as_array
 from gearheat.diagnose.library.check import parameters, problems
 from gearheat.diagnose.library.extra_parts import EXTRA_PARTS
+from gearheat.diagnose.library.registry import library
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.steady import steady
@@ -142,6 +144,15 @@ def test_every_cause_says_what_it_is_and_what_exposes_it(case):
         assert x.acts_on in {"", "rise", "order", "humidity", *names}
         assert not x.like or ": " in x.like  # the class and why
         assert all(shape.doc and shape.low < shape.high for f in x.forms for shape in f.shapes)
+
+
+def test_where_nothing_varies_there_are_no_thresholds(case):
+    c = case("helical_two_stage")
+    one = replace(c.ranges, low=c.ranges.mid, high=c.ranges.mid)
+    causes = library(c.roles, one, c.sensors)
+    assert [p for x in causes for p in problems(x, c.scenario.spec, c.sensors, one)] == []
+    limited = {x.id for x in causes for f in x.forms if f.regime and f.regime["quantity"] != "order above"}
+    assert limited == set()
 
 
 def test_classes_that_count_as_one_answer(case):

@@ -14,7 +14,7 @@ from dataclasses import replace
 import casadi as ca
 
 from ..campaign.table import Sensor
-from .cause import Cause, Ranges, Row, Shape, Size, Theta, Values
+from .cause import Cause, Form, Ranges, Row, Shape, Size, Theta, Values
 from .extras import Extras
 from .forms import INNER_SHARE, Changes, Context, Regime, oil_share, shared
 from .roles import Place, Roles
@@ -211,17 +211,20 @@ def film_starvation(at: Context, places: Sequence[Place]) -> Cause:
 
     extras = Extras("starvation", at)
     made = [extras.loss(place, k, len(places)) for k, place in enumerate(places)]
-    fast = extras.with_parts(made, shapes, Regime("w", above=True))
-    kinds = [fast]
-    if all(place.lubricant for place in places):
-        kinds = [*extras.losses(places, (film, *shapes), weight=STARVED[0], as_keys=thin)]
-        kinds += [replace(extras.with_parts(made, shapes, Regime("film", above=False)), weight=STARVED[1])]
-        kinds += [replace(fast, weight=STARVED[2])]
+    wet, varies = all(place.lubricant for place in places), at.ranges.varies
+    kinds: list[Form] = []
+    if wet:
+        kinds += extras.losses(places, (film, *shapes), weight=STARVED[0], as_keys=thin)
+    if wet and varies("film"):
+        kinds.append(replace(extras.with_parts(made, shapes, Regime("film", above=False)), weight=STARVED[1]))
+    if varies("w") or not kinds:
+        kinds.append(replace(extras.with_parts(made, shapes, Regime("w", above=True)), weight=STARVED[2]))
+    total = sum(kind.weight for kind in kinds)
     return Cause(
         id="losses.film_starvation",
         doc="A loss under load that grows where films are thin: slow and hot, or so fast that they are starved.",
         size=at.power("loss where it acts", 0.085, 0.0, 0.9),
-        forms=tuple(kinds),
+        forms=tuple(replace(kind, weight=kind.weight / total) for kind in kinds),
         exposes="points at high load and low viscosity, with and without fresh oil",
         acts_on=at.first("oil_temp"),
     )
