@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.special import logsumexp
@@ -113,7 +113,7 @@ def _chosen(found: Found, problem: Problem, null: Fit) -> tuple[list[Fit], np.nd
         leading.setdefault(causes[formulas[k].cause.id].family, int(k))
     for k in list(leading.values())[:FITTED]:
         with suppress(SolveError):
-            fit = fitted(problem, [first.start(k)], null.look.z, null.noise.scales)
+            fit = _fitted(problem, first.start(k), null)
             fits.append(fit)
             own = [i for i, f in enumerate(formulas) if f.cause.id == formulas[k].cause.id and i != k]
             others = [min(null.evidence + value[i], fit.evidence + share[i]) for i in own]
@@ -124,6 +124,22 @@ def _chosen(found: Found, problem: Problem, null: Fit) -> tuple[list[Fit], np.nd
             fits.append(fit)
             logs.append(log)
     return fits, np.array(logs)
+
+
+def _fitted(problem: Problem, start: Acting, null: Fit) -> Fit:
+    """A cause fitted from where it looks best, and from the other side of zero with the rig as in its file.
+
+    A calibration that has made up for a large effect may hide its sign.
+    """
+    fit = fitted(problem, [start], null.look.z, null.noise.scales)
+    size = start.formula.cause.size
+    if size.low * size.high >= 0:
+        return fit
+    turned = replace(start, t=np.r_[-np.sign(start.t[0]), start.t[1:]])
+    with suppress(SolveError):
+        other = fitted(problem, [turned], np.zeros(problem.nz), null.noise.scales)
+        fit = max(fit, other, key=lambda f: f.evidence)
+    return fit
 
 
 def _paired(search: Search, problem: Problem, one: Fit, log: float) -> tuple[Fit, float]:
