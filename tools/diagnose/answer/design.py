@@ -47,8 +47,8 @@ class Design:
     def distances(self, *done: str) -> dict[Pair, float]:
         """Distance of each pair of causes, with some experiments done."""
         seen = self.seen(*done)
-        pairs = combinations(seen.places, 2)
-        return {(a, b): min(seen.distance(a, b), seen.distance(b, a)) for a, b in pairs}
+        one = {cause: seen.distances(cause) for cause in seen.places}
+        return {(a, b): min(one[a][b], one[b][a]) for a, b in combinations(seen.places, 2)}
 
 
 def design(

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from ..infer.evidence import White
-from ..infer.fit import bounds
 from ..infer.problem import Acting
 
 #: Distances below this are none.
@@ -27,36 +27,47 @@ class Effects:
         """From effects (m, k) and the covariance (m, m) of readings without a cause."""
         return Effects(tuple(candidates), White.of(covariance)(effects))
 
-    @property
+    @cached_property
     def places(self) -> Mapping[str, np.ndarray]:
         """Cause -> its candidates, the middle of its general form first."""
-        names = np.array([c.id for c in self.candidates])
-        return {name: np.flatnonzero(names == name) for name in dict.fromkeys(names.tolist())}
+        found: dict[str, list[int]] = {}
+        for k, c in enumerate(self.candidates):
+            found.setdefault(c.id, []).append(k)
+        return {name: np.array(own) for name, own in found.items()}
+
+    @cached_property
+    def _gram(self) -> np.ndarray:
+        """Products of all pairs of effects (k, k)."""
+        return np.asarray(self.white.T @ self.white)
+
+    @cached_property
+    def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest sizes (k,), in half widths of the priors."""
+        sizes = [c.formula.cause.size for c in self.candidates]
+        return np.array([s.low / s.sd for s in sizes]), np.array([s.high / s.sd for s in sizes])
 
     def visible(self, cause: str, size: float = 1.0) -> float:
         """Distance of a cause from none, at a size in half widths of its prior."""
-        return abs(size) * float(np.linalg.norm(self.white[:, self.places[cause][0]]))
+        k = self.places[cause][0]
+        return abs(size) * float(np.sqrt(self._gram[k, k]))
 
-    def distance(self, cause: str, other: str, size: float = 1.0, at: int | None = None) -> float:
-        """Standard deviations between a cause and the best form of another, rescaled as its bounds allow.
+    def distances(self, cause: str, size: float = 1.0) -> dict[str, float]:
+        """Standard deviations between a cause and the best form of each other, rescaled as its bounds allow.
 
         Args:
-            cause, other: ids
-            size: of the cause, in half widths of its prior
-            at: its candidate; the middle of its general form if None
+            cause: in the middle of its general form
+            size: in half widths of its prior
         """
-        k = int(self.places[cause][0]) if at is None else at
-        g, rivals = size * self.white[:, k], self.places[other]
-        own, length = float(g @ g), (self.white[:, rivals] ** 2).sum(axis=0)
-        low, high = (np.array([bounds(self.candidates[i])[side][0] for i in rivals]) for side in (0, 1))
-        best = np.clip((g @ self.white[:, rivals]) / np.maximum(length, 1e-300), low, high)
-        left = own - 2 * best * (g @ self.white[:, rivals]) + best**2 * length
-        return float(np.sqrt(max(float(left.min()), 0.0)))
+        k, (low, high) = self.places[cause][0], self._bounds
+        across, length = size * self._gram[k], np.diag(self._gram)
+        best = np.clip(across / np.maximum(length, 1e-300), low, high)
+        left = size**2 * self._gram[k, k] - 2 * best * across + best**2 * length
+        found = {o: float(left[own].min()) for o, own in self.places.items() if o != cause}
+        return {o: float(np.sqrt(max(value, 0.0))) for o, value in found.items()}
 
     def nearest(self, cause: str, size: float = 1.0) -> tuple[str, float] | None:
         """The nearest other cause and its distance."""
-        others = {o: self.distance(cause, o, size) for o in self.places if o != cause}
-        return min(others.items(), key=lambda item: item[1]) if others else None
+        return min(self.distances(cause, size).items(), key=lambda item: item[1], default=None)
 
 
 @dataclass(frozen=True)
@@ -79,7 +90,7 @@ def alike(effects: Effects, cause: str, size: float, like: Mapping[str, str]) ->
     """
     if cause not in effects.places:
         return None
-    distances = {o: effects.distance(cause, o, size) for o in effects.places if o != cause}
+    distances = effects.distances(cause, size)
     declared = {o for o in distances if like[cause] and like[o].partition(":")[0] == like[cause].partition(":")[0]}
     near = sorted((o for o in distances if distances[o] < APART or o in declared), key=lambda o: distances[o])
     if not near:
