@@ -75,7 +75,7 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         pictures=compose_pictures.pictures(found, leader, rows.quantities),
         calibrated=compose_rig.calibrated(made, found, leader),
         extended_rig=compose_rig.rig_file(made, found, leader),
-        predictions=compose_points.predictions(made, found, leader, inputs.points) if inputs.points else (),
+        predictions=compose_points.predictions(made, found, inputs.points) if inputs.points else (),
         warnings=inputs.warnings,
     )
     progress("done", 1.0)
