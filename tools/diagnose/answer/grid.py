@@ -87,8 +87,8 @@ def _answered(campaign: Campaign, nominal: Nominal) -> Campaign:
     for row in range(campaign.n):
         signs = {s.name: float(s.sign(campaign.direction[row : row + 1])[0]) for s in campaign.sensors}
         at = nominal.at({s.reads: signs[s.name] * float(campaign.values[s.name][row]) for s in campaign.given})
-        for s in missing if at else ():
-            found[s.name][row] = signs[s.name] * at[s.reads]
+        for s in missing:
+            found[s.name][row] = signs[s.name] * at[s.reads] if at is not None else np.nan
     if missing and not any(np.isfinite(column).any() for column in found.values()):
         raise DataError(f"{campaign.name}: the rig has no steady state at any of the points. Give milder ones.")
     return replace(campaign, values={**campaign.values, **found})
