@@ -8,7 +8,7 @@ from ..model.errors import DataError
 from .answer.decide import decided
 from .answer.gain import gains
 from .infer.search import searched
-from .report import compose, compose_data, compose_pictures, compose_points, compose_rig
+from .report import compose, compose_data, compose_design, compose_pictures, compose_points, compose_rig
 from .report.channels import channel
 from .report.findings import Findings
 from .report.words import with_words
@@ -43,14 +43,12 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         lambda stage, share: progress(stage, 0.05 + 0.75 * share),
     )
     decision = decided(found)
-    told = (
-        []
-        if decision.verdict == "consistent"
-        else gains(found, request.seed, lambda s: progress("held-out readings", 0.82 + 0.13 * s))
-    )
-    gain, grouped = compose.gains(found, told)
+    wrong = decision.verdict != "consistent"
+    held = gains(found, request.seed, lambda share: progress("readings left out", 0.82 + 0.13 * share)) if wrong else []
+    gain, grouped = compose.gains(found, held)
     progress("what was found", 0.95)
     leader = decision.leader
+    sets = compose_design.sets(made.causes, found, decision) if wrong else ()
     rows = compose_data.rows(found, leader)
     findings = Findings(
         verdict=decision.verdict,
@@ -67,11 +65,17 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         channels=tuple(channel(s) for s in data.sensors),
         gain=gain,
         gain_grouped=grouped,
+        played=compose_design.played(found, decision) if wrong else {},
+        confusable=tuple(s.causes for s in sets),
+        sets=sets,
+        next_experiment=compose_design.next_experiments(made, found, decision) if wrong else (),
+        isolability=compose_design.isolability(compose_design.seen(found)),
+        invisible=compose_design.not_seen(data, made.causes),
         rows=rows,
         pictures=compose_pictures.pictures(found, leader, rows.quantities),
         calibrated=compose_rig.calibrated(made, found, leader),
         extended_rig=compose_rig.rig_file(made, found, leader),
-        predictions=compose_points.predictions(made, found, leader, inputs.points) if inputs.points else (),
+        predictions=compose_points.predictions(made, found, inputs.points) if inputs.points else (),
         warnings=inputs.warnings,
     )
     progress("done", 1.0)
