@@ -83,7 +83,7 @@ class Answer:
         hypotheses: of causes
         impact: mean change of the readings
         nominal, extended: predicted oil temperatures by point
-        gross: points and channels of single readings that it calls wrong; None where it says nothing of them
+        gross: rows and columns of single readings that it calls wrong; None where it says nothing of them
     """
 
     verdict: str
@@ -128,7 +128,7 @@ def read_answer(place: Path) -> Answer:
             names = names - UNNAMED or names
             weights[names] = weights.get(names, 0.0) + float(h["probability"])
         verdict, impact = str(said["verdict"]), {k: _estimate(v) for k, v in said.get("impact", {}).items()}
-        gross = _gross(said.get("data_quality"))
+        gross = _gross(said)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise DataError(f"{place.name}: not a result of a diagnosis ({type(error).__name__}: {error})") from None
     ranked = sorted(weights.items(), key=lambda item: (-item[1], sorted(item[0])))
@@ -140,12 +140,13 @@ def _estimate(value: Any) -> float:
     return float(value["value"] if isinstance(value, Mapping) else value)
 
 
-def _gross(quality: Mapping[str, Any] | None) -> frozenset[tuple[int, str]] | None:
-    """Rows of the data, from 1, and channels."""
-    if quality is None:
+def _gross(said: Mapping[str, Any]) -> frozenset[tuple[int, str]] | None:
+    """Rows of the data, from 1, and columns."""
+    if "data_quality" not in said:
         return None
-    found = quality.get("gross_readings", quality.get("gross", ()))
-    return frozenset((int(g["row"]), str(g["channel"])) for g in found)
+    columns = {c["name"]: c.get("column") or c["name"] for c in said.get("channels", ())}
+    found = said["data_quality"].get("gross", ())
+    return frozenset((int(g["row"]), str(columns.get(g["channel"], g["channel"]))) for g in found)
 
 
 def _predictions(path: Path) -> tuple[dict[int, float], dict[int, float]]:

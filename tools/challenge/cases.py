@@ -96,7 +96,7 @@ def make_case(
     if kind != "clean":
         key = (seed, number, sum(map(ord, kind)))
         names = iter([cause] * 8) if cause else causes_to_try(d.names(kind), key, rank)
-        yard = Yardstick(_setting(d))
+        yard = Yardstick(setting(d))
         oil = yard.quiet[d.instruments.channels.index("T_oil_C")]
         rivals = Rivals(yard, {n: partial(d.draw, n, "single", oil) for n in d.names("single")}, rival_rng)
         band = WEAK if kind == "weak" else d.band
@@ -119,7 +119,8 @@ def _quiet(d: Drawn) -> np.ndarray:
     return d.run(d.plan, d.base, ())
 
 
-def _setting(d: Drawn) -> Setting:
+def setting(d: Drawn) -> Setting:
+    """What the yardstick measures with."""
     i = d.instruments
     offset = {c: i.understated * sd for c, sd in i.offset_sd.items()}
     return Setting(d.run, i.channels, d.plan, d.base, d.reference, i.repeat_sd, offset, d.prior, d.cooling, d.day_sd)

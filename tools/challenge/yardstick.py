@@ -196,7 +196,7 @@ class Rival:
 
 
 #: Forms drawn of each cause, and amounts of each over the largest sensible.
-FORMS, AMOUNTS = 4, (0.1, 0.5)
+FORMS, AMOUNTS = 3, (0.1, 0.5)
 
 
 @dataclass

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from ..model.errors import DataError
-from .answer.decide import decided
-from .infer.search import searched
+from .answer.decide import Decision, decided
+from .answer.gain import Gain, gains
+from .infer.search import Found, searched
 from .report import compose, compose_data, compose_pictures, compose_points, compose_rig
 from .report.channels import channel
-from .report.findings import Findings
+from .report.findings import Findings, Invisible
 from .report.words import with_words
 from .request import Inputs
-from .setting import setting
+from .setting import Setting, setting
 
 Progress = Callable[[str, float], None]
 
@@ -42,10 +43,24 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         lambda stage, share: progress(stage, 0.05 + 0.75 * share),
     )
     decision = decided(found)
-    progress("what was found", 0.9)
-    leader = decision.leader
+    told = (
+        []
+        if decision.verdict == "consistent"
+        else gains(found, request.seed, lambda s: progress("held-out readings", 0.82 + 0.13 * s))
+    )
+    progress("what was found", 0.95)
+    findings = _composed(inputs, made, found, decision, told)
+    progress("done", 1.0)
+    return with_words(findings)
+
+
+def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, told: Sequence[Gain]) -> Findings:
+    """The findings without their words."""
+    request, data, leader = inputs.request, found.problem.data.campaign, decision.leader
+    gain, grouped = compose.gains(found, told)
     rows = compose_data.rows(found, leader)
-    findings = Findings(
+    points = inputs.points
+    return Findings(
         verdict=decision.verdict,
         about=compose.about(data, made.scenario.name, inputs.reference, request.seed),
         test=compose.alarm(found, decision, request.alpha),
@@ -53,17 +68,16 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         answers=compose.answers(decision.answers),
         causes=compose.causes(made.causes, found, decision),
         remainder=compose.remainder(found, decision),
-        data_quality=compose_data.data_quality(made, found, leader).model_copy(
-            update={"repeated": compose_points.repeated(found)}
-        ),
+        data_quality=compose_data.data_quality(made, found, leader),
         impact=compose.impacts(found, leader),
+        gain=gain,
+        gain_grouped=grouped,
         channels=tuple(channel(s) for s in data.sensors),
         rows=rows,
         pictures=compose_pictures.pictures(found, leader, rows.quantities),
         calibrated=compose_rig.calibrated(made, found, leader),
         extended_rig=compose_rig.rig_file(made, found, leader),
-        predictions=compose_points.predictions(made, found, leader, inputs.points) if inputs.points else (),
+        predictions=() if points is None else compose_points.predictions(made, found, leader, points),
+        invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in inputs.invisible.items()),
         warnings=inputs.warnings,
     )
-    progress("done", 1.0)
-    return with_words(findings)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeVar
@@ -12,6 +12,8 @@ from ..model.parts import PARTS
 from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
 from .campaign.card import Card, read_card
+from .campaign.checks import outlying, same_as_reference, too_small
+from .campaign.invisible import invisible
 from .campaign.read import read_campaign
 from .campaign.table import Campaign
 from .library.extra_parts import EXTRA_PARTS
@@ -92,7 +94,14 @@ class Inputs:
     def warnings(self) -> tuple[str, ...]:
         """What the user should know of the files."""
         tables = [c.warnings for c in (self.data, self.reference, self.points) if c is not None]
+        if self.data is not None and self.points is not None:
+            tables.append(tuple(outlying(self.data, self.points)))
         return tuple(dict.fromkeys(text for found in (self.card.warnings, *tables) for text in found))
+
+    @property
+    def invisible(self) -> Mapping[str, str]:
+        """Cause -> why the readings cannot show it."""
+        return {} if self.data is None else invisible(self.data, logged=bool(self.request.logs))
 
 
 def read(request: Request) -> Inputs:
@@ -107,6 +116,9 @@ def read(request: Request) -> Inputs:
     reader = _Reader(request.rig, request.card, request.problems())
     data, reference = reader.table(request.data), reader.table(request.reference)
     points = reader.table(request.predict, points=True)
+    if data is not None:
+        reader.problems += [] if request.logs else too_small(data)
+        reader.problems += [] if reference is None else same_as_reference(data, reference)
     return Inputs(request, *reader.checked(), data, reference, points)
 
 

@@ -1,4 +1,4 @@
-"""Cards: both formats, both versions, every problem at once, and a card with every key that says what is taken anyway."""
+"""Cards: both formats and versions, every problem at once, and a card with every key that says what holds anyway."""
 
 from __future__ import annotations
 

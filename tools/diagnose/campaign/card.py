@@ -85,9 +85,7 @@ class Card(Strict):
     units: dict[str, str] = Field(default={}, description="column of the table = its unit")
     channels: dict[str, Channel] = Field(default={}, description="accuracy of a sensor")
     sensors: dict[str, CardSensor] = Field(default={}, description="a sensor that the rig lacks, or overruled keys")
-    prior_sd: dict[str, float] = Field(
-        default={}, description="relative uncertainty: PartType.parameter or part.parameter"
-    )
+    prior_sd: dict[str, float] = Field(default={}, description="relative: PartType.parameter or part.parameter = sd")
     protocol: Protocol = Field(default=Protocol(), description="how the campaign was run: a table, or words")
     lubrication: dict[str, str] = Field(default={}, description="part, part type or group of parts = oil or grease")
     oil: Oil = Field(default=Oil(), description="an oil of the catalogue, or the data of one that it lacks")

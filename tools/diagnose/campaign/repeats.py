@@ -25,7 +25,7 @@ class Repeat:
         order: running order of each test (n,)
         mounting: of each test (n,)
         total, difference: read sensor -> mean of what it shows in both directions, and half their difference (n,) [SI]:
-            temperatures over the room, torques by the signs of the model; without directions the difference is NaN
+            temperatures over the room; without directions the difference is zero
     """
 
     conditions: Mapping[str, float]
@@ -43,7 +43,7 @@ class Scatter:
     Args:
         sensor: name
         total, difference: of the sum and of the difference of the directions, each as that of a single reading;
-            NaN with fewer than three degrees of freedom
+            NaN with fewer than three degrees of freedom, the difference without directions
         stated: that of the card: its own and, for a temperature, the room's
         freedom: degrees of freedom of the sum
     """
@@ -84,10 +84,11 @@ def scatters(campaign: Campaign, found: Sequence[Repeat]) -> tuple[Scatter, ...]
     for sensor in campaign.read:
         total, freedom = _pooled([group.total[sensor.name] for group in found])
         difference, _ = _pooled([group.difference[sensor.name] for group in found])
-        halves = 2 if campaign.direction.any() else 1
+        both = bool((campaign.direction < 0).any())
         room = rooms[0] if rooms and sensor.kind.endswith("_temp") else 0.0
         stated = float(np.hypot(sensor.repeat_sd, room))
-        made.append(Scatter(sensor.name, total * halves**0.5, difference * 2**0.5, stated, freedom))
+        scale = 2**0.5 if both else 1.0
+        made.append(Scatter(sensor.name, scale * total, scale * difference if both else np.nan, stated, freedom))
     return tuple(made)
 
 

@@ -68,10 +68,12 @@ class Formula:
         self.paths, self.given, self.read = tuple(values), tuple(truth), tuple(shown)
         self.paced = form.pace is not None
         self._arguments = [self.t, self._base.column, self._sensors.column, self._reads.column, features]
-        self._physics = self._function([*values.values(), *truth.values(), pace], [self.t, self._base.column])
-        self._instruments = self._function(list(shown.values()), [self.t, self._reads.column])
+        physics = [*values.values(), *truth.values(), pace]
+        self._physics = self._function("physics", physics, [self.t, self._base.column])
+        self._instruments = self._function("instruments", list(shown.values()), [self.t, self._reads.column])
         self._theta = ca.Function("theta", [self.t], [ca.vertcat(*map(ca.SX, theta.values()))])
         self.names = tuple(theta)
+        self._rows: dict[tuple[str, int], _Rows] = {}
 
     @property
     def bases(self) -> tuple[str, ...]:
@@ -87,10 +89,10 @@ class Formula:
         """Size and shapes in their units."""
         return dict(zip(self.names, np.asarray(self._theta(t)).ravel().tolist(), strict=True))
 
-    def _function(self, expressions: Sequence[Any], by: Sequence[Any]) -> Any:
+    def _function(self, name: str, expressions: Sequence[Any], by: Sequence[Any]) -> Any:
         column = ca.vertcat(*map(ca.SX, expressions)) if expressions else ca.SX(0, 1)
         slopes = [ca.densify(ca.jacobian(column, symbols)) for symbols in by]
-        return ca.Function("form", self._arguments, [ca.densify(column), *slopes], {"cse": True})
+        return ca.Function(name, self._arguments, [ca.densify(column), *slopes], {"cse": True})
 
     def physics(
         self, t: np.ndarray, base: Mapping[str, np.ndarray], sensors: Mapping[str, np.ndarray], features: np.ndarray
@@ -125,13 +127,39 @@ class Formula:
         reads: Mapping[str, np.ndarray],
         features: np.ndarray,
     ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        n = features.shape[1]
-        empty = np.zeros(n)
-        stacked = [np.tile(t[:, None], (1, n))]
-        for asked, given in ((self._base, base), (self._sensors, sensors), (self._reads, reads)):
-            rows = [given.get(name, empty) for name in asked.names]
-            stacked.append(np.array(rows).reshape(len(rows), n))
-        found = [np.asarray(r) for r in function(*stacked, features)]
-        v = found[0].shape[0]
-        value, by_t, by_other = (r.reshape(v, n, -1) if v else np.zeros((0, n, max(r.shape[1] // n, 0))) for r in found)
-        return value[:, :, 0] if v else np.zeros((0, n)), by_t, by_other
+        key = (function.name(), features.shape[1])
+        if key not in self._rows:
+            self._rows[key] = _Rows(function, features.shape[1])
+        rows = self._rows[key]
+        rows.given[0][:], rows.given[4][:] = t, features.T
+        for own, asked, given in zip(
+            rows.given[1:4], (self._base, self._sensors, self._reads), (base, sensors, reads), strict=True
+        ):
+            for k, name in enumerate(asked.names):
+                own[:, k] = given.get(name, 0.0)
+        value, by_t, by_other = rows()
+        return value[:, :, 0], by_t, by_other
+
+
+class _Rows:
+    """A function at n rows a call, without copies on the way.
+
+    Args:
+        function: of columns
+        n: number of rows
+    """
+
+    def __init__(self, function: Any, n: int) -> None:
+        self.given = [np.zeros((n, function.size1_in(i))) for i in range(function.n_in())]
+        self._found = [np.zeros((n, *function.size_out(i)[::-1])) for i in range(function.n_out())]
+        self._mapped = function.map(n)
+        self._buffer, self._evaluate = self._mapped.buffer()
+        for place, arrays in ((self._buffer.set_arg, self.given), (self._buffer.set_res, self._found)):
+            for i, array in enumerate(arrays):
+                if array.size:
+                    place(i, memoryview(array))
+
+    def __call__(self) -> list[np.ndarray]:
+        """Results (rows, n, columns) for what is given."""
+        self._evaluate()
+        return [found.transpose(2, 0, 1).copy() for found in self._found]

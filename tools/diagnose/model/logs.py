@@ -14,9 +14,10 @@ import numpy as np
 
 from ..campaign.logs import Log
 from ..library.knobs import Knob
-from .march import GAMMA
 from .plant import Plant
 
+#: Of the method: two stages, second order, L-stable, stiffly accurate.
+GAMMA = 1.0 - 0.5**0.5
 #: Samples of a window that count, and samples before them in which the filter settles.
 WINDOW, SETTLING = 250, 60
 #: Newton's corrections at most, and size over the nominals at which they end.

@@ -1,84 +1,85 @@
-"""CasADi functions compiled to C, for many points at once."""
+"""CasADi functions compiled to C, and records of numbers and arrays as C reads them."""
 
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from ...fmu.batch_library import load
-
-_DRIVER = """
-__attribute__((visibility("default")))
-int many(long long n, const double** in, const long long* wide, double** out, const long long* high) {{
-  const double* a[{arg}]; double* r[{res}]; casadi_int iw[{iw}]; double w[{w}];
-  for (long long i = 0; i < n; i++) {{
-    for (int k = 0; k < {n_in}; k++) a[k] = in[k] + i * wide[k];
-    for (int k = 0; k < {n_out}; k++) r[k] = out[k] + i * high[k];
-    if (all(a, r, iw, w, 0)) return 1;
-  }}
-  return 0;
-}}
-"""
+from ...fmu.batch_library import address, load
 
 
-class Many:
-    """A function of vectors, evaluated at n points a call.
+class Compiled:
+    """Functions of the same symbolic columns in one library; their results hold the entries of sparse matrices only.
 
     Args:
         arguments: symbolic columns
-        results: expressions; matrices of any shape
+        results: name of a function -> expressions
+
+    Raises:
+        FmuError: the compiler fails
     """
 
-    def __init__(self, arguments: Sequence[Any], results: Sequence[Any]) -> None:
-        dense = [ca.densify(ca.SX(r)) for r in results]
-        function = ca.Function("all", list(arguments), dense, {"cse": True})
+    def __init__(self, arguments: Sequence[Any], results: Mapping[str, Sequence[Any]]) -> None:
         generator = ca.CodeGenerator("many", {"with_header": False, "casadi_int": "long long int"})
-        generator.add(function)
-        sizes = {"arg": function.sz_arg(), "res": function.sz_res(), "iw": function.sz_iw(), "w": function.sz_w()}
-        least = {name: max(size, 1) for name, size in sizes.items()}
-        driver = _DRIVER.format(**least, n_in=len(arguments), n_out=len(dense))
-        self._library = load(generator.dump() + driver)
-        self._call = self._library.many
-        self._wide = np.array([a.numel() for a in arguments], dtype=np.int64)
-        self._shapes = [r.shape for r in dense]
-        self._high = np.array([a * b for a, b in self._shapes], dtype=np.int64)
+        functions = [ca.Function(name, list(arguments), list(found), {"cse": True}) for name, found in results.items()]
+        for function in functions:
+            generator.add(function)
+        #: Of each function and result: where its columns begin (columns + 1), and the row of each entry.
+        self.patterns = {name: [_pattern(r) for r in found] for name, found in results.items()}
+        self.shapes = {name: [r.shape for r in found] for name, found in results.items()}
+        self._library = load(f"#define GCC_HASCLASSVISIBILITY\n{generator.dump()}")
+        self.sizes = [max(getattr(f, f"sz_{kind}")() for f in functions) for kind in ("arg", "res", "iw", "w")]
 
-    def __call__(self, *values: np.ndarray) -> list[np.ndarray]:
-        """Results (n, rows, columns) at n points, columns of one as (n, rows).
+    def dense(self, name: str, *entries: np.ndarray) -> list[np.ndarray]:
+        """Results of a function as whole matrices (n, rows, columns), those of one column as (n, rows).
 
         Args:
-            values: one array (n, size) for each argument
+            name: of the function
+            entries: of each result (n, entries)
         """
-        n = len(values[0])
-        given = [np.ascontiguousarray(v, dtype=float) for v in values]
-        found = [np.empty((n, columns, rows)) for rows, columns in self._shapes]
-        pointers = [(ctypes.c_void_p * len(arrays))(*(a.ctypes.data for a in arrays)) for arrays in (given, found)]
-        self._call(ctypes.c_longlong(n), pointers[0], _address(self._wide), pointers[1], _address(self._high))
-        return [r[:, 0] if r.shape[1] == 1 else r.transpose(0, 2, 1) for r in found]
+        found = []
+        for own, (begin, row), (rows, columns) in zip(entries, self.patterns[name], self.shapes[name], strict=True):
+            whole = np.zeros((len(own), rows, columns))
+            whole[:, row, np.repeat(np.arange(columns), np.diff(begin))] = own
+            found.append(whole[:, :, 0] if columns == 1 else whole)
+        return found
+
+    def place(self, name: str) -> int:
+        """Where a function lies in memory."""
+        return ctypes.cast(getattr(self._library, name), ctypes.c_void_p).value or 0
 
 
-class Slow:
-    """The same without a compiler.
+@cache
+def library() -> ctypes.CDLL:
+    """The march through runs, compiled."""
+    found = load((Path(__file__).parent / "march.c").read_text(encoding="utf-8"))
+    pointer, count = ctypes.c_void_p, ctypes.c_int64
+    found.march.argtypes = [*[pointer] * 3, *[count] * 2]
+    found.many.argtypes = [*[pointer] * 2, count, *[pointer] * 4, count, pointer, count]
+    return found
+
+
+def record(**values: int | np.ndarray) -> Any:
+    """A structure of C with these fields, which keeps its arrays alive.
 
     Args:
-        arguments, results: as for `Many`
+        values: whole numbers, addresses among them, and arrays of eight bytes a number
     """
-
-    def __init__(self, arguments: Sequence[Any], results: Sequence[Any]) -> None:
-        self._function = ca.Function("all", list(arguments), [ca.densify(ca.SX(r)) for r in results], {"cse": True})
-        self._shapes = [r.shape for r in results]
-
-    def __call__(self, *values: np.ndarray) -> list[np.ndarray]:
-        """Results at n points, as those of `Many`."""
-        n = len(values[0])
-        found = [np.asarray(r) for r in self._function.call([ca.DM(v.T) for v in values])]
-        whole = [r.reshape(rows, n, columns).swapaxes(0, 1) for r, (rows, columns) in zip(found, self._shapes, strict=True)]
-        return [r[:, :, 0] if r.shape[2] == 1 else r for r in whole]
+    kept = {name: v if isinstance(v, int) else np.ascontiguousarray(v) for name, v in values.items()}
+    fields = [(name, ctypes.c_int64 if isinstance(v, int) else ctypes.c_void_p) for name, v in kept.items()]
+    made = type("Record", (ctypes.Structure,), {"_fields_": fields})()
+    for name, v in kept.items():
+        setattr(made, name, v if isinstance(v, int) else address(v))
+    made.arrays = tuple(kept.values())
+    return made
 
 
-def _address(array: np.ndarray) -> ctypes.c_void_p:
-    return ctypes.c_void_p(array.ctypes.data)
+def _pattern(matrix: Any) -> tuple[np.ndarray, np.ndarray]:
+    sparsity = ca.SX(matrix).sparsity()
+    return np.array(sparsity.colind(), dtype=np.int64), np.array(sparsity.row(), dtype=np.int64)

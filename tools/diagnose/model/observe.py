@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ..campaign.table import Campaign
 from ..library.cause import Nuisance
+from .duty import duty
 from .formula import Formula
-from .march import Phases, Turned, march
+from .march import Marched, Phases, march
 from .plant import Plant
 
-#: Shares of a dwell, of a stop and of the time to a steady state [s] where steps end.
-DWELL = np.array([0.003, 0.01, 0.022, 0.04, 0.07, 0.11, 0.16, 0.23, 0.32, 0.45, 0.65, 1.0])
-STOP = np.array([0.3, 1.0])
-STEADY = 60.0 * 4.0 ** np.arange(14)
-#: A kind of sensor that reads zero where the machine stands.
-RESTS = ("torque", "speed", "power")
+#: Part -> path -> values of each row (n,).
+_Changes = dict[str, dict[str, np.ndarray]]
+#: Derivatives of a value of each row that are not zero: direction -> of each row (n,).
+_Slope = dict[int, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -81,7 +80,7 @@ class Observed:
         #: By how much the start temperature of a test follows the given readings of its first row (tests, given).
         self.starts = 1.0 * by_room[:, None] * room
         self.features = self._features()
-        self._phases = self._duty()
+        self._phases = duty(campaign, self.rows, self.starts)
 
     @property
     def m(self) -> int:
@@ -98,56 +97,7 @@ class Observed:
         dwell = np.where(np.isfinite(c.dwell), c.dwell, 1e9)
         return np.array([c.progress, c.direction, rise, humidity, np.minimum(self.half, 1), dwell])
 
-    def _duty(self) -> Phases:
-        """All tests as runs: a dwell for each row, a stop before each but the first."""
-        c, rows = self.campaign, self.rows
-        n, n_given = c.n_tests, len(self.given)
-        absent = np.arange(self.height) >= np.bincount(c.test)[:, None]
-        dwell = np.where(absent, 0.0, np.where(np.isinf(c.dwell), STEADY.sum(), c.dwell)[rows])
-        stop = np.where(absent, 0.0, c.stop[rows])
-        lengths, row, steps, read = [], [], [], []
-        local = []
-        one = np.eye(self.height)
-        room = np.array([s.kind == "ambient" for s in self.given], dtype=bool)
-        moving = np.array([s.kind in RESTS for s in self.given], dtype=bool)
-        shares = np.cumsum(STEADY) / STEADY.sum() if c.steady else DWELL
-        reached = np.tile(one[0], (n, 1))  # weights of the rows in the room's temperature so far
-        for h in range(self.height):
-            if h:
-                share = (stop[:, h] / np.maximum(stop[:, h] + dwell[:, h], 1e-9))[:, None]
-                after = reached + share * (one[h] - reached)
-                lengths.append(stop[:, h])
-                weights = np.zeros((2, n, n_given, self.height))
-                weights[0][:, room], weights[1][:, room] = reached[:, None], after[:, None]
-                weights[:, :, ~room & ~moving] = one[h]
-                local.append(weights)
-                row.append(h)
-                steps.append(STOP)
-                read.append(())
-                reached = after
-            weights = np.tile(one[h], (2, n, n_given, 1))
-            if not c.steady:
-                weights[0][:, room] = reached[:, None]
-            reached = np.tile(one[h], (n, 1))
-            lengths.append(dwell[:, h])
-            local.append(weights)
-            row.append(h)
-            steps.append(shares)
-            read.append((len(shares) - 1,))
-        whole = np.array(local)
-        empty = np.empty((n, len(row), 0))
-        return Phases(
-            np.array(lengths).T,
-            empty,
-            empty,
-            tuple(row),
-            tuple(steps),
-            tuple(read),
-            whole[:, 0].swapaxes(0, 1),
-            whole[:, 1].swapaxes(0, 1),
-        )
-
-    def _driven(self, truth: np.ndarray) -> tuple[Phases, np.ndarray]:
+    def driven(self, truth: np.ndarray) -> tuple[Phases, np.ndarray]:
         """The duty with inputs by the true values of the given sensors (given, n), and start temperatures (tests,)."""
         c, phases = self.campaign, self._phases
         own = truth[:, self.rows].transpose(1, 0, 2)  # tests, given, H
@@ -160,8 +110,7 @@ class Observed:
         if room is not None and not c.steady:
             u0[:, 0, self.inputs[room]] = begun
         start = np.where(np.isfinite(c.T_start), c.T_start, begun + c.start_by_room)
-        phases = Phases(phases.length, u0, u1, phases.row, phases.steps, phases.read, phases.local0, phases.local1)
-        return phases, start
+        return replace(phases, u0=u0, u1=u1), start
 
     def at(self, z: np.ndarray, parts: Sequence[tuple[Formula, np.ndarray]]) -> Seen:
         """Readings and derivatives.
@@ -194,7 +143,9 @@ class Observed:
 
 
 class _Look:
-    """One evaluation: values with their derivatives by d directions, nuisances first, then each part's parameters."""
+    """One evaluation: values with their derivatives by some directions, nuisances first, then each part's parameters,
+    then the size of each candidate. Slopes hold those that are not zero: direction -> one of each row (n,).
+    """
 
     def __init__(
         self,
@@ -205,105 +156,110 @@ class _Look:
     ) -> None:
         self.o, self.z, self.parts, self.candidates = o, z, parts, candidates
         self.n = o.campaign.n
-        self.tried = len(z) + sum(f.size for f, _ in parts)
-        self.d = self.tried + len(candidates)
         self.values: dict[str, np.ndarray] = {}
-        self.slopes: dict[str, np.ndarray] = {}
+        self.slopes: dict[str, _Slope] = {}
         self.truth = dict(o.sensors)
-        self.truth_slopes = {s.name: np.zeros((self.n, self.d)) for s in o.given}
-        self.pace, self.pace_slopes = np.ones(self.n), np.zeros((self.n, self.d))
-        #: Directions of candidates that change parameters: number, values and slopes by path.
-        self.apart: list[tuple[int, dict[str, np.ndarray], dict[str, np.ndarray]]] = []
+        self.truth_slopes: dict[str, _Slope] = {s.name: {} for s in o.given}
+        self.pace, self.pace_slopes = np.ones(self.n), _Slope()
+        #: Settings of the parameters beside the one that acts: whether no other candidate may join, what is changed.
+        self.settings: list[tuple[bool, _Changes]] = []
+        #: Slopes of candidates: setting, path, direction, of each row.
+        self.tried_slopes: list[tuple[int, str, int, np.ndarray]] = []
         self._nuisances()
-        begin = len(z)
+        self.d = len(z)
         for formula, t in parts:
-            self._act(formula, t, slice(begin, begin + formula.size))
-            begin += formula.size
-        for k, (formula, t) in enumerate(candidates, start=begin):
-            self._try(formula, t, k)
-
-    def _try(self, formula: Formula, t: np.ndarray, k: int) -> None:
-        """The direction of a candidate's size, at its own shapes."""
-        base = {name: self._base(name) for name in formula.bases}
-        value, by_t, _ = formula.physics(_none(t), base, self.o.sensors, self.o.features)
-        slopes, n_paths = by_t[:, :, 0], len(formula.paths)
-        if n_paths:
-            values = dict(zip(formula.paths, value[:n_paths], strict=True))
-            self.apart.append((k, values, dict(zip(formula.paths, slopes[:n_paths], strict=True))))
-        for i, name in enumerate(formula.given, start=n_paths):
-            self.truth_slopes[name][:, k] += slopes[i]
-        if formula.paced:
-            self.pace_slopes[:, k] += slopes[n_paths + len(formula.given)]
-
-    def _base(self, path: str) -> np.ndarray:
-        return self.values[path] if path in self.values else self.o.p[:, self.o.plant.place[path]]
+            self._act(formula, t)
+            self.d += formula.size
+        self.tried = self.d
+        for formula, t in candidates:
+            self._try(formula, t)
+            self.d += 1
 
     def _nuisances(self) -> None:
         for k, nuisance in enumerate(self.o.nuisances):
             for path, exponent in nuisance.paths.items():
                 factor = np.exp(exponent * nuisance.sd * self.z[k])
-                old = self._base(path)
-                slope = self.slopes.get(path, np.zeros((self.n, self.d))) * factor
-                slope[:, k] += exponent * nuisance.sd * old * factor
-                self.values[path], self.slopes[path] = old * factor, slope
+                value = self._base(path) * factor
+                slope = {i: own * factor for i, own in self.slopes.get(path, {}).items()}
+                self.values[path] = value
+                self.slopes[path] = _sum([(1.0, slope), (exponent * nuisance.sd, {k: value})])
 
-    def _act(self, formula: Formula, t: np.ndarray, own: slice) -> None:
+    def _base(self, path: str) -> np.ndarray:
+        return self.values[path] if path in self.values else self.o.p[:, self.o.plant.place[path]]
+
+    def _physics(self, formula: Formula, t: np.ndarray) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
         base = {name: self._base(name) for name in formula.bases}
-        value, by_t, by_base = formula.physics(t, base, self.o.sensors, self.o.features)
-        slopes = np.zeros((*value.shape, self.d))
-        slopes[:, :, own] = by_t
-        for name, by in by_base.items():
-            if name in self.slopes:
-                slopes += by[:, :, None] * self.slopes[name]
-        n_paths, n_given = len(formula.paths), len(formula.given)
-        for i, path in enumerate(formula.paths):
-            self.values[path], self.slopes[path] = value[i], slopes[i]
-        for i, name in enumerate(formula.given, start=n_paths):
-            self.truth[name], self.truth_slopes[name] = value[i], self.truth_slopes[name] + slopes[i]
+        return formula.physics(t, base, self.o.sensors, self.o.features)
+
+    def _act(self, formula: Formula, t: np.ndarray) -> None:
+        value, by_t, by_base = self._physics(formula, t)
+        slopes = []
+        for i in range(len(value)):
+            through = [(by[i], self.slopes[name]) for name, by in by_base.items() if name in self.slopes]
+            slopes.append(_sum([(1.0, {self.d + k: by_t[i, :, k] for k in range(formula.size)}), *through]))
+        names = (*formula.paths, *formula.given)
+        for i, (name, slope) in enumerate(zip(names, slopes, strict=False)):
+            if i < len(formula.paths):
+                self.values[name], self.slopes[name] = value[i], slope
+            else:
+                self.truth[name] = self.truth[name] + value[i] - self.o.sensors[name]
+                self.truth_slopes[name] = _sum([(1.0, self.truth_slopes[name]), (1.0, slope)])
         if formula.paced:
-            self.pace = self.pace * value[n_paths + n_given]
-            self.pace_slopes = self.pace_slopes + slopes[n_paths + n_given]
+            self.pace_slopes = _sum([(value[-1], self.pace_slopes), (self.pace, slopes[-1])])
+            self.pace = self.pace * value[-1]
 
-    def _run(self, turned: bool) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        o, plant, rows = self.o, self.o.plant, self.o.rows
-        p = o.p.copy()
+    def _try(self, formula: Formula, t: np.ndarray) -> None:
+        """The direction of a candidate's size, at its own shapes."""
+        value, by_t, _ = self._physics(formula, _none(t))
+        slopes, n_paths = by_t[:, :, 0], len(formula.paths)
+        setting = self._setting(dict(zip(formula.paths, value, strict=False)))
+        self.tried_slopes += [(setting, path, self.d, slopes[i]) for i, path in enumerate(formula.paths)]
+        for i, name in enumerate(formula.given, start=n_paths):
+            self.truth_slopes[name] = _sum([(1.0, self.truth_slopes[name]), (1.0, {self.d: slopes[i]})])
+        if formula.paced:
+            self.pace_slopes = _sum([(1.0, self.pace_slopes), (self.pace, {self.d: slopes[-1]})])
+
+    def _setting(self, wanted: Mapping[str, np.ndarray]) -> int:
+        """Which setting of the parameters a candidate is tried at; what it changes of a part, no other there changes.
+
+        Args:
+            wanted: path -> value
+        """
+        changed: _Changes = {}
+        for path, value in wanted.items():
+            if not np.array_equal(value, self._base(path)):
+                changed.setdefault(path.partition(".")[0], {})[path] = value
+        if not changed:
+            return 0
+        alone = bool(changed.keys() & {path.partition(".")[0] for f, _ in self.parts for path in f.paths})
+        for k, (closed, known) in enumerate(self.settings, start=1):
+            if not alone and not closed and all(_same(known[part], changed[part]) for part in known.keys() & changed):
+                known.update(changed)
+                return k
+        self.settings.append((alone, changed))
+        return len(self.settings)
+
+    def _run(self, turned: bool) -> Marched:
+        o, plant = self.o, self.o.plant
+        p = np.tile(o.p, (1 + len(self.settings), 1, 1))
         for path, value in self.values.items():
-            p[:, plant.place[path]] = value
+            p[:, :, plant.place[path]] = value
+        for own, (_, changes) in zip(p[1:], self.settings, strict=True):
+            for path, value in (item for part in changes.values() for item in part.items()):
+                own[:, plant.place[path]] = value
         truth = np.array([self.truth[s.name] * o.signs[s.name] for s in o.given])
-        phases, start = o._driven(truth)
+        phases, start = o.driven(truth)
         x0 = np.tile(plant.flat.starts("state"), (o.campaign.n_tests, 1))
-        thermal = [q.unit == "K" for q in plant.flat.states]
-        x0[:, thermal] = start[:, None]
-        ways = None
-        if turned:
-            touched = [k for k in plant.knobs if k in self.slopes]
-            by = np.stack([self.slopes[k] for k in touched], axis=1) if touched else np.zeros((self.n, 0, self.d))
-            places = np.array([plant.knobs.index(k) for k in touched], dtype=int)
-            ways = Turned(by[rows], places, self.pace_slopes[rows], o.starts, *self._apart(p))
-        found = march(plant, phases, x0, p[rows], self.pace[rows], ways)
-        y = found.y[o.campaign.test, o.half]  # n, shown
-        if found.by is None or found.local is None:
-            return y, np.empty(0), np.empty(0), truth
-        return y, found.by[o.campaign.test, o.half], found.local[o.campaign.test, o.half], truth
-
-    def _apart(self, p: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """Directions of candidates (c,), their parameters (tests, H, c, np) and ways (tests, H, c, knobs)."""
-        plant, c = self.o.plant, len(self.apart)
-        own = np.repeat(p[:, None], c, axis=1)
-        ways = np.zeros((self.n, c, len(plant.knobs)))
-        for i, (_, values, slopes) in enumerate(self.apart):
-            for path, value in values.items():
-                own[:, i, plant.place[path]] = value
-                ways[:, i, plant.knobs.index(path)] = slopes[path]
-        return np.array([k for k, _, _ in self.apart], dtype=int), own[self.o.rows], ways[self.o.rows]
+        x0[:, [q.unit == "K" for q in plant.flat.states]] = start[:, None]
+        return march(plant, phases, x0, p[:, o.rows], self.pace[o.rows], turned=turned)
 
     def outputs(self) -> np.ndarray:
         """All that the plant shows (n, shown)."""
-        return self._run(turned=False)[0]
+        return self._run(turned=False).y[self.o.campaign.test, self.o.half]
 
     def shown(self) -> np.ndarray:
         """Readings (m,) only."""
-        y = self._run(turned=False)[0]
+        y = self.outputs()
         true = {s.name: y[:, k] * self.o.signs[s.name] for s, k in zip(self.o.read, self.o.shown, strict=True)}
         for formula, t in self.parts:
             if formula.read:
@@ -315,9 +271,7 @@ class _Look:
     def tangents(self) -> np.ndarray:
         """Effects of the candidates' sizes (m, k)."""
         o, begin = self.o, self.tried
-        found = self.seen()
-        effects = found.by[:, begin:]
-        whole = self.true
+        effects, whole = self.seen().by[:, begin:], self.true
         for k, (formula, t) in enumerate(self.candidates):
             if formula.read:
                 _, by_t, _ = formula.instruments(_none(t), o.sensors, whole, o.features)
@@ -330,13 +284,13 @@ class _Look:
     def seen(self) -> Seen:
         """Readings and derivatives."""
         o = self.o
-        y, by, local, _ = self._run(turned=True)
+        y, by, local = self._turned()
         true, slopes, locals_ = {}, {}, {}
         for s, k in zip(o.read, o.shown, strict=True):
             sign = o.signs[s.name]
             true[s.name] = y[:, k] * sign
-            locals_[s.name] = local[:, k] * sign[:, None, None]  # n, given, H
-            slopes[s.name] = by[:, k] * sign[:, None] + self._through_given(locals_[s.name])
+            locals_[s.name] = local[:, :, :, k] * sign[:, None, None]  # n, given, H
+            slopes[s.name] = by[:, k] * sign[:, None]
         begin = len(self.z)
         for formula, t in self.parts:
             own = slice(begin, begin + formula.size)
@@ -359,16 +313,49 @@ class _Look:
         pick = [np.array([item[s.name] for s in o.read])[o.kind, o.row] for item in (true, slopes, locals_)]
         return Seen(*pick)
 
-    def _through_given(self, local: np.ndarray) -> np.ndarray:
-        """What causes change through the given sensors' truth (n, d)."""
-        o, found = self.o, np.zeros((self.n, self.d))
-        for g, s in enumerate(o.given):
-            slope = self.truth_slopes[s.name]
-            if slope.any():
-                signed = slope * o.signs[s.name][:, None]
-                own = signed[o.rows][o.campaign.test]  # n, H, d
-                found += np.einsum("nh,nhd->nd", local[:, g], own)
-        return found
+    def _turned(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """What the plant shows (n, shown), by all directions (n, shown, d), by given readings (n, given, H, shown)."""
+        o, found = self.o, self._run(turned=True)
+        assert found.slopes is not None
+        test = o.campaign.test
+        local = found.slopes.local[test, :, :, o.half]
+        signs = np.array([o.signs[s.name] for s in o.given])
+        by_truth = local.swapaxes(1, 2) * signs[:, o.rows[test]].transpose(1, 2, 0)[..., None]  # n, H, given, shown
+        by_knobs = found.slopes.by[test, :, :, :, o.half].swapaxes(1, 2)  # n, H, settings, knobs + 1, shown
+        own = by_knobs.reshape(self.n, o.height, -1, found.y.shape[2])
+        all_by, entries = np.concatenate([own, by_truth], axis=2), sorted(self._entries(), key=lambda e: e[0])
+        by = np.zeros((self.n, found.y.shape[2], self.d))
+        if entries:
+            places, first = np.unique([i for i, _, _ in entries], return_index=True)
+            ways = np.array([v for _, _, v in entries])[:, o.rows[test]]  # entries, n, H
+            effects = np.einsum("nhes,enh->nse", all_by[:, :, [k for _, k, _ in entries]], ways, optimize=False)
+            by[:, :, places] = np.add.reduceat(effects, first, axis=2)
+        return found.y[test, o.half], by, local
+
+    def _entries(self) -> list[tuple[int, int, np.ndarray]]:
+        """All slopes: direction, column (knobs and pace of each setting, then the given sensors), of each row."""
+        place = {name: k for k, name in enumerate(self.o.plant.knobs)}
+        wide = len(place) + 1
+        slopes = [(place[name], slope) for name, slope in self.slopes.items() if name in place]
+        slopes.append((len(place), self.pace_slopes))
+        first = wide * (1 + len(self.settings))
+        slopes += [(k, self.truth_slopes[s.name]) for k, s in enumerate(self.o.given, start=first)]
+        tried = [(i, wide * setting + place[path], v) for setting, path, i, v in self.tried_slopes]
+        return [*((i, k, v) for k, slope in slopes for i, v in slope.items()), *tried]
+
+
+def _same(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:
+    """Whether both change the same to the same."""
+    return one.keys() == other.keys() and all(np.array_equal(v, other[path]) for path, v in one.items())
+
+
+def _sum(terms: Sequence[tuple[np.ndarray | float, _Slope]]) -> _Slope:
+    """Slopes, each times its weight."""
+    found: _Slope = {}
+    for weight, slope in terms:
+        for i, own in slope.items():
+            found[i] = found[i] + weight * own if i in found else weight * own
+    return found
 
 
 def _none(t: np.ndarray) -> np.ndarray:

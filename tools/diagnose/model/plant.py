@@ -2,18 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+import ctypes
+from collections.abc import Collection, Iterable, Sequence
+from dataclasses import replace
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
+from ...fmu.batch_library import address
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
+from ...model.errors import FmuError
 from ...model.machines.spec import Spec, assemble
 from ..library.cause import Form, Nuisance
 from ..library.extra_parts import EXTRA_PARTS
-from .many import Many, Slow
+from .many import Compiled, library, record
 
 
 def superset(spec: Spec, forms: Iterable[Form | Nuisance]) -> Spec:
@@ -29,15 +33,6 @@ def superset(spec: Spec, forms: Iterable[Form | Nuisance]) -> Spec:
     return spec
 
 
-@dataclass(frozen=True)
-class Point:
-    """Unknowns w = (states, algebraic variables), inputs and parameters at n points, a row each."""
-
-    w: np.ndarray
-    u: np.ndarray
-    p: np.ndarray
-
-
 class Plant:
     """One rig, compiled.
 
@@ -46,18 +41,12 @@ class Plant:
         knobs: parameters that anything changes, the columns of `slopes`
         given: inputs that sensors give, further columns of `slopes`
         shown: states, outputs or inputs that sensors read
-        compiled: whether its functions are compiled to C, which pays where they are used often
+
+    Raises:
+        FmuError: the compiler fails
     """
 
-    def __init__(
-        self,
-        flat: FlatModel,
-        knobs: Sequence[str],
-        given: Sequence[str],
-        shown: Sequence[str],
-        *,
-        compiled: bool = True,
-    ) -> None:
+    def __init__(self, flat: FlatModel, knobs: Sequence[str], given: Sequence[str], shown: Sequence[str]) -> None:
         self.flat, self.knobs, self.given, self.shown = flat, tuple(knobs), tuple(given), tuple(shown)
         self.nx, self.nz = len(flat.states), len(flat.algebraic)
         self.p = flat.starts("parameter")
@@ -65,23 +54,67 @@ class Plant:
         self.u_place = {q.name: i for i, q in enumerate(flat.inputs)}
         self.u = flat.starts("input")
         self.scale = np.array([q.nominal for q in (*flat.states, *flat.algebraic)])
-        w, both = ca.vertcat(flat.x, flat.z), ca.vertcat(flat.ode, flat.residual)
-        way, along = ca.SX.sym("way", len(knobs)), ca.SX(len(flat.parameters), 1)
-        for i, knob in enumerate(knobs):
-            along[self.place[knob]] = way[i]
+        w, both = ca.vertcat(flat.x, flat.z), ca.densify(ca.vertcat(flat.ode, flat.residual))
         by = ca.vertcat(*(flat.p[self.place[k]] for k in knobs), *(flat.u[self.u_place[g]] for g in given))
         groups = {"state": flat.x, "input": flat.u, "output": flat.y}
         found = [flat.locate(path) for path in shown]
-        y = ca.vertcat(*(groups[kind][i] for kind, i in found))
-        arguments = [w, flat.u, flat.p]
-        many = Many if compiled else Slow
-        self.rates = many(arguments, [both, ca.jacobian(both, w)])
-        self.slopes = many(arguments, [ca.jacobian(both, by)])
-        self.readings = many(arguments, [y])
-        self.reading_slopes = many(arguments, [y, ca.jacobian(y, w), ca.jacobian(y, by)])
-        #: Slopes of rates and of readings along one direction of the knobs each.
-        self.push = many([*arguments, way], [ca.jtimes(both, flat.p, along)])
-        self.reading_push = many([*arguments, way], [ca.jtimes(y, flat.p, along)])
+        y = ca.densify(ca.vertcat(*(groups[kind][i] for kind, i in found)))
+        results = {
+            "rates": [both, ca.jacobian(both, w)],
+            "slopes": [ca.jacobian(both, by)],
+            "readings": [y],
+            "reading_slopes": [ca.jacobian(y, w), ca.jacobian(y, by)],
+        }
+        self._compiled = Compiled([w, flat.u, flat.p], results)
+        self.record = self._record(self._compiled)
+
+    def rates(self, w: np.ndarray, u: np.ndarray, p: np.ndarray) -> list[np.ndarray]:
+        """Rates of the states and residuals, and their Jacobian in w, at n points, a row each."""
+        return self._many("rates", w, u, p)
+
+    def slopes(self, w: np.ndarray, u: np.ndarray, p: np.ndarray) -> list[np.ndarray]:
+        """Derivatives of rates and residuals by knobs and given inputs."""
+        return self._many("slopes", w, u, p)
+
+    def readings(self, w: np.ndarray, u: np.ndarray, p: np.ndarray) -> list[np.ndarray]:
+        """What is shown."""
+        return self._many("readings", w, u, p)
+
+    def reading_slopes(self, w: np.ndarray, u: np.ndarray, p: np.ndarray) -> list[np.ndarray]:
+        """What is shown, its derivatives in w, and by knobs and given inputs."""
+        return [*self.readings(w, u, p), *self._many("reading_slopes", w, u, p)]
+
+    def _many(self, name: str, *points: np.ndarray) -> list[np.ndarray]:
+        given = [np.ascontiguousarray(v, dtype=float) for v in points]
+        found = [np.empty((len(given[0]), len(row))) for _, row in self._compiled.patterns[name]]
+        pairs = [(address(r), r.shape[1]) for r in (*found, np.empty((1, 0)))[:2]]
+        places = [address(v) for v in given]
+        record = ctypes.byref(self.record)
+        if not library().many(record, self._compiled.place(name), len(given[0]), *places, *pairs[0], *pairs[1]):
+            raise FmuError("there is not enough memory for the points. Give fewer at a time.")
+        return self._compiled.dense(name, *found)
+
+    def _record(self, compiled: Compiled) -> Any:
+        """The plant as the march through its runs knows it."""
+        unknowns = (*self.flat.states, *self.flat.algebraic)
+        (_, rates), (slopes,), (_,), shown = compiled.patterns.values()
+        patterns = [entries for pattern in (rates, slopes, *shown) for entries in pattern]
+        return record(
+            nx=self.nx,
+            nw=self.nx + self.nz,
+            nu=len(self.u),
+            np=len(self.p),
+            knobs=len(self.knobs),
+            given=len(self.given),
+            shown=len(self.shown),
+            **dict(zip(("n_arg", "n_res", "n_iw", "n_work"), compiled.sizes, strict=True)),
+            most=max(len(entries) for entries in patterns),
+            **{name: compiled.place(name) for name in compiled.patterns},
+            **{f"pattern{k}": entries for k, entries in enumerate(patterns)},
+            scale=self.scale,
+            guess=self.flat.starts("algebraic"),
+            thermal=np.array([float(q.unit == "K") for q in unknowns]),
+        )
 
     @staticmethod
     def of(
@@ -97,4 +130,24 @@ class Plant:
         Raises:
             GearheatError: the superset has no sound equations
         """
-        return Plant(flatten(assemble(superset(spec, forms))), knobs, given, shown)
+        flat, own = flatten(assemble(superset(spec, forms))), {part.name for part in spec.parts}
+        added = {q.name for q in flat.parameters if q.name.partition(".")[0] not in own}
+        return Plant(_settled(flat, added - set(knobs)), knobs, given, shown)
+
+
+def _settled(flat: FlatModel, fixed: Collection[str]) -> FlatModel:
+    """The model with parameters that nothing changes: 0 and 1 are numbers in it, and equal ones of a name are one."""
+    first: dict[tuple[str, float], Any] = {}
+    old, new = [], []
+    for symbol, q in zip(ca.vertsplit(flat.p), flat.parameters, strict=True):
+        if q.name in fixed:
+            old.append(symbol)
+            value = abs(q.start)
+            new.append(
+                ca.SX(q.start)
+                if value in (0.0, 1.0)
+                else first.setdefault((q.name.rpartition(".")[2], q.start), symbol)
+            )
+    parts = [flat.ode, flat.residual, flat.y]
+    ode, residual, y = ca.substitute(parts, [ca.vertcat(*old)], [ca.vertcat(*new)]) if old else parts
+    return replace(flat, ode=ode, residual=residual, y=y)

@@ -39,7 +39,7 @@ def ranges_of(
     ends = [f"{end}.{quantity}" for end in roles.ends for quantity in ("w", "tau")]
     shown = [roles.speed, roles.torque, roles.oil, *([roles.viscosity] if roles.viscosity else []), *ends]
     given = [s.reads for s in campaign.given]
-    plant = Plant(flat, (), given, tuple(dict.fromkeys(shown)), compiled=False)
+    plant = Plant(flat, (), given, tuple(dict.fromkeys(shown)))
     o = Observed(plant, campaign, (), oils, point)
     values = dict(zip(plant.shown, o.outputs().T, strict=True))
     if not (fine := np.isfinite(values[roles.oil])).any():
@@ -52,9 +52,7 @@ def ranges_of(
     whole = {"w": w, "tau": tau, "T": T, "nu": nu, "film": w * nu}
     whole |= {s.name: np.abs(o.sensors[s.name]) for s in campaign.sensors}
     whole |= {"order": campaign.progress, "direction": campaign.direction}
-    low, mid, high = (
-        {name: float(np.quantile(v[fine], q)) for name, v in whole.items()} for q in (0.05, 0.5, 0.95)
-    )
+    low, mid, high = ({name: float(np.quantile(v[fine], q)) for name, v in whole.items()} for q in (0.05, 0.5, 0.95))
     loss = float(np.median(np.abs(np.sum(power, axis=0)[fine])))
     known = {"order"} if campaign.n_tests > 1 else set()
     known |= {"dwell"} if np.isfinite(campaign.dwell).any() else set()

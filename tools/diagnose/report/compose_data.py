@@ -11,6 +11,7 @@ from ..campaign.table import Campaign
 from ..infer.search import Found, Hypothesis
 from ..setting import Setting
 from . import channels, quality
+from .compose_points import repeated
 from .evidence import Rows
 from .numbers import array
 
@@ -21,6 +22,7 @@ def data_quality(setting: Setting, found: Found, h: Hypothesis) -> quality.DataQ
         gross=tuple(_gross(found, g) for g in answer.gross_readings(found, h)),
         nuisances=tuple(_off(setting, o) for o in answer.values_off(found, h)),
         variance=tuple(_scatter(setting, s) for s in answer.scatters(found, h)),
+        repeated=repeated(found.problem.data.campaign),
         adequacy=answer.adequacy(found, h),
     )
 

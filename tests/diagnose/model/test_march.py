@@ -1,0 +1,202 @@
+"""Marches through tests: exact derivatives, small errors, and runs that do not touch each other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gearheat.diagnose.campaign.card import read_card
+from gearheat.diagnose.campaign.read import read_campaign
+from gearheat.diagnose.campaign.table import Campaign
+from gearheat.diagnose.library.cause import Cause, Form, Nuisance, Shape, Size
+from gearheat.diagnose.library.roles import Roles
+from gearheat.diagnose.model import duty
+from gearheat.diagnose.model.duty import STEADY
+from gearheat.diagnose.model.formula import Formula
+from gearheat.diagnose.model.march import Phases, march
+from gearheat.diagnose.model.observe import Observed
+from gearheat.diagnose.model.plant import Plant
+from gearheat.model.core.flatten import flatten
+from gearheat.model.machines.spec import PartSpec, assemble
+from gearheat.model.run.steady import steady
+from gearheat.scenarios.load import load
+
+FOLDER = Path(duty.__file__).parents[3] / "scenarios" / "rigs" / "planetary"
+SIZE = Size("size", "1", "", 0.1, -1.0, 1.0)
+FRICTION, BATH = Nuisance("mu", {"gear_set.k_mu": 1.0}, 0.2, 0.2), Nuisance("c", {"oil.c_p": 1.0}, 0.3, 0.3)
+EXTRA = {"G_ref": 0.0, "dT_ref": 30.0, "e": 0.0, "w_ref": 10.0, "tau_ref": 1000.0, "c": 0.0, "forward": 1.0}
+EXTRA |= {"backward": 1.0, "T_on": 0.0, "T_side": 1.0, "T_width": 1.0}
+
+
+def cause(**forms: object) -> Cause:
+    return Cause("test", "", SIZE, (Form(**forms),))  # type: ignore[arg-type]
+
+
+def formulas(campaign: Campaign, roles: Roles) -> list[Formula]:
+    """Two parameters at once, a speed sensor, a short dwell, and a conductance whose exponent is a shape."""
+    nets = (("extra.a", roles.oil_heat), ("extra.b", f"{roles.room}.floor"), ("extra.reading", roles.reading))
+    made = [
+        cause(values=lambda t, r: {"oil.V": r.base["oil.V"] * (1 + t["size"]), "extra.w_ref": 10 + t["size"]}),
+        cause(truth=lambda t, r: {"n_carrier": r.sensors["n_carrier"] * (1 + t["size"])}),
+        cause(pace=lambda t, r: 1 - t["size"] * (1 + r.second)),
+        cause(
+            shapes=(Shape("e", "1", "", 0.0, 2.0),),
+            parts=(PartSpec("extra", "ExtraConductor", EXTRA),),
+            connections=nets,
+            values=lambda t, r: {"extra.G_ref": 30 * t["size"], "extra.e": t["e"]},
+        ),
+    ]
+    names, reads = [s.name for s in campaign.sensors], [s.name for s in campaign.read]
+    return [Formula(c, c.forms[0], names, reads) for c in made]
+
+
+@pytest.fixture(scope="module")
+def planetary() -> tuple[Plant, Campaign, list[Formula]]:
+    scenario = load("planetary")
+    data = read_campaign(FOLDER / "measured.csv", scenario, read_card(FOLDER / "card.json"))
+    known = formulas(data, Roles.of(scenario.spec))
+    knobs = dict.fromkeys(["gear_set.k_mu", "oil.c_p", *(p for f in known for p in f.paths)])
+    given, shown = [s.reads for s in data.given], [s.reads for s in data.read]
+    return Plant.of(scenario.spec, [f.form for f in known], tuple(knobs), given, shown), data, known
+
+
+@pytest.fixture
+def made(planetary: tuple[Plant, Campaign, list[Formula]]) -> Callable[[], Observed]:
+    plant, data, _ = planetary
+    return lambda: Observed(plant, data, (FRICTION, BATH), {}, {"room.air_speed": 0.2})
+
+
+@pytest.fixture
+def acting(planetary: tuple[Plant, Campaign, list[Formula]]) -> list[tuple[Formula, np.ndarray]]:
+    return [(f, np.full(f.size, 0.4 - 0.2 * k)) for k, f in enumerate(planetary[2])]
+
+
+Z = np.array([0.3, -0.5])
+
+
+def central(function: Callable[[float], np.ndarray], h: float) -> np.ndarray:
+    return (function(h) - function(-h)) / (2 * h)
+
+
+def test_derivatives_by_nuisances_and_causes_are_those_of_what_is_shown(made, acting) -> None:
+    o = made()
+    found = o.at(Z, acting)
+    assert np.array_equal(found.shown, o.shown_by(Z, acting))
+    x = np.concatenate([Z, *(t for _, t in acting)])
+    cuts = np.cumsum([len(Z), *(len(t) for _, t in acting)])[:-1]
+
+    def shown(k: int, h: float) -> np.ndarray:
+        z, *ts = np.split(x + h * (np.arange(len(x)) == k), cuts)
+        return o.shown_by(z, [(f, t) for (f, _), t in zip(acting, ts, strict=True)])
+
+    for k in range(len(x)):
+        expected = central(lambda h, k=k: shown(k, h), 1e-4)
+        assert np.abs(expected).max() > 1e-3
+        assert found.by[:, k] == pytest.approx(expected, abs=1e-6 * np.abs(expected).max() + 1e-7)
+
+
+def test_derivatives_by_given_readings_are_those_of_what_is_shown(made) -> None:
+    o = made()
+    found, test = o.at(Z, []), o.campaign.test
+    at = np.flatnonzero(test == 2)
+    own = test[o.row] == 2
+    for g, sensor in enumerate(o.given):
+        for h, row in enumerate(at):
+            step = 1e-4 * abs(o.sensors[sensor.name][row])
+
+            def shown(d: float, name: str = sensor.name, row: int = row) -> np.ndarray:
+                other = made()
+                other.sensors = {**o.sensors, name: o.sensors[name] + d * (np.arange(o.campaign.n) == row)}
+                return other.shown_by(Z, [])
+
+            expected = central(shown, step) * o.signs[sensor.name][row]
+            assert np.abs(expected[~own]).max() == 0
+            scale = np.abs(found.local[own, g]).max()
+            assert found.local[own, g, h] == pytest.approx(expected[own], abs=2e-6 * scale + 1e-9)
+
+
+def test_candidates_of_one_part_with_other_shapes_keep_apart(made, planetary) -> None:
+    o, known = made(), planetary[2]
+    beside = [(known[0], np.array([0.5])), (known[1], np.array([0.2]))]
+    candidates = [(known[3], np.array([0.7, u])) for u in (-1.0, 0.0, 1.0)] + [(known[2], np.array([0.0]))]
+    found = o.tangents(Z, beside, candidates)
+    for k, (formula, t) in enumerate(candidates):
+        expected = central(lambda h, f=formula, t=t: o.shown_by(Z, [*beside, (f, np.concatenate([[h], t[1:]]))]), 1e-3)
+        assert found[:, k] == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
+    assert np.abs(found[:, 0] - found[:, 2]).max() > 0.01 * np.abs(found[:, 0]).max()
+
+
+def test_few_steps_are_enough(made, acting, monkeypatch) -> None:
+    found = made().shown_by(Z, acting)
+    monkeypatch.setattr(duty, "DWELL", np.linspace(0, 1, 201)[1:] ** 2)
+    monkeypatch.setattr(duty, "STOP", np.linspace(0, 1, 41)[1:] ** 2)
+    assert found == pytest.approx(made().shown_by(Z, acting), abs=0.01)
+
+
+def test_only_a_run_without_a_solution_is_not_a_number(made) -> None:
+    o = made()
+    fine = o.shown_by(Z, [])
+    row = np.flatnonzero(o.campaign.test == 1)[0]
+    torque = next(s.name for s in o.given if s.kind == "torque")
+    o.sensors = {**o.sensors, torque: o.sensors[torque] * np.where(np.arange(o.campaign.n) == row, 300.0, 1.0)}
+    found, own = o.at(Z, []), o.campaign.test[o.row] == 1
+    assert np.isnan(found.shown[own]).all()
+    assert np.isnan(found.by[own]).any()
+    assert np.array_equal(found.shown[~own], fine[~own])
+    assert np.isfinite(found.by[~own]).all()
+
+
+def test_same_input_same_bytes(made, acting) -> None:
+    one, other = (made().at(Z, acting) for _ in range(2))
+    assert (one.shown.tobytes(), one.by.tobytes()) == (other.shown.tobytes(), other.by.tobytes())
+    assert one.local.tobytes() == other.local.tobytes()
+
+
+@pytest.mark.parametrize("rig", ["planetary", "helical_two_stage"])
+def test_a_very_long_dwell_ends_in_the_steady_state(rig: str) -> None:
+    scenario = load(rig)
+    flat = flatten(assemble(scenario.spec))
+    plant = Plant(flat, (), (), [q.name for q in flat.states])
+    u = plant.u.copy()
+    for name, value in scenario.operating_point.items():
+        u[plant.u_place[name]] = value
+    none = np.zeros((1, 1, 0, 1))
+    steps = np.cumsum(STEADY) / STEADY.sum()
+    phases = Phases(
+        np.array([[STEADY.sum()]]),
+        u[None, None],
+        u[None, None],
+        (0,),
+        (steps,),
+        ((len(steps) - 1,),),
+        none,
+        none,
+        np.zeros((1, 0)),
+    )
+    x0 = np.where([q.unit == "K" for q in flat.states], 293.15, flat.starts("state"))[None]
+    found = march(plant, phases, x0, plant.p[None, None, None], np.ones((1, 1)))
+    expected = steady(flat, scenario.operating_point)
+    assert found.y[0, 0] == pytest.approx([expected[q.name][-1] for q in flat.states], abs=1e-6)
+
+
+def test_functions_of_the_plant_at_many_points(planetary) -> None:
+    plant = planetary[0]
+    w = np.concatenate([plant.flat.starts("state"), plant.flat.starts("algebraic")]) + np.array([[30.0], [60.0]])
+    u, p = np.tile(plant.u, (2, 1)), np.tile(plant.p, (2, 1))
+    u[:, [plant.u_place[g] for g in plant.given]] = [10.0, 295.0, 1500.0]
+    _, J = plant.rates(w, u, p)
+    (by,) = plant.slopes(w, u, p)
+    y, y_w, _ = plant.reading_slopes(w, u, p)
+    assert (J.shape, y.shape) == ((2, plant.nx + plant.nz, w.shape[1]), (2, len(plant.shown)))
+
+    def agree(found: np.ndarray, expected: np.ndarray) -> None:
+        assert found == pytest.approx(expected, rel=1e-4, abs=1e-7 * max(np.abs(expected).max(), 1e-9))
+
+    for j, scale in enumerate(plant.scale):
+        way = np.arange(w.shape[1]) == j
+        agree(J[:, :, j], central(lambda h, way=way: plant.rates(w + h * way, u, p)[0], 1e-5 * scale))
+        agree(y_w[:, :, j], central(lambda h, way=way: plant.readings(w + h * way, u, p)[0], 1e-5 * scale))
+    way = np.arange(len(plant.p)) == plant.place["oil.c_p"]
+    agree(by[:, :, plant.knobs.index("oil.c_p")], central(lambda h: plant.rates(w, u, p + h * way)[0], 1e-2))
