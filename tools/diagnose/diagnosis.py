@@ -74,6 +74,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, t
         gain_grouped=grouped,
         channels=tuple(channel(s) for s in data.sensors),
         rows=rows,
+        views=compose_pictures.views(found),
         pictures=compose_pictures.pictures(found, leader, rows.quantities),
         calibrated=compose_rig.calibrated(made, found, leader),
         extended_rig=compose_rig.rig_file(made, found, leader),

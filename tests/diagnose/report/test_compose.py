@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+from gearheat.diagnose.infer import screen
 from gearheat.diagnose.infer.fit import fitted
 from gearheat.diagnose.infer.problem import Acting
 from gearheat.diagnose.infer.search import Found, Hypothesis
@@ -113,3 +115,31 @@ def test_repeated_points_are_told_in_running_order(made: Made) -> None:
     assert [r.difference for r in told[oil].repeats] == pytest.approx([-0.25, 0.25])
     assert told[oil].condition.startswith("A, ")
     assert "rpm" in told[oil].condition
+
+
+def test_the_channel_that_errs_says_so_on_its_own(made: Made) -> None:
+    problem = copy(made.setting.problem)
+    o, null = problem.data, made.found.null
+    torque = next(i for i, s in enumerate(o.read) if s.kind == "torque")
+    rng = np.random.default_rng(1)
+    sd = np.array([s.repeat_sd for s in o.read])[o.kind]
+    side = o.signs[o.read[torque].name][o.row]  # columns of magnitudes turn a zero's sign with the direction
+    zero = np.where(o.kind == torque, 20 * sd * side, 0.0)
+    problem.measured = null.look.shown + sd * rng.standard_normal(problem.m) + zero
+    ids = ("sensor.torque.offset", "sensor.oil_temp.offset", CAUSE)
+    formulas = tuple(f for f in made.setting.formulas if f.cause.id in ids and not f.form.spread)
+    first = screen.look(problem, null, formulas)
+    found = replace(made.found, problem=problem, formulas=formulas, first=first)
+    told = {v.channel: v for v in compose_pictures.views(found)}
+    assert set(told) == {s.name for s in o.read}
+    said = told[o.read[torque].name]
+    assert said.asks.startswith("torque ")
+    assert ", given oil temperature" in said.asks
+    assert said.causes[0].id == "sensor.torque.offset"
+    assert said.nothing is not None
+    assert said.nothing < 0.05
+    assert len(said.deviation) == len(said.order) == len(said.direction) == int((o.kind == torque).sum())
+    apart = np.array(said.deviation, dtype=float) * np.array(said.direction, dtype=float)
+    assert abs(np.mean(apart)) > 10 * o.read[torque].repeat_sd
+    oil = next(v for v in told.values() if v.asks.startswith("oil temperature"))
+    assert "against the other thermometers" in oil.asks
