@@ -207,7 +207,7 @@ def spoiled() -> Findings:
         gross=(GrossReading(row=17, line=18, point="17", channel="T_oil", size_sd=14.2, shown=84.2, expected=71.3,
                             unit="degC"),),
         nuisances=(NuisanceOff(name="heat capacity of the gears", z=-4.2, factor=0.17, paths=("gears.C",)),),
-        variance=(VarianceComponent(name="room", channel="T_amb", unit="K", card=0.4, found=1.0, ratio=2.5),),
+        variance=(VarianceComponent(name="readings of T_amb", channel="T_amb", unit="K", card=0.4, found=1.0, ratio=2.5),),
         repeated=(RepeatedPoint(condition="100 rpm, 1600 N.m", channel="T_oil", unit="K", sd=0.4, card=0.35,
                                 repeats=(Repeat(test=1, order=1, sum=0.2, difference=0.1),
                                          Repeat(test=9, order=9, sum=-0.2, difference=0.0))),),

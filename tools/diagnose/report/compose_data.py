@@ -75,7 +75,9 @@ def rows(found: Found, h: Hypothesis) -> Rows:
     o, own = found.problem.data, found.problem.own
     c = o.campaign
     null, leader = (fit.look.shown[own] for fit in (found.null, h.fit))
-    spread = np.sqrt(np.diag(h.fit.noise.covariance))[own]
+    noise = h.fit.noise
+    loose = zip(noise.scales, noise.parts[1], strict=True)  # scatter of readings and days, without tolerances
+    spread = np.sqrt(np.sum([np.exp(2 * s) * np.diag(C) for s, C in loose], axis=0))[own]
     told = {}
     for i, s in enumerate(o.read):
         mine = o.kind == i
