@@ -77,6 +77,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, t
         views=compose_pictures.views(found),
         pictures=compose_pictures.pictures(found, leader, rows.quantities),
         calibrated=compose_rig.calibrated(made, found, leader),
+        played=compose_rig.played(found, leader),
         extended_rig=compose_rig.rig_file(made, found, leader),
         predictions=() if points is None else compose_points.predictions(made, found, leader, points),
         invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in inputs.invisible.items()),

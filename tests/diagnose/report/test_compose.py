@@ -79,6 +79,12 @@ def test_the_extended_rig_has_the_calibrated_values_and_the_cause(made: Made, tm
             assert rig.spec.part(part).values[key] == pytest.approx(told.extended, rel=1e-4)
 
 
+def test_the_rig_is_played_over_its_data(made: Made) -> None:
+    told = compose_rig.played(made.found, made.h)
+    assert set(told) == {s.name for s in made.found.problem.data.read}
+    assert compose_rig.played(made.found, made.found.hypotheses[1]) == {}, "nothing is added"
+
+
 def test_predictions_at_the_data_are_near_the_data(made: Made) -> None:
     data = made.found.problem.data.campaign
     told = compose_points.predictions(made.setting, made.found, made.h, data)

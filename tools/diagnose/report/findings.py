@@ -168,7 +168,7 @@ class Gain(Model):
 
 
 class Played(Model):
-    """Root mean square that the rig leaves when it is played over the data it was fitted to."""
+    """Root mean square that the rig leaves of the data it was fitted to, with faults of instruments as found."""
 
     rms_calibrated: Number
     rms_extended: Number
