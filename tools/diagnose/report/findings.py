@@ -298,9 +298,3 @@ class Findings(Model):
 def as_object(findings: Findings) -> dict[str, Any]:
     """The JSON object of a diagnosis, without what is not known."""
     return findings.model_dump(mode="json", by_alias=True, exclude_none=True)
-
-
-def json_schema() -> dict[str, Any]:
-    """The JSON schema of `as_object`."""
-    found = Findings.model_json_schema(by_alias=True, mode="serialization")
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": "gearheat.diagnosis/2"} | found
