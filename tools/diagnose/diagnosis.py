@@ -8,7 +8,7 @@ from ..model.errors import DataError
 from .answer.decide import Decision, decided
 from .answer.gain import Gain, gains
 from .infer.search import Found, searched
-from .report import compose, compose_data, compose_pictures, compose_points, compose_rig
+from .report import compose, compose_data, compose_design, compose_pictures, compose_points, compose_rig
 from .report.channels import channel
 from .report.findings import Findings, Invisible
 from .report.words import with_words
@@ -43,23 +43,21 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         lambda stage, share: progress(stage, 0.05 + 0.75 * share),
     )
     decision = decided(found)
-    told = (
-        []
-        if decision.verdict == "consistent"
-        else gains(found, request.seed, lambda s: progress("held-out readings", 0.82 + 0.13 * s))
-    )
+    wrong = decision.verdict != "consistent"
+    held = gains(found, request.seed, lambda share: progress("readings left out", 0.82 + 0.13 * share)) if wrong else []
     progress("what was found", 0.95)
-    findings = _composed(inputs, made, found, decision, told)
+    findings = _composed(inputs, made, found, decision, held)
     progress("done", 1.0)
     return with_words(findings)
 
 
-def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, told: Sequence[Gain]) -> Findings:
+def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, held: Sequence[Gain]) -> Findings:
     """The findings without their words."""
     request, data, leader = inputs.request, found.problem.data.campaign, decision.leader
-    gain, grouped = compose.gains(found, told)
+    wrong = decision.verdict != "consistent"
+    gain, grouped = compose.gains(found, held)
+    sets = compose_design.sets(made.causes, found, decision) if wrong else ()
     rows = compose_data.rows(found, leader)
-    points = inputs.points
     return Findings(
         verdict=decision.verdict,
         about=compose.about(data, made.scenario.name, inputs.reference, request.seed),
@@ -73,13 +71,17 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, t
         gain=gain,
         gain_grouped=grouped,
         channels=tuple(channel(s) for s in data.sensors),
+        played=compose_design.played(found, decision) if wrong else {},
+        confusable=tuple(s.causes for s in sets),
+        sets=sets,
+        next_experiment=compose_design.next_experiments(made, found, decision) if wrong else (),
+        isolability=compose_design.isolability(compose_design.seen(found)),
         rows=rows,
         views=compose_pictures.views(found),
         pictures=compose_pictures.pictures(found, leader, rows.quantities),
         calibrated=compose_rig.calibrated(made, found, leader),
-        played=compose_rig.played(found, leader),
         extended_rig=compose_rig.rig_file(made, found, leader),
-        predictions=() if points is None else compose_points.predictions(made, found, leader, points),
+        predictions=compose_points.predictions(made, found, inputs.points) if inputs.points else (),
         invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in inputs.invisible.items()),
         warnings=inputs.warnings,
     )

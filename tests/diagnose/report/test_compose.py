@@ -34,11 +34,10 @@ class Made:
 @pytest.fixture(scope="module")
 def made() -> Made:
     """The calibrated rig, and churning beside it."""
-    request = Request("planetary", CASE / "data.csv", card=CASE / "card.json", predict=CASE / "points.csv")
+    request = Request("planetary", CASE / "data.csv", card=CASE / "card.json")
     inputs = read(request)
     assert inputs.data is not None
-    assert inputs.points is not None
-    made = setting(inputs.scenario, inputs.card, inputs.data, None, (), [inputs.points])
+    made = setting(inputs.scenario, inputs.card, inputs.data)
     null = fitted(made.problem, (), np.zeros(made.problem.nz))
     formula = next(f for f in made.formulas if f.cause.id == CAUSE)
     start = Acting(formula, np.r_[0.5, np.zeros(formula.size - 1)])
@@ -77,30 +76,6 @@ def test_the_extended_rig_has_the_calibrated_values_and_the_cause(made: Made, tm
         assert told.extended is not None
         if not told.path.endswith(".V"):  # litres
             assert rig.spec.part(part).values[key] == pytest.approx(told.extended, rel=1e-4)
-
-
-def test_the_rig_is_played_over_its_data(made: Made) -> None:
-    told = compose_rig.played(made.found, made.h)
-    assert set(told) == {s.name for s in made.found.problem.data.read}
-    assert compose_rig.played(made.found, made.found.hypotheses[1]) == {}, "nothing is added"
-
-
-def test_predictions_at_the_data_are_near_the_data(made: Made) -> None:
-    data = made.found.problem.data.campaign
-    told = compose_points.predictions(made.setting, made.found, made.h, data)
-    oil = next(s for s in data.read if s.kind == "oil_temp")
-    measured = data.values[oil.name] - 273.15
-    predicted = np.array([p.extended[oil.name] for p in told])
-    left = made.found.problem.measured - made.h.fit.look.shown
-    assert float(np.sqrt(np.mean((predicted - measured) ** 2))) < 3 * float(left.std())
-
-
-def test_every_point_is_predicted(made: Made) -> None:
-    points = made.inputs.points
-    assert points is not None
-    told = compose_points.predictions(made.setting, made.found, made.h, points)
-    assert [p.point for p in told] == [str(int(n)) for n in points.points]
-    assert all(np.isfinite([*p.nominal.values(), *p.extended.values()]).all() for p in told)
 
 
 def test_repeated_points_are_told_in_running_order(made: Made) -> None:

@@ -33,7 +33,7 @@ def _gross(found: Found, g: answer.Gross) -> quality.GrossReading:
     shown, expected = (None if v is None else float(channels.in_unit(s, np.array(v))) for v in (g.shown, g.expected))
     where = "" if g.campaign == 0 else f" of {campaign.name}"
     return quality.GrossReading(
-        row=g.row + 1,
+        row=int(campaign.lines[g.row]) - 1,
         line=int(campaign.lines[g.row]),
         point=f"{int(campaign.points[g.row])}{where}",
         channel=g.sensor,

@@ -2,20 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import replace
-
 import numpy as np
 
+from ..answer import predict
 from ..campaign.repeats import Repeat as Repeated
 from ..campaign.repeats import repeats, scatters
 from ..campaign.table import Campaign
-from ..infer.evidence import White
-from ..infer.fit import Fit
-from ..infer.problem import Problem
-from ..infer.search import Found, Hypothesis
-from ..model.noise import terms
-from ..model.observe import Observed
+from ..infer.search import Found
 from ..setting import Setting
 from . import channels
 from .findings import Prediction
@@ -63,44 +56,23 @@ def condition(campaign: Campaign, point: Repeated) -> str:
     return ", ".join(said)
 
 
-def predictions(setting: Setting, found: Found, h: Hypothesis, points: Campaign) -> tuple[Prediction, ...]:
-    """What the instruments will show at points: calibrated without a cause, and with a hypothesis.
+def predictions(setting: Setting, found: Found, points: Campaign) -> tuple[Prediction, ...]:
+    """What the instruments will show at points, where the machine can be run.
 
     Args:
         setting: the rig
         found: the search
-        h: the hypothesis
         points: their conditions
     """
-    data, read = found.problem.data, found.problem.data.read
-    guess = {s.name: np.full(points.n, float(np.nanmean(data.campaign.values[s.name]))) for s in read}
-    for _ in range(2):  # causes that follow the readings take those of the calibrated model
-        filled = replace(points, sensors=(*points.given, *read), values={**points.values, **guess})
-        o = Observed(setting.plant, filled, data.nuisances, setting.oils, setting.scenario.operating_point)
-        nominal = _predicted(found.problem, found.null, o)
-        guess = {s.name: nominal[i] for i, s in enumerate(read)}
-    extended = _predicted(found.problem, h.fit, o)
-    both = [[channels.in_unit(s, table[i]) for i, s in enumerate(read)] for table in (nominal, extended)]
-    names = [s.name for s in read]
-    return tuple(
-        Prediction(point=str(int(points.points[r])), nominal=_at(names, both[0], r), extended=_at(names, both[1], r))
-        for r in range(points.n)
-    )
-
-
-def _at(names: Sequence[str], columns: Sequence[np.ndarray], row: int) -> dict[str, float]:
-    return {name: float(column[row]) for name, column in zip(names, columns, strict=True)}
-
-
-def _predicted(problem: Problem, fit: Fit, o: Observed) -> np.ndarray:
-    """Readings (read, n) at further points: the model, and what tolerances and remainder make of the data there."""
-    seen = o.at(np.append(fit.look.z, 0.0), [(a.formula, a.t) for a in fit.look.acting])
-    joint = terms([*problem.campaigns, o], [*fit.look.seen, seen], problem.day_sd, problem.nz)
-    scales = {t.name: s for t, s in zip(fit.noise.loose, fit.noise.scales, strict=True)}
-    known = {t.name for t in fit.noise.terms}
-    V = sum(np.exp(2 * scales.get(t.name, 0.0)) * t.matrix for t in joint if t.name in known)
-    white = White.of(fit.noise.covariance)
-    told = V[problem.m :, : problem.m] @ white.back(problem.measured - fit.look.shown)
-    table = np.full((len(o.read), o.campaign.n), np.nan)
-    table[o.kind, o.row] = seen.shown + told
-    return table
+    read = found.problem.data.read
+    tables = [
+        [channels.in_unit(s, row) for s, row in zip(read, table, strict=True)]
+        for table in predict.predictions(setting, found, points)
+    ]
+    told = []
+    for row in range(points.n):
+        both = [{s.name: float(line[row]) for s, line in zip(read, t, strict=True)} for t in tables]
+        stated = points.points[row] > 0  # else a row that a test lacks
+        if stated and all(np.isfinite(v) for values in both for v in values.values()):
+            told.append(Prediction(point=str(int(points.points[row])), nominal=both[0], extended=both[1]))
+    return tuple(told)

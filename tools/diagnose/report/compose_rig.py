@@ -12,9 +12,8 @@ from ..infer.search import Found, Hypothesis
 from ..library.cause import Cause, Form, Nuisance, Row, Size, Theta, Values
 from ..library.extra_parts import EXTRA_PARTS
 from ..setting import Setting
-from . import channels
 from .extension import Applied, extended_rig
-from .findings import Calibrated, Played
+from .findings import Calibrated
 
 
 def values(found: Found, fit: Fit) -> dict[str, float]:
@@ -45,25 +44,6 @@ def calibrated(setting: Setting, found: Found, h: Hypothesis) -> tuple[Calibrate
             causes = shown[2] if h.causes else None
             told.append(Calibrated(path=path, unit=unit, file=shown[0], nominal=shown[1], extended=causes))
     return tuple(told)
-
-
-def played(found: Found, h: Hypothesis) -> dict[str, Played]:
-    """What calibrated and extended rig leave of the readings they were fitted to, faults of instruments as found.
-
-    Args:
-        found: the search
-        h: the hypothesis of the answer; without a cause in the machine there is nothing to compare
-    """
-    if all(a.formula.form.values is None for a in h.fit.look.acting):
-        return {}
-    o, own, told = found.problem.data, found.problem.own, dict[str, Played]()
-    for i, s in enumerate(o.read):
-        mine = o.kind == i
-        if mine.any():
-            left = (o.measured - fit.look.shown[own] for fit in (found.null, h.fit))
-            before, after = (channels.difference(s, float(np.sqrt(np.mean(r[mine] ** 2)))) for r in left)
-            told[s.name] = Played(rms_calibrated=before, rms_extended=after, unit=channels.unit_of_difference(s))
-    return told
 
 
 def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:

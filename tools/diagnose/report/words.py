@@ -205,7 +205,8 @@ def _cannot_be(findings: Findings) -> str:
 def _ruled_out(findings: Findings, cause: Cause) -> bool:
     seen = cause.detectable is not None and cause.usual is not None and cause.detectable <= cause.usual
     alike = any(cause.id in s.causes and s.distance < APART for s in findings.sets)
-    return seen and not alike and cause.probability < RULED_OUT
+    blind = any(cause.id == i.cause for i in findings.invisible)
+    return seen and not alike and not blind and cause.probability < RULED_OUT
 
 
 def _data(findings: Findings) -> tuple[str, ...]:
