@@ -10,7 +10,7 @@ from .answer.gain import gains
 from .infer.search import searched
 from .report import compose, compose_data, compose_pictures, compose_points, compose_rig
 from .report.channels import channel
-from .report.findings import Findings
+from .report.findings import Findings, Invisible
 from .report.words import with_words
 from .request import Inputs
 from .setting import setting
@@ -72,6 +72,7 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         calibrated=compose_rig.calibrated(made, found, leader),
         extended_rig=compose_rig.rig_file(made, found, leader),
         predictions=compose_points.predictions(made, found, leader, inputs.points) if inputs.points else (),
+        invisible=tuple(Invisible(cause=cause, reason=reason) for cause, reason in inputs.invisible.items()),
         warnings=inputs.warnings,
     )
     progress("done", 1.0)
