@@ -19,8 +19,7 @@ from ...scenarios.columns import in_si, spelled, split_unit
 from ...scenarios.csv_table import raise_all
 from ...scenarios.scenario import Scenario
 from .card import Card
-from .read import SI
-from .sensors import sensors_of
+from .sensors import SI, sensors_of
 from .table import Sensor
 
 #: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
