@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from .fit import Fit
+from .fit import Fit, weighed
 from .problem import Aside, Problem
 
 #: Standard deviations from what the others say beyond which a reading is gross, and how far it stands out of the rest.
 GROSS, OUT = 6.0, 1.6
+#: Standard deviations beyond which a reading is judged again, by a scatter that it has no part in.
+SUSPECT = 4.0
 #: A given reading is suspected before a compared one only where it stands out by so much more.
 GIVEN = 0.9
 #: A reading that a hypothesis brings within this is none.
@@ -48,13 +50,20 @@ def suspects(problem: Problem, fit: Fit) -> list[Suspect]:
 
 def gross(problem: Problem, fit: Fit) -> Suspect | None:
     """The reading that is gross beside a hypothesis, if there is one that is not set aside yet."""
-    known = [s for s in suspects(problem, fit) if s.aside not in problem.aside]
-    if not known or abs(known[0].size_sd) < GROSS:
+    stated = replace(fit, noise=replace(fit.noise, scales=np.minimum(fit.noise.scales, 0.0)))  # it widens its own
+    known = [s for s in suspects(problem, stated) if s.aside not in problem.aside]
+    if not known or abs(known[0].size_sd) < SUSPECT:
         return None
-    own = problem.touched(known[0].aside, fit.look)
-    others = [abs(s.size_sd) for s in known[1:] if not problem.touched(s.aside, fit.look) & own]
-    typical = np.quantile(others, 0.9) if others else 0.0
-    return known[0] if abs(known[0].size_sd) > OUT * max(others[0] if others else 0.0, 1.5 * typical) else None
+    aside = known[0].aside
+    others = problem.without(problem.aside | {aside})
+    alone = weighed(others, fit.look, fit.noise, fit.cost)
+    size = next(s.size_sd for s in distances(others, alone) if s.aside == aside)
+    own = problem.touched(aside, fit.look)
+    rest = [s for s in suspects(others, alone) if s.aside not in others.aside]
+    sizes = [abs(s.size_sd) for s in rest if not problem.touched(s.aside, fit.look) & own]
+    typical = 1.5 * np.quantile(sizes, 0.9) if sizes else 0.0
+    least = max(GROSS, OUT * max(sizes[0] if sizes else 0.0, typical))
+    return Suspect(aside, size) if abs(size) > least else None
 
 
 def after_all(problem: Problem, fit: Fit) -> frozenset[Aside]:
