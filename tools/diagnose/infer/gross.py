@@ -56,7 +56,7 @@ def gross(problem: Problem, fit: Fit) -> Suspect | None:
         return None
     aside = known[0].aside
     others = problem.without(problem.aside | {aside})
-    alone = weighed(others, fit.look, fit.noise, fit.cost)
+    alone = weighed(others, fit.look, stated.noise, fit.cost)
     size = next(s.size_sd for s in distances(others, alone) if s.aside == aside)
     own = problem.touched(aside, fit.look)
     rest = [s for s in suspects(others, alone) if s.aside not in others.aside]
