@@ -7,8 +7,8 @@ from typing import ClassVar
 
 import casadi as ca
 
-from ..core.component import Component, Equation, equation
-from ..core.declare import Output, Parameter, State
+from ..core.component import Component, Equation, Related, equation
+from ..core.declare import Choice, Output, Parameter, State
 from ..laws.smooth import Num, smooth_abs
 from .friction import Friction
 from .ports import COLDEST, HOTTEST, HeatPort, Lubricant, Opening, ShaftReading
@@ -71,9 +71,11 @@ class FlowConductor(Conductor):
 
 
 class Thermostat(Component):
-    """Opens a cooler where what it senses is warmer than T_open and closes it below T_close, smoothly.
+    """Opens a cooler where what it senses is warm: fully above T_open, not at all below T_close.
 
-    Its threshold is a state: it falls to T_close when the cooler opens and rises to T_open when it closes.
+    As a relay it stays as it is between the two: its threshold is a state, which falls to T_close when it opens and
+    rises to T_open when it closes. Such a machine may have no steady state, as it switches for ever; otherwise the
+    opening rises smoothly between the two, which is what a relay does in the mean.
     """
 
     role: ClassVar[str] = "switch"
@@ -81,35 +83,52 @@ class Thermostat(Component):
     sensed = HeatPort()
     opening = Opening()
 
+    relay = Choice((True, False), "whether it switches, with a threshold of its own", default=False)
     T_switch = State("K", "threshold that is in force", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=333.15)
-    T_open = Parameter("K", "temperature above which it opens", nominal=10.0, above=0.0)
-    T_close = Parameter("K", "temperature below which it closes", nominal=10.0, above=0.0)
-    T_width = Parameter("K (difference)", "how gradually it opens about its threshold", nominal=1.0, above=0.0)
-    t_switch = Parameter("s", "time in which its threshold changes", nominal=100.0, above=0.0)
+    T_open = Parameter("K", "temperature above which it is open", nominal=10.0, above=0.0)
+    T_close = Parameter("K", "temperature below which it is closed", nominal=10.0, above=0.0)
+    T_width = Parameter("K (difference)", "how gradually a relay switches", nominal=1.0, above=0.0)
+    t_switch = Parameter("s", "time in which a relay's threshold changes", nominal=100.0, above=0.0)
+
+    def has(self, name: str) -> bool:
+        """A relay has a threshold of its own, and times."""
+        return bool(self.choices["relay"]) or name not in ("T_switch", "T_width", "t_switch")
+
+    def relations(self) -> Iterator[Related]:
+        """It opens above where it closes."""
+        remedy = "Give the higher temperature as T_open."
+        yield self.relation("T_open is above T_close", "T_open - T_close", self.T_open - self.T_close, 0.01, remedy=remedy)
 
     def equations(self) -> Iterator[Equation]:
-        """A rounded relay with hysteresis."""
-        share, remembered = self.opening.share, self.T_open - (self.T_open - self.T_close) * self.opening.share
-        yield equation("opening", share, (1 + ca.tanh((self.sensed.T - self.T_switch) / self.T_width)) / 2)
-        yield equation("threshold in force", self.t_switch * self.der("T_switch"), remembered - self.T_switch)
+        """A rounded relay with hysteresis, or a smooth rise."""
+        share, span, T = self.opening.share, self.T_open - self.T_close, self.sensed.T
         yield equation("it is sensed, not heated", self.sensed.Q_flow, 0.0)
+        if not self.relay:
+            yield equation("opening", share, (1 + ca.tanh(4 * (T - self.T_close) / span - 2)) / 2)
+            return
+        yield equation("opening", share, (1 + ca.tanh((T - self.T_switch) / self.T_width)) / 2)
+        threshold = self.T_open - span * share
+        yield equation("threshold in force", self.t_switch * self.der("T_switch"), threshold - self.T_switch)
 
 
 class Cooler(Conductor):
-    """A cooler whose fan or valve a thermostat opens."""
+    """A cooler whose fan or valve a thermostat opens; its fan runs only where the read shaft turns."""
 
     role: ClassVar[str] = "cooler"
     scale: ClassVar[tuple[str, ...]] = ("G_open",)
 
     opening = Opening()
+    reading = ShaftReading(must_meet=True)
 
     G_closed = Parameter("W/K", "conductance while closed", at_least=0.0)
     G_open = Parameter("W/K", "what opening adds to it", nominal=1000.0, at_least=0.0)
+    w_on = Parameter("rad/s", "speed above which it works", nominal=10.0, above=0.0)
     share = Output("1", "how far it is open")
 
     def conductance(self) -> Num:
         """Between closed and open."""
-        return self.G_closed + self.G_open * self.opening.share
+        turning = self.reading.w**2 / (self.reading.w**2 + self.w_on**2)
+        return self.G_closed + self.G_open * self.opening.share * turning
 
     def equations(self) -> Iterator[Equation]:
         """A conductor that shows how far it is open."""

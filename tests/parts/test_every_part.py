@@ -101,8 +101,8 @@ EXAMPLES: dict[str, dict] = {
     "GreyBearing": GREY,
     "FlowConductor": dict(G_rest=100.0, G_ref=1000.0, e=0.3, w_ref=188.0, nu_ref=1.5e-4),
     "OilJet": dict(G_ref=500.0, e=0.3, w_ref=188.0, nu_ref=1.5e-4),
-    "Thermostat": dict(T_open=333.0, T_close=328.0, T_width=0.4, t_switch=300.0),
-    "Cooler": dict(G_closed=50.0, G_open=900.0),
+    "Thermostat": dict(relay=True, T_open=333.0, T_close=328.0, T_width=1.0, t_switch=600.0),
+    "Cooler": dict(G_closed=50.0, G_open=900.0, w_on=40.0),
     "ExtraLoss": EXTRA,
     "ExtraHeat": EXTRA | dict(wall_share=0.3, inside_share=0.2),
     "ExtraConductor": dict(G_ref=2.0, dT_ref=35.0, e=0.3, w_ref=20.0, c=0.5, T_on=330.0, T_side=1.0, T_width=1.5)
@@ -191,6 +191,7 @@ CASES += [("CycloidPinStage", {"pin": p, "disc_torque": t}) for p in ("held", "r
 CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath")]
 PRINTED_DRUM = {"coefficient": "source", "P_N": 2200.0, "psi_1": 0.5, "psi_2": 0.9, "A_belt": 0.3}
 CASES += [("DrumCooling", PRINTED_DRUM)]
+CASES += [("Thermostat", {"relay": False})]
 CASES += [(kind, {"oil_bath": False}) for kind in ("TaperedRollerBearing", "CylindricalRollerBearing")]
 _flat: dict = {}
 

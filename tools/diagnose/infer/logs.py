@@ -110,10 +110,13 @@ def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
         scenario: the rig
         log: with all sensors
     """
-    found = knobs(Roles.of(scenario.spec), log.sensors)
+    roles = Roles.of(scenario.spec)
+    relays = {f"{name}.relay": True for name in roles.having("switch")}
+    spec = scenario.spec.with_values(relays)
+    found = knobs(roles, log.sensors)
     found = tuple(k for k in found if all(p in _parameters(scenario) for p in k.paths))
     paths = list(dict.fromkeys(path for k in found for path in k.paths))
-    plant = Plant(flatten(assemble(scenario.spec)), paths, [s.reads for s in log.given], [s.reads for s in log.read])
+    plant = Plant(flatten(assemble(spec)), paths, [s.reads for s in log.given], [s.reads for s in log.read])
     own = Filter(plant, found, [s.name for s in log.given], [s.name for s in log.read], np.zeros(plant.nx))
     noise = []
     for i, q in enumerate(plant.flat.states):

@@ -77,7 +77,9 @@ def _losses(roles: Roles) -> Iterator[Knob]:
     types = roles.spec.types
     for name in roles.having("teeth"):
         if issubclass(types[roles.spec.part(name).type], GreyLoss):
-            yield _factor(f"{name}: loss without load", "losses.churning", "More or less loss without load.", f"{name}.a")
+            yield _factor(
+                f"{name}: loss without load", "losses.churning", "More or less loss without load.", f"{name}.a"
+            )
             yield _factor(f"{name}: loss of load", "losses.mesh_friction", "More or less loss with load.", f"{name}.b")
         else:
             yield _factor(f"{name}: friction", "losses.mesh_friction", "More or less friction.", *roles.scaled(name))
@@ -101,10 +103,11 @@ def _cooling(roles: Roles) -> Iterator[Knob]:
         yield Knob(f"{name}: set point", "cooling.thermostat", doc, "K", 3.0, 1.0, shifted=paths)
     for name in roles.having("jet"):
         yield _factor(f"{name}: oil flow", "cooling.oil_wall", "Less or more oil reaches a body.", *roles.scaled(name))
+    others = tuple(name for name in roles.oil_side if name not in roles.having("jet"))
     families = {
         "cooling.air": (roles.surfaces, "The air takes more or less heat."),
         "cooling.foundation": (roles.foundation, "More or less heat flows to what the machine stands in."),
-        "cooling.oil_wall": (roles.oil_side, "Another heat transfer or flow between the oil and what it meets."),
+        "cooling.oil_wall": (others, "Another heat transfer or flow between the oil and what it meets."),
         "cooling.contact": (roles.contacts, "Another conductance between bodies."),
     }
     for cause, (names, doc) in families.items():
@@ -114,7 +117,9 @@ def _cooling(roles: Roles) -> Iterator[Knob]:
 
 def _bodies(roles: Roles) -> Iterator[Knob]:
     for name in roles.having("bath"):
-        yield _factor(f"{name}: level", "losses.oil_level", "More or less oil.", *roles.scaled(name), sd=0.1, usual=0.25)
+        yield _factor(
+            f"{name}: level", "losses.oil_level", "More or less oil.", *roles.scaled(name), sd=0.1, usual=0.25
+        )
     for name in roles.having("body"):
         doc = "A heat capacity that is not the model's."
         yield _factor(f"{name}: heat capacity", "thermal.mass", doc, *roles.scaled(name))
@@ -127,4 +132,6 @@ def _sensors(sensors: Sequence[Sensor]) -> Iterator[Knob]:
             yield Knob(f"{s.name}: offset", cause, f"{doc[0].upper()}{doc[1:]}.", "K", 2.0, 0.7, sensor=s.name)
         elif s.kind in GAINS and s.role == "given":
             cause, doc, usual, sd = GAINS[s.kind]
-            yield Knob(f"{s.name}: gain", cause, f"{doc[0].upper()}{doc[1:]}.", "1", usual, sd, sensor=s.name, gain=True)
+            yield Knob(
+                f"{s.name}: gain", cause, f"{doc[0].upper()}{doc[1:]}.", "1", usual, sd, sensor=s.name, gain=True
+            )

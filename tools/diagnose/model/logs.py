@@ -21,7 +21,9 @@ GAMMA = 1.0 - 0.5**0.5
 #: Samples of a window that count, and samples before them in which the filter settles.
 WINDOW, SETTLING = 250, 60
 #: Newton's corrections at most, and size over the nominals at which they end.
-MOST, SETTLED = 25, 1e-7
+MOST, SETTLED = 30, 1e-5
+#: A correction is no longer than so many nominals, at first and from the given one on: a relay may throw it about.
+LONG, SHORT, SHORTER = 2.0, 0.3, 6
 #: Degrees of freedom of the prediction errors: switching and standing pumps make their tails heavy.
 TAILS = 4.0
 #: Standard deviation at the start of a state that no sensor reads [K].
@@ -381,14 +383,15 @@ class _Step:
     def _stage(self, w: np.ndarray, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Solve x_new = x + h gamma rate(w_new): unknowns, and the system's matrix there."""
         w = w.copy()
-        for _ in range(MOST):
+        for n in range(MOST):
             r, J = self.plant.rates(w, self.u, self.p)
             A = self._matrix(J)
             left = r.copy()
             left[:, : self.nx] = w[:, : self.nx] - x - self.h * r[:, : self.nx]
             change = np.linalg.solve(A, left[:, :, None])[:, :, 0] / self.plant.scale
             size = np.abs(change).max(axis=1)
-            w -= change * np.minimum(1.0, 0.3 / np.maximum(size, 1e-300))[:, None] * self.plant.scale
+            longest = LONG if n < SHORTER else SHORT
+            w -= change * np.minimum(1.0, longest / np.maximum(size, 1e-300))[:, None] * self.plant.scale
             if size.max() < SETTLED:
                 break
         return w, A

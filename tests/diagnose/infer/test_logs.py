@@ -1,0 +1,85 @@
+"""Logs made by the rig itself: what was changed in a year is found, and where nothing was, nothing is."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from gearheat.diagnose.campaign.logs import Log
+from gearheat.diagnose.campaign.table import Sensor
+from gearheat.diagnose.infer.logs import Fleet, Weighed, filter_of, fleet, question, weigh
+from gearheat.scenarios.load import load
+from made_logs import MACHINES, YEARS, differing, made
+
+#: Samples of one machine-year: two weeks.
+N = 2016
+
+
+def sensors() -> tuple[Sensor, ...]:
+    read = {"T_sump": ("sump.T", "oil_temp"), "T_inlet": ("line.T", "wall_temp")}
+    read |= {"T_bearing1": ("bearing_1.T", "wall_temp"), "T_bearing2": ("bearing_2.T", "wall_temp")}
+    given = {"n_hss": ("generator.w", "speed", "rpm"), "T_nacelle": ("nacelle.T", "ambient", "degC")}
+    found = [Sensor(name, name, path, kind, "given", unit, 0.3, 0.3) for name, (path, kind, unit) in given.items()]
+    found.append(Sensor("T_hss", "T_hss", "generator.tau", "torque", "given", "N.m", 20.0, 20.0, (-1.0, -1.0)))
+    found += [Sensor(name, name, path, kind, "read", "degC", 0.3, 0.3) for name, (path, kind) in read.items()]
+    return tuple(found)
+
+
+class Farm:
+    """A machine and two siblings: each with knobs of its own that differ a little from year to year."""
+
+    def __init__(self) -> None:
+        empty = np.zeros(0)
+        self.scenario = load("wind_turbine")
+        self.like = Log("made", sensors(), {}, empty, empty, 600.0, empty, True)
+        self.filter, self.knobs = filter_of(self.scenario, self.like)
+        rng = np.random.default_rng(5)
+        self.machines = [differing(self.knobs, rng, MACHINES) for _ in range(3)]
+        self.rng = rng
+        past = [[self.log(m, y, 10 * m + y) for y in range(2)] for m in range(3)]
+        joined = [self.joined(logs, f"machine {m}") for m, logs in enumerate(past)]
+        self.fleet: Fleet = fleet(self.scenario, joined[:1], joined[1:], self.like)
+
+    def log(self, machine: int, year: float, seed: int, change: np.ndarray | float = 0.0) -> Log:
+        z = self.machines[machine] + differing(self.knobs, self.rng, YEARS)
+        return made(self.filter, self.like, seed, year, N, z + change)
+
+    def joined(self, logs: list[Log], name: str) -> Log:
+        values = {key: np.concatenate([log.values[key] for log in logs]) for key in logs[0].values}
+        time = np.concatenate([log.time for log in logs])
+        stretch = np.repeat(np.arange(len(logs)), [log.n for log in logs])
+        return replace(logs[0], name=name, values=values, time=time, stretch=stretch, lines=np.arange(2, len(time) + 2))
+
+    def asked(self, seed: int, name: str = "", size: float = 0.0, since: float = 0.0) -> Weighed:
+        """A third year of the first machine, in which a knob has moved in the last part of it."""
+        change = np.zeros((N, len(self.knobs)))
+        if name:
+            change[int(since * N) :, [k.name for k in self.knobs].index(name)] = size
+        return weigh(self.fleet, question(self.fleet, [self.log(0, 3.0, seed, change)]))
+
+
+@pytest.fixture(scope="module")
+def farm() -> Farm:
+    return Farm()
+
+
+@pytest.mark.parametrize("seed", [100, 101, 102, 103])
+def test_a_year_like_others_has_no_alarm(farm: Farm, seed: int) -> None:
+    assert farm.asked(seed).nothing > 0.5
+
+
+@pytest.mark.parametrize(
+    ("name", "size", "since"),
+    [
+        ("cooler: conductance", float(np.log(0.7)), 0.0),
+        ("thermostat: set point", 4.0, 0.0),
+        ("T_sump: offset", 3.0, 0.5),
+    ],
+)
+def test_what_has_changed_is_found(farm: Farm, name: str, size: float, since: float) -> None:
+    found = farm.asked(200, name, size, since)
+    cause = next(k.cause for k in farm.knobs if k.name == name)
+    assert found.nothing < 0.1
+    assert found.causes[0] == cause and found.of(cause) > 0.6
+    best = found.best(cause)
+    assert best.knob.name == name
+    assert best.size == pytest.approx(size, abs=4 * best.sd + 0.2 * abs(size))

@@ -1,0 +1,274 @@
+"""From logs to findings: has the machine changed since its healthy past, by more than machines of its type do, and how."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from ..model.errors import DataError
+from ..scenarios.scenario import Scenario
+from .campaign.logs import Log
+from .infer.logs import Fleet, Moved, Question, Weighed, fleet, question, weigh
+from .model.logs import windows
+from .report import findings as f
+from .report.words import with_words
+
+#: An answer is named alone, or its set is, from this probability on.
+SURE = 0.9
+#: Units in which temperatures are shown.
+SHOWN = {"K": ("degC", -273.15), "rad/s": ("rpm", 0.0), "N.m": ("N.m", 0.0), "W": ("W", 0.0)}
+UNITS = {"oil_temp": "degC", "wall_temp": "degC", "ambient": "degC", "torque": "N.m", "speed": "rad/s", "power": "W"}
+
+
+@dataclass(frozen=True, eq=False)
+class LogDiagnosis:
+    """What the logs say: of all of them, and of each year alone."""
+
+    fleet: Fleet
+    question: Question
+    whole: Weighed
+    years: dict[str, Weighed]
+    findings: f.Findings
+
+
+def diagnose_logs(
+    scenario: Scenario,
+    logs: Sequence[Log],
+    reference: Sequence[Log] = (),
+    siblings: Sequence[Log] = (),
+    *,
+    alpha: float = 0.05,
+    seed: int = 0,
+    progress: Callable[[str], None] = lambda _: None,
+) -> LogDiagnosis:
+    """Whether a machine has changed, and what.
+
+    Args:
+        scenario: the rig
+        logs: in question, of one machine
+        reference: of the same machine when it was healthy
+        siblings: of other machines of its type
+        alpha: accepted rate of false alarms
+        seed: kept for the record; nothing is drawn
+        progress: told what is done
+
+    Raises:
+        DataError: logs do not go together
+    """
+    _check(logs, [*reference, *siblings])
+    known = fleet(scenario, reference, siblings, logs[0], progress)
+    asked = question(known, logs, progress)
+    progress("hypotheses")
+    whole = weigh(known, asked)
+    years = {label: weigh(known, asked, asked.year == i, dates=False) for i, label in enumerate(asked.labels)}
+    progress("gain")
+    found = _findings(scenario, logs, reference, siblings, known, asked, whole, years, alpha, seed)
+    return LogDiagnosis(known, asked, whole, years, with_words(found))
+
+
+def _check(logs: Sequence[Log], healthy: Sequence[Log]) -> None:
+    """Logs go together: the same step, sensors and kind of time."""
+    first, problems = logs[0], []
+    for log in (*logs[1:], *healthy):
+        if abs(log.step - first.step) > 1e-6 * first.step:
+            problems.append(f"{log.name}: samples every {log.step:g} s, {first.name} every {first.step:g} s. Resample.")
+        missing = {s.name for s in first.sensors} - {s.name for s in log.sensors}
+        if missing:
+            problems.append(f"{log.name}: has no column for {', '.join(sorted(missing))}, which {first.name} has.")
+        if log.dated != first.dated:
+            problems.append(f"{log.name}: has {'dates' if log.dated else 'seconds'}, {first.name} has not. Make them alike.")
+    if problems:
+        raise DataError(problems)
+
+
+def _findings(
+    scenario: Scenario,
+    logs: Sequence[Log],
+    reference: Sequence[Log],
+    siblings: Sequence[Log],
+    known: Fleet,
+    asked: Question,
+    whole: Weighed,
+    years: dict[str, Weighed],
+    alpha: float,
+    seed: int,
+) -> f.Findings:
+    causes = tuple(_cause(whole, c) for c in whole.causes)
+    answers = _answers(whole)
+    verdict = "consistent" if whole.nothing > 0.5 else "explained" if len(answers) == 1 else "ambiguous"
+    best = max(whole.moved, key=lambda m: m.evidence)
+    warnings = [text for w in (_lacking(reference, siblings), *(_year_text(y, w) for y, w in years.items())) if (text := w)]
+    return f.Findings(
+        verdict=verdict if verdict == "consistent" or answers else "ambiguous",
+        about=f.About(
+            data=", ".join(log.name for log in logs),
+            rig=scenario.name,
+            readings=sum(int(np.isfinite(log.values[s.name]).sum()) for log in logs for s in log.read),
+            tests=sum(int(log.stretch.max()) + 1 for log in logs),
+            reference=", ".join(log.name for log in (*reference, *siblings)),
+            logs=tuple(log.name for log in (*logs, *reference, *siblings)),
+            log_rows=sum(log.n for log in (*logs, *reference, *siblings)),
+            segments=sum(int(log.stretch.max()) + 1 for log in logs),
+            seed=seed,
+        ),
+        test=f.Test(alpha=alpha, p_any=_p_any(whole, best, alpha), p_adequacy=_adequacy(known, asked), null="analytic"),
+        hypotheses=tuple(f.Hypothesis(causes=c, probability=p) for c, p in whole.hypotheses.items() if p > 1e-4 or not c),
+        answers=answers,
+        causes=causes,
+        data_quality=f.DataQuality(gross=tuple(_gross(logs))),
+        channels=tuple(
+            f.Channel(
+                name=s.name,
+                column=s.column,
+                kind=s.kind,
+                role="read" if s.role == "read" else "given",
+                unit=UNITS[s.kind],
+                repeat_sd=s.repeat_sd,
+                offset_sd=s.offset_sd,
+            )
+            for s in logs[0].sensors
+        ),
+        gain=_gain(known, asked, logs, whole) if verdict != "consistent" else None,
+        warnings=tuple(warnings),
+    )
+
+
+def _lacking(reference: Sequence[Log], siblings: Sequence[Log]) -> str:
+    if reference and siblings:
+        return ""
+    lacks = " and ".join(
+        name for name, logs in (("--reference-logs", reference), ("--sibling-logs", siblings)) if not logs
+    )
+    return f"without {lacks} it is not known how healthy machines of this type differ: changes are judged by priors"
+
+
+def _year_text(year: str, weighed: Weighed) -> str:
+    """One year in words."""
+    if weighed.nothing > 0.5:
+        return f"{year}: nothing has changed ({weighed.nothing:.0%})"
+    named = [c for c in weighed.causes if weighed.of(c) > 0.1]
+    told = [
+        f"{c} {weighed.of(c):.0%} ({m.knob.name} {_size_text(m)})" for c in named[:3] if (m := weighed.best(c)) is not None
+    ]
+    return f"{year}: changed ({1 - weighed.nothing:.0%}): {'; '.join(told) or 'no cause stands out'}"
+
+
+def _size_text(m: Moved) -> str:
+    if m.knob.unit == "1":
+        return f"{100 * np.expm1(m.size):+.0f} % +- {100 * m.sd * np.exp(m.size):.0f} %"
+    return f"{m.size:+.1f} +- {m.sd:.1f} {m.knob.unit}"
+
+
+def _cause(whole: Weighed, cause: str) -> f.Cause:
+    m = whole.best(cause)
+    own = [(k, share) for k, share in zip(whole.moved, whole.share, strict=True) if k.knob.cause == cause]
+    size = _estimate(m)
+    return f.Cause(
+        id=cause,
+        probability=min(whole.of(cause), 1.0),
+        detectable=whole.detectable[m.knob.name],
+        parameters=(size,),
+        forms=tuple(f.FormShare(name=f"{k.knob.name}, {k.when}", share=share) for k, share in own if share > 0.01),
+        doc=m.knob.doc,
+        exposes="",
+        usual=m.knob.usual,
+        unit=m.knob.unit,
+        meaning=size.doc,
+    )
+
+
+def _estimate(m: Moved) -> f.Estimate:
+    name, doc = ("ln_factor", "logarithm of the factor") if m.knob.unit == "1" else ("shift", "change")
+    interval = (m.size - 1.96 * m.sd, m.size + 1.96 * m.sd)
+    return f.Estimate(name=name, value=m.size, ci95=interval, unit=m.knob.unit, doc=f"{doc}, {m.knob.name}, {m.when}")
+
+
+def _answers(whole: Weighed) -> tuple[f.Answer, ...]:
+    """The leading hypotheses that reach the sure probability together, nothing left out."""
+    if whole.nothing > 0.5:
+        return ()
+    found, reached, total = [], 0.0, 1 - whole.nothing
+    for causes, p in whole.hypotheses.items():
+        if not causes or reached > SURE * total:
+            continue
+        found.append(f.Answer(causes=tuple((c,) for c in causes), probability=p))
+        reached += p
+        if len(found) == 1 and p > SURE:
+            break
+    return tuple(found)
+
+
+def _p_any(whole: Weighed, best: Moved, alpha: float) -> float:
+    """p of the largest deviation among all, on the side of alpha on which the probabilities are."""
+    z2 = (best.size / max(best.sd, 1e-12)) ** 2
+    p = min(1.0, len(whole.moved) * float(chi2.sf(z2, 1)))
+    return max(p, alpha) if whole.nothing > 0.5 else min(p, 0.99 * alpha)
+
+
+def _adequacy(known: Fleet, asked: Question) -> float:
+    """p of the prediction errors' size over the logs in question against that of the healthy ones, by windows."""
+    left = np.nanmean(asked.passed.error**2 / asked.passed.variance, axis=(1, 2))
+    n = max(len(left), 1)
+    spread = max(float(np.nanstd(left)), 1e-9)
+    z = (float(np.nanmean(left)) - 1.0) / (spread / np.sqrt(n) + 0.5)
+    return float(np.clip(chi2.sf(max(z, 0.0) ** 2, 1), 1e-6, 0.98))
+
+
+def _gross(logs: Sequence[Log]) -> list[f.GrossReading]:
+    found = []
+    for log in logs:
+        for g in log.gross:
+            row = int(np.searchsorted(log.lines, g.line)) + 1
+            found.append(
+                f.GrossReading(
+                    row=row,
+                    line=g.line,
+                    channel=g.column,
+                    size_sd=g.size_sd,
+                    shown=g.shown - 273.15,
+                    expected=g.expected - 273.15,
+                    unit="degC",
+                )
+            )
+    return found
+
+
+def _gain(known: Fleet, asked: Question, logs: Sequence[Log], whole: Weighed) -> f.Gain | None:
+    """Free-running error of each stretch of the logs, with sizes found without it."""
+    own = known.filter
+    data = windows(logs, own.given, own.read, 0)
+    before = np.tile(known.levels.mean[0], (len(data.read), 1))
+    after = before.copy()
+    chosen: dict[str, int] = {}
+    begins = [w[0] for w in data.rows]
+    for i, (number, begin) in enumerate(zip(data.machine, begins, strict=True)):
+        last = data.rows[i].max()
+        held = (asked.windows.machine == number) & (asked.windows.rows.max(axis=1) >= begin)
+        held &= asked.windows.rows.max(axis=1) <= last
+        if held.all():
+            continue
+        fold = weigh(known, asked, ~held, dates=False)
+        if fold.nothing > 0.5:
+            continue
+        m = max(fold.moved, key=lambda k: k.evidence)
+        chosen[m.knob.cause] = chosen.get(m.knob.cause, 0) + 1
+        after[i, known.knobs.index(m.knob)] += m.size
+    if not chosen:
+        return None
+    errors = [own.run(data, z, free=True, slopes=False).error[:, :, 0] for z in (before, after)]
+    old, new = (float(np.sqrt(np.nanmean(e**2))) for e in errors)
+    both = f.Gain.Both(without=old, **{"with": old}), f.Gain.Both(without=new, **{"with": new})
+    return f.Gain(
+        scheme="leave-one-segment",
+        channel=own.read[0],
+        n=int(np.isfinite(errors[0]).sum()),
+        rmse_before=old,
+        rmse_after=new,
+        before=both[0],
+        after=both[1],
+        chosen=chosen,
+        folds=len(begins),
+    )
