@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from ..model.errors import DataError
 from .answer.decide import decided
 from .infer.search import searched
+from .logs import diagnosed_logs
 from .report import compose, compose_data
 from .report.channels import channel
 from .report.findings import Findings
@@ -29,7 +29,7 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
     """
     request, data = inputs.request, inputs.data
     if data is None:
-        raise DataError("there is no table of readings. Name one.")
+        return diagnosed_logs(inputs, progress)
     progress("compiling the rig", 0.01)
     others = [inputs.points] if inputs.points is not None else []
     made = setting(inputs.scenario, inputs.card, data, inputs.reference, request.libraries, others)

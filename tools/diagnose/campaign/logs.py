@@ -86,8 +86,8 @@ class Log:
         """Sensors that are compared."""
         return tuple(s for s in self.sensors if s.role == "read")
 
-    def rows(self, keep: np.ndarray) -> Log:
-        """Some of the rows (n,) bool; a hole ends a stretch."""
+    def rows(self, keep: np.ndarray, name: str = "") -> Log:
+        """Some of the rows (n,) bool, under a name of their own; a hole ends a stretch."""
         kept = np.flatnonzero(keep)
         breaks = np.append(True, (np.diff(kept) > 1) | (np.diff(self.stretch[kept]) != 0))
         values = {name: column[kept] for name, column in self.values.items()}

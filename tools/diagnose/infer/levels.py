@@ -81,9 +81,7 @@ def first_levels(sd: np.ndarray, machines: int) -> Levels:
     root, machine = (1.5 * sd) ** 2, sd**2
     C = np.tile(np.diag(root + machine), (machines, 1, 1))
     empty = np.zeros((0, k))
-    return Levels(
-        root, machine, (YEAR * sd) ** 2, (WINDOW * sd) ** 2, COUNTS, np.zeros((machines, k)), C, empty, empty
-    )
+    return Levels(root, machine, (YEAR * sd) ** 2, (WINDOW * sd) ** 2, COUNTS, np.zeros((machines, k)), C, empty, empty)
 
 
 def estimate(found: Quadratics, year: np.ndarray, machine_of: np.ndarray, begun: Levels) -> Levels:

@@ -28,10 +28,13 @@ DATES, SIDE = 6, 3
 NOTHING, TWO = 0.5, 0.08
 #: Causes that are tried together with others.
 LEADING = 4
-#: Correlations of errors are summed over so many samples at most, and down to so much.
-MEMORY, CORRELATED = 144, 0.05
+#: Correlations of errors are summed over so many samples at most, and down to so much; what lasts longer is a matter
+#: of windows and years.
+MEMORY, CORRELATED = 36, 0.05
 #: Length of a year in time that is no calendar's [s].
 YEAR = 365.25 * 86400.0
+
+Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -119,11 +122,16 @@ def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
     plant = Plant(flatten(assemble(spec)), paths, [s.reads for s in log.given], [s.reads for s in log.read])
     own = Filter(plant, found, [s.name for s in log.given], [s.name for s in log.read], np.zeros(plant.nx))
     noise = []
-    for i, q in enumerate(plant.flat.states):
+    for q in plant.flat.states:
         body = q.name.rpartition(".")[2] == "T"
         noise.append(0.0 if q.unit != "K" else QUIET if body else SWITCH)
     own.drift = np.array(noise)
     return own, found
+
+
+def _within(progress: Progress, stage: str, begin: float, width: float) -> Callable[[float], None]:
+    """Progress of one pass among several."""
+    return lambda share: progress(stage, begin + width * share)
 
 
 def _parameters(scenario: Scenario) -> set[str]:
@@ -142,7 +150,7 @@ def fleet(
     reference: Sequence[Log],
     siblings: Sequence[Log],
     all_sensors: Log,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = lambda stage, share: None,
 ) -> Fleet:
     """What the healthy logs say of the machine and its type.
 
@@ -151,7 +159,7 @@ def fleet(
         reference: the machine's own past; several are one machine
         siblings: a log of each other machine
         all_sensors: a log that has the sensors of those in question
-        progress: told what is done
+        progress: told of each stage and the share done
     """
     own, found = filter_of(scenario, all_sensors)
     logs = [*reference, *siblings]
@@ -174,8 +182,8 @@ def fleet(
     z, levels, thin = np.zeros((machines, len(sd))), begun, 1.0
     for n in range(PASSES):
         at = z[machine]
-        progress(f"healthy logs, pass {n + 1} of {PASSES}")
-        passed = own.run(past, at)
+        stage = f"healthy logs, pass {n + 1} of {PASSES}"
+        passed = own.run(past, at, progress=_within(progress, stage, n / PASSES, 1 / PASSES))
         own.scatter, thin = _scatter(own, passed), independent(passed)
         levels = estimate(_quadratics(passed, at, thin), year, machine_of, begun)
         z = z + np.clip(levels.mean - z, -sd, sd)
@@ -218,13 +226,13 @@ class Question:
     passed: Passed
 
 
-def question(found: Fleet, logs: Sequence[Log], progress: Callable[[str], None] = lambda _: None) -> Question:
+def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stage, share: None) -> Question:
     """Run the logs in question at the machine's knobs, then where each year has moved to.
 
     Args:
         found: what the healthy logs say
         logs: of the machine
-        progress: told what is done
+        progress: told of each stage and the share done
     """
     own = found.filter
     data = windows(logs, own.given, own.read)
@@ -234,8 +242,8 @@ def question(found: Fleet, logs: Sequence[Log], progress: Callable[[str], None] 
     at = np.tile(found.levels.mean[0], (len(year), 1))
     sd = np.array([k.sd for k in found.knobs])
     for n in range(TARGET_PASSES):
-        progress(f"logs in question, pass {n + 1} of {TARGET_PASSES}")
-        passed = own.run(data, at)
+        stage = f"logs in question, pass {n + 1} of {TARGET_PASSES}"
+        passed = own.run(data, at, progress=_within(progress, stage, n / TARGET_PASSES, 1 / TARGET_PASSES))
         quadratics = _quadratics(passed, at, found.independent or independent(passed))
         if n + 1 < TARGET_PASSES:
             by_year = quadratics.spread(found.levels.window).summed(year, len(named))

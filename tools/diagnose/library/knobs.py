@@ -77,7 +77,9 @@ def _losses(roles: Roles) -> Iterator[Knob]:
     types = roles.spec.types
     for name in roles.having("teeth"):
         if issubclass(types[roles.spec.part(name).type], GreyLoss):
-            yield _factor(f"{name}: loss without load", "losses.churning", "More or less loss without load.", f"{name}.a")
+            yield _factor(
+                f"{name}: loss without load", "losses.churning", "More or less loss without load.", f"{name}.a"
+            )
             yield _factor(f"{name}: loss of load", "losses.mesh_friction", "More or less loss with load.", f"{name}.b")
         else:
             yield _factor(f"{name}: friction", "losses.mesh_friction", "More or less friction.", *roles.scaled(name))
@@ -114,7 +116,9 @@ def _cooling(roles: Roles) -> Iterator[Knob]:
 
 def _bodies(roles: Roles) -> Iterator[Knob]:
     for name in roles.having("bath"):
-        yield _factor(f"{name}: level", "losses.oil_level", "More or less oil.", *roles.scaled(name), sd=0.1, usual=0.25)
+        yield _factor(
+            f"{name}: level", "losses.oil_level", "More or less oil.", *roles.scaled(name), sd=0.1, usual=0.25
+        )
     for name in roles.having("body"):
         doc = "A heat capacity that is not the model's."
         yield _factor(f"{name}: heat capacity", "thermal.mass", doc, *roles.scaled(name))
@@ -127,4 +131,6 @@ def _sensors(sensors: Sequence[Sensor]) -> Iterator[Knob]:
             yield Knob(f"{s.name}: offset", cause, f"{doc[0].upper()}{doc[1:]}.", "K", 2.0, 0.7, sensor=s.name)
         elif s.kind in GAINS and s.role == "given":
             cause, doc, usual, sd = GAINS[s.kind]
-            yield Knob(f"{s.name}: gain", cause, f"{doc[0].upper()}{doc[1:]}.", "1", usual, sd, sensor=s.name, gain=True)
+            yield Knob(
+                f"{s.name}: gain", cause, f"{doc[0].upper()}{doc[1:]}.", "1", usual, sd, sensor=s.name, gain=True
+            )

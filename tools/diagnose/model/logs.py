@@ -152,7 +152,13 @@ class Filter:
     def __init__(
         self, plant: Plant, knobs: Sequence[Knob], given: Sequence[str], read: Sequence[str], drift: np.ndarray
     ) -> None:
-        self.plant, self.knobs, self.given, self.read, self.drift = plant, tuple(knobs), tuple(given), tuple(read), drift
+        self.plant, self.knobs, self.given, self.read, self.drift = (
+            plant,
+            tuple(knobs),
+            tuple(given),
+            tuple(read),
+            drift,
+        )
         #: Scatter of each reading about the model [K] (reads,).
         self.scatter = np.full(len(read), SCATTER)
         self.nx, self.n_w = plant.nx, plant.nx + plant.nz
@@ -335,9 +341,7 @@ class _Pass:
         z = (inverse @ e[:, :, None])[:, :, 0]
         distance = (z * e).sum(axis=1)
         weight = (TAILS + reads) / (TAILS + distance) * counts
-        likelihood[:m] -= counts * (
-            0.5 * np.linalg.slogdet(V)[1] + 0.5 * (TAILS + reads) * np.log1p(distance / TAILS)
-        )
+        likelihood[:m] -= counts * (0.5 * np.linalg.slogdet(V)[1] + 0.5 * (TAILS + reads) * np.log1p(distance / TAILS))
         if self.slopes:
             g[:m] += weight[:, None] * (by_z.transpose(0, 2, 1) @ z[:, :, None])[:, :, 0]
             expected = counts * (TAILS + reads) / (TAILS + reads + 2)
