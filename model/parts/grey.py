@@ -98,7 +98,7 @@ class Thermostat(Component):
         """It opens above where it closes."""
         remedy = "Give the higher temperature as T_open."
         yield self.relation(
-            "T_open is above T_close", "T_open - T_close", self.T_open - self.T_close, 0.01, remedy=remedy
+            "T_open is above T_close", "T_open - T_close", self.T_open - self.T_close, 0.01, remedy=remedy, unit="K"
         )
 
     def equations(self) -> Iterator[Equation]:

@@ -1,4 +1,4 @@
-"""From logs to findings: has the machine changed since its healthy past, by more than machines of its type do, and how."""
+"""From logs to findings: has a machine changed since its healthy past, by more than its type does, and how."""
 
 from __future__ import annotations
 
@@ -189,11 +189,8 @@ def _year_text(year: str, weighed: Weighed) -> str:
     if weighed.nothing > 0.5:
         return f"{year}: nothing has changed ({weighed.nothing:.0%})"
     named = [c for c in weighed.causes if weighed.of(c) > 0.1]
-    told = [
-        f"{c} {weighed.of(c):.0%} ({m.knob.name} {_size_text(m)})"
-        for c in named[:3]
-        if (m := weighed.best(c)) is not None
-    ]
+    best = [(c, weighed.best(c)) for c in named[:3]]
+    told = [f"{c} {weighed.of(c):.0%} ({m.knob.name} {_size_text(m)})" for c, m in best]
     return f"{year}: changed ({1 - weighed.nothing:.0%}): {'; '.join(told) or 'no cause stands out'}"
 
 

@@ -14,9 +14,10 @@ import numpy as np
 
 from ..campaign.logs import Log
 from ..library.knobs import Knob
-from .march import GAMMA
-from .plant import Plant
+from .equations import Equations
 
+#: The method: two implicit stages of second order, L-stable and stiffly accurate.
+GAMMA = 1.0 - 0.5**0.5
 #: Samples of a window that count, and samples before them in which the filter settles.
 WINDOW, SETTLING = 250, 60
 #: Newton's corrections at most, and size over the nominals at which they end.
@@ -150,7 +151,7 @@ class Filter:
     """
 
     def __init__(
-        self, plant: Plant, knobs: Sequence[Knob], given: Sequence[str], read: Sequence[str], drift: np.ndarray
+        self, plant: Equations, knobs: Sequence[Knob], given: Sequence[str], read: Sequence[str], drift: np.ndarray
     ) -> None:
         self.plant, self.knobs, self.given, self.read, self.drift = (
             plant,
