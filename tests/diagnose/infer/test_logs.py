@@ -10,8 +10,8 @@ from gearheat.diagnose.infer.logs import Fleet, Weighed, filter_of, fleet, quest
 from gearheat.scenarios.load import load
 from made_logs import MACHINES, YEARS, differing, made
 
-#: Samples of one machine-year: two weeks.
-N = 2016
+#: Samples of one log: a week.
+N = 1008
 
 
 def sensors() -> tuple[Sensor, ...]:
@@ -62,7 +62,7 @@ def farm() -> Farm:
     return Farm()
 
 
-@pytest.mark.parametrize("seed", [100, 101, 102, 103])
+@pytest.mark.parametrize("seed", [100, 101])
 def test_a_year_like_others_has_no_alarm(farm: Farm, seed: int) -> None:
     assert farm.asked(seed).nothing > 0.5
 

@@ -45,9 +45,8 @@ class Fleet:
         filter: the rig, compiled
         knobs: what may differ
         past: windows of all healthy logs
-        year: number of the machine-year of each window
-        machine_of: machine of each machine-year
-        labels: of each machine-year, in words
+        season: number of the season of a machine that each window belongs to
+        machine_of: machine of each season
         levels: what the healthy logs say
         independent: share of their samples that count as independent, 0 without any
     """
@@ -55,9 +54,8 @@ class Fleet:
     filter: Filter
     knobs: tuple[Knob, ...]
     past: Windows
-    year: np.ndarray
+    season: np.ndarray
     machine_of: np.ndarray
-    labels: tuple[str, ...]
     levels: Levels
     independent: float
 
@@ -145,6 +143,14 @@ def year_of(time: np.ndarray, dated: bool) -> np.ndarray:
     return np.array([datetime.fromtimestamp(t, UTC).year for t in time])
 
 
+def season_of(time: np.ndarray, dated: bool) -> np.ndarray:
+    """Number of the quarter of a year of each time (n,): the calendar's, or from 0 where there is none."""
+    if not dated:
+        return np.asarray(np.floor((time - time.min()) / (YEAR / 4)), dtype=int)
+    dates = [datetime.fromtimestamp(t, UTC) for t in time]
+    return np.array([4 * d.year + (d.month - 1) // 3 for d in dates])
+
+
 def fleet(
     scenario: Scenario,
     reference: Sequence[Log],
@@ -169,25 +175,23 @@ def fleet(
     begun = first_levels(sd, machines)
     if not logs:
         empty = windows([all_sensors], own.given, own.read).some(np.zeros(0, dtype=int))
-        return Fleet(own, found, empty, np.zeros(0, dtype=int), np.zeros(0, dtype=int), (), begun, 0.0)
+        return Fleet(own, found, empty, np.zeros(0, dtype=int), np.zeros(0, dtype=int), begun, 0.0)
     past = windows(logs, own.given, own.read)
-    years = year_of(past.time, all(log.dated for log in logs))
+    seasons = season_of(past.time, all(log.dated for log in logs))
     machine = np.array(machine_of_log)[past.machine]
-    keys = sorted(set(zip(machine.tolist(), years.tolist(), strict=True)))
+    keys = sorted(set(zip(machine.tolist(), seasons.tolist(), strict=True)))
     number = {key: i for i, key in enumerate(keys)}
-    year = np.array([number[key] for key in zip(machine.tolist(), years.tolist(), strict=True)])
+    season = np.array([number[key] for key in zip(machine.tolist(), seasons.tolist(), strict=True)])
     machine_of = np.array([m for m, _ in keys])
-    names = {m: log.name for log, m in zip(reversed(logs), reversed(machine_of_log), strict=True)}
-    labels = tuple(f"{names[m]} {y}" for m, y in keys)
     z, levels, thin = np.zeros((machines, len(sd))), begun, 1.0
     for n in range(PASSES):
         at = z[machine]
         stage = f"healthy logs, pass {n + 1} of {PASSES}"
         passed = own.run(past, at, progress=_within(progress, stage, n / PASSES, 1 / PASSES))
         own.scatter, thin = _scatter(own, passed), independent(passed)
-        levels = estimate(_quadratics(passed, at, thin), year, machine_of, begun)
+        levels = estimate(_quadratics(passed, at, thin), season, machine_of, begun)
         z = z + np.clip(levels.mean - z, -sd, sd)
-    return Fleet(own, found, past, year, machine_of, labels, levels, thin)
+    return Fleet(own, found, past, season, machine_of, levels, thin)
 
 
 def _quadratics(passed: Passed, at: np.ndarray, thin: float) -> Quadratics:
@@ -217,17 +221,18 @@ def independent(passed: Passed) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """Logs in question: their windows, years, and what each window says."""
+    """Logs in question: their windows, the year and season of each, names of the years, what each window says."""
 
     windows: Windows
     year: np.ndarray
+    season: np.ndarray
     labels: tuple[str, ...]
     found: Quadratics
     passed: Passed
 
 
 def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stage, share: None) -> Question:
-    """Run the logs in question at the machine's knobs, then where each year has moved to.
+    """Run the logs in question at the machine's knobs, then where each season has moved to.
 
     Args:
         found: what the healthy logs say
@@ -236,9 +241,10 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     """
     own = found.filter
     data = windows(logs, own.given, own.read)
-    years = year_of(data.time, all(log.dated for log in logs))
-    named = np.unique(years)
-    year = np.searchsorted(named, years)
+    dated = all(log.dated for log in logs)
+    years, seasons = year_of(data.time, dated), season_of(data.time, dated)
+    named, year = np.unique(years, return_inverse=True)
+    seasons_there, season = np.unique(seasons, return_inverse=True)
     at = np.tile(found.levels.mean[0], (len(year), 1))
     sd = np.array([k.sd for k in found.knobs])
     for n in range(TARGET_PASSES):
@@ -246,12 +252,12 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
         passed = own.run(data, at, progress=_within(progress, stage, n / TARGET_PASSES, 1 / TARGET_PASSES))
         quadratics = _quadratics(passed, at, found.independent or independent(passed))
         if n + 1 < TARGET_PASSES:
-            by_year = quadratics.spread(found.levels.window).summed(year, len(named))
-            wide = np.linalg.inv(found.levels.covariance[0] + np.diag(found.levels.year + sd**2))
-            C = np.linalg.inv(by_year.H + wide)
-            moved = (C @ (by_year.eta + wide @ found.levels.mean[0])[:, :, None])[:, :, 0]
-            at = (at[0] + np.clip(moved - at[0], -2 * sd, 2 * sd))[year]
-    return Question(data, year, tuple(str(y) for y in named), quadratics, passed)
+            by_season = quadratics.spread(found.levels.window).summed(season, len(seasons_there))
+            wide = np.linalg.inv(found.levels.covariance[0] + np.diag(found.levels.season + sd**2))
+            C = np.linalg.inv(by_season.H + wide)
+            moved = (C @ (by_season.eta + wide @ found.levels.mean[0])[:, :, None])[:, :, 0]
+            at = (at[0] + np.clip(moved - at[0], -2 * sd, 2 * sd))[season]
+    return Question(data, year, season, tuple(str(y) for y in named), quadratics, passed)
 
 
 def profiles(time: np.ndarray, dated: bool) -> list[tuple[str, np.ndarray, float]]:
@@ -284,9 +290,9 @@ def weigh(found: Fleet, asked: Question, keep: np.ndarray | None = None, *, date
         dates: whether causes may begin at a date or drift, too
     """
     keep = np.ones(len(asked.year), dtype=bool) if keep is None else keep
-    _, year = np.unique(asked.year[keep], return_inverse=True)
+    _, season = np.unique(asked.season[keep], return_inverse=True)
     levels = found.levels
-    target = Target(asked.found.some(keep), year, levels.mean[0], levels.covariance[0], levels)
+    target = Target(asked.found.some(keep), season, levels.mean[0], levels.covariance[0], levels)
     forms = profiles(asked.windows.time[keep], asked.windows.time.min() > YEAR)
     forms = forms if dates else [("throughout", np.ones(keep.sum()), 1.0)]
     causes = dict.fromkeys(k.cause for k in found.knobs)
