@@ -190,6 +190,9 @@ class _Loader:
             errata=tuple(Erratum(e.place, e.says, e.should_be, e.evidence) for e in self.table.errata),
             protocol=protocol,
             campaign=campaign,
+            data=self.path.parent / self.table.campaign.data
+            if self.table.campaign and self.table.campaign.data
+            else None,
             reproduces=self.table.reproduces,
         )
 
@@ -288,10 +291,17 @@ class _Loader:
             self.problems.append(f'{where}: there is no part "{table.oil}".{suggestion(table.oil, self.types)}')
         inputs = {path: Driven(t.column, (t.sign[0], t.sign[1])) for path, t in table.inputs.items()}
         try:
-            return Protocol(inputs, table.room, table.oil, to_si(table.stop, "s", name=f"{where}: stop"))
+            return Protocol(
+                inputs, table.room, table.oil, to_si(table.stop, "s", name=f"{where}: stop"), tuple(table.notes)
+            )
         except GearheatError as error:
             self.problems += error.problems
             return None
+
+    def _data(self) -> Path | None:
+        """The rig's own measured table."""
+        table = self.table.campaign
+        return self.path.parent / table.data if table and table.data else None
 
     def _campaign(self, protocol: Protocol | None) -> Campaign | None:
         table = self.table.campaign

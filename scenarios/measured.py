@@ -77,12 +77,14 @@ class Protocol:
             first one (or a line from `T_amb_start_C`), in a straight line from each reading to the next
         oil: part of the model that holds the oil of the test
         stop: time without load between the two halves of a test [s], where the table has no `stop_min`
+        notes: further columns of the rig's own table, which only its reader needs
     """
 
     inputs: Mapping[str, Driven]
     room: str
     oil: str
     stop: float
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -39,7 +39,7 @@ class Scenario:
         uncertainties: path -> standard uncertainty of its value in SI, where the rig states one
         overrides: values that stand in the place of their catalogue's
         entries: part -> kind of catalogue -> name of the entry it was filled from
-        protocol: how measured tables of this rig were taken; `campaign` is the one it comes with
+        protocol: how measured tables of this rig were taken; `campaign` is the one it comes with, from the file `data`
         reproduces: what published results the rig reproduces, in a line
     """
 
@@ -59,6 +59,7 @@ class Scenario:
     errata: tuple[Erratum, ...] = ()
     protocol: Protocol | None = None
     campaign: Campaign | None = None
+    data: Path | None = None
     reproduces: str = ""
 
     @property

@@ -48,6 +48,7 @@ class CampaignTable(Strict):
     stop: str = Field(description='time between the halves of a test, for example "5 min"')
     room: str = Field(description='input of the room temperature, for example "room.T"')
     oil: str = Field(description='part that holds the oil, for example "oil"')
+    notes: list[str] = Field([], description="further columns of the data, which no sensor reads")
     inputs: dict[str, DrivenTable] = Field(description="input of the model -> column and signs")
     source: str = Field(description="where the protocol is from")
 

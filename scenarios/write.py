@@ -8,8 +8,10 @@ from typing import Any
 
 from ..model.core.component import Component
 from ..model.core.declare import Choice, declared
+from ..model.core.flat import Quantity
 from ..model.laws.film_map import FilmMap
 from ..model.machines.spec import PartSpec
+from .instruments import Instrument
 from .scenario import Scenario
 from .values import UNCERTAINTIES, settable
 
@@ -42,15 +44,29 @@ def _lines(scenario: Scenario) -> Iterator[str]:
         uncertainties = _uncertainties(scenario, part, cls)
         yield from _table(f"part.{part.name}", {"type": part.type} | values, sources=sources, more=uncertainties)
     yield from _table("connect", {f"net_{i}": ports for i, ports in enumerate(scenario.spec.connections, 1)})
-    yield from _table("sensors", scenario.sensors)
+    for instrument in scenario.instruments:
+        yield from _table(f"sensors.{_key(instrument.name)}", _sensor(instrument, scenario.readable()))
     yield from _table("losses", scenario.losses)
     if (protocol := scenario.protocol) is not None:
-        about = {"stop": f"{protocol.stop!r} s", "room": protocol.room, "oil": protocol.oil}
+        about: dict[str, Any] = {"stop": f"{protocol.stop!r} s", "room": protocol.room, "oil": protocol.oil}
+        about |= {"notes": list(protocol.notes)} if protocol.notes else {}
         yield from _table("campaign", about | {"source": f"assumed: as in the rig {scenario.name}"})
         for path, driven in protocol.inputs.items():
             yield from _table(f"campaign.inputs.{_toml(path)}", vars(driven))
     for erratum in scenario.errata:
         yield from _table("[errata]", vars(erratum))
+
+
+def _sensor(instrument: Instrument, units: Mapping[str, Quantity]) -> dict[str, Any]:
+    """What the rig file states of an instrument; the rest follows again when it is read."""
+    stated = {"column": instrument.column, "reads": instrument.reads, "kind": instrument.kind, "role": instrument.role}
+    stated |= {"unit": instrument.unit}
+    found: dict[str, Any] = {key: text for key, text in stated.items() if text}
+    found |= {} if instrument.signs is None else {"signs": list(instrument.signs)}
+    found |= {"magnitude": True} if instrument.magnitude and instrument.signs is None else {}
+    spreads = {key: getattr(instrument, key) for key in ("repeat_sd", "offset_sd")}
+    unit = units[instrument.reads].unit
+    return found | {key: _value(sd, unit) for key, sd in spreads.items() if sd is not None}
 
 
 def _part_values(part: PartSpec, cls: type[Component]) -> dict[str, Any]:

@@ -22,6 +22,7 @@ from ..model.core.flat import FlatModel
 from ..model.run.simulate import simulate
 from . import bench_fmu, campaign, throughput
 from .console import answer, note, table
+from .measured import measured_of
 from .rigs import load
 from .settings import flat_of
 
@@ -145,10 +146,10 @@ def _resident(pid: int) -> float:
 def _integration(rig: str, tests: str | None) -> dict[str, Any]:
     """Processor time of the integration alone: all tests through the FMU, and through LSODA, in one process."""
     scenario = load(rig)
-    protocol = scenario.campaign.protocol if scenario.campaign else None
-    scenario = scenario.driven_by(protocol.inputs) if protocol else scenario
+    study = measured_of(scenario)
+    scenario = study.scenario if study else scenario
     flat = flat_of(scenario)
-    runs = campaign.runs_of(scenario, flat, tests)
+    runs = campaign.runs_of(scenario, flat, study, tests)
     states = [q.name for q in flat.states]
     note(f"{len(runs)} tests: reference")
     exact = _simulated(flat, runs, "idas", REFERENCE)

@@ -16,9 +16,9 @@ from ..fmu.play import Player
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import DataError, GearheatError, ScenarioError, SolveError
 from ..model.units import from_si, shown, to_si
-from ..scenarios.scenario import Scenario
 from . import campaign
 from .console import answer, note, table
+from .measured import Measured, measured_of
 from .rigs import load
 from .settings import adjusted, flat_of
 
@@ -45,18 +45,26 @@ class Fit:
 
 
 def command(
-    rig: str, grid: str, free: Sequence[str], bounds: Sequence[str], assignments: Sequence[str], json: str | None
+    rig: str,
+    grid: str | None,
+    free: Sequence[str],
+    bounds: Sequence[str],
+    assignments: Sequence[str],
+    json: str | None,
+    *,
+    data: Path | None = None,
+    card: Path | None = None,
 ) -> None:
     """Print the fitted values."""
     scenario = adjusted(load(rig), assignments, named=free)
-    protocol = scenario.campaign.protocol if scenario.campaign else None
-    if protocol is None:
-        raise DataError(f"{scenario.name}: there are no measured data to fit to. Give the rig file a table [campaign].")
-    scenario = scenario.driven_by(protocol.inputs)
+    study = measured_of(scenario, data, card)
+    if study is None:
+        raise DataError(f"{scenario.name}: there are no measured data to fit to. Give them as --data FILE.")
+    scenario = study.scenario
     flat = flat_of(scenario)
     quantities = _bounded(_checked(flat, free), bounds)
-    chosen = _of_grid(campaign.runs_of(scenario, flat), grid)
-    fit = fitted(scenario, flat, quantities, chosen)
+    chosen = _of_grid(study, campaign.runs_of(scenario, flat, study), grid)
+    fit = fitted(study, flat, quantities, chosen)
     found = {
         "schema": "gearheat.calibrate/1",
         "rig": scenario.name,
@@ -121,27 +129,31 @@ def _bounded(quantities: Sequence[Quantity], bounds: Sequence[str]) -> list[Quan
     return list(found.values())
 
 
-def _of_grid(runs: Sequence[campaign.Run], grid: str) -> list[campaign.Run]:
-    grids = list(dict.fromkeys(r.texts.get("grid", "") for c in runs for r in c.readings))
-    found = [c for c in runs if c.readings[0].texts.get("grid") == grid]
+def _of_grid(study: Measured, runs: Sequence[campaign.Run], grid: str | None) -> list[campaign.Run]:
+    """The tests of one mounting or grid of the table, all of them where none is named."""
+    mountings = study.campaign.mounting
+    found = [run for run, mounting in zip(runs, mountings, strict=True) if grid in (None, mounting)]
     if not found:
-        raise DataError(f'There is no grid "{grid}". Grids: {", ".join(grids)}.')
+        known = ", ".join(dict.fromkeys(name for name in mountings if name)) or "none"
+        raise DataError(f'There is no grid "{grid}". Grids: {known}.')
     return found
 
 
-def fitted(scenario: Scenario, flat: FlatModel, quantities: Sequence[Quantity], runs: Sequence[campaign.Run]) -> Fit:
-    """Least squares on T_oil_C over the readings of the tests.
+def fitted(study: Measured, flat: FlatModel, quantities: Sequence[Quantity], runs: Sequence[campaign.Run]) -> Fit:
+    """Least squares on the first thermometer, that of the oil where there is one, over the readings of the tests.
 
     Raises:
         SolveError: the readings do not determine the parameters
     """
     start = np.array([q.start for q in quantities])
     scale = np.where(start != 0, np.abs(start), [q.nominal for q in quantities])
-    measured = np.array([r.si("T_oil_C") for c in runs for r in c.readings])
+    if (sensor := study.oil_sensor) is None:
+        raise DataError(f"{study.campaign.name}: no temperature of the gearbox was read to fit to.")
+    measured = study.campaign.values[sensor.name][[row for run in runs for row in run.rows]]
     if len(measured) <= len(start):
         raise SolveError(f"{len(measured)} readings cannot determine {len(start)} parameters. Free fewer.")
     with tempfile.TemporaryDirectory() as folder, Player(export(flat, Path(folder) / "rig.fmu")) as player:
-        simulated = _simulated(player, runs, scenario.sensors["T_oil_C"])
+        simulated = _simulated(player, runs, sensor.reads)
 
         def errors(z: np.ndarray) -> np.ndarray:
             values = {q.name: float(v) for q, v in zip(quantities, z * scale, strict=True)}
@@ -195,7 +207,7 @@ def _simulated(player: Player, runs: Sequence[campaign.Run], path: str) -> Calla
 def _print(found: Mapping[str, Any]) -> None:
     body = [[n, f["value"], f["standard_error"], f["unit"], f["start"]] for n, f in found["free"].items()]
     table(
-        f"{found['rig']}: fitted to {found['readings']} oil temperatures of {found['grid']}",
+        f"{found['rig']}: fitted to {found['readings']} oil temperatures of {found['grid'] or 'all tests'}",
         ("name", "value", "standard error", "unit", "before"),
         body,
     )

@@ -22,30 +22,39 @@ from ..model.run.point import point
 from ..model.run.result import Outside
 from ..model.run.rows import evaluate, outside
 from ..model.run.schedule import Schedule, stepped
-from ..scenarios.measured import Campaign, Reading, schedule_of
 from ..scenarios.scenario import Scenario
 from . import playing, readings
 from .console import note
-from .losses import oil_values
+from .measured import Measured
 from .playing import Job
 
 #: How long a rig without measured data is run at its operating point [s].
 HOLD = 8 * 3600.0
 
+#: Temperature where no room is measured [K].
+START = 293.15
+
 #: Variables of every FMU for the energy balance.
 AUDIT = (SUPPLIED, THROUGHPUT, STORED)
 
 
+#: How long a row of a steady state is held [s].
+SETTLED = 3600.0
+
+
 @dataclass(frozen=True)
 class Run:
-    """One test of a campaign, or the operating point of a rig without one: what drives the model, what was read."""
+    """One test of a campaign, or the operating point of a rig without one: what drives the model, what was read.
+
+    `rows` are the rows of the campaign that were read at the `moments` [s].
+    """
 
     test: int
     oil: str
     schedule: Schedule
     start: Mapping[str, float]
     moments: tuple[float, ...]
-    readings: tuple[Reading, ...]
+    rows: tuple[int, ...]
 
     @property
     def inputs(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
@@ -53,30 +62,67 @@ class Run:
         return {name: (self.schedule.time, values) for name, values in self.schedule.values.items()}
 
 
-def runs_of(scenario: Scenario, flat: FlatModel, tests: str | None = None) -> tuple[Run, ...]:
+def runs_of(scenario: Scenario, flat: FlatModel, study: Measured | None, tests: str | None = None) -> tuple[Run, ...]:
     """What is to be played.
 
     Args:
         scenario: the rig
         flat: its model
+        study: its measured readings, None for its operating point
         tests: numbers of the tests, such as "1,13,22-26"; all if left out
 
     Raises:
         ScenarioError: tests that the campaign does not have
     """
-    if (campaign := scenario.campaign) is None:
+    if study is None:
         return (_held(scenario, flat),)
-    wanted = _wanted(tests, campaign)
+    wanted = _wanted(tests, study)
     played = effective(flat)  # the FMU lacks what has no effect
-    return tuple(_run_of(scenario, played, campaign, test) for test in campaign.tests() if test.number in wanted)
+    indices = range(study.campaign.n_tests)
+    return tuple(_run_of(study, played, test) for test in indices if study.number(test) in wanted)
 
 
-def _run_of(scenario: Scenario, flat: FlatModel, campaign: Campaign, test: Any) -> Run:
-    run = schedule_of(campaign, test)
-    assert campaign.protocol is not None  # schedule_of has refused it
-    oil = oil_values(scenario, campaign.protocol, test.oil)
-    start = run.start(flat) | {name: value for name, value in oil.items() if name in flat.index}
-    return Run(test.number, test.oil, run.schedule, start, run.moments, test.halves)
+def _run_of(study: Measured, flat: FlatModel, test: int) -> Run:
+    """The duty of one test: each row held for its dwell, a stop without load between rows, rooms as read."""
+    c, oil = study.campaign, study.oil(test)
+    rows = [int(row) for row in np.flatnonzero(c.test == test)]
+    shafts, rooms = study.scenario.shaft_paths(), _rooms_at_start(study, test)
+    T = c.T_start[test] if np.isfinite(c.T_start[test]) else next(iter(rooms.values()), START) + c.start_by_room
+    start = {q.name: float(T) for q in flat.states if q.unit == "K"}
+    if c.steady:  # from the state that is read
+        state = study.nominal.at({**oil, **study.given(rows[0])}) or {}
+        start = {name: state.get(name, value) for name, value in start.items()}
+    phases: list[tuple[float, dict[str, float | tuple[float, float]]]] = []
+    moments, now = [], 0.0
+    for row in rows:
+        dwell, given = float(min(c.dwell[row], SETTLED)) if c.steady else float(c.dwell[row]), study.given(row)
+        if (stop := float(c.stop[row])) > 0 and phases:
+            after = {p: T + (given[p] - T) * stop / (stop + dwell) for p, T in rooms.items()}
+            still = {p: 0.0 for p in given if p in shafts} | {p: v for p, v in given.items() if p not in shafts}
+            phases.append((stop, still | {p: (T, after[p]) for p, T in rooms.items()}))
+            now, rooms = now + stop, after
+        phases.append((dwell, given | {p: (given[p] if c.steady else T, given[p]) for p, T in rooms.items()}))
+        now, rooms = now + dwell, {p: given[p] for p in rooms}
+        moments.append(now)
+    read = [k for k, row in enumerate(rows) if row in study.read_rows]
+    kept = start | {name: value for name, value in oil.items() if name in flat.index}
+    return Run(
+        study.number(test),
+        c.oil[test],
+        stepped(phases),
+        kept,
+        tuple(moments[k] for k in read),
+        tuple(rows[k] for k in read),
+    )
+
+
+def _rooms_at_start(study: Measured, test: int) -> dict[str, float]:
+    """Room inputs -> temperature at the start of a test [K]."""
+    c = study.campaign
+    first = int(np.flatnonzero(c.test == test)[0])
+    stated = c.room_start[test]
+    own = {s.reads: float(c.values[s.name][first]) for s in study.rooms}
+    return {path: float(stated) if np.isfinite(stated) else T + c.room_begin for path, T in own.items()}
 
 
 def _held(scenario: Scenario, flat: FlatModel) -> Run:
@@ -88,9 +134,9 @@ def _held(scenario: Scenario, flat: FlatModel) -> Run:
     return Run(1, oil, stepped([(HOLD, inputs)]), first_temperatures(scenario, flat, None), (HOLD,), ())
 
 
-def _wanted(tests: str | None, campaign: Campaign) -> set[int]:
+def _wanted(tests: str | None, study: Measured) -> set[int]:
     """Numbers in a text such as "1,13,22-26"."""
-    known = {test.number for test in campaign.tests()}
+    known = {study.number(test) for test in range(study.campaign.n_tests)}
     if tests is None:
         return known
     wanted: set[int] = set()
@@ -100,24 +146,20 @@ def _wanted(tests: str | None, campaign: Campaign) -> set[int]:
         wanted |= set(range(int(match[1]), int(match[2] or match[1]) + 1))
     if missing := sorted(wanted - known):
         raise ScenarioError(
-            f"--tests {tests}: {campaign.name} has no test {', '.join(str(m) for m in missing)}; "
+            f"--tests {tests}: {study.campaign.name} has no test {', '.join(str(m) for m in missing)}; "
             f"it has {min(known)} to {max(known)}."
         )
     return wanted
 
 
-def recorded(scenario: Scenario, flat: FlatModel) -> dict[str, str]:
+def recorded(scenario: Scenario, flat: FlatModel, study: Measured | None) -> dict[str, str]:
     """What is kept of a played test, path -> SI unit: states, what drives it, what is compared, losses, the audit."""
+    given = {s.reads for s in study.campaign.given} if study else set()
     names = [q.name for q in flat.states]
-    names += [q.name for q in flat.inputs if q.name in scenario.operating_point or q.name in _inputs(scenario)]
-    names += readings.sources(scenario).values()
+    names += [q.name for q in flat.inputs if q.name in scenario.operating_point or q.name in given]
+    names += readings.sources(scenario, study.warm if study else ()).values()
     names += [path for paths in scenario.losses.values() for path in paths]
     return {name: flat.quantity(name).unit for name in dict.fromkeys(names)} | dict.fromkeys(AUDIT, "J")
-
-
-def _inputs(scenario: Scenario) -> tuple[str, ...]:
-    protocol = scenario.campaign.protocol if scenario.campaign else None
-    return (*protocol.inputs, protocol.room) if protocol else ()
 
 
 def jobs(
@@ -186,18 +228,20 @@ def _played(left: Sequence[Job], pool: ProcessPoolExecutor | None) -> Iterator[t
 
 
 def rows(
-    scenario: Scenario, found: Sequence[Run], played: Mapping[int, list[dict[str, float]]]
+    scenario: Scenario, study: Measured | None, found: Sequence[Run], played: Mapping[int, list[dict[str, float]]]
 ) -> list[dict[str, Any]]:
-    """One row per reading, in the order of the measured table, simulated and measured."""
+    """One row per reading, in the order of its number, simulated and measured."""
     made = []
+    paths = readings.sources(scenario, study.warm if study else ())
+    read = readings.measured_rows(study) if study else []
     for run in found:
         for k, (moment, values) in enumerate(zip(run.moments, played[run.test], strict=True)):
-            result = readings.simulated(scenario, values)
+            result = readings.simulated(scenario, paths, values)
             result |= {"time_s": moment, "energy_residual": values["energy_residual"]}
-            if run.readings:
-                made.append(readings.row(run.readings[k], result))
-            else:
+            if study is None:
                 made.append({"point": k + 1, "test": run.test, "direction": 1, "oil": run.oil, **result})
+            else:
+                made.append({**readings.about(study, run.rows[k]), **result, **read[run.rows[k]]})
     return sorted(made, key=lambda row: row["point"])
 
 

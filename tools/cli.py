@@ -41,7 +41,7 @@ def run(
     workers: Workers = 0,
     extended: Extended = None,
     data: Annotated[Path | None, typer.Option(help="Measured table; the rig's own if left out.")] = None,
-    card: Annotated[Path | None, typer.Option(help="How that table was taken: JSON, as for `diagnose`.")] = None,
+    card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
     json: Json = None,
 ) -> None:
     """The main job: export the FMU, play all measured tests, compare, report."""
@@ -55,6 +55,7 @@ def run(
 def losses(
     rig: Rig = "planetary",
     data: Annotated[Path | None, typer.Option(help="Measured table; the rig's own if left out.")] = None,
+    card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
     temperature: Annotated[
         Literal["measured", "model"],
         typer.Option(help="At the measured oil temperature, or the one the model reaches."),
@@ -72,7 +73,7 @@ def losses(
     """Every loss at every measured reading."""
     from . import losses
 
-    losses.command(rig, data, temperature, power_flow, set_ or [], json, contacts=contacts)
+    losses.command(rig, data, card, temperature, power_flow, set_ or [], json, contacts=contacts)
 
 
 @app.command()
@@ -165,30 +166,36 @@ def play(
 def compare(
     result: Annotated[Path, typer.Argument(help="Simulated readings: CSV with test and direction, or point.")],
     data: Annotated[Path, typer.Argument(help="Measured readings: CSV.")],
+    rig: Annotated[str, typer.Option(help="Rig that was measured.")] = "planetary",
+    card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
     json: Json = None,
 ) -> None:
     """Errors of simulated readings by grid, speed, torque, oil and direction, noise floor and rivals."""
     from . import readings
 
-    readings.command(result, data, json)
+    readings.command(result, data, rig, card, json)
 
 
 @app.command()
 @console.guarded
 def calibrate(
     rig: Rig,
-    grid: Annotated[str, typer.Option(help="Value of the CSV's `grid` column to fit.")],
     free: Annotated[list[str], typer.Option(help="Parameter to fit. Repeatable.")],
+    grid: Annotated[
+        str | None, typer.Option(help="Value of the table's `mounting` or `grid` column to fit; all if left out.")
+    ] = None,
+    data: Annotated[Path | None, typer.Option(help="Measured table; the rig's own if left out.")] = None,
+    card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
     bounds: Annotated[
         list[str] | None, typer.Option(help='Range of a free parameter, "cooling.A=0.4 m2..1.2 m2". Repeatable.')
     ] = None,
     set_: Set = None,
     json: Json = None,
 ) -> None:
-    """Fit parameters to the measured oil temperatures of one grid."""
+    """Fit parameters to the measured oil temperatures of a table, or of one of its grids."""
     from . import calibrate
 
-    calibrate.command(rig, grid, free, bounds or [], set_ or [], json)
+    calibrate.command(rig, grid, free, bounds or [], set_ or [], json, data=data, card=card)
 
 
 app.command()(cli_diagnosis.diagnose)

@@ -1,8 +1,8 @@
 """Simulated readings beside measured ones: errors by channel and group, and the noise floor of the measurement.
 
-A row is one steady reading: a mapping with the simulated columns (`T_oil_C`, `T_oil2_C`, `T_wall_C`, `loss_Nm`, ...),
-the measured ones under the same name with the suffix `_meas`, and what the reading belongs to (`test`, `direction`,
-`oil`, `grid`, `n_set_rpm`, `T_set_Nm`). Where the simulated values came from is not asked.
+A row is one reading: a mapping with the simulated columns (temperatures that end in `_C`, `loss_Nm`), the measured ones
+under the same name with the suffix `_meas`, and what the reading belongs to (`test`, `direction`, `oil`, `grid`,
+`n_set_rpm`, `T_set_Nm`). Where the simulated values came from is not asked.
 """
 
 from __future__ import annotations
@@ -37,18 +37,14 @@ class Channel:
         return f"{self.column}_meas"
 
 
-CHANNELS = (
-    Channel("T_oil_K", "T_oil_C", "oil temperature (M5)", "oil M5", "K", "T_amb_C"),
-    Channel("T_oil2_K", "T_oil2_C", "oil temperature (M12)", "oil M12", "K", "T_amb_C"),
-    Channel("T_wall_K", "T_wall_C", "wall temperature", "wall", "K", "T_amb_C"),
-    Channel("loss_Nm", "loss_Nm", "loss torque", "loss", "N.m"),
-)
+#: The channel of the losses, beside those of the thermometers.
+LOSS = Channel("loss_Nm", "loss_Nm", "loss torque", "loss", "N.m")
 
 #: What readings are grouped by, with the words for it.
 GROUPINGS = {
     "grid": "grid",
-    "n_set_rpm": "carrier speed",
-    "T_set_Nm": "carrier torque",
+    "n_set_rpm": "speed",
+    "T_set_Nm": "torque",
     "oil": "oil",
     "direction": "direction",
 }
@@ -71,6 +67,7 @@ class Comparison:
     """Rows with their errors: over all readings (group "all") and by grid, speed, torque, oil and direction."""
 
     rows: Rows
+    channels: tuple[Channel, ...]
     groups: tuple[Group, ...]
     noise_floor: Mapping[str, Any]
 
@@ -88,9 +85,19 @@ def numbers(rows: Rows, column: str) -> np.ndarray:
     return np.array([math.nan if row.get(column) is None else float(row[column]) for row in rows])
 
 
+def measured(rows: Rows) -> tuple[Channel, ...]:
+    """The channels that the rows have measured values of: thermometers, then the loss torque."""
+    names = dict.fromkeys(name.removesuffix("_meas") for row in rows for name in row if name.endswith("_C_meas"))
+    warm = [
+        Channel(f"{c[:-2]}_K", c, f"temperature {c[:-2]}", c[:-2], "K", "T_amb_C" if "T_amb_C" in rows[0] else None)
+        for c in names
+    ]
+    return (*warm, *([LOSS] if any(LOSS.measured in row for row in rows) else []))
+
+
 def present(rows: Rows) -> tuple[Channel, ...]:
     """The channels that at least one row has both simulated and measured."""
-    return tuple(c for c in CHANNELS if np.isfinite(errors(rows, c)).any())
+    return tuple(c for c in measured(rows) if np.isfinite(errors(rows, c)).any())
 
 
 def errors(rows: Rows, channel: Channel) -> np.ndarray:
@@ -112,10 +119,11 @@ def compare(rows: Rows) -> Comparison:
         DataError: no channel has a simulated and a measured value
     """
     if not (channels := present(rows)):
-        columns = ", ".join(f"{c.column} with {c.measured}" for c in CHANNELS)
-        raise DataError(f"There is nothing to compare in {len(rows)} rows. Expected at least one of: {columns}.")
+        raise DataError(
+            f"There is nothing to compare in {len(rows)} rows. Expected a column such as T_oil_C with T_oil_C_meas."
+        )
     found = [group for channel in channels for group in _groups(rows, channel)]
-    return Comparison(tuple(rows), tuple(found), noise_floor(rows))
+    return Comparison(tuple(rows), channels, tuple(found), noise_floor(rows))
 
 
 def _groups(rows: Rows, channel: Channel) -> Iterator[Group]:
@@ -160,7 +168,7 @@ def noise_floor(rows: Rows) -> dict[str, Any]:
     """
     groups = repeats(rows)
     floor: dict[str, Any] = {}
-    for channel in CHANNELS:
+    for channel in measured(rows):
         values = numbers(rows, channel.measured)
         if channel.relative_to is not None:
             values = values - numbers(rows, channel.relative_to)

@@ -9,27 +9,29 @@ from typing import Any
 
 import numpy as np
 
+from ..diagnose.campaign.oils import bath_of
 from ..model.core.flat import FlatModel
 from ..model.errors import DataError, ScenarioError
 from ..model.parts.contacts import ContactTable
+from ..model.parts.shaft import Efficiency
 from ..model.run.point import point
 from ..model.run.rows import evaluate
 from ..model.run.steady import steady, steady_table
 from ..scenarios.entries import catalogue
-from ..scenarios.measured import Campaign, Protocol, Reading, read_measured
 from ..scenarios.scenario import Scenario
-from ..scenarios.write import DIAGNOSED
 from .console import answer, table
 from .contacts import contacts_at, part_with_contacts, print_contacts
+from .measured import Measured, measured_of
 from .points import conditions, outside_of, tell_outside
 from .rigs import load
-from .settings import SET, adjusted, choice_paths, flat_of
+from .settings import adjusted, choice_paths, flat_of
 from .unchecked import print_unchecked, unchecked
 
 
 def command(
     rig: str,
     data: Path | None,
+    card: Path | None,
     temperature: str,
     power_flow: str | None,
     assignments: Sequence[str],
@@ -48,25 +50,23 @@ def command(
     scenario = adjusted(scenario, [*assignments, *(flows if power_flow is not None else [])])
     if not scenario.losses:
         raise ScenarioError(f"{scenario.path.name}: there is no table [losses]. Say which outputs each column sums.")
-    campaign = scenario.campaign
-    if data is not None:
-        campaign = read_measured(data, campaign.protocol if campaign else None)
+    study = measured_of(scenario, data, card)
     at_point: dict[str, Any] = {}
-    if campaign:
-        rows = at_readings(scenario, campaign, temperature)
+    if study:
+        rows = at_readings(study, temperature)
     else:
         row, outside = at_operating_point(scenario)
         rows, at_point = [row], {"outside": outside}
     found: dict[str, Any] = {
         "schema": "gearheat.losses/1",
         "rig": scenario.name,
-        "temperature": temperature if campaign else "model",
+        "temperature": temperature if study else "model",
         "choices": {
             p: scenario.spec.part(p.rpartition(".")[0]).values.get(p.rpartition(".")[2]) for p in _flow_paths(scenario)
         },
         "rows": rows,
         **at_point,
-        "unchecked": unchecked(scenario, flat_of(scenario), oils_of(campaign)),
+        "unchecked": unchecked(scenario, flat_of(scenario), oils_of(study)),
     }
     columns = list(rows[0])
     told = contacts_at_operating_point(scenario) if contacts else None
@@ -84,60 +84,43 @@ def command(
     answer(found, json, human)
 
 
-def oils_of(campaign: Campaign | None) -> list[tuple[str, str]]:
+def oils_of(study: Measured | None) -> list[tuple[str, str]]:
     """The part that holds the oil and each oil of the catalogue that a campaign fills it with."""
-    if campaign is None or campaign.protocol is None:
+    if study is None or not (bath := bath_of(study.scenario)):
         return []
-    used = dict.fromkeys(reading.oil for reading in campaign.readings)
-    return [(campaign.protocol.oil, oil) for oil in used if oil in catalogue("oil")]
+    return [(bath, oil) for oil in dict.fromkeys(study.campaign.oil) if oil in catalogue("oil")]
 
 
-def at_readings(scenario: Scenario, campaign: Campaign, temperature: str) -> list[dict[str, Any]]:
+def at_readings(study: Measured, temperature: str) -> list[dict[str, Any]]:
     """One row of losses per reading.
 
     Args:
-        scenario: the rig
-        campaign: readings with the protocol that says what drives the model
-        temperature: "measured": all temperatures are the measured oil temperature; "model": the model's steady ones
+        study: the rig and its readings
+        temperature: "measured": all temperatures are the measured oil temperature, the first one of a rig without oil;
+            "model": the model's steady ones
 
     Raises:
-        DataError: how the campaign was run is not known
+        DataError: no temperature was measured
     """
-    if (protocol := campaign.protocol) is None:
-        raise DataError(f"{campaign.name}: how it was run is not known. Give the rig file a table [campaign].")
-    flat = flat_of(scenario.driven_by(protocol.inputs))
-    values = [given(scenario, protocol, reading) for reading in campaign.readings]
+    scenario, campaign = study.scenario, study.campaign
+    if (sensor := study.oil_sensor) is None:
+        raise DataError(f"{campaign.name}: no temperature of the gearbox was read. Use --temperature model.")
+    flat, kept = flat_of(scenario), study.read_rows
+    values = [study.oil(int(campaign.test[row])) | study.given(row) for row in kept]
+    T_read = campaign.values[sensor.name][kept]
     if temperature == "model":
-        result = steady_table(flat, values)
-        columns: dict[str, np.ndarray] = dict(result.columns)
+        columns: dict[str, np.ndarray] = dict(steady_table(flat, values).columns)
     else:
-        columns = held(flat, values, [reading.si("T_oil_C") for reading in campaign.readings])
+        columns = held(flat, values, [float(T) for T in T_read])
+    T_oil = T_read if temperature == "measured" else columns[sensor.reads]
+    total = next((columns[f"{part}.P_loss"] for part in scenario.spec.of_type(Efficiency.__name__)), None)
     rows = []
-    for i, reading in enumerate(campaign.readings):
-        name = {"point": reading.point, "test": reading.test, "direction": reading.direction, "oil": reading.oil}
+    for i, row in enumerate(kept):
         found = {c: float(sum(columns[p][i] for p in paths)) for c, paths in scenario.losses.items()}
-        T_oil = reading.si("T_oil_C") if temperature == "measured" else float(columns[scenario.sensors["T_oil_C"]][i])
-        total = float(columns["efficiency.P_loss"][i]) if "efficiency.P_loss" in columns else found["P_total_W"]
-        rows.append({**name, **found, "alphaA_W_K": total / (T_oil - reading.si("T_amb_C"))})
+        power = float(total[i]) if total is not None else found.get("P_total_W", sum(found.values()))
+        rise = float(T_oil[i] - campaign.values[study.rooms[0].name][row]) if study.rooms else np.nan
+        rows.append({**about(study, row), **found, "alphaA_W_K": power / rise})
     return rows
-
-
-def given(scenario: Scenario, protocol: Protocol, reading: Reading) -> dict[str, float]:
-    """Inputs and oil of one reading, in SI by path; what the user set stays."""
-    driven = {path: d.sign[reading.direction - 1] * reading.si(d.column) for path, d in protocol.inputs.items()}
-    return driven | {protocol.room: reading.si("T_amb_C")} | oil_values(scenario, protocol, reading.oil)
-
-
-def oil_values(scenario: Scenario, protocol: Protocol, oil: str) -> dict[str, float]:
-    """What the catalogue says of the oil of a test, but for values that the user set or a diagnosis changed.
-
-    An oil that the catalogue lacks is that of the rig: a table is read with it only where the rig was filled with it.
-    """
-    if oil not in catalogue("oil"):
-        return {}
-    values = scenario.entry_values(protocol.oil, oil)
-    kept = (SET, DIAGNOSED)
-    return {path: value for path, value in values.items() if not scenario.value_sources.get(path, "").startswith(kept)}
 
 
 def held(

@@ -25,6 +25,8 @@ from ..scenarios.published import Row
 from ..scenarios.scenario import Scenario, parse_assignments
 from .expressions import evaluate
 from .losses import at_readings, contacts_at_operating_point, held
+from .measured import measured_of
+from .readings import measured_rows
 from .settings import adjusted, choice_paths, flat_of, parameter_of
 from .verdicts import Value, number_of
 
@@ -128,12 +130,11 @@ class RigValues:
         """The losses at all measured readings beside what was measured, a row each."""
         if assignments not in self._losses:
             scenario = adjusted(self.scenario, assignments)
-            if (campaign := scenario.campaign) is None:
+            if (study := measured_of(scenario)) is None:
                 raise ScenarioError(f"{scenario.name} has no measured readings.")
-            rows = at_readings(scenario, campaign, "measured")
-            self._losses[assignments] = [
-                {**reading.values, **row} for reading, row in zip(campaign.readings, rows, strict=True)
-            ]
+            read = measured_rows(study)
+            rows = zip(study.read_rows, at_readings(study, "measured"), strict=True)
+            self._losses[assignments] = [{**read[row], **found} for row, found in rows]
         return self._losses[assignments]
 
     def _setting(self, assignments: Iterable[str], free: Iterable[str] = ()) -> _Setting:

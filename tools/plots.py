@@ -14,7 +14,7 @@ from .compare import GROUPINGS, Channel, Row, Rows, distinct, errors, numbers
 
 #: Shapes for the two directions.
 SHAPES = {1: "o", 2: "^"}
-DIRECTIONS = {1: "1 (multiplier)", 2: "2 (reducer)"}
+DIRECTIONS = {1: "1", 2: "2 (reverse)"}
 
 #: Words for the loss columns; a column that is not here is shown under its own name.
 LOSSES = {
@@ -109,16 +109,20 @@ def warm_up(curves: Mapping[int, Mapping[str, np.ndarray]], rows: Rows) -> str:
     """Simulated temperatures over time of some tests, with the measured readings at the end of each half.
 
     Args:
-        curves: test -> columns `time` [s] and temperatures [degC] named T_oil_C, T_wall_C, T_amb_C
+        curves: test -> columns `time` [s] and temperatures [degC], the room's T_amb_C
         rows: readings with `test`, `time_s` and the measured temperatures
     """
     count = len(curves)
     across = min(count, 2)
     figure, panels = empty(12.0, 3.3 * -(-count // across) + 0.4, -(-count // across), across, sharex=True, sharey=True)
-    lines = {"T_oil_C": ("oil", COLOURS[0]), "T_wall_C": ("wall", COLOURS[1]), "T_amb_C": ("room", "#777777")}
+    names = [name for name in next(iter(curves.values())) if name not in ("time", "T_amb_C")]
+    lines = {name: (name.removesuffix("_C"), COLOURS[i % len(COLOURS)]) for i, name in enumerate(names)}
+    lines["T_amb_C"] = ("room", "#777777")
     for panel, (test, columns) in zip(panels, curves.items(), strict=False):
         mine = [row for row in rows if row["test"] == test]
         for name, (label, colour) in lines.items():
+            if name not in columns:
+                continue
             panel.plot(columns["time"] / 60, columns[name], color=colour, label=f"{label}, simulated")
             measured, times = numbers(mine, f"{name}_meas"), numbers(mine, "time_s") / 60
             if name != "T_amb_C" and np.isfinite(measured).any():

@@ -12,7 +12,7 @@ from markupsafe import Markup, escape
 from ..model.run.result import Outside
 from ..model.sources import LawInfo, sources
 from . import plots
-from .compare import CHANNELS, Comparison, Rows, present
+from .compare import Comparison, Rows, measured, numbers, present
 from .console import cell
 from .pages import page
 from .rivals import Score
@@ -51,7 +51,7 @@ class Study:
 
 
 #: Columns of the table of all readings.
-READING = ("point", "test", "direction", "oil", "n_carrier_rpm", "T_carrier_Nm", "T_amb_C")
+READING = ("point", "test", "direction", "oil", "n_set_rpm", "T_set_Nm", "T_amb_C")
 
 
 def render(study: Study, comparison: Comparison | None, scores: Sequence[Score]) -> str:
@@ -85,7 +85,10 @@ def _compared(rows: Rows, comparison: Comparison, scores: Sequence[Score]) -> di
     """What the page says about measured values."""
     channels = present(rows)
     noise = comparison.noise_floor
-    drawn = [c for c in channels if c.key != "T_oil2_K"]  # the simulation has one oil temperature for both sensors
+    simulated = [numbers(rows, c.column) for c in channels]
+    drawn = [  # two sensors may read one temperature of the model
+        c for k, c in enumerate(channels) if not any(np.array_equal(simulated[k], other) for other in simulated[:k])
+    ]
     return {
         "scores": scores,
         "noise": noise,
@@ -127,7 +130,7 @@ def _outside(outside: Sequence[Outside]) -> Markup:
 
 
 def _readings(rows: Rows) -> Markup:
-    columns = [c.column for c in CHANNELS if any(c.column in row for row in rows)]
+    columns = [c.column for c in measured(rows)]
     head = [*READING, *(name for column in columns for name in (column, f"{column}_meas"))]
     head = [name for name in head if any(name in row for row in rows)]
     return html_table(head, [[row.get(name) for name in head] for row in rows], text=(3,))

@@ -11,14 +11,14 @@ from typing import Any
 
 import numpy as np
 
-from .compare import CHANNELS, Channel, Rows, distinct, numbers, rms
+from .compare import Channel, Rows, distinct, measured, numbers, rms
 
-Design = Callable[[Rows, Channel], np.ndarray]
+Design = Callable[[Rows, Channel, Sequence[str]], np.ndarray]
 
 
 @dataclass(frozen=True)
 class Rival:
-    """A linear model: `design` gives its columns for the rows (n x coefficients) of a channel."""
+    """A linear model: `design` gives its columns (n x coefficients) for rows, a channel and the columns that drive."""
 
     name: str
     doc: str
@@ -36,31 +36,32 @@ class Score:
     leave_one_test_out: dict[str, float]
 
 
-def _one_number(rows: Rows, channel: Channel) -> np.ndarray:
-    """Rise = computed loss power / alpha*A; loss torque = constant share of the carrier torque."""
-    source = "T_carrier_Nm" if channel.relative_to is None else "P_loss_W"
-    return numbers(rows, source)[:, None]
+def _one_number(rows: Rows, channel: Channel, drives: Sequence[str]) -> np.ndarray:
+    """Rise = computed loss power / alpha*A; loss torque = constant share of the given torque."""
+    torques = [name for name in drives if name.endswith("_Nm")]
+    source = "P_loss_W" if channel.relative_to is not None or not torques else torques[0]
+    return np.abs(numbers(rows, source))[:, None]
 
 
-def _linear(rows: Rows, channel: Channel) -> np.ndarray:
-    """Constant, speed, torque."""
-    return np.column_stack([np.ones(len(rows)), numbers(rows, "n_carrier_rpm"), numbers(rows, "T_carrier_Nm")])
+def _linear(rows: Rows, channel: Channel, drives: Sequence[str]) -> np.ndarray:
+    """Constant, speeds, torques."""
+    return np.column_stack([np.ones(len(rows)), *(np.abs(numbers(rows, name)) for name in drives)])
 
 
-def _linear_groups(rows: Rows, channel: Channel) -> np.ndarray:
+def _linear_groups(rows: Rows, channel: Channel, drives: Sequence[str]) -> np.ndarray:
     """Constant, speed, torque, and an offset for each further direction and oil."""
     offsets = [
         [float(row.get(by) == value) for row in rows]
         for by in ("direction", "oil")
         for value in distinct(row.get(by) for row in rows)[1:]
     ]
-    return np.column_stack([_linear(rows, channel), *offsets])
+    return np.column_stack([_linear(rows, channel, drives), *offsets])
 
 
 RIVALS = (
     Rival(
         "constant_alphaA",
-        "T - T_amb = computed P_loss / alphaA; loss torque a constant share of the carrier torque",
+        "T - T_amb = computed P_loss / alphaA; loss torque a constant share of the given torque",
         _one_number,
     ),
     Rival("linear", "T - T_amb and loss torque linear in speed and torque", _linear),
@@ -68,22 +69,23 @@ RIVALS = (
 )
 
 
-def rivals(rows: Rows) -> tuple[Score, ...]:
+def rivals(rows: Rows, drives: Sequence[str]) -> tuple[Score, ...]:
     """Fit every rival to the measured readings.
 
     Args:
-        rows: with `n_carrier_rpm`, `T_carrier_Nm`, `T_amb_C`, computed `P_loss_W`, `test`, and the measured columns;
-            a rival is left out for a channel whose columns are missing
+        rows: with `T_amb_C`, computed `P_loss_W`, `test`, and the measured columns; a rival is left out for a channel
+            whose columns are missing
+        drives: columns of the given speeds and torques
     """
-    return tuple(_score(rival, rows) for rival in RIVALS)
+    return tuple(_score(rival, rows, drives) for rival in RIVALS)
 
 
-def _score(rival: Rival, rows: Rows) -> Score:
+def _score(rival: Rival, rows: Rows, drives: Sequence[str]) -> Score:
     coefficients: dict[str, list[float]] = {}
     in_sample: dict[str, float] = {}
     left_out: dict[str, float] = {}
-    for channel in CHANNELS:
-        design, target = rival.design(rows, channel), _target(rows, channel)
+    for channel in measured(rows):
+        design, target = rival.design(rows, channel, drives), _target(rows, channel)
         if not (np.isfinite(target).all() and np.isfinite(design).all()):
             continue
         fit = least_squares(design, target)

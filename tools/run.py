@@ -18,10 +18,11 @@ from .compare import Comparison, Rows, compare, present
 from .console import answer, as_json, file_of, folder, note, table, writable, write
 from .exporting import write_fmu
 from .losses import oils_of
-from .readings import sources
+from .measured import Measured, loaded, measured_of
+from .readings import ROOM, column_of, drives, sources
 from .report import Study, render
 from .rivals import Score, rivals
-from .settings import adjusted, flat_of, loaded
+from .settings import adjusted, flat_of
 from .unchecked import print_unchecked, unchecked, unchecked_lines
 
 #: First columns of a row, the rest follow in the order they arise.
@@ -47,25 +48,26 @@ def command(
     dt = to_si(step, "s", name="--step")
     kept = folder(folder(out) / "tests")
     with campaign.crew(workers) as pool:
-        scenario = adjusted(loaded(rig, extended, data, card), assignments)
-        protocol = scenario.campaign.protocol if scenario.campaign else None
-        scenario = scenario.driven_by(protocol.inputs) if protocol else scenario
+        scenario = adjusted(loaded(rig, extended), assignments)
+        study = measured_of(scenario, data, card)
+        scenario = study.scenario if study else scenario
         flat = flat_of(scenario)
-        found = campaign.runs_of(scenario, flat, tests)
+        found = campaign.runs_of(scenario, flat, study, tests)
         fmu = write_fmu(scenario, flat, out / f"{scenario.name}.fmu")
         note(f"exported {fmu}")
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()
-        record = campaign.recorded(scenario, flat)
+        record = campaign.recorded(scenario, flat, study)
         todo = campaign.jobs(found, fmu, digest, dt, record, kept)
         played = campaign.play_all(todo, pool)
-    rows = [_ordered(row) for row in campaign.rows(scenario, found, played)]
-    comparison, scores = (compare(rows), rivals(rows)) if present(rows) else (None, ())
+    rows = [_ordered(row) for row in campaign.rows(scenario, study, found, played)]
+    given = [column_of(s) for s in drives(study)] if study else []
+    comparison, scores = (compare(rows), rivals(rows, given)) if present(rows) else (None, ())
     result = _result(scenario, fmu, digest, rows, comparison, scores)
-    result["unchecked"] = unchecked(scenario, flat, oils_of(scenario.campaign))
-    study = _study(scenario, flat, found, played, rows, result, kept)
+    result["unchecked"] = unchecked(scenario, flat, oils_of(study))
+    shown = _study(scenario, study, flat, found, played, rows, result, kept)
     write(out / "rows.csv", _csv(rows))
     write(out / "result.json", as_json(result))
-    write(out / "report.html", render(study, comparison, scores))
+    write(out / "report.html", render(shown, comparison, scores))
     note(f"{out / 'report.html'} after {time.perf_counter() - began:.1f} s")
     answer(result, json, lambda: _print(rows, comparison, scores, result))
 
@@ -97,6 +99,7 @@ def _result(
 
 def _study(
     scenario: Scenario,
+    study: Measured | None,
     flat: FlatModel,
     found: Sequence[campaign.Run],
     played: Mapping[int, list[dict[str, float]]],
@@ -105,7 +108,7 @@ def _study(
     kept: Path,
 ) -> Study:
     """What the report shows."""
-    columns = {**sources(scenario), "T_amb_C": _room(scenario)}
+    columns = _curves(scenario, study)
     curves = {test: _curve(kept / f"test-{test:02d}.csv", columns, flat) for test in _telling(rows)}
     single = [c for c in scenario.losses if c.startswith("P_") and c != "P_total_W"]
     return Study(
@@ -124,9 +127,13 @@ def _study(
     )
 
 
-def _room(scenario: Scenario) -> str:
-    rooms = scenario.spec.of_type("Room")
-    return scenario.sensors.get("T_amb_C", f"{rooms[0]}.T" if rooms else "")
+def _curves(scenario: Scenario, study: Measured | None) -> dict[str, str]:
+    """Columns of the curves over time -> path: the temperatures, each once, and the room."""
+    rooms = [s.reads for s in study.rooms] if study else [f"{name}.T" for name in scenario.spec.of_type("Room")]
+    found: dict[str, str] = {}
+    for column, path in sources(scenario, study.warm if study else ()).items():
+        found |= {} if path in found.values() else {column: path}
+    return found | {ROOM: path for path in rooms[:1]}
 
 
 def _telling(rows: Rows) -> list[int]:

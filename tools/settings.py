@@ -10,13 +10,11 @@ from typing import Any
 from ..model.core.declare import Choice, Parameter, declared
 from ..model.core.flat import FlatModel
 from ..model.core.flatten import flatten
-from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
+from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.laws.film_map import FilmMap
 from ..model.machines.spec import Spec, assemble
 from ..scenarios.film_map import map_named, names_map
-from ..scenarios.measured import read_measured
 from ..scenarios.scenario import Scenario, deduced, parse_assignments
-from .rigs import load
 
 Drive = Mapping[str, tuple[str, ...]]
 
@@ -64,36 +62,6 @@ def adjusted(
     sources = {**set_up.value_sources, **_filled(scenario, assignments)}
     set_up = replace(set_up, spec=set_up.spec.with_values(choices), value_sources=sources)
     return set_up.with_values(_derived(set_up.spec, named), SET)
-
-
-def loaded(rig: str, extended: Path | None = None, data: Path | None = None, card: Path | None = None) -> Scenario:
-    """A rig, or its extension with the rig's measured data.
-
-    Args:
-        rig: name or file
-        extended: rig file of the extension, which takes the rig's place
-        data: measured table that takes the place of the rig's own
-        card: how that table was taken, as `diagnose` is told
-
-    Raises:
-        GearheatError: all problems of the files; data for a rig whose protocol is not known, or a card without data
-    """
-    if card is not None and data is None:
-        raise DataError(f"--card {card} says how a measured table was taken. Give the table, too, as --data FILE.")
-    scenario = load(rig)
-    if extended is not None:
-        found = load(extended)
-        campaign = scenario.campaign and replace(scenario.campaign, protocol=found.protocol or scenario.protocol)
-        scenario = replace(found, campaign=found.campaign or campaign)
-    if data is None:
-        return scenario
-    if scenario.protocol is None:
-        raise DataError(f"{scenario.name}: how its tests are run is not known. Give the rig file a table [campaign].")
-    if card is not None:
-        from .diagnose.carded import carded
-
-        return carded(scenario, data, card, diagnosed=extended is not None)
-    return replace(scenario, campaign=read_measured(data, scenario.protocol))
 
 
 def flat_of(scenario: Scenario) -> FlatModel:

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from .compare import CHANNELS, GROUPINGS, Comparison
+from .compare import GROUPINGS, Comparison
 from .console import table
 from .rivals import Score
 
@@ -29,7 +29,7 @@ def hundredths(value: float | None) -> str:
 def error_lines(comparison: Comparison, scores: Sequence[Score]) -> tuple[list[str], list[list[Any]]]:
     """Head and body: channels across; simulation overall and by grid, noise floor and rivals down."""
     rmse = comparison.rmse()
-    channels = [c for c in CHANNELS if c.key in rmse["overall"]]
+    channels = comparison.channels
 
     def line(name: str, values: Any) -> list[Any]:
         return [name, *(hundredths(values.get(c.key)) for c in channels)]
@@ -45,7 +45,7 @@ def error_lines(comparison: Comparison, scores: Sequence[Score]) -> tuple[list[s
 
 def group_lines(comparison: Comparison) -> tuple[list[str], list[list[Any]]]:
     """Head and body: groups down, mean and root mean square of each channel across."""
-    channels = [c for c in CHANNELS if any(g.channel == c.key for g in comparison.groups)]
+    channels = comparison.channels
     found: dict[tuple[str, Any], dict[str, Any]] = {}
     for group in comparison.groups:
         found.setdefault((group.by, group.value), {"n": group.n})[group.channel] = group

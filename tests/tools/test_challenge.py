@@ -174,18 +174,23 @@ def test_only_the_data_tell(tmp_path: Path) -> None:
     assert [name for name in sorted(ill.keys() | well.keys()) if ill.get(name) != well.get(name)] == ["DATA.csv"]
 
 
-@pytest.mark.parametrize(("sheet", "kind"), [("own", "weak"), ("textbook", "single")])
-def test_same_seed_same_bytes_and_the_truth_holds(sheet: str, kind: str, tmp_path: Path) -> None:
+def test_same_seed_same_bytes_and_the_truth_holds(tmp_path: Path) -> None:
     """A sensor's step is its whole impact, and lies at the points to predict where it lies in the campaign."""
     for name in "ab":
-        truth = make(sheet, tmp_path / name, kind=kind, cause="sensor.wall_temp.since")
+        truth = make("textbook", tmp_path / name, kind="single", cause="sensor.wall_temp.since")
     files = [{p.name: p.read_bytes() for p in (tmp_path / n).rglob("*") if p.is_file()} for n in "ab"]
     assert files[0] == files[1]
     step = truth["effects"][0]["amount"]
     assert 0.0 < truth["impact"]["T_wall_K"] / step < 1.0
     assert truth["impact"]["T_oil_K"] == truth["impact"]["loss_Nm"] == 0.0
     assert all(p["T_oil_C"] == p["T_oil_without_C"] for p in truth["points"])
-    assert kind == "weak" or (truth["effects"][0]["snr"] > 5.0 and truth["rival"]["distance"] >= APART)
+    assert truth["effects"][0]["snr"] > 5.0 and truth["rival"]["distance"] >= APART
+
+
+def test_the_own_rig_has_no_reference(tmp_path: Path) -> None:
+    truth = make("own", tmp_path, kind="clean")
+    assert {p.name for p in (tmp_path / "case").iterdir()} == {"DATA.csv", "CARD.json", "POINTS.csv"}
+    assert truth["answer"] == [] and truth["gross"] == {} and len(read(tmp_path / "case/DATA.csv")) == 32
 
 
 def test_gross_readings_stand_where_the_truth_says(tmp_path: Path) -> None:

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from scipy.linalg import block_diag, solve_triangular
@@ -24,26 +24,6 @@ from scipy.optimize import nnls
 
 from .classes import merged
 from .plan import Plan
-
-
-class Fault(Protocol):
-    """What can be hidden: a cause in a drawn form."""
-
-    @property
-    def cause(self) -> str:
-        """Its stable name."""
-
-    @property
-    def high(self) -> float:
-        """Largest sensible amount."""
-
-    @property
-    def signs(self) -> tuple[int, ...]:
-        """Signs that the amount may have."""
-
-    @property
-    def stages(self) -> Mapping[str, Callable[..., None]]:
-        """What it does where; "read" (readings, plan, amounts) misreads."""
 
 
 #: A fault, the columns in which it acts, and how much of it in each of them.

@@ -45,7 +45,7 @@ def test_own_column_names_units_and_decimal_commas(rig, helical, tmp_path):
     )
     found = read_campaign(path, rig("helical_two_stage"), read_card(card))
     output = found.sensor("T_output")
-    assert (output.column, output.unit, output.signs) == ("M_ab [kNm]", "kN.m", (-1.0, 1.0))
+    assert (output.column, output.unit, output.signs) == ("M_ab [kNm]", "kN.m", (-1.0, -1.0))
     model = found.values["T_output"] * output.sign(found.direction)
     assert model == pytest.approx(helical["T_output_Nm"], abs=1e-9)
     for name in ("T_oil", "T_wall", "T_amb"):

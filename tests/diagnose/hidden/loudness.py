@@ -21,17 +21,17 @@ def signal_to_noise(bench: Bench, effects: Sequence[Effect], seed: int = 0) -> f
         bench: the rig, with the points that `seed` draws
         effects: what is wrong
     """
-    tests = _tests(bench.rig, seed)
+    tests = _tests(bench.name, seed)
     none: list[Mapping[str, float]] = [{}] * len(tests)
     shown = _readings(bench, tests, none, effects)
     change = _flat(bench, shown) - _flat(bench, _readings(bench, _as_shown(bench, tests, shown), none, []))
-    return float(np.sqrt(change @ np.linalg.solve(covariance(bench.rig, seed), change)))
+    return float(np.sqrt(change @ np.linalg.solve(covariance(bench.name, seed), change)))
 
 
 @cache
-def covariance(rig: str, seed: int) -> np.ndarray:
+def covariance(name: str, seed: int) -> np.ndarray:
     """Covariance of all readings of a campaign that is clean: what is read, sensor by sensor, rows within."""
-    bench, tests = BENCHES[rig], _tests(rig, seed)
+    bench, tests = BENCHES[name], _tests(name, seed)
     none: list[Mapping[str, float]] = [{}] * len(tests)
     base = _flat(bench, _readings(bench, tests, none, []))
     read = [g for g in bench.gauges if not g.given]
@@ -55,8 +55,8 @@ def covariance(rig: str, seed: int) -> np.ndarray:
 
 
 @cache
-def _tests(rig: str, seed: int) -> list[Test]:
-    return BENCHES[rig].tests(np.random.default_rng(seed))
+def _tests(name: str, seed: int) -> list[Test]:
+    return BENCHES[name].tests(np.random.default_rng(seed))
 
 
 def _uncertain(bench: Bench) -> dict[str, float]:
@@ -122,7 +122,7 @@ def chi_square(bench: Bench, case: Case, seed: int) -> float:
     with case.data.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     shown = {g.name: np.array([float(r[g.column]) for r in rows]) * g.scale + g.zero for g in bench.gauges}
-    tests = _tests(bench.rig, seed)
+    tests = _tests(bench.name, seed)
     expected = _readings(bench, _as_shown(bench, tests, shown), [{}] * len(tests), [])
     change = _flat(bench, shown) - _flat(bench, expected)
-    return float(change @ np.linalg.solve(covariance(bench.rig, seed), change)) / len(change)
+    return float(change @ np.linalg.solve(covariance(bench.name, seed), change)) / len(change)

@@ -94,7 +94,7 @@ def main(arguments: list[str]) -> None:
     if what == "single":
         single(rigs, rest[1:])
     elif what == "clean":
-        clean([rest[0]] if rest else ["helical_two_stage"])
+        clean([rest[0]] if rest else ["helical"])
     elif what == "gross":
         gross()
     elif what == "stable":

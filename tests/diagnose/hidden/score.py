@@ -15,6 +15,7 @@ CLASSES = (
     {"losses.bearing_preload", "losses.seal_drag"},
     {"losses.churning", "losses.windage", "losses.oil_level"},
     {"procedure.day_scatter", "cooling.humidity"},
+    {"cooling.air", "cooling.fan"},
 )
 
 

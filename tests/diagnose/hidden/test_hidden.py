@@ -16,8 +16,8 @@ ALL = os.environ.get("GEARHEAT_HIDDEN", "") == "all"
 CASES = [(rig, name) for rig, effects in HIDDEN.items() for name in effects]
 #: One of each group where not all are asked for: losses, cooling and heat, an instrument, the procedure.
 FEW = [
-    ("helical_two_stage", "churning"),
-    ("helical_two_stage", "air"),
+    ("helical", "churning"),
+    ("helical", "air"),
     ("harmonic", "torque offset"),
     ("planetary", "early"),
 ]
@@ -44,7 +44,7 @@ def test_a_hidden_effect_is_found_or_in_the_set(rig, name) -> None:
 
 @pytest.mark.parametrize("seed", [marked(seed, ALARMED) for seed in CLEANS])
 def test_a_clean_campaign_raises_no_alarm(seed) -> None:
-    answer = score(hidden("helical_two_stage", "", seed))
+    answer = score(hidden("helical", "", seed))
     assert not answer.alarm, answer.line
 
 

@@ -14,7 +14,7 @@ from gearheat.scenarios.load import load
 @pytest.mark.parametrize("rig", BENCHES)
 def test_a_campaign_reads_back(rig, tmp_path) -> None:
     case = make(BENCHES[rig], [], 3, tmp_path)
-    campaign = read_campaign(case.data, load(rig), read_card(case.card))
+    campaign = read_campaign(case.data, load(BENCHES[rig].rig), read_card(case.card))
     assert {s.name: s.role for s in campaign.sensors if s.name != "T_oil2"} == {
         g.name: "given" if g.given else "read" for g in BENCHES[rig].gauges
     }
@@ -24,7 +24,7 @@ def test_a_campaign_reads_back(rig, tmp_path) -> None:
 
 
 def test_the_same_seed_gives_the_same_bytes(tmp_path) -> None:
-    one, other = (make(HELICAL, [HIDDEN["helical_two_stage"]["air"]], 5, tmp_path / k) for k in "ab")
+    one, other = (make(HELICAL, [HIDDEN["helical"]["air"]], 5, tmp_path / k) for k in "ab")
     assert one.data.read_bytes() == other.data.read_bytes()
 
 
@@ -37,7 +37,7 @@ def test_a_gross_reading_is_one_reading(tmp_path) -> None:
     assert len(cells) == 1
 
 
-@pytest.mark.parametrize("bench", [HELICAL, HARMONIC], ids=lambda b: b.rig)
+@pytest.mark.parametrize("bench", [HELICAL, HARMONIC], ids=lambda b: b.name)
 def test_clean_campaigns_differ_from_the_file_by_what_the_card_says(bench, tmp_path) -> None:
     ratios = [chi_square(bench, make(bench, [], seed, tmp_path / str(seed)), seed) for seed in range(6)]
     assert 0.8 < float(np.mean(ratios)) < 1.2
@@ -45,7 +45,7 @@ def test_clean_campaigns_differ_from_the_file_by_what_the_card_says(bench, tmp_p
 
 @pytest.mark.parametrize("name", ["churning", "seals by torque"])
 def test_a_hidden_loss_brakes_as_much_as_it_heats(name) -> None:
-    effect = HIDDEN["helical_two_stage"][name]
+    effect = HIDDEN["helical"][name]
     true = run(HELICAL, HELICAL.tests(np.random.default_rng(0)), [{}] * 24, [effect])
     heat = sum(true[q.name] for q in model(HELICAL.rig).inputs if q.name.endswith(".Q_flow_external"))
     assert heat == pytest.approx(true["P_extra"], rel=1e-3)
@@ -61,5 +61,5 @@ def test_a_timed_campaign_is_warmer_with_a_neighbour() -> None:
 
 
 def test_steady_cases_are_loud_enough_to_be_found() -> None:
-    quiet = {name for name, effect in HIDDEN["helical_two_stage"].items() if signal_to_noise(HELICAL, [effect]) < 3.0}
+    quiet = {name for name, effect in HIDDEN["helical"].items() if signal_to_noise(HELICAL, [effect]) < 3.0}
     assert quiet == {"seals"}  # half as much again lies within three standard deviations of what the card grants seals

@@ -23,7 +23,7 @@ def block(language: str) -> str:
 
 
 def test_the_page_for_ones_own_gearbox(tmp_path, monkeypatch) -> None:
-    case = make(HELICAL, [HIDDEN[HELICAL.rig]["air"]], 7, tmp_path / "made")
+    case = make(HELICAL, [HIDDEN["helical"]["air"]], 7, tmp_path / "made")
     with case.data.open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     head, *examples = block("csv").splitlines()

@@ -220,3 +220,13 @@ def test_a_thermostat_keeps_another_temperature(case):
     values = x.forms[0].values({"dT": 5.0}, Row(base={"thermostat.dT": 0.0}, sensors={}))
     found = steady(flatten(assemble(c.scenario.spec)), {**c.scenario.operating_point, **values})
     assert found["oil.T"][0] - c.nominal["oil.T"][0] == pytest.approx(5.0, abs=1.0)
+
+
+def test_a_cooler_that_is_stuck_part_open_takes_more_while_closed(case):
+    c = case("wind_turbine")
+    form = next(f for f in c.cause("cooling.thermostat").forms if "stuck" in f.name)
+    base = parameters(c.scenario.spec)
+    values = {k: float(v) for k, v in form.values({"dT": -0.5 * c.ranges.rise}, Row(base=base, sensors={})).items()}
+    assert values["cooler.G_closed"] > base["cooler.G_closed"] + 0.3 * base["cooler.G_open"]
+    both = values["cooler.G_closed"] + values["cooler.G_open"]
+    assert both == pytest.approx(base["cooler.G_closed"] + base["cooler.G_open"], rel=0.05)

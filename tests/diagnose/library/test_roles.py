@@ -88,7 +88,7 @@ def test_every_rig_has_teeth_a_room_and_bodies_on_one_side_each(rig):
     assert not set(roles.inside) & set(roles.outside)
     assert {*roles.inside, *roles.outside} == set(roles.having("body"))
     conductors = (*roles.foundation, *roles.coolers, *roles.oil_side, *roles.contacts)
-    assert sorted(conductors) == sorted(roles.having("conductor"))
+    assert sorted(conductors) == sorted(roles.having("conductor", "jet", "cooler"))
     known = {f"{p.name}.{key}" for p in spec.parts for key in vars_of(spec, p)}
     assert set(roles.scaled(*(p.name for p in spec.parts))) <= known
 
@@ -118,3 +118,11 @@ def test_a_machine_without_shaft_ends_is_refused():
     nets = tuple(tuple(port for port in net if port.partition(".")[0] not in gone) for net in spec.connections)
     with pytest.raises(ScenarioError, match="Add a ShaftEnd"):
         Roles.of(replace(spec, parts=tuple(p for p in spec.parts if p.name not in gone), connections=nets))
+
+
+def test_a_grey_box_with_oil_jets_and_a_cooler_behind_a_thermostat():
+    roles = Roles.of(load("wind_turbine").spec)
+    assert [place.parts for place in roles.places["bearing"]] == [("bearing_1_loss",), ("bearing_2_loss",)]
+    assert (roles.switches, roles.coolers, roles.foundation) == (("thermostat",), ("cooler",), ("surface",))
+    assert set(roles.oil_side) == {"circulation", "splash", "jet_1", "jet_2"}
+    assert (roles.oil, roles.outside) == ("sump.T", ("housing",))

@@ -12,17 +12,18 @@ from gearheat.diagnose.campaign.read import read_campaign
 from gearheat.diagnose.campaign.table import Campaign
 from gearheat.diagnose.library.cause import Cause, Form, Nuisance, Shape, Size
 from gearheat.diagnose.library.roles import Roles
-from gearheat.diagnose.model import observe
+from gearheat.diagnose.model import duty
+from gearheat.diagnose.model.duty import STEADY
 from gearheat.diagnose.model.formula import Formula
 from gearheat.diagnose.model.march import Phases, march
-from gearheat.diagnose.model.observe import STEADY, Observed
+from gearheat.diagnose.model.observe import Observed
 from gearheat.diagnose.model.plant import Plant
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import PartSpec, assemble
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 
-FOLDER = Path(observe.__file__).parents[3] / "scenarios" / "rigs" / "planetary"
+FOLDER = Path(duty.__file__).parents[3] / "scenarios" / "rigs" / "planetary"
 SIZE = Size("size", "1", "", 0.1, -1.0, 1.0)
 FRICTION, BATH = Nuisance("mu", {"gear_set.k_mu": 1.0}, 0.2, 0.2), Nuisance("c", {"oil.c_p": 1.0}, 0.3, 0.3)
 EXTRA = {"G_ref": 0.0, "dT_ref": 30.0, "e": 0.0, "w_ref": 10.0, "tau_ref": 1000.0, "c": 0.0, "forward": 1.0}
@@ -122,17 +123,15 @@ def test_candidates_of_one_part_with_other_shapes_keep_apart(made, planetary) ->
     candidates = [(known[3], np.array([0.7, u])) for u in (-1.0, 0.0, 1.0)] + [(known[2], np.array([0.0]))]
     found = o.tangents(Z, beside, candidates)
     for k, (formula, t) in enumerate(candidates):
-        expected = central(
-            lambda h, f=formula, t=t: o.shown_by(Z, [*beside, (f, np.concatenate([[h], t[1:]]))]), 1e-3
-        )
+        expected = central(lambda h, f=formula, t=t: o.shown_by(Z, [*beside, (f, np.concatenate([[h], t[1:]]))]), 1e-3)
         assert found[:, k] == pytest.approx(expected, abs=1e-5 * np.abs(expected).max())
     assert np.abs(found[:, 0] - found[:, 2]).max() > 0.01 * np.abs(found[:, 0]).max()
 
 
 def test_few_steps_are_enough(made, acting, monkeypatch) -> None:
     found = made().shown_by(Z, acting)
-    monkeypatch.setattr(observe, "DWELL", np.linspace(0, 1, 201)[1:] ** 2)
-    monkeypatch.setattr(observe, "STOP", np.linspace(0, 1, 41)[1:] ** 2)
+    monkeypatch.setattr(duty, "DWELL", np.linspace(0, 1, 201)[1:] ** 2)
+    monkeypatch.setattr(duty, "STOP", np.linspace(0, 1, 41)[1:] ** 2)
     assert found == pytest.approx(made().shown_by(Z, acting), abs=0.01)
 
 
@@ -180,3 +179,24 @@ def test_a_very_long_dwell_ends_in_the_steady_state(rig: str) -> None:
     found = march(plant, phases, x0, plant.p[None, None, None], np.ones((1, 1)))
     expected = steady(flat, scenario.operating_point)
     assert found.y[0, 0] == pytest.approx([expected[q.name][-1] for q in flat.states], abs=1e-6)
+
+
+def test_functions_of_the_plant_at_many_points(planetary) -> None:
+    plant = planetary[0]
+    w = np.concatenate([plant.flat.starts("state"), plant.flat.starts("algebraic")]) + np.array([[30.0], [60.0]])
+    u, p = np.tile(plant.u, (2, 1)), np.tile(plant.p, (2, 1))
+    u[:, [plant.u_place[g] for g in plant.given]] = [10.0, 295.0, 1500.0]
+    _, J = plant.rates(w, u, p)
+    (by,) = plant.slopes(w, u, p)
+    y, y_w, _ = plant.reading_slopes(w, u, p)
+    assert (J.shape, y.shape) == ((2, plant.nx + plant.nz, w.shape[1]), (2, len(plant.shown)))
+
+    def agree(found: np.ndarray, expected: np.ndarray) -> None:
+        assert found == pytest.approx(expected, rel=1e-4, abs=1e-7 * max(np.abs(expected).max(), 1e-9))
+
+    for j, scale in enumerate(plant.scale):
+        way = np.arange(w.shape[1]) == j
+        agree(J[:, :, j], central(lambda h, way=way: plant.rates(w + h * way, u, p)[0], 1e-5 * scale))
+        agree(y_w[:, :, j], central(lambda h, way=way: plant.readings(w + h * way, u, p)[0], 1e-5 * scale))
+    way = np.arange(len(plant.p)) == plant.place["oil.c_p"]
+    agree(by[:, :, plant.knobs.index("oil.c_p")], central(lambda h: plant.rates(w, u, p + h * way)[0], 1e-2))

@@ -98,7 +98,8 @@ def decided(found: Found) -> Decision:
     for h, p, causes in zip(found.hypotheses, found.probabilities, asked, strict=True):
         for cause in (*causes, UNEXPLAINED) if beyond(h) else causes:
             members.setdefault(cause, []).append((h, float(p)))
-    marginal = {c: chances.of(sum(p for _, p in own)) for c, own in members.items()}
+    holds = {c: np.array([any(h is m for m, _ in own) for h in found.hypotheses]) for c, own in members.items()}
+    marginal = {c: chances.of(mine) for c, mine in holds.items()}
     whole = {c: tuple(own) for c, own in members.items()}
     adequacy = p_adequacy(found, leader)
     return Decision(verdict, tuple(joints), tuple(answers), marginal, whole, leader, chances.p_any, adequacy)
@@ -110,30 +111,34 @@ def beyond(h: Hypothesis) -> bool:
 
 
 class _Chances:
-    """Probabilities with their Monte-Carlo errors.
+    """Probabilities with their Monte-Carlo errors: of the evidence of each fit, and of the prior of nothing.
 
     The alarm's critical value is a quantile of draws, and with it the prior of nothing; the odds against nothing are
     compared with the same draws, so that they are an alarm if, and only if, nothing has less than one half.
     """
 
     def __init__(self, found: Found) -> None:
-        whole = zip(found.hypotheses, found.probabilities, strict=True)
-        self.nothing = float(sum(p for h, p in whole if not h.causes and not beyond(h)))
+        self.p = np.asarray(found.probabilities)
+        self.pure = np.array([not h.causes and not beyond(h) for h in found.hypotheses])
+        self.nothing = float(self.p[self.pure].sum())
         odds = np.log(max(1 - self.nothing, 1e-300)) - np.log(max(self.nothing, 1e-300)) + found.critical
         n = len(found.drawn)
         self.p_any = float((1 + (found.drawn >= odds).sum()) / (1 + n))
         share = float((found.drawn > found.critical).mean())
         spread = np.sqrt(max(share * (1 - share), 1 / n) / n)
         low, high = np.quantile(found.drawn, np.clip([1 - share - spread, 1 - share + spread], 0, 1))
-        self._critical = 0.5 * float(high - low)
+        #: Sources of error: which hypotheses share one, and the standard error of their log evidence.
+        self.sources = [(np.array([not h.causes for h in found.hypotheses]), 0.5 * float(high - low))]
+        for fit in {id(h.fit): h.fit for h in found.hypotheses}.values():
+            own = np.array([h.fit is fit for h in found.hypotheses])
+            self.sources.append((own, found.hypotheses[int(np.argmax(own))].error))
 
-    def of(self, p: float) -> Chance:
-        """A probability that is not that of nothing."""
-        return Chance(min(p, 1.0), min(p, 1.0) * self.nothing * self._critical)
-
-    def of_nothing(self) -> Chance:
-        """The probability of nothing."""
-        return Chance(self.nothing, self.nothing * (1 - self.nothing) * self._critical)
+    def of(self, mine: np.ndarray) -> Chance:
+        """The probability of some hypotheses, a mask (n,)."""
+        value = float(self.p[mine].sum())
+        slope = self.p * (mine - value)
+        error = np.sqrt(sum((slope[own].sum() * error) ** 2 for own, error in self.sources))
+        return Chance(min(value, 1.0), float(error))
 
 
 def _asked(found: Found) -> list[tuple[str, ...]]:
@@ -158,17 +163,18 @@ def _asked(found: Found) -> list[tuple[str, ...]]:
 def _joints(found: Found, asked: Sequence[tuple[str, ...]], chances: _Chances) -> list[Joint]:
     """Hypotheses added up, most probable first."""
     family = {f.cause.id: f.cause.family for f in found.formulas} | {UNEXPLAINED: UNEXPLAINED}
-    groups: dict[tuple[str, ...], list[_Shown]] = {}
-    for h, p, causes in zip(found.hypotheses, found.probabilities, asked, strict=True):
-        shown = causes or ((UNEXPLAINED,) if beyond(h) else ())
-        groups.setdefault(tuple(sorted(family[c] for c in shown)), []).append((h, shown, float(p)))
+    shown = [causes or ((UNEXPLAINED,) if beyond(h) else ()) for h, causes in zip(found.hypotheses, asked, strict=True)]
+    keys = [tuple(sorted(family[c] for c in causes)) for causes in shown]
     joints = []
-    for members in groups.values():
+    for key in dict.fromkeys(keys):
+        mine = np.array([k == key for k in keys])
+        members: list[_Shown] = [
+            (found.hypotheses[i], shown[i], float(found.probabilities[i])) for i in np.flatnonzero(mine)
+        ]
         whole = [m for m in members if set(m[0].causes) == set(m[1]) - {UNEXPLAINED}]
         best, causes, _ = max(whole or members, key=lambda m: m[2])
-        total = sum(p for _, _, p in members)
         classes = tuple(_class(c, members, family) for c in causes)
-        joints.append(Joint(causes, classes, chances.of(total) if causes else chances.of_nothing(), best))
+        joints.append(Joint(causes, classes, chances.of(mine), best))
     return sorted(joints, key=lambda j: -j.chance.probability)
 
 

@@ -78,6 +78,7 @@ def _built(campaign: Campaign, plan: Sequence[tuple[int, Step | None]], change: 
         stop=np.where(first, 0.0, own),
         lines=np.where(unread, UNREAD, campaign.lines[source]),
         points=np.where(unread, UNREAD, campaign.points[source]),
+        others={name: tuple(column[row] for row in source) for name, column in campaign.others.items()},
         warnings=(
             *campaign.warnings,
             f"{campaign.name}: rows are missing in the tests of order {numbers}. They are taken to have been run like"

@@ -42,7 +42,7 @@ class _Reader:
 
     def __init__(self, path: Path, scenario: Scenario, card: Card, points: bool) -> None:
         self.path, self.scenario, self.card, self.points = path, scenario, card, points
-        self.header, _ = read_cells(path)
+        self.header, self.rows = read_cells(path)
         self.problems: list[str] = []
         declared = sensors_of(scenario, card)
         self.sensors = tuple(s for sensor in declared if (s := self._placed(sensor)) is not None)
@@ -153,8 +153,21 @@ class _Reader:
             points=np.where(np.isfinite(points), points, np.arange(cells.n) + 1)[rows].astype(int),
             start_by_room=self.card.protocol.T_start_minus_amb_K,
             room_begin=self.card.protocol.ambient_start_minus_reading_K,
-            warnings=(*cells.table.warnings, *order_warnings(cells)),
+            names=tuple(names[row] if "test" in self.context else str(k + 1) for k, row in enumerate(starts)),
+            others=self._others(rows),
+            warnings=(*self._unused(cells), *order_warnings(cells)),
         )
+
+    def _others(self, rows: np.ndarray) -> dict[str, tuple[str, ...]]:
+        """Columns that neither a sensor nor the context has, as they stand, in running order."""
+        used = {s.column for s in self.sensors} | set(self.context.values())
+        columns = {name: k for k, name in enumerate(self.header) if name not in used}
+        return {name: tuple(self.rows[row][1][k] for row in rows) for name, k in columns.items()}
+
+    def _unused(self, cells: Cells) -> list[str]:
+        """Warnings of columns that nothing reads, but for those that the rig file speaks of."""
+        spoken = self.scenario.protocol.notes if self.scenario.protocol else ()
+        return [w for w in cells.table.warnings if not any(f'column "{name}" is not used' in w for name in spoken)]
 
     def _direction(self, cells: Cells, values: dict[str, np.ndarray]) -> np.ndarray:
         """+1 and -1 (n,): as stated, by the sign of a signed given torque that turns round, else 0."""
@@ -191,4 +204,3 @@ def _one_way(sensor: Sensor, direction: np.ndarray) -> Sensor:
         return sensor
     sign = sensor.signs[1] if (direction < 0).any() else sensor.signs[0]
     return replace(sensor, signs=(sign, sign))
-

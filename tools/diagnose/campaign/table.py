@@ -61,7 +61,9 @@ class Campaign:
         humidity: relative humidity [1] (n_tests,), NaN where it is not known
         date: of each test (n_tests), "" where unknown
         lines: line of each row in the file (n,)
-        points: number of each row's reading as in the file (n,)
+        points: number of each row's reading as in the file (n,), 0 where a row was run and not read
+        names: of the tests, as in the file (n_tests)
+        others: columns that no sensor has, as they stand in the file (n)
     """
 
     name: str
@@ -82,6 +84,8 @@ class Campaign:
     points: np.ndarray
     start_by_room: float = 0.0
     room_begin: float = 0.0
+    names: tuple[str, ...] = ()
+    others: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     warnings: tuple[str, ...] = field(default=())
 
     @property

@@ -203,6 +203,7 @@ class Target:
     def evidence(self, effects: Sequence[Effect], sd: Sequence[float]) -> tuple[float, np.ndarray, np.ndarray]:
         """Logarithm of the evidence less that of no effect, sizes (e,) and their covariance.
 
+        What a knob moves by within the logs is judged against moves as large as those of healthy seasons.
         The seasons' variances of the knobs in question have few degrees of freedom, and are averaged over.
         """
         scales, weights = scale_grid(self.levels.freedom)
@@ -211,11 +212,17 @@ class Target:
         for scale in scales:
             variance = self.levels.season.copy()
             variance[knobs] *= scale
-            A, b = self.with_effects(effects, sd, variance)
+            usual = [e for e in effects if np.ptp(e.share) > 0]
+            own = [float(np.sqrt(variance[e.knob])) for e in usual]
+            wide = [
+                float(np.hypot(s, np.sqrt(variance[e.knob]) * (np.ptp(e.share) > 0)))
+                for e, s in zip(effects, sd, strict=True)
+            ]
+            A, b = self.with_effects(effects, wide, variance)
             d = len(b) - len(effects)
             prior = -0.5 * self.seasons * np.log(variance).sum()
-            logs.append(prior + _log_integral(A, b) - np.log(sd).sum())
-            nulls.append(prior + _log_integral(A[:d, :d], b[:d]))
+            logs.append(prior + _log_integral(A, b) - np.log(wide).sum())
+            nulls.append(prior + _log_integral(*self.with_effects(usual, own, variance)) - np.log(own).sum())
             C = np.linalg.inv(A)
             sizes.append((C @ b)[d:])
             covariances.append(C[d:, d:])

@@ -24,8 +24,8 @@ PASSES, TARGET_PASSES = 4, 2
 QUIET, SWITCH = 0.05, 0.8
 #: Dates from which on something may have moved: at most so many, and windows on either side at least.
 DATES, SIDE = 6, 3
-#: Prior probabilities of no cause and of two.
-NOTHING, TWO = 0.5, 0.08
+#: Prior probabilities of no cause, as most years of most machines have none, and of two.
+NOTHING, TWO = 0.8, 0.03
 #: Causes that are tried together with others.
 LEADING = 4
 #: Correlations of errors are summed over so many samples at most, and down to so much; what lasts longer is a matter

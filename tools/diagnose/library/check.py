@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,23 +17,15 @@ from .extra_parts import EXTRA_PARTS
 NEUTRAL = 1e-6
 
 
-@dataclass(frozen=True)
-class _Known(Mapping[str, float]):
+class _Known(dict[str, float]):
     """Values by name; one that is asked for and is not there is told by name."""
 
-    what: str
-    values: Mapping[str, float]
+    def __init__(self, what: str, values: Mapping[str, float]) -> None:
+        super().__init__(values)
+        self.what = what
 
-    def __getitem__(self, name: str) -> float:
-        if name not in self.values:
-            raise KeyError(f'{self.what} "{name}" does not exist.{suggestion(name, self.values)}')
-        return self.values[name]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.values)
-
-    def __len__(self) -> int:
-        return len(self.values)
+    def __missing__(self, name: str) -> float:
+        raise KeyError(f'{self.what} "{name}" does not exist.{suggestion(name, self)}')
 
 
 def problems(cause: Cause, spec: Spec, sensors: Sequence[Sensor], ranges: Ranges) -> list[str]:
@@ -102,17 +93,19 @@ def _of_form(
     theta = {cause.size.name: 0.0} | middle(form.shapes)
     row = Row(base=base, sensors=shown, order=0.5, direction=1.0, rise=ranges.rise, dwell=7200.0)
     own = {part.name for part in form.parts}
-    acting: tuple[tuple[Callable[[], Values] | None, Mapping[str, float]], ...] = (
-        (form.values and (lambda: form.values(theta, row)), base),  # type: ignore[misc]
-        (form.truth and (lambda: form.truth(theta, row)), shown),  # type: ignore[misc]
-        (form.shown and (lambda: form.shown(theta, row, read)), read),  # type: ignore[misc]
-        (form.pace and (lambda: {"pace": form.pace(theta, row)}), {"pace": 1.0}),  # type: ignore[misc]
-    )
-    if not any(formula for formula, _ in acting):
+    said: list[tuple[Callable[[], Values], Mapping[str, float]]] = []
+    if (values := form.values) is not None:
+        said.append((lambda: values(theta, row), base))
+    if (truth := form.truth) is not None:
+        said.append((lambda: truth(theta, row), shown))
+    if (shows := form.shown) is not None:
+        said.append((lambda: shows(theta, row, read), read))
+    if (pace := form.pace) is not None:
+        said.append((lambda: {"pace": pace(theta, row)}, {"pace": 1.0}))
+    if not said:
         yield "it says nothing. Give it values, truth, shown or pace."
-    for formula, before in acting:
-        if formula:
-            yield from _neutral(formula, before, own)
+    for formula, before in said:
+        yield from _neutral(formula, before, own)
 
 
 def _neutral(formula: Callable[[], Values], before: Mapping[str, float], own: set[str]) -> Iterator[str]:

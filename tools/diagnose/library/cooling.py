@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from dataclasses import replace
 
 import casadi as ca
 
 from ...model.laws.smooth import smooth_abs
 from ..campaign.table import Sensor
 from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
+from .extra_parts import step
 from .extras import Extras
 from .forms import Context, shared
 from .roles import Roles
@@ -41,7 +43,7 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
         yield humidity(at)
     if roles.coolers:
         yield cooler(roles)
-    if roles.thermostats:
+    if roles.thermostats or roles.switches:
         yield thermostat(roles, ranges)
     if roles.surfaces:
         yield fan(roles)
@@ -230,19 +232,32 @@ def cooler(roles: Roles) -> Cause:
 
 
 def thermostat(roles: Roles, ranges: Ranges) -> Cause:
-    """A thermostat that keeps another temperature."""
+    """A thermostat that keeps another temperature, or is stuck."""
+    keeps: dict[str, tuple[str, ...]] = {name: (f"{name}.dT",) for name in roles.thermostats}
+    keeps |= {name: (f"{name}.T_open", f"{name}.T_close") for name in roles.switches}
 
     def values(names: Sequence[str]) -> Callable[[Theta, Row], Values]:
-        return lambda theta, row: {f"{n}.dT": row.base[f"{n}.dT"] + theta["dT"] for n in names}
+        return lambda theta, row: {path: row.base[path] + theta["dT"] for n in names for path in keeps[n]}
 
-    span = ranges.rise
+    opened = [name for name in roles.coolers if roles.nets.classes[name].role == "cooler"]
+
+    def stuck(theta: Theta, row: Row) -> Values:
+        share = -ca.tanh(theta["dT"] / ranges.rise)  # of the way that it stays open, or closed where it is negative
+        whole = {name: row.base[f"{name}.G_open"] for name in opened}
+        found = {f"{n}.G_closed": row.base[f"{n}.G_closed"] + G * share * step(share / 0.05) for n, G in whole.items()}
+        left = 1 + 0.02 - smooth_abs(share, 0.02)
+        return found | {f"{n}.G_open": G * left for n, G in whole.items()}
+
+    span, names = ranges.rise, tuple(keeps)
+    forms = shared([(names, values(names))], [((n,), values((n,))) for n in names])
+    if opened:
+        forms = tuple(replace(f, weight=0.7 * f.weight) for f in forms)
+        forms += (Form("stuck part open, or part closed", 0.3, values=stuck),)
     return Cause(
         id="cooling.thermostat",
-        doc="A thermostat that keeps a higher or lower temperature than it is set to.",
+        doc="A thermostat that keeps a higher or lower temperature than it is set to, or is stuck.",
         size=Size("dT", "K", "temperature kept less that set", 0.1 * span, -0.8 * span, 0.8 * span),
-        forms=shared(
-            [(roles.thermostats, values(roles.thermostats))], [((n,), values((n,))) for n in roles.thermostats]
-        ),
+        forms=forms,
         exposes="a probe where the thermostat measures; the set point moved",
     )
 

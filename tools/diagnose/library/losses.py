@@ -55,18 +55,21 @@ def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
     """What moves oil and air."""
     if teeth := at.roles.places["teeth"]:  # what moves the oil keeps a share of the heat
         places = [replace(place, inner=teeth[0].inner, outer=teeth[0].inner) for place in places]
-    speed = Shape("a", "1", "exponent of the speed", 1.2, 2.8, 2.0, 0.45)
-    shapes = (speed, Shape("b", "1", "exponent of the viscosity", 0.0, 0.35), TEETH)
+    churning: tuple[Shape, ...] = (
+        Shape("a", "1", "exponent of the speed", 1.2, 2.8, 2.0, 0.45),
+        Shape("b", "1", "exponent of the viscosity", 0.0, 0.35),
+        TEETH,
+    )
     yield Cause(
         id="losses.churning",
         doc="A loss without load that grows with speed: what turns in the oil moves it.",
         size=at.power("loss", 0.085, 0.0, 0.6),
-        forms=Extras("churning", at).losses(places, shapes, at.regimes(("w", "T"))),
+        forms=Extras("churning", at).losses(places, churning, at.regimes(("w", "T"))),
         exposes="points at higher speed and little load; a coast-down without load",
         like=NO_LOAD,
         acts_on=at.first("speed"),
     )
-    shapes = (
+    level: tuple[Shape, ...] = (
         Shape("a", "1", "exponent of the speed", 1.0, 2.5, 1.6, 0.4),
         Shape("b", "1", "exponent of the viscosity", 0.0, 0.6),
         TEETH,
@@ -75,17 +78,17 @@ def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
         id="losses.oil_level",
         doc="Oil level off its mark: a no-load loss that follows viscosity and, less, speed.",
         size=at.power("loss", 0.07, -0.15, 0.6),
-        forms=Extras("level", at).losses(places[:1], shapes),
+        forms=Extras("level", at).losses(places[:1], level),
         exposes="the same point at two oil levels",
         like=NO_LOAD,
         acts_on=at.first("speed"),
     )
-    shapes = (Shape("a", "1", "exponent of the speed", 2.6, 3.4, 3.0, 0.2), MIST)
+    windage: tuple[Shape, ...] = (Shape("a", "1", "exponent of the speed", 2.6, 3.4, 3.0, 0.2), MIST)
     yield Cause(
         id="losses.windage",
         doc="A loss without load, steep in speed and without viscosity: air and mist are moved.",
         size=at.power("loss", 0.057, 0.0, 0.6),
-        forms=Extras("windage", at).losses(places[:1], shapes, at.regimes(("w",))),
+        forms=Extras("windage", at).losses(places[:1], windage, at.regimes(("w",))),
         exposes="points at higher speed and little load, at two oil levels",
         like=NO_LOAD,
         acts_on=at.first("speed"),

@@ -104,7 +104,7 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
 
     Args:
         roles: of the machine
-        prior_sd: of the card: relative standard deviations by key ("mu"), by "PartType.parameter" or by "part.parameter"
+        prior_sd: of the card: relative standard deviations by "mu", "PartType.parameter" or "part.parameter"
         uncertainties: path -> standard uncertainty that the rig file states, in SI; what the card says counts more
     """
     found: list[Nuisance] = []

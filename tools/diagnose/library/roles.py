@@ -51,10 +51,10 @@ class Roles:
         speed, torque: paths of both
         room: the first room, "" without one
         surfaces: parts between a body and the room's air
-        foundation: conductors to a room, coolers: those to something that keeps its temperature
+        foundation: conductors to a room, coolers: coolers, and conductors to something that keeps its temperature
         oil_side: conductors between the oil and bodies, contacts: between bodies
         inside, outside: bodies that teeth and inner rings heat, and those of the housing
-        thermostats: parts that keep their temperature
+        thermostats: parts that keep their temperature, switches: those that open coolers at some temperature
     """
 
     spec: Spec
@@ -75,6 +75,7 @@ class Roles:
     inside: tuple[str, ...]
     outside: tuple[str, ...]
     thermostats: tuple[str, ...]
+    switches: tuple[str, ...]
 
     @staticmethod
     def of(spec: Spec) -> Roles:
@@ -98,8 +99,8 @@ class Roles:
 
     def conductance(self, conductor: str) -> float:
         """What the rig file makes of a conductor between bodies [W/K]."""
-        part = self.nets.classes[conductor](conductor, **self.spec.part(conductor).values)
-        return part.number_at(part.conductance(), part.values)
+        part: Any = self.nets.classes[conductor](conductor, **self.spec.part(conductor).values)
+        return float(part.number_at(part.conductance(), part.values))
 
     @property
     def ends(self) -> tuple[str, ...]:
@@ -265,11 +266,11 @@ def _found(nets: _Nets) -> Roles:
     rooms, keeping = nets.of("room"), nets.of("thermostat")
     air, kept = nets.heat_nets(rooms), nets.heat_nets(keeping)
     oil = nets.net.get(f"{nets.bath}.heat", -1)
-    conductors = nets.of("conductor")
+    conductors = nets.of("conductor", "jet")
     ends = {c: nets.heat_nets([c]) for c in conductors}
     foundation = tuple(c for c in conductors if ends[c] & air)
-    coolers = tuple(c for c in conductors if ends[c] & kept and c not in foundation)
-    inner = [c for c in conductors if c not in (*foundation, *coolers)]
+    kept_by = tuple(c for c in conductors if ends[c] & kept and c not in foundation)
+    inner = [c for c in conductors if c not in (*foundation, *kept_by)]
     oil_side = tuple(c for c in inner if oil in ends[c])
     contacts = tuple(c for c in inner if oil not in ends[c])
     surfaces = nets.of("surface")
@@ -280,12 +281,9 @@ def _found(nets: _Nets) -> Roles:
     shaft = nets.shaft()
     clutch = nets.classes[shaft].role == "clutch"
     places = {role: nets.brakes(role) for role in BRAKES}
-    if (
-        nets.bath
-        and not places["churning"]
-        and (ends := [p for e in nets.of("shaft_end") for p in nets.ports(e, Flange)])
-    ):
-        places["churning"] = (Place(nets.bath, (), ends[0], f"{warm}.heat", f"{warm}.heat", nets.tap),)
+    flanges = [port for end in nets.of("shaft_end") for port in nets.ports(end, Flange)]
+    if nets.bath and flanges and not places["churning"]:
+        places["churning"] = (Place(nets.bath, (), flanges[0], f"{warm}.heat", f"{warm}.heat", nets.tap),)
     return Roles(
         spec=nets.spec,
         places=places,
@@ -299,10 +297,11 @@ def _found(nets: _Nets) -> Roles:
         room=next(iter(rooms), ""),
         surfaces=surfaces,
         foundation=foundation,
-        coolers=coolers,
+        coolers=(*kept_by, *nets.of("cooler")),
         oil_side=oil_side,
         contacts=contacts,
         inside=inside,
         outside=outside,
         thermostats=keeping,
+        switches=nets.of("switch"),
     )

@@ -197,7 +197,7 @@ class _Instruments:
             "drift", f"Zero of the {words} that moves steadily over the campaign.", size, [DRIFT], REPEAT, "order", 0.5
         )
         size = self.size("error after the change less that before", 1.3)
-        modes = [SINCE, *(DIRECTED if self.at.both_ways else ())]
+        modes = [SINCE, *(replace(m, regime=FROM_THEN) for m in DIRECTED if self.at.both_ways)]
         total = sum(m.weight for m in modes)
         modes = [replace(m, weight=m.weight / total) for m in modes]
         yield self.cause("since", f"The {words} is wrong from one test on.", size, modes, REPEAT, "order", 0.5)
@@ -269,15 +269,9 @@ PLACE = Shape("threshold", "1", "where in the running order: 0 first test, 1 las
 FROM_THEN = {"quantity": "order above", "shape": "threshold"}
 SINCE = Mode("", 0.7, _changed, (PLACE, ZERO), regime=FROM_THEN)
 #: The same in one direction of the power flow only.
-DIRECTED = tuple(
-    Mode(
-        name,
-        0.15,
-        lambda theta, row, value, side=side: _changed(theta, row, value) * (1 + side * row.direction) / 2,
-        (PLACE, ZERO),
-        regime=FROM_THEN,
-    )
-    for side, name in ((1, "driving only"), (-1, "driven only"))
+DIRECTED = (
+    Mode("driving only", 0.15, lambda t, row, value: _changed(t, row, value) * (1 + row.direction) / 2, (PLACE, ZERO)),
+    Mode("driven only", 0.15, lambda t, row, value: _changed(t, row, value) * (1 - row.direction) / 2, (PLACE, ZERO)),
 )
 DIRECTIONS = (
     Mode("opposite signs", 0.4, lambda theta, row, value: row.direction),

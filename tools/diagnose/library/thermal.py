@@ -9,7 +9,7 @@ import numpy as np
 
 from ...model.machines.spec import PartSpec
 from ..campaign.table import Sensor
-from .cause import Cause, Form, Ranges, Row, Size, Theta, Values
+from .cause import Cause, Form, Num, Ranges, Row, Size, Theta, Values
 from .cooling import factors
 from .extra_parts import step
 from .heat import bodies
@@ -91,7 +91,7 @@ def heat_moved(roles: Roles) -> Iterator[Form]:
     yield Form("heat of bearings and seals", values=values)
 
 
-def _shifted(share: float, shift: object) -> object:
+def _shifted(share: float, shift: Num) -> Num:
     """What a share between 0 and 1 gains by a shift, which it follows with slope one in its middle."""
     s = float(np.clip(share, 0.02, 0.98))
     at = float(np.log(s / (1 - s)))

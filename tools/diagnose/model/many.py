@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping, Sequence
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 import casadi as ca
@@ -30,12 +32,37 @@ class Compiled:
             generator.add(function)
         #: Of each function and result: where its columns begin (columns + 1), and the row of each entry.
         self.patterns = {name: [_pattern(r) for r in found] for name, found in results.items()}
+        self.shapes = {name: [r.shape for r in found] for name, found in results.items()}
         self._library = load(f"#define GCC_HASCLASSVISIBILITY\n{generator.dump()}")
         self.sizes = [max(getattr(f, f"sz_{kind}")() for f in functions) for kind in ("arg", "res", "iw", "w")]
+
+    def dense(self, name: str, *entries: np.ndarray) -> list[np.ndarray]:
+        """Results of a function as whole matrices (n, rows, columns), those of one column as (n, rows).
+
+        Args:
+            name: of the function
+            entries: of each result (n, entries)
+        """
+        found = []
+        for own, (begin, row), (rows, columns) in zip(entries, self.patterns[name], self.shapes[name], strict=True):
+            whole = np.zeros((len(own), rows, columns))
+            whole[:, row, np.repeat(np.arange(columns), np.diff(begin))] = own
+            found.append(whole[:, :, 0] if columns == 1 else whole)
+        return found
 
     def place(self, name: str) -> int:
         """Where a function lies in memory."""
         return ctypes.cast(getattr(self._library, name), ctypes.c_void_p).value or 0
+
+
+@cache
+def library() -> ctypes.CDLL:
+    """The march through runs, compiled."""
+    found = load((Path(__file__).parent / "march.c").read_text(encoding="utf-8"))
+    pointer, count = ctypes.c_void_p, ctypes.c_int64
+    found.march.argtypes = [*[pointer] * 3, *[count] * 2]
+    found.many.argtypes = [*[pointer] * 2, count, *[pointer] * 4, count, pointer, count]
+    return found
 
 
 def record(**values: int | np.ndarray) -> Any:

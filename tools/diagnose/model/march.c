@@ -403,3 +403,20 @@ __attribute__((visibility("default"))) int march(const Plant *plant, const Duty 
   free(block);
   return 1;
 }
+
+/* A formula at n points, a row each: what it has in two results of so many entries; 0 where memory runs out. */
+__attribute__((visibility("default"))) int many(const Plant *plant, Formula formula, whole n, const double *w,
+                                                const double *u, const double *p, double *first, whole entries,
+                                                double *second, whole others) {
+  const whole numbers = plant->n_work * sizeof(double), integers = plant->n_iw * sizeof(whole);
+  const double **arg = malloc((plant->n_arg + plant->n_res) * sizeof *arg + numbers + integers);
+  if (!arg) return 0;
+  double **res = (double **)(arg + plant->n_arg), *work = (double *)(res + plant->n_res);
+  for (whole i = 0; i < n; i++) {
+    arg[0] = w + i * plant->nw, arg[1] = u + i * plant->nu, arg[2] = p + i * plant->np;
+    res[0] = first + i * entries, res[1] = second + i * others;
+    formula(arg, res, (whole *)(work + plant->n_work), work, 0);
+  }
+  free(arg);
+  return 1;
+}

@@ -8,14 +8,12 @@ from __future__ import annotations
 
 import ctypes
 from dataclasses import dataclass
-from functools import cache
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from ...fmu.batch_library import load, shared
-from .many import record
+from ...fmu.batch_library import shared
+from .many import library, record
 from .plant import Plant
 
 
@@ -92,7 +90,7 @@ def march(
     result = record(**({"y": 0, "by": 0, "local": 0} | found))
     duty = _duty(phases, x0, p, pace)
     places = [ctypes.byref(r) for r in (plant.record, duty, result)]
-    shared(lambda begin, end: int(_library().march(*places, begin, end)), n, n, 0 if n > 1 else 1)
+    shared(lambda begin, end: int(library().march(*places, begin, end)), n, n, 0 if n > 1 else 1)
     return Marched(found["y"], Slopes(found["by"], found["local"]) if turned else None)
 
 
@@ -122,10 +120,3 @@ def _duty(phases: Phases, x0: np.ndarray, p: np.ndarray, pace: np.ndarray) -> An
         start=phases.start,
         x0=x0,
     )
-
-
-@cache
-def _library() -> ctypes.CDLL:
-    library = load((Path(__file__).parent / "march.c").read_text(encoding="utf-8"))
-    library.march.argtypes = [*[ctypes.c_void_p] * 3, *[ctypes.c_int64] * 2]
-    return library

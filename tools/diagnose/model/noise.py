@@ -115,15 +115,14 @@ def smooth_features(campaigns: Sequence[Observed]) -> list[np.ndarray]:
     centre, spread = whole.mean(axis=1, keepdims=True), whole.std(axis=1, keepdims=True)
     kept = (spread > 1e-9 * np.maximum(abs(whole).max(axis=1, keepdims=True), 1e-12))[:, 0]
     room = [s.kind == "ambient" for s in campaigns[0].given] + [False]
+    levels = np.array([len(np.unique(values)) for values in whole])[kept]
     found = []
     for values in raw:
         z = ((values - centre) / np.maximum(spread, 1e-12))[kept]
         quiet = np.array(room)[kept]
         own = [np.ones(values.shape[1]), *z]
-        moving = z[~quiet]
-        own += [
-            a * b for i, a in enumerate(moving) for b in moving[i:] if not np.array_equal(a, b) or len(np.unique(a)) > 2
-        ]
+        moving, curved = z[~quiet], levels[~quiet] > 2  # a square needs three levels in all campaigns together
+        own += [a * b for i, a in enumerate(moving) for k, b in enumerate(moving[i:], start=i) if k > i or curved[i]]
         found.append(np.array(own).T)
     return found
 

@@ -9,17 +9,10 @@ import numpy as np
 
 from ..campaign.table import Campaign
 from ..library.cause import Nuisance
+from .duty import duty
 from .formula import Formula
 from .march import Marched, Phases, march
 from .plant import Plant
-
-#: Shares of a dwell, of a stop and of the time to a steady state [s] where steps end.
-DWELL = (np.arange(1, 7) / 6) ** 1.5
-STOP = np.array([1.0])
-STEADY = 60.0 * 4.0 ** np.arange(14)
-#: A kind of sensor that reads zero where the machine stands.
-RESTS = ("torque", "speed", "power")
-
 
 #: Part -> path -> values of each row (n,).
 _Changes = dict[str, dict[str, np.ndarray]]
@@ -87,7 +80,7 @@ class Observed:
         #: By how much the start temperature of a test follows the given readings of its first row (tests, given).
         self.starts = 1.0 * by_room[:, None] * room
         self.features = self._features()
-        self._phases = self._duty()
+        self._phases = duty(campaign, self.rows, self.starts)
 
     @property
     def m(self) -> int:
@@ -103,56 +96,6 @@ class Observed:
         rise = self.sensors[oil[0]] - self.sensors[room[0]] if oil and room else np.full(c.n, 30.0)
         dwell = np.where(np.isfinite(c.dwell), c.dwell, 1e9)
         return np.array([c.progress, c.direction, rise, humidity, np.minimum(self.half, 1), dwell])
-
-    def _duty(self) -> Phases:
-        """All tests as runs: a dwell for each row, a stop before each but the first."""
-        c, rows = self.campaign, self.rows
-        n, n_given = c.n_tests, len(self.given)
-        absent = np.arange(self.height) >= np.bincount(c.test)[:, None]
-        dwell = np.where(absent, 0.0, np.where(np.isinf(c.dwell), STEADY.sum(), c.dwell)[rows])
-        stop = np.where(absent, 0.0, c.stop[rows])
-        lengths, row, steps, read = [], [], [], []
-        local = []
-        one = np.eye(self.height)
-        room = np.array([s.kind == "ambient" for s in self.given], dtype=bool)
-        moving = np.array([s.kind in RESTS for s in self.given], dtype=bool)
-        shares = np.cumsum(STEADY) / STEADY.sum() if c.steady else DWELL
-        reached = np.tile(one[0], (n, 1))  # weights of the rows in the room's temperature so far
-        for h in range(self.height):
-            if h:
-                share = (stop[:, h] / np.maximum(stop[:, h] + dwell[:, h], 1e-9))[:, None]
-                after = reached + share * (one[h] - reached)
-                lengths.append(stop[:, h])
-                weights = np.zeros((2, n, n_given, self.height))
-                weights[0][:, room], weights[1][:, room] = reached[:, None], after[:, None]
-                weights[:, :, ~room & ~moving] = one[h]
-                local.append(weights)
-                row.append(h)
-                steps.append(STOP)
-                read.append(())
-                reached = after
-            weights = np.tile(one[h], (2, n, n_given, 1))
-            if not c.steady:
-                weights[0][:, room] = reached[:, None]
-            reached = np.tile(one[h], (n, 1))
-            lengths.append(dwell[:, h])
-            local.append(weights)
-            row.append(h)
-            steps.append(shares)
-            read.append((len(shares) - 1,))
-        whole = np.array(local)
-        empty = np.empty((n, len(row), 0))
-        return Phases(
-            np.array(lengths).T,
-            empty,
-            empty,
-            tuple(row),
-            tuple(steps),
-            tuple(read),
-            whole[:, 0].swapaxes(0, 1),
-            whole[:, 1].swapaxes(0, 1),
-            self.starts,
-        )
 
     def driven(self, truth: np.ndarray) -> tuple[Phases, np.ndarray]:
         """The duty with inputs by the true values of the given sensors (given, n), and start temperatures (tests,)."""

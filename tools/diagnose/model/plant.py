@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ctypes
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import replace
 from typing import Any
@@ -9,12 +10,14 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ...fmu.batch_library import address
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
+from ...model.errors import FmuError
 from ...model.machines.spec import Spec, assemble
 from ..library.cause import Form, Nuisance
 from ..library.extra_parts import EXTRA_PARTS
-from .many import Compiled, record
+from .many import Compiled, library, record
 
 
 def superset(spec: Spec, forms: Iterable[Form | Nuisance]) -> Spec:
@@ -50,22 +53,46 @@ class Plant:
         self.place = {q.name: i for i, q in enumerate(flat.parameters)}
         self.u_place = {q.name: i for i, q in enumerate(flat.inputs)}
         self.u = flat.starts("input")
+        self.scale = np.array([q.nominal for q in (*flat.states, *flat.algebraic)])
         w, both = ca.vertcat(flat.x, flat.z), ca.densify(ca.vertcat(flat.ode, flat.residual))
         by = ca.vertcat(*(flat.p[self.place[k]] for k in knobs), *(flat.u[self.u_place[g]] for g in given))
         groups = {"state": flat.x, "input": flat.u, "output": flat.y}
         found = [flat.locate(path) for path in shown]
         y = ca.densify(ca.vertcat(*(groups[kind][i] for kind, i in found)))
-        self.record = self._record(
-            Compiled(
-                [w, flat.u, flat.p],
-                {
-                    "rates": [both, ca.jacobian(both, w)],
-                    "slopes": [ca.jacobian(both, by)],
-                    "readings": [y],
-                    "reading_slopes": [ca.jacobian(y, w), ca.jacobian(y, by)],
-                },
-            )
-        )
+        results = {
+            "rates": [both, ca.jacobian(both, w)],
+            "slopes": [ca.jacobian(both, by)],
+            "readings": [y],
+            "reading_slopes": [ca.jacobian(y, w), ca.jacobian(y, by)],
+        }
+        self._compiled = Compiled([w, flat.u, flat.p], results)
+        self.record = self._record(self._compiled)
+
+    def rates(self, w: np.ndarray, u: np.ndarray, p: np.ndarray) -> list[np.ndarray]:
+        """Rates of the states and residuals, and their Jacobian in w, at n points, a row each."""
+        return self._many("rates", w, u, p)
+
+    def slopes(self, w: np.ndarray, u: np.ndarray, p: np.ndarray) -> list[np.ndarray]:
+        """Derivatives of rates and residuals by knobs and given inputs."""
+        return self._many("slopes", w, u, p)
+
+    def readings(self, w: np.ndarray, u: np.ndarray, p: np.ndarray) -> list[np.ndarray]:
+        """What is shown."""
+        return self._many("readings", w, u, p)
+
+    def reading_slopes(self, w: np.ndarray, u: np.ndarray, p: np.ndarray) -> list[np.ndarray]:
+        """What is shown, its derivatives in w, and by knobs and given inputs."""
+        return [*self.readings(w, u, p), *self._many("reading_slopes", w, u, p)]
+
+    def _many(self, name: str, *points: np.ndarray) -> list[np.ndarray]:
+        given = [np.ascontiguousarray(v, dtype=float) for v in points]
+        found = [np.empty((len(given[0]), len(row))) for _, row in self._compiled.patterns[name]]
+        pairs = [(address(r), r.shape[1]) for r in (*found, np.empty((1, 0)))[:2]]
+        places = [address(v) for v in given]
+        record = ctypes.byref(self.record)
+        if not library().many(record, self._compiled.place(name), len(given[0]), *places, *pairs[0], *pairs[1]):
+            raise FmuError("there is not enough memory for the points. Give fewer at a time.")
+        return self._compiled.dense(name, *found)
 
     def _record(self, compiled: Compiled) -> Any:
         """The plant as the march through its runs knows it."""
@@ -84,7 +111,7 @@ class Plant:
             most=max(len(entries) for entries in patterns),
             **{name: compiled.place(name) for name in compiled.patterns},
             **{f"pattern{k}": entries for k, entries in enumerate(patterns)},
-            scale=np.array([q.nominal for q in unknowns]),
+            scale=self.scale,
             guess=self.flat.starts("algebraic"),
             thermal=np.array([float(q.unit == "K") for q in unknowns]),
         )

@@ -9,6 +9,7 @@ import numpy as np
 
 from ..answer import estimate
 from ..answer.decide import UNEXPLAINED, Chance, Decision, Joint
+from ..answer.gain import Gain
 from ..campaign.table import Campaign
 from ..infer.search import Found, Hypothesis
 from ..library.cause import Cause
@@ -139,3 +140,32 @@ def remainder(found: Found, decision: Decision) -> findings.Remainder | None:
     return findings.Remainder(
         probability=chance.probability, mc_error=chance.mc_error, channels=tuple(c for _, c in told)
     )
+
+
+def gain(found: Found, one: Gain) -> findings.Gain:
+    """Errors of one channel by one scheme."""
+    s = next(s for s in found.problem.data.read if s.name == one.sensor)
+    before, after = ([channels.difference(s, v) for v in pair] for pair in (one.before, one.after))
+    return findings.Gain(
+        scheme=one.scheme,
+        channel=one.sensor,
+        unit=channels.unit_of_difference(s),
+        n=one.n,
+        rmse_before=before[0],
+        rmse_after=after[0],
+        before=findings.Gain.Both.model_validate({"without": before[0], "with": before[1]}),
+        after=findings.Gain.Both.model_validate({"without": after[0], "with": after[1]}),
+        ratio_ci90=one.ratio,
+        noise_floor=channels.difference(s, one.noise),
+        rivals={name: channels.difference(s, value) for name, value in one.rivals.items()},
+        chosen=one.chosen,
+        folds=one.folds,
+    )
+
+
+def gains(found: Found, told: Sequence[Gain]) -> tuple[findings.Gain | None, tuple[findings.Gain, ...]]:
+    """The gain in the first thermometer of the oil, else in the first channel, by the first scheme; all others."""
+    kinds = {s.name: s.kind for s in found.problem.data.read}
+    ranked = sorted(told, key=lambda g: kinds[g.sensor] != "oil_temp")
+    made = [gain(found, one) for one in ranked]
+    return (made[0] if made else None), tuple(made[1:])

@@ -12,6 +12,7 @@ from ..infer.search import Found, Hypothesis
 from ..setting import Setting
 from . import channels, quality
 from .evidence import Rows
+from .numbers import array
 
 
 def data_quality(setting: Setting, found: Found, h: Hypothesis) -> quality.DataQuality:
@@ -80,7 +81,7 @@ def rows(found: Found, h: Hypothesis) -> Rows:
             continue
         table = np.full((3, c.n), np.nan)
         table[:, o.row[mine]] = o.measured[mine], null[mine], leader[mine]
-        measured, nominal, extended = (channels.in_unit(s, line) for line in table)
+        measured, nominal, extended = (array(channels.in_unit(s, line)) for line in table)
         sd = channels.difference(s, float(np.median(spread[mine])))
         told[s.name] = Rows.Values(
             measured=measured, nominal=nominal, extended=extended if h.fit.look.acting else (), sd=sd
@@ -99,11 +100,16 @@ def quantities(campaign: Campaign, sensors: Mapping[str, np.ndarray]) -> dict[st
     told = {}
     for s in campaign.given:
         values = channels.in_unit(s, sensors[s.name])
-        told[s.name] = Rows.Quantity(label=s.column, unit=channels.unit(s), values=values)
+        told[s.name] = Rows.Quantity(label=channels.words(s), unit=channels.unit(s), values=array(values))
     oil = next((s for s in campaign.sensors if s.kind == "oil_temp"), None)
     room = next((s for s in campaign.sensors if s.kind == "ambient"), None)
+    if oil:
+        warm = array(channels.in_unit(oil, sensors[oil.name]))
+        told[oil.name] = Rows.Quantity(label=channels.words(oil), unit=channels.unit(oil), values=warm)
     if oil and room:
         rise = sensors[oil.name] - sensors[room.name]
-        told["rise"] = Rows.Quantity(label="oil over room", unit="K", values=rise)
-    told["order"] = Rows.Quantity(label="running order", values=campaign.order[campaign.test])
+        told["rise"] = Rows.Quantity(label="oil over room", unit="K", values=array(rise))
+    told["order"] = Rows.Quantity(label="running order", values=array(campaign.order[campaign.test]))
+    if len(set(campaign.direction)) > 1:
+        told["direction"] = Rows.Quantity(label="direction", values=array(campaign.direction))
     return told

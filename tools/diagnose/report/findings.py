@@ -104,7 +104,7 @@ class Cause(Model):
     exposes: str = Field(default="", description="the experiment that shows it directly")
     like: str = Field(default="", description="class of causes that count as one answer, and why")
     usual: Number | None = Field(default=None, description="prior standard deviation of its size")
-    unit: str = Field("1", description="of its size")
+    unit: str = Field(default="1", description="of its size")
     meaning: str = Field(default="", description="what its size is")
 
 

@@ -1,0 +1,227 @@
+"""What the causes gain on readings that were left out, with everything repeated without them.
+
+In each fold the rig is calibrated without the fold's readings, all causes are looked at again there, the leading ones
+are fitted and weighed again. What is predicted before and after has the same scatter, and both are predicted without
+and with the same discrepancy: a smooth remainder over the conditions whose size the kept readings tell.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+
+from ...model.errors import SolveError
+from ..infer import screen
+from ..infer.evidence import White
+from ..infer.extra import REMAINDERS
+from ..infer.fit import Fit, fitted, prior_precision
+from ..infer.problem import Acting, Aside, Problem
+from ..infer.search import Found, Search
+from ..model.noise import alike
+from .folds import schemes
+from .rivals import RIVALS
+
+#: Causes that are fitted in a fold, and draws of the bootstrap.
+FITTED, DRAWS = 3, 2000
+
+
+@dataclass(frozen=True)
+class Gain:
+    """Errors of one sensor by one scheme [SI], without and with the discrepancy.
+
+    Args:
+        before, after: root mean squares (2,): without, with the discrepancy
+        ratio: 90 % interval of after over before without the discrepancy, tests drawn with replacement
+        noise: standard deviation of one reading against the model
+    """
+
+    scheme: str
+    sensor: str
+    n: int
+    folds: int
+    before: tuple[float, float]
+    after: tuple[float, float]
+    ratio: tuple[float, float]
+    noise: float
+    rivals: dict[str, float]
+    chosen: dict[str, int]
+
+
+@dataclass(frozen=True)
+class _Fold:
+    """Errors (2, k) before and after on the entries `held` (k,), and the causes chosen."""
+
+    held: np.ndarray
+    before: np.ndarray
+    after: np.ndarray
+    chosen: tuple[str, ...]
+
+
+def gains(found: Found, seed: int, progress: Callable[[float], None] = lambda share: None) -> list[Gain]:
+    """All schemes that the data allow, all compared sensors.
+
+    Args:
+        found: the search in all data; only its settings, its starting point and gross readings are used
+        seed: of the bootstrap
+        progress: told the share done
+    """
+    plans = schemes(found.problem.data.campaign)
+    total, done, told = sum(len(folds) for folds in plans.values()), 0, []
+    for scheme, folds in plans.items():
+        errors = []
+        for rows in folds:
+            with suppress(SolveError):
+                errors.append(_fold(found, rows))
+            done += 1
+            progress(done / total)
+        if errors:
+            told += [
+                g for i in range(len(found.problem.data.read)) if (g := _gain(found, scheme, folds, errors, i, seed))
+            ]
+    return told
+
+
+def _fold(found: Found, rows: np.ndarray) -> _Fold:
+    """Calibration, look, choice and prediction without the readings of some rows."""
+    o = found.problem.data
+    known = {a.number for a in found.problem.aside if not a.sensor}
+    held = np.array([i for i in np.flatnonzero(np.isin(o.row, rows)) if i not in known])
+    problem = found.problem.without(found.problem.aside | {Aside(int(i)) for i in held})
+    null = fitted(problem, (), found.null.look.z, found.null.noise.scales)
+    fits, logs = _chosen(found, problem, null)
+    p = np.exp(logs - logsumexp(logs))
+    errors = np.array([_errors(problem, fit, held) for fit in fits])
+    best = fits[int(np.argmax(p))]
+    return _Fold(held, errors[0], np.einsum("h,hdk->dk", p, errors), best.causes)
+
+
+def _chosen(found: Found, problem: Problem, null: Fit) -> tuple[list[Fit], np.ndarray]:
+    """Nothing, the leading causes and the best pair by the kept readings: fits and log joint probabilities."""
+    search = Search(problem, found.formulas)
+    formulas, causes = search.formulas, search.causes
+    first = screen.look(problem, null, formulas)
+    share = np.array([np.log(f.form.weight) + search.share[f.cause.id] for f in formulas])
+    value = first.by_form(len(formulas)) + share
+    fits, logs = [null], [null.evidence + found.critical]
+    leading: dict[str, int] = {}
+    for k in np.argsort(-value):
+        leading.setdefault(causes[formulas[k].cause.id].family, int(k))
+    for k in list(leading.values())[:FITTED]:
+        with suppress(SolveError):
+            fit = fitted(problem, [first.start(k)], null.look.z, null.noise.scales)
+            fits.append(fit)
+            own = [i for i, f in enumerate(formulas) if f.cause.id == formulas[k].cause.id and i != k]
+            others = [min(null.evidence + value[i], fit.evidence + share[i]) for i in own]
+            logs.append(float(logsumexp([fit.evidence + share[k], *others])))
+    if len(fits) > 1 and max(logs[1:]) > logs[0]:
+        with suppress(SolveError):
+            fit, log = _paired(search, problem, fits[int(np.argmax(logs[1:])) + 1], max(logs[1:]))
+            fits.append(fit)
+            logs.append(log)
+    return fits, np.array(logs)
+
+
+def _paired(search: Search, problem: Problem, one: Fit, log: float) -> tuple[Fit, float]:
+    """A fitted cause with the one that promises most beside it, and its log joint probability."""
+    (acting,) = one.look.acting
+    beside = screen.look(problem, one, search.formulas)
+    share = np.array([np.log(f.form.weight) + search.share[f.cause.id] for f in search.formulas])
+    other = np.array([f.cause.family != acting.formula.cause.family for f in search.formulas])
+    k = int(np.argmax(np.where(other, beside.by_form(len(search.formulas)) + share, -np.inf)))
+    start: Sequence[Acting] = [acting, beside.start(k)]
+    fit = fitted(problem, start, one.look.z, one.noise.scales)
+    cause = search.formulas[k].cause.id
+    prior = search.prior([acting.id, cause]) - search.prior([acting.id]) + np.log(search.formulas[k].form.weight)
+    return fit, log + fit.evidence - one.evidence + prior
+
+
+def _errors(problem: Problem, fit: Fit, held: np.ndarray) -> np.ndarray:
+    """Errors (2, k) on held entries: without, with the discrepancy."""
+    look = fit.look
+    kept = np.setdiff1d(np.arange(problem.m), [a.number for a in problem.aside if not a.sensor])
+    prior = 1 / prior_precision(problem, look.acting)
+    S = fit.noise.covariance + look.jacobian * prior @ look.jacobian.T
+    r = problem.measured - look.shown + look.jacobian @ look.x
+    D, without = discrepancy(problem), White.of(S[np.ix_(kept, kept)])
+    own, logs = D[np.ix_(kept, kept)], [without.log_density(without(r[kept]))]
+    for size in REMAINDERS:
+        white = White.of(S[np.ix_(kept, kept)] + size**2 * own)
+        logs.append(white.log_density(white(r[kept])))
+    sizes = np.array([0.0, *REMAINDERS])
+    shares = np.exp(np.array(logs) - logsumexp(logs))
+    mean = float(np.sqrt(shares @ sizes**2))
+    return np.array([_left(S + size**2 * D, r, kept, held) for size in (0.0, mean)])
+
+
+def _left(S: np.ndarray, r: np.ndarray, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
+    """Held residuals less what the kept ones let one expect of them."""
+    white = White.of(S[np.ix_(kept, kept)])
+    return np.asarray(r[held] - S[np.ix_(held, kept)] @ white.back(r[kept]))
+
+
+def discrepancy(problem: Problem) -> np.ndarray:
+    """Covariance (M, M) of a remainder that is smooth in the conditions, of each sensor its own, at size one."""
+    o = problem.data
+    sd = np.array([s.repeat_sd for s in o.read])[o.kind]
+    whole = np.zeros((problem.m, problem.m))
+    whole[problem.own, problem.own] = alike(o) * (o.kind[:, None] == o.kind) * np.outer(sd, sd)
+    return whole
+
+
+def _gain(
+    found: Found, scheme: str, folds: Sequence[np.ndarray], errors: Sequence[_Fold], sensor: int, seed: int
+) -> Gain | None:
+    """One sensor's errors over all folds of a scheme."""
+    o = found.problem.data
+    held = np.concatenate([e.held for e in errors])
+    before, after = (np.concatenate([getattr(e, side) for e in errors], axis=1) for side in ("before", "after"))
+    mine = o.kind[held] == sensor
+    if not mine.any():
+        return None
+    gross = [a.number for a in found.problem.aside if not a.sensor]
+    entries, rivals = np.setdiff1d(np.flatnonzero(o.kind == sensor), gross), {}
+    rows = o.row[entries]
+    for name, rival in RIVALS.items():
+        left = [rival(o, sensor, rows, ~np.isin(rows, fold)) for fold in folds if np.isin(rows, fold).any()]
+        rivals[name] = rms(np.concatenate(left))
+    test = o.campaign.test[o.row[held[mine]]]
+    return Gain(
+        scheme,
+        o.read[sensor].name,
+        int(mine.sum()),
+        len(folds),
+        (rms(before[0, mine]), rms(before[1, mine])),
+        (rms(after[0, mine]), rms(after[1, mine])),
+        _bootstrap(before[0, mine], after[0, mine], test, seed),
+        noise_floor(found, sensor),
+        rivals,
+        dict(Counter(c for e in errors for c in e.chosen).most_common()),
+    )
+
+
+def noise_floor(found: Found, sensor: int) -> float:
+    """Standard deviation of one reading: its own scatter, that of the inputs and of the day, as found."""
+    o, noise = found.problem.data, found.hypotheses[0].fit.noise
+    loose = sum(np.exp(2 * s) * np.diag(t.matrix) for t, s in zip(noise.loose, noise.scales, strict=True))
+    return float(np.sqrt(np.mean(np.asarray(loose)[found.problem.own][o.kind == sensor])))
+
+
+def rms(values: np.ndarray) -> float:
+    """Root mean square."""
+    return float(np.sqrt(np.mean(values**2)))
+
+
+def _bootstrap(before: np.ndarray, after: np.ndarray, test: np.ndarray, seed: int) -> tuple[float, float]:
+    """90 % interval of the ratio of errors, tests drawn with replacement."""
+    group = np.unique(test, return_inverse=True)[1]
+    n = int(group.max()) + 1
+    a, b = (np.bincount(group, weights=e**2, minlength=n) for e in (before, after))
+    draws = np.random.default_rng(seed).integers(0, n, size=(DRAWS, n))
+    ratios = np.sqrt(b[draws].sum(axis=1) / np.maximum(a[draws].sum(axis=1), 1e-300))
+    low, high = np.quantile(ratios, [0.05, 0.95])
+    return float(low), float(high)
