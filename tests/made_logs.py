@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 from gearheat.diagnose.campaign.logs import Log
 from gearheat.diagnose.library.knobs import Knob
-from gearheat.diagnose.model.logs import Filter, windows
+from gearheat.diagnose.model.logs import Filter
+from gearheat.diagnose.model.windows import windows
 
 STEP = 600.0
 DAY = 86400.0

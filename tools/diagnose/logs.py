@@ -13,7 +13,7 @@ from ..model.errors import DataError
 from ..scenarios.scenario import Scenario
 from .campaign.logs import Log, read_log
 from .infer.logs import Fleet, Moved, Progress, Question, Weighed, fleet, question, weigh
-from .model.logs import windows
+from .model.windows import windows
 from .report import findings as f
 from .report.words import with_words
 from .request import Inputs

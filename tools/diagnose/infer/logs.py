@@ -15,7 +15,8 @@ from ..campaign.logs import Log
 from ..library.knobs import Knob, knobs
 from ..library.roles import Roles
 from ..model.equations import Equations
-from ..model.logs import Filter, Passed, Windows, windows
+from ..model.logs import Filter, Passed
+from ..model.windows import Windows, windows
 from .levels import Effect, Levels, Quadratics, Target, estimate, first_levels
 
 #: Passes over the healthy logs, and over those in question; each begins where the last one ended.

@@ -10,7 +10,8 @@ from scipy.optimize import least_squares
 from scipy.signal import lfilter
 
 from ..campaign.logs import Log
-from ..model.logs import Filter, Windows, windows
+from ..model.logs import Filter
+from ..model.windows import Windows, windows
 
 #: Hours ahead at which errors are told, and lags of the regression [samples].
 HOURS = (1.0, 3.0, 6.0, 12.0, 24.0)
