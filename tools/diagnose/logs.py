@@ -15,6 +15,8 @@ from .campaign.logs import Log, read_log
 from .infer.logs import Fleet, Moved, Progress, Question, Weighed, fleet, question, weigh
 from .model.windows import windows
 from .report import findings as f
+from .report.estimate import Estimate
+from .report.quality import DataQuality, GrossReading
 from .report.words import with_words
 from .request import Inputs
 
@@ -151,13 +153,15 @@ def _findings(
             segments=sum(int(log.stretch.max()) + 1 for log in logs),
             seed=seed,
         ),
-        test=f.Test(alpha=alpha, p_any=_p_any(whole, best, alpha), p_adequacy=_adequacy(known, asked), null="analytic"),
+        test=f.Alarm(
+            alpha=alpha, p_any=_p_any(whole, best, alpha), p_adequacy=_adequacy(known, asked), null="analytic"
+        ),
         hypotheses=tuple(
             f.Hypothesis(causes=c, probability=p) for c, p in whole.hypotheses.items() if p > 1e-4 or not c
         ),
         answers=answers,
         causes=causes,
-        data_quality=f.DataQuality(gross=tuple(_gross(logs))),
+        data_quality=DataQuality(gross=tuple(_gross(logs))),
         channels=tuple(
             f.Channel(
                 name=s.name,
@@ -218,10 +222,10 @@ def _cause(whole: Weighed, cause: str) -> f.Cause:
     )
 
 
-def _estimate(m: Moved) -> f.Estimate:
+def _estimate(m: Moved) -> Estimate:
     name, doc = ("ln_factor", "logarithm of the factor") if m.knob.unit == "1" else ("shift", "change")
     interval = (m.size - 1.96 * m.sd, m.size + 1.96 * m.sd)
-    return f.Estimate(name=name, value=m.size, ci95=interval, unit=m.knob.unit, doc=f"{doc}, {m.knob.name}, {m.when}")
+    return Estimate(name=name, value=m.size, ci95=interval, unit=m.knob.unit, doc=f"{doc}, {m.knob.name}, {m.when}")
 
 
 def _answers(whole: Weighed) -> tuple[f.Answer, ...]:
@@ -255,13 +259,13 @@ def _adequacy(known: Fleet, asked: Question) -> float:
     return float(np.clip(chi2.sf(max(z, 0.0) ** 2, 1), 1e-6, 0.98))
 
 
-def _gross(logs: Sequence[Log]) -> list[f.GrossReading]:
+def _gross(logs: Sequence[Log]) -> list[GrossReading]:
     found = []
     for log in logs:
         for g in log.gross:
             row = int(np.searchsorted(log.lines, g.line)) + 1
             found.append(
-                f.GrossReading(
+                GrossReading(
                     row=row,
                     line=g.line,
                     channel=g.column,

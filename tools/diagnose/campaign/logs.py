@@ -90,8 +90,9 @@ class Log:
         """Some of the rows (n,) bool, under a name of their own; a hole ends a stretch."""
         kept = np.flatnonzero(keep)
         breaks = np.append(True, (np.diff(kept) > 1) | (np.diff(self.stretch[kept]) != 0))
-        values = {name: column[kept] for name, column in self.values.items()}
-        return replace(self, values=values, time=self.time[kept], stretch=np.cumsum(breaks) - 1, lines=self.lines[kept])
+        values = {sensor: column[kept] for sensor, column in self.values.items()}
+        stretch, named = np.cumsum(breaks) - 1, name or self.name
+        return replace(self, name=named, values=values, time=self.time[kept], stretch=stretch, lines=self.lines[kept])
 
 
 def read_log(path: Path, scenario: Scenario, card: Card) -> Log:

@@ -20,7 +20,7 @@ from ..model.windows import Windows, windows
 from .levels import Effect, Levels, Quadratics, Target, estimate, first_levels
 
 #: Passes over the healthy logs, and over those in question; each begins where the last one ended.
-PASSES, TARGET_PASSES = 4, 2
+PASSES, TARGET_PASSES = 4, 4
 #: State noise [K] of one sample of bodies that no sensor reads, and of states that are no body's.
 QUIET, SWITCH = 0.05, 0.8
 #: Dates from which on something may have moved: at most so many, and windows on either side at least.
@@ -189,7 +189,8 @@ def fleet(
         at = z[machine]
         stage = f"healthy logs, pass {n + 1} of {PASSES}"
         passed = own.run(past, at, progress=_within(progress, stage, n / PASSES, 1 / PASSES))
-        own.scatter, thin = _scatter(own, passed), independent(passed)
+        own.scatter = _scatter(own, passed)
+        thin = independent(passed) if n + 1 == PASSES else 1.0  # samples count in full on the way there
         levels = estimate(_quadratics(passed, at, thin), season, machine_of, begun)
         z = z + np.clip(levels.mean - z, -sd, sd)
     return Fleet(own, found, past, season, machine_of, levels, thin)
@@ -251,8 +252,9 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     for n in range(TARGET_PASSES):
         stage = f"logs in question, pass {n + 1} of {TARGET_PASSES}"
         passed = own.run(data, at, progress=_within(progress, stage, n / TARGET_PASSES, 1 / TARGET_PASSES))
-        quadratics = _quadratics(passed, at, found.independent or independent(passed))
-        if n + 1 < TARGET_PASSES:
+        last = n + 1 == TARGET_PASSES
+        quadratics = _quadratics(passed, at, (found.independent or independent(passed)) if last else 1.0)
+        if not last:
             by_season = quadratics.spread(found.levels.window).summed(season, len(seasons_there))
             wide = np.linalg.inv(found.levels.covariance[0] + np.diag(found.levels.season + sd**2))
             C = np.linalg.inv(by_season.H + wide)

@@ -99,7 +99,8 @@ def _cooling(roles: Roles) -> Iterator[Knob]:
         paths = {f"{name}.T_open": 1.0, f"{name}.T_close": 1.0}
         doc = "The thermostat opens at another temperature."
         yield Knob(f"{name}: set point", "cooling.thermostat", doc, "K", 3.0, 1.0, shifted=paths)
-    for name in roles.having("jet"):
+    jets = roles.having("jet")
+    for name in jets:
         yield _factor(f"{name}: oil flow", "cooling.oil_wall", "Less or more oil reaches a body.", *roles.scaled(name))
     families = {
         "cooling.air": (roles.surfaces, "The air takes more or less heat."),
@@ -108,7 +109,7 @@ def _cooling(roles: Roles) -> Iterator[Knob]:
         "cooling.contact": (roles.contacts, "Another conductance between bodies."),
     }
     for cause, (names, doc) in families.items():
-        for name in names:
+        for name in (n for n in names if n not in jets):
             yield _factor(f"{name}: conductance", cause, doc, *roles.scaled(name), usual=0.4)
 
 
