@@ -66,9 +66,32 @@ def diagnose_logs(
     known = fleet(scenario, reference, siblings, logs[0], lambda stage, share: progress(stage, 0.02 + 0.6 * share))
     asked = question(known, logs, lambda stage, share: progress(stage, 0.62 + 0.25 * share))
     progress("hypotheses", 0.87)
+    return composed(scenario, known, asked, logs, reference, siblings, alpha=alpha, seed=seed)
+
+
+def composed(
+    scenario: Scenario,
+    known: Fleet,
+    asked: Question,
+    logs: Sequence[Log],
+    reference: Sequence[Log] = (),
+    siblings: Sequence[Log] = (),
+    *,
+    alpha: float = 0.05,
+    seed: int = 0,
+) -> LogDiagnosis:
+    """The answer, from what healthy logs and those in question say.
+
+    Args:
+        scenario: the rig
+        known: what the healthy logs say
+        asked: what the logs in question say
+        logs, reference, siblings: as they were read
+        alpha: accepted rate of false alarms
+        seed: kept for the record
+    """
     whole = weigh(known, asked)
     years = {label: weigh(known, asked, asked.year == i, dates=False) for i, label in enumerate(asked.labels)}
-    progress("gain", 0.9)
     found = _findings(scenario, logs, reference, siblings, known, asked, whole, years, alpha, seed)
     return LogDiagnosis(known, asked, whole, years, with_words(found))
 
@@ -154,7 +177,7 @@ def _findings(
             seed=seed,
         ),
         test=f.Alarm(
-            alpha=alpha, p_any=_p_any(whole, best, alpha), p_adequacy=_adequacy(known, asked), null="analytic"
+            alpha=alpha, p_any=_p_any(whole, best, alpha), p_adequacy=_adequacy(asked), null="analytic"
         ),
         hypotheses=tuple(
             f.Hypothesis(causes=c, probability=p) for c, p in whole.hypotheses.items() if p > 1e-4 or not c
@@ -250,7 +273,7 @@ def _p_any(whole: Weighed, best: Moved, alpha: float) -> float:
     return max(p, alpha) if whole.nothing > 0.5 else min(p, 0.99 * alpha)
 
 
-def _adequacy(known: Fleet, asked: Question) -> float:
+def _adequacy(asked: Question) -> float:
     """p of the prediction errors' size over the logs in question against that of the healthy ones, by windows."""
     left = np.nanmean(asked.passed.error**2 / asked.passed.variance, axis=(1, 2))
     n = max(len(left), 1)
