@@ -12,8 +12,8 @@ from gearheat.diagnose.report.findings import Findings, as_object
 from gearheat.scenarios.load import load
 from made_logs import MACHINES, YEARS, differing, made
 
-#: Samples of one log: a week.
-N = 1008
+#: Samples of one log: two weeks.
+N = 2016
 
 
 def sensors() -> tuple[Sensor, ...]:
