@@ -158,13 +158,13 @@ def _findings(
 ) -> f.Findings:
     causes = tuple(_cause(whole, c) for c in whole.causes)
     answers = _answers(whole)
-    verdict = "consistent" if whole.nothing > 0.5 else "explained" if len(answers) == 1 else "ambiguous"
+    verdict: f.Verdict = "consistent" if whole.nothing > 0.5 else "explained" if len(answers) == 1 else "ambiguous"
     best = max(whole.moved, key=lambda m: m.evidence)
     warnings = [
         text for w in (_lacking(reference, siblings), *(_year_text(y, w) for y, w in years.items())) if (text := w)
     ]
     return f.Findings(
-        verdict=verdict if verdict == "consistent" or answers else "ambiguous",
+        verdict=verdict,
         about=f.About(
             data=", ".join(log.name for log in logs),
             rig=scenario.name,
@@ -176,9 +176,7 @@ def _findings(
             segments=sum(int(log.stretch.max()) + 1 for log in logs),
             seed=seed,
         ),
-        test=f.Alarm(
-            alpha=alpha, p_any=_p_any(whole, best, alpha), p_adequacy=_adequacy(asked), null="analytic"
-        ),
+        test=f.Alarm(alpha=alpha, p_any=_p_any(whole, best, alpha), p_adequacy=_adequacy(asked), null="analytic"),
         hypotheses=tuple(
             f.Hypothesis(causes=c, probability=p) for c, p in whole.hypotheses.items() if p > 1e-4 or not c
         ),

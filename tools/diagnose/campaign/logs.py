@@ -19,8 +19,7 @@ from ...scenarios.columns import in_si, spelled, split_unit
 from ...scenarios.csv_table import raise_all
 from ...scenarios.scenario import Scenario
 from .card import Card
-from .read import SI
-from .sensors import sensors_of
+from .sensors import SI, sensors_of
 from .table import Sensor
 
 #: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
@@ -142,7 +141,7 @@ def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]
         raise DataError([f"{path.name} line {ragged[0]}: has not {len(header)} cells as the header has. Mend the row."])
     if not rows:
         raise DataError([f"{path.name}: holds no samples."])
-    columns = dict(zip(header, zip(*(row for _, row in rows), strict=True), strict=True))
+    columns: dict[str, Sequence[Any]] = dict(zip(header, zip(*(row for _, row in rows), strict=True), strict=True))
     return header, columns, np.array([line for line, _ in rows])
 
 

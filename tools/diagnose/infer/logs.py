@@ -273,7 +273,8 @@ def profiles(time: np.ndarray, dated: bool) -> list[tuple[str, np.ndarray, float
     n = len(time)
     found = [("throughout", np.ones(n), 0.5)]
     order = np.sort(time)
-    cuts = np.unique(np.linspace(SIDE, n - SIDE, DATES + 2).astype(int)[1:-1]) if n > 3 * SIDE else []
+    inner = np.linspace(SIDE, n - SIDE, DATES + 2).astype(int)[1:-1] if n > 3 * SIDE else np.zeros(0, dtype=int)
+    cuts = np.unique(inner).tolist()
     for cut in cuts:
         date = (order[cut - 1] + order[cut]) / 2
         word = datetime.fromtimestamp(date, UTC).strftime("%Y-%m-%d") if dated else f"{date / 86400:.1f} d"

@@ -70,7 +70,7 @@ class Rivals:
                 (y[:n, j] - self.one_node(x, u[:n], y[0, j]))[::3]
                 for u, y, n in zip(data.given, data.read, _lengths(data), strict=True)
             ]
-            return np.nan_to_num(np.concatenate(errors))
+            return np.asarray(np.nan_to_num(np.concatenate(errors)))
 
         start = np.array([3.5, *np.zeros(data.given.shape[2]), 0.0])
         start[-1] = 0.03 * np.nanmean(data.read[:, :, j])

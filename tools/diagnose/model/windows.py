@@ -39,8 +39,8 @@ class Windows:
 
     def some(self, keep: np.ndarray) -> Windows:
         """Some of the windows (N,) bool or numbers."""
-        arrays = (self.given, self.read, self.there, self.counts, self.machine, self.time, self.rows)
-        return Windows(*(a[keep] for a in arrays), self.step)
+        given, read, there, counts = (a[keep] for a in (self.given, self.read, self.there, self.counts))
+        return Windows(given, read, there, counts, self.machine[keep], self.time[keep], self.rows[keep], self.step)
 
 
 def windows(
@@ -95,4 +95,4 @@ def _held(column: np.ndarray) -> np.ndarray:
     known = np.flatnonzero(np.isfinite(column))
     if not len(known):
         return np.zeros(len(column))
-    return np.interp(np.arange(len(column)), known, column[known])
+    return np.asarray(np.interp(np.arange(len(column)), known, column[known]))
