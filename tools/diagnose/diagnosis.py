@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from ..model.errors import DataError
 from .answer.decide import Decision, decided
 from .answer.gain import Gain, gains
 from .infer.search import Found, searched
+from .logs import diagnosed_logs
 from .report import compose, compose_data, compose_design, compose_pictures, compose_points, compose_rig
 from .report.channels import channel
 from .report.findings import Findings, Invisible
@@ -30,7 +30,7 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
     """
     request, data = inputs.request, inputs.data
     if data is None:
-        raise DataError("there is no table of readings. Name one.")
+        return diagnosed_logs(inputs, progress)
     progress("compiling the rig", 0.01)
     others = [inputs.points] if inputs.points is not None else []
     made = setting(inputs.scenario, inputs.card, data, inputs.reference, request.libraries, others)

@@ -16,7 +16,7 @@ from scipy.stats import chi2
 from ..campaign.table import Sensor
 from ..infer.evidence import White, log_bayes_factors
 from ..infer.fit import bounds
-from ..infer.search import Found, Search
+from ..infer.search import Found
 
 #: Causes that a channel names at least this probable.
 NAMED = 0.02
@@ -49,7 +49,7 @@ def views(found: Found) -> tuple[View, ...]:
     whole, e = found.null.linear(problem)
     V, r = whole.L @ whole.L.T, whole.L @ e
     kinds = [i for i in range(len(o.read)) if (o.kind == i).any()]
-    share = Search(problem, found.formulas).share
+    share = found.prior.share
     counts = np.bincount(first.owner, minlength=len(found.formulas))
     weights = np.array(
         [

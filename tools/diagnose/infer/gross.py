@@ -9,8 +9,8 @@ import numpy as np
 from .fit import Fit
 from .problem import Aside, Problem
 
-#: Standard deviations from what the others say beyond which a reading is gross, and so many times those which nine of ten
-#: readings keep within.
+#: Standard deviations from what the others say beyond which a reading is gross, and so many times those which nine of
+#: ten readings keep within.
 GROSS, OUT = 6.0, 2.5
 #: Half of a normal scatter lies within so many standard deviations; no scatter is taken for less than that share.
 HALF, LEAST = 0.6745, 0.2
@@ -48,7 +48,7 @@ def suspects(problem: Problem, fit: Fit) -> list[Suspect]:
 
 
 def _robust(stands: np.ndarray, kinds: np.ndarray) -> np.ndarray:
-    """Distances in units of those which half of their kind keep within: gross readings raise the scatter they hide in."""
+    """Distances in units of those which half of a kind keep within: gross readings raise the scatter they hide in."""
     found = stands.copy()
     for kind in np.unique(kinds):
         own = kinds == kind

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
@@ -11,7 +11,6 @@ from scipy.special import logsumexp
 from scipy.stats import chi2
 
 from ...model.errors import SolveError
-from ..library.cause import Cause
 from ..model.formula import Formula
 from . import screen
 from .draws import correction
@@ -19,10 +18,11 @@ from .extra import Extra, extras
 from .fit import Fit, fitted
 from .gross import MOST as MOST_ASIDE
 from .gross import after_all, outliers
+from .prior import Prior
 from .problem import Acting, Aside, Problem
 
-#: Prior odds of two causes against one, of each further one, and of a remainder beside a hypothesis.
-TWO, MORE, OUTSIDE = 0.22, 0.25, 0.06
+#: Prior odds of a remainder beside a hypothesis.
+OUTSIDE = 0.06
 #: Forms fitted: within so many nats of the best, at most so many, of one cause at most, and causes at least.
 WITHIN, FORMS, EACH, LEAST = 9.0, 14, 3, 4
 #: Singles from which pairs are grown, pairs fitted, and how far behind the best hypothesis one may promise to be.
@@ -68,6 +68,7 @@ class Found:
         probabilities: of them
         p_any: p of the log Bayes factor of any cause
         critical: its critical value
+        prior: of hypotheses
         drawn: that log Bayes factor in campaigns without a cause, as drawn
         p_omnibus: chi-square p of the null
     """
@@ -82,6 +83,7 @@ class Found:
     critical: float
     drawn: np.ndarray
     p_omnibus: float
+    prior: Prior
 
 
 def searched(
@@ -153,9 +155,7 @@ class Search:
         self.problem, self.alpha, self.seed, self.most, self.progress = problem, alpha, seed, most, progress
         self.formulas = tuple(f for f in formulas if not f.form.spread)
         self.spreads = tuple(f for f in formulas if f.form.spread)
-        self.causes: dict[str, Cause] = {f.cause.id: f.cause for f in formulas}
-        #: Log share of the prior of one cause that each cause has: classes share theirs.
-        self.share = shares(self.causes.values())
+        self.prior = Prior(f.cause for f in formulas)
         self.null = null
         progress("effects of all causes", 0.1)
         self.first = screen.look(problem, null, self.formulas)
@@ -173,7 +173,7 @@ class Search:
         self.progress("scatter and remainder", 0.8)
         hypotheses = sorted([*base, *self._beside(base)], key=lambda h: -h.log_joint)
         logs = np.array([h.log_joint for h in hypotheses])
-        white, e = self.null.linear(problem)
+        _, e = self.null.linear(problem)
         free = problem.m - len(problem.aside)
         return Found(
             problem,
@@ -186,6 +186,7 @@ class Search:
             self.critical,
             self.drawn,
             float(chi2.sf(e @ e, free)),
+            self.prior,
         )
 
     def leader(self) -> Fit:
@@ -204,20 +205,13 @@ class Search:
                 self._fits[k] = None
         return self._fits[k]
 
-    def prior(self, causes: Iterable[str]) -> float:
-        """Log prior odds of a hypothesis against those of one cause, all together 1."""
-        names = list(causes)
-        n = len(names)
-        pairs = sum(np.log(TWO if k == 1 else MORE) for k in range(1, n))
-        return float(sum(self.share[c] for c in names) + pairs + np.log(float(np.prod(np.arange(1, n + 1)))))
-
     def _alarm(self) -> None:
         """p of any cause by draws of the null, and the prior of none that agrees with it."""
         first = self.first
         counts = np.bincount(first.owner, minlength=len(self.formulas))
         weights = np.array(
             [
-                self.share[c.id] + np.log(c.formula.form.weight) - np.log(counts[k])
+                self.prior.share[c.id] + np.log(c.formula.form.weight) - np.log(counts[k])
                 for c, k in zip(first.candidates, first.owner, strict=True)
             ]
         )
@@ -229,7 +223,7 @@ class Search:
 
     def _forms(self, log_bf: np.ndarray, most: int) -> list[int]:
         """Formulas worth a fit, so many at most, best first."""
-        value = log_bf + np.array([np.log(f.form.weight) + self.share[f.cause.id] for f in self.formulas])
+        value = log_bf + np.array([np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas])
         chosen: list[int] = []
         taken: dict[str, int] = {}
         for k in np.argsort(-value):
@@ -296,7 +290,7 @@ class Search:
         except SolveError:
             return []
         log_bf = beside.by_form(len(self.formulas))
-        own = {self.causes[c].family for c in h.causes}
+        own = {self.prior.causes[c].family for c in h.causes}
         best: dict[str, int] = {}
         for k, f in enumerate(self.formulas):
             if f.cause.family not in own and log_bf[k] + np.log(f.form.weight) > _value(best, f, log_bf, self.formulas):
@@ -311,13 +305,14 @@ class Search:
     def _corrected(self, base: Sequence[Hypothesis]) -> list[Hypothesis]:
         """The leading hypotheses with what importance sampling makes of their evidence."""
         best = max(h.log_joint for h in base)
-        found = []
-        for h in base:
-            if h.log_joint > best - NEAR:
-                by = correction(self.problem, h.fit, self.seed)
-                h = replace(h, log_joint=h.log_joint + by.log, error=by.error)
-            found.append(h)
-        return found
+
+        def corrected(h: Hypothesis) -> Hypothesis:
+            if h.log_joint < best - NEAR:
+                return h
+            by = correction(self.problem, h.fit, self.seed)
+            return replace(h, log_joint=h.log_joint + by.log, error=by.error)
+
+        return [corrected(h) for h in base]
 
     def _beside(self, base: Sequence[Hypothesis]) -> list[Hypothesis]:
         """The leading hypotheses with a spread of sizes or a remainder beside them."""
@@ -341,20 +336,6 @@ class Search:
         if not causes:
             return self.prior([more]) - self.log_none
         return self.prior([*causes, more]) - self.prior(causes)
-
-
-def shares(causes: Iterable[Cause]) -> dict[str, float]:
-    """Log share of the prior of one cause that each cause has: those of a class share that of its most usual one."""
-    families: dict[str, list[Cause]] = {}
-    for cause in causes:
-        families.setdefault(cause.family, []).append(cause)
-    weight = {name: max(c.common for c in own) for name, own in families.items()}
-    whole = sum(weight.values())
-    return {
-        c.id: float(np.log(weight[name] / whole * c.common / sum(o.common for o in own)))
-        for name, own in families.items()
-        for c in own
-    }
 
 
 def _value(best: Mapping[str, int], f: Formula, log_bf: np.ndarray, formulas: Sequence[Formula]) -> float:
