@@ -33,7 +33,7 @@ def suspects(problem: Problem, fit: Fit) -> list[Suspect]:
     inverse = white.back(np.eye(problem.m))
     a = inverse @ (white.L @ e)
     found = [
-        Suspect(Aside(i), float(value)) for i, value in enumerate(a / np.sqrt(np.diag(inverse))) if np.isfinite(value)
+        Suspect(Aside(i), float(value)) for i, value in enumerate(a / np.sqrt(np.diag(inverse))) if np.isfinite(value) and problem.ends[i]
     ]
     for sensor, columns in problem.inputs(fit.look):
         length = np.einsum("mk,mk->k", columns, inverse @ columns)

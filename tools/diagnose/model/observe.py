@@ -10,6 +10,7 @@ import numpy as np
 from ..campaign.table import Campaign
 from ..library.cause import Nuisance
 from .duty import duty
+from .entries import Entries
 from .formula import Formula
 from .march import Marched, Phases, march
 from .plant import Plant
@@ -63,10 +64,9 @@ class Observed:
         self.given, self.read = campaign.given, campaign.read
         self.shown = [plant.shown.index(s.reads) for s in self.read if s.reads in plant.shown]
         self.inputs = [plant.u_place[s.reads] for s in self.given]
-        held = [(i, r) for i, s in enumerate(self.read) for r in np.flatnonzero(np.isfinite(campaign.values[s.name]))]
-        #: Sensor (its number among those read) and row of each of the m entries.
-        self.kind, self.row = (np.array(column, dtype=int) for column in zip(*held, strict=True))
-        self.measured = np.array([campaign.values[self.read[i].name][r] for i, r in held])
+        self.entries = Entries.of(campaign)
+        #: Channel and row of each of the m entries, and what was measured.
+        self.kind, self.row, self.measured = self.entries.kind, self.entries.row, self.entries.measured
         self.p = np.tile(plant.p, (campaign.n, 1))
         for k, oil in enumerate(campaign.oil):
             for path, value in oils.get(oil, {}).items():
@@ -81,6 +81,12 @@ class Observed:
         self.starts = 1.0 * by_room[:, None] * room
         self.features = self._features()
         self._phases = duty(campaign, self.rows, self.starts)
+        at = self.entries
+        #: Of each place that is read: its test, and its number among the reads of a run.
+        self.test = campaign.test[at.place_row]
+        self.reads = self.half[at.place_row] * len(self._phases.read[0]) + at.step
+        #: Which reads of a run lie along logged courses.
+        self.along = np.arange(sum(map(len, self._phases.read))) % len(self._phases.read[0]) < at.step.max()
 
     @property
     def m(self) -> int:
@@ -126,7 +132,7 @@ class Observed:
 
     def outputs(self) -> np.ndarray:
         """All that the plant shows in each row as its file has it (n, shown), NaN where it cannot be run."""
-        return _Look(self, np.zeros(len(self.nuisances)), ()).outputs()
+        return _Look(self, np.zeros(len(self.nuisances)), ()).outputs()[: self.campaign.n]
 
     def tangents(
         self,
@@ -240,6 +246,21 @@ class _Look:
         return len(self.settings)
 
     def _run(self, turned: bool) -> Marched:
+        """Logged courses show their own clock: they run at their full pace."""
+        found = self._paced(self.pace, turned)
+        if not (along := self.o.along).any():
+            return found
+        if (self.pace != 1).any():
+            logged = self._paced(np.ones(self.n), turned)
+            found.y[:, along] = logged.y[:, along]
+            if found.slopes is not None and logged.slopes is not None:
+                found.slopes.by[:, :, :, :, along] = logged.slopes.by[:, :, :, :, along]
+                found.slopes.local[:, :, :, along] = logged.slopes.local[:, :, :, along]
+        if found.slopes is not None:
+            found.slopes.by[:, :, :, -1, along] = 0.0
+        return found
+
+    def _paced(self, pace: np.ndarray, turned: bool) -> Marched:
         o, plant = self.o, self.o.plant
         p = np.tile(o.p, (1 + len(self.settings), 1, 1))
         for path, value in self.values.items():
@@ -251,22 +272,38 @@ class _Look:
         phases, start = o.driven(truth)
         x0 = np.tile(plant.flat.starts("state"), (o.campaign.n_tests, 1))
         x0[:, [q.unit == "K" for q in plant.flat.states]] = start[:, None]
-        return march(plant, phases, x0, p[:, o.rows], self.pace[o.rows], turned=turned)
+        return march(plant, phases, x0, p[:, o.rows], pace[o.rows], turned=turned)
 
     def outputs(self) -> np.ndarray:
-        """All that the plant shows (n, shown)."""
-        return self._run(turned=False).y[self.o.campaign.test, self.o.half]
+        """All that the plant shows at each place (p, shown)."""
+        return self._run(turned=False).y[self.o.test, self.o.reads]
+
+    def instruments(
+        self, formula: Formula, t: np.ndarray, true: Mapping[str, np.ndarray]
+    ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+        """What a cause's instruments show at each place, where its row's conditions hold."""
+        row = self.o.entries.place_row
+        sensors = {name: values[row] for name, values in self.o.sensors.items()}
+        return formula.instruments(t, sensors, true, self.o.features[:, row])
+
+    def _of_entries(self, at_places: np.ndarray, dwells: np.ndarray) -> np.ndarray:
+        """Values of the m entries from those of compared sensors at places (sensors, p, ...), and of rows' dwells."""
+        e = self.o.entries
+        found = at_places[e.sensor, e.at]
+        if (logged := e.sensor < 0).any():
+            found[logged] = dwells[e.row[logged]]
+        return found
 
     def shown(self) -> np.ndarray:
         """Readings (m,) only."""
         y = self.outputs()
-        true = {s.name: y[:, k] * self.o.signs[s.name] for s, k in zip(self.o.read, self.o.shown, strict=True)}
+        row = self.o.entries.place_row
+        true = {s.name: y[:, k] * self.o.signs[s.name][row] for s, k in zip(self.o.read, self.o.shown, strict=True)}
         for formula, t in self.parts:
             if formula.read:
-                value, _, _ = formula.instruments(t, self.o.sensors, true, self.o.features)
+                value, _, _ = self.instruments(formula, t, true)
                 true |= dict(zip(formula.read, value, strict=True))
-        whole = np.array([true[s.name] for s in self.o.read])
-        return np.asarray(whole[self.o.kind, self.o.row])
+        return self._of_entries(np.array([true[s.name] for s in self.o.read]), self.pace - 1)
 
     def tangents(self) -> np.ndarray:
         """Effects of the candidates' sizes (m, k)."""
@@ -274,11 +311,11 @@ class _Look:
         effects, whole = self.seen().by[:, begin:], self.true
         for k, (formula, t) in enumerate(self.candidates):
             if formula.read:
-                _, by_t, _ = formula.instruments(_none(t), o.sensors, whole, o.features)
+                _, by_t, _ = self.instruments(formula, _none(t), whole)
                 for i, name in enumerate(formula.read):
                     sensor = next(j for j, s in enumerate(o.read) if s.name == name)
-                    mine = o.kind == sensor
-                    effects[mine, k] += by_t[i, o.row[mine], 0]
+                    mine = o.entries.sensor == sensor
+                    effects[mine, k] += by_t[i, o.entries.at[mine], 0]
         return effects
 
     def seen(self) -> Seen:
@@ -287,9 +324,9 @@ class _Look:
         y, by, local = self._turned()
         true, slopes, locals_ = {}, {}, {}
         for s, k in zip(o.read, o.shown, strict=True):
-            sign = o.signs[s.name]
+            sign = o.signs[s.name][o.entries.place_row]
             true[s.name] = y[:, k] * sign
-            locals_[s.name] = local[:, :, :, k] * sign[:, None, None]  # n, given, H
+            locals_[s.name] = local[:, :, :, k] * sign[:, None, None]  # p, given, H
             slopes[s.name] = by[:, k] * sign[:, None]
         begin = len(self.z)
         for formula, t in self.parts:
@@ -297,10 +334,10 @@ class _Look:
             begin += formula.size
             if not formula.read:
                 continue
-            value, by_t, by_reads = formula.instruments(t, o.sensors, true, o.features)
+            value, by_t, by_reads = self.instruments(formula, t, true)
             changed = {}
             for i, name in enumerate(formula.read):
-                slope = np.zeros((self.n, self.d))
+                slope = np.zeros((len(y), self.d))
                 slope[:, own] = by_t[i]
                 far = np.zeros_like(locals_[name])
                 for other, weight in by_reads.items():
@@ -310,27 +347,31 @@ class _Look:
             for name, (v, slope, far) in changed.items():
                 true[name], slopes[name], locals_[name] = v, slope, far
         self.true = true
-        pick = [np.array([item[s.name] for s in o.read])[o.kind, o.row] for item in (true, slopes, locals_)]
-        return Seen(*pick)
+        dwells = np.zeros((self.n, self.d))
+        for i, slope in self.pace_slopes.items():
+            dwells[:, i] = slope
+        rest = (self.pace - 1, dwells, np.zeros((self.n, *local.shape[1:3])))
+        whole = [np.array([item[s.name] for s in o.read]) for item in (true, slopes, locals_)]
+        return Seen(*(self._of_entries(item, own) for item, own in zip(whole, rest, strict=True)))
 
     def _turned(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What the plant shows (n, shown), by all directions (n, shown, d), by given readings (n, given, H, shown)."""
+        """What the plant shows (p, shown), by all directions (p, shown, d), by given readings (p, given, H, shown)."""
         o, found = self.o, self._run(turned=True)
         assert found.slopes is not None
-        test = o.campaign.test
-        local = found.slopes.local[test, :, :, o.half]
+        test = o.test
+        local = found.slopes.local[test, :, :, o.reads]
         signs = np.array([o.signs[s.name] for s in o.given])
-        by_truth = local.swapaxes(1, 2) * signs[:, o.rows[test]].transpose(1, 2, 0)[..., None]  # n, H, given, shown
-        by_knobs = found.slopes.by[test, :, :, :, o.half].swapaxes(1, 2)  # n, H, settings, knobs + 1, shown
-        own = by_knobs.reshape(self.n, o.height, -1, found.y.shape[2])
+        by_truth = local.swapaxes(1, 2) * signs[:, o.rows[test]].transpose(1, 2, 0)[..., None]  # p, H, given, shown
+        by_knobs = found.slopes.by[test, :, :, :, o.reads].swapaxes(1, 2)  # p, H, settings, knobs + 1, shown
+        own = by_knobs.reshape(len(test), o.height, -1, found.y.shape[2])
         all_by, entries = np.concatenate([own, by_truth], axis=2), sorted(self._entries(), key=lambda e: e[0])
-        by = np.zeros((self.n, found.y.shape[2], self.d))
+        by = np.zeros((len(test), found.y.shape[2], self.d))
         if entries:
             places, first = np.unique([i for i, _, _ in entries], return_index=True)
-            ways = np.array([v for _, _, v in entries])[:, o.rows[test]]  # entries, n, H
+            ways = np.array([v for _, _, v in entries])[:, o.rows[test]]  # entries, p, H
             effects = np.einsum("nhes,enh->nse", all_by[:, :, [k for _, k, _ in entries]], ways, optimize=False)
             by[:, :, places] = np.add.reduceat(effects, first, axis=2)
-        return found.y[test, o.half], by, local
+        return found.y[test, o.reads], by, local
 
     def _entries(self) -> list[tuple[int, int, np.ndarray]]:
         """All slopes: direction, column (knobs and pace of each setting, then the given sensors), of each row."""
