@@ -16,7 +16,6 @@ from .context import DIRECTIONS, floats
 from .logs import TIMES
 from .read import placed
 from .sensors import SI, sensors_of
-from .table import Sensor
 
 #: Columns beside sensors and time: which test, which of its rows (0 in a stop), and which direction (0 in a stop).
 CONTEXT = (
@@ -62,7 +61,9 @@ def read_samples(path: Path, scenario: Scenario, card: Card) -> Samples:
     header, _ = read_cells(path)
     declared = sensors_of(scenario, card)
     sensors = [s for sensor in declared if (s := placed(sensor, header, card)) is not None]
-    named = {c.name: Column(card.columns.get(c.name, c.name), c.doc, c.kind, c.required, options=c.options) for c in CONTEXT}
+    named = {
+        c.name: Column(card.columns.get(c.name, c.name), c.doc, c.kind, c.required, options=c.options) for c in CONTEXT
+    }
     time = next((h for h in header if split_unit(h)[0] in TIMES), "time_s")
     columns = [*named.values(), Column(time, "time since the start of the test", at_least=0.0)]
     columns += [Column(s.column, s.reads, required=False) for s in sensors]
@@ -77,9 +78,7 @@ def read_samples(path: Path, scenario: Scenario, card: Card) -> Samples:
     raise_all(problems, path.name)
     context = {key: table.columns.get(c.name) for key, c in named.items()}
     point, direction = (None if (cells := context[key]) is None else floats(cells) for key in ("point", "direction"))
-    return Samples(
-        path.name, np.array(context["test"], dtype=str), seconds, point, direction, values, table.warnings
-    )
+    return Samples(path.name, np.array(context["test"], dtype=str), seconds, point, direction, values, table.warnings)
 
 
 def _si(table: Table, column: str, unit: str, si: str, problems: list[str]) -> np.ndarray:

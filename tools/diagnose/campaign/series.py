@@ -15,9 +15,11 @@ from .samples import Samples
 from .table import PLACES, Campaign, Course, Series
 
 #: Shares of the logged time where the pieces of a curve meet, which are cubic.
-KNOTS = (0.12, 0.3, 0.55)
+KNOTS = (0.04, 0.12, 0.3, 0.55)
 #: Least samples of a dwell, and those from which there is a curve; below, places lie on the lines between samples.
 LEAST, MANY = 7, 14
+#: A piece of a curve has so many samples at least.
+PIECE = 2
 #: More samples of a dwell than that are averaged in groups first.
 MOST = 96
 #: Behind a dwell that was longer or shorter than stated by more than this share, courses are not compared.
@@ -61,15 +63,16 @@ def _problems(samples: Samples, campaign: Campaign) -> Iterator[str]:
             f"{samples.name}: {campaign.name} does not say how long its points were held."
             " Add the column dwell_min, or dwell_min to the card's [protocol]."
         )
+    told = samples.point is not None
     for k, name in enumerate(campaign.names):
         own = campaign.direction[campaign.test == k]
-        if samples.point is None and name in samples.test and len(own) > 1:
-            if samples.direction is None or len(np.unique(own)) < len(own):
-                yield (
-                    f"{samples.name}: it is not clear to which reading of test {name} its samples belong."
-                    " Add the column point with the number of that reading, 0 in stops."
-                )
-                return
+        clear = told or len(own) == 1 or (samples.direction is not None and len(set(own)) == len(own))
+        if name in samples.test and not clear:
+            yield (
+                f"{samples.name}: it is not clear to which reading of test {name} its samples belong."
+                " Add the column point with the number of that reading, 0 in stops."
+            )
+            return
 
 
 def _rows(samples: Samples, campaign: Campaign, test: int) -> Iterator[tuple[int, np.ndarray]]:
@@ -127,7 +130,10 @@ def _weights(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     if len(share) < MANY:
         lines = [np.interp(kept, share, unit) for unit in np.eye(len(share))]
         return there, np.stack(lines, axis=1)
-    inner = share[0] + (share[-1] - share[0]) * np.array(KNOTS)
+    inner: list[float] = []
+    for knot in share[0] + (share[-1] - share[0]) * np.array(KNOTS):
+        if np.sum((share < knot) & (share >= (inner or [0.0])[-1])) >= PIECE:
+            inner.append(float(knot))
     knots = np.concatenate([np.full(4, share[0]), inner, np.full(4, share[-1])])
     B, at = (BSpline.design_matrix(x, knots, 3).toarray() for x in (share, kept))
     return there, np.asarray(at @ np.linalg.pinv(B))

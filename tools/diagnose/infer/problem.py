@@ -16,7 +16,6 @@ from ..model.observe import Observed, Seen
 from .evidence import White
 
 
-
 @dataclass(frozen=True, order=True)
 class Aside:
     """A reading that is set aside: number of a compared one in the vector, or of a row of a given sensor.

@@ -38,6 +38,13 @@ class Entries:
     step: np.ndarray
     share: np.ndarray
 
+    def picked(self, at_places: np.ndarray, dwells: np.ndarray) -> np.ndarray:
+        """Values (m, ...) from those of sensors at places (sensors, p, ...) and those of dwells (n, ...)."""
+        found = at_places[self.sensor, self.at]
+        logged = self.sensor < 0
+        found[logged] = dwells[self.row[logged]]
+        return np.asarray(found)
+
     @staticmethod
     def of(c: Campaign) -> Entries:
         """All that a campaign holds."""

@@ -14,11 +14,10 @@ from .entries import Entries
 from .formula import Formula
 from .march import Marched, Phases, march
 from .plant import Plant
+from .slopes import Slope, same, total
 
 #: Part -> path -> values of each row (n,).
 _Changes = dict[str, dict[str, np.ndarray]]
-#: Derivatives of a value of each row that are not zero: direction -> of each row (n,).
-_Slope = dict[int, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -163,10 +162,10 @@ class _Look:
         self.o, self.z, self.parts, self.candidates = o, z, parts, candidates
         self.n = o.campaign.n
         self.values: dict[str, np.ndarray] = {}
-        self.slopes: dict[str, _Slope] = {}
+        self.slopes: dict[str, Slope] = {}
         self.truth = dict(o.sensors)
-        self.truth_slopes: dict[str, _Slope] = {s.name: {} for s in o.given}
-        self.pace, self.pace_slopes = np.ones(self.n), _Slope()
+        self.truth_slopes: dict[str, Slope] = {s.name: {} for s in o.given}
+        self.pace, self.pace_slopes = np.ones(self.n), Slope()
         #: Settings of the parameters beside the one that acts: whether no other candidate may join, what is changed.
         self.settings: list[tuple[bool, _Changes]] = []
         #: Slopes of candidates: setting, path, direction, of each row.
@@ -188,7 +187,7 @@ class _Look:
                 value = self._base(path) * factor
                 slope = {i: own * factor for i, own in self.slopes.get(path, {}).items()}
                 self.values[path] = value
-                self.slopes[path] = _sum([(1.0, slope), (exponent * nuisance.sd, {k: value})])
+                self.slopes[path] = total([(1.0, slope), (exponent * nuisance.sd, {k: value})])
 
     def _base(self, path: str) -> np.ndarray:
         return self.values[path] if path in self.values else self.o.p[:, self.o.plant.place[path]]
@@ -202,16 +201,16 @@ class _Look:
         slopes = []
         for i in range(len(value)):
             through = [(by[i], self.slopes[name]) for name, by in by_base.items() if name in self.slopes]
-            slopes.append(_sum([(1.0, {self.d + k: by_t[i, :, k] for k in range(formula.size)}), *through]))
+            slopes.append(total([(1.0, {self.d + k: by_t[i, :, k] for k in range(formula.size)}), *through]))
         names = (*formula.paths, *formula.given)
         for i, (name, slope) in enumerate(zip(names, slopes, strict=False)):
             if i < len(formula.paths):
                 self.values[name], self.slopes[name] = value[i], slope
             else:
                 self.truth[name] = self.truth[name] + value[i] - self.o.sensors[name]
-                self.truth_slopes[name] = _sum([(1.0, self.truth_slopes[name]), (1.0, slope)])
+                self.truth_slopes[name] = total([(1.0, self.truth_slopes[name]), (1.0, slope)])
         if formula.paced:
-            self.pace_slopes = _sum([(value[-1], self.pace_slopes), (self.pace, slopes[-1])])
+            self.pace_slopes = total([(value[-1], self.pace_slopes), (self.pace, slopes[-1])])
             self.pace = self.pace * value[-1]
 
     def _try(self, formula: Formula, t: np.ndarray) -> None:
@@ -221,9 +220,9 @@ class _Look:
         setting = self._setting(dict(zip(formula.paths, value, strict=False)))
         self.tried_slopes += [(setting, path, self.d, slopes[i]) for i, path in enumerate(formula.paths)]
         for i, name in enumerate(formula.given, start=n_paths):
-            self.truth_slopes[name] = _sum([(1.0, self.truth_slopes[name]), (1.0, {self.d: slopes[i]})])
+            self.truth_slopes[name] = total([(1.0, self.truth_slopes[name]), (1.0, {self.d: slopes[i]})])
         if formula.paced:
-            self.pace_slopes = _sum([(1.0, self.pace_slopes), (self.pace, {self.d: slopes[-1]})])
+            self.pace_slopes = total([(1.0, self.pace_slopes), (self.pace, {self.d: slopes[-1]})])
 
     def _setting(self, wanted: Mapping[str, np.ndarray]) -> int:
         """Which setting of the parameters a candidate is tried at; what it changes of a part, no other there changes.
@@ -239,7 +238,7 @@ class _Look:
             return 0
         alone = bool(changed.keys() & {path.partition(".")[0] for f, _ in self.parts for path in f.paths})
         for k, (closed, known) in enumerate(self.settings, start=1):
-            if not alone and not closed and all(_same(known[part], changed[part]) for part in known.keys() & changed):
+            if not alone and not closed and all(same(known[part], changed[part]) for part in known.keys() & changed):
                 known.update(changed)
                 return k
         self.settings.append((alone, changed))
@@ -286,14 +285,6 @@ class _Look:
         sensors = {name: values[row] for name, values in self.o.sensors.items()}
         return formula.instruments(t, sensors, true, self.o.features[:, row])
 
-    def _of_entries(self, at_places: np.ndarray, dwells: np.ndarray) -> np.ndarray:
-        """Values of the m entries from those of compared sensors at places (sensors, p, ...), and of rows' dwells."""
-        e = self.o.entries
-        found = at_places[e.sensor, e.at]
-        if (logged := e.sensor < 0).any():
-            found[logged] = dwells[e.row[logged]]
-        return found
-
     def shown(self) -> np.ndarray:
         """Readings (m,) only."""
         y = self.outputs()
@@ -303,7 +294,7 @@ class _Look:
             if formula.read:
                 value, _, _ = self.instruments(formula, t, true)
                 true |= dict(zip(formula.read, value, strict=True))
-        return self._of_entries(np.array([true[s.name] for s in self.o.read]), self.pace - 1)
+        return self.o.entries.picked(np.array([true[s.name] for s in self.o.read]), self.pace - 1)
 
     def tangents(self) -> np.ndarray:
         """Effects of the candidates' sizes (m, k)."""
@@ -352,7 +343,7 @@ class _Look:
             dwells[:, i] = slope
         rest = (self.pace - 1, dwells, np.zeros((self.n, *local.shape[1:3])))
         whole = [np.array([item[s.name] for s in o.read]) for item in (true, slopes, locals_)]
-        return Seen(*(self._of_entries(item, own) for item, own in zip(whole, rest, strict=True)))
+        return Seen(*(o.entries.picked(item, own) for item, own in zip(whole, rest, strict=True)))
 
     def _turned(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """What the plant shows (p, shown), by all directions (p, shown, d), by given readings (p, given, H, shown)."""
@@ -383,20 +374,6 @@ class _Look:
         slopes += [(k, self.truth_slopes[s.name]) for k, s in enumerate(self.o.given, start=first)]
         tried = [(i, wide * setting + place[path], v) for setting, path, i, v in self.tried_slopes]
         return [*((i, k, v) for k, slope in slopes for i, v in slope.items()), *tried]
-
-
-def _same(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:
-    """Whether both change the same to the same."""
-    return one.keys() == other.keys() and all(np.array_equal(v, other[path]) for path, v in one.items())
-
-
-def _sum(terms: Sequence[tuple[np.ndarray | float, _Slope]]) -> _Slope:
-    """Slopes, each times its weight."""
-    found: _Slope = {}
-    for weight, slope in terms:
-        for i, own in slope.items():
-            found[i] = found[i] + weight * own if i in found else weight * own
-    return found
 
 
 def _none(t: np.ndarray) -> np.ndarray:
