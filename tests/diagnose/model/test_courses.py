@@ -135,7 +135,7 @@ def test_courses_keep_their_own_clock(prepared) -> None:
     before, after = o.shown_by(z, []), o.shown_by(z, [(early, np.array([1.0]))])
     ends, dwells = o.kind < len(o.read), o.entries.sensor < 0
     assert np.array_equal(before[~ends & ~dwells], after[~ends & ~dwells])
-    assert np.abs(after - before)[ends].max() > 1.0
+    assert np.abs(after - before)[ends].max() > 0.2
     assert after[dwells] == pytest.approx(-0.3, abs=0.01)
 
 
@@ -145,7 +145,7 @@ def test_all_terms_of_courses_are_covariances(prepared) -> None:
     found = {term.name: term.matrix for term in terms(problem.campaigns, look.seen, 0.015, problem.nz)}
     assert {"courses", "model of courses", "starts", "dwells as logged", "remainder"} <= found.keys()
     for matrix in found.values():
-        assert matrix == pytest.approx(matrix.T) and np.linalg.eigvalsh(matrix).min() > -1e-8
+        assert np.abs(matrix - matrix.T).max() < 1e-12 and np.linalg.eigvalsh(matrix).min() > -1e-8
     half = problem.campaigns[0].m
     for name in ("courses", "model of courses", "starts"):
         assert not found[name][:half, half:].any() and found[name].any()
@@ -153,10 +153,10 @@ def test_all_terms_of_courses_are_covariances(prepared) -> None:
 
 def test_other_capacities_are_found_with_courses_alone(prepared, measured) -> None:
     mass = formula(prepared, "thermal.mass")
-    campaign = measured([(mass, np.r_[1.2, np.zeros(mass.size - 1)])], seed=1)
+    campaign = measured([(mass, np.r_[1.8, np.zeros(mass.size - 1)])], seed=1)
     with_courses, without = (log_bf(prepared, c) for c in (campaign, replace(campaign, series=None)))
     assert max(with_courses, key=lambda name: with_courses[name]) == "thermal.mass"
-    assert with_courses["thermal.mass"] > 8 > 3 > without["thermal.mass"]
+    assert with_courses["thermal.mass"] > 8 and without["thermal.mass"] < 2
 
 
 def test_a_logged_dwell_tells_whether_readings_were_taken_early(prepared, measured) -> None:
