@@ -128,8 +128,10 @@ class Problem:
         self.data = campaigns[0]
         self.nz = len(self.data.nuisances) - 1
         self.measured = np.concatenate([o.measured for o in campaigns])
-        self.repeat = np.concatenate([np.array([s.repeat_sd for s in o.read])[o.kind] for o in campaigns])
+        self.repeat = np.concatenate([o.entries.repeat for o in campaigns])
         self.own = slice(0, self.data.m)
+        #: Which entries are readings at the ends of dwells (M,); the others lie along logged courses.
+        self.ends = np.concatenate([o.kind < len(o.read) for o in campaigns])
 
     @property
     def m(self) -> int:
