@@ -118,7 +118,7 @@ def _do(findings: Findings) -> str:
         steps.append(f"To confirm it: {exposing}")
     elif findings.next_experiment:
         e = findings.next_experiment[0]
-        before, after = phrases.number(e.separation_before, 2), phrases.number(e.separation_after, 2)
+        before, after = phrases.sigma(e.separation_before), phrases.sigma(e.separation_after)
         steps.append(
             f"Measure next: {e.what or e.id}. That separates {names_of(e.separates)}: {before} standard"
             f" deviations now, {after} then."
