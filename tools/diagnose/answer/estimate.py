@@ -13,7 +13,7 @@ from scipy.stats import norm
 from ..infer.evidence import WIDTHS, White, log_bayes_factors
 from ..infer.fit import Fit, bounds
 from ..infer.problem import Acting, Problem
-from ..infer.search import Found, Hypothesis, Search
+from ..infer.search import Found, Hypothesis
 from ..library.cause import Cause, Form, Shape
 from .decide import Member
 
@@ -205,7 +205,7 @@ def impact(problem: Problem, h: Hypothesis, only: str | None = None) -> dict[str
 
 def detectable(found: Found) -> dict[str, float]:
     """Smallest size of each cause, in its unit, that would be an alarm in 80 of 100 such campaigns; none: never."""
-    share = Search(found.problem, found.formulas).share
+    share = found.prior.share
     first: dict[str, int] = {}
     for k, c in enumerate(found.first.candidates):
         first.setdefault(c.id, k)

@@ -21,7 +21,7 @@ from ..infer.evidence import White
 from ..infer.extra import REMAINDERS
 from ..infer.fit import Fit, fitted, prior_precision
 from ..infer.problem import Acting, Aside, Problem
-from ..infer.search import Found, Search
+from ..infer.search import Found
 from ..model.formula import Formula
 from ..model.noise import alike
 from .folds import schemes
@@ -107,9 +107,8 @@ def _chosen(found: Found, problem: Problem, null: Fit) -> tuple[list[Fit], np.nd
     All causes are judged by their effects at the rig as calibrated in all data, the leading ones again by their effects
     at the rig as calibrated here.
     """
-    search = Search(problem, found.formulas)
-    formulas = search.formulas
-    share = np.array([np.log(f.form.weight) + search.share[f.cause.id] for f in formulas])
+    formulas = found.formulas
+    share = np.array([np.log(f.form.weight) + found.prior.share[f.cause.id] for f in formulas])
     white, e = null.linear(problem)
     whole = screen.judged(found.first.candidates, found.first.owner, found.first.effects, white, e)
     short = _leading(formulas, whole.by_form(len(formulas)) + share)
@@ -126,7 +125,7 @@ def _chosen(found: Found, problem: Problem, null: Fit) -> tuple[list[Fit], np.nd
     if len(fits) > 1 and max(logs[1:]) > logs[0]:
         with suppress(SolveError):
             one, log = fits[int(np.argmax(logs[1:])) + 1], max(logs[1:])
-            fit, log = _paired(found, search, problem, one, log, short)
+            fit, log = _paired(found, problem, one, log, short)
             fits.append(fit)
             logs.append(log)
     return fits, np.array(logs)
@@ -151,17 +150,17 @@ def _best(formulas: Sequence[Formula], short: Sequence[int], value: np.ndarray) 
 
 
 def _paired(
-    found: Found, search: Search, problem: Problem, one: Fit, log: float, short: Sequence[int]
+    found: Found, problem: Problem, one: Fit, log: float, short: Sequence[int]
 ) -> tuple[Fit, float]:
     """A fitted cause with the one that promises most beside it, and its log joint probability."""
     (acting,) = one.look.acting
-    others = [k for k in short if search.formulas[k].cause.family != acting.formula.cause.family]
-    formulas = [search.formulas[k] for k in others]
+    others = [k for k in short if found.formulas[k].cause.family != acting.formula.cause.family]
+    formulas = [found.formulas[k] for k in others]
     beside = screen.look(problem, one, formulas)
-    share = np.array([np.log(f.form.weight) + search.share[f.cause.id] for f in formulas])
+    share = np.array([np.log(f.form.weight) + found.prior.share[f.cause.id] for f in formulas])
     k = int(np.argmax(beside.by_form(len(formulas)) + share))
     fit = _begun(found, problem, (acting, beside.start(k)), one)
-    prior = search.prior([acting.id, formulas[k].cause.id]) - search.prior([acting.id])
+    prior = found.prior([acting.id, formulas[k].cause.id]) - found.prior([acting.id])
     return fit, log + fit.evidence - one.evidence + prior + float(np.log(formulas[k].form.weight))
 
 
@@ -202,9 +201,9 @@ def _left(S: np.ndarray, r: np.ndarray, kept: np.ndarray, held: np.ndarray) -> n
 def discrepancy(problem: Problem) -> np.ndarray:
     """Covariance (M, M) of a remainder that is smooth in the conditions, of each sensor its own, at size one."""
     o = problem.data
-    sd = np.array([s.repeat_sd for s in o.read])[o.kind]
+    sd, sensor = o.entries.repeat, o.entries.sensor
     whole = np.zeros((problem.m, problem.m))
-    whole[problem.own, problem.own] = alike(o) * (o.kind[:, None] == o.kind) * np.outer(sd, sd)
+    whole[problem.own, problem.own] = alike(o) * (sensor[:, None] == sensor) * np.outer(sd, sd)
     return whole
 
 

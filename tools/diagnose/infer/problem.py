@@ -16,7 +16,6 @@ from ..model.observe import Observed, Seen
 from .evidence import White
 
 
-
 @dataclass(frozen=True, order=True)
 class Aside:
     """A reading that is set aside: number of a compared one in the vector, or of a row of a given sensor.
@@ -129,8 +128,10 @@ class Problem:
         self.data = campaigns[0]
         self.nz = len(self.data.nuisances) - 1
         self.measured = np.concatenate([o.measured for o in campaigns])
-        self.repeat = np.concatenate([np.array([s.repeat_sd for s in o.read])[o.kind] for o in campaigns])
+        self.repeat = np.concatenate([o.entries.repeat for o in campaigns])
         self.own = slice(0, self.data.m)
+        #: Which entries are readings at the ends of dwells (M,); the others lie along logged courses.
+        self.ends = np.concatenate([o.kind < len(o.read) for o in campaigns])
 
     @property
     def m(self) -> int:

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from ..answer import estimate
 from ..answer.decide import UNEXPLAINED, Decision
 from ..answer.design import Ranked, of_search, ranked
 from ..answer.experiments import experiments
 from ..answer.sets import Effects, alike
-from ..campaign.invisible import invisible
-from ..campaign.table import Campaign
 from ..infer.search import Found
 from ..library.cause import Cause
 from ..setting import Setting
@@ -71,13 +69,6 @@ def experiment(one: Ranked) -> findings.Experiment:
     return findings.Experiment(
         id=e.id, what=e.what, separates=one.pair, separation_before=one.before, separation_after=one.after
     )
-
-
-def not_seen(campaign: Campaign, library: Sequence[Cause]) -> tuple[findings.Invisible, ...]:
-    """Causes that these data cannot show, or cannot tell from others."""
-    reasons: Mapping[str, str] = invisible(campaign)
-    known = {c.id for c in library}
-    return tuple(findings.Invisible(cause=c, reason=reason) for c, reason in reasons.items() if c in known)
 
 
 def played(found: Found, decision: Decision) -> dict[str, findings.Played]:
