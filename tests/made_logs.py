@@ -5,7 +5,8 @@ from dataclasses import replace
 import numpy as np
 from gearheat.diagnose.campaign.logs import Log
 from gearheat.diagnose.library.knobs import Knob
-from gearheat.diagnose.model.logs import Filter, windows
+from gearheat.diagnose.model.logs import Filter
+from gearheat.diagnose.model.windows import windows
 
 STEP = 600.0
 DAY = 86400.0
@@ -28,7 +29,7 @@ def walk(rng: np.random.Generator, n: int, samples: float) -> np.ndarray:
 
 def weather(rng: np.random.Generator, n: int) -> dict[str, np.ndarray]:
     """Speed [rad/s], torque of the generator as a magnitude [N.m] and temperature of the nacelle [K]."""
-    wind = np.maximum(6.5 + 2.6 * walk(rng, n, 60.0) + 0.6 * walk(rng, n, 3.0), 0.0)
+    wind = np.maximum(8.0 + 2.6 * walk(rng, n, 60.0) + 0.6 * walk(rng, n, 3.0), 0.0)
     power = 2e6 * np.clip((wind / 12.5) ** 3, 0.0, 1.0) * (wind > 3.5)
     w = np.where(wind > 3.5, np.clip(100.0 + 12.0 * (wind - 3.5), 100.0, 188.5), 0.0)
     day = np.sin(2 * np.pi * np.arange(n) * STEP / DAY)

@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from . import cli_contact, cli_diagnosis, console
+from . import cli_contact, cli_diagnosis, cli_logs, console
 from .cli_options import Json, Set
 
 app = typer.Typer(
@@ -201,6 +201,7 @@ def calibrate(
 app.command()(cli_diagnosis.diagnose)
 app.command()(cli_diagnosis.plan)
 app.command()(cli_diagnosis.card)
+app.command()(cli_logs.replay)
 
 
 @app.command()

@@ -97,7 +97,9 @@ class Thermostat(Component):
     def relations(self) -> Iterator[Related]:
         """It opens above where it closes."""
         remedy = "Give the higher temperature as T_open."
-        yield self.relation("T_open is above T_close", "T_open - T_close", self.T_open - self.T_close, 0.01, remedy=remedy)
+        yield self.relation(
+            "T_open is above T_close", "T_open - T_close", self.T_open - self.T_close, 0.01, remedy=remedy, unit="K"
+        )
 
     def equations(self) -> Iterator[Equation]:
         """A rounded relay with hysteresis, or a smooth rise."""

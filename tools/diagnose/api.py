@@ -6,8 +6,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from .diagnosis import diagnosed
+from .planning import planned
 from .report.findings import Findings
-from .request import Request, read
+from .report.plan import Plan
+from .request import PlanRequest, Request, read, read_plan
 
 File = str | Path
 Files = File | Sequence[File] | None
@@ -68,6 +70,34 @@ def diagnose(
         reference_series=_path(reference_series),
     )
     return diagnosed(read(request), progress)
+
+
+def plan(
+    rig: File,
+    *,
+    separate: Sequence[str] = (),
+    card: File | None = None,
+    points: File | None = None,
+    library: Files = None,
+    reference: bool = False,
+    progress: Callable[[str, float], None] = lambda stage, share: None,
+) -> Plan:
+    """What a campaign will tell of every cause, and which experiments tell some causes apart; no data are needed.
+
+    Args:
+        rig: name of a shipped rig, or path of a rig file
+        separate: causes to tell apart
+        card: accuracies, priors and protocol
+        points: table of conditions; a grid over the rig's range without it
+        library: files with further causes
+        reference: whether there is a healthy campaign of the same points as well
+        progress: told of each stage and the share done
+
+    Raises:
+        GearheatError: all problems of files and options at once
+    """
+    request = PlanRequest(str(rig), ",".join(separate), _path(card), _path(points), _paths(library), reference)
+    return planned(read_plan(request), progress)
 
 
 def _path(file: File | None) -> Path | None:

@@ -1,20 +1,24 @@
-"""From logs to findings: has the machine changed since its healthy past, by more than machines of its type do, and how."""
+"""From logs to findings: has a machine changed since its healthy past, by more than its type does, and how."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from scipy.stats import chi2
 
 from ..model.errors import DataError
 from ..scenarios.scenario import Scenario
-from .campaign.logs import Log
-from .infer.logs import Fleet, Moved, Question, Weighed, fleet, question, weigh
-from .model.logs import windows
+from .campaign.logs import Log, read_log
+from .infer.logs import Fleet, Moved, Progress, Question, Weighed, fleet, question, weigh
+from .model.windows import windows
 from .report import findings as f
+from .report.estimate import Estimate
+from .report.quality import DataQuality, GrossReading
 from .report.words import with_words
+from .request import Inputs
 
 #: An answer is named alone, or its set is, from this probability on.
 SURE = 0.9
@@ -42,7 +46,7 @@ def diagnose_logs(
     *,
     alpha: float = 0.05,
     seed: int = 0,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = lambda stage, share: None,
 ) -> LogDiagnosis:
     """Whether a machine has changed, and what.
 
@@ -53,20 +57,74 @@ def diagnose_logs(
         siblings: of other machines of its type
         alpha: accepted rate of false alarms
         seed: kept for the record; nothing is drawn
-        progress: told what is done
+        progress: told of each stage and the share done
 
     Raises:
         DataError: logs do not go together
     """
     _check(logs, [*reference, *siblings])
-    known = fleet(scenario, reference, siblings, logs[0], progress)
-    asked = question(known, logs, progress)
-    progress("hypotheses")
+    known = fleet(scenario, reference, siblings, logs[0], lambda stage, share: progress(stage, 0.02 + 0.6 * share))
+    asked = question(known, logs, lambda stage, share: progress(stage, 0.62 + 0.25 * share))
+    progress("hypotheses", 0.87)
+    return composed(scenario, known, asked, logs, reference, siblings, alpha=alpha, seed=seed)
+
+
+def composed(
+    scenario: Scenario,
+    known: Fleet,
+    asked: Question,
+    logs: Sequence[Log],
+    reference: Sequence[Log] = (),
+    siblings: Sequence[Log] = (),
+    *,
+    alpha: float = 0.05,
+    seed: int = 0,
+) -> LogDiagnosis:
+    """The answer, from what healthy logs and those in question say.
+
+    Args:
+        scenario: the rig
+        known: what the healthy logs say
+        asked: what the logs in question say
+        logs, reference, siblings: as they were read
+        alpha: accepted rate of false alarms
+        seed: kept for the record
+    """
     whole = weigh(known, asked)
     years = {label: weigh(known, asked, asked.year == i, dates=False) for i, label in enumerate(asked.labels)}
-    progress("gain")
     found = _findings(scenario, logs, reference, siblings, known, asked, whole, years, alpha, seed)
     return LogDiagnosis(known, asked, whole, years, with_words(found))
+
+
+def diagnosed_logs(inputs: Inputs, progress: Progress) -> f.Findings:
+    """What the logs of a request say.
+
+    Args:
+        inputs: what its files hold
+        progress: told of each stage and the share done
+
+    Raises:
+        DataError: all problems of the logs
+    """
+    request, problems = inputs.request, list[str]()
+
+    def read(paths: Sequence[Path]) -> list[Log]:
+        found = []
+        for path in paths:
+            try:
+                found.append(read_log(path, inputs.scenario, inputs.card))
+            except DataError as error:
+                problems.extend(error.problems)
+        return found
+
+    logs, reference, siblings = (read(p) for p in (request.logs, request.reference_logs, request.sibling_logs))
+    if problems:
+        raise DataError(problems)
+    found = diagnose_logs(
+        inputs.scenario, logs, reference, siblings, alpha=request.alpha, seed=request.seed, progress=progress
+    ).findings
+    progress("done", 1.0)
+    return found.model_copy(update={"warnings": (*found.warnings, *inputs.warnings)})
 
 
 def _check(logs: Sequence[Log], healthy: Sequence[Log]) -> None:
@@ -79,7 +137,9 @@ def _check(logs: Sequence[Log], healthy: Sequence[Log]) -> None:
         if missing:
             problems.append(f"{log.name}: has no column for {', '.join(sorted(missing))}, which {first.name} has.")
         if log.dated != first.dated:
-            problems.append(f"{log.name}: has {'dates' if log.dated else 'seconds'}, {first.name} has not. Make them alike.")
+            problems.append(
+                f"{log.name}: has {'dates' if log.dated else 'seconds'}, {first.name} has not. Make them alike."
+            )
     if problems:
         raise DataError(problems)
 
@@ -98,11 +158,13 @@ def _findings(
 ) -> f.Findings:
     causes = tuple(_cause(whole, c) for c in whole.causes)
     answers = _answers(whole)
-    verdict = "consistent" if whole.nothing > 0.5 else "explained" if len(answers) == 1 else "ambiguous"
+    verdict: f.Verdict = "consistent" if whole.nothing > 0.5 else "explained" if len(answers) == 1 else "ambiguous"
     best = max(whole.moved, key=lambda m: m.evidence)
-    warnings = [text for w in (_lacking(reference, siblings), *(_year_text(y, w) for y, w in years.items())) if (text := w)]
+    warnings = [
+        text for w in (_lacking(reference, siblings), *(_year_text(y, w) for y, w in years.items())) if (text := w)
+    ]
     return f.Findings(
-        verdict=verdict if verdict == "consistent" or answers else "ambiguous",
+        verdict=verdict,
         about=f.About(
             data=", ".join(log.name for log in logs),
             rig=scenario.name,
@@ -114,11 +176,13 @@ def _findings(
             segments=sum(int(log.stretch.max()) + 1 for log in logs),
             seed=seed,
         ),
-        test=f.Test(alpha=alpha, p_any=_p_any(whole, best, alpha), p_adequacy=_adequacy(known, asked), null="analytic"),
-        hypotheses=tuple(f.Hypothesis(causes=c, probability=p) for c, p in whole.hypotheses.items() if p > 1e-4 or not c),
+        test=f.Alarm(alpha=alpha, p_any=_p_any(whole, best, alpha), p_adequacy=_adequacy(asked), null="analytic"),
+        hypotheses=tuple(
+            f.Hypothesis(causes=c, probability=p) for c, p in whole.hypotheses.items() if p > 1e-4 or not c
+        ),
         answers=answers,
         causes=causes,
-        data_quality=f.DataQuality(gross=tuple(_gross(logs))),
+        data_quality=DataQuality(gross=tuple(_gross(logs))),
         channels=tuple(
             f.Channel(
                 name=s.name,
@@ -150,9 +214,8 @@ def _year_text(year: str, weighed: Weighed) -> str:
     if weighed.nothing > 0.5:
         return f"{year}: nothing has changed ({weighed.nothing:.0%})"
     named = [c for c in weighed.causes if weighed.of(c) > 0.1]
-    told = [
-        f"{c} {weighed.of(c):.0%} ({m.knob.name} {_size_text(m)})" for c in named[:3] if (m := weighed.best(c)) is not None
-    ]
+    best = [(c, weighed.best(c)) for c in named[:3]]
+    told = [f"{c} {weighed.of(c):.0%} ({m.knob.name} {_size_text(m)})" for c, m in best]
     return f"{year}: changed ({1 - weighed.nothing:.0%}): {'; '.join(told) or 'no cause stands out'}"
 
 
@@ -180,10 +243,10 @@ def _cause(whole: Weighed, cause: str) -> f.Cause:
     )
 
 
-def _estimate(m: Moved) -> f.Estimate:
+def _estimate(m: Moved) -> Estimate:
     name, doc = ("ln_factor", "logarithm of the factor") if m.knob.unit == "1" else ("shift", "change")
     interval = (m.size - 1.96 * m.sd, m.size + 1.96 * m.sd)
-    return f.Estimate(name=name, value=m.size, ci95=interval, unit=m.knob.unit, doc=f"{doc}, {m.knob.name}, {m.when}")
+    return Estimate(name=name, value=m.size, ci95=interval, unit=m.knob.unit, doc=f"{doc}, {m.knob.name}, {m.when}")
 
 
 def _answers(whole: Weighed) -> tuple[f.Answer, ...]:
@@ -208,7 +271,7 @@ def _p_any(whole: Weighed, best: Moved, alpha: float) -> float:
     return max(p, alpha) if whole.nothing > 0.5 else min(p, 0.99 * alpha)
 
 
-def _adequacy(known: Fleet, asked: Question) -> float:
+def _adequacy(asked: Question) -> float:
     """p of the prediction errors' size over the logs in question against that of the healthy ones, by windows."""
     left = np.nanmean(asked.passed.error**2 / asked.passed.variance, axis=(1, 2))
     n = max(len(left), 1)
@@ -217,13 +280,13 @@ def _adequacy(known: Fleet, asked: Question) -> float:
     return float(np.clip(chi2.sf(max(z, 0.0) ** 2, 1), 1e-6, 0.98))
 
 
-def _gross(logs: Sequence[Log]) -> list[f.GrossReading]:
+def _gross(logs: Sequence[Log]) -> list[GrossReading]:
     found = []
     for log in logs:
         for g in log.gross:
             row = int(np.searchsorted(log.lines, g.line)) + 1
             found.append(
-                f.GrossReading(
+                GrossReading(
                     row=row,
                     line=g.line,
                     channel=g.column,

@@ -68,7 +68,7 @@ def test_the_data_come_before_the_cause() -> None:
     assert said.do.startswith("Check the reading in row 17 (T_oil)")
     assert said.data[0].startswith("Row 17 (line 18, point 17): T_oil shows 84.2 °C, the other readings say 71.3 °C")
     assert said.data[1].startswith("The rig differs from its file: heat capacity of the gears (0.17 times")
-    assert "scatters by 1 K; the card says 0.4 (2.5 times)" in said.data[2]
+    assert "A reading of T_amb scatters by 1 K; the card says 0.4 K (2.5 times)." in said.data[2]
     assert "smaller than its stated scatter (p = 0.998)" in said.data[3]
 
 

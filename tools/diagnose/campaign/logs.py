@@ -19,8 +19,7 @@ from ...scenarios.columns import in_si, spelled, split_unit
 from ...scenarios.csv_table import raise_all
 from ...scenarios.scenario import Scenario
 from .card import Card
-from .read import SI
-from .sensors import sensors_of
+from .sensors import SI, sensors_of
 from .table import Sensor
 
 #: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
@@ -86,12 +85,13 @@ class Log:
         """Sensors that are compared."""
         return tuple(s for s in self.sensors if s.role == "read")
 
-    def rows(self, keep: np.ndarray) -> Log:
-        """Some of the rows (n,) bool; a hole ends a stretch."""
+    def rows(self, keep: np.ndarray, name: str = "") -> Log:
+        """Some of the rows (n,) bool, under a name of their own; a hole ends a stretch."""
         kept = np.flatnonzero(keep)
         breaks = np.append(True, (np.diff(kept) > 1) | (np.diff(self.stretch[kept]) != 0))
-        values = {name: column[kept] for name, column in self.values.items()}
-        return replace(self, values=values, time=self.time[kept], stretch=np.cumsum(breaks) - 1, lines=self.lines[kept])
+        values = {sensor: column[kept] for sensor, column in self.values.items()}
+        stretch, named = np.cumsum(breaks) - 1, name or self.name
+        return replace(self, name=named, values=values, time=self.time[kept], stretch=stretch, lines=self.lines[kept])
 
 
 def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
@@ -141,7 +141,7 @@ def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]
         raise DataError([f"{path.name} line {ragged[0]}: has not {len(header)} cells as the header has. Mend the row."])
     if not rows:
         raise DataError([f"{path.name}: holds no samples."])
-    columns = dict(zip(header, zip(*(row for _, row in rows), strict=True), strict=True))
+    columns: dict[str, Sequence[Any]] = dict(zip(header, zip(*(row for _, row in rows), strict=True), strict=True))
     return header, columns, np.array([line for line, _ in rows])
 
 

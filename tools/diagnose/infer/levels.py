@@ -1,8 +1,8 @@
-"""Knobs that scatter on three levels: machines of a type, years of a machine, windows of a year.
+"""Knobs that scatter on three levels: machines of a type, seasons of a machine, windows of a season.
 
 What the samples of a window say of its knobs is a quadratic, exp(eta z - z H z / 2). Deviations of windows from their
-year, of years from their machine and of machines from their type are independent and normal; their variances are
-estimated. Healthy machines differ from year to year, and only what differs by more is a change.
+season, of seasons from their machine and of machines from their type are independent and normal; their variances are
+estimated. Healthy machines differ from season to season, and only what differs by more is a change.
 """
 
 from __future__ import annotations
@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-#: Standard deviations of years and windows that are expected before any data, as shares of that of machines, and how
+#: Standard deviations of seasons and windows that are expected before any data, as shares of that of machines, and how
 #: many deviations this expectation counts for.
-YEAR, WINDOW, COUNTS = 0.25, 0.25, 2.0
+SEASON, WINDOW, COUNTS = 0.25, 0.25, 2.0
 #: Rounds of the estimate of the variances.
 ROUNDS = 40
 
@@ -53,21 +53,21 @@ class Levels:
 
     Args:
         root: prior variance of the type about the rig file
-        machine, year, window: variances of the deviations
-        freedom: degrees of freedom of the year's variances
+        machine, season, window: variances of the deviations
+        freedom: degrees of freedom of the season's variances
         mean, covariance: of each machine's knobs (machines, k), (machines, k, k)
-        years: mean deviation of each year (years, k) and its standard deviation
+        seasons: mean deviation of each season (seasons, k) and its standard deviation
     """
 
     root: np.ndarray
     machine: np.ndarray
-    year: np.ndarray
+    season: np.ndarray
     window: np.ndarray
     freedom: float
     mean: np.ndarray
     covariance: np.ndarray
-    years: np.ndarray
-    years_sd: np.ndarray
+    seasons: np.ndarray
+    seasons_sd: np.ndarray
 
 
 def first_levels(sd: np.ndarray, machines: int) -> Levels:
@@ -80,42 +80,40 @@ def first_levels(sd: np.ndarray, machines: int) -> Levels:
     k = len(sd)
     root, machine = (1.5 * sd) ** 2, sd**2
     C = np.tile(np.diag(root + machine), (machines, 1, 1))
-    empty = np.zeros((0, k))
-    return Levels(
-        root, machine, (YEAR * sd) ** 2, (WINDOW * sd) ** 2, COUNTS, np.zeros((machines, k)), C, empty, empty
-    )
+    mean, none = np.zeros((machines, k)), np.zeros((0, k))
+    return Levels(root, machine, (SEASON * sd) ** 2, (WINDOW * sd) ** 2, COUNTS, mean, C, none, none)
 
 
-def estimate(found: Quadratics, year: np.ndarray, machine_of: np.ndarray, begun: Levels) -> Levels:
-    """Variances of years and windows, and the knobs of machines, from healthy logs.
+def estimate(found: Quadratics, season: np.ndarray, machine_of: np.ndarray, begun: Levels) -> Levels:
+    """Variances of seasons and windows, and the knobs of machines, from healthy logs.
 
     Args:
         found: of the windows (n)
-        year: number of each window's machine-year (n,)
-        machine_of: machine of each machine-year
+        season: number of each window's season of a machine (n,)
+        machine_of: machine of each season of a machine
         begun: levels to begin with; its expectations count as data
     """
     levels = begun
     machines = len(begun.mean)
     for _ in range(ROUNDS):
-        windows = found.spread(levels.window).summed(year, len(machine_of))
-        years = windows.spread(levels.year).summed(machine_of, machines)
-        top = years.spread(levels.machine).summed(np.zeros(machines, dtype=int), 1)
+        windows = found.spread(levels.window).summed(season, len(machine_of))
+        seasons = windows.spread(levels.season).summed(machine_of, machines)
+        top = seasons.spread(levels.machine).summed(np.zeros(machines, dtype=int), 1)
         C = np.linalg.inv(top.H + np.diag(1 / levels.root))
         m = (C @ top.eta[:, :, None])[:, :, 0]
         parents = np.zeros(machines, dtype=int)
-        z, Cz, _, _ = _down(years, levels.machine, m[parents], C[parents])
-        zy, Cy, dy, vy = _down(windows, levels.year, z[machine_of], Cz[machine_of])
-        _, _, dw, vw = _down(found, levels.window, zy[year], Cy[year])
+        z, Cz, _, _ = _down(seasons, levels.machine, m[parents], C[parents])
+        zy, Cy, dy, vy = _down(windows, levels.season, z[machine_of], Cz[machine_of])
+        _, _, dw, vw = _down(found, levels.window, zy[season], Cy[season])
         levels = replace(
             levels,
-            year=_variance(dy, vy, begun.year),
+            season=_variance(dy, vy, begun.season),
             window=_variance(dw, vw, begun.window),
             freedom=max(len(machine_of) - len(np.unique(machine_of)), 0) + COUNTS,
             mean=z,
             covariance=Cz,
-            years=dy,
-            years_sd=np.sqrt(vy),
+            seasons=dy,
+            seasons_sd=np.sqrt(vy),
         )
     return levels
 
@@ -146,49 +144,49 @@ class Effect:
 
 
 class Target:
-    """Logs in which causes act: windows of some years of one machine.
+    """Logs in which causes act: windows of some seasons of one machine.
 
     Args:
         found: quadratics of the windows (n)
-        year: number of each window's year (n,)
+        season: number of each window's season (n,)
         mean, covariance: of the machine's knobs by its healthy logs
         levels: variances
     """
 
     def __init__(
-        self, found: Quadratics, year: np.ndarray, mean: np.ndarray, covariance: np.ndarray, levels: Levels
+        self, found: Quadratics, season: np.ndarray, mean: np.ndarray, covariance: np.ndarray, levels: Levels
     ) -> None:
-        self.found, self.year, self.levels = found.spread(levels.window), year, levels
-        self.k, self.years = len(mean), int(year.max()) + 1
+        self.found, self.season, self.levels = found.spread(levels.window), season, levels
+        self.k, self.seasons = len(mean), int(season.max()) + 1
         self.precision = np.linalg.inv(covariance)
         self.pull = self.precision @ mean
 
     def columns(self, share: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Cross terms with the unknowns (d, k), own terms (k, k) and pull (k,) of all knobs moved by a share."""
-        by_year = Quadratics(self.found.eta * share[:, None], self.found.H * share[:, None, None])
-        summed = by_year.summed(self.year, self.years)
+        by_season = Quadratics(self.found.eta * share[:, None], self.found.H * share[:, None, None])
+        summed = by_season.summed(self.season, self.seasons)
         cross = np.concatenate([summed.H.sum(axis=0), *summed.H])
         own = (self.found.H * (share**2)[:, None, None]).sum(axis=0)
         return cross, own, summed.eta.sum(axis=0)
 
-    def base(self, year_variance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Precision (d, d) and pull (d,) of the unknowns: the machine's knobs, then each year's deviations."""
-        summed, k = self.found.summed(self.year, self.years), self.k
-        d = k * (1 + self.years)
+    def base(self, season_variance: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Precision (d, d) and pull (d,) of the unknowns: the machine's knobs, then each season's deviations."""
+        summed, k = self.found.summed(self.season, self.seasons), self.k
+        d = k * (1 + self.seasons)
         A, b = np.zeros((d, d)), np.zeros(d)
         A[:k, :k], b[:k] = self.precision + summed.H.sum(axis=0), self.pull + summed.eta.sum(axis=0)
-        for y in range(self.years):
+        for y in range(self.seasons):
             own = slice(k * (y + 1), k * (y + 2))
-            A[own, own] = summed.H[y] + np.diag(1 / year_variance)
+            A[own, own] = summed.H[y] + np.diag(1 / season_variance)
             A[own, :k] = A[:k, own] = summed.H[y]
             b[own] = summed.eta[y]
         return A, b
 
     def with_effects(
-        self, effects: Sequence[Effect], sd: Sequence[float], year_variance: np.ndarray
+        self, effects: Sequence[Effect], sd: Sequence[float], season_variance: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:
         """Precision and pull with the sizes of effects as further unknowns, each with its prior."""
-        A, b = self.base(year_variance)
+        A, b = self.base(season_variance)
         d, e = len(b), len(effects)
         whole, pull = np.zeros((d + e, d + e)), np.concatenate([b, np.zeros(e)])
         whole[:d, :d] = A
@@ -205,19 +203,26 @@ class Target:
     def evidence(self, effects: Sequence[Effect], sd: Sequence[float]) -> tuple[float, np.ndarray, np.ndarray]:
         """Logarithm of the evidence less that of no effect, sizes (e,) and their covariance.
 
-        The year's variances of the knobs in question are known to some degrees of freedom only, and are averaged over.
+        What a knob moves by within the logs is judged against moves as large as those of healthy seasons.
+        The seasons' variances of the knobs in question have few degrees of freedom, and are averaged over.
         """
         scales, weights = scale_grid(self.levels.freedom)
         knobs = np.unique([e.knob for e in effects])
         logs, nulls, sizes, covariances = [], [], [], []
         for scale in scales:
-            variance = self.levels.year.copy()
+            variance = self.levels.season.copy()
             variance[knobs] *= scale
-            A, b = self.with_effects(effects, sd, variance)
+            usual = [e for e in effects if np.ptp(e.share) > 0]
+            own = [float(np.sqrt(variance[e.knob])) for e in usual]
+            wide = [
+                float(np.hypot(s, np.sqrt(variance[e.knob]) * (np.ptp(e.share) > 0)))
+                for e, s in zip(effects, sd, strict=True)
+            ]
+            A, b = self.with_effects(effects, wide, variance)
             d = len(b) - len(effects)
-            prior = -0.5 * self.years * np.log(variance).sum()
-            logs.append(prior + _log_integral(A, b) - np.log(sd).sum())
-            nulls.append(prior + _log_integral(A[:d, :d], b[:d]))
+            prior = -0.5 * self.seasons * np.log(variance).sum()
+            logs.append(prior + _log_integral(A, b) - np.log(wide).sum())
+            nulls.append(prior + _log_integral(*self.with_effects(usual, own, variance)) - np.log(own).sum())
             C = np.linalg.inv(A)
             sizes.append((C @ b)[d:])
             covariances.append(C[d:, d:])

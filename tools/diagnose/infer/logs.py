@@ -14,24 +14,28 @@ from ...scenarios.scenario import Scenario
 from ..campaign.logs import Log
 from ..library.knobs import Knob, knobs
 from ..library.roles import Roles
-from ..model.logs import Filter, Passed, Windows, windows
-from ..model.plant import Plant
+from ..model.equations import Equations
+from ..model.logs import Filter, Passed
+from ..model.windows import Windows, windows
 from .levels import Effect, Levels, Quadratics, Target, estimate, first_levels
 
 #: Passes over the healthy logs, and over those in question; each begins where the last one ended.
-PASSES, TARGET_PASSES = 4, 2
+PASSES, TARGET_PASSES = 4, 4
 #: State noise [K] of one sample of bodies that no sensor reads, and of states that are no body's.
 QUIET, SWITCH = 0.05, 0.8
 #: Dates from which on something may have moved: at most so many, and windows on either side at least.
 DATES, SIDE = 6, 3
-#: Prior probabilities of no cause and of two.
-NOTHING, TWO = 0.5, 0.08
+#: Prior probabilities of no cause, as most years of most machines have none, and of two.
+NOTHING, TWO = 0.8, 0.03
 #: Causes that are tried together with others.
 LEADING = 4
-#: Correlations of errors are summed over so many samples at most, and down to so much.
-MEMORY, CORRELATED = 144, 0.05
+#: Correlations of errors are summed over so many samples at most, and down to so much; what lasts longer is a matter
+#: of windows and years.
+MEMORY, CORRELATED = 36, 0.05
 #: Length of a year in time that is no calendar's [s].
 YEAR = 365.25 * 86400.0
+
+Progress = Callable[[str, float], None]
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,9 +46,8 @@ class Fleet:
         filter: the rig, compiled
         knobs: what may differ
         past: windows of all healthy logs
-        year: number of the machine-year of each window
-        machine_of: machine of each machine-year
-        labels: of each machine-year, in words
+        season: number of the season of a machine that each window belongs to
+        machine_of: machine of each season
         levels: what the healthy logs say
         independent: share of their samples that count as independent, 0 without any
     """
@@ -52,9 +55,8 @@ class Fleet:
     filter: Filter
     knobs: tuple[Knob, ...]
     past: Windows
-    year: np.ndarray
+    season: np.ndarray
     machine_of: np.ndarray
-    labels: tuple[str, ...]
     levels: Levels
     independent: float
 
@@ -116,14 +118,19 @@ def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
     found = knobs(roles, log.sensors)
     found = tuple(k for k in found if all(p in _parameters(scenario) for p in k.paths))
     paths = list(dict.fromkeys(path for k in found for path in k.paths))
-    plant = Plant(flatten(assemble(spec)), paths, [s.reads for s in log.given], [s.reads for s in log.read])
+    plant = Equations(flatten(assemble(spec)), paths, [s.reads for s in log.given], [s.reads for s in log.read])
     own = Filter(plant, found, [s.name for s in log.given], [s.name for s in log.read], np.zeros(plant.nx))
     noise = []
-    for i, q in enumerate(plant.flat.states):
+    for q in plant.flat.states:
         body = q.name.rpartition(".")[2] == "T"
         noise.append(0.0 if q.unit != "K" else QUIET if body else SWITCH)
     own.drift = np.array(noise)
     return own, found
+
+
+def _within(progress: Progress, stage: str, begin: float, width: float) -> Callable[[float], None]:
+    """Progress of one pass among several."""
+    return lambda share: progress(stage, begin + width * share)
 
 
 def _parameters(scenario: Scenario) -> set[str]:
@@ -137,12 +144,20 @@ def year_of(time: np.ndarray, dated: bool) -> np.ndarray:
     return np.array([datetime.fromtimestamp(t, UTC).year for t in time])
 
 
+def season_of(time: np.ndarray, dated: bool) -> np.ndarray:
+    """Number of the quarter of a year of each time (n,): the calendar's, or from 0 where there is none."""
+    if not dated:
+        return np.asarray(np.floor((time - time.min()) / (YEAR / 4)), dtype=int)
+    dates = [datetime.fromtimestamp(t, UTC) for t in time]
+    return np.array([4 * d.year + (d.month - 1) // 3 for d in dates])
+
+
 def fleet(
     scenario: Scenario,
     reference: Sequence[Log],
     siblings: Sequence[Log],
     all_sensors: Log,
-    progress: Callable[[str], None] = lambda _: None,
+    progress: Progress = lambda stage, share: None,
 ) -> Fleet:
     """What the healthy logs say of the machine and its type.
 
@@ -151,7 +166,7 @@ def fleet(
         reference: the machine's own past; several are one machine
         siblings: a log of each other machine
         all_sensors: a log that has the sensors of those in question
-        progress: told what is done
+        progress: told of each stage and the share done
     """
     own, found = filter_of(scenario, all_sensors)
     logs = [*reference, *siblings]
@@ -161,25 +176,24 @@ def fleet(
     begun = first_levels(sd, machines)
     if not logs:
         empty = windows([all_sensors], own.given, own.read).some(np.zeros(0, dtype=int))
-        return Fleet(own, found, empty, np.zeros(0, dtype=int), np.zeros(0, dtype=int), (), begun, 0.0)
+        return Fleet(own, found, empty, np.zeros(0, dtype=int), np.zeros(0, dtype=int), begun, 0.0)
     past = windows(logs, own.given, own.read)
-    years = year_of(past.time, all(log.dated for log in logs))
+    seasons = season_of(past.time, all(log.dated for log in logs))
     machine = np.array(machine_of_log)[past.machine]
-    keys = sorted(set(zip(machine.tolist(), years.tolist(), strict=True)))
+    keys = sorted(set(zip(machine.tolist(), seasons.tolist(), strict=True)))
     number = {key: i for i, key in enumerate(keys)}
-    year = np.array([number[key] for key in zip(machine.tolist(), years.tolist(), strict=True)])
+    season = np.array([number[key] for key in zip(machine.tolist(), seasons.tolist(), strict=True)])
     machine_of = np.array([m for m, _ in keys])
-    names = {m: log.name for log, m in zip(reversed(logs), reversed(machine_of_log), strict=True)}
-    labels = tuple(f"{names[m]} {y}" for m, y in keys)
     z, levels, thin = np.zeros((machines, len(sd))), begun, 1.0
     for n in range(PASSES):
         at = z[machine]
-        progress(f"healthy logs, pass {n + 1} of {PASSES}")
-        passed = own.run(past, at)
-        own.scatter, thin = _scatter(own, passed), independent(passed)
-        levels = estimate(_quadratics(passed, at, thin), year, machine_of, begun)
+        stage = f"healthy logs, pass {n + 1} of {PASSES}"
+        passed = own.run(past, at, progress=_within(progress, stage, n / PASSES, 1 / PASSES))
+        own.scatter = _scatter(own, passed)
+        thin = independent(passed) if n + 1 == PASSES else 1.0  # samples count in full on the way there
+        levels = estimate(_quadratics(passed, at, thin), season, machine_of, begun)
         z = z + np.clip(levels.mean - z, -sd, sd)
-    return Fleet(own, found, past, year, machine_of, labels, levels, thin)
+    return Fleet(own, found, past, season, machine_of, levels, thin)
 
 
 def _quadratics(passed: Passed, at: np.ndarray, thin: float) -> Quadratics:
@@ -209,41 +223,44 @@ def independent(passed: Passed) -> float:
 
 @dataclass(frozen=True, eq=False)
 class Question:
-    """Logs in question: their windows, years, and what each window says."""
+    """Logs in question: their windows, the year and season of each, names of the years, what each window says."""
 
     windows: Windows
     year: np.ndarray
+    season: np.ndarray
     labels: tuple[str, ...]
     found: Quadratics
     passed: Passed
 
 
-def question(found: Fleet, logs: Sequence[Log], progress: Callable[[str], None] = lambda _: None) -> Question:
-    """Run the logs in question at the machine's knobs, then where each year has moved to.
+def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stage, share: None) -> Question:
+    """Run the logs in question at the machine's knobs, then where each season has moved to.
 
     Args:
         found: what the healthy logs say
         logs: of the machine
-        progress: told what is done
+        progress: told of each stage and the share done
     """
     own = found.filter
     data = windows(logs, own.given, own.read)
-    years = year_of(data.time, all(log.dated for log in logs))
-    named = np.unique(years)
-    year = np.searchsorted(named, years)
+    dated = all(log.dated for log in logs)
+    years, seasons = year_of(data.time, dated), season_of(data.time, dated)
+    named, year = np.unique(years, return_inverse=True)
+    seasons_there, season = np.unique(seasons, return_inverse=True)
     at = np.tile(found.levels.mean[0], (len(year), 1))
     sd = np.array([k.sd for k in found.knobs])
     for n in range(TARGET_PASSES):
-        progress(f"logs in question, pass {n + 1} of {TARGET_PASSES}")
-        passed = own.run(data, at)
-        quadratics = _quadratics(passed, at, found.independent or independent(passed))
-        if n + 1 < TARGET_PASSES:
-            by_year = quadratics.spread(found.levels.window).summed(year, len(named))
-            wide = np.linalg.inv(found.levels.covariance[0] + np.diag(found.levels.year + sd**2))
-            C = np.linalg.inv(by_year.H + wide)
-            moved = (C @ (by_year.eta + wide @ found.levels.mean[0])[:, :, None])[:, :, 0]
-            at = (at[0] + np.clip(moved - at[0], -2 * sd, 2 * sd))[year]
-    return Question(data, year, tuple(str(y) for y in named), quadratics, passed)
+        stage = f"logs in question, pass {n + 1} of {TARGET_PASSES}"
+        passed = own.run(data, at, progress=_within(progress, stage, n / TARGET_PASSES, 1 / TARGET_PASSES))
+        last = n + 1 == TARGET_PASSES
+        quadratics = _quadratics(passed, at, (found.independent or independent(passed)) if last else 1.0)
+        if not last:
+            by_season = quadratics.spread(found.levels.window).summed(season, len(seasons_there))
+            wide = np.linalg.inv(found.levels.covariance[0] + np.diag(found.levels.season + sd**2))
+            C = np.linalg.inv(by_season.H + wide)
+            moved = (C @ (by_season.eta + wide @ found.levels.mean[0])[:, :, None])[:, :, 0]
+            at = (at[0] + np.clip(moved - at[0], -2 * sd, 2 * sd))[season]
+    return Question(data, year, season, tuple(str(y) for y in named), quadratics, passed)
 
 
 def profiles(time: np.ndarray, dated: bool) -> list[tuple[str, np.ndarray, float]]:
@@ -256,7 +273,8 @@ def profiles(time: np.ndarray, dated: bool) -> list[tuple[str, np.ndarray, float
     n = len(time)
     found = [("throughout", np.ones(n), 0.5)]
     order = np.sort(time)
-    cuts = np.unique(np.linspace(SIDE, n - SIDE, DATES + 2).astype(int)[1:-1]) if n > 3 * SIDE else []
+    inner = np.linspace(SIDE, n - SIDE, DATES + 2).astype(int)[1:-1] if n > 3 * SIDE else np.zeros(0, dtype=int)
+    cuts = np.unique(inner).tolist()
     for cut in cuts:
         date = (order[cut - 1] + order[cut]) / 2
         word = datetime.fromtimestamp(date, UTC).strftime("%Y-%m-%d") if dated else f"{date / 86400:.1f} d"
@@ -276,9 +294,9 @@ def weigh(found: Fleet, asked: Question, keep: np.ndarray | None = None, *, date
         dates: whether causes may begin at a date or drift, too
     """
     keep = np.ones(len(asked.year), dtype=bool) if keep is None else keep
-    _, year = np.unique(asked.year[keep], return_inverse=True)
+    _, season = np.unique(asked.season[keep], return_inverse=True)
     levels = found.levels
-    target = Target(asked.found.some(keep), year, levels.mean[0], levels.covariance[0], levels)
+    target = Target(asked.found.some(keep), season, levels.mean[0], levels.covariance[0], levels)
     forms = profiles(asked.windows.time[keep], asked.windows.time.min() > YEAR)
     forms = forms if dates else [("throughout", np.ones(keep.sum()), 1.0)]
     causes = dict.fromkeys(k.cause for k in found.knobs)

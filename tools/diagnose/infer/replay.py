@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,7 +10,8 @@ from scipy.optimize import least_squares
 from scipy.signal import lfilter
 
 from ..campaign.logs import Log
-from ..model.logs import Filter, Windows, windows
+from ..model.logs import Filter
+from ..model.windows import Windows, windows
 
 #: Hours ahead at which errors are told, and lags of the regression [samples].
 HOURS = (1.0, 3.0, 6.0, 12.0, 24.0)
@@ -69,7 +70,7 @@ class Rivals:
                 (y[:n, j] - self.one_node(x, u[:n], y[0, j]))[::3]
                 for u, y, n in zip(data.given, data.read, _lengths(data), strict=True)
             ]
-            return np.nan_to_num(np.concatenate(errors))
+            return np.asarray(np.nan_to_num(np.concatenate(errors)))
 
         start = np.array([3.5, *np.zeros(data.given.shape[2]), 0.0])
         start[-1] = 0.03 * np.nanmean(data.read[:, :, j])
@@ -98,9 +99,7 @@ def _lagged(u: np.ndarray) -> np.ndarray:
     return np.column_stack([*past, u**2, np.ones(n)])
 
 
-def replay(
-    own: Filter, log: Log, rivals: Rivals, z: np.ndarray | None = None, progress: Callable[[str], None] = lambda _: None
-) -> Replayed:
+def replay(own: Filter, log: Log, rivals: Rivals, z: np.ndarray | None = None) -> Replayed:
     """Errors on one log.
 
     Args:
@@ -108,10 +107,8 @@ def replay(
         log: samples
         rivals: fitted elsewhere
         z: knobs (k,); those of the rig file without
-        progress: told what is done
     """
     z = np.zeros(len(own.knobs)) if z is None else z
-    progress(f"{log.name}: free run")
     whole = windows([log], own.given, own.read, 0)
     lengths = _lengths(whole)
     passed = own.run(whole, np.tile(z, (len(lengths), 1)), free=True, slopes=False)
@@ -128,26 +125,23 @@ def replay(
     longest = int(lengths.argmax())
     n = lengths[longest]
     shown = {s: np.array([passed.shown[longest, :n, j], whole.read[longest, :n, j]]) for j, s in enumerate(own.read)}
-    progress(f"{log.name}: hours ahead")
-    return Replayed(
-        log.name, log.n, free, _ahead(own, log, rivals, z), shown, log.time[whole.rows[longest, :n]]
-    )
+    return Replayed(log.name, log.n, free, _ahead(own, log, rivals, z), shown, log.time[whole.rows[longest, :n]])
 
 
 def _rms(names: Sequence[str], error: np.ndarray) -> dict[str, float]:
     return {name: float(np.sqrt(np.nanmean(error[..., j] ** 2))) for j, name in enumerate(names)}
 
 
-def _ahead(
-    own: Filter, log: Log, rivals: Rivals, z: np.ndarray
-) -> dict[str, dict[str, tuple[float, ...]]]:
+def _ahead(own: Filter, log: Log, rivals: Rivals, z: np.ndarray) -> dict[str, dict[str, tuple[float, ...]]]:
     """Errors some hours after the last correction."""
     steps = [round(h * 3600 / log.step) for h in HOURS]
     data = windows([log], own.given, own.read, steps[-1], BEFORE)
     data = data.some(data.counts.sum(axis=1) >= steps[-1])
     begin = data.counts.argmax(axis=1)
     passed = own.run(data, np.tile(z, (len(begin), 1)), free=True, slopes=False)
-    found: dict[str, dict[str, tuple[float, ...]]] = {m: {} for m in ("rig", "one node", "regression with lags", "last reading")}
+    found: dict[str, dict[str, tuple[float, ...]]] = {
+        m: {} for m in ("rig", "one node", "regression with lags", "last reading")
+    }
     for j, name in enumerate(own.read):
         errors: dict[str, list[np.ndarray]] = {method: [] for method in found}
         for i, b in enumerate(begin):

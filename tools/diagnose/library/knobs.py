@@ -29,7 +29,6 @@ class Knob:
         shifted: parameters to which z times the factor is added [SI]: path -> factor
         sensor: a sensor that shows z too much; with `gain` exp(z) times what is there
         gain: see above
-        sign: +1 or -1 where a fault goes one way only
     """
 
     name: str
@@ -42,7 +41,6 @@ class Knob:
     shifted: Mapping[str, float] = field(default_factory=dict)
     sensor: str = ""
     gain: bool = False
-    sign: int = 0
 
     @property
     def paths(self) -> tuple[str, ...]:
@@ -52,14 +50,14 @@ class Knob:
 
 #: Cause of a sensor's error by the sensor's kind, and in words.
 OFFSETS = {
-    "oil_temp": ("sensor.oil_temp.offset", "the oil probe reads too high or too low"),
-    "wall_temp": ("sensor.wall_temp.offset", "the probe on a body reads too high or too low"),
-    "ambient": ("sensor.ambient.bias", "the room probe reads too high or too low"),
+    "oil_temp": ("sensor.oil_temp.offset", "The oil probe reads too high or too low."),
+    "wall_temp": ("sensor.wall_temp.offset", "The probe on a body reads too high or too low."),
+    "ambient": ("sensor.ambient.bias", "The room probe reads too high or too low."),
 }
 GAINS = {
-    "torque": ("sensor.torque.gain", "the torque reading is wrong by a share of itself", 0.03, 0.02),
-    "speed": ("sensor.speed.gain", "the speed reading is wrong by a share of itself", 0.02, 0.003),
-    "power": ("sensor.power.gain", "the power reading is wrong by a share of itself", 0.03, 0.02),
+    "torque": ("sensor.torque.gain", "The torque reading is wrong by a share of itself.", 0.03, 0.02),
+    "speed": ("sensor.speed.gain", "The speed reading is wrong by a share of itself.", 0.02, 0.003),
+    "power": ("sensor.power.gain", "The power reading is wrong by a share of itself.", 0.03, 0.02),
 }
 
 
@@ -89,8 +87,8 @@ def _losses(roles: Roles) -> Iterator[Knob]:
             yield _factor(f"{name}: loss", cause, f"A {role} that loses more or less.", *roles.scaled(name))
 
 
-def _factor(name: str, cause: str, doc: str, *paths: str, usual: float = 0.3, sd: float = 0.3, sign: int = 0) -> Knob:
-    return Knob(name, cause, doc, usual=usual, sd=sd, scaled=dict.fromkeys(paths, 1.0), sign=sign)
+def _factor(name: str, cause: str, doc: str, *paths: str, usual: float = 0.3, sd: float = 0.3) -> Knob:
+    return Knob(name, cause, doc, usual=usual, sd=sd, scaled=dict.fromkeys(paths, 1.0))
 
 
 def _cooling(roles: Roles) -> Iterator[Knob]:
@@ -101,17 +99,17 @@ def _cooling(roles: Roles) -> Iterator[Knob]:
         paths = {f"{name}.T_open": 1.0, f"{name}.T_close": 1.0}
         doc = "The thermostat opens at another temperature."
         yield Knob(f"{name}: set point", "cooling.thermostat", doc, "K", 3.0, 1.0, shifted=paths)
-    for name in roles.having("jet"):
+    jets = roles.having("jet")
+    for name in jets:
         yield _factor(f"{name}: oil flow", "cooling.oil_wall", "Less or more oil reaches a body.", *roles.scaled(name))
-    others = tuple(name for name in roles.oil_side if name not in roles.having("jet"))
     families = {
         "cooling.air": (roles.surfaces, "The air takes more or less heat."),
         "cooling.foundation": (roles.foundation, "More or less heat flows to what the machine stands in."),
-        "cooling.oil_wall": (others, "Another heat transfer or flow between the oil and what it meets."),
+        "cooling.oil_wall": (roles.oil_side, "Another heat transfer or flow between the oil and what it meets."),
         "cooling.contact": (roles.contacts, "Another conductance between bodies."),
     }
     for cause, (names, doc) in families.items():
-        for name in names:
+        for name in (n for n in names if n not in jets):
             yield _factor(f"{name}: conductance", cause, doc, *roles.scaled(name), usual=0.4)
 
 
@@ -129,9 +127,7 @@ def _sensors(sensors: Sequence[Sensor]) -> Iterator[Knob]:
     for s in sensors:
         if s.kind in OFFSETS:
             cause, doc = OFFSETS[s.kind]
-            yield Knob(f"{s.name}: offset", cause, f"{doc[0].upper()}{doc[1:]}.", "K", 2.0, 0.7, sensor=s.name)
+            yield Knob(f"{s.name}: offset", cause, doc, "K", 2.0, 0.7, sensor=s.name)
         elif s.kind in GAINS and s.role == "given":
             cause, doc, usual, sd = GAINS[s.kind]
-            yield Knob(
-                f"{s.name}: gain", cause, f"{doc[0].upper()}{doc[1:]}.", "1", usual, sd, sensor=s.name, gain=True
-            )
+            yield Knob(f"{s.name}: gain", cause, doc, "1", usual, sd, sensor=s.name, gain=True)

@@ -12,14 +12,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..campaign.logs import Log
 from ..library.knobs import Knob
-from .plant import Plant
+from .equations import Equations
+from .windows import Windows
 
-#: Of the method: two stages, second order, L-stable, stiffly accurate.
+#: The method: two implicit stages of second order, L-stable and stiffly accurate.
 GAMMA = 1.0 - 0.5**0.5
-#: Samples of a window that count, and samples before them in which the filter settles.
-WINDOW, SETTLING = 250, 60
 #: Newton's corrections at most, and size over the nominals at which they end.
 MOST, SETTLED = 30, 1e-5
 #: A correction is no longer than so many nominals, at first and from the given one on: a relay may throw it about.
@@ -33,91 +31,6 @@ UNREAD = 6.0
 SCATTER, FOLLOWS = 1.0, 0.04
 #: A reading that is missing scatters so much [K].
 MISSING = 1e4
-
-
-@dataclass(frozen=True, eq=False)
-class Windows:
-    """Pieces of logs of one rig, N windows of L samples.
-
-    Args:
-        given: inputs as logged, with the model's sign (N, L, given)
-        read: readings (N, L, reads), NaN where missing
-        there: whether a sample is there (N, L)
-        counts: whether it counts, the settling ones do not (N, L)
-        machine: number of the log of each window (N,)
-        time: middle of each window [s] (N,)
-        rows: row of each sample in its log (N, L), -1 where there is none
-        step: of all samples [s]
-    """
-
-    given: np.ndarray
-    read: np.ndarray
-    there: np.ndarray
-    counts: np.ndarray
-    machine: np.ndarray
-    time: np.ndarray
-    rows: np.ndarray
-    step: float
-
-    def some(self, keep: np.ndarray) -> Windows:
-        """Some of the windows (N,) bool or numbers."""
-        arrays = (self.given, self.read, self.there, self.counts, self.machine, self.time, self.rows)
-        return Windows(*(a[keep] for a in arrays), self.step)
-
-
-def windows(
-    logs: Sequence[Log], given: Sequence[str], read: Sequence[str], length: int = WINDOW, settling: int = SETTLING
-) -> Windows:
-    """Stretches cut into windows, each with the samples before it in which the filter settles.
-
-    Args:
-        logs: of one step
-        given, read: names of the sensors that drive and that are compared, in order
-        length, settling: samples; a length of 0 keeps every stretch whole, and nothing settles
-    """
-    pieces = [
-        (number, log, rows, skipped)
-        for number, log in enumerate(logs)
-        for rows, skipped in _pieces(log.stretch, length, settling)
-    ]
-    longest = max(len(rows) for _, _, rows, _ in pieces)
-    n = len(pieces)
-    u, y = np.zeros((n, longest, len(given))), np.full((n, longest, len(read)), np.nan)
-    counts, there = np.zeros((n, longest), dtype=bool), np.zeros((n, longest), dtype=bool)
-    at = np.full((n, longest), -1)
-    for i, (_, log, rows, skipped) in enumerate(pieces):
-        m = len(rows)
-        signs = {s.name: s.signs[0] for s in log.sensors}
-        u[i, :m] = np.array([_held(log.values[name][rows]) * signs[name] for name in given]).T
-        for j, name in enumerate(read):
-            if name in log.values:
-                y[i, :m, j] = log.values[name][rows] * signs[name]
-        there[i, :m], counts[i, skipped:m], at[i, :m] = True, True, rows
-    machine = np.array([number for number, *_ in pieces])
-    time = np.array([log.time[rows[skipped:]].mean() for _, log, rows, skipped in pieces])
-    return Windows(u, y, there, counts, machine, time, at, logs[0].step)
-
-
-def _pieces(stretch: np.ndarray, length: int, settling: int) -> list[tuple[np.ndarray, int]]:
-    found = []
-    for number in np.unique(stretch):
-        rows = np.flatnonzero(stretch == number)
-        if not length:
-            found.append((rows, 0))
-            continue
-        for part in np.array_split(rows, max(round(len(rows) / length), 1)):
-            begin = max(part[0] - settling, rows[0])
-            settled = part[0] - begin if part[0] > rows[0] else min(settling, len(part) // 2)
-            found.append((np.arange(begin, part[-1] + 1), settled))
-    return found
-
-
-def _held(column: np.ndarray) -> np.ndarray:
-    """Missing values of an input: those between their neighbours."""
-    known = np.flatnonzero(np.isfinite(column))
-    if not len(known):
-        return np.zeros(len(column))
-    return np.interp(np.arange(len(column)), known, column[known])
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,9 +64,15 @@ class Filter:
     """
 
     def __init__(
-        self, plant: Plant, knobs: Sequence[Knob], given: Sequence[str], read: Sequence[str], drift: np.ndarray
+        self, plant: Equations, knobs: Sequence[Knob], given: Sequence[str], read: Sequence[str], drift: np.ndarray
     ) -> None:
-        self.plant, self.knobs, self.given, self.read, self.drift = plant, tuple(knobs), tuple(given), tuple(read), drift
+        self.plant, self.knobs, self.given, self.read, self.drift = (
+            plant,
+            tuple(knobs),
+            tuple(given),
+            tuple(read),
+            drift,
+        )
         #: Scatter of each reading about the model [K] (reads,).
         self.scatter = np.full(len(read), SCATTER)
         self.nx, self.n_w = plant.nx, plant.nx + plant.nz
@@ -336,9 +255,7 @@ class _Pass:
         z = (inverse @ e[:, :, None])[:, :, 0]
         distance = (z * e).sum(axis=1)
         weight = (TAILS + reads) / (TAILS + distance) * counts
-        likelihood[:m] -= counts * (
-            0.5 * np.linalg.slogdet(V)[1] + 0.5 * (TAILS + reads) * np.log1p(distance / TAILS)
-        )
+        likelihood[:m] -= counts * (0.5 * np.linalg.slogdet(V)[1] + 0.5 * (TAILS + reads) * np.log1p(distance / TAILS))
         if self.slopes:
             g[:m] += weight[:, None] * (by_z.transpose(0, 2, 1) @ z[:, :, None])[:, :, 0]
             expected = counts * (TAILS + reads) / (TAILS + reads + 2)
