@@ -29,6 +29,8 @@ def diagnose(
     causes: int = 2,
     alpha: float = 0.05,
     seed: int = 0,
+    series: File | None = None,
+    reference_series: File | None = None,
     progress: Callable[[str, float], None] = lambda stage, share: None,
 ) -> Findings:
     """Compare measured data with the model of a rig, and name what explains the difference.
@@ -45,6 +47,7 @@ def diagnose(
         causes: how many may act together
         alpha: accepted rate of false alarms
         seed: of everything that is drawn
+        series: logged courses of the tests of `data`, `reference_series` of those of `reference`
         progress: told of each stage and the share done
 
     Raises:
@@ -63,6 +66,8 @@ def diagnose(
         causes=causes,
         alpha=alpha,
         seed=seed,
+        series=_path(series),
+        reference_series=_path(reference_series),
     )
     return diagnosed(read(request), progress)
 

@@ -201,9 +201,9 @@ def _left(S: np.ndarray, r: np.ndarray, kept: np.ndarray, held: np.ndarray) -> n
 def discrepancy(problem: Problem) -> np.ndarray:
     """Covariance (M, M) of a remainder that is smooth in the conditions, of each sensor its own, at size one."""
     o = problem.data
-    sd = np.array([s.repeat_sd for s in o.read])[o.kind]
+    sd, sensor = o.entries.repeat, o.entries.sensor
     whole = np.zeros((problem.m, problem.m))
-    whole[problem.own, problem.own] = alike(o) * (o.kind[:, None] == o.kind) * np.outer(sd, sd)
+    whole[problem.own, problem.own] = alike(o) * (sensor[:, None] == sensor) * np.outer(sd, sd)
     return whole
 
 

@@ -37,7 +37,7 @@ def suspects(problem: Problem, fit: Fit) -> list[Suspect]:
     a = inverse @ (white.L @ e)
     kinds = np.concatenate([1000 * k + o.kind for k, o in enumerate(problem.campaigns)])
     stands = _robust(a / np.sqrt(np.diag(inverse)), kinds)
-    found = [Suspect(Aside(i), float(value)) for i, value in enumerate(stands)]
+    found = [Suspect(Aside(i), float(value)) for i, value in enumerate(stands) if problem.ends[i]]
     for sensor, columns in problem.inputs(fit.look):
         length = np.einsum("mk,mk->k", columns, inverse @ columns)
         along = columns.T @ a

@@ -33,7 +33,8 @@ def pictures(found: Found, h: Hypothesis, quantities: Collection[str]) -> tuple[
     for acting in fit.look.acting:
         others = [a for a in fit.look.acting if a is not acting]
         effect = (fit.look.shown - problem.shown(fit.look.z, others))[problem.own]
-        shares = {int(i): float(np.sqrt(np.mean((effect / sd)[o.kind == i] ** 2))) for i in np.unique(o.kind)}
+        ends = np.unique(o.kind[o.kind < len(o.read)])
+        shares = {int(i): float(np.sqrt(np.mean((effect / sd)[o.kind == i] ** 2))) for i in ends}
         best = max(shares, key=lambda i: shares[i])
         mine, sensor = o.kind == best, o.read[best]
         table = np.full((2, o.campaign.n), np.nan)
