@@ -15,13 +15,14 @@ from gearheat.tools.rigs import load
 from gearheat.tools.settings import adjusted, flat_of
 
 #: 40 W at 20 rad/s, everywhere.
-VALUES = {"P_ref": 40.0, "w_ref": 20.0, "tau_ref": 1500.0, "a": 1.0, "forward": 1.0, "backward": 1.0, "oil_share": 0.5}
+VALUES = {"P_ref": 40.0, "w_ref": 20.0, "tau_ref": 1500.0, "a": 1.0, "c": 0.0, "forward": 1.0, "backward": 1.0}
+VALUES |= {"oil_share": 0.5, "inner_share": 0.5}
 REGIME = {f"{q}_{key}": -1e9 if key == "on" else 1.0 for q in ("w", "tau", "T") for key in ("on", "side", "width")}
 NETS = (
     ("oil.heat", "extra_churning.oil"),
     ("oil.heat", "extra_churning.inner"),
     ("wall.heat", "extra_churning.outer"),
-    ("carrier.flange", "extra_churning.reading"),
+    ("carrier.reading", "extra_churning.reading"),
 )
 
 

@@ -30,7 +30,8 @@ def shares(o: Observed) -> np.ndarray:
 
 def smoothed(o: Observed) -> np.ndarray:
     """Scatter of the smooth curves through all samples (m, m)."""
-    found, place = np.zeros((o.m, o.m)), {}
+    found = np.zeros((o.m, o.m))
+    place: dict[tuple[str, int], list[int]] = {}
     for i in np.flatnonzero(along(o)):
         place.setdefault((o.read[o.entries.sensor[i]].name, int(o.row[i])), []).append(int(i))
     for course in o.campaign.series.courses if o.campaign.series else ():
