@@ -40,7 +40,7 @@ class Sensor:
 
 
 #: Places in a dwell at which its logged course is compared, as shares of the stated dwell.
-PLACES = (0.06, 0.18, 0.4, 0.7)
+PLACES = (0.08, 0.25, 0.6)
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,7 +10,7 @@ from .march import Phases
 #: Shares of a dwell, of a stop and of the time to a steady state [s] where steps end.
 DWELL = (np.arange(1, 8) / 7) ** 1.2
 #: The same where it was logged, with short steps for what warms first, and the steps after which it is read.
-LOGGED = np.sort([0.01, 0.03, 0.11, 0.28, 0.55, *PLACES, 1.0])
+LOGGED = np.sort([0.015, 0.04, 0.15, 0.4, 0.8, *PLACES, 1.0])
 READ = tuple(np.flatnonzero(np.isin(LOGGED, [*PLACES, 1.0])).tolist())
 STOP = np.array([1.0])
 STEADY = 60.0 * 4.0 ** np.arange(14)

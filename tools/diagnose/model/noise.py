@@ -52,6 +52,15 @@ class Term:
         return np.asarray(self.columns @ self.columns.T)
 
 
+    @property
+    def effects(self) -> np.ndarray:
+        """Columns (m, k) of a term that has columns or variances."""
+        if self.variance is not None:
+            return np.diag(np.sqrt(self.variance))[:, self.variance > 0]
+        assert self.columns is not None
+        return self.columns
+
+
 def reading_scatter(o: Observed) -> Iterator[tuple[str, np.ndarray]]:
     """Scatter of each compared sensor from reading to reading: name and variances (m,)."""
     for i, s in enumerate(o.read):
