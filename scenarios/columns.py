@@ -85,7 +85,17 @@ def scale(unit: str, si: str, *, name: str) -> tuple[float, float]:
 
 
 def in_si(values: np.ndarray, unit: str, si: str, *, name: str) -> np.ndarray:
-    """Values (n,) of a column in SI. Raises ScenarioError for a unit of another kind."""
+    """Values of a column in SI (n,).
+
+    Args:
+        values: as they stand (n,)
+        unit: of the column
+        si: the model's unit of what it holds
+        name: of the column, for the message
+
+    Raises:
+        ScenarioError: a unit of another kind, or none where there must be one
+    """
     factor, offset = scale(unit, si, name=name)
     return np.asarray(values * factor + offset)
 

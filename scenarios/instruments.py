@@ -81,7 +81,16 @@ def instruments(
 
 
 def accuracy_of(raw: str, unit: str, name: str) -> float:
-    """A standard deviation "0.35 K" in SI. Raises ScenarioError where it is none."""
+    """A standard deviation in SI.
+
+    Args:
+        raw: as written, "0.35 K"
+        unit: SI unit of what is read; that of a temperature is a difference
+        name: what to call it in a message
+
+    Raises:
+        ScenarioError: it has no fitting unit, or is below zero
+    """
     value = to_si(raw, f"{unit} (difference)" if unit == "K" else unit, name=name)
     if value < 0:
         raise ScenarioError(f"{name} = {raw!r} is below zero. Give one standard deviation.")

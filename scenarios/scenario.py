@@ -184,6 +184,10 @@ def deduced(given: Mapping[str, tuple[str, ...]], names: Iterable[str]) -> dict[
     """The drive that follows from the shaft quantities named ("sun.w"), each kind in place of that of `given`.
 
     As many quantities as before are given: with two torques named, the speed follows.
+
+    Args:
+        given: shaft end -> quantities given there so far
+        names: paths of the shaft quantities to be given
     """
     named = [tuple(name.rsplit(".", 1)) for name in names]
     kinds = {quantity for _, quantity in named}

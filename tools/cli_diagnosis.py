@@ -30,6 +30,8 @@ def diagnose(
     card: Card = None,
     logs: Annotated[list[Path] | None, _logs("Logged samples of the machine.")] = None,
     reference: Annotated[Path | None, typer.Option(help="Readings of the same rig when healthy: CSV as DATA.")] = None,
+    series: Annotated[Path | None, typer.Option(help="Logged courses of the tests of DATA: CSV, one row a sample.")] = None,
+    reference_series: Annotated[Path | None, typer.Option(help="Logged courses of the reference's tests.")] = None,
     reference_logs: Annotated[list[Path] | None, _logs("Logs of the same machine when healthy.")] = None,
     sibling_logs: Annotated[list[Path] | None, _logs("Logs of other machines of its type.")] = None,
     library: Libraries = None,
@@ -51,7 +53,20 @@ def diagnose(
     several = (tuple(paths or ()) for paths in (logs, reference_logs, sibling_logs, library))
     own, healthy, siblings, libraries = several
     request = Request(
-        rig, data, own, card, reference, healthy, siblings, libraries, predict, causes=causes, alpha=alpha, seed=seed
+        rig,
+        data,
+        own,
+        card,
+        reference,
+        healthy,
+        siblings,
+        libraries,
+        predict,
+        causes=causes,
+        alpha=alpha,
+        seed=seed,
+        series=series,
+        reference_series=reference_series,
     )
     diagnosing.diagnose_command(request, diagnosing.Outputs(predictions, json, report, extended), everything=everything)
 

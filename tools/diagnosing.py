@@ -119,7 +119,7 @@ def plan_command(
 
 def _planning() -> Find:
     """The project's planning, imported when it is needed."""
-    from ..diagnose.diagnosis import planned
+    from ..diagnose.planning import planned
 
     return planned
 

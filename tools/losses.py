@@ -23,6 +23,7 @@ from .console import answer, table
 from .contacts import contacts_at, part_with_contacts, print_contacts
 from .measured import Measured, measured_of
 from .points import conditions, outside_of, tell_outside
+from .readings import about
 from .rigs import load
 from .settings import adjusted, choice_paths, flat_of
 from .unchecked import print_unchecked, unchecked

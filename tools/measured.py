@@ -15,8 +15,9 @@ from ..diagnose.campaign.table import Campaign, Sensor
 from ..diagnose.model.lubrication import lubricated
 from ..model.errors import DataError
 from ..scenarios.scenario import Scenario
+from ..scenarios.write import DIAGNOSED
 from .rigs import load
-from .settings import DIAGNOSED, SET
+from .settings import SET
 
 
 @dataclass(frozen=True)

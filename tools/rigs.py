@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ..diagnose.library.extra_parts import EXTRA_PARTS
 from ..model.parts import PARTS
 from ..scenarios import load as rig_files
 from ..scenarios.scenario import Scenario
-from .effects.parts import FIT_PARTS
 
 
 def load(name_or_path: str | Path) -> Scenario:
@@ -19,4 +19,4 @@ def load(name_or_path: str | Path) -> Scenario:
     Raises:
         ScenarioError: everything wrong with the file at once
     """
-    return rig_files.load(name_or_path, PARTS | FIT_PARTS)
+    return rig_files.load(name_or_path, PARTS | EXTRA_PARTS)

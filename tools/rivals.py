@@ -40,7 +40,7 @@ def _one_number(rows: Rows, channel: Channel, drives: Sequence[str]) -> np.ndarr
     """Rise = computed loss power / alpha*A; loss torque = constant share of the given torque."""
     torques = [name for name in drives if name.endswith("_Nm")]
     source = "P_loss_W" if channel.relative_to is not None or not torques else torques[0]
-    return np.abs(numbers(rows, source))[:, None]
+    return np.asarray(np.abs(numbers(rows, source))[:, None])
 
 
 def _linear(rows: Rows, channel: Channel, drives: Sequence[str]) -> np.ndarray:

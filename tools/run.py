@@ -133,7 +133,7 @@ def _curves(scenario: Scenario, study: Measured | None) -> dict[str, str]:
     found: dict[str, str] = {}
     for column, path in sources(scenario, study.warm if study else ()).items():
         found |= {} if path in found.values() else {column: path}
-    return found | {ROOM: path for path in rooms[:1]}
+    return found | ({ROOM: rooms[0]} if rooms else {})
 
 
 def _telling(rows: Rows) -> list[int]:

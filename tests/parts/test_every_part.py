@@ -7,6 +7,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
+from gearheat.diagnose.library.extra_parts import EXTRA_PARTS
 from gearheat.model.core.component import Component, equation
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.declare import Input, Port, declared
@@ -16,12 +17,11 @@ from gearheat.model.laws.rolling import boundary_share
 from gearheat.model.parts import PARTS as PHYSICS
 from gearheat.model.parts.ports import Flange, HeatPort
 from gearheat.model.run.rows import evaluate_at
-from gearheat.tools.effects.parts import FIT_PARTS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 #: Every class of component: the physics, and the fit terms of the diagnosis.
-PARTS = PHYSICS | FIT_PARTS
+PARTS = PHYSICS | EXTRA_PARTS
 
 OIL = dict(nu_40=3.2438e-4, nu_100=3.527e-5, rho_15=859.0, alpha_T=-5.6e-4, s_p=7.382, t_p=0.1335, X_L=0.666)
 FRICTION = dict(count=2.0, inner_share=0.4)
@@ -32,9 +32,10 @@ TEETH = dict(z_1=36.0, z_2=36.0, m_n=0.002, alpha_n=math.radians(20), beta=math.
 TEETH |= dict(Ra=6e-7, k_mu=1.044, line_load="F_bn/l", E=2.06e11, poisson=0.3)
 SURFACE = dict(A=0.8, emissivity=0.9)
 BOX = SURFACE | dict(height=0.3, length=0.4, width=0.2, share_top=0.2, share_bottom=0.2)
-EXTRA = dict(P_ref=50.0, w_ref=20.0, nu_ref=7e-5, tau_ref=2000.0, a=2.0, b=0.2, c=0.5, forward=1.0, backward=0.5)
+EXTRA = dict(P_ref=50.0, w_ref=20.0, tau_ref=2000.0, a=2.0, c=0.5, forward=1.0, backward=0.5)
 EXTRA |= dict(w_on=10.0, w_side=1.0, w_width=0.5, tau_on=-1e4, tau_side=1.0, tau_width=60.0)
-EXTRA |= dict(T_on=340.0, T_side=-1.0, T_width=1.5, film_on=2e-3, oil_share=0.8)
+EXTRA |= dict(T_on=340.0, T_side=-1.0, T_width=1.5, oil_share=0.8, inner_share=0.3)
+WET = EXTRA | dict(nu_ref=7e-5, b=0.2, film_on=2e-3)
 FLANK = dict(w_0=6.4e-4, phi=0.2063, L=0.012, r_convex=0.0192194, r_concave=0.0192307, E_eff=2.308e11, B_tooth=1e-3)
 FLANK |= dict(a=2.2, approach=1e-6, Rz_1=4e-7, Rz_2=4e-7, mu_fluid=0.01, mu_boundary=0.1)
 SUPPORT = dict(span=0.1, x=0.04, r=0.05, axial_share_a=1.0)
@@ -103,10 +104,14 @@ EXAMPLES: dict[str, dict] = {
     "OilJet": dict(G_ref=500.0, e=0.3, w_ref=188.0, nu_ref=1.5e-4),
     "Thermostat": dict(relay=True, T_open=333.0, T_close=328.0, T_width=1.0, t_switch=600.0),
     "Cooler": dict(G_closed=50.0, G_open=900.0, w_on=40.0),
-    "ExtraLoss": EXTRA,
-    "ExtraHeat": EXTRA | dict(wall_share=0.3, inside_share=0.2),
-    "ExtraConductor": dict(G_ref=2.0, dT_ref=35.0, e=0.3, w_ref=20.0, c=0.5, T_on=330.0, T_side=1.0, T_width=1.5)
-    | dict(forward=1.0, backward=0.5),
+    "ExtraHeat": EXTRA,
+    "ExtraDryLoss": EXTRA,
+    "ExtraLoss": WET,
+    "ExtraHabit": WET | dict(k=1.5),
+    "ExtraConductor": dict(G_ref=2.0, dT_ref=35.0, e=0.3, w_ref=20.0, tau_ref=2000.0, c=0.5, forward=1.0, backward=0.5)
+    | dict(T_on=330.0, T_side=1.0, T_width=1.5),
+    "HeatMove": dict(share=0.2),
+    "HeatMoveOfTwo": dict(share=0.2),
 }
 #: Ports without a source: on them a part gives information, or a temperature of its own.
 GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level", "BeltPull.load"} | {
@@ -241,8 +246,8 @@ def test_part_conserves_energy(kind: str, choices: dict, seed: int) -> None:
             assert value >= 0.0, f"{name} = {value} W"
 
 
-#: Parts that turn torque into heat; the extra heater only follows a shaft.
-BRAKING = [k for k, v in PARTS.items() if declared(v, Flange) and declared(v, HeatPort) and k != "ExtraHeat"]
+#: Parts that turn torque into heat.
+BRAKING = [k for k, v in PARTS.items() if declared(v, Flange) and declared(v, HeatPort)]
 
 
 @pytest.mark.parametrize("kind", BRAKING)
@@ -274,7 +279,7 @@ def test_heat_flows_from_hot_to_cold(kind: str) -> None:
 
 #: Parts that rub in a lubricant, as the cold table takes them; a seal rubs the same at any temperature. The rollers of
 #: a cycloidal reducer are in mixed friction at any: test_cycloid.py asks that it stays between its ends.
-COLD = [(kind, {}) for kind in BRAKING if kind not in ("ExtraLoss", "FanLoad", "CycloidalReducer")]
+COLD = [(kind, {}) for kind in BRAKING if kind not in (*EXTRA_PARTS, "FanLoad", "CycloidalReducer")]
 COLD += [(k, {"mixed_friction": False}) for k in ("DeepGrooveBallBearing", "TaperedRollerBearing")]
 #: Speeds [rad/s] and loads as factors of the nominal: forces [N], torques [N.m].
 SPEEDS, LOADS = (1.0, 30.0, 100.0, 300.0), (0.0, 0.5, 1.0, 2.0)

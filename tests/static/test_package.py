@@ -12,7 +12,12 @@ def tracked(*patterns: str) -> set[str]:
     """Files of the project below its packages, as paths inside the wheel."""
     tops = ("model", "fmu", "scenarios", "tools")
     files = [p for top in tops for pattern in patterns for p in (ROOT / top).rglob(pattern)]
-    return {"gearheat/" + p.relative_to(ROOT).as_posix() for p in files if "__pycache__" not in p.parts}
+    return {in_wheel(p) for p in files if "__pycache__" not in p.parts}
+
+
+def in_wheel(path: Path) -> str:
+    """Where a file of the project stands in the wheel: the diagnosis has a package of its own."""
+    return "gearheat/" + path.relative_to(ROOT).as_posix().replace("tools/diagnose/", "diagnose/", 1)
 
 
 def test_wheel_contents(tmp_path: Path) -> None:
@@ -20,9 +25,9 @@ def test_wheel_contents(tmp_path: Path) -> None:
     subprocess.run(command, check=True, capture_output=True)
     (wheel,) = tmp_path.glob("*.whl")
     held = set(zipfile.ZipFile(wheel).namelist())
-    wanted = tracked("*.py", "py.typed", "*.toml", "*.csv", "*.c", "*.h") | {
-        "gearheat/" + p.relative_to(ROOT).as_posix() for p in (ROOT / "tools/templates").glob("*")
-    }
+    folders = ("tools/templates", "tools/diagnose/report/templates", "tools/diagnose/report/vendor")
+    wanted = tracked("*.py", "py.typed", "*.toml", "*.csv", "*.c", "*.h", "*.schema.json")
+    wanted |= {in_wheel(p) for folder in folders for p in (ROOT / folder).glob("*")}
     assert wanted <= held, f"missing in the wheel: {sorted(wanted - held)}"
     assert not [name for name in held if not name.startswith("gearheat")], "the wheel holds foreign files"
 

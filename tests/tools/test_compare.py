@@ -7,6 +7,8 @@ from gearheat.model.errors import DataError
 from gearheat.tools.compare import compare, noise_floor, repeats
 from gearheat.tools.rivals import rivals
 
+DRIVES = ("n_carrier_rpm", "T_carrier_Nm")
+
 
 def test_errors_are_simulated_minus_measured(rows):
     found = {(g.by, g.channel): g for g in compare(rows).groups if g.by == "all"}
@@ -73,14 +75,14 @@ def test_rows_with_nothing_measured_are_refused():
 
 
 def test_linear_rival_finds_the_plane_it_was_given(rows):
-    linear = {score.name: score for score in rivals(rows[:22])}["linear"]
+    linear = {score.name: score for score in rivals(rows[:22], DRIVES)}["linear"]
     assert linear.coefficients["T_oil_K"] == pytest.approx([5.0, 0.1, 0.005])
     assert linear.in_sample["T_oil_K"] == pytest.approx(0.0, abs=1e-9)
     assert linear.leave_one_test_out["loss_Nm"] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_leaving_out_costs_more_than_fitting(rows):
-    for score in rivals(rows):
+    for score in rivals(rows, DRIVES):
         for channel, error in score.in_sample.items():
             assert score.leave_one_test_out[channel] >= error
 
@@ -90,10 +92,10 @@ def test_leave_one_test_out_drops_both_directions(rows):
     for row in rows:
         if row["test"] == 3:
             row["loss_Nm_meas"] += 100.0
-    linear = {score.name: score for score in rivals(rows)}["linear"]
+    linear = {score.name: score for score in rivals(rows, DRIVES)}["linear"]
     assert linear.leave_one_test_out["loss_Nm"] > math.sqrt(2 * 100.0**2 / 22)
     others = [row for row in rows if row["test"] != 3]
-    assert {s.name: s for s in rivals(others)}["linear"].in_sample["loss_Nm"] == pytest.approx(0.0, abs=1e-9)
+    assert {s.name: s for s in rivals(others, DRIVES)}["linear"].in_sample["loss_Nm"] == pytest.approx(0.0, abs=1e-9)
 
 
 def test_constant_alpha_a_is_power_over_rise(rows):
@@ -101,7 +103,7 @@ def test_constant_alpha_a_is_power_over_rise(rows):
         for name in ("T_oil_C_meas", "T_oil2_C_meas", "T_wall_C_meas"):
             row[name] = row["T_amb_C"] + row["P_loss_W"] / 15.9
         row["loss_Nm_meas"] = 0.012 * row["T_carrier_Nm"]
-    score = {s.name: s for s in rivals(rows)}["constant_alphaA"]
+    score = {s.name: s for s in rivals(rows, DRIVES)}["constant_alphaA"]
     assert 1 / score.coefficients["T_oil_K"][0] == pytest.approx(15.9)
     assert score.coefficients["loss_Nm"][0] == pytest.approx(0.012)
     assert score.in_sample["T_wall_K"] == pytest.approx(0.0, abs=1e-9)

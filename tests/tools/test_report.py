@@ -4,12 +4,14 @@ import re
 
 import numpy as np
 import pytest
-from gearheat.tools.compare import CHANNELS, compare
+from gearheat.tools.compare import compare, measured
 from gearheat.tools.plots import breakdown, parity, residuals, warm_up
 from gearheat.tools.rivals import rivals
 from gearheat.tools.summary import error_lines
 
 TEMPERATURES = ("T_oil_C", "T_wall_C", "T_amb_C")
+
+DRIVES = ("n_carrier_rpm", "T_carrier_Nm")
 
 
 @pytest.fixture
@@ -20,8 +22,8 @@ def curves():
 
 def test_every_figure_is_one_svg_with_the_same_bytes_each_time(rows, curves):
     makers = {
-        "parity": lambda: parity(rows, CHANNELS[:1]),
-        "residuals": lambda: residuals(rows, CHANNELS[:1], {"T_oil_K": 0.3}),
+        "parity": lambda: parity(rows, measured(rows)[:1]),
+        "residuals": lambda: residuals(rows, measured(rows)[:1], {"T_oil_K": 0.3}),
         "warm_up": lambda: warm_up(curves, rows),
         "breakdown": lambda: breakdown(rows, ("P_mesh_W", "P_seal_W")),
     }
@@ -33,11 +35,11 @@ def test_every_figure_is_one_svg_with_the_same_bytes_each_time(rows, curves):
 
 
 def test_noise_band_is_drawn_only_where_there_is_a_noise_floor(rows):
-    assert residuals(rows, CHANNELS[:1], {"T_oil_K": 0.3}) != residuals(rows, CHANNELS[:1], {})
+    assert residuals(rows, measured(rows)[:1], {"T_oil_K": 0.3}) != residuals(rows, measured(rows)[:1], {})
 
 
 def test_rivals_and_noise_floor_stand_in_the_summary(rows):
-    head, body = error_lines(compare(rows), rivals(rows))
+    head, body = error_lines(compare(rows), rivals(rows, DRIVES))
     names = [line[0] for line in body]
     for words in ("simulation, all readings", "simulation, A-grid", "noise floor", "linear, left-out tests"):
         assert words in names

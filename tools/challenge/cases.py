@@ -17,9 +17,10 @@ from typing import Any
 
 import numpy as np
 
-from . import files
+from . import files, forms
 from .classes import merged_all
 from .hide import WEAK, Choice, Hidden, causes_to_try, choose, schedule
+from .instruments import INSTRUMENTS
 from .plan import Plan
 from .yardstick import Rivals, Run, Setting, Yardstick
 
@@ -98,7 +99,9 @@ def make_case(
         names = iter([cause] * 8) if cause else causes_to_try(d.names(kind), key, rank)
         yard = Yardstick(setting(d))
         oil = yard.quiet[d.instruments.channels.index("T_oil_C")]
-        rivals = Rivals(yard, {n: partial(d.draw, n, "single", oil) for n in d.names("single")}, rival_rng)
+        families = {n: partial(forms.draw, d.plan, 0.5, n, "single", oil) for n in INSTRUMENTS}
+        families |= {n: partial(d.draw, n, "single", oil) for n in d.names("single")}
+        rivals = Rivals(yard, families, rival_rng)
         band = WEAK if kind == "weak" else d.band
         form = partial(_form, d, kind, oil, hidden_rng)
         hidden = choose(names, Choice(kind, band, form, yard, rivals, hidden_rng))

@@ -10,6 +10,8 @@ CLASSES: tuple[tuple[str, ...], ...] = (
     ("losses.churning", "losses.windage", "losses.oil_level"),
     ("cooling.humidity", "procedure.day_scatter"),
     ("sensor.torque.step", "sensor.torque.since"),
+    ("sensor.ambient.bias", "sensor.ambient.offset"),
+    ("cooling.air", "cooling.fan"),
 )
 _FIRST = {name: names[0] for names in CLASSES for name in names}
 

@@ -1,74 +1,21 @@
 """Faults of the sheets "own" and "foreign": every cause is a family of forms, drawn freely.
 
-A family states what it does with numbers that are drawn (f): a pair is an even range, a list a choice. Faults of the
-torque transducers act on the columns of the files, which are magnitudes.
+A family states what it does with numbers that are drawn (f): a pair is an even range, a list a choice.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 
+from .instruments import BOTH, INSTRUMENTS, LOAD, NU, ROW, T_OIL, UP, Draw, Family, N, added, by_order, family, mixed
 from .plan import Plan
-from .rig import CHANNELS, RATIO, Scene
+from .rig import Scene
 from .textbook.rig import Fault
-
-#: Conditions at which amounts are stated: speed [rpm], torque [N.m], viscosity [mm2/s], oil temperature [degC].
-N, LOAD, NU, T_OIL = 175.0, 2100.0, 80.0, 60.0
-
-ROW = {c: i for i, c in enumerate(CHANNELS)}
-UP, BOTH = (1,), (1, -1)
-
-
-@dataclass(frozen=True)
-class Draw:
-    """Chance, and what a draw may know of the campaign.
-
-    Args:
-        rng: source of chance
-        n, load, oil: speeds, torques and healthy oil temperatures of the readings
-        tests: number of tests
-        inner: share of gears and shafts in the heat capacity of all but the oil
-    """
-
-    rng: np.random.Generator
-    n: np.ndarray
-    load: np.ndarray
-    oil: np.ndarray
-    tests: int
-    inner: float
-
-    def numbers(self, spans: Mapping[str, Any]) -> SimpleNamespace:
-        """One of each list, a number of each pair, a middling quantile of "n", "load", "oil"; and chance by test."""
-        found: dict[str, Any] = {"z": self.rng.normal(0.0, 1.0, self.tests), "inner": self.inner}
-        for name, span in spans.items():
-            if isinstance(span, list):
-                found[name] = span[int(self.rng.integers(len(span)))]
-            elif isinstance(span, str):
-                found[name] = float(np.quantile(getattr(self, span), self.rng.uniform(0.3, 0.7)))
-            else:
-                found[name] = float(f"{self.rng.uniform(*span):.4g}")
-        return SimpleNamespace(**found)
-
-
-Family = Callable[[Draw], Fault]
-Act = Callable[[Scene, np.ndarray, SimpleNamespace], Any]
-Read = Callable[[np.ndarray, Plan, np.ndarray, SimpleNamespace], Any]
-
-
-def _family(high: float, unit: str, signs: tuple[int, ...], stage: str, what: Any, spans: Mapping[str, Any]) -> Family:
-    """Of faults that do something at a stage with the numbers that are drawn."""
-
-    def draw(d: Draw) -> Fault:
-        f = d.numbers(spans)
-        form = {name: getattr(f, name) for name in spans}
-        return Fault("", high, unit, {stage: lambda *arguments: what(*arguments, f)}, form, signs)
-
-    return draw
 
 
 def _brake(high: float, shape: Callable[[Scene, Any], Any], *places: str, unit: str = "W", **spans: Any) -> Family:
@@ -79,7 +26,7 @@ def _brake(high: float, shape: Callable[[Scene, Any], Any], *places: str, unit: 
         first, *others = places
         s.brake(power, {first: f.to, **{place: (1 - f.to) / len(others) for place in others}})
 
-    return _family(high, unit, UP, "act", act, spans)
+    return family(high, unit, UP, "act", act, spans)
 
 
 def _scale(high: float, names: str, shape: Callable[[Scene, Any], Any], signs: Any = BOTH, **spans: Any) -> Family:
@@ -89,11 +36,7 @@ def _scale(high: float, names: str, shape: Callable[[Scene, Any], Any], signs: A
         for name in (names or f.what).split():
             s.scale(name, np.exp(np.clip(a * shape(s, f), -4.0, 2.0)))
 
-    return _family(high, "ln", signs, "act", act, spans)
-
-
-def _at(table: np.ndarray, order: np.ndarray) -> np.ndarray:
-    return np.asarray(table[order.astype(int) - 1])
+    return family(high, "ln", signs, "act", act, spans)
 
 
 def step(x: np.ndarray, threshold: float, width: float) -> np.ndarray:
@@ -162,64 +105,8 @@ def _split(s: Scene, a: np.ndarray, f: Any) -> None:
 
 def _early(dwell: np.ndarray, plan: Plan, a: np.ndarray, f: Any) -> None:
     """Readings before the stated time: in both halves or one, evenly or by chance."""
-    hurry = np.abs(_at(f.z, plan.order)) if f.chance else 1.0
+    hurry = np.abs(by_order(f.z, plan.order)) if f.chance else 1.0
     dwell *= np.exp(-np.minimum(a * np.array(f.halves)[:, None] * hurry, 3.5))
-
-
-#: Columns of a kind of instrument with their scale, and its largest error.
-KINDS: Mapping[str, tuple[list[tuple[str, float]], float]] = {
-    "torque": ([("T_carrier_Nm", 1.0), ("T_sun_Nm", 1.0 / RATIO)], 22.0),
-    "oil_temp": ([("T_oil_C", 1.0)], 9.0),
-    "wall_temp": ([("T_wall_C", 1.0)], 9.0),
-    "ambient": ([("T_amb_C", 1.0)], 9.0),
-}
-
-
-def _added(kind: str, weight: Callable[[Plan, Any], Any], **spans: Any) -> Family:
-    """An error of an instrument [N.m at the carrier, or K] that is an amount times a weight over tests (2, columns)."""
-    columns, high = KINDS[kind]
-
-    def read(shown: np.ndarray, plan: Plan, a: np.ndarray, f: SimpleNamespace) -> None:
-        column, scale = f.column
-        shown[ROW[column]] += scale * a * weight(plan, f)
-
-    return _family(high, "N.m" if kind == "torque" else "K", BOTH, "read", read, {"column": columns, **spans})
-
-
-def _constant(kind: str) -> Family:
-    return _added(kind, lambda plan, f: 1.0)
-
-
-def _since(kind: str) -> Family:
-    """From a test on, creeping back or not."""
-
-    def weight(plan: Plan, f: SimpleNamespace) -> np.ndarray:
-        since = plan.progress - f.at
-        return np.where(since > 0, np.exp(-f.creep * np.maximum(since, 0.0)), 0.0)
-
-    return _added(kind, weight, at=(0.25, 0.75), creep=[0.0, 0.0, 0.3])
-
-
-def _one_way(kind: str) -> Family:
-    return _added(kind, lambda plan, f: np.array(f.parts)[:, None], parts=[(1.0, 0.0), (0.0, 1.0), (1.0, -1.0)])
-
-
-def _walk(kind: str) -> Family:
-    return _added(kind, lambda plan, f: _at(np.cumsum(f.z), plan.order) / np.sqrt(plan.tests / 2.0))
-
-
-def _mixed(high: float, what: Callable[[np.ndarray, Any], tuple[str, Any]], signs: Any = BOTH, **spans: Any) -> Family:
-    """An error that follows other readings: a column, and what an amount of one adds to it."""
-
-    def read(shown: np.ndarray, plan: Plan, a: np.ndarray, f: SimpleNamespace) -> None:
-        column, error = what(shown, f)
-        shown[ROW[column]] += a * error
-
-    return _family(high, "1", signs, "read", read, spans)
-
-
-def _gain(high: float, columns: list[str], about: list[float]) -> Family:
-    return _mixed(high, lambda y, f: (f.column, y[ROW[f.column]] - f.about), column=columns, about=about)
 
 
 _RUB: dict[str, Any] = {"to": (0.2, 0.95), "unit": "N.m"}
@@ -238,7 +125,7 @@ CAUSES: Mapping[str, Family] = {
         n_0=(50.0, 150.0),
     ),
     "losses.oil_viscosity": _scale(1.6, "viscosity", lambda s, f: 1 + f.p * (s.T["oil"] - T_OIL) / 40, p=(-0.5, 0.5)),
-    "losses.oil_level": _family(
+    "losses.oil_level": family(
         400.0, "W", UP, "act", _overfilled, {"p": (1.4, 2.6), "q": (0.0, 0.4), "wet": (0.0, 0.3)}
     ),
     "losses.bearing_preload": _brake(14.0, _rubbing, "oil", "body", "wall", p=(0.0, 0.35), tilt=(-0.65, 0.45), **_RUB),
@@ -252,7 +139,7 @@ CAUSES: Mapping[str, Family] = {
         q=[0.0],
         parts=[(0.0, 1.0), (1.0, 0.0), (-0.5, 0.5)],
     ),
-    "losses.film_starvation": _family(
+    "losses.film_starvation": family(
         1.4,
         "1",
         UP,
@@ -269,7 +156,7 @@ CAUSES: Mapping[str, Family] = {
         to=(0.2, 0.8),
         p=(2.1, 3.3),
     ),
-    "heat.external_source": _family(
+    "heat.external_source": family(
         400.0,
         "W",
         UP,
@@ -284,27 +171,23 @@ CAUSES: Mapping[str, Family] = {
     "cooling.oil_wall": _scale(2.2, "oil_wall", lambda s, f: (np.maximum(s.n, 20.0) / N) ** f.p, p=(-0.5, 0.6)),
     "cooling.humidity": _scale(0.35, "conv", _humid, p=(-0.4, 0.4)),
     "thermal.mass": _scale(1.0, "", lambda s, f: 1.0, what=["cap_out cap_in", "cap_out cap_in", "cap_out"]),
-    "thermal.split": _family(1.2, "ln", BOTH, "act", _split, {}),
-    "sensor.torque.offset": _constant("torque"),
-    "sensor.torque.gain": _gain(0.015, ["T_carrier_Nm", "T_sun_Nm"], [0.0]),
-    "sensor.torque.drift": _added("torque", lambda plan, f: plan.progress**f.p, p=[0.5, 0.7, 1.0]),
-    "sensor.torque.step": _since("torque"),
-    "sensor.torque.by_direction": _one_way("torque"),
-    "sensor.torque.random_walk": _walk("torque"),
-    "sensor.oil_temp.offset": _constant("oil_temp"),
-    "sensor.oil_temp.gain": _gain(0.15, ["T_oil_C"], [0.0, 20.0, 25.0]),
-    "sensor.oil_temp.position": _mixed(
+    "thermal.split": family(1.2, "ln", BOTH, "act", _split, {}),
+    **{
+        name: INSTRUMENTS[name]
+        for kind, errors in (
+            ("torque", "offset gain drift since by_direction random_walk"),
+            ("oil_temp", "offset gain since by_direction"),
+            ("wall_temp", "offset since"),
+            ("ambient", "offset since"),
+            ("speed", "gain"),
+        )
+        for name in (f"sensor.{kind}.{error}" for error in errors.split())
+    },
+    "sensor.oil_temp.position": mixed(
         0.5, lambda y, f: ("T_oil_C", y[ROW[f.other]] - y[ROW["T_oil_C"]]), UP, other=["T_wall_C", "T_amb_C"]
     ),
-    "sensor.oil_temp.since": _since("oil_temp"),
-    "sensor.oil_temp.by_direction": _one_way("oil_temp"),
-    "sensor.wall_temp.offset": _constant("wall_temp"),
-    "sensor.wall_temp.since": _since("wall_temp"),
-    "sensor.ambient.bias": _constant("ambient"),
-    "sensor.ambient.heated": _mixed(0.35, _HEATED, UP, p=(0.8, 1.4)),
-    "sensor.ambient.since": _since("ambient"),
-    "sensor.speed.gain": _gain(0.12, ["n_carrier_rpm"], [0.0]),
-    "procedure.not_stationary": _family(
+    "sensor.ambient.heated": mixed(0.35, _HEATED, UP, p=(0.8, 1.4)),
+    "procedure.not_stationary": family(
         2.6, "ln", UP, "pace", _early, {"halves": [(1, 1), (1, 1), (1, 0), (0, 1)], "chance": [False, False, True]}
     ),
     "procedure.order": _scale(
@@ -314,14 +197,14 @@ CAUSES: Mapping[str, Family] = {
         what=["mesh", "mesh bearing seal", "conv rad"],
         tau=[None, 0.2, 0.4],
     ),
-    "procedure.day_scatter": _scale(0.25, "conv rad", lambda s, f: _at(f.z, s.order), UP),
+    "procedure.day_scatter": _scale(0.25, "conv rad", lambda s, f: by_order(f.z, s.order), UP),
 }
 
 #: What has no name: a fan by thermostat on some days, a seal that rubs in waves, resonance, a transducer
 #: that remembers where its load came from, an oil sensor that the drive disturbs.
 OUTSIDE: Mapping[str, Family] = {
     "outside.thermostat_fan": _scale(
-        1.3, "conv", lambda s, f: (_at(f.z, s.order) > 0) * step(s.T["wall"], f.on - 3.0, 1.5), UP, on="oil"
+        1.3, "conv", lambda s, f: (by_order(f.z, s.order) > 0) * step(s.T["wall"], f.on - 3.0, 1.5), UP, on="oil"
     ),
     "outside.swinging_seal": _brake(
         14.0,
@@ -343,11 +226,11 @@ OUTSIDE: Mapping[str, Family] = {
         at="n",
         width=(8.0, 20.0),
     ),
-    "outside.hysteresis": _added(
+    "outside.hysteresis": added(
         "torque",
-        lambda p, f: np.sign(_at(f.z, p.order)) * np.array([[1.0], [-0.6]]) * 4 * (x := p.load / 3000.0) * (1 - x),
+        lambda p, f: np.sign(by_order(f.z, p.order)) * np.array([[1.0], [-0.6]]) * 4 * (x := p.load / 3000.0) * (1 - x),
     ),
-    "outside.crosstalk": _added(
+    "outside.crosstalk": added(
         "oil_temp", lambda p, f: (p.n * p.load / (N * LOAD)) ** 2 * np.array([[1.0], [f.back]]), back=(-1.0, -0.3)
     ),
 }
@@ -372,7 +255,7 @@ def names(kind: str) -> Sequence[str]:
 def draw(plan: Plan, inner: float, cause: str, kind: str, oil: np.ndarray, rng: np.random.Generator) -> Fault:
     """A fault of a cause in a form for a kind of case; oil: healthy oil temperatures."""
     d = Draw(rng, plan.n.ravel(), plan.load.ravel(), oil.ravel(), plan.tests, inner)
-    fault = replace({**CAUSES, **OUTSIDE}[cause](d), cause=cause)
+    fault = replace({**INSTRUMENTS, **CAUSES, **OUTSIDE}[cause](d), cause=cause)
     return _limited(fault, d) if kind == "regime" else fault
 
 

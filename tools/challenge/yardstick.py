@@ -25,7 +25,6 @@ from scipy.optimize import nnls
 from .classes import merged
 from .plan import Plan
 
-
 #: A fault, the columns in which it acts, and how much of it in each of them.
 Acting = tuple[Any, slice, np.ndarray]
 

@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from .api import diagnose as diagnose
+    from .api import plan as plan
 
-__all__ = ["diagnose"]
+__all__ = ["diagnose", "plan"]
 
 
 def __getattr__(name: str) -> Any:

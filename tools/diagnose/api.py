@@ -6,8 +6,10 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 
 from .diagnosis import diagnosed
+from .planning import planned
 from .report.findings import Findings
-from .request import Request, read
+from .report.plan import Plan
+from .request import PlanRequest, Request, read, read_plan
 
 File = str | Path
 Files = File | Sequence[File] | None
@@ -27,6 +29,8 @@ def diagnose(
     causes: int = 2,
     alpha: float = 0.05,
     seed: int = 0,
+    series: File | None = None,
+    reference_series: File | None = None,
     progress: Callable[[str, float], None] = lambda stage, share: None,
 ) -> Findings:
     """Compare measured data with the model of a rig, and name what explains the difference.
@@ -43,6 +47,7 @@ def diagnose(
         causes: how many may act together
         alpha: accepted rate of false alarms
         seed: of everything that is drawn
+        series: logged courses of the tests of `data`, `reference_series` of those of `reference`
         progress: told of each stage and the share done
 
     Raises:
@@ -61,8 +66,38 @@ def diagnose(
         causes=causes,
         alpha=alpha,
         seed=seed,
+        series=_path(series),
+        reference_series=_path(reference_series),
     )
     return diagnosed(read(request), progress)
+
+
+def plan(
+    rig: File,
+    *,
+    separate: Sequence[str] = (),
+    card: File | None = None,
+    points: File | None = None,
+    library: Files = None,
+    reference: bool = False,
+    progress: Callable[[str, float], None] = lambda stage, share: None,
+) -> Plan:
+    """What a campaign will tell of every cause, and which experiments tell some causes apart; no data are needed.
+
+    Args:
+        rig: name of a shipped rig, or path of a rig file
+        separate: causes to tell apart
+        card: accuracies, priors and protocol
+        points: table of conditions; a grid over the rig's range without it
+        library: files with further causes
+        reference: whether there is a healthy campaign of the same points as well
+        progress: told of each stage and the share done
+
+    Raises:
+        GearheatError: all problems of files and options at once
+    """
+    request = PlanRequest(str(rig), ",".join(separate), _path(card), _path(points), _paths(library), reference)
+    return planned(read_plan(request), progress)
 
 
 def _path(file: File | None) -> Path | None:

@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
-from .answer.decide import decided
-from .answer.gain import gains
-from .infer.search import searched
+from .answer.decide import Decision, decided
+from .answer.gain import Gain, gains
+from .infer.search import Found, searched
 from .logs import diagnosed_logs
-from .report import compose, compose_data, compose_pictures, compose_points, compose_rig
+from .report import compose, compose_data, compose_design, compose_pictures, compose_points, compose_rig
 from .report.channels import channel
-from .report.findings import Findings
+from .report.findings import Findings, Invisible
 from .report.words import with_words
 from .request import Inputs
-from .setting import setting
+from .setting import Setting, setting
 
 Progress = Callable[[str, float], None]
 
@@ -43,16 +43,22 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         lambda stage, share: progress(stage, 0.05 + 0.75 * share),
     )
     decision = decided(found)
-    told = (
-        []
-        if decision.verdict == "consistent"
-        else gains(found, request.seed, lambda s: progress("held-out readings", 0.82 + 0.13 * s))
-    )
-    gain, grouped = compose.gains(found, told)
+    wrong = decision.verdict != "consistent"
+    held = gains(found, request.seed, lambda share: progress("readings left out", 0.82 + 0.13 * share)) if wrong else []
     progress("what was found", 0.95)
-    leader = decision.leader
+    findings = _composed(inputs, made, found, decision, held)
+    progress("done", 1.0)
+    return with_words(findings)
+
+
+def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, held: Sequence[Gain]) -> Findings:
+    """The findings without their words."""
+    request, data, leader = inputs.request, found.problem.data.campaign, decision.leader
+    wrong = decision.verdict != "consistent"
+    gain, grouped = compose.gains(found, held)
+    sets = compose_design.sets(made.causes, found, decision) if wrong else ()
     rows = compose_data.rows(found, leader)
-    findings = Findings(
+    return Findings(
         verdict=decision.verdict,
         about=compose.about(data, made.scenario.name, inputs.reference, request.seed),
         test=compose.alarm(found, decision, request.alpha),
@@ -60,19 +66,22 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         answers=compose.answers(decision.answers),
         causes=compose.causes(made.causes, found, decision),
         remainder=compose.remainder(found, decision),
-        data_quality=compose_data.data_quality(made, found, leader).model_copy(
-            update={"repeated": compose_points.repeated(found)}
-        ),
+        data_quality=compose_data.data_quality(made, found, leader),
         impact=compose.impacts(found, leader),
-        channels=tuple(channel(s) for s in data.sensors),
         gain=gain,
         gain_grouped=grouped,
+        channels=tuple(channel(s) for s in data.sensors),
+        played=compose_design.played(found, decision) if wrong else {},
+        confusable=tuple(s.causes for s in sets),
+        sets=sets,
+        next_experiment=compose_design.next_experiments(made, found, decision) if wrong else (),
+        isolability=compose_design.isolability(compose_design.seen(found)),
         rows=rows,
+        views=compose_pictures.views(found),
         pictures=compose_pictures.pictures(found, leader, rows.quantities),
         calibrated=compose_rig.calibrated(made, found, leader),
         extended_rig=compose_rig.rig_file(made, found, leader),
-        predictions=compose_points.predictions(made, found, leader, inputs.points) if inputs.points else (),
+        predictions=compose_points.predictions(made, found, inputs.points) if inputs.points else (),
+        invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in inputs.invisible.items()),
         warnings=inputs.warnings,
     )
-    progress("done", 1.0)
-    return with_words(findings)

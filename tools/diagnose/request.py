@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import TypeVar
 
@@ -15,6 +15,8 @@ from .campaign.card import Card, read_card
 from .campaign.checks import outlying, same_as_reference, too_small
 from .campaign.invisible import invisible
 from .campaign.read import read_campaign
+from .campaign.samples import read_samples
+from .campaign.series import series_of
 from .campaign.table import Campaign
 from .library.extra_parts import EXTRA_PARTS
 
@@ -22,6 +24,11 @@ T = TypeVar("T")
 
 #: Causes that may be looked for together.
 MOST = 8
+#: What the user should know of a series that has nothing to be compared with.
+ALONE = (
+    "--series without --reference-series: how this machine warms when it is healthy is not known. The series tells"
+    " the length of the dwells, and of the rest only what stands out of a remainder that fades along each course."
+)
 
 
 @dataclass(frozen=True)
@@ -40,6 +47,7 @@ class Request:
         causes: how many may act together
         alpha: accepted rate of false alarms
         seed: of everything that is drawn
+        series: logged courses of the tests of `data`, `reference_series` of those of `reference`
     """
 
     rig: str
@@ -54,10 +62,13 @@ class Request:
     causes: int = 2
     alpha: float = 0.05
     seed: int = 0
+    series: Path | None = None
+    reference_series: Path | None = None
 
     def files(self) -> list[tuple[str, Path]]:
         """The files that are read, each with the name of its option."""
         single = {"DATA": self.data, "--card": self.card, "--reference": self.reference, "--predict": self.predict}
+        single |= {"--series": self.series, "--reference-series": self.reference_series}
         several = {"--logs": self.logs, "--reference-logs": self.reference_logs, "--sibling-logs": self.sibling_logs}
         several["--library"] = self.libraries
         found = [(name, path) for name, path in single.items() if path is not None]
@@ -75,6 +86,10 @@ class Request:
             <= self.causes
             <= MOST,
             f"--seed {self.seed} is below zero. Give 0 or more.": self.seed < 0,
+            "--series needs the readings of the same tests. Name their table, too.": self.series is not None
+            and self.data is None,
+            "--reference-series needs the readings of the same tests. Give --reference, too.": self.reference is None
+            and self.reference_series is not None,
         }
         return [text for text, wrong in checks.items() if wrong] + _lost(self.files())
 
@@ -94,6 +109,9 @@ class Inputs:
     def warnings(self) -> tuple[str, ...]:
         """What the user should know of the files."""
         tables = [c.warnings for c in (self.data, self.reference, self.points) if c is not None]
+        tables += [c.series.warnings for c in (self.data, self.reference) if c is not None and c.series is not None]
+        if self.reference is not None and self.data is not None and self.data.series and not self.reference.series:
+            tables.append((ALONE,))
         if self.data is not None and self.points is not None:
             tables.append(tuple(outlying(self.data, self.points)))
         return tuple(dict.fromkeys(text for found in (self.card.warnings, *tables) for text in found))
@@ -101,7 +119,7 @@ class Inputs:
     @property
     def invisible(self) -> Mapping[str, str]:
         """Cause -> why the readings cannot show it."""
-        return {} if self.data is None else invisible(self.data, logged=bool(self.request.logs))
+        return {} if self.data is None else invisible(self.data, logged=bool(self.request.logs or self.data.series))
 
 
 def read(request: Request) -> Inputs:
@@ -114,7 +132,8 @@ def read(request: Request) -> Inputs:
         DataError: all problems of files and options at once
     """
     reader = _Reader(request.rig, request.card, request.problems())
-    data, reference = reader.table(request.data), reader.table(request.reference)
+    data = reader.logged(reader.table(request.data), request.series)
+    reference = reader.logged(reader.table(request.reference), request.reference_series)
     points = reader.table(request.predict, points=True)
     if data is not None:
         reader.problems += [] if request.logs else too_small(data)
@@ -220,6 +239,16 @@ class _Reader:
             return None
         card = self.card or Card()  # a table can be read where the card is wrong, to tell the problems of both
         return self._tried(lambda: read_campaign(path, scenario, card, points=points))
+
+    def logged(self, campaign: Campaign | None, path: Path | None) -> Campaign | None:
+        """A table with the logged courses of its tests, where there are any."""
+        scenario, card = self.scenario, self.card or Card()
+        if path is None or scenario is None or not path.is_file():
+            return campaign
+        samples = self._tried(lambda: read_samples(path, scenario, card))
+        if campaign is None or samples is None:
+            return campaign
+        return replace(campaign, series=self._tried(lambda: series_of(samples, campaign)))
 
     def checked(self) -> tuple[Scenario, Card]:
         """Rig and card, or all problems."""

@@ -30,7 +30,7 @@ HELICAL: dict[str, Effect] = {
     "oil probe since a test": stepped("sensor.oil_temp.since", "T_oil", 1.0, 0.55),
     "torque gain": gain("sensor.torque.gain", "T_input", 0.012),
     "room probe heated": warmed("T_amb", "T_oil", 0.3),
-    "neighbour": heated(60.0, {"surface": 0.8, "wall": 0.2}),
+    "neighbour": heated(25.0, {"surface": 0.8, "wall": 0.2}),
 }
 
 HARMONIC: dict[str, Effect] = {

@@ -14,15 +14,19 @@ from diagnose.hidden.score import score
 ALL = os.environ.get("GEARHEAT_HIDDEN", "") == "all"
 
 CASES = [(rig, name) for rig, effects in HIDDEN.items() for name in effects]
-#: One of each group where not all are asked for: losses, cooling and heat, an instrument, the procedure.
+#: One of each group where not all are asked for: cooling, an instrument, a loss; the page of the README has churning.
 FEW = [
-    ("helical", "churning"),
-    ("helical", "air"),
-    ("harmonic", "torque offset"),
-    ("planetary", "early"),
+    ("helical", "foundation"),
+    ("helical", "oil probe since a test"),
+    ("planetary", "churning"),
 ]
 #: What is answered instead where neither the first answer nor the set holds the truth.
-MISSED: dict[tuple[str, str], str] = {}
+MISSED: dict[tuple[str, str], str] = {
+    (
+        "helical",
+        "seals",
+    ): "consistent; nothing 0.93: half as much again is 2.7 standard deviations of what the card grants",
+}
 CLEANS = range(CLEAN, CLEAN + (20 if ALL else 1))
 #: Clean campaigns that raise an alarm.
 ALARMED: dict[int, str] = {}

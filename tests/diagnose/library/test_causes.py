@@ -1,6 +1,7 @@
 """Every cause on every rig: sound forms, symbols and numbers alike, nothing at size zero."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
@@ -8,6 +9,7 @@ import pytest
 from gearheat.diagnose.library.cause import Row, as_array
 from gearheat.diagnose.library.check import parameters, problems
 from gearheat.diagnose.library.extra_parts import EXTRA_PARTS
+from gearheat.diagnose.library.registry import library
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.steady import steady
@@ -132,6 +134,38 @@ def test_which_causes_a_rig_has(case):
         x.id for x in case("planetary").causes
     }
     assert {"cooling.thermostat", "cooling.cooler"} <= {x.id for x in case("fzg_four_square").causes}
+
+
+def test_every_cause_says_what_it_is_and_what_exposes_it(case):
+    c = case("planetary")
+    names = {s.name for s in c.sensors}
+    for x in c.causes:
+        assert x.doc.endswith(".") and x.exposes and x.size.doc and 0 < x.common <= 1
+        assert x.acts_on in {"", "rise", "order", "humidity", *names}
+        assert not x.like or ": " in x.like  # the class and why
+        assert all(shape.doc and shape.low < shape.high for f in x.forms for shape in f.shapes)
+
+
+def test_where_nothing_varies_there_are_no_thresholds(case):
+    c = case("helical_two_stage")
+    one = replace(c.ranges, low=c.ranges.mid, high=c.ranges.mid)
+    causes = library(c.roles, one, c.sensors)
+    assert [p for x in causes for p in problems(x, c.scenario.spec, c.sensors, one)] == []
+    limited = {x.id for x in causes for f in x.forms if f.regime and f.regime["quantity"] != "order above"}
+    assert limited == set()
+
+
+def test_classes_that_count_as_one_answer(case):
+    families = {}
+    for x in case("planetary").causes:
+        families.setdefault(x.family, set()).add(x.id)
+    shared = {frozenset(ids) for ids in families.values() if len(ids) > 1}
+    assert shared == {
+        frozenset({"losses.churning", "losses.windage", "losses.oil_level"}),
+        frozenset({"losses.bearing_preload", "losses.seal_drag"}),
+        frozenset({"cooling.air", "cooling.fan"}),
+        frozenset({"cooling.humidity", "procedure.day_scatter"}),
+    }
 
 
 def test_what_is_not_known_of_the_rows_is_left_out(without):

@@ -53,6 +53,18 @@ def test_the_card_says_how_uncertain(case):
     assert least.sd == pytest.approx(0.3) and set(least.paths.values()) == {1.0}
 
 
+def test_a_card_may_hold_parameters_fast(case):
+    assert named(case, "planetary", {"mu": 0.0})["mesh friction"].sd == 0.0
+    mixed = named(case, "rv_stage", {"mu": 0.0, "HelicalGearPair.k_mu": 0.2})["mesh friction"]
+    assert mixed.sd == 0.2 and mixed.paths == {"stage_1.k_mu": 1.0, "mesh.mu_fluid": 0.0, "mesh.mu_boundary": 0.0}
+
+
+def test_an_emissivity_makes_up_for_the_area_however_uncertain(case):
+    convection = named(case, "helical_two_stage", {"FinnedBoxCooling.A": 0.3})["convection"]
+    assert convection.sd == 0.3
+    assert convection.paths["cooling.A"] == -convection.paths["cooling.emissivity"] == 1.0
+
+
 def test_the_rig_file_says_how_uncertain_unless_the_card_does(case):
     stated = {"foot.G": 0.19}
     assert named(case, "planetary", None, stated)["foundation"].sd == pytest.approx(0.19 / 9.332)

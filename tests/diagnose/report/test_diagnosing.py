@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import json
+from importlib.resources import files
 from pathlib import Path
 
 import pytest
 from fabricated_findings import explained
-from gearheat.diagnose.report.findings import Findings, Prediction, json_schema
+from gearheat.diagnose.report.findings import Findings, Prediction
 from gearheat.diagnose.request import Inputs, Request
 from gearheat.model.errors import DataError
 from gearheat.scenarios.load import RIGS
@@ -35,7 +36,8 @@ def test_everything_is_written_whole(tmp_path: Path, capsys: pytest.CaptureFixtu
     diagnose_command(Request(RIG, DATA, predict=DATA), outputs, infer)
     assert (tmp_path / "p.csv").read_text() == "point,T_oil_nominal_C,T_oil_extended_C\n1,60.000,61.500\n"
     found = json.loads((tmp_path / "o.json").read_text())
-    validate(found, json_schema())
+    schema = files("gearheat.diagnose.report").joinpath("diagnosis.schema.json")
+    validate(found, json.loads(schema.read_text(encoding="utf-8")))
     assert found["about"]["readings"] > 10
     assert (tmp_path / "o.html").read_text().startswith("<!doctype html>")
     assert (tmp_path / "o.toml").read_text() == 'kind = "network"\n'

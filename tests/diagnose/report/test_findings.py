@@ -7,14 +7,17 @@ import numpy as np
 import pytest
 from fabricated_findings import KINDS, explained
 from gearheat.diagnose.report.evidence import Rows
-from gearheat.diagnose.report.findings import Alarm, Findings, Hypothesis, as_object, json_schema
+from gearheat.diagnose.report.findings import Alarm, Findings, Hypothesis, as_object
 from pydantic import ValidationError
 
 SHIPPED = files("gearheat.diagnose.report").joinpath("diagnosis.schema.json")
 
 
 def test_the_shipped_schema_is_that_of_the_models() -> None:
-    assert json.loads(SHIPPED.read_text(encoding="utf-8")) == json_schema()
+    head = {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": "gearheat.diagnosis/2"}
+    wanted = head | Findings.model_json_schema(by_alias=True, mode="serialization")
+    text = json.dumps(wanted, indent=1, ensure_ascii=False) + "\n"
+    assert SHIPPED.read_text(encoding="utf-8") == text, f"the file should hold:\n{text}"
 
 
 @pytest.mark.parametrize("kind", KINDS)

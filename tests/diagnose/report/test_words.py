@@ -6,7 +6,7 @@ import pytest
 from fabricated_findings import AIR, CHURNING, KINDS, ambiguous, cause, clean, explained, spoiled, unexplained
 from gearheat.diagnose.report import phrases
 from gearheat.diagnose.report.estimate import Estimate
-from gearheat.diagnose.report.findings import Alarm, Answer, Played, Remainder, RemainderChannel
+from gearheat.diagnose.report.findings import Alarm, Answer, CauseSet, Played, Remainder, RemainderChannel
 from gearheat.diagnose.report.names import listed, name_of
 from gearheat.diagnose.report.screen import text
 from gearheat.diagnose.report.words import contradictions, with_words
@@ -57,6 +57,13 @@ def test_a_set_is_left_open_with_the_experiment_that_closes_it() -> None:
     assert "some points in a room of 5 degC" in said.do
 
 
+def test_look_alikes_that_the_data_rule_out_are_not_left_open() -> None:
+    one = Answer(causes=((CHURNING,),), probability=0.96)
+    alike = CauseSet(causes=(CHURNING, "losses.windage", "sensor.torque.offset"), distance=0.8)
+    said = explained(answers=(one,), sets=(alike,)).says.cannot_be
+    assert "cannot tell churning of the oil from windage." in said
+
+
 def test_what_is_outside_the_library_names_its_channel() -> None:
     said = unexplained().says
     assert "no cause of the library explains (94 %), seen in T_oil (1.9 K)" in said.verdict
@@ -68,7 +75,7 @@ def test_the_data_come_before_the_cause() -> None:
     assert said.do.startswith("Check the reading in row 17 (T_oil)")
     assert said.data[0].startswith("Row 17 (line 18, point 17): T_oil shows 84.2 °C, the other readings say 71.3 °C")
     assert said.data[1].startswith("The rig differs from its file: heat capacity of the gears (0.17 times")
-    assert "scatters by 1 K; the card says 0.4 (2.5 times)" in said.data[2]
+    assert "A reading of T_amb scatters by 1 K; the card says 0.4 K (2.5 times)." in said.data[2]
     assert "smaller than its stated scatter (p = 0.998)" in said.data[3]
 
 

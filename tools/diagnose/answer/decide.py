@@ -11,7 +11,7 @@ from scipy.special import logsumexp
 from scipy.stats import chi2
 
 from ..infer.evidence import White
-from ..infer.search import Found, Hypothesis, Search
+from ..infer.search import Found, Hypothesis
 
 Verdict = Literal["consistent", "explained", "ambiguous", "unexplained"]
 #: The name of whatever the library lacks.
@@ -143,7 +143,7 @@ class _Chances:
 
 def _asked(found: Found) -> list[tuple[str, ...]]:
     """The causes of each hypothesis without those whose Bayes factor beside the others is below `ASKED`."""
-    prior = Search(found.problem, found.formulas).prior
+    prior = found.prior
     logs: dict[frozenset[str], list[float]] = {}
     for h in found.hypotheses:
         logs.setdefault(frozenset(h.causes), []).append(h.log_joint - prior(h.causes))

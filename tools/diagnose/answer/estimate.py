@@ -11,9 +11,9 @@ from scipy.special import logsumexp
 from scipy.stats import norm
 
 from ..infer.evidence import WIDTHS, White, log_bayes_factors
-from ..infer.fit import bounds
+from ..infer.fit import Fit, bounds
 from ..infer.problem import Acting, Problem
-from ..infer.search import Found, Hypothesis, Search
+from ..infer.search import Found, Hypothesis
 from ..library.cause import Cause, Form, Shape
 from .decide import Member
 
@@ -205,7 +205,7 @@ def impact(problem: Problem, h: Hypothesis, only: str | None = None) -> dict[str
 
 def detectable(found: Found) -> dict[str, float]:
     """Smallest size of each cause, in its unit, that would be an alarm in 80 of 100 such campaigns; none: never."""
-    share = Search(found.problem, found.formulas).share
+    share = found.prior.share
     first: dict[str, int] = {}
     for k, c in enumerate(found.first.candidates):
         first.setdefault(c.id, k)
@@ -227,3 +227,26 @@ def detectable(found: Found) -> dict[str, float]:
         enough = seen(middle)
         below, above = np.where(enough, below, middle), np.where(enough, middle, above)
     return {c.id: float(a * c.formula.cause.size.sd) for c, a, k in zip(candidates, above, known, strict=True) if k}
+
+
+def played(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, tuple[float, float]]:
+    """Root mean square that the rig leaves when it is played over the data: sensor -> calibrated, extended [SI].
+
+    The extended rig holds what is a matter of the machine; nothing where nothing is. Sensors that a hypothesis calls
+    wrong are left out.
+    """
+    o, own = problem.data, problem.own
+    acting = h.fit.look.acting
+    machine = [a for a in acting if a.formula.paths and not (a.formula.given or a.formula.read or a.formula.paced)]
+    wrong = {name for a in acting for name in a.formula.read}
+    if not machine:
+        return {}
+    extended = problem.shown(h.fit.look.z, machine)[own]
+    gross = [a.number for a in problem.aside if not a.sensor]
+    found = {}
+    for i, s in enumerate(o.read):
+        rows = np.setdiff1d(np.flatnonzero(o.kind == i), gross)
+        left = [o.measured[rows] - shown[rows] for shown in (null.look.shown[own], extended)]
+        if len(rows) and s.name not in wrong and np.isfinite(left[1]).all():
+            found[s.name] = (float(np.sqrt(np.mean(left[0] ** 2))), float(np.sqrt(np.mean(left[1] ** 2))))
+    return found

@@ -8,31 +8,30 @@ import numpy as np
 
 from ..campaign.table import Campaign
 
-#: Levels further apart than this share of their range are different ones; folds of a scheme at most.
-GAP, MOST = 0.06, 8
+#: Levels further apart than this share of their range are different ones.
+GAP = 0.06
+#: Rows of a small campaign, of which tests are left out only; folds of its one scheme, and of each scheme of others.
+SMALL, FEW, MOST = 48, 4, 4
 #: Fewer rows than these cannot be kept.
 LEAST = 6
 
 
-def schemes(campaign: Campaign, most: int = MOST) -> dict[str, list[np.ndarray]]:
-    """Scheme -> the rows of each fold; only schemes with two folds or more.
-
-    Args:
-        campaign: the data
-        most: folds of one scheme; more groups than these are put together
-    """
-    c = campaign
+def schemes(c: Campaign) -> dict[str, list[np.ndarray]]:
+    """Scheme -> the rows of each fold; only schemes with two folds or more. More groups than folds are put together."""
+    small = c.n < SMALL
+    most = FEW if small else MOST
     single = c.n_tests <= most
     tests = [np.flatnonzero(c.test == k) for k in range(c.n_tests)]
     # tests next to each other go to different folds, so that each fold has the whole of the campaign's time
     mixed = [np.concatenate(tests[k::most]) for k in range(min(most, c.n_tests))]
     found = {"leave-one-operating-point" if single else "leave-out-tests": tests if single else mixed}
-    for scheme, kind in (("leave-one-speed", "speed"), ("leave-one-load", "torque")):
+    for scheme, kind in () if small else (("leave-one-speed", "speed"), ("leave-one-load", "torque")):
         given = [s for s in c.given if s.kind == kind]
         if given:
             found[scheme] = _joined(levels(np.abs(c.values[given[0].name])), most)
     oils = np.array(c.oil)[c.test]
-    found["leave-one-oil"] = [np.flatnonzero(oils == oil) for oil in dict.fromkeys(c.oil)]
+    if not small:
+        found["leave-one-oil"] = [np.flatnonzero(oils == oil) for oil in dict.fromkeys(c.oil)]
     return {name: folds for name, folds in found.items() if len(folds) > 1 and _sound(folds, c.n)}
 
 

@@ -21,13 +21,14 @@ from ..infer.evidence import White
 from ..infer.extra import REMAINDERS
 from ..infer.fit import Fit, fitted, prior_precision
 from ..infer.problem import Acting, Aside, Problem
-from ..infer.search import Found, Search
+from ..infer.search import Found
+from ..model.formula import Formula
 from ..model.noise import alike
 from .folds import schemes
 from .rivals import RIVALS
 
-#: Causes that are fitted in a fold, and draws of the bootstrap.
-FITTED, DRAWS = 3, 2000
+#: Causes that are looked at again in a fold, forms of each, and causes that are fitted; draws of the bootstrap.
+LEADING, FORMS, FITTED, DRAWS = 6, 2, 2, 2000
 
 
 @dataclass(frozen=True)
@@ -101,43 +102,76 @@ def _fold(found: Found, rows: np.ndarray) -> _Fold:
 
 
 def _chosen(found: Found, problem: Problem, null: Fit) -> tuple[list[Fit], np.ndarray]:
-    """Nothing, the leading causes and the best pair by the kept readings: fits and log joint probabilities."""
-    search = Search(problem, found.formulas)
-    formulas, causes = search.formulas, search.causes
-    first = screen.look(problem, null, formulas)
-    share = np.array([np.log(f.form.weight) + search.share[f.cause.id] for f in formulas])
-    value = first.by_form(len(formulas)) + share
+    """Nothing, the leading causes and the best pair by the kept readings: fits and log joint probabilities.
+
+    All causes are judged by their effects at the rig as calibrated in all data, the leading ones again by their effects
+    at the rig as calibrated here.
+    """
+    formulas = found.formulas
+    share = np.array([np.log(f.form.weight) + found.prior.share[f.cause.id] for f in formulas])
+    white, e = null.linear(problem)
+    whole = screen.judged(found.first.candidates, found.first.owner, found.first.effects, white, e)
+    short = _leading(formulas, whole.by_form(len(formulas)) + share)
+    first = screen.look(problem, null, [formulas[k] for k in short])
+    value = first.by_form(len(short)) + share[short]
     fits, logs = [null], [null.evidence + found.critical]
-    leading: dict[str, int] = {}
-    for k in np.argsort(-value):
-        leading.setdefault(causes[formulas[k].cause.id].family, int(k))
-    for k in list(leading.values())[:FITTED]:
+    for i in _best(formulas, short, value)[:FITTED]:
         with suppress(SolveError):
-            fit = fitted(problem, [first.start(k)], null.look.z, null.noise.scales)
+            fit = _begun(found, problem, (first.start(i),), null)
+            own = [j for j, k in enumerate(short) if formulas[k].cause.id == formulas[short[i]].cause.id and j != i]
+            others = [min(null.evidence + value[j], fit.evidence + share[short[j]]) for j in own]
             fits.append(fit)
-            own = [i for i, f in enumerate(formulas) if f.cause.id == formulas[k].cause.id and i != k]
-            others = [min(null.evidence + value[i], fit.evidence + share[i]) for i in own]
-            logs.append(float(logsumexp([fit.evidence + share[k], *others])))
+            logs.append(float(logsumexp([fit.evidence + share[short[i]], *others])))
     if len(fits) > 1 and max(logs[1:]) > logs[0]:
         with suppress(SolveError):
-            fit, log = _paired(search, problem, fits[int(np.argmax(logs[1:])) + 1], max(logs[1:]))
+            one, log = fits[int(np.argmax(logs[1:])) + 1], max(logs[1:])
+            fit, log = _paired(found, problem, one, log, short)
             fits.append(fit)
             logs.append(log)
     return fits, np.array(logs)
 
 
-def _paired(search: Search, problem: Problem, one: Fit, log: float) -> tuple[Fit, float]:
+def _leading(formulas: Sequence[Formula], value: np.ndarray) -> list[int]:
+    """The best forms of the leading causes."""
+    taken: dict[str, list[int]] = {}
+    for k in np.argsort(-value):
+        cause = formulas[k].cause.id
+        if cause in taken or len(taken) < LEADING:
+            taken.setdefault(cause, []).append(int(k))
+    return sorted(k for own in taken.values() for k in own[:FORMS])
+
+
+def _best(formulas: Sequence[Formula], short: Sequence[int], value: np.ndarray) -> list[int]:
+    """The best form of each class of causes, as a place in the short list, best first."""
+    best: dict[str, int] = {}
+    for i in np.argsort(-value):
+        best.setdefault(formulas[short[i]].cause.family, int(i))
+    return list(best.values())
+
+
+def _paired(
+    found: Found, problem: Problem, one: Fit, log: float, short: Sequence[int]
+) -> tuple[Fit, float]:
     """A fitted cause with the one that promises most beside it, and its log joint probability."""
     (acting,) = one.look.acting
-    beside = screen.look(problem, one, search.formulas)
-    share = np.array([np.log(f.form.weight) + search.share[f.cause.id] for f in search.formulas])
-    other = np.array([f.cause.family != acting.formula.cause.family for f in search.formulas])
-    k = int(np.argmax(np.where(other, beside.by_form(len(search.formulas)) + share, -np.inf)))
-    start: Sequence[Acting] = [acting, beside.start(k)]
-    fit = fitted(problem, start, one.look.z, one.noise.scales)
-    cause = search.formulas[k].cause.id
-    prior = search.prior([acting.id, cause]) - search.prior([acting.id]) + np.log(search.formulas[k].form.weight)
-    return fit, log + fit.evidence - one.evidence + prior
+    others = [k for k in short if found.formulas[k].cause.family != acting.formula.cause.family]
+    formulas = [found.formulas[k] for k in others]
+    beside = screen.look(problem, one, formulas)
+    share = np.array([np.log(f.form.weight) + found.prior.share[f.cause.id] for f in formulas])
+    k = int(np.argmax(beside.by_form(len(formulas)) + share))
+    fit = _begun(found, problem, (acting, beside.start(k)), one)
+    prior = found.prior([acting.id, formulas[k].cause.id]) - found.prior([acting.id])
+    return fit, log + fit.evidence - one.evidence + prior + float(np.log(formulas[k].form.weight))
+
+
+def _begun(found: Found, problem: Problem, start: tuple[Acting, ...], near: Fit) -> Fit:
+    """Causes fitted to the kept readings; where all data have a fit of the same forms it begins there."""
+    forms = {id(a.formula) for a in start}
+    for h in found.hypotheses:
+        if {id(a.formula) for a in h.fit.look.acting} == forms:
+            near, start = h.fit, h.fit.look.acting
+            break
+    return fitted(problem, start, near.look.z, near.noise.scales)
 
 
 def _errors(problem: Problem, fit: Fit, held: np.ndarray) -> np.ndarray:
@@ -167,9 +201,9 @@ def _left(S: np.ndarray, r: np.ndarray, kept: np.ndarray, held: np.ndarray) -> n
 def discrepancy(problem: Problem) -> np.ndarray:
     """Covariance (M, M) of a remainder that is smooth in the conditions, of each sensor its own, at size one."""
     o = problem.data
-    sd = np.array([s.repeat_sd for s in o.read])[o.kind]
+    sd, sensor = o.entries.repeat, o.entries.sensor
     whole = np.zeros((problem.m, problem.m))
-    whole[problem.own, problem.own] = alike(o) * (o.kind[:, None] == o.kind) * np.outer(sd, sd)
+    whole[problem.own, problem.own] = alike(o) * (sensor[:, None] == sensor) * np.outer(sd, sd)
     return whole
 
 

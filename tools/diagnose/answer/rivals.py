@@ -42,7 +42,7 @@ def target(o: Observed, sensor: int, rows: np.ndarray) -> np.ndarray:
     s = o.read[sensor]
     values = o.campaign.values[s.name][rows]
     room = next((r.name for r in o.given if r.kind == "ambient"), None)
-    return values - o.sensors[room][rows] if s.kind.endswith("_temp") and room else values
+    return np.asarray(values - o.sensors[room][rows] if s.kind.endswith("_temp") and room else values)
 
 
 def fitted(X: np.ndarray, y: np.ndarray, kept: np.ndarray, ridge: float) -> np.ndarray:

@@ -37,6 +37,23 @@ def read_campaign(path: Path, scenario: Scenario, card: Card, *, points: bool = 
     return _Reader(path, scenario, card, points).campaign()
 
 
+def placed(sensor: Sensor, header: Sequence[str], card: Card) -> Sensor | None:
+    """The sensor with the column of a table that holds it, None where there is none.
+
+    Args:
+        sensor: as rig and card declare it
+        header: names of the table's columns
+        card: units of columns
+    """
+    same = [h for h in header if h == sensor.column]
+    names = (sensor.column, split_unit(sensor.column)[0])
+    column = next(iter(same or [h for h in header if split_unit(h)[0] in names]), None)
+    if column is None:
+        return None
+    unit = card.units.get(column, split_unit(column)[1] or sensor.unit)
+    return replace(sensor, column=column, unit=spelled(unit))
+
+
 class _Reader:
     """Reads one table, collecting problems all the way; nothing of it outlives the reading."""
 
@@ -45,7 +62,7 @@ class _Reader:
         self.header, self.rows = read_cells(path)
         self.problems: list[str] = []
         declared = sensors_of(scenario, card)
-        self.sensors = tuple(s for sensor in declared if (s := self._placed(sensor)) is not None)
+        self.sensors = tuple(s for sensor in declared if (s := placed(sensor, self.header, card)) is not None)
         context = {name: card.columns.get(name, name) for name in CONTEXT}
         self.context = {name: column for name, column in context.items() if column in self.header}
         self._missing(declared)
@@ -67,16 +84,6 @@ class _Reader:
         known = {oil: oil_values(self.scenario, oil, self.card) for oil in oils}
         warned = replace(found, warnings=(*found.warnings, *oil_warnings(self.scenario, found.oil, self.card)))
         return with_unread(checked(warned, nominal, known, points=self.points))
-
-    def _placed(self, sensor: Sensor) -> Sensor | None:
-        """The sensor with the column of this table that holds it, None where there is none."""
-        same = [h for h in self.header if h == sensor.column]
-        names = (sensor.column, split_unit(sensor.column)[0])
-        column = next(iter(same or [h for h in self.header if split_unit(h)[0] in names]), None)
-        if column is None:
-            return None
-        unit = self.card.units.get(column, split_unit(column)[1] or sensor.unit)
-        return replace(sensor, column=column, unit=spelled(unit))
 
     def _missing(self, declared: Sequence[Sensor]) -> None:
         """Columns that drive the model, and that anything is read."""

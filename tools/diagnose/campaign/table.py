@@ -39,6 +39,44 @@ class Sensor:
         return np.where(direction < 0, self.signs[1], self.signs[0])
 
 
+#: Places in a dwell at which its logged course is compared, as shares of the stated dwell.
+PLACES = (0.08, 0.25, 0.6)
+
+
+@dataclass(frozen=True, eq=False)
+class Course:
+    """What one compared sensor showed along the dwell of one row, at the k `PLACES`.
+
+    Args:
+        row: of the campaign
+        sensor: its name
+        values: of a smooth curve through all samples (k,), in SI; NaN at places that were not logged
+        scatter: covariance of the values (k, k), as a share of the variance of one sample
+    """
+
+    row: int
+    sensor: str
+    values: np.ndarray
+    scatter: np.ndarray
+
+
+@dataclass(frozen=True, eq=False)
+class Series:
+    """Logged courses of the tests of a campaign.
+
+    Args:
+        name: of the file
+        courses: of rows and sensors
+        dwell: how long each row was held by the log [s] (n,), NaN where it was not logged
+        warnings: what the user should know of the file
+    """
+
+    name: str
+    courses: tuple[Course, ...]
+    dwell: np.ndarray
+    warnings: tuple[str, ...] = ()
+
+
 @dataclass(frozen=True, eq=False)
 class Campaign:
     """Steady or timed readings of one rig: n rows in n_tests tests, tests in running order, rows of a test in sequence.
@@ -64,6 +102,7 @@ class Campaign:
         points: number of each row's reading as in the file (n,), 0 where a row was run and not read
         names: of the tests, as in the file (n_tests)
         others: columns that no sensor has, as they stand in the file (n)
+        series: logged courses of its tests, None where there are none
     """
 
     name: str
@@ -87,6 +126,7 @@ class Campaign:
     names: tuple[str, ...] = ()
     others: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     warnings: tuple[str, ...] = field(default=())
+    series: Series | None = None
 
     @property
     def n(self) -> int:

@@ -87,16 +87,16 @@ def _remainders(problem: Problem, V: np.ndarray, r: np.ndarray, without: float) 
         for g in ([warm] + ([[i] for i in warm] if len(warm) > 1 else []) + ([other, warm + other] if other else []))
         if g
     ]
-    sd = np.array([s.repeat_sd for s in o.read])[o.kind]
+    sd = o.entries.repeat
     near = alike(o)
-    same = o.kind[:, None] == o.kind
+    same = o.entries.sensor[:, None] == o.entries.sensor
     tests = o.campaign.test[o.row]
     kernels = {"smooth in the conditions": near * same}
     if np.bincount(o.campaign.test).max() > 1 or len(np.unique(tests)) < o.campaign.n:
         kernels["from test to test"] = (tests[:, None] == tests) * same
     found = []
     for group, (name, kernel) in product(groups, kernels.items()):
-        mine = np.isin(o.kind, group) * sd
+        mine = np.isin(o.entries.sensor, group) * sd
         C = np.zeros_like(V)
         C[problem.own, problem.own] = kernel * np.outer(mine, mine)
         logs = [_log(V + size**2 * C, r) - without for size in REMAINDERS]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -173,22 +174,22 @@ def fitted(
 def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> tuple[Look, float]:
     """Damped Gauss-Newton to convergence at a given scatter: the look there, and half the squared misfit."""
     vector, white = _Vector(problem, look.acting), White.of(noise.covariance)
-    cost = _cost(problem, vector, white, look.shown, look.x)
-    damping = 0.0
+    cost, damping = _cost(problem, vector, white, look), 0.0
     for _ in range(steps):
         J = white(look.jacobian)
         H = J.T @ J + np.diag(vector.precision)
         gradient = J.T @ white(problem.measured - look.shown) - vector.precision * look.x
         for _ in range(TRIES):
             new = vector.step(look.x, H + damping * np.diag(np.diag(H)), gradient)
-            value = _cost(problem, vector, white, problem.shown(*vector.split(new)), new)
-            if value <= cost + 1e-9:
-                break
+            with suppress(SolveError):
+                trial = problem.look(*vector.split(new))
+                value = _cost(problem, vector, white, trial)
+                if value <= cost + 1e-9:
+                    break
             damping = max(5 * damping, 0.3)
         else:
             break
-        gained, damping = cost - value, damping / 5
-        look, cost = problem.look(*vector.split(new)), value
+        gained, damping, look, cost = cost - value, damping / 5, trial, value
         if gained < LITTLE:
             break
     return look, cost
@@ -206,12 +207,10 @@ def _begun(problem: Problem, acting: Sequence[Acting], z: np.ndarray) -> Look:
     raise AssertionError("unreachable")
 
 
-def _cost(problem: Problem, vector: _Vector, white: White, shown: np.ndarray, x: np.ndarray) -> float:
-    """Half the squared misfit, priors included; infinite where the model cannot be run."""
-    if not np.isfinite(shown).all():
-        return float("inf")
-    e = white(problem.measured - shown)
-    return float(0.5 * e @ e + 0.5 * vector.precision @ x**2)
+def _cost(problem: Problem, vector: _Vector, white: White, look: Look) -> float:
+    """Half the squared misfit, priors included."""
+    e = white(problem.measured - look.shown)
+    return float(0.5 * e @ e + 0.5 * vector.precision @ look.x**2)
 
 
 def weighed(problem: Problem, look: Look, noise: Noise, cost: float) -> Fit:

@@ -9,8 +9,11 @@ import numpy as np
 from .fit import Fit
 from .problem import Aside, Problem
 
-#: Standard deviations from what the others say beyond which a reading is gross, and how far it stands out of the rest.
-GROSS, OUT = 6.0, 1.6
+#: Standard deviations from what the others say beyond which a reading is gross, and so many times those which nine of
+#: ten readings keep within.
+GROSS, OUT = 6.0, 2.5
+#: Half of a normal scatter lies within so many standard deviations; no scatter is taken for less than that share.
+HALF, LEAST = 0.6745, 0.2
 #: A given reading is suspected before a compared one only where it stands out by so much more.
 GIVEN = 0.9
 #: A reading that a hypothesis brings within this is none.
@@ -32,29 +35,44 @@ def suspects(problem: Problem, fit: Fit) -> list[Suspect]:
     white, e = fit.linear(problem)
     inverse = white.back(np.eye(problem.m))
     a = inverse @ (white.L @ e)
-    found = [
-        Suspect(Aside(i), float(value)) for i, value in enumerate(a / np.sqrt(np.diag(inverse))) if np.isfinite(value)
-    ]
+    kinds = np.concatenate([1000 * k + o.kind for k, o in enumerate(problem.campaigns)])
+    stands = _robust(a / np.sqrt(np.diag(inverse)), kinds)
+    found = [Suspect(Aside(i), float(value)) for i, value in enumerate(stands) if problem.ends[i]]
     for sensor, columns in problem.inputs(fit.look):
         length = np.einsum("mk,mk->k", columns, inverse @ columns)
         along = columns.T @ a
-        for k in np.flatnonzero(length > 1e-12):
-            # one unit of this reading's scatter is part of the covariance: what is left without it
-            own = length[k] / max(1 - min(length[k], 0.999), 1e-3)
-            value = along[k] / max(1 - min(length[k], 0.999), 1e-3) / np.sqrt(own)
-            found.append(Suspect(Aside(int(k), sensor), GIVEN * float(value)))
+        seen = np.flatnonzero(length > 1e-12)
+        stands = GIVEN * _robust(along[seen] / np.sqrt(length[seen]), np.zeros(len(seen)))
+        found += [Suspect(Aside(int(k), sensor), float(value)) for k, value in zip(seen, stands, strict=True)]
     return sorted(found, key=lambda s: -abs(s.size_sd))
 
 
-def gross(problem: Problem, fit: Fit) -> Suspect | None:
-    """The reading that is gross beside a hypothesis, if there is one that is not set aside yet."""
-    known = [s for s in suspects(problem, fit) if s.aside not in problem.aside]
-    if not known or abs(known[0].size_sd) < GROSS:
-        return None
-    own = problem.touched(known[0].aside, fit.look)
-    others = [abs(s.size_sd) for s in known[1:] if not problem.touched(s.aside, fit.look) & own]
-    typical = np.quantile(others, 0.9) if others else 0.0
-    return known[0] if abs(known[0].size_sd) > OUT * max(others[0] if others else 0.0, 1.5 * typical) else None
+def _robust(stands: np.ndarray, kinds: np.ndarray) -> np.ndarray:
+    """Distances in units of those which half of a kind keep within: gross readings raise the scatter they hide in."""
+    found = stands.copy()
+    for kind in np.unique(kinds):
+        own = kinds == kind
+        found[own] /= np.clip(np.median(np.abs(stands[own])) / HALF, LEAST, 1.0)
+    return found
+
+
+def outliers(problem: Problem, fit: Fit) -> list[Suspect]:
+    """The readings not yet set aside that are gross beside a hypothesis, one for each compared reading they touch.
+
+    They are found one after the other: what is left of a reading counts once those before it are gone.
+    """
+    every = suspects(problem, fit)
+    usual = float(np.quantile([abs(s.size_sd) for s in every], 0.9))
+    found: list[Suspect] = []
+    taken: set[int] = set()
+    for s in every:
+        if abs(s.size_sd) < max(GROSS, OUT * usual):
+            break
+        touched = problem.touched(s.aside, fit.look)
+        if s.aside not in problem.aside and not touched & taken:
+            found.append(s)
+            taken |= touched
+    return found
 
 
 def after_all(problem: Problem, fit: Fit) -> frozenset[Aside]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -15,6 +15,11 @@ from ..model.noise import Term, input_scatter, stacked, terms
 from ..model.observe import Observed, Seen
 from .evidence import White
 
+
+#: Bounds of the logarithms of scales.
+BOUNDS = (-1.5, 2.5)
+#: Loose terms with fewer columns than this share of the entries are weighed by their columns.
+FEW = 0.8
 
 
 @dataclass(frozen=True, order=True)
@@ -97,20 +102,73 @@ class Noise:
         """
         fixed, loose = self.parts
         base, sd = fixed + known, np.array([t.loose for t in self.loose])
+        columns = [t.effects for t in self.loose]
+        if sum(c.shape[1] for c in columns) < FEW * len(residual):
+            return replace(self, scales=_most_likely(_Few(base, columns, residual), self.scales, sd))
 
         def cost(scales: np.ndarray) -> tuple[float, np.ndarray]:
             weights = np.exp(2 * scales)
             white = White.of(base + sum(w * C for w, C in zip(weights, loose, strict=True)))
             inverse = white.back(np.eye(len(residual)))
             a = inverse @ residual
-            value = 0.5 * residual @ a + 0.5 * white.log_det + 0.5 * ((scales / sd) ** 2).sum()
+            value = 0.5 * residual @ a + 0.5 * white.log_det
             slopes = [w * ((inverse * C).sum() - a @ C @ a) for w, C in zip(weights, loose, strict=True)]
-            return float(value), np.array(slopes) + scales / sd**2
+            return float(value), np.array(slopes)
 
-        found = minimize(
-            cost, self.scales, jac=True, method="L-BFGS-B", bounds=[(-1.5, 2.5)] * len(sd), options={"maxiter": 25}
-        )
-        return replace(self, scales=found.x)
+        return replace(self, scales=_most_likely(cost, self.scales, sd))
+
+
+class _Few:
+    """Minus the log density of a residual by scales, where the loose terms have few columns beside the entries.
+
+    The covariance is base + U W U' with W > 0: all is said by G = U' base^-1 U and b = U' base^-1 r.
+
+    Args:
+        base: covariance of what is fixed (M, M), which may lack variances
+        columns: of each loose term (M, k)
+        residual: (M,)
+    """
+
+    #: Part of the smallest variance that counts with the base.
+    PART = 0.5
+
+    def __init__(self, base: np.ndarray, columns: Sequence[np.ndarray], residual: np.ndarray) -> None:
+        self.counts, U = [c.shape[1] for c in columns], np.concatenate(columns, axis=1)
+        self.least = self.PART * np.exp(2 * BOUNDS[0])
+        white = White.of(base + self.least * U @ U.T)
+        near, e = white(U), white(residual)
+        self.G, self.b, self.rest = near.T @ near, near.T @ e, 0.5 * (e @ e + white.log_det)
+
+    def __call__(self, scales: np.ndarray) -> tuple[float, np.ndarray]:
+        """Value and slopes."""
+        w = np.repeat(np.exp(2 * scales) - self.least, self.counts)
+        white = White.of(self.G + np.diag(1 / w))
+        S = white.back(np.eye(len(w)))
+        along = S @ self.b
+        value = self.rest + 0.5 * (white.log_det + np.log(w).sum() - self.b @ along)
+        own = (1 - np.diag(S) / w - along**2 / w) / w
+        each = [part.sum() for part in np.split(own, np.cumsum(self.counts)[:-1])]
+        return float(value), np.exp(2 * scales) * np.array(each)
+
+
+def _most_likely(
+    cost: Callable[[np.ndarray], tuple[float, np.ndarray]], scales: np.ndarray, sd: np.ndarray
+) -> np.ndarray:
+    """Scales of the least cost, their priors included.
+
+    Args:
+        cost: minus the log density, and its slopes
+        scales: logarithms where it begins
+        sd: standard deviations of their priors
+    """
+
+    def whole(x: np.ndarray) -> tuple[float, np.ndarray]:
+        value, slopes = cost(x)
+        return float(value + 0.5 * ((x / sd) ** 2).sum()), slopes + x / sd**2
+
+    bounds = [BOUNDS] * len(sd)
+    found = minimize(whole, scales, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": 25})
+    return np.asarray(found.x)
 
 
 class Problem:
@@ -129,8 +187,10 @@ class Problem:
         self.data = campaigns[0]
         self.nz = len(self.data.nuisances) - 1
         self.measured = np.concatenate([o.measured for o in campaigns])
-        self.repeat = np.concatenate([np.array([s.repeat_sd for s in o.read])[o.kind] for o in campaigns])
+        self.repeat = np.concatenate([o.entries.repeat for o in campaigns])
         self.own = slice(0, self.data.m)
+        #: Which entries are readings at the ends of dwells (M,); the others lie along logged courses.
+        self.ends = np.concatenate([o.kind < len(o.read) for o in campaigns])
 
     @property
     def m(self) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
 
@@ -11,26 +11,26 @@ from scipy.special import logsumexp
 from scipy.stats import chi2
 
 from ...model.errors import SolveError
-from ..library.cause import Cause
 from ..model.formula import Formula
 from . import screen
 from .draws import correction
 from .extra import Extra, extras
 from .fit import Fit, fitted
 from .gross import MOST as MOST_ASIDE
-from .gross import after_all, gross
-from .problem import Acting, Problem
+from .gross import after_all, outliers
+from .prior import Prior
+from .problem import Acting, Aside, Problem
 
-#: Prior odds of two causes against one, of each further one, and of a remainder beside a hypothesis.
-TWO, MORE, OUTSIDE = 0.22, 0.25, 0.06
+#: Prior odds of a remainder beside a hypothesis.
+OUTSIDE = 0.06
 #: Forms fitted: within so many nats of the best, at most so many, of one cause at most, and causes at least.
 WITHIN, FORMS, EACH, LEAST = 9.0, 14, 3, 4
 #: Singles from which pairs are grown, pairs fitted, and how far behind the best hypothesis one may promise to be.
-GROWN, PAIRS, BEHIND = 4, 7, 6.0
+GROWN, PAIRS, BEHIND = 4, 6, 5.0
 #: p of any cause above which little is fitted.
 QUIET = 0.3
 #: Hypotheses within so many nats of the best are weighed by draws of the exact model.
-NEAR = 4.0
+NEAR = 3.0
 #: Searches at most, where the leading hypothesis changes which readings are gross.
 LOOKS = 3
 
@@ -68,6 +68,7 @@ class Found:
         probabilities: of them
         p_any: p of the log Bayes factor of any cause
         critical: its critical value
+        prior: of hypotheses
         drawn: that log Bayes factor in campaigns without a cause, as drawn
         p_omnibus: chi-square p of the null
     """
@@ -82,6 +83,7 @@ class Found:
     critical: float
     drawn: np.ndarray
     p_omnibus: float
+    prior: Prior
 
 
 def searched(
@@ -94,27 +96,35 @@ def searched(
 ) -> Found:
     """A search in which gross readings are set aside; arguments as for `Search`."""
     progress("calibrating without a cause", 0.02)
-    null = fitted(problem, (), np.zeros(problem.nz))
-    problem, null = _cleaned(problem, null)
+    problem, null = _cleaned(problem, fitted(problem, (), np.zeros(problem.nz)))
+    progress("gross readings", 0.05)
+    search = Search(problem, formulas, null, alpha, seed, most, progress)
+    leader = search.leader()
     for _ in range(LOOKS):
-        found = Search(problem, formulas, alpha, seed, most, progress).run(null)
+        aside = _aside(problem, leader)
+        if aside != problem.aside:
+            problem = problem.without(aside)
+            search = Search(problem, formulas, fitted(problem, (), null.look.z), alpha, seed, most, progress)
+        found = search.run()
         leader = found.hypotheses[0].fit
-        aside = problem.aside - after_all(problem, leader)
-        if (more := gross(problem, leader)) is not None:
-            aside |= {more.aside}
-        if aside == problem.aside:
+        if _aside(problem, leader) == problem.aside:
             break
-        problem = problem.without(aside)
-        null = fitted(problem, (), null.look.z, null.noise.scales if len(null.noise.scales) else None)
     return found
+
+
+def _aside(problem: Problem, fit: Fit) -> frozenset[Aside]:
+    """The gross readings beside a hypothesis: those that it does not explain, and others that show beside it."""
+    aside = problem.aside - after_all(problem, fit)
+    found = [s.aside for s in outliers(problem, fit)]
+    return aside | frozenset(found[: max(2, int(MOST_ASIDE * problem.m))])
 
 
 def _cleaned(problem: Problem, null: Fit) -> tuple[Problem, Fit]:
     """The problem without the gross readings that the null shows."""
     for _ in range(max(2, int(MOST_ASIDE * problem.m))):
-        if (found := gross(problem, null)) is None:
+        if not (found := outliers(problem, null)):
             break
-        problem = problem.without(problem.aside | {found.aside})
+        problem = problem.without(problem.aside | {found[0].aside})
         null = fitted(problem, (), null.look.z)
     return problem, null
 
@@ -125,6 +135,7 @@ class Search:
     Args:
         problem: data and model
         formulas: all forms of all causes
+        null: the fit without a cause
         alpha: accepted rate of false alarms: the prior of none is such that its posterior is 1/2 there
         seed: of the draws
         most: causes that may act together
@@ -135,6 +146,7 @@ class Search:
         self,
         problem: Problem,
         formulas: Sequence[Formula],
+        null: Fit,
         alpha: float = 0.05,
         seed: int = 0,
         most: int = 2,
@@ -143,18 +155,16 @@ class Search:
         self.problem, self.alpha, self.seed, self.most, self.progress = problem, alpha, seed, most, progress
         self.formulas = tuple(f for f in formulas if not f.form.spread)
         self.spreads = tuple(f for f in formulas if f.form.spread)
-        self.causes: dict[str, Cause] = {f.cause.id: f.cause for f in formulas}
-        #: Log share of the prior of one cause that each cause has: classes share theirs.
-        self.share = shares(self.causes.values())
-
-    def run(self, start: Fit | None = None) -> Found:
-        """Everything."""
-        self.progress("calibrating without a cause", 0.05)
-        problem = self.problem
-        self.null = fitted(problem, (), np.zeros(problem.nz)) if start is None else start
-        self.progress("effects of all causes", 0.15)
-        self.first = screen.look(problem, self.null, self.formulas)
+        self.prior = Prior(f.cause for f in formulas)
+        self.null = null
+        progress("effects of all causes", 0.1)
+        self.first = screen.look(problem, null, self.formulas)
         self._alarm()
+        self._fits: dict[int, Fit | None] = {}
+
+    def run(self) -> Found:
+        """Everything."""
+        problem = self.problem
         self.progress("causes one by one", 0.25)
         singles = self._singles()
         self.progress("causes two by two", 0.5)
@@ -163,7 +173,7 @@ class Search:
         self.progress("scatter and remainder", 0.8)
         hypotheses = sorted([*base, *self._beside(base)], key=lambda h: -h.log_joint)
         logs = np.array([h.log_joint for h in hypotheses])
-        white, e = self.null.linear(problem)
+        _, e = self.null.linear(problem)
         free = problem.m - len(problem.aside)
         return Found(
             problem,
@@ -176,14 +186,24 @@ class Search:
             self.critical,
             self.drawn,
             float(chi2.sf(e @ e, free)),
+            self.prior,
         )
 
-    def prior(self, causes: Iterable[str]) -> float:
-        """Log prior odds of a hypothesis against those of one cause, all together 1."""
-        names = list(causes)
-        n = len(names)
-        pairs = sum(np.log(TWO if k == 1 else MORE) for k in range(1, n))
-        return float(sum(self.share[c] for c in names) + pairs + np.log(float(np.prod(np.arange(1, n + 1)))))
+    def leader(self) -> Fit:
+        """The likeliest of no cause and a few alone, quickly."""
+        log_bf = self.first.by_form(len(self.formulas))
+        fits = [self._alone(k) for k in self._forms(log_bf, LEAST - 1)]
+        return max([self.null, *(f for f in fits if f is not None)], key=lambda fit: fit.evidence)
+
+    def _alone(self, k: int) -> Fit | None:
+        """A form fitted alone, None where it cannot be run."""
+        if k not in self._fits:
+            try:
+                start = self.first.start(k)
+                self._fits[k] = fitted(self.problem, [start], self.null.look.z, self.null.noise.scales)
+            except SolveError:
+                self._fits[k] = None
+        return self._fits[k]
 
     def _alarm(self) -> None:
         """p of any cause by draws of the null, and the prior of none that agrees with it."""
@@ -191,7 +211,7 @@ class Search:
         counts = np.bincount(first.owner, minlength=len(self.formulas))
         weights = np.array(
             [
-                self.share[c.id] + np.log(c.formula.form.weight) - np.log(counts[k])
+                self.prior.share[c.id] + np.log(c.formula.form.weight) - np.log(counts[k])
                 for c, k in zip(first.candidates, first.owner, strict=True)
             ]
         )
@@ -201,9 +221,9 @@ class Search:
         self.p_any = float((1 + (drawn >= seen).sum()) / (1 + len(drawn)))
         self.log_none = self.critical
 
-    def _forms(self, log_bf: np.ndarray, known: Mapping[str, int] | None = None) -> list[int]:
-        """Formulas worth a fit, best first."""
-        value = log_bf + np.array([np.log(f.form.weight) + self.share[f.cause.id] for f in self.formulas])
+    def _forms(self, log_bf: np.ndarray, most: int) -> list[int]:
+        """Formulas worth a fit, so many at most, best first."""
+        value = log_bf + np.array([np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas])
         chosen: list[int] = []
         taken: dict[str, int] = {}
         for k in np.argsort(-value):
@@ -213,17 +233,15 @@ class Search:
                 continue
             chosen.append(int(k))
             taken[cause] = taken.get(cause, 0) + 1
-            if len(chosen) >= (FORMS if self.p_any < QUIET else LEAST):
+            if len(chosen) >= most:
                 break
         return chosen
 
     def _singles(self) -> list[Hypothesis]:
         """Every cause alone: its leading forms fitted, the others as they look at first."""
         log_bf = self.first.by_form(len(self.formulas))
-        fits: dict[int, Fit] = {}
-        for k in self._forms(log_bf):
-            with suppress(SolveError):
-                fits[k] = fitted(self.problem, [self.first.start(k)], self.null.look.z, self.null.noise.scales)
+        chosen = self._forms(log_bf, FORMS if self.p_any < QUIET else LEAST)
+        fits = {k: fit for k in chosen if (fit := self._alone(k)) is not None}
         found = []
         for cause in dict.fromkeys(self.formulas[k].cause.id for k in fits):
             own = {k: fit for k, fit in fits.items() if self.formulas[k].cause.id == cause}
@@ -272,7 +290,7 @@ class Search:
         except SolveError:
             return []
         log_bf = beside.by_form(len(self.formulas))
-        own = {self.causes[c].family for c in h.causes}
+        own = {self.prior.causes[c].family for c in h.causes}
         best: dict[str, int] = {}
         for k, f in enumerate(self.formulas):
             if f.cause.family not in own and log_bf[k] + np.log(f.form.weight) > _value(best, f, log_bf, self.formulas):
@@ -287,13 +305,14 @@ class Search:
     def _corrected(self, base: Sequence[Hypothesis]) -> list[Hypothesis]:
         """The leading hypotheses with what importance sampling makes of their evidence."""
         best = max(h.log_joint for h in base)
-        found = []
-        for h in base:
-            if h.log_joint > best - NEAR:
-                by = correction(self.problem, h.fit, self.seed)
-                h = replace(h, log_joint=h.log_joint + by.log, error=by.error)
-            found.append(h)
-        return found
+
+        def corrected(h: Hypothesis) -> Hypothesis:
+            if h.log_joint < best - NEAR:
+                return h
+            by = correction(self.problem, h.fit, self.seed)
+            return replace(h, log_joint=h.log_joint + by.log, error=by.error)
+
+        return [corrected(h) for h in base]
 
     def _beside(self, base: Sequence[Hypothesis]) -> list[Hypothesis]:
         """The leading hypotheses with a spread of sizes or a remainder beside them."""
@@ -317,20 +336,6 @@ class Search:
         if not causes:
             return self.prior([more]) - self.log_none
         return self.prior([*causes, more]) - self.prior(causes)
-
-
-def shares(causes: Iterable[Cause]) -> dict[str, float]:
-    """Log share of the prior of one cause that each cause has: those of a class share that of its most usual one."""
-    families: dict[str, list[Cause]] = {}
-    for cause in causes:
-        families.setdefault(cause.family, []).append(cause)
-    weight = {name: max(c.common for c in own) for name, own in families.items()}
-    whole = sum(weight.values())
-    return {
-        c.id: float(np.log(weight[name] / whole * c.common / sum(o.common for o in own)))
-        for name, own in families.items()
-        for c in own
-    }
 
 
 def _value(best: Mapping[str, int], f: Formula, log_bf: np.ndarray, formulas: Sequence[Formula]) -> float:

@@ -17,6 +17,8 @@ Made = tuple[PartSpec, tuple[tuple[str, ...], ...]]
 Keys = Callable[[Theta, Row], Mapping[str, Num]]
 #: So far below everything that its side does not matter, and a film above every other.
 NEVER, THICK = -1e9, 1e9
+#: References of speed and torque are not below this [rad/s, N.m].
+LEAST = 1e-3
 #: Parameters of an extra part that shapes of a form may hold.
 KEYS = ("a", "b", "c", "e", "forward", "backward", "oil_share", "inner_share")
 
@@ -39,8 +41,8 @@ class Extras:
 
     def open(self) -> dict[str, float]:
         """Values of an extra part that acts everywhere, and of which there is nothing."""
-        r = self.ranges
-        values = {"P_ref": 0.0, "w_ref": r.mid["w"], "tau_ref": r.mid["tau"], "a": 1.0, "c": 0.0}
+        w, tau = (max(self.ranges.mid[quantity], LEAST) for quantity in ("w", "tau"))
+        values = {"P_ref": 0.0, "w_ref": w, "tau_ref": tau, "a": 1.0, "c": 0.0}
         values |= {"forward": 1.0, "backward": 1.0, "oil_share": 0.5, "inner_share": 0.5}
         for quantity in ("w", "tau", "T"):
             values |= {f"{quantity}_on": NEVER, f"{quantity}_side": 1.0, f"{quantity}_width": 1.0}

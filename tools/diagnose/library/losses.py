@@ -16,7 +16,7 @@ import casadi as ca
 from ..campaign.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size, Theta, Values
 from .extras import Extras
-from .forms import INNER_SHARE, Context, Regime, oil_share
+from .forms import INNER_SHARE, Changes, Context, Regime, oil_share, shared
 from .roles import Place, Roles
 
 NO_LOAD = "no-load oil loss: churning, windage and oil level differ only in how the oil is reached"
@@ -97,20 +97,22 @@ def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
 
 def oil_viscosity(at: Context) -> Cause:
     """Another oil."""
-    bath = at.roles.bath
+    baths = at.roles.having("bath") or (at.roles.bath,)
 
-    def values(theta: Theta, row: Row) -> Values:
-        return {
-            f"{bath}.{key}": row.base[f"{bath}.{key}"] * ca.exp(theta["ln_factor"] * (1 + side * theta["slope"] / 2))
-            for key, side in (("nu_40", -1), ("nu_100", 1))
-        }
+    def values(names: Sequence[str]) -> Changes:
+        def thicker(theta: Theta, row: Row) -> Values:
+            sides = {"nu_40": 1 - theta["slope"] / 2, "nu_100": 1 + theta["slope"] / 2}
+            logs = {f"{bath}.{key}": theta["ln_factor"] * side for bath in names for key, side in sides.items()}
+            return {path: row.base[path] * ca.exp(log) for path, log in logs.items()}
+
+        return thicker
 
     slope = Shape("slope", "1", "relative difference of that logarithm between 100 and 40 degC", -0.9, 0.9, 0.0, 0.4)
     return Cause(
         id="losses.oil_viscosity",
         doc="The oil is thicker or thinner than assumed; it acts on all that the oil lubricates.",
         size=Size("ln_factor", "1", "logarithm of the factor on the viscosity", 0.4, -1.6, 1.6),
-        forms=(Form(shapes=(slope,), values=values),),
+        forms=shared([(baths, values(baths))], [((bath,), values((bath,))) for bath in baths], (slope,)),
         exposes="a viscosity measurement of a sample; a warm-up from cold",
         acts_on=at.first("oil_temp"),
     )
@@ -209,17 +211,20 @@ def film_starvation(at: Context, places: Sequence[Place]) -> Cause:
 
     extras = Extras("starvation", at)
     made = [extras.loss(place, k, len(places)) for k, place in enumerate(places)]
-    fast = extras.with_parts(made, shapes, Regime("w", above=True))
-    kinds = [fast]
-    if all(place.lubricant for place in places):
-        kinds = [*extras.losses(places, (film, *shapes), weight=STARVED[0], as_keys=thin)]
-        kinds += [replace(extras.with_parts(made, shapes, Regime("film", above=False)), weight=STARVED[1])]
-        kinds += [replace(fast, weight=STARVED[2])]
+    wet, varies = all(place.lubricant for place in places), at.ranges.varies
+    kinds: list[Form] = []
+    if wet:
+        kinds += extras.losses(places, (film, *shapes), weight=STARVED[0], as_keys=thin)
+    if wet and varies("film"):
+        kinds.append(replace(extras.with_parts(made, shapes, Regime("film", above=False)), weight=STARVED[1]))
+    if varies("w") or not kinds:
+        kinds.append(replace(extras.with_parts(made, shapes, Regime("w", above=True)), weight=STARVED[2]))
+    total = sum(kind.weight for kind in kinds)
     return Cause(
         id="losses.film_starvation",
         doc="A loss under load that grows where films are thin: slow and hot, or so fast that they are starved.",
         size=at.power("loss where it acts", 0.085, 0.0, 0.9),
-        forms=tuple(kinds),
+        forms=tuple(replace(kind, weight=kind.weight / total) for kind in kinds),
         exposes="points at high load and low viscosity, with and without fresh oil",
         acts_on=at.first("oil_temp"),
     )

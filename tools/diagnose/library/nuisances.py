@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 from ...model.machines.spec import PartSpec
 from .cause import Nuisance
@@ -107,31 +107,30 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
         prior_sd: of the card: relative standard deviations by "mu", "PartType.parameter" or "part.parameter"
         uncertainties: path -> standard uncertainty that the rig file states, in SI; what the card says counts more
     """
-    found: list[Nuisance] = []
     base = {f"{p.name}.{key}": value for p in roles.spec.parts for key, value in p.values.items()}
     kinds = {p.name: p.type for p in roles.spec.parts}
+
+    def sd_of(group: Group, path: str) -> float:
+        """Standard deviation of one parameter: the card's own, the rig file's, or that of the group."""
+        part, _, key = path.partition(".")
+        stated = uncertainties.get(path)
+        for known in (path, f"{kinds[part]}.{key}"):
+            if known in prior_sd:
+                return prior_sd[known]
+        if stated and group.key not in prior_sd:
+            return abs(stated / float(base[path]))
+        return group.share * prior_sd.get(group.key, DEFAULT_SD[group.key])
+
+    found: list[Nuisance] = []
     for group in GROUPS:
-        sd = group.share * prior_sd.get(group.key, DEFAULT_SD[group.key])
-        paths: dict[str, float] = {}
-        for path, exponent in group.paths(roles).items():
-            part, _, key = path.partition(".")
-            if base.get(path) == 0.0:
-                continue  # no factor changes it
-            own = prior_sd.get(path, prior_sd.get(f"{kinds[part]}.{key}"))
-            stated = uncertainties.get(path)
-            if own is None and stated and group.key not in prior_sd and exponent > 0:
-                own = abs(stated / float(base[path]))
-            paths[path] = exponent * (1.0 if own is None else own / sd)
-        if paths:
-            found.append(Nuisance(group.name, paths, sd, group.wide, group.refilled))
-    return tuple(_normed(n) for n in found)
-
-
-def _normed(nuisance: Nuisance) -> Nuisance:
-    """The same with exponents of 1 at most: the standard deviation is that of the least certain parameter."""
-    most = max(abs(e) for e in nuisance.paths.values())
-    paths = {path: e / most for path, e in nuisance.paths.items()}
-    return replace(nuisance, paths=paths, sd=nuisance.sd * most)
+        signs = {path: sign for path, sign in group.paths(roles).items() if base.get(path) != 0.0}  # zero stays zero
+        # an emissivity that makes up for an area follows it
+        sds = {path: sd_of(group, path if sign > 0 else f"{path.partition('.')[0]}.A") for path, sign in signs.items()}
+        if signs:
+            most = max(sds.values())
+            exponents = {path: sign * (sds[path] / most if most else 1.0) for path, sign in signs.items()}
+            found.append(Nuisance(group.name, exponents, most, group.wide, group.refilled))
+    return tuple(found)
 
 
 def habit(at: Context) -> Nuisance | None:

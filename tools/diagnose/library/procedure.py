@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 
 import casadi as ca
 
@@ -11,11 +12,34 @@ from ..campaign.table import Sensor
 from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 from .cooling import DAYS, factors
 from .roles import Roles
+from .sensors import FROM_THEN, PLACE, since
 
 #: What early readings are a share of where they are early by a time [s], and rounding of a pace near zero.
 EARLY, ROUND = 7200.0, 0.1
 #: How much of the size each half has, by the form's name, and the forms' weights.
 HALVES = {"": (1.0, 1.0, 0.6), "first half": (1.0, 0.0, 0.25), "later halves": (0.0, 1.0, 0.15)}
+
+
+@dataclass(frozen=True)
+class Course:
+    """A way of a change over the running order: words, share of the prior, its shape, and how far it is, 0 to 1."""
+
+    words: str
+    share: float
+    shape: Shape
+    at: Callable[[Theta, Row], Num]
+    regime: Mapping[str, str] = field(default_factory=dict)
+
+
+COURSES = (
+    Course(
+        "",
+        0.7,
+        Shape("power", "1", "exponent of the running order", 0.3, 2.0, 0.9, 0.35),
+        lambda theta, row: (row.order + 1e-9) ** theta["power"],
+    ),
+    Course("from one test on", 0.3, PLACE, since, FROM_THEN),
+)
 
 
 def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
@@ -73,24 +97,29 @@ def order(roles: Roles) -> Cause:
         del targets["all losses"]
     kept = {name: (paths, weight) for name, (paths, weight) in targets.items() if paths}
 
-    def changing(paths: Sequence[str]) -> Callable[[Theta, Row], Values]:
+    def changing(paths: Sequence[str], course: Callable[[Theta, Row], Num]) -> Callable[[Theta, Row], Values]:
         def values(theta: Theta, row: Row) -> Values:
-            progress = (row.order + 1e-9) ** theta["power"] - theta["zero"]
-            return {path: row.base[path] * ca.exp(theta["change"] * progress) for path in paths}
+            log = theta["change"] * (course(theta, row) - theta["zero"])
+            return {path: row.base[path] * ca.exp(log) for path in paths}
 
         return values
 
-    shapes = (
-        Shape("power", "1", "exponent of the running order", 0.3, 2.0, 0.9, 0.35),
-        Shape("zero", "1", "value of the order term at which the nominal holds: 0 first test, 1 last", 0.0, 1.0),
-    )
+    zero = Shape("zero", "1", "where the nominal holds: 0 before the change, 1 after", 0.0, 1.0)
     total = sum(weight for _, weight in kept.values())
     return Cause(
         id="procedure.order",
-        doc="Cooling or losses that change steadily over the campaign: dirt, season, running in, what stands around.",
+        doc="Cooling or losses that change over the campaign: dirt, season, running in, what stands around.",
         size=Size("change", "1", "logarithm of the factor from the first test to the last", 0.12, -1.5, 1.0),
         forms=tuple(
-            Form(name, weight / total, shapes, values=changing(paths)) for name, (paths, weight) in kept.items()
+            Form(
+                ", ".join(filter(None, (target, course.words))),
+                weight * course.share / total,
+                (course.shape, zero),
+                values=changing(paths, course.at),
+                regime=course.regime,
+            )
+            for target, (paths, weight) in kept.items()
+            for course in COURSES
         ),
         exposes="the first point repeated at the end; tests in random order",
         acts_on="order",

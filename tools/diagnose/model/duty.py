@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import numpy as np
 
-from ..campaign.table import Campaign
+from ..campaign.table import PLACES, Campaign
 from .march import Phases
 
 #: Shares of a dwell, of a stop and of the time to a steady state [s] where steps end.
 DWELL = (np.arange(1, 8) / 7) ** 1.2
+#: The same where it was logged, with short steps for what warms first, and the steps after which it is read.
+LOGGED = np.sort([0.015, 0.04, 0.15, 0.4, 0.8, *PLACES, 1.0])
+READ = tuple(np.flatnonzero(np.isin(LOGGED, [*PLACES, 1.0])).tolist())
 STOP = np.array([1.0])
 STEADY = 60.0 * 4.0 ** np.arange(14)
 #: A kind of sensor that reads zero where the machine stands.
@@ -16,7 +19,7 @@ RESTS = ("torque", "speed", "power")
 
 
 def duty(c: Campaign, rows: np.ndarray, starts: np.ndarray) -> Phases:
-    """All tests as runs: a dwell for each row, a stop before each but the first.
+    """All tests as runs: a dwell for each row, a stop before each but the first. A logged dwell is read along it, too.
 
     Args:
         c: the campaign
@@ -37,7 +40,7 @@ def duty(c: Campaign, rows: np.ndarray, starts: np.ndarray) -> Phases:
     one = np.eye(height)
     room = np.array([s.kind == "ambient" for s in c.given], dtype=bool)
     moving = np.array([s.kind in RESTS for s in c.given], dtype=bool)
-    shares = np.cumsum(STEADY) / STEADY.sum() if c.steady else DWELL
+    shares = np.cumsum(STEADY) / STEADY.sum() if c.steady else LOGGED if c.series else DWELL
     reached = np.tile(one[0], (n, 1))  # weights of the rows in the room's temperature so far
     for h in range(height):
         if h:
@@ -60,7 +63,7 @@ def duty(c: Campaign, rows: np.ndarray, starts: np.ndarray) -> Phases:
         local.append(weights)
         row.append(h)
         steps.append(shares)
-        read.append((len(shares) - 1,))
+        read.append(READ if c.series else (len(shares) - 1,))
     whole = np.array(local)
     empty = np.empty((n, len(row), 0))
     return Phases(

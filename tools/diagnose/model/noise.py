@@ -11,7 +11,9 @@ from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
+from scipy.linalg import block_diag
 
+from .course_noise import LENGTH, dwells, fading, model_error, shares, smoothed, start_error
 from .observe import Observed, Seen
 
 #: Prior standard deviations of the logarithms of scales: readings of a sensor, of the room, days.
@@ -28,20 +30,35 @@ ASIDE = 1e3
 
 @dataclass(frozen=True)
 class Term:
-    """One term: `columns` (m, k) or `variance` (m,); `loose` is the prior's standard deviation of its log scale."""
+    """One term: `columns` (m, k), `variance` (m,) or `covariance` (m, m).
+
+    `loose` is the prior's standard deviation of its log scale.
+    """
 
     name: str
     columns: np.ndarray | None = None
     variance: np.ndarray | None = None
     loose: float = 0.0
+    covariance: np.ndarray | None = None
 
     @property
     def matrix(self) -> np.ndarray:
         """The covariance it stands for (m, m)."""
+        if self.covariance is not None:
+            return self.covariance
         if self.variance is not None:
             return np.diag(self.variance)
         assert self.columns is not None
         return np.asarray(self.columns @ self.columns.T)
+
+
+    @property
+    def effects(self) -> np.ndarray:
+        """Columns (m, k) of a term that has columns or variances."""
+        if self.variance is not None:
+            return np.diag(np.sqrt(self.variance))[:, self.variance > 0]
+        assert self.columns is not None
+        return self.columns
 
 
 def reading_scatter(o: Observed) -> Iterator[tuple[str, np.ndarray]]:
@@ -61,7 +78,7 @@ def input_scatter(o: Observed, seen: Seen) -> Iterator[tuple[str, np.ndarray]]:
 def read_tolerance(o: Observed) -> Iterator[tuple[str, np.ndarray]]:
     """Fixed tolerance of each compared sensor: name and effect (m,)."""
     for i, s in enumerate(o.read):
-        yield s.name, np.where(o.kind == i, s.offset_sd, 0.0)
+        yield s.name, np.where(o.entries.sensor == i, s.offset_sd, 0.0)
 
 
 def given_tolerance(o: Observed, seen: Seen) -> Iterator[tuple[str, np.ndarray]]:
@@ -73,13 +90,14 @@ def given_tolerance(o: Observed, seen: Seen) -> Iterator[tuple[str, np.ndarray]]
 
 def elsewhere(o: Observed, seen: Seen) -> np.ndarray:
     """Effects (m, k) of further probes of a body that see something of its surroundings."""
-    columns, known = [], set[str]()
+    columns, known, place = [], set[str](), list(zip(o.row, shares(o), strict=True))
     walls = [i for i, s in enumerate(o.read) if s.kind == "wall_temp"]
     for i, s in enumerate(o.read):
         if s.kind.endswith("_temp") and s.reads in known and walls:
-            own, wall = (dict(zip(o.row[k], seen.shown[k], strict=True)) for k in (o.kind == i, o.kind == walls[0]))
-            effect = np.array([own[r] - wall.get(r, own[r]) if r in own else 0.0 for r in o.row])
-            columns.append(np.where(o.kind == i, ELSEWHERE * effect, 0.0))
+            mine, others = ((o.entries.sensor == k).nonzero()[0] for k in (i, walls[0]))
+            own, wall = ({place[e]: seen.shown[e] for e in entries} for entries in (mine, others))
+            effect = np.array([own[at] - wall.get(at, own[at]) if at in own else 0.0 for at in place])
+            columns.append(np.where(o.entries.sensor == i, ELSEWHERE * effect, 0.0))
         known.add(s.reads)
     return np.array(columns).reshape(len(columns), o.m).T
 
@@ -105,8 +123,9 @@ def conditions(o: Observed) -> np.ndarray:
     return np.array(own).reshape(len(own), o.campaign.n).T
 
 
-def smooth_features(campaigns: Sequence[Observed]) -> list[np.ndarray]:
-    """Features of a smooth remainder, the same in all campaigns (n, k) each: constant, linear, products, squares."""
+def smooth_features(campaigns: Sequence[Observed]) -> list[tuple[np.ndarray, np.ndarray]]:
+    """Features of a smooth remainder, the same in all campaigns: constant and linear ones (n, c); all, with products
+    and squares (n, k)."""
     raw = []
     for o in campaigns:
         given = [o.sensors[s.name] for s in o.given]
@@ -121,9 +140,10 @@ def smooth_features(campaigns: Sequence[Observed]) -> list[np.ndarray]:
         z = ((values - centre) / np.maximum(spread, 1e-12))[kept]
         quiet = np.array(room)[kept]
         own = [np.ones(values.shape[1]), *z]
+        linear = np.array(own).T
         moving, curved = z[~quiet], levels[~quiet] > 2  # a square needs three levels in all campaigns together
         own += [a * b for i, a in enumerate(moving) for k, b in enumerate(moving[i:], start=i) if k > i or curved[i]]
-        found.append(np.array(own).T)
+        found.append((linear, np.array(own).T))
     return found
 
 
@@ -132,12 +152,14 @@ def remainder(campaigns: Sequence[Observed]) -> np.ndarray:
     blocks = []
     features = smooth_features(campaigns)
     sensors = [s.name for s in campaigns[0].read]
-    for o, own in zip(campaigns, features, strict=True):
+    for o, (linear, own) in zip(campaigns, features, strict=True):
+        fades = fading(o, linear) if any(c.campaign.series for c in campaigns) else np.zeros((o.m, 0))
         columns = []
         for name in sensors:
             index = next((i for i, s in enumerate(o.read) if s.name == name), -1)
             sd = _remainder_sd(campaigns, name)
-            columns.append(np.where((o.kind == index)[:, None], sd * own[o.row], 0.0))
+            mine = (o.entries.sensor == index)[:, None]
+            columns += [np.where(mine, sd * own[o.row], 0.0), np.where(mine, sd * fades, 0.0)]
         blocks.append(np.concatenate(columns, axis=1))
     return np.concatenate(blocks)
 
@@ -151,6 +173,7 @@ def _remainder_sd(campaigns: Sequence[Observed], name: str) -> float:
 def alike(o: Observed, length: float = 1.3) -> np.ndarray:
     """Correlation (m, m) of what is smooth in the conditions and the running order, for one sensor."""
     features = np.column_stack([conditions(o), 2.0 * o.campaign.progress])[o.row]
+    features = np.column_stack([features, length / LENGTH * shares(o)]) if o.campaign.series else features
     distance = ((features[:, None, :] - features[None, :, :]) ** 2).sum(axis=2)
     return np.asarray(np.exp(-0.5 * distance / length**2))
 
@@ -201,9 +224,20 @@ def terms(campaigns: Sequence[Observed], seen: Sequence[Seen], day_sd: float, da
     fillings = [(k, c) for k, (o, s) in pairs for c in _fillings(o, s)]
     if fillings:
         found.append(Term("fillings", stacked(fillings, sizes)))
+    if any(o.campaign.series for o in campaigns):
+        found += _logged(campaigns)
     if len(campaigns) > 1:
         found.append(Term("remainder", remainder(campaigns)))
     return found
+
+
+def _logged(campaigns: Sequence[Observed]) -> Iterator[Term]:
+    """Terms of logged courses."""
+    sizes = [o.m for o in campaigns]
+    for name, made in (("courses", smoothed), ("model of courses", model_error)):
+        yield Term(name, covariance=block_diag(*map(made, campaigns)))
+    yield Term("starts", stacked([(k, start_error(o)) for k, o in enumerate(campaigns)], sizes))
+    yield Term("dwells as logged", variance=np.concatenate([dwells(o) for o in campaigns]))
 
 
 def _fillings(o: Observed, seen: Seen) -> Iterator[np.ndarray]:

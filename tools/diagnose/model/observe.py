@@ -10,14 +10,14 @@ import numpy as np
 from ..campaign.table import Campaign
 from ..library.cause import Nuisance
 from .duty import duty
+from .entries import Entries
 from .formula import Formula
 from .march import Marched, Phases, march
 from .plant import Plant
+from .slopes import Slope, same, total
 
 #: Part -> path -> values of each row (n,).
 _Changes = dict[str, dict[str, np.ndarray]]
-#: Derivatives of a value of each row that are not zero: direction -> of each row (n,).
-_Slope = dict[int, np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -63,10 +63,9 @@ class Observed:
         self.given, self.read = campaign.given, campaign.read
         self.shown = [plant.shown.index(s.reads) for s in self.read if s.reads in plant.shown]
         self.inputs = [plant.u_place[s.reads] for s in self.given]
-        held = [(i, r) for i, s in enumerate(self.read) for r in np.flatnonzero(np.isfinite(campaign.values[s.name]))]
-        #: Sensor (its number among those read) and row of each of the m entries.
-        self.kind, self.row = (np.array(column, dtype=int) for column in zip(*held, strict=True))
-        self.measured = np.array([campaign.values[self.read[i].name][r] for i, r in held])
+        self.entries = Entries.of(campaign)
+        #: Channel and row of each of the m entries, and what was measured.
+        self.kind, self.row, self.measured = self.entries.kind, self.entries.row, self.entries.measured
         self.p = np.tile(plant.p, (campaign.n, 1))
         for k, oil in enumerate(campaign.oil):
             for path, value in oils.get(oil, {}).items():
@@ -81,6 +80,12 @@ class Observed:
         self.starts = 1.0 * by_room[:, None] * room
         self.features = self._features()
         self._phases = duty(campaign, self.rows, self.starts)
+        at = self.entries
+        #: Of each place that is read: its test, and its number among the reads of a run.
+        self.test = campaign.test[at.place_row]
+        self.reads = self.half[at.place_row] * len(self._phases.read[0]) + at.step
+        #: Which reads of a run lie along logged courses.
+        self.along = np.arange(sum(map(len, self._phases.read))) % len(self._phases.read[0]) < at.step.max()
 
     @property
     def m(self) -> int:
@@ -126,7 +131,7 @@ class Observed:
 
     def outputs(self) -> np.ndarray:
         """All that the plant shows in each row as its file has it (n, shown), NaN where it cannot be run."""
-        return _Look(self, np.zeros(len(self.nuisances)), ()).outputs()
+        return _Look(self, np.zeros(len(self.nuisances)), ()).outputs()[: self.campaign.n]
 
     def tangents(
         self,
@@ -157,10 +162,10 @@ class _Look:
         self.o, self.z, self.parts, self.candidates = o, z, parts, candidates
         self.n = o.campaign.n
         self.values: dict[str, np.ndarray] = {}
-        self.slopes: dict[str, _Slope] = {}
+        self.slopes: dict[str, Slope] = {}
         self.truth = dict(o.sensors)
-        self.truth_slopes: dict[str, _Slope] = {s.name: {} for s in o.given}
-        self.pace, self.pace_slopes = np.ones(self.n), _Slope()
+        self.truth_slopes: dict[str, Slope] = {s.name: {} for s in o.given}
+        self.pace, self.pace_slopes = np.ones(self.n), Slope()
         #: Settings of the parameters beside the one that acts: whether no other candidate may join, what is changed.
         self.settings: list[tuple[bool, _Changes]] = []
         #: Slopes of candidates: setting, path, direction, of each row.
@@ -182,7 +187,7 @@ class _Look:
                 value = self._base(path) * factor
                 slope = {i: own * factor for i, own in self.slopes.get(path, {}).items()}
                 self.values[path] = value
-                self.slopes[path] = _sum([(1.0, slope), (exponent * nuisance.sd, {k: value})])
+                self.slopes[path] = total([(1.0, slope), (exponent * nuisance.sd, {k: value})])
 
     def _base(self, path: str) -> np.ndarray:
         return self.values[path] if path in self.values else self.o.p[:, self.o.plant.place[path]]
@@ -196,16 +201,16 @@ class _Look:
         slopes = []
         for i in range(len(value)):
             through = [(by[i], self.slopes[name]) for name, by in by_base.items() if name in self.slopes]
-            slopes.append(_sum([(1.0, {self.d + k: by_t[i, :, k] for k in range(formula.size)}), *through]))
+            slopes.append(total([(1.0, {self.d + k: by_t[i, :, k] for k in range(formula.size)}), *through]))
         names = (*formula.paths, *formula.given)
         for i, (name, slope) in enumerate(zip(names, slopes, strict=False)):
             if i < len(formula.paths):
                 self.values[name], self.slopes[name] = value[i], slope
             else:
                 self.truth[name] = self.truth[name] + value[i] - self.o.sensors[name]
-                self.truth_slopes[name] = _sum([(1.0, self.truth_slopes[name]), (1.0, slope)])
+                self.truth_slopes[name] = total([(1.0, self.truth_slopes[name]), (1.0, slope)])
         if formula.paced:
-            self.pace_slopes = _sum([(value[-1], self.pace_slopes), (self.pace, slopes[-1])])
+            self.pace_slopes = total([(value[-1], self.pace_slopes), (self.pace, slopes[-1])])
             self.pace = self.pace * value[-1]
 
     def _try(self, formula: Formula, t: np.ndarray) -> None:
@@ -215,9 +220,9 @@ class _Look:
         setting = self._setting(dict(zip(formula.paths, value, strict=False)))
         self.tried_slopes += [(setting, path, self.d, slopes[i]) for i, path in enumerate(formula.paths)]
         for i, name in enumerate(formula.given, start=n_paths):
-            self.truth_slopes[name] = _sum([(1.0, self.truth_slopes[name]), (1.0, {self.d: slopes[i]})])
+            self.truth_slopes[name] = total([(1.0, self.truth_slopes[name]), (1.0, {self.d: slopes[i]})])
         if formula.paced:
-            self.pace_slopes = _sum([(1.0, self.pace_slopes), (self.pace, {self.d: slopes[-1]})])
+            self.pace_slopes = total([(1.0, self.pace_slopes), (self.pace, {self.d: slopes[-1]})])
 
     def _setting(self, wanted: Mapping[str, np.ndarray]) -> int:
         """Which setting of the parameters a candidate is tried at; what it changes of a part, no other there changes.
@@ -233,13 +238,28 @@ class _Look:
             return 0
         alone = bool(changed.keys() & {path.partition(".")[0] for f, _ in self.parts for path in f.paths})
         for k, (closed, known) in enumerate(self.settings, start=1):
-            if not alone and not closed and all(_same(known[part], changed[part]) for part in known.keys() & changed):
+            if not alone and not closed and all(same(known[part], changed[part]) for part in known.keys() & changed):
                 known.update(changed)
                 return k
         self.settings.append((alone, changed))
         return len(self.settings)
 
     def _run(self, turned: bool) -> Marched:
+        """Logged courses show their own clock: they run at their full pace."""
+        found = self._paced(self.pace, turned)
+        if not (along := self.o.along).any():
+            return found
+        if (self.pace != 1).any():
+            logged = self._paced(np.ones(self.n), turned)
+            found.y[:, along] = logged.y[:, along]
+            if found.slopes is not None and logged.slopes is not None:
+                found.slopes.by[:, :, :, :, along] = logged.slopes.by[:, :, :, :, along]
+                found.slopes.local[:, :, :, along] = logged.slopes.local[:, :, :, along]
+        if found.slopes is not None:
+            found.slopes.by[:, :, :, -1, along] = 0.0
+        return found
+
+    def _paced(self, pace: np.ndarray, turned: bool) -> Marched:
         o, plant = self.o, self.o.plant
         p = np.tile(o.p, (1 + len(self.settings), 1, 1))
         for path, value in self.values.items():
@@ -251,22 +271,30 @@ class _Look:
         phases, start = o.driven(truth)
         x0 = np.tile(plant.flat.starts("state"), (o.campaign.n_tests, 1))
         x0[:, [q.unit == "K" for q in plant.flat.states]] = start[:, None]
-        return march(plant, phases, x0, p[:, o.rows], self.pace[o.rows], turned=turned)
+        return march(plant, phases, x0, p[:, o.rows], pace[o.rows], turned=turned)
 
     def outputs(self) -> np.ndarray:
-        """All that the plant shows (n, shown)."""
-        return self._run(turned=False).y[self.o.campaign.test, self.o.half]
+        """All that the plant shows at each place (p, shown)."""
+        return self._run(turned=False).y[self.o.test, self.o.reads]
+
+    def instruments(
+        self, formula: Formula, t: np.ndarray, true: Mapping[str, np.ndarray]
+    ) -> tuple[np.ndarray, np.ndarray, dict[str, np.ndarray]]:
+        """What a cause's instruments show at each place, where its row's conditions hold."""
+        row = self.o.entries.place_row
+        sensors = {name: values[row] for name, values in self.o.sensors.items()}
+        return formula.instruments(t, sensors, true, self.o.features[:, row])
 
     def shown(self) -> np.ndarray:
         """Readings (m,) only."""
         y = self.outputs()
-        true = {s.name: y[:, k] * self.o.signs[s.name] for s, k in zip(self.o.read, self.o.shown, strict=True)}
+        row = self.o.entries.place_row
+        true = {s.name: y[:, k] * self.o.signs[s.name][row] for s, k in zip(self.o.read, self.o.shown, strict=True)}
         for formula, t in self.parts:
             if formula.read:
-                value, _, _ = formula.instruments(t, self.o.sensors, true, self.o.features)
+                value, _, _ = self.instruments(formula, t, true)
                 true |= dict(zip(formula.read, value, strict=True))
-        whole = np.array([true[s.name] for s in self.o.read])
-        return np.asarray(whole[self.o.kind, self.o.row])
+        return self.o.entries.picked(np.array([true[s.name] for s in self.o.read]), self.pace - 1)
 
     def tangents(self) -> np.ndarray:
         """Effects of the candidates' sizes (m, k)."""
@@ -274,11 +302,11 @@ class _Look:
         effects, whole = self.seen().by[:, begin:], self.true
         for k, (formula, t) in enumerate(self.candidates):
             if formula.read:
-                _, by_t, _ = formula.instruments(_none(t), o.sensors, whole, o.features)
+                _, by_t, _ = self.instruments(formula, _none(t), whole)
                 for i, name in enumerate(formula.read):
                     sensor = next(j for j, s in enumerate(o.read) if s.name == name)
-                    mine = o.kind == sensor
-                    effects[mine, k] += by_t[i, o.row[mine], 0]
+                    mine = o.entries.sensor == sensor
+                    effects[mine, k] += by_t[i, o.entries.at[mine], 0]
         return effects
 
     def seen(self) -> Seen:
@@ -287,9 +315,9 @@ class _Look:
         y, by, local = self._turned()
         true, slopes, locals_ = {}, {}, {}
         for s, k in zip(o.read, o.shown, strict=True):
-            sign = o.signs[s.name]
+            sign = o.signs[s.name][o.entries.place_row]
             true[s.name] = y[:, k] * sign
-            locals_[s.name] = local[:, :, :, k] * sign[:, None, None]  # n, given, H
+            locals_[s.name] = local[:, :, :, k] * sign[:, None, None]  # p, given, H
             slopes[s.name] = by[:, k] * sign[:, None]
         begin = len(self.z)
         for formula, t in self.parts:
@@ -297,10 +325,10 @@ class _Look:
             begin += formula.size
             if not formula.read:
                 continue
-            value, by_t, by_reads = formula.instruments(t, o.sensors, true, o.features)
+            value, by_t, by_reads = self.instruments(formula, t, true)
             changed = {}
             for i, name in enumerate(formula.read):
-                slope = np.zeros((self.n, self.d))
+                slope = np.zeros((len(y), self.d))
                 slope[:, own] = by_t[i]
                 far = np.zeros_like(locals_[name])
                 for other, weight in by_reads.items():
@@ -310,27 +338,31 @@ class _Look:
             for name, (v, slope, far) in changed.items():
                 true[name], slopes[name], locals_[name] = v, slope, far
         self.true = true
-        pick = [np.array([item[s.name] for s in o.read])[o.kind, o.row] for item in (true, slopes, locals_)]
-        return Seen(*pick)
+        dwells = np.zeros((self.n, self.d))
+        for i, slope in self.pace_slopes.items():
+            dwells[:, i] = slope
+        rest = (self.pace - 1, dwells, np.zeros((self.n, *local.shape[1:3])))
+        whole = [np.array([item[s.name] for s in o.read]) for item in (true, slopes, locals_)]
+        return Seen(*(o.entries.picked(item, own) for item, own in zip(whole, rest, strict=True)))
 
     def _turned(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-        """What the plant shows (n, shown), by all directions (n, shown, d), by given readings (n, given, H, shown)."""
+        """What the plant shows (p, shown), by all directions (p, shown, d), by given readings (p, given, H, shown)."""
         o, found = self.o, self._run(turned=True)
         assert found.slopes is not None
-        test = o.campaign.test
-        local = found.slopes.local[test, :, :, o.half]
+        test = o.test
+        local = found.slopes.local[test, :, :, o.reads]
         signs = np.array([o.signs[s.name] for s in o.given])
-        by_truth = local.swapaxes(1, 2) * signs[:, o.rows[test]].transpose(1, 2, 0)[..., None]  # n, H, given, shown
-        by_knobs = found.slopes.by[test, :, :, :, o.half].swapaxes(1, 2)  # n, H, settings, knobs + 1, shown
-        own = by_knobs.reshape(self.n, o.height, -1, found.y.shape[2])
+        by_truth = local.swapaxes(1, 2) * signs[:, o.rows[test]].transpose(1, 2, 0)[..., None]  # p, H, given, shown
+        by_knobs = found.slopes.by[test, :, :, :, o.reads].swapaxes(1, 2)  # p, H, settings, knobs + 1, shown
+        own = by_knobs.reshape(len(test), o.height, -1, found.y.shape[2])
         all_by, entries = np.concatenate([own, by_truth], axis=2), sorted(self._entries(), key=lambda e: e[0])
-        by = np.zeros((self.n, found.y.shape[2], self.d))
+        by = np.zeros((len(test), found.y.shape[2], self.d))
         if entries:
             places, first = np.unique([i for i, _, _ in entries], return_index=True)
-            ways = np.array([v for _, _, v in entries])[:, o.rows[test]]  # entries, n, H
+            ways = np.array([v for _, _, v in entries])[:, o.rows[test]]  # entries, p, H
             effects = np.einsum("nhes,enh->nse", all_by[:, :, [k for _, k, _ in entries]], ways, optimize=False)
             by[:, :, places] = np.add.reduceat(effects, first, axis=2)
-        return found.y[test, o.half], by, local
+        return found.y[test, o.reads], by, local
 
     def _entries(self) -> list[tuple[int, int, np.ndarray]]:
         """All slopes: direction, column (knobs and pace of each setting, then the given sensors), of each row."""
@@ -342,20 +374,6 @@ class _Look:
         slopes += [(k, self.truth_slopes[s.name]) for k, s in enumerate(self.o.given, start=first)]
         tried = [(i, wide * setting + place[path], v) for setting, path, i, v in self.tried_slopes]
         return [*((i, k, v) for k, slope in slopes for i, v in slope.items()), *tried]
-
-
-def _same(one: Mapping[str, np.ndarray], other: Mapping[str, np.ndarray]) -> bool:
-    """Whether both change the same to the same."""
-    return one.keys() == other.keys() and all(np.array_equal(v, other[path]) for path, v in one.items())
-
-
-def _sum(terms: Sequence[tuple[np.ndarray | float, _Slope]]) -> _Slope:
-    """Slopes, each times its weight."""
-    found: _Slope = {}
-    for weight, slope in terms:
-        for i, own in slope.items():
-            found[i] = found[i] + weight * own if i in found else weight * own
-    return found
 
 
 def _none(t: np.ndarray) -> np.ndarray:

@@ -11,6 +11,7 @@ from ..campaign.table import Campaign
 from ..infer.search import Found, Hypothesis
 from ..setting import Setting
 from . import channels, quality
+from .compose_points import repeated
 from .evidence import Rows
 from .numbers import array
 
@@ -21,6 +22,7 @@ def data_quality(setting: Setting, found: Found, h: Hypothesis) -> quality.DataQ
         gross=tuple(_gross(found, g) for g in answer.gross_readings(found, h)),
         nuisances=tuple(_off(setting, o) for o in answer.values_off(found, h)),
         variance=tuple(_scatter(setting, s) for s in answer.scatters(found, h)),
+        repeated=repeated(found.problem.data.campaign),
         adequacy=answer.adequacy(found, h),
     )
 
@@ -31,7 +33,7 @@ def _gross(found: Found, g: answer.Gross) -> quality.GrossReading:
     shown, expected = (None if v is None else float(channels.in_unit(s, np.array(v))) for v in (g.shown, g.expected))
     where = "" if g.campaign == 0 else f" of {campaign.name}"
     return quality.GrossReading(
-        row=g.row + 1,
+        row=int(campaign.lines[g.row]) - 1,
         line=int(campaign.lines[g.row]),
         point=f"{int(campaign.points[g.row])}{where}",
         channel=g.sensor,
@@ -73,7 +75,9 @@ def rows(found: Found, h: Hypothesis) -> Rows:
     o, own = found.problem.data, found.problem.own
     c = o.campaign
     null, leader = (fit.look.shown[own] for fit in (found.null, h.fit))
-    spread = np.sqrt(np.diag(h.fit.noise.covariance))[own]
+    noise = h.fit.noise
+    loose = zip(noise.scales, noise.parts[1], strict=True)  # scatter of readings and days, without tolerances
+    spread = np.sqrt(np.sum([np.exp(2 * s) * np.diag(C) for s, C in loose], axis=0))[own]
     told = {}
     for i, s in enumerate(o.read):
         mine = o.kind == i

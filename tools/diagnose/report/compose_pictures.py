@@ -1,15 +1,17 @@
-"""From what a search found to the result as data: a picture a cause."""
+"""From what a search found to the result as data: a picture a cause, and each channel on its own."""
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from ..campaign.table import Campaign
+from ..answer import views as answer
+from ..campaign.table import Campaign, Sensor
 from ..infer.search import Found, Hypothesis
 from . import channels
-from .evidence import Picture
+from .evidence import Picture, View
+from .names import listed
 from .numbers import array
 
 #: What a cause may act on, where it is no column -> the kind of sensor that reads it.
@@ -31,7 +33,8 @@ def pictures(found: Found, h: Hypothesis, quantities: Collection[str]) -> tuple[
     for acting in fit.look.acting:
         others = [a for a in fit.look.acting if a is not acting]
         effect = (fit.look.shown - problem.shown(fit.look.z, others))[problem.own]
-        shares = {int(i): float(np.sqrt(np.mean((effect / sd)[o.kind == i] ** 2))) for i in np.unique(o.kind)}
+        ends = np.unique(o.kind[o.kind < len(o.read)])
+        shares = {int(i): float(np.sqrt(np.mean((effect / sd)[o.kind == i] ** 2))) for i in ends}
         best = max(shares, key=lambda i: shares[i])
         mine, sensor = o.kind == best, o.read[best]
         table = np.full((2, o.campaign.n), np.nan)
@@ -55,3 +58,32 @@ def quantity(acts_on: str, campaign: Campaign, known: Collection[str]) -> str:
     kind = ACTS_ON.get(acts_on, "")
     ranked = sorted((s for s in campaign.sensors if s.kind == kind), key=lambda s: s.role != "given")
     return next((s.name for s in ranked if s.name in known), "order")
+
+
+def views(found: Found) -> tuple[View, ...]:
+    """What each channel says on its own."""
+    campaign = found.problem.data.campaign
+    return tuple(
+        View(
+            channel=v.sensor.name,
+            asks=_asks(v.sensor, campaign.read),
+            p=v.p,
+            nothing=v.nothing,
+            causes=tuple(View.Alone(id=id, probability=p) for id, p in v.causes.items()),
+            unit=channels.unit_of_difference(v.sensor),
+            order=array(campaign.order[campaign.test[v.rows]]),
+            direction=array(campaign.direction[v.rows]),
+            deviation=array(channels.difference(v.sensor, 1.0) * v.deviation),
+        )
+        for v in answer.views(found)
+    )
+
+
+def _asks(sensor: Sensor, read: Sequence[Sensor]) -> str:
+    """A channel and what it is compared with, in words."""
+    others = [s for s in read if s is not sensor]
+    warm = [s for s in others if s.kind.endswith("_temp")]
+    if sensor.kind.endswith("_temp") and warm:
+        rest = listed(channels.words(s) for s in others if s not in warm)
+        return f"{channels.words(sensor)} against the other thermometers{f' and {rest}' if rest else ''}"
+    return f"{channels.words(sensor)}, given {listed(channels.words(s) for s in others)}"

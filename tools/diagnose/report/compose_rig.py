@@ -62,7 +62,7 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
         scenario = scenario.with_values(filled, f"inferred: the oil of {data.name}")
     calibrated_values = values(found, h.fit)
     added = [_added(n, calibrated_values) for n in found.problem.data.nuisances if n.parts]
-    return extended_rig(scenario, calibrated_values, [*added, *_causes(h)], data.name, EXTRA_PARTS, len(oils))
+    return extended_rig(scenario, calibrated_values, _causes(h), data.name, EXTRA_PARTS, len(oils), added)
 
 
 def _causes(h: Hypothesis) -> list[Applied]:
@@ -79,6 +79,6 @@ def _added(nuisance: Nuisance, calibrated_values: dict[str, float]) -> Applied:
 
     form = Form(parts=nuisance.parts, connections=nuisance.connections, values=held)
     entry = Cause(
-        f"calibrated: {nuisance.name}", "Calibration adds it.", Size("factor", "1", "", 1.0, 0.0, 1.0), (form,)
+        f"calibration of {nuisance.name}", "Calibration adds it.", Size("factor", "1", "", 1.0, 0.0, 1.0), (form,)
     )
     return Applied(entry, form, {})

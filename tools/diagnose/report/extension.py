@@ -58,6 +58,7 @@ def extended_rig(
     data: str,
     types: Mapping[str, type[Component]],
     oils: int = 1,
+    also: Sequence[Applied] = (),
 ) -> str:
     """The text of a rig file that every command reads.
 
@@ -68,6 +69,7 @@ def extended_rig(
         data: name of the data
         types: types of parts that causes add, by name
         oils: how many oils the tests ran with
+        also: what calibration adds to the rig
     """
     known = scenario.settable()
     values, notes = {}, []
@@ -77,7 +79,7 @@ def extended_rig(
             if values[path] != float(value):
                 notes.append(f"{path} would be {phrases.number(float(value), 4)}; no more than this is possible.")
     rig = scenario.with_values(values, f"calibrated: diagnosis of {data}")
-    for one in applied:
+    for one in (*also, *applied):
         rig, left = _added(rig, one, data, types, oils)
         notes += left
     causes = " and ".join(f"{name_of(a.cause.id)} ({a.cause.id})" for a in applied) or "calibrated, no cause added"

@@ -168,7 +168,7 @@ class Gain(Model):
 
 
 class Played(Model):
-    """Root mean square that the rig leaves when it is played over the data it was fitted to."""
+    """Root mean square that the rig leaves of the data it was fitted to, with faults of instruments as found."""
 
     rms_calibrated: Number
     rms_extended: Number
@@ -298,9 +298,3 @@ class Findings(Model):
 def as_object(findings: Findings) -> dict[str, Any]:
     """The JSON object of a diagnosis, without what is not known."""
     return findings.model_dump(mode="json", by_alias=True, exclude_none=True)
-
-
-def json_schema() -> dict[str, Any]:
-    """The JSON schema of `as_object`."""
-    found = Findings.model_json_schema(by_alias=True, mode="serialization")
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "$id": "gearheat.diagnosis/2"} | found

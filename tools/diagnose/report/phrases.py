@@ -8,12 +8,13 @@ from .estimate import Estimate
 from .findings import Answer, Cause, Findings, Gain, Impact
 from .names import names_of
 from .numbers import LEAST_P
-from .quality import GrossReading, NuisanceOff
+from .quality import GrossReading, NuisanceOff, VarianceComponent
 
 #: Units as they are shown.
 SHOWN = {"degC": "°C", "1": ""}
 SCHEMES = {
     "leave-one-operating-point": "each test left out in turn",
+    "leave-out-tests": "some of the tests left out in turn",
     "leave-one-speed": "each speed left out in turn",
     "leave-one-load": "each torque left out in turn",
     "leave-one-oil": "each oil left out in turn",
@@ -49,6 +50,11 @@ def percent(probability: float, error: float = 0.0) -> str:
     if 0.0 <= probability < 0.005:
         return "< 1 %"
     return f"{100 * probability:.0f} %" if error < 0.005 else f"{100 * probability:.0f} ± {100 * error:.0f} %"
+
+
+def sigma(distance: float | None) -> str:
+    """A distance in standard deviations; empty where there is none."""
+    return "" if distance is None else f"{distance:.1f}"
 
 
 def p_value(p: float) -> str:
@@ -120,6 +126,15 @@ def answer(found: Answer) -> str:
     """The causes of an answer; members of one class with "or" between."""
     classes = [names_of(group, "or") for group in found.causes]
     return ("; and " if any(len(group) > 1 for group in found.causes) else " and ").join(classes)
+
+
+def scatter(found: VarianceComponent) -> str:
+    """What a scatter is and how large, as a sentence."""
+    days = found.name == "days"
+    what = "The cooling from day to day" if days else f"A reading of {found.channel}" if found.channel else found.name
+    factor, unit = (100.0, "%") if found.unit == "1" else (1.0, found.unit)
+    scatters, card = with_unit(factor * found.found, unit, 2), with_unit(factor * found.card, unit, 2)
+    return f"{what} scatters by {scatters}; the card says {card} ({number(found.ratio, 2)} times)."
 
 
 def gross(found: GrossReading) -> str:

@@ -58,7 +58,7 @@ class Repeat(Model):
 
 
 class RepeatedPoint(Model):
-    """A point that was measured more than once, in running order; deviations from the calibrated model."""
+    """A point measured several times, in running order: deviations from its mean, temperatures over the room."""
 
     condition: str
     channel: str

@@ -17,7 +17,7 @@ SCATTER = 1.5
 #: Distances below this are none [standard deviations].
 APART = 3.0
 #: What is listed on the first screen.
-MOST = 5
+MOST, FEW = 6, 3
 
 
 def with_words(findings: Findings) -> Findings:
@@ -118,7 +118,7 @@ def _do(findings: Findings) -> str:
         steps.append(f"To confirm it: {exposing}")
     elif findings.next_experiment:
         e = findings.next_experiment[0]
-        before, after = phrases.number(e.separation_before, 2), phrases.number(e.separation_after, 2)
+        before, after = phrases.sigma(e.separation_before), phrases.sigma(e.separation_after)
         steps.append(
             f"Measure next: {e.what or e.id}. That separates {names_of(e.separates)}: {before} standard"
             f" deviations now, {after} then."
@@ -191,21 +191,29 @@ def _cannot_be(findings: Findings) -> str:
     named = {c for a in findings.answers for group in a.causes for c in group}
     out = [c.id for c in findings.causes if _ruled_out(findings, c) and c.id not in named]
     if out:
-        said.append(f"Ruled out at their usual size: {names_of(out, most=2 * MOST)}.")
+        said.append(f"Ruled out at their usual size: {names_of(out, most=MOST)}.")
     for group in findings.sets:
-        first, *others = (c for c in group.causes if c == group.causes[0] or c not in named)
+        first, *alike = group.causes
+        others = [c for c in alike if c not in named and _open(findings, c)]
         if first in named and others and group.distance < APART:
             said.append(f"These data cannot tell {name_of(first)} from {names_of(others, 'or')}.")
     if findings.invisible:
-        blind = names_of((i.cause for i in findings.invisible), "or", MOST)
+        blind = names_of((i.cause for i in findings.invisible), "or", FEW)
         said.append(f"These data cannot show {blind}.")
     return " ".join(said)
+
+
+def _open(findings: Findings, cause: str) -> bool:
+    """Whether these data, at the size found, still leave a cause open."""
+    found = findings.cause(cause)
+    return found is not None and found.probability >= RULED_OUT
 
 
 def _ruled_out(findings: Findings, cause: Cause) -> bool:
     seen = cause.detectable is not None and cause.usual is not None and cause.detectable <= cause.usual
     alike = any(cause.id in s.causes and s.distance < APART for s in findings.sets)
-    return seen and not alike and cause.probability < RULED_OUT
+    blind = any(cause.id == i.cause for i in findings.invisible)
+    return seen and not alike and not blind and cause.probability < RULED_OUT
 
 
 def _data(findings: Findings) -> tuple[str, ...]:
@@ -216,9 +224,7 @@ def _data(findings: Findings) -> tuple[str, ...]:
         said.append(f"The rig differs from its file: {'; '.join(map(phrases.nuisance, quality.nuisances))}.")
     for v in quality.variance:
         if v.ratio > SCATTER or v.ratio < 1 / SCATTER:
-            card, found = phrases.number(v.card, 2), phrases.with_unit(v.found, v.unit, 2)
-            ratio = phrases.number(v.ratio, 2)
-            said.append(f"{sentence(v.name)} scatters by {found}; the card says {card} ({ratio} times).")
+            said.append(phrases.scatter(v))
     for channel, p in quality.adequacy.items():
         if p < ADEQUATE:
             said.append(f"What is left in {channel} is not noise ({phrases.p_value(p)}).")

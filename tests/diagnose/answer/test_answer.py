@@ -1,0 +1,136 @@
+"""Decision, sizes, gain, predictions and experiments of a small search."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from gearheat.diagnose.answer import estimate, gain
+from gearheat.diagnose.answer.decide import UNEXPLAINED, decided
+from gearheat.diagnose.answer.design import of_search, ranked
+from gearheat.diagnose.answer.experiments import added, experiments
+from gearheat.diagnose.answer.predict import predictions
+from gearheat.diagnose.answer.quality import adequacy, scatters
+from gearheat.diagnose.answer.sets import Effects, alike
+from gearheat.diagnose.infer.search import Found
+from gearheat.diagnose.setting import Setting
+
+TRUE = "sensor.oil_temp.offset"
+#: What may be wrong, and by how much the oil thermometer is, as the fixtures have it [K].
+CAUSES = (TRUE, "cooling.air", "losses.churning", "sensor.oil_temp.drift")
+OFFSET = 3.0
+
+
+def test_the_cause_is_named_and_all_agrees(wrong: tuple[Setting, Found]) -> None:
+    decision = decided(wrong[1])
+    assert decision.verdict in ("explained", "ambiguous")
+    assert decision.answers[0].causes == (TRUE,)
+    assert decision.p_any < 0.05
+    assert sum(j.chance.probability for j in decision.joints) == pytest.approx(1.0)
+    assert decision.marginal[TRUE].probability >= decision.answers[0].chance.probability - 1e-9
+    assert 0.0 <= decision.marginal[TRUE].mc_error < 0.5
+
+
+def test_clean_data_are_consistent(clean: tuple[Setting, Found]) -> None:
+    decision = decided(clean[1])
+    assert decision.verdict == "consistent"
+    assert not decision.answers
+    assert decision.p_any > 0.05
+    assert decision.leader.causes == ()
+    assert 0.001 < decision.p_adequacy < 0.999
+
+
+@pytest.mark.parametrize("name", ["wrong", "clean"])
+def test_the_alarm_is_an_alarm_if_and_only_if_nothing_has_less_than_half(
+    name: str, request: pytest.FixtureRequest
+) -> None:
+    found: Found = request.getfixturevalue(name)[1]
+    decision = decided(found)
+    nothing = next(j.chance.probability for j in decision.joints if not j.causes)
+    assert (nothing < 0.5) == (decision.p_any < 0.05) == (decision.verdict != "consistent")
+
+
+def test_size_and_impact(wrong: tuple[Setting, Found]) -> None:
+    found = wrong[1]
+    decision = decided(found)
+    size = estimate.estimates(found, TRUE, decision.members[TRUE])[0]
+    assert size.ci95[0] < OFFSET < size.ci95[1]
+    assert abs(size.value - OFFSET) < 1.0
+    changed = estimate.impact(found.problem, decision.leader)
+    oil = next(s.name for s in found.problem.data.read if s.kind == "oil_temp")
+    assert changed[oil].value == pytest.approx(size.value, rel=0.2)
+    assert sum(estimate.form_shares(TRUE, decision.members[TRUE]).values()) == pytest.approx(1.0)
+
+
+def test_a_size_that_was_found_is_detectable(wrong: tuple[Setting, Found]) -> None:
+    smallest = estimate.detectable(wrong[1])
+    assert 0.0 < smallest[TRUE] < OFFSET
+
+
+def test_scatter_and_adequacy(clean: tuple[Setting, Found]) -> None:
+    found = clean[1]
+    leader = decided(found).leader
+    for term in scatters(found, leader):
+        assert term.ci95[0] < 1.0 < term.ci95[1], term
+    assert all(0.001 < p < 0.9999 for p in adequacy(found, leader).values())
+
+
+def test_gain_is_the_cause_s(wrong: tuple[Setting, Found]) -> None:
+    told = gain.gains(wrong[1], seed=1)
+    oil = next(s.name for s in wrong[1].problem.data.read if s.kind == "oil_temp")
+    one = next(g for g in told if g.sensor == oil)
+    assert one.n == wrong[1].problem.data.campaign.n
+    assert one.chosen.get(TRUE, 0) >= one.folds - 1
+    assert one.after[0] < one.before[0]
+    assert one.ratio[0] <= one.after[0] / one.before[0] <= one.ratio[1]
+    assert set(one.rivals) == {"constant cooling", "linear in the given sensors"}
+
+
+def test_predictions_of_the_data_are_nearer_with_the_cause(wrong: tuple[Setting, Found]) -> None:
+    setting, found = wrong
+    campaign = found.problem.data.campaign
+    nominal, extended = predictions(setting, found, campaign)
+    i = next(i for i, s in enumerate(found.problem.data.read) if s.kind == "oil_temp")
+    measured = campaign.values[found.problem.data.read[i].name]
+    left = [float(np.sqrt(np.mean((table[i] - measured) ** 2))) for table in (nominal, extended)]
+    assert left[1] < left[0]
+    assert left[1] < 3 * found.problem.data.read[i].repeat_sd
+
+
+def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> None:
+    setting, found = wrong
+    tried = experiments(found.problem.data.campaign)
+    made = of_search(setting, found, CAUSES, tried)
+    now = made.distances()
+    assert {e.id for e in made.experiments} >= {"repeat", "bath", "cold_room"}
+    for e in made.experiments:
+        after = made.distances(e.id)
+        assert all(after[p] >= now[p] - 1e-6 for p in now), e.id
+    best = ranked(made, dict.fromkeys(CAUSES, 0.25))
+    pair = next(p for p in now if set(p) == {TRUE, "cooling.air"})
+    assert made.distances("bath")[pair] > now[pair] + 0.1, "a bath tells an offset of a thermometer"
+    assert all(r.after > r.before for r in best)
+
+
+def test_added_tests_are_run_as_the_first_one(wrong: tuple[Setting, Found]) -> None:
+    campaign = wrong[1].problem.data.campaign
+    cold = next(e for e in experiments(campaign) if e.id == "cold_room")
+    more = added(campaign, cold)
+    room = next(s.name for s in campaign.given if s.kind == "ambient")
+    assert more.n_tests == len(cold.tests) == 4
+    assert more.values[room].max() < campaign.values[room].min() - 10.0
+    logged = added(campaign, next(e for e in experiments(campaign) if e.logged))
+    assert np.isfinite(logged.dwell).all()
+
+
+def test_a_cause_is_like_itself_alone(wrong: tuple[Setting, Found]) -> None:
+    found = wrong[1]
+    seen = Effects(found.first.candidates, found.first.white)
+    like = dict.fromkeys(CAUSES, "")
+    distances = seen.distances(TRUE)
+    assert TRUE not in distances
+    assert all(d <= seen.visible(TRUE) + 1e-9 for d in distances.values()), "a rival of size zero is none"
+    assert seen.visible(TRUE, 2.0) == pytest.approx(2 * seen.visible(TRUE))
+    group = alike(seen, TRUE, 1e-3, like)
+    assert group is not None, "what cannot be seen is like everything"
+    assert group.causes[0] == TRUE
+    assert UNEXPLAINED not in group.causes

@@ -1,0 +1,51 @@
+"""Folds from the data, and the plain statistics on them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+from gearheat.diagnose.answer import rivals
+from gearheat.diagnose.answer.folds import levels, schemes
+from gearheat.diagnose.answer.grid import planned_campaign
+from gearheat.diagnose.campaign.card import Card
+from gearheat.diagnose.infer.search import Found
+from gearheat.diagnose.setting import Setting
+from gearheat.scenarios.load import load
+
+
+def test_levels_are_where_the_gaps_are() -> None:
+    values = np.array([100.1, 300.0, 99.8, 201.0, 299.5, 199.7])
+    assert [rows.tolist() for rows in levels(values)] == [[0, 2], [3, 5], [1, 4]]
+    assert len(levels(np.full(4, 7.0))) == 1
+
+
+def test_every_row_is_left_out_once(wrong: tuple[Setting, Found]) -> None:
+    campaign = wrong[1].problem.data.campaign
+    for folds in schemes(campaign).values():
+        assert sorted(np.concatenate(folds)) == list(range(campaign.n))
+
+
+def test_a_large_campaign_is_grouped_by_its_own_levels() -> None:
+    planetary = planned_campaign(load("planetary"), Card(), None)
+    twice = replace(
+        planetary,
+        values={k: np.tile(v, 2) for k, v in planetary.values.items()},
+        test=np.concatenate([planetary.test, planetary.test + planetary.n_tests]),
+        order=np.arange(2.0 * planetary.n_tests),
+        direction=np.tile(planetary.direction, 2),
+        dwell=np.tile(planetary.dwell, 2),
+        oil=("a",) * planetary.n_tests + ("b",) * planetary.n_tests,
+    )
+    found = schemes(twice)
+    assert set(found) == {"leave-out-tests", "leave-one-speed", "leave-one-load", "leave-one-oil"}
+    assert [len(found[name]) for name in ("leave-one-speed", "leave-one-load", "leave-one-oil")] == [4, 4, 2]
+    for folds in found.values():  # both directions of a test stay together
+        assert all(set(twice.test[rows]).isdisjoint(twice.test[np.setdiff1d(range(twice.n), rows)]) for rows in folds)
+
+
+def test_rivals_are_exact_where_they_hold() -> None:
+    kept = np.arange(20) % 4 > 0
+    X = np.random.default_rng(1).normal(size=(20, 3))
+    left = rivals.fitted(np.column_stack([np.ones(20), X]), 2.0 + X @ [1.0, -2.0, 0.5], kept, 1e-9)
+    assert np.abs(left).max() < 1e-6

@@ -1,0 +1,126 @@
+"""From a fitted hypothesis to pictures, calibrated values, the extended rig, repeated points and single channels."""
+
+from __future__ import annotations
+
+from copy import copy
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gearheat.diagnose.infer import screen
+from gearheat.diagnose.infer.fit import fitted
+from gearheat.diagnose.infer.problem import Acting
+from gearheat.diagnose.infer.search import Found, Hypothesis
+from gearheat.diagnose.report import compose_data, compose_pictures, compose_points, compose_rig
+from gearheat.diagnose.request import Inputs, Request, read
+from gearheat.diagnose.setting import Setting, setting
+from gearheat.tools.rigs import load
+
+CASE = Path(__file__).parents[2] / "tools" / "practice" / "foreign_006"
+CAUSE = "losses.churning"
+
+
+@dataclass(frozen=True)
+class Made:
+    """A campaign with one cause fitted."""
+
+    inputs: Inputs
+    setting: Setting
+    found: Found
+    h: Hypothesis
+
+
+@pytest.fixture(scope="module")
+def made() -> Made:
+    """The calibrated rig, and churning beside it."""
+    request = Request("planetary", CASE / "data.csv", card=CASE / "card.json")
+    inputs = read(request)
+    assert inputs.data is not None
+    made = setting(inputs.scenario, inputs.card, inputs.data)
+    null = fitted(made.problem, (), np.zeros(made.problem.nz))
+    formula = next(f for f in made.formulas if f.cause.id == CAUSE)
+    start = Acting(formula, np.r_[0.5, np.zeros(formula.size - 1)])
+    fit = fitted(made.problem, [start], null.look.z, null.noise.scales, steps=2)
+    h = Hypothesis((CAUSE,), fit, 0.0)
+    nothing = Hypothesis((), null, -3.0)
+    chances = np.array([0.9, 0.1])
+    found = Found(made.problem, made.formulas, null, None, (h, nothing), chances, 0.01, 2.0, np.zeros(9), 0.5)  # type: ignore[arg-type]
+    return Made(inputs, made, found, h)
+
+
+def test_a_picture_shows_what_the_cause_takes_away(made: Made) -> None:
+    rows = compose_data.rows(made.found, made.h)
+    (one,) = compose_pictures.pictures(made.found, made.h, rows.quantities)
+    assert one.cause == CAUSE
+    assert rows.quantities[one.quantity].unit == "rpm"
+    values = rows.channels[one.channel]
+    after = np.array(values.measured) - np.array(values.extended)  # type: ignore[operator]
+    assert np.array(one.after, dtype=float) == pytest.approx(after.astype(float), abs=2e-3)
+    assert one.before != one.after
+
+
+def test_quantities_that_are_not_measured_give_way_to_the_running_order(made: Made) -> None:
+    data = made.found.problem.data.campaign
+    assert compose_pictures.quantity("humidity", data, {"order"}) == "order"
+    assert compose_pictures.quantity("order", data, {"order", "rise"}) == "order"
+
+
+def test_the_extended_rig_has_the_calibrated_values_and_the_cause(made: Made, tmp_path: Path) -> None:
+    (path := tmp_path / "extended.toml").write_text(compose_rig.rig_file(made.setting, made.found, made.h))
+    rig = load(path)
+    theta = made.h.fit.look.acting[0].formula.theta(made.h.fit.look.acting[0].t)
+    assert rig.spec.part("found_churning").values["P_ref"] == pytest.approx(theta["P_ref"])
+    for told in compose_rig.calibrated(made.setting, made.found, made.h):
+        part, _, key = told.path.rpartition(".")
+        assert told.extended is not None
+        if not told.path.endswith(".V"):  # litres
+            assert rig.spec.part(part).values[key] == pytest.approx(told.extended, rel=1e-4)
+
+
+def test_repeated_points_are_told_in_running_order(made: Made) -> None:
+    data = made.found.problem.data.campaign
+    again = {s: v[[0, 1, 2, 3, 0, 1]] for s, v in data.values.items()}
+    oil = next(s.name for s in data.read if s.kind == "oil_temp")
+    again[oil] = again[oil] + np.array([0, 0, 0, 0, 1.0, 0.0])
+    first = [0, 1, 2, 3, 0, 1]
+    short = replace(
+        data, values=again, test=np.array([0, 0, 1, 1, 2, 2]), order=np.array([1.0, 2.0, 3.0]),
+        direction=data.direction[first], dwell=data.dwell[first], stop=data.stop[first], oil=("A",) * 3,
+        mounting=("",) * 3, T_start=data.T_start[:3], room_start=data.room_start[:3], humidity=data.humidity[:3],
+        date=("",) * 3, lines=data.lines[first], points=data.points[first],
+    )  # fmt: skip
+    told = {p.channel: p for p in compose_points.repeated(short)}
+    assert [r.test for r in told[oil].repeats] == [1, 3]
+    assert [r.sum for r in told[oil].repeats] == pytest.approx([-0.25, 0.25])
+    assert [r.difference for r in told[oil].repeats] == pytest.approx([-0.25, 0.25])
+    assert told[oil].condition.startswith("A, ")
+    assert "rpm" in told[oil].condition
+
+
+def test_the_channel_that_errs_says_so_on_its_own(made: Made) -> None:
+    problem = copy(made.setting.problem)
+    o, null = problem.data, made.found.null
+    torque = next(i for i, s in enumerate(o.read) if s.kind == "torque")
+    rng = np.random.default_rng(1)
+    sd = np.array([s.repeat_sd for s in o.read])[o.kind]
+    side = o.signs[o.read[torque].name][o.row]  # columns of magnitudes turn a zero's sign with the direction
+    zero = np.where(o.kind == torque, 20 * sd * side, 0.0)
+    problem.measured = null.look.shown + sd * rng.standard_normal(problem.m) + zero
+    ids = ("sensor.torque.offset", "sensor.oil_temp.offset", CAUSE)
+    formulas = tuple(f for f in made.setting.formulas if f.cause.id in ids and not f.form.spread)
+    first = screen.look(problem, null, formulas)
+    found = replace(made.found, problem=problem, formulas=formulas, first=first)
+    told = {v.channel: v for v in compose_pictures.views(found)}
+    assert set(told) == {s.name for s in o.read}
+    said = told[o.read[torque].name]
+    assert said.asks.startswith("torque ")
+    assert ", given oil temperature" in said.asks
+    assert said.causes[0].id == "sensor.torque.offset"
+    assert said.nothing is not None
+    assert said.nothing < 0.05
+    assert len(said.deviation) == len(said.order) == len(said.direction) == int((o.kind == torque).sum())
+    apart = np.array(said.deviation, dtype=float) * np.array(said.direction, dtype=float)
+    assert abs(np.mean(apart)) > 10 * o.read[torque].repeat_sd
+    oil = next(v for v in told.values() if v.asks.startswith("oil temperature"))
+    assert "against the other thermometers" in oil.asks

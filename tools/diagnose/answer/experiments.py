@@ -1,0 +1,173 @@
+"""Experiments that may follow a campaign: further tests, logged warm-ups, instruments read where the truth is known."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ..campaign.table import Campaign, Sensor
+
+#: A cold room [K], and how much colder than in the campaign it is at least.
+COLD, COLDER = 278.15, 15.0
+#: Speeds and loads outside of the campaign's, as shares of its least or largest, and loads of each.
+SLOWER, FASTER, LIGHTER = 0.4, 1.6, 0.2
+FAST_LOADS, SLOW_LOADS = (0.25, 0.45, 0.6, 0.75), (0.6, 0.75, 0.9, 1.0)
+#: Samples of a logged dwell, and its length where the campaign holds steady states [s].
+SAMPLES, DWELL = 8, 4 * 3600.0
+#: Temperatures of a bath [K], scatter in it, accuracy of a reference thermometer [K], of a tare (share of the sensor's
+#: own scatter), of a stroboscope (share of the speed).
+BATH, BESIDE, THERMOMETER, TARE, STROBOSCOPE = (293.15, 333.15), 0.05, 0.1, 0.3, 5e-4
+
+
+@dataclass(frozen=True)
+class Check:
+    """A sensor read where the truth is known.
+
+    Args:
+        sensor: its name
+        true: truth in each reading (n,) [SI]
+        sd: scatter from reading to reading; `standard`: of the truth, the same in all readings
+    """
+
+    sensor: str
+    true: tuple[float, ...]
+    sd: float
+    standard: float = 0.0
+
+
+@dataclass(frozen=True)
+class Experiment:
+    """Tests at the end of a campaign, run as its first one, and checks of instruments.
+
+    Args:
+        id: stable identifier
+        what: it in words
+        tests: magnitudes of speed, load and room [SI] of each test; None leaves one as it is
+        logged: whether each dwell is logged, not read at its end alone
+        checks: instruments
+    """
+
+    id: str
+    what: str
+    tests: tuple[tuple[float | None, float | None, float | None], ...] = ()
+    logged: bool = False
+    checks: tuple[Check, ...] = ()
+
+
+def experiments(campaign: Campaign) -> tuple[Experiment, ...]:
+    """The experiments that add something to a campaign."""
+    return (*_tests(campaign), *_checks(campaign))
+
+
+def range_of(campaign: Campaign, kind: str) -> tuple[float, float] | None:
+    """Least and largest magnitude of the first given sensor of a kind; None without one."""
+    sensor = _first(campaign, kind)
+    if sensor is None:
+        return None
+    values = np.abs(campaign.values[sensor.name])
+    return float(np.nanmin(values)), float(np.nanmax(values))
+
+
+def _first(campaign: Campaign, kind: str) -> Sensor | None:
+    return next((s for s in campaign.given if s.kind == kind), None)
+
+
+def _tests(campaign: Campaign) -> Iterator[Experiment]:
+    speed, load, room = (range_of(campaign, kind) for kind in ("speed", "torque", "ambient"))
+    speeds, loads = (tuple(dict.fromkeys(r)) if r else (None,) for r in (speed, load))
+    corners = [(n, tau) for n in speeds for tau in loads]
+    if room is not None:
+        cold = min(COLD, room[0] - COLDER)
+        text = f"the corners of the campaign in a room of {cold - 273.15:.0f} degC"
+        yield Experiment("cold_room", text, tuple((n, tau, cold) for n, tau in corners))
+    if load is not None:
+        least = LIGHTER * load[0] if load[0] > 0.05 * load[1] else 0.05 * load[1]
+        middle = np.linspace(*speed, 4) if speed else [None]
+        text = f"{len(middle)} points at {least:.3g} N.m"
+        yield Experiment("low_load", text, tuple((None if n is None else float(n), least, None) for n in middle))
+    if speed is not None:
+        for name, n, shares in (
+            ("high_speed", FASTER * speed[1], FAST_LOADS),
+            ("low_speed", SLOWER * speed[0], SLOW_LOADS),
+        ):
+            own = [share * load[1] for share in shares] if load else [None]
+            text = f"{len(own)} points at {n * 30 / np.pi:.0f} rpm"
+            yield Experiment(name, text, tuple((n, tau, None) for tau in own))
+    usual = tuple((n, tau, None) for n, tau in corners)
+    yield Experiment("repeat", "the corners of the campaign again", usual)
+    yield Experiment("transients", "the warm-up logged at the corners of the campaign", usual, logged=True)
+
+
+def _checks(campaign: Campaign) -> Iterator[Experiment]:
+    thermometers = [s for s in campaign.read if s.kind.endswith("_temp")]
+    if thermometers:
+        bath = tuple(Check(s.name, BATH, BESIDE) for s in thermometers)
+        yield Experiment("bath", "all thermometers in one bath, at 20 and at 60 degC", checks=bath)
+    torques = [s for s in campaign.sensors if s.kind == "torque"]
+    if torques:
+        tare = tuple(Check(s.name, (0.0,) * 3, TARE * s.repeat_sd) for s in torques)
+        yield Experiment("tare", "a tare of all torque transducers", checks=tare)
+        top = {s.name: float(np.nanmax(np.abs(campaign.values[s.name]))) for s in torques}
+        lever = tuple(Check(s.name, (0.0, top[s.name]), TARE * s.repeat_sd, 5e-4 * top[s.name]) for s in torques)
+        yield Experiment("lever_arm", "all torque transducers under a lever arm, empty and loaded", checks=lever)
+    for s in campaign.given:
+        typical = float(np.nanmean(np.abs(campaign.values[s.name])))
+        if s.kind == "ambient":
+            check = Check(s.name, (typical,) * 4, s.repeat_sd, THERMOMETER)
+            yield Experiment(
+                "room_probe", "a reference thermometer for the room, away from the machine", checks=(check,)
+            )
+        if s.kind == "speed":
+            check = Check(s.name, (typical,) * 2, STROBOSCOPE * typical)
+            yield Experiment("stroboscope", "the speed by a stroboscope", checks=(check,))
+
+
+def added(campaign: Campaign, experiment: Experiment) -> Campaign:
+    """The tests of an experiment as a campaign of their own, run as the first test of a campaign.
+
+    Readings of compared sensors stand at their means, and only say what is read.
+    """
+    template = np.flatnonzero(campaign.test == 0)
+    pieces = SAMPLES if experiment.logged else 1
+    rows = np.repeat(template, pieces)
+    n, k = len(rows), len(experiment.tests)
+    first = np.tile(np.arange(n) % pieces == 0, k)
+    dwell = np.where(np.isinf(campaign.dwell[rows]), DWELL if pieces > 1 else np.inf, campaign.dwell[rows]) / pieces
+    stop = np.where(first, np.tile(campaign.stop[rows], k), 0.0)
+    values = {s.name: np.full(n * k, float(np.nanmean(campaign.values[s.name]))) for s in campaign.read}
+    for s in campaign.given:
+        own = campaign.values[s.name][rows]
+        place = {"speed": 0, "torque": 1, "ambient": 2}.get(s.kind)
+        main = _first(campaign, s.kind)
+        scale = [None if place is None else test[place] for test in experiment.tests]
+        usual = float(np.nanmean(np.abs(campaign.values[main.name][rows]))) if main else 1.0
+        wanted = [own if v is None else own + v - usual if s.kind == "ambient" else own * v / usual for v in scale]
+        values[s.name] = np.concatenate(wanted)
+    nothing = np.full(k, np.nan)
+    return replace(
+        campaign,
+        values=values,
+        test=np.repeat(np.arange(k), n),
+        order=np.full(k, float(campaign.order.max())),
+        direction=np.tile(campaign.direction[rows], k),
+        dwell=np.tile(dwell, k),
+        stop=stop,
+        oil=(campaign.oil[0],) * k,
+        mounting=(campaign.mounting[0],) * k,
+        T_start=nothing,
+        room_start=nothing,
+        humidity=nothing,
+        date=("",) * k,
+        lines=np.zeros(n * k, dtype=int),
+        points=np.zeros(n * k, dtype=int),
+    )
+
+
+def with_readings(campaign: Campaign, readings: Sequence[tuple[int, int, float]]) -> Campaign:
+    """A campaign with readings of its compared sensors: number of the sensor, row, value."""
+    values = {name: column.copy() for name, column in campaign.values.items()}
+    for i, row, value in readings:
+        values[campaign.read[i].name][row] = value
+    return replace(campaign, values=values)

@@ -1,0 +1,85 @@
+"""What the instruments will show at other points: as calibrated without a cause, and by the weighed hypotheses."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ..campaign.table import Campaign
+from ..infer.evidence import White
+from ..infer.fit import Fit
+from ..infer.problem import Problem
+from ..infer.search import Found
+from ..model.noise import Term, terms
+from ..model.observe import Observed
+from ..setting import Setting
+
+#: Probability from which a hypothesis counts.
+COUNTS = 0.03
+
+
+def predictions(setting: Setting, found: Found, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
+    """Readings (read, n) at points, calibrated without a cause and extended, NaN where the machine cannot be run.
+
+    Args:
+        setting: the rig
+        found: the search
+        points: conditions
+    """
+    o = _observed(setting, found, points)
+    nominal = _predicted(found.problem, found.null, o)
+    weights: dict[int, float] = {}
+    fits = {id(h.fit): h.fit for h in found.hypotheses}
+    for h, p in zip(found.hypotheses, found.probabilities, strict=True):
+        weights[id(h.fit)] = weights.get(id(h.fit), 0.0) + float(p)
+    counted = {key: w for key, w in weights.items() if w > COUNTS} or {id(found.hypotheses[0].fit): 1.0}
+    tables = np.array([_predicted(found.problem, fits[key], o) for key in counted])
+    w = np.array(list(counted.values()))[:, None, None] * np.isfinite(tables)
+    total = w.sum(axis=0)
+    mean = (w * np.nan_to_num(tables)).sum(axis=0) / np.where(total > 0, total, 1.0)
+    return nominal, np.where(total > 0, mean, nominal)
+
+
+def _observed(setting: Setting, found: Found, points: Campaign) -> Observed:
+    """The points as a campaign that reads all sensors of the data; causes that follow readings take the nominal's."""
+    data = found.problem.data
+    guess = {s.name: np.full(points.n, float(np.nanmean(data.campaign.values[s.name]))) for s in data.read}
+    filled = replace(points, sensors=(*points.given, *data.read), values={**points.values, **guess})
+    for _ in range(2):
+        o = Observed(setting.plant, filled, data.nuisances, setting.oils, setting.scenario.operating_point)
+        o.features[0] = _progress(data.campaign, points)
+        table = _predicted(found.problem, found.null, o)
+        known = {
+            s.name: np.where(np.isfinite(row), row, guess[s.name]) for s, row in zip(data.read, table, strict=True)
+        }
+        filled = replace(filled, values={**filled.values, **known})
+    return o
+
+
+def _progress(data: Campaign, points: Campaign) -> np.ndarray:
+    """Running order of the rows of points in that of the data, 0 for its first test and 1 for its last (n,)."""
+    low, high = float(data.order.min()), float(data.order.max())
+    return np.asarray(np.clip((points.order - low) / max(high - low, 1.0), 0.0, 1.0)[points.test])
+
+
+def _predicted(problem: Problem, fit: Fit, o: Observed) -> np.ndarray:
+    """Readings (read, n): the model, and what tolerances and remainder make of the data there."""
+    seen = o.at(np.append(fit.look.z, 0.0), [(a.formula, a.t) for a in fit.look.acting])
+    table = np.full((len(o.read), o.campaign.n), np.nan)
+    good = np.isfinite(seen.shown)
+    if not good.any():
+        return table
+    joint = terms([*problem.campaigns, o], [*fit.look.seen, seen], problem.day_sd, problem.nz)
+    scales = {t.name: s for t, s in zip(fit.noise.loose, fit.noise.scales, strict=True)}
+    V = sum(np.exp(2 * scales.get(t.name, 0.0)) * t.matrix for t in _shared(joint, fit))
+    told = V[problem.m :, : problem.m] @ White.of(fit.noise.covariance).back(problem.measured - fit.look.shown)
+    table[o.kind[good], o.row[good]] = (seen.shown + np.nan_to_num(told))[good]
+    return table
+
+
+def _shared(joint: Sequence[Term], fit: Fit) -> list[Term]:
+    """The terms that the fit has, too."""
+    known = {t.name for t in fit.noise.terms}
+    return [t for t in joint if t.name in known]

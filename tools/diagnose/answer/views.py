@@ -1,0 +1,78 @@
+"""What each channel says on its own: its readings given those of all the others, without a cause and with each.
+
+The others carry the nuisances and tolerances they share with the channel: a torque is compared with what the measured
+temperatures leave open, a thermometer with what torque and the other thermometers do.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp
+from scipy.stats import chi2
+
+from ..campaign.table import Sensor
+from ..infer.evidence import White, log_bayes_factors
+from ..infer.fit import bounds
+from ..infer.search import Found
+
+#: Causes that a channel names at least this probable.
+NAMED = 0.02
+
+
+@dataclass(frozen=True)
+class View:
+    """One channel, given the others.
+
+    Args:
+        sensor: the channel
+        deviation: its readings less what the others imply, calibrated without a cause [SI] (k,)
+        rows: their rows (k,)
+        p: of the deviations without a cause
+        nothing: probability that nothing is wrong, by this channel alone
+        causes: probability of each cause alone, the most probable first
+    """
+
+    sensor: Sensor
+    deviation: np.ndarray
+    rows: np.ndarray
+    p: float
+    nothing: float
+    causes: Mapping[str, float]
+
+
+def views(found: Found) -> tuple[View, ...]:
+    """Every compared channel with readings; none where there is but one."""
+    problem, o, first = found.problem, found.problem.data, found.first
+    whole, e = found.null.linear(problem)
+    V, r = whole.L @ whole.L.T, whole.L @ e
+    kinds = [i for i in range(len(o.read)) if (o.kind == i).any()]
+    share = found.prior.share
+    counts = np.bincount(first.owner, minlength=len(found.formulas))
+    weights = np.array(
+        [
+            share[c.id] + np.log(c.formula.form.weight) - np.log(counts[k])
+            for c, k in zip(first.candidates, first.owner, strict=True)
+        ]
+    )
+    low, high = (np.array([bounds(c)[k][0] for c in first.candidates]) for k in (0, 1))
+    ids = np.array([c.id for c in first.candidates])
+    told = []
+    for i in kinds if len(kinds) > 1 else ():
+        mine = np.zeros(problem.m, dtype=bool)
+        mine[problem.own] = o.kind == i
+        given = White.of(V[np.ix_(~mine, ~mine)])
+        tie = given(V[np.ix_(~mine, mine)])
+        white = White.of(V[np.ix_(mine, mine)] - tie.T @ tie)
+        deviation = r[mine] - tie.T @ given(r[~mine])
+        effects = white(first.effects[mine] - tie.T @ given(first.effects[~mine]))
+        left = white(deviation)
+        logs = weights + log_bayes_factors(effects.T @ left, (effects**2).sum(axis=0), low, high)
+        total = logsumexp([logsumexp(logs), found.critical])
+        chances = {c: float(np.exp(logsumexp(logs[ids == c]) - total)) for c in dict.fromkeys(ids.tolist())}
+        ranked = sorted((item for item in chances.items() if item[1] > NAMED), key=lambda item: -item[1])
+        p, nothing = float(chi2.sf(left @ left, len(left))), float(np.exp(found.critical - total))
+        told.append(View(o.read[i], deviation, o.row[o.kind == i], p, nothing, dict(ranked)))
+    return tuple(told)

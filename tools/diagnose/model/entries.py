@@ -1,0 +1,67 @@
+"""The measured vector of a campaign: readings at the ends of dwells, along logged courses, and dwells as logged."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..campaign.table import PLACES, Campaign
+
+#: Scatter of a dwell as logged, as a share of the stated one.
+DWELL = 0.02
+
+
+@dataclass(frozen=True, eq=False)
+class Entries:
+    """The m entries, and the places at which the model is read for them: the ends of all rows, then those of courses.
+
+    Args:
+        kind: channel (m,): number of the compared sensor, plus their number along its course; the last is the dwell's
+        sensor: number of the compared sensor (m,), -1 for a dwell
+        row: of the campaign (m,)
+        at: number of the place (m,)
+        measured: values (m,) in SI; of a dwell: as logged over as stated, less one
+        repeat: standard deviation of one reading or one sample (m,)
+        place_row: row of each place (p,)
+        step: number of the place in its row's dwell (p,): the last is its end
+        share: of the dwell at each place (p,)
+    """
+
+    kind: np.ndarray
+    sensor: np.ndarray
+    row: np.ndarray
+    at: np.ndarray
+    measured: np.ndarray
+    repeat: np.ndarray
+    place_row: np.ndarray
+    step: np.ndarray
+    share: np.ndarray
+
+    def picked(self, at_places: np.ndarray, dwells: np.ndarray) -> np.ndarray:
+        """Values (m, ...) from those of sensors at places (sensors, p, ...) and those of dwells (n, ...)."""
+        found = at_places[self.sensor, self.at]
+        logged = self.sensor < 0
+        found[logged] = dwells[self.row[logged]]
+        return np.asarray(found)
+
+    @staticmethod
+    def of(c: Campaign) -> Entries:
+        """All that a campaign holds."""
+        read, n = c.read, c.n
+        found = [(i, i, r, r, c.values[s.name][r], s.repeat_sd) for i, s in enumerate(read) for r in range(n)]
+        k = len(PLACES) if c.series else 0
+        logged = list(dict.fromkeys(course.row for course in c.series.courses)) if c.series else []
+        number = {s.name: i for i, s in enumerate(read)}
+        for course in c.series.courses if c.series else ():
+            i, begin = number[course.sensor], n + k * logged.index(course.row)
+            for place, value in enumerate(course.values):
+                found.append((len(read) + i, i, course.row, begin + place, value, read[i].repeat_sd))
+        for r in range(n) if c.series else ():
+            found.append((2 * len(read), -1, r, r, c.series.dwell[r] / c.dwell[r] - 1, DWELL))
+        kept = sorted((entry for entry in found if np.isfinite(entry[4])), key=lambda entry: entry[0])
+        kind, sensor, row, at, measured, repeat = (np.array(column) for column in zip(*kept, strict=True))
+        place_row = np.concatenate([np.arange(n), np.repeat(np.array(logged, dtype=int), k)])
+        step = np.concatenate([np.full(n, k), np.tile(np.arange(k), len(logged))])
+        share = np.array([*PLACES[:k], 1.0])[step]
+        return Entries(kind, sensor, row, at, measured, repeat, place_row, step, share)
