@@ -57,8 +57,8 @@ class Entries:
             i, begin = number[course.sensor], n + k * logged.index(course.row)
             for place, value in enumerate(course.values):
                 found.append((len(read) + i, i, course.row, begin + place, value, read[i].repeat_sd))
-        for r in range(n) if series else ():
-            found.append((2 * len(read), -1, r, r, series.dwell[r] / c.dwell[r] - 1, DWELL))
+        if series:
+            found += [(2 * len(read), -1, r, r, series.dwell[r] / c.dwell[r] - 1, DWELL) for r in range(n)]
         kept = sorted((entry for entry in found if np.isfinite(entry[4])), key=lambda entry: entry[0])
         kind, sensor, row, at, measured, repeat = (np.array(column) for column in zip(*kept, strict=True))
         place_row = np.concatenate([np.arange(n), np.repeat(np.array(logged, dtype=int), k)])
