@@ -168,7 +168,7 @@ class _Loader:
         given = self._drive()
         spec = self._spec(parts)
         sensors = self._sensors()
-        protocol = self._protocol()
+        protocol, data = self._protocol(), self._data()
         if self.problems:
             raise ScenarioError(self.problems)
         nets(assemble(spec))  # ports of different kinds that meet
@@ -188,7 +188,7 @@ class _Loader:
             entries={name: part.entries for name, part in parts.items() if part.entries},
             errata=tuple(Erratum(e.place, e.says, e.should_be, e.evidence) for e in self.table.errata),
             protocol=protocol,
-            data=self._data(),
+            data=data,
             reproduces=self.table.reproduces,
         )
 
@@ -297,4 +297,9 @@ class _Loader:
     def _data(self) -> Path | None:
         """The rig's own measured table."""
         table = self.table.campaign
-        return self.path.parent / table.data if table and table.data else None
+        if table is None or not table.data:
+            return None
+        path = self.path.parent / table.data
+        if not path.is_file():
+            self.problems.append(f"{path}: there is no such file. Check the path.")
+        return path

@@ -23,7 +23,7 @@ README = (ROOT / "README.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w*) *(.*?)\n(.*?)^```$", README, flags=re.MULTILINE | re.DOTALL)
 
 #: Commands that work for minutes: only their options are read here, their own tests run them.
-LONG = {"bench", "calibrate", "challenge"}
+LONG = {"bench", "calibrate", "challenge", "diagnose"}
 
 #: Languages of blocks that need a program this project does not install, or that are pictures.
 NOT_RUN = {"matlab", "text", ""}

@@ -49,7 +49,7 @@ class Look:
     def start(self, formula: int) -> Acting:
         """Where a fit of a formula begins: at the best of its candidates."""
         own = np.flatnonzero(self.owner == formula)
-        best = own[np.argmax(self.log_bf[own])]
+        best = int(own[np.argmax(self.log_bf[own])])
         candidate = self.candidates[best]
         low, high = bounds(candidate)
         size = float(np.clip(self.sizes[best], low[0], high[0]))

@@ -20,12 +20,12 @@ FADING = (1, 2, 4, 8, 16)
 
 def along(o: Observed) -> np.ndarray:
     """Which entries lie along logged courses (m,)."""
-    return (o.kind >= len(o.read)) & (o.entries.sensor >= 0)
+    return np.asarray((o.kind >= len(o.read)) & (o.entries.sensor >= 0))
 
 
 def shares(o: Observed) -> np.ndarray:
     """Share of its dwell at which each entry was read (m,)."""
-    return o.entries.share[o.entries.at]
+    return np.asarray(o.entries.share[o.entries.at])
 
 
 def smoothed(o: Observed) -> np.ndarray:

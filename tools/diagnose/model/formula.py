@@ -157,7 +157,7 @@ class _Rows:
         for place, arrays in ((self._buffer.set_arg, self.given), (self._buffer.set_res, self._found)):
             for i, array in enumerate(arrays):
                 if array.size:
-                    place(i, memoryview(array))
+                    place(i, array.data)
 
     def __call__(self) -> list[np.ndarray]:
         """Results (rows, n, columns) for what is given."""

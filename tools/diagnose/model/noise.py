@@ -113,7 +113,7 @@ def walk(effect: np.ndarray, test: np.ndarray) -> np.ndarray:
 
 
 def conditions(o: Observed) -> np.ndarray:
-    """What a smooth remainder depends on, in units of its spread: given sensors but the room's, and direction (n, k)."""
+    """What a smooth remainder depends on, in units of its spread: direction and given sensors but rooms (n, k)."""
     columns = [o.sensors[s.name] for s in o.given if s.kind != "ambient"]
     columns = [c for c in columns if np.ptp(c) > 1e-9 * max(abs(c).max(), 1e-300)]
     own = [(c - c.mean()) / max(c.std(), 1e-12) for c in columns]
