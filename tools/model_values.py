@@ -26,7 +26,7 @@ from ..scenarios.scenario import Scenario, parse_assignments
 from .expressions import evaluate
 from .losses import at_readings, contacts_at_operating_point, held
 from .measured import measured_of
-from .readings import measured_rows
+from .readings import measured_rows, table_columns
 from .settings import adjusted, choice_paths, flat_of, parameter_of
 from .verdicts import Value, number_of
 
@@ -132,9 +132,9 @@ class RigValues:
             scenario = adjusted(self.scenario, assignments)
             if (study := measured_of(scenario)) is None:
                 raise ScenarioError(f"{scenario.name} has no measured readings.")
-            read = measured_rows(study)
+            read, table = measured_rows(study), table_columns(study)
             rows = zip(study.read_rows, at_readings(study, "measured"), strict=True)
-            self._losses[assignments] = [{**read[row], **found} for row, found in rows]
+            self._losses[assignments] = [{**table[row], **read[row], **found} for row, found in rows]
         return self._losses[assignments]
 
     def _setting(self, assignments: Iterable[str], free: Iterable[str] = ()) -> _Setting:
@@ -211,3 +211,4 @@ def _assignments(row: Row) -> tuple[str, ...]:
 
 def _listed(text: str | list[str]) -> list[str]:
     return [text] if isinstance(text, str) else list(text)
+

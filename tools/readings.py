@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -135,6 +136,16 @@ def _levels(values: Sequence[float]) -> list[float]:
     found = np.empty(len(values))
     found[order] = middle[group]
     return [float(v) for v in found]
+
+
+def table_columns(study: Measured) -> list[dict[str, float]]:
+    """The number columns of the measured table for each row, by the names they have there."""
+    c = study.campaign
+    columns = {s.column: [_shown(s, value) for value in c.values[s.name]] for s in c.sensors}
+    for name, cells in c.others.items():
+        with suppress(ValueError):
+            columns[name] = [float(cell) for cell in cells]
+    return [{name: values[k] for name, values in columns.items()} for k in range(c.n)]
 
 
 def _shown(sensor: Sensor, value: float) -> float:
