@@ -30,7 +30,9 @@ def diagnose(
     card: Card = None,
     logs: Annotated[list[Path] | None, _logs("Logged samples of the machine.")] = None,
     reference: Annotated[Path | None, typer.Option(help="Readings of the same rig when healthy: CSV as DATA.")] = None,
-    series: Annotated[Path | None, typer.Option(help="Logged courses of the tests of DATA: CSV, one row a sample.")] = None,
+    series: Annotated[
+        Path | None, typer.Option(help="Logged courses of the tests of DATA: CSV, one row a sample.")
+    ] = None,
     reference_series: Annotated[Path | None, typer.Option(help="Logged courses of the reference's tests.")] = None,
     reference_logs: Annotated[list[Path] | None, _logs("Logs of the same machine when healthy.")] = None,
     sibling_logs: Annotated[list[Path] | None, _logs("Logs of other machines of its type.")] = None,

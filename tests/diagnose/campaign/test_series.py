@@ -21,7 +21,13 @@ def logged(test: int = 1, first: float = 240.0, every: float = 5.0) -> dict[str,
     found: dict[str, list[object]] = {key: [] for key in ("test", "time_s", "direction", "T_oil_C", "T_wall_C")}
     for direction, begin, dwell in ((1, 0.0, first), (2, first + 5.0, 90.0)):
         for minute in np.arange(0.0, dwell + 1e-9, every):
-            row = (test, 60 * (begin + minute), direction, 50 - 25 * np.exp(-minute / 60), 40 - 15 * np.exp(-minute / 60))
+            row = (
+                test,
+                60 * (begin + minute),
+                direction,
+                50 - 25 * np.exp(-minute / 60),
+                40 - 15 * np.exp(-minute / 60),
+            )
             for column, value in zip(found.values(), row, strict=True):
                 column.append(value)
     return found

@@ -149,9 +149,7 @@ def _best(formulas: Sequence[Formula], short: Sequence[int], value: np.ndarray) 
     return list(best.values())
 
 
-def _paired(
-    found: Found, problem: Problem, one: Fit, log: float, short: Sequence[int]
-) -> tuple[Fit, float]:
+def _paired(found: Found, problem: Problem, one: Fit, log: float, short: Sequence[int]) -> tuple[Fit, float]:
     """A fitted cause with the one that promises most beside it, and its log joint probability."""
     (acting,) = one.look.acting
     others = [k for k in short if found.formulas[k].cause.family != acting.formula.cause.family]

@@ -100,5 +100,3 @@ def distances(problem: Problem, fit: Fit) -> list[Suspect]:
             own = (c @ a) / np.sqrt(length) / np.sqrt(max(1 - (problem.FAR**2 - 1) * length, 1e-9))
         found.append(Suspect(aside, float(own)))
     return found
-
-

@@ -15,7 +15,6 @@ from ..model.noise import Term, input_scatter, stacked, terms
 from ..model.observe import Observed, Seen
 from .evidence import White
 
-
 #: Bounds of the logarithms of scales.
 BOUNDS = (-1.5, 2.5)
 #: Loose terms with fewer columns than this share of the entries are weighed by their columns.

@@ -51,7 +51,6 @@ class Term:
         assert self.columns is not None
         return np.asarray(self.columns @ self.columns.T)
 
-
     @property
     def effects(self) -> np.ndarray:
         """Columns (m, k) of a term that has columns or variances."""
