@@ -275,7 +275,7 @@ class _Look:
 
     def outputs(self) -> np.ndarray:
         """All that the plant shows at each place (p, shown)."""
-        return self._run(turned=False).y[self.o.test, self.o.reads]
+        return np.asarray(self._run(turned=False).y[self.o.test, self.o.reads])
 
     def instruments(
         self, formula: Formula, t: np.ndarray, true: Mapping[str, np.ndarray]
