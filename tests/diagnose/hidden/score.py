@@ -6,7 +6,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from diagnose.hidden.maker import Case
-from gearheat.diagnose import diagnose
+from gearheat.diagnose.answer.decide import decided
+from gearheat.diagnose.answer.quality import gross_readings
+from gearheat.diagnose.infer.search import searched
+from gearheat.diagnose.report.compose import hypotheses
+from gearheat.diagnose.request import Request, read
+from gearheat.diagnose.setting import setting
 
 #: Share of the probability that a set of answers holds.
 SET = 0.9
@@ -45,7 +50,6 @@ class Score:
     p: float
     gross: tuple[tuple[int, str], ...]
     seconds: float
-    findings: Any
 
     @property
     def line(self) -> str:
@@ -62,18 +66,24 @@ class Score:
 def score(case: Case, seed: int = 0) -> Score:
     """Diagnose a campaign and compare with what is hidden in it.
 
+    It is what `gearheat.diagnose.diagnose` does, without gain and pictures, which cost more than the search.
+
     Args:
         case: the campaign
         seed: of the diagnosis
     """
     begin = time.process_time()
-    found = diagnose(case.data, case.bench.rig, card=case.card, seed=seed)
+    inputs = read(Request(case.bench.rig, case.data, card=case.card, seed=seed))
+    assert inputs.data is not None
+    made = setting(inputs.scenario, inputs.card, inputs.data)
+    found = searched(made.problem, made.formulas, seed=seed)
+    decision = decided(found)
     seconds = time.process_time() - begin
     truth = case.truth["causes"]
     assert isinstance(truth, list)
-    held = shortest(found.hypotheses)
+    held = shortest(hypotheses(decision))
     first = held[0]
-    alarm = found.verdict != "consistent"
+    alarm = decision.verdict != "consistent"
     return Score(
         tuple(first.causes),
         first.probability,
@@ -82,11 +92,10 @@ def score(case: Case, seed: int = 0) -> Score:
         alarm == bool(truth) and any(alike(h.causes, truth) for h in held),
         len(held),
         alarm,
-        found.verdict,
-        found.test.p_any,
-        tuple((g.row, g.channel) for g in found.data_quality.gross),
+        decision.verdict,
+        decision.p_any,
+        tuple((g.row + 1, g.sensor) for g in gross_readings(found, decision.leader)),
         seconds,
-        found,
     )
 
 

@@ -14,9 +14,8 @@ from diagnose.hidden.score import score
 ALL = os.environ.get("GEARHEAT_HIDDEN", "") == "all"
 
 CASES = [(rig, name) for rig, effects in HIDDEN.items() for name in effects]
-#: One of each group where not all are asked for: losses, cooling and heat, an instrument, the procedure.
+#: One of each group where not all are asked for: cooling, an instrument, a loss; the page of the README has churning.
 FEW = [
-    ("helical", "churning"),
     ("helical", "foundation"),
     ("helical", "oil probe since a test"),
     ("planetary", "churning"),

@@ -1,4 +1,4 @@
-"""From a fitted hypothesis to pictures, calibrated values, the extended rig, repeated points and predictions."""
+"""From a fitted hypothesis to pictures, calibrated values, the extended rig, repeated points and single channels."""
 
 from __future__ import annotations
 

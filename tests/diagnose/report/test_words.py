@@ -6,7 +6,7 @@ import pytest
 from fabricated_findings import AIR, CHURNING, KINDS, ambiguous, cause, clean, explained, spoiled, unexplained
 from gearheat.diagnose.report import phrases
 from gearheat.diagnose.report.estimate import Estimate
-from gearheat.diagnose.report.findings import Alarm, Answer, Played, Remainder, RemainderChannel
+from gearheat.diagnose.report.findings import Alarm, Answer, CauseSet, Played, Remainder, RemainderChannel
 from gearheat.diagnose.report.names import listed, name_of
 from gearheat.diagnose.report.screen import text
 from gearheat.diagnose.report.words import contradictions, with_words
@@ -55,6 +55,13 @@ def test_a_set_is_left_open_with_the_experiment_that_closes_it() -> None:
     said = ambiguous().says
     assert "leave open what: cooling by the air (55 ± 3 %); cooling by radiation (41 ± 3 %)" in said.verdict
     assert "some points in a room of 5 degC" in said.do
+
+
+def test_look_alikes_that_the_data_rule_out_are_not_left_open() -> None:
+    one = Answer(causes=((CHURNING,),), probability=0.96)
+    alike = CauseSet(causes=(CHURNING, "losses.windage", "sensor.torque.offset"), distance=0.8)
+    said = explained(answers=(one,), sets=(alike,)).says.cannot_be
+    assert "cannot tell churning of the oil from windage." in said
 
 
 def test_what_is_outside_the_library_names_its_channel() -> None:

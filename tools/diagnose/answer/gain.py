@@ -29,6 +29,8 @@ from .rivals import RIVALS
 
 #: Causes that are looked at again in a fold, forms of each, and causes that are fitted; draws of the bootstrap.
 LEADING, FORMS, FITTED, DRAWS = 6, 2, 2, 2000
+#: Steps of a fit in each of its rounds: it begins near its end.
+STEPS = 4
 
 
 @dataclass(frozen=True)
@@ -169,7 +171,7 @@ def _begun(found: Found, problem: Problem, start: tuple[Acting, ...], near: Fit)
         if {id(a.formula) for a in h.fit.look.acting} == forms:
             near, start = h.fit, h.fit.look.acting
             break
-    return fitted(problem, start, near.look.z, near.noise.scales)
+    return fitted(problem, start, near.look.z, near.noise.scales, STEPS)
 
 
 def _errors(problem: Problem, fit: Fit, held: np.ndarray) -> np.ndarray:

@@ -248,7 +248,7 @@ class _Pass:
         g: np.ndarray,
         H: np.ndarray,
     ) -> None:
-        """Add the samples that count: a multivariate t, its expected curvature."""
+        """Add the samples that count: a multivariate t, as least squares that are weighted anew at every pass."""
         m, reads = e.shape
         counts = self.data.counts[:m, t]
         inverse = np.linalg.inv(V)
@@ -258,8 +258,7 @@ class _Pass:
         likelihood[:m] -= counts * (0.5 * np.linalg.slogdet(V)[1] + 0.5 * (TAILS + reads) * np.log1p(distance / TAILS))
         if self.slopes:
             g[:m] += weight[:, None] * (by_z.transpose(0, 2, 1) @ z[:, :, None])[:, :, 0]
-            expected = counts * (TAILS + reads) / (TAILS + reads + 2)
-            H[:m] += expected[:, None, None] * (by_z.transpose(0, 2, 1) @ inverse @ by_z)
+            H[:m] += weight[:, None, None] * (by_z.transpose(0, 2, 1) @ inverse @ by_z)
 
 
 class _Step:

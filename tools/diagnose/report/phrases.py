@@ -52,6 +52,11 @@ def percent(probability: float, error: float = 0.0) -> str:
     return f"{100 * probability:.0f} %" if error < 0.005 else f"{100 * probability:.0f} ± {100 * error:.0f} %"
 
 
+def sigma(distance: float | None) -> str:
+    """A distance in standard deviations; empty where there is none."""
+    return "" if distance is None else f"{distance:.1f}"
+
+
 def p_value(p: float) -> str:
     """p = 0.03, p = 0.998, p = 2e-5 or p < 1e-6."""
     if p <= LEAST_P:

@@ -169,10 +169,10 @@ def isolability(found: Iterable[Isolability]) -> Table:
     rows = [
         (
             i.cause,
-            phrases.number(i.visible, 2),
+            phrases.sigma(i.visible),
             "yes" if i.visible >= APART else "no",
             name_of(i.nearest) if i.nearest else "",
-            "" if i.distance is None else phrases.number(i.distance, 2),
+            phrases.sigma(i.distance),
             "yes" if i.distance is not None and min(i.distance, i.visible) >= APART else "no",
         )
         for i in found

@@ -121,7 +121,7 @@ def gain(findings: Findings) -> list[Table]:
 def experiments(findings: Findings) -> list[Table]:
     """What to measure next, and what would show each probable cause."""
     rows = (
-        (e.what or e.id, names_of(e.separates), *map(_sigma, (e.separation_before, e.separation_after)))
+        (e.what or e.id, names_of(e.separates), *map(phrases.sigma, (e.separation_before, e.separation_after)))
         for e in findings.next_experiment[:MOST]
     )  # fmt: skip
     exposing = ((name_of(c.id), c.exposes) for c in findings.causes if c.probability >= LEAST and c.exposes)
@@ -134,13 +134,13 @@ def experiments(findings: Findings) -> list[Table]:
 
 def sets(findings: Findings) -> list[Table]:
     """Look-alikes, what these data show of each cause, and what they cannot show."""
-    alike = ((names_of(s.causes), phrases.number(s.distance, 2), s.reason) for s in findings.sets)
+    alike = ((names_of(s.causes), phrases.sigma(s.distance), s.reason) for s in findings.sets)
     seen = (
         (
             name_of(i.cause),
-            phrases.number(i.visible, 2),
+            phrases.sigma(i.visible),
             name_of(i.nearest) if i.nearest else "",
-            _value(i.distance),
+            phrases.sigma(i.distance),
         )
         for i in findings.isolability
     )
@@ -171,10 +171,6 @@ def _table(title: str, columns: tuple[str, ...], rows: Iterable[tuple[str, ...]]
 
 def _value(value: float | None, unit: str = "") -> str:
     return "" if value is None else phrases.with_unit(value, unit)
-
-
-def _sigma(value: float) -> str:
-    return phrases.number(value, 2)
 
 
 def _joint(found: Hypothesis) -> str:

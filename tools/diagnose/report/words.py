@@ -118,7 +118,7 @@ def _do(findings: Findings) -> str:
         steps.append(f"To confirm it: {exposing}")
     elif findings.next_experiment:
         e = findings.next_experiment[0]
-        before, after = phrases.number(e.separation_before, 2), phrases.number(e.separation_after, 2)
+        before, after = phrases.sigma(e.separation_before), phrases.sigma(e.separation_after)
         steps.append(
             f"Measure next: {e.what or e.id}. That separates {names_of(e.separates)}: {before} standard"
             f" deviations now, {after} then."
@@ -193,13 +193,20 @@ def _cannot_be(findings: Findings) -> str:
     if out:
         said.append(f"Ruled out at their usual size: {names_of(out, most=MOST)}.")
     for group in findings.sets:
-        first, *others = (c for c in group.causes if c == group.causes[0] or c not in named)
+        first, *alike = group.causes
+        others = [c for c in alike if c not in named and _open(findings, c)]
         if first in named and others and group.distance < APART:
             said.append(f"These data cannot tell {name_of(first)} from {names_of(others, 'or')}.")
     if findings.invisible:
         blind = names_of((i.cause for i in findings.invisible), "or", FEW)
         said.append(f"These data cannot show {blind}.")
     return " ".join(said)
+
+
+def _open(findings: Findings, cause: str) -> bool:
+    """Whether these data, at the size found, still leave a cause open."""
+    found = findings.cause(cause)
+    return found is not None and found.probability >= RULED_OUT
 
 
 def _ruled_out(findings: Findings, cause: Cause) -> bool:
