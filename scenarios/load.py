@@ -61,7 +61,7 @@ from ..model.units import to_si
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
 from .instruments import Instrument, instruments
-from .measured import Campaign, Driven, Protocol, read_measured
+from .protocol import Driven, Protocol
 from .scenario import Erratum, Scenario
 from .tables import RigTable, validate
 from .values import PartValues, in_range, part_values, readable, settable
@@ -169,7 +169,6 @@ class _Loader:
         spec = self._spec(parts)
         sensors = self._sensors()
         protocol = self._protocol()
-        campaign = self._campaign(protocol)
         if self.problems:
             raise ScenarioError(self.problems)
         nets(assemble(spec))  # ports of different kinds that meet
@@ -189,10 +188,7 @@ class _Loader:
             entries={name: part.entries for name, part in parts.items() if part.entries},
             errata=tuple(Erratum(e.place, e.says, e.should_be, e.evidence) for e in self.table.errata),
             protocol=protocol,
-            campaign=campaign,
-            data=self.path.parent / self.table.campaign.data
-            if self.table.campaign and self.table.campaign.data
-            else None,
+            data=self._data(),
             reproduces=self.table.reproduces,
         )
 
@@ -302,13 +298,3 @@ class _Loader:
         """The rig's own measured table."""
         table = self.table.campaign
         return self.path.parent / table.data if table and table.data else None
-
-    def _campaign(self, protocol: Protocol | None) -> Campaign | None:
-        table = self.table.campaign
-        if table is None or not table.data:
-            return None
-        try:
-            return read_measured(self.path.parent / table.data, protocol)
-        except GearheatError as error:
-            self.problems += error.problems
-            return None

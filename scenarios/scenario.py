@@ -12,7 +12,7 @@ from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.machines.spec import Spec
 from .entries import FILES, Entry, catalogue, unchecked_entry
 from .instruments import Instrument
-from .measured import Campaign, Protocol
+from .protocol import Protocol
 from .values import Override, entry_values, in_range, readable, settable
 
 
@@ -39,7 +39,8 @@ class Scenario:
         uncertainties: path -> standard uncertainty of its value in SI, where the rig states one
         overrides: values that stand in the place of their catalogue's
         entries: part -> kind of catalogue -> name of the entry it was filled from
-        protocol: how measured tables of this rig were taken; `campaign` is the one it comes with, from the file `data`
+        protocol: how measured tables of this rig are taken
+        data: the measured table that it comes with
         reproduces: what published results the rig reproduces, in a line
     """
 
@@ -58,7 +59,6 @@ class Scenario:
     entries: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     errata: tuple[Erratum, ...] = ()
     protocol: Protocol | None = None
-    campaign: Campaign | None = None
     data: Path | None = None
     reproduces: str = ""
 

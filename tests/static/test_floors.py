@@ -1,29 +1,45 @@
-"""Imports go down only: every module may know the floors below its own, and nothing else of the project."""
+"""Imports go down only: every module may know the floors below its own, and nothing else of the project; no circles."""
 
 import ast
+from graphlib import CycleError, TopologicalSorter
 from pathlib import Path
 
 import pytest
 
 ROOT = Path(__file__).parents[2]
-FLOORS = {
-    "model.units": 0,
-    "model.errors": 0,
-    "model.files": 0,
-    "model.sources": 0,
-    "model.laws": 1,
-    "model.core": 2,
-    "model.parts": 3,
-    "model.machines": 4,
-    "model.contact": 4,
-    "model.run": 5,
-    "fmu": 6,
-    "scenarios": 6,
-    "tools": 7,
-}
-#: Neighbours that do not know each other: laws and core meet in the parts, fmu and scenarios in the tools.
+#: Order of the floors, by the names under which they are installed below `gearheat`; those of one row stand side by
+#: side.
+ORDER = (
+    ("model.units", "model.errors", "model.files", "model.sources"),
+    ("model.laws",),
+    ("model.core",),
+    ("model.parts",),
+    ("model.machines", "model.contact"),
+    ("model.run",),
+    ("fmu", "scenarios"),
+    ("diagnose.campaign",),
+    ("diagnose.library",),
+    ("diagnose.model",),
+    ("diagnose.infer",),
+    ("diagnose.setting",),
+    ("diagnose.answer",),
+    ("diagnose.report",),
+    ("diagnose",),
+    ("tools",),
+)
+FLOORS = {name: floor for floor, names in enumerate(ORDER) for name in names}
+#: Neighbours that do not know each other: laws and core meet in the parts, fmu and scenarios above them.
 STRANGERS = [{"model.laws", "model.core"}, {"model.machines", "model.contact"}, {"fmu", "scenarios"}]
-MODULES = sorted(p for top in ("model", "fmu", "scenarios", "tools") for p in (ROOT / top).rglob("*.py"))
+
+
+def installed(path: Path) -> str:
+    """The dotted name of a file below `gearheat`, `__init__` included; the diagnosis is a package of its own."""
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).replace("tools.diagnose", "diagnose", 1)
+
+
+MODULES = {
+    installed(p): p for top in ("model", "fmu", "scenarios", "tools") for p in sorted((ROOT / top).rglob("*.py"))
+}
 
 
 def floor_of(module: str) -> str:
@@ -31,33 +47,59 @@ def floor_of(module: str) -> str:
     return max((f for f in FLOORS if module == f or module.startswith(f + ".")), key=len, default="")
 
 
-def imported(path: Path) -> list[str]:
-    """Project modules a file imports, dotted from the top folder."""
-    package = path.relative_to(ROOT).with_suffix("").parts[:-1]
+def named(node: ast.AST, package: list[str]) -> list[tuple[str, str]]:
+    """Module and name of each import of a statement, within the project; the name is '' where a module is meant."""
+    if isinstance(node, ast.Import):
+        found = [(a.name, "") for a in node.names]
+    elif isinstance(node, ast.ImportFrom):
+        base = ["gearheat", *package][: len(package) + 2 - node.level] if node.level else []
+        stem = ".".join([*base, *([node.module] if node.module else [])])
+        found = [(stem, a.name) for a in node.names]
+    else:
+        found = []
+    return [(m.removeprefix("gearheat").removeprefix("."), n) for m, n in found if m.split(".")[0] == "gearheat"]
+
+
+def module_of(stem: str, name: str) -> str:
+    """The module that an import of a name reads; '' where there is none."""
+    full = f"{stem}.{name}".strip(".")
+    return next((m for m in (full, f"{full}.__init__", stem, f"{stem}.__init__") if m in MODULES), "")
+
+
+def imported(module: str) -> list[str]:
+    """Modules of the project that a module imports. Raises AssertionError for one that does not exist."""
     found = []
-    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
-        if isinstance(node, ast.Import):
-            found += [a.name for a in node.names]
-        elif isinstance(node, ast.ImportFrom):
-            base = list(package[: len(package) - node.level + 1]) if node.level else []
-            stem = ".".join([*base, *(node.module or "").split(".")]).strip(".")
-            found += [f"{stem}.{a.name}" for a in node.names]
-    return [
-        m.removeprefix("gearheat.")
-        for m in found
-        if m.removeprefix("gearheat.").split(".")[0] in ("model", "fmu", "scenarios", "tools")
-    ]
+    for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
+        for stem, name in named(node, module.split(".")[:-1]):
+            found.append(module_of(stem, name))
+            assert found[-1], f"{module}: there is no module {stem}.{name}"
+    return found
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda p: str(p.relative_to(ROOT)))
-def test_imports_go_down(path: Path) -> None:
-    own = floor_of(".".join(path.relative_to(ROOT).with_suffix("").parts).removesuffix(".__init__"))
-    for module in imported(path):
-        other = floor_of(module)
-        assert other, f"{path}: imports {module}, which lies on no floor"
-        if other == own:
+@pytest.mark.parametrize("module", MODULES)
+def test_imports_go_down(module: str) -> None:
+    own = floor_of(module)
+    for name in imported(module):
+        other = floor_of(name)
+        assert other, f"{module}: imports {name}, which lies on no floor"
+        if own == other or FLOORS[other] == 0:  # units, errors, files and sources may know each other
             continue
-        if FLOORS[other] == 0:  # units, errors, files and sources are one floor and may know each other
-            continue
-        assert FLOORS[other] < FLOORS[own], f"{path}: {own} must not import {other}"
-        assert {own, other} not in STRANGERS, f"{path}: {own} and {other} do not know each other"
+        assert FLOORS[other] < FLOORS[own], f"{module}: {own} must not import {other}"
+        assert {own, other} not in STRANGERS, f"{module}: {own} and {other} do not know each other"
+
+
+def circle(graph: dict[str, list[str]]) -> list[str]:
+    """Modules that import each other in a circle; none where there is none."""
+    try:
+        TopologicalSorter(graph).prepare()
+    except CycleError as error:
+        return list(error.args[1])
+    return []
+
+
+def test_no_module_imports_itself_through_others() -> None:
+    assert not circle({m: imported(m) for m in MODULES})
+
+
+def test_a_circle_would_be_found() -> None:
+    assert circle({"a": ["b"], "b": ["c"], "c": ["a"]})

@@ -13,7 +13,8 @@ from gearheat.fmu.play import Player
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
-from gearheat.scenarios.measured import schedule_of
+from gearheat.tools.campaign import runs_of
+from gearheat.tools.measured import measured_of
 from gearheat.tools.settings import flat_of
 
 ROOT = Path(__file__).parents[2]
@@ -29,8 +30,9 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> dict:
 
 @pytest.fixture(scope="module")
 def rig():
-    scenario = load("planetary")
-    return scenario, flat_of(scenario)
+    study = measured_of(load("planetary"))
+    assert study is not None
+    return study, flat_of(study.scenario)
 
 
 def test_all_72_readings_conserve_energy(result: dict) -> None:
@@ -59,29 +61,26 @@ def test_the_table_of_the_readme_is_what_the_main_job_prints(result: dict) -> No
 
 def test_after_240_minutes_the_oil_is_where_the_steady_solve_says(result: dict, rig) -> None:
     """Every first half, at the readings' own speed, torque, room and oil."""
-    scenario, flat = rig
-    for test in scenario.campaign.tests():
-        first = test.halves[0]
-        values = {path: v for path, v in scenario.entry_values("oil", test.oil).items() if path in flat.index}
-        values |= {"carrier.w": first.si("n_carrier_rpm"), "carrier.tau": first.values["T_carrier_Nm"]}
-        values |= {"room.T": first.si("T_amb_C")}
-        (row,) = [r for r in result["rows"] if r["point"] == first.point]
+    study, flat = rig
+    rows = {(row["test"], row["direction"]): row for row in result["rows"]}
+    for test in range(study.campaign.n_tests):
+        first = int(np.flatnonzero(study.campaign.test == test)[0])
+        values = {path: v for path, v in (study.oil(test) | study.given(first)).items() if path in flat.index}
+        row = rows[study.number(test), 1]
         assert steady(flat, values)["oil.T"][0] - 273.15 == pytest.approx(row["T_oil_C"], abs=0.05)
 
 
 @pytest.mark.parametrize("step", [1.0, 10.0, 60.0])
 def test_the_fmu_plays_what_simulate_computes(rig, step: float, tmp_path: Path) -> None:
     """A whole test with its stop, every communication point, all states."""
-    scenario, flat = rig
-    test = scenario.campaign.tests()[15]
-    run = schedule_of(scenario.campaign, test)
+    study, flat = rig
+    (run,) = runs_of(study.scenario, flat, study, "16")
+    start = {q.name: run.start[q.name] for q in flat.states}
     times = np.arange(0.0, run.schedule.stop + 0.5 * step, step)
-    reference = simulate(flat, run.schedule, start=run.start(flat), times=times, tolerance=1e-9)
+    reference = simulate(flat, run.schedule, start=start, times=times, tolerance=1e-9)
     names = [q.name for q in flat.states]
     inputs = {name: (run.schedule.time, v) for name, v in run.schedule.values.items()}
     with Player(export(flat, tmp_path / "rig.fmu")) as player:
-        played = player.run(
-            inputs, run.schedule.stop, step, start=run.start(flat), record=names, output_times=list(times)
-        )
+        played = player.run(inputs, run.schedule.stop, step, start=start, record=names, output_times=list(times))
     for name in names:
         assert np.abs(played[name] - reference[name]).max() < 1e-3

@@ -5,31 +5,39 @@ import json
 from pathlib import Path
 
 import pytest
+from gearheat.diagnose.library.extra_parts import EXTRA_PARTS
 from gearheat.model.errors import ScenarioError
+from gearheat.model.machines.spec import PartSpec
 from gearheat.model.parts import PARTS
 from gearheat.scenarios import load as rig_files
 from gearheat.scenarios.write import rig_text
-from gearheat.tools.effects.parts import FIT_PARTS
-from gearheat.tools.effects.taxonomy import CAUSES
 from gearheat.tools.rigs import load
 from gearheat.tools.settings import adjusted, flat_of
 
-CAUSE = CAUSES["losses.churning"]
+#: 40 W at 20 rad/s, everywhere.
+VALUES = {"P_ref": 40.0, "w_ref": 20.0, "tau_ref": 1500.0, "a": 1.0, "c": 0.0, "forward": 1.0, "backward": 1.0}
+VALUES |= {"oil_share": 0.5, "inner_share": 0.5}
+REGIME = {f"{q}_{key}": -1e9 if key == "on" else 1.0 for q in ("w", "tau", "T") for key in ("on", "side", "width")}
+NETS = (
+    ("oil.heat", "extra_churning.oil"),
+    ("oil.heat", "extra_churning.inner"),
+    ("wall.heat", "extra_churning.outer"),
+    ("carrier.reading", "extra_churning.reading"),
+)
 
 
 @pytest.fixture
 def extended(tmp_path: Path) -> Path:
     """The planetary rig with 40 W of a cause in it, as a file."""
     scenario = load("planetary")
-    theta = {CAUSE.size.name: 40.0} | CAUSE.forms(CAUSE.sample(1, 1)[0])[0]
-    spec = CAUSE.added_to(scenario.spec, theta)
+    spec = scenario.spec.with_parts([PartSpec("extra_churning", "ExtraHeat", VALUES | REGIME)], NETS)
     (path := tmp_path / "extended.toml").write_text(rig_text(dataclasses.replace(scenario, spec=spec)), "utf-8")
     return path
 
 
 def test_the_physics_knows_no_fit_terms(extended: Path) -> None:
-    assert not PARTS.keys() & FIT_PARTS.keys()
-    with pytest.raises(ScenarioError, match='no part type "ExtraLoss"'):
+    assert not PARTS.keys() & EXTRA_PARTS.keys()
+    with pytest.raises(ScenarioError, match='no part type "ExtraHeat"'):
         rig_files.load(extended)
 
 

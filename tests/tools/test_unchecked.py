@@ -6,6 +6,7 @@ import pytest
 from gearheat.scenarios.load import load
 from gearheat.scenarios.write import rig_text
 from gearheat.tools.losses import oils_of
+from gearheat.tools.measured import measured_of
 from gearheat.tools.settings import adjusted, flat_of
 from gearheat.tools.unchecked import unchecked
 
@@ -58,7 +59,7 @@ def test_written_rig_still_says_it(tmp_path) -> None:
 def test_oils_of_a_campaign_count() -> None:
     """Each test runs with its own oil: two of the four lack a printed value beside the pour point."""
     scenario = load("planetary")
-    told = unchecked(scenario, flat_of(scenario), oils_of(scenario.campaign))
+    told = unchecked(scenario, flat_of(scenario), oils_of(measured_of(scenario)))
     unprinted = {e["entry"]: [path for path in e["values"] if path != "oil.T_pour"] for e in told}
     assert unprinted == {"PAOR": [], "MINR": [], "MINE": ["oil.s_p", "oil.t_p"], "PAGD": ["oil.c_p"]}
 

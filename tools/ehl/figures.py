@@ -9,7 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import NullFormatter
 
-from ..plots import COLOURS, STYLE, empty, svg
+from ...diagnose.report.drawing import COLOURS, STYLE, empty, svg
 from .pages import Row
 from .rows import Found
 

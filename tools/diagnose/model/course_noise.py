@@ -20,17 +20,18 @@ FADING = (1, 2, 4, 8, 16)
 
 def along(o: Observed) -> np.ndarray:
     """Which entries lie along logged courses (m,)."""
-    return np.asarray((o.kind >= len(o.read)) & (o.entries.sensor >= 0))
+    return (o.kind >= len(o.read)) & (o.entries.sensor >= 0)
 
 
 def shares(o: Observed) -> np.ndarray:
     """Share of its dwell at which each entry was read (m,)."""
-    return np.asarray(o.entries.share[o.entries.at])
+    return o.entries.share[o.entries.at]
 
 
 def smoothed(o: Observed) -> np.ndarray:
     """Scatter of the smooth curves through all samples (m, m)."""
-    found, place = np.zeros((o.m, o.m)), dict[tuple[str, int], list[int]]()
+    found = np.zeros((o.m, o.m))
+    place: dict[tuple[str, int], list[int]] = {}
     for i in np.flatnonzero(along(o)):
         place.setdefault((o.read[o.entries.sensor[i]].name, int(o.row[i])), []).append(int(i))
     for course in o.campaign.series.courses if o.campaign.series else ():

@@ -85,7 +85,7 @@ def extended_rig(
     causes = " and ".join(f"{name_of(a.cause.id)} ({a.cause.id})" for a in applied) or "calibrated, no cause added"
     doc = f"{rig.doc.rstrip('.')}; as diagnosed from {data}: {causes}."
     head = [f"Written by `gearheat diagnose` from {data}: {causes}.", *notes]
-    clean = replace(rig, doc=doc, spec=replace(rig.spec, doc=doc), overrides=(), entries={}, campaign=None)
+    clean = replace(rig, doc=doc, spec=replace(rig.spec, doc=doc), overrides=(), entries={})
     return "\n".join(f"# {line}" for line in head) + "\n" + rig_text(clean)
 
 

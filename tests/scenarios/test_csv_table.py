@@ -1,0 +1,109 @@
+"""Tables that users write: every way one can be wrong, and what is read all the same."""
+
+from pathlib import Path
+
+import pytest
+from gearheat.model.errors import DataError
+from gearheat.scenarios.csv_table import Column, Table, parse, raise_all
+
+COLUMNS = (
+    Column("point", "number of the reading", "count", at_least=0),
+    Column("direction", "direction (1 = multiplier, 2 = reducer)", "count", options=(1, 2)),
+    Column("dwell_min", "time the point was held", above=0),
+    Column("T_oil_C", "oil temperature", above=-273.15),
+    Column("T_oil2_C", "oil temperature at a second place", required=False, above=-273.15),
+)
+HEADER = "point,direction,dwell_min,T_oil_C"
+ROWS = ("1,1,240,45", "2,2,90,47")
+
+
+def read(path: Path) -> Table:
+    found, problems = parse(path, COLUMNS)
+    raise_all(problems, path.name)
+    return found
+
+
+def table(tmp_path: Path, *rows: str, header: str = HEADER) -> Path:
+    (path := tmp_path / "data.csv").write_text("\n".join((header, *rows)) + "\n", encoding="utf-8")
+    return path
+
+
+def problems(path: Path) -> tuple[str, ...]:
+    with pytest.raises(DataError) as raised:
+        read(path)
+    return raised.value.problems
+
+
+def test_no_file_and_a_folder(tmp_path: Path) -> None:
+    assert problems(tmp_path / "no.csv") == (f"{tmp_path / 'no.csv'}: there is no such file. Check the path.",)
+    assert problems(tmp_path) == (f"{tmp_path}: cannot be read (Is a directory). Give a CSV file.",)
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (b"\n\n", "data.csv: the file is empty. It needs a line of column names and at least one row."),
+        (HEADER.encode(), "data.csv: there is no row under the column names. Add at least one."),
+        (b"\xff\xfe\x00\x81", "data.csv: is not UTF-8 text. Save it as a CSV file."),
+        (
+            f"{HEADER}\n{ROWS[0]}".replace(",", "\t").encode(),
+            "data.csv line 1: the columns are separated by tabs. Write commas or semicolons.",
+        ),
+        (
+            f"{HEADER}\n1,1,240,45,3\n{ROWS[1]}\n".encode(),
+            "data.csv line 2: 5 cells under 4 column names. Write one cell per column, decimals with a point.",
+        ),
+        (
+            f"{HEADER.replace('dwell_min', 'T_oil_C')}\n{ROWS[0]}".encode(),
+            'data.csv line 1: column "T_oil_C" is there twice. Keep one.',
+        ),
+    ],
+)
+def test_what_is_no_table(tmp_path: Path, content: bytes, said: str) -> None:
+    (path := tmp_path / "data.csv").write_bytes(content)
+    assert said in problems(path)
+
+
+def test_a_column_is_missing_or_misspelt(tmp_path: Path) -> None:
+    header = HEADER.replace("T_oil_C", "T_oi_C").replace("dwell_min", "held")
+    assert problems(table(tmp_path, *ROWS, header=header)) == (
+        'data.csv line 1: column "dwell_min" (time the point was held) is missing. Add it.',
+        'data.csv line 1: column "T_oil_C" (oil temperature) is missing. Is it "T_oi_C"? Rename it.',
+    )
+
+
+def test_wrong_cells_are_all_named(tmp_path: Path) -> None:
+    assert set(problems(table(tmp_path, "1,3,24O,nan", "2.5,1,0,-300", "3,1,,1e999"))) == {
+        'data.csv line 2: direction = "3" is not known. Write one of: 1, 2.',
+        'data.csv line 2: dwell_min = "24O" is no number. Write a number with a decimal point and no unit.',
+        'data.csv line 2: T_oil_C = "nan" is not finite. Write a number or leave out the row.',
+        'data.csv line 3: point = "2.5" is no whole number.',
+        'data.csv line 3: dwell_min = "0" is out of range. The time the point was held must be above 0.',
+        'data.csv line 3: T_oil_C = "-300" is out of range. The oil temperature must be above -273.15.',
+        'data.csv line 4: dwell_min = "" is empty. Write a number.',
+        'data.csv line 4: T_oil_C = "1e999" is not finite. Write a number or leave out the row.',
+    }
+
+
+def test_a_page_of_problems_is_enough(tmp_path: Path) -> None:
+    found = problems(table(tmp_path, *(f"{i},1,x,45" for i in range(1, 101))))
+    assert len(found) == 31
+    assert found[-1] == "data.csv: 70 more problems. Mend the first ones and read it again."
+
+
+def test_semicolons_with_decimal_commas(tmp_path: Path) -> None:
+    path = table(tmp_path, "1;1;240;45,25", header=HEADER.replace(",", ";"))
+    assert read(path).columns["T_oil_C"] == (45.25,)
+
+
+def test_unknown_columns_warn(tmp_path: Path) -> None:
+    path = table(tmp_path, *(row + ",7,8" for row in ROWS), header=HEADER + ",T_oil2,colour")
+    assert tuple(read(path).warnings) == (
+        'data.csv: column "T_oil2" is not used. Did you mean "T_oil2_C"?',
+        'data.csv: column "colour" is not used.',
+    )
+
+
+def test_a_byte_order_mark_and_blank_lines_do_no_harm(tmp_path: Path) -> None:
+    path = table(tmp_path, ROWS[0], "", ROWS[1], ",,,", header="\ufeff" + HEADER)
+    assert list(read(path).lines) == [2, 4]
