@@ -67,6 +67,13 @@ def test_all_problems_at_once(tmp_path: Path) -> None:
     assert list(tmp_path.iterdir()) == [card]
 
 
+def test_a_series_needs_the_readings_of_its_tests() -> None:
+    request = Request(RIG, series=DATA, reference_series=DATA)
+    told = "\n".join(request.problems())
+    assert "--series needs the readings" in told and "--reference-series needs the readings" in told
+    assert {"--series", "--reference-series"} <= {name for name, _ in request.files()}
+
+
 def test_no_data_and_no_rig_are_told_together() -> None:
     with pytest.raises(DataError) as caught:
         diagnose_command(Request("planetry"), Outputs(), infer)

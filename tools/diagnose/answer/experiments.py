@@ -162,6 +162,7 @@ def added(campaign: Campaign, experiment: Experiment) -> Campaign:
         date=("",) * k,
         lines=np.zeros(n * k, dtype=int),
         points=np.zeros(n * k, dtype=int),
+        series=None,
     )
 
 

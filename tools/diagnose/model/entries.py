@@ -48,17 +48,18 @@ class Entries:
     @staticmethod
     def of(c: Campaign) -> Entries:
         """All that a campaign holds."""
-        read, n, series = c.read, c.n, c.series
-        found = [(i, i, r, r, c.values[s.name][r], s.repeat_sd) for i, s in enumerate(read) for r in range(n)]
-        k = len(PLACES) if series else 0
-        logged = list(dict.fromkeys(course.row for course in series.courses)) if series else []
+        read, n = c.read, c.n
+        courses = c.series.courses if c.series else ()
+        dwell = c.series.dwell / c.dwell - 1 if c.series else np.empty(0)
+        k = len(PLACES) if c.series else 0
+        logged = list(dict.fromkeys(course.row for course in courses))
         number = {s.name: i for i, s in enumerate(read)}
-        for course in series.courses if series else ():
+        found = [(i, i, r, r, c.values[s.name][r], s.repeat_sd) for i, s in enumerate(read) for r in range(n)]
+        for course in courses:
             i, begin = number[course.sensor], n + k * logged.index(course.row)
-            for place, value in enumerate(course.values):
-                found.append((len(read) + i, i, course.row, begin + place, value, read[i].repeat_sd))
-        if series:
-            found += [(2 * len(read), -1, r, r, series.dwell[r] / c.dwell[r] - 1, DWELL) for r in range(n)]
+            sd = read[i].repeat_sd
+            found += [(len(read) + i, i, course.row, begin + q, value, sd) for q, value in enumerate(course.values)]
+        found += [(2 * len(read), -1, r, r, value, DWELL) for r, value in enumerate(dwell)]
         kept = sorted((entry for entry in found if np.isfinite(entry[4])), key=lambda entry: entry[0])
         kind, sensor, row, at, measured, repeat = (np.array(column) for column in zip(*kept, strict=True))
         place_row = np.concatenate([np.arange(n), np.repeat(np.array(logged, dtype=int), k)])
