@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from gearheat.diagnose.infer import screen
 from gearheat.diagnose.infer.fit import fitted
+from gearheat.diagnose.infer.prior import Prior
 from gearheat.diagnose.infer.problem import Acting
 from gearheat.diagnose.infer.search import Found, Hypothesis
 from gearheat.diagnose.report import compose_data, compose_pictures, compose_points, compose_rig
@@ -45,7 +46,8 @@ def made() -> Made:
     h = Hypothesis((CAUSE,), fit, 0.0)
     nothing = Hypothesis((), null, -3.0)
     chances = np.array([0.9, 0.1])
-    found = Found(made.problem, made.formulas, null, None, (h, nothing), chances, 0.01, 2.0, np.zeros(9), 0.5)  # type: ignore[arg-type]
+    prior = Prior(f.cause for f in made.formulas)
+    found = Found(made.problem, made.formulas, null, None, (h, nothing), chances, 0.01, 2.0, np.zeros(9), 0.5, prior)  # type: ignore[arg-type]
     return Made(inputs, made, found, h)
 
 
