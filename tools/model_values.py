@@ -211,4 +211,3 @@ def _assignments(row: Row) -> tuple[str, ...]:
 
 def _listed(text: str | list[str]) -> list[str]:
     return [text] if isinstance(text, str) else list(text)
-
