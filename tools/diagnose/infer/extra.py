@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import product
 
 import numpy as np
@@ -45,6 +45,9 @@ def extras(problem: Problem, fit: Fit, spreads: Sequence[Formula]) -> Iterator[t
     base, e = fit.linear(problem)
     V, r = base.L @ base.L.T, base.L @ e
     without = base.log_density(e)
+    stated = replace(fit.noise, scales=np.zeros_like(fit.noise.scales))
+    #: What a spread explains need not be in the scales of the scatter: they may be as found, or as stated.
+    scatters = [(V, 0.0), (V + stated.covariance - fit.noise.covariance, -fit.noise.log_prior)]
     if spreads:
         own = [Acting(f, np.zeros(f.size)) for f in spreads]
         effects = problem.tangents(fit.look.z, fit.look.acting, own)
@@ -53,7 +56,8 @@ def extras(problem: Problem, fit: Fit, spreads: Sequence[Formula]) -> Iterator[t
             if columns is None or not np.isfinite(columns).all():
                 continue
             C = columns @ columns.T
-            logs = [_log(V + size**2 * C, r) - without for size in SIZES]
+            each = np.array([[_log(W + size**2 * C, r) + more - without for size in SIZES] for W, more in scatters])
+            logs = logsumexp(each, axis=0) - np.log(len(scatters))
             best = SIZES[int(np.argmax(logs))]
             gain = float(logsumexp(logs) - np.log(len(SIZES)) + np.log(formula.form.weight))
             yield Extra(formula.cause.id, formula.form.name, best, (), best**2 * C), gain

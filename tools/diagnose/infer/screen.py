@@ -13,8 +13,9 @@ from .evidence import White, log_bayes_factors
 from .fit import Fit, bounds
 from .problem import Acting, Problem
 
-#: Samples of a form's shapes: one in the middle, and so many more for the first shape and for each further one.
-FIRST, FURTHER, MOST = 3, 1, 6
+#: Samples of a form: one in the middle of its shapes, and so many more for the first shape and for each further one; of
+#: one with a threshold, of which each place may have a best fit of its own, so many: of physics, and of instruments.
+FIRST, FURTHER, MOST, THRESHOLDS = 3, 1, 6, (8, 16)
 #: Draws of the alarm's null.
 DRAWS = 2000
 
@@ -63,6 +64,8 @@ def samples(formulas: Sequence[Formula]) -> tuple[tuple[Acting, ...], np.ndarray
     for k, formula in enumerate(formulas):
         d = formula.size - 1
         n = min(1 + (FIRST + FURTHER * (d - 1) if d else 0), MOST)
+        if any(shape.name == "threshold" for shape in formula.form.shapes):
+            n = THRESHOLDS[not formula.paths]
         for u in spread(n, d):
             found.append(Acting(formula, np.r_[0.0, u]))
             owner.append(k)
