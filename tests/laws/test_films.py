@@ -54,7 +54,7 @@ def test_no_film_at_rest_and_a_finite_one_without_load() -> None:
 @given(st.floats(0.0, 1e3), st.floats(1.001, 3.0))
 def test_shares_lie_between_none_and_all(Lambda: float, more: float) -> None:
     f = film.fluid_share(Lambda)
-    assert 0 <= f <= film.fluid_share(more * Lambda) <= 1
+    assert 0 <= f <= film.fluid_share(more * Lambda) + 1e-14 <= 1 + 2e-14  # round-off where nothing is left
     assert film.asperity_share(Lambda) == 1 - f
     assert 0.04 <= film.mixed_friction(Lambda, 0.04, 0.12) <= 0.12 + 1e-15
 

@@ -13,11 +13,12 @@ from gearheat.scenarios.load import list_rigs, load
 @pytest.mark.parametrize("name", list_rigs())
 def test_a_rig_warms_up_as_it_is_simulated(name: str) -> None:
     """At several loads, through a stop of its shaft and a room that cools down."""
-    flat = flatten(assemble(load(name).spec))
+    spec = load(name).spec
+    flat = flatten(assemble(spec))
     batch = Batch(flat)
     torques = [q.name for q in flat.inputs if q.name.endswith(".tau")]
     load_name = next(iter(torques + [q.name for q in flat.parameters if q.unit == "N"]))
-    room = next(q for q in flat.inputs if q.name == "room.T")
+    room = next(q for q in flat.inputs if q.name == f"{spec.of_type('Room')[0]}.T")
     speed = next(q for q in flat.inputs if q.name.endswith(".w"))
     duty = stepped(
         [
