@@ -15,7 +15,7 @@ from .problem import Acting, Problem
 
 #: Samples of a form: one in the middle of its shapes, and so many more for the first shape and for each further one; of
 #: one with a threshold, of which each place may have a best fit of its own, so many: of physics, and of instruments.
-FIRST, FURTHER, MOST, THRESHOLDS = 3, 1, 6, (8, 16)
+FIRST, FURTHER, MOST, THRESHOLDS = 3, 1, 6, (6, 8)
 #: Draws of the alarm's null.
 DRAWS = 2000
 
