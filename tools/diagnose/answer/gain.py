@@ -23,7 +23,6 @@ from ..infer.fit import Fit, fitted, prior_precision
 from ..infer.problem import Acting, Aside, Problem
 from ..infer.search import Found
 from ..model.formula import Formula
-from ..model.noise import alike
 from .folds import schemes
 from .rivals import RIVALS
 
@@ -203,7 +202,7 @@ def discrepancy(problem: Problem) -> np.ndarray:
     o = problem.data
     sd, sensor = o.entries.repeat, o.entries.sensor
     whole = np.zeros((problem.m, problem.m))
-    whole[problem.own, problem.own] = alike(o) * (sensor[:, None] == sensor) * np.outer(sd, sd)
+    whole[problem.own, problem.own] = problem.alike * (sensor[:, None] == sensor) * np.outer(sd, sd)
     return whole
 
 

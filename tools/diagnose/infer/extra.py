@@ -10,7 +10,7 @@ import numpy as np
 from scipy.special import logsumexp
 
 from ..model.formula import Formula
-from ..model.noise import alike, per_group, walk
+from ..model.noise import per_group, walk
 from .evidence import White
 from .fit import Fit
 from .problem import Acting, Problem
@@ -92,10 +92,9 @@ def _remainders(problem: Problem, V: np.ndarray, r: np.ndarray, without: float) 
         if g
     ]
     sd = o.entries.repeat
-    near = alike(o)
     same = o.entries.sensor[:, None] == o.entries.sensor
     tests = o.campaign.test[o.row]
-    kernels = {"smooth in the conditions": near * same}
+    kernels = {"smooth in the conditions": problem.alike * same}
     if np.bincount(o.campaign.test).max() > 1 or len(np.unique(tests)) < o.campaign.n:
         kernels["from test to test"] = (tests[:, None] == tests) * same
     found = []

@@ -10,7 +10,6 @@ import numpy as np
 from scipy.special import logsumexp
 
 from ...model.errors import SolveError
-from ..model.noise import alike
 from .evidence import WIDTHS, White, log_bayes_factor
 from .problem import Acting, Look, Noise, Problem
 
@@ -74,7 +73,7 @@ def _rough(problem: Problem, look: Look, vector: _Vector) -> np.ndarray:
     """Covariance of what forms leave of the effects of their causes, as a smooth share of them (M, M)."""
     effects = (look.jacobian[:, vector.sizes] * look.x[vector.sizes])[problem.own]
     rough = np.zeros((problem.m, problem.m))
-    rough[problem.own, problem.own] = (effects @ effects.T) * alike(problem.data)
+    rough[problem.own, problem.own] = (effects @ effects.T) * problem.alike
     return rough
 
 

@@ -14,8 +14,8 @@ from ...scenarios.scenario import Scenario
 from ..campaign.logs import Log
 from ..library.knobs import Knob, knobs
 from ..library.roles import Roles
-from ..model.equations import Equations
 from ..model.logs import Filter, Passed
+from ..model.plant import Plant
 from ..model.windows import Windows, windows
 from .levels import Effect, Levels, Quadratics, Target, estimate, first_levels
 
@@ -118,7 +118,7 @@ def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
     found = knobs(roles, log.sensors)
     found = tuple(k for k in found if all(p in _parameters(scenario) for p in k.paths))
     paths = list(dict.fromkeys(path for k in found for path in k.paths))
-    plant = Equations(flatten(assemble(spec)), paths, [s.reads for s in log.given], [s.reads for s in log.read])
+    plant = Plant(flatten(assemble(spec)), paths, [s.reads for s in log.given], [s.reads for s in log.read])
     own = Filter(plant, found, [s.name for s in log.given], [s.name for s in log.read], np.zeros(plant.nx))
     noise = []
     for q in plant.flat.states:

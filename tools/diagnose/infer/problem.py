@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 
 from ...model.errors import SolveError
 from ..model.formula import Formula
-from ..model.noise import Term, input_scatter, stacked, terms
+from ..model.noise import Term, alike, input_scatter, stacked, terms
 from ..model.observe import Observed, Seen
 from .evidence import White
 
@@ -190,6 +190,11 @@ class Problem:
         self.own = slice(0, self.data.m)
         #: Which entries are readings at the ends of dwells (M,); the others lie along logged courses.
         self.ends = np.concatenate([o.kind < len(o.read) for o in campaigns])
+
+    @cached_property
+    def alike(self) -> np.ndarray:
+        """Correlation (m, m) of what is smooth in the conditions of the data."""
+        return alike(self.data)
 
     @property
     def m(self) -> int:

@@ -169,7 +169,7 @@ class Search:
         singles = self._singles()
         self.progress("causes two by two", 0.5)
         grown = [] if self.p_any > QUIET else self._grown(singles)
-        base = self._corrected([Hypothesis((), self.null, self.null.evidence + self.log_none), *singles, *grown])
+        base = self._corrected([Hypothesis((), self.null, self.null.evidence + self.critical), *singles, *grown])
         self.progress("scatter and remainder", 0.8)
         hypotheses = sorted([*base, *self._beside(base)], key=lambda h: -h.log_joint)
         logs = np.array([h.log_joint for h in hypotheses])
@@ -219,7 +219,6 @@ class Search:
         seen = float(logsumexp(first.log_bf + weights))
         self.critical = float(np.quantile(drawn, 1 - self.alpha))
         self.p_any = float((1 + (drawn >= seen).sum()) / (1 + len(drawn)))
-        self.log_none = self.critical
 
     def _forms(self, log_bf: np.ndarray, most: int) -> list[int]:
         """Formulas worth a fit, so many at most, best first."""
@@ -334,7 +333,7 @@ class Search:
     def _added(self, causes: Sequence[str], more: str) -> float:
         """Log prior of a hypothesis with one cause more over that without."""
         if not causes:
-            return self.prior([more]) - self.log_none
+            return self.prior([more]) - self.critical
         return self.prior([*causes, more]) - self.prior(causes)
 
 

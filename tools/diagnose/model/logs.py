@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..library.knobs import Knob
-from .equations import Equations
+from .plant import Plant
 from .windows import Windows
 
 #: The method: two implicit stages of second order, L-stable and stiffly accurate.
@@ -64,7 +64,7 @@ class Filter:
     """
 
     def __init__(
-        self, plant: Equations, knobs: Sequence[Knob], given: Sequence[str], read: Sequence[str], drift: np.ndarray
+        self, plant: Plant, knobs: Sequence[Knob], given: Sequence[str], read: Sequence[str], drift: np.ndarray
     ) -> None:
         self.plant, self.knobs, self.given, self.read, self.drift = (
             plant,
