@@ -87,7 +87,8 @@ def setting(
     knobs = dict.fromkeys([p for n in (*known, day) for p in n.paths] + [p for f in formulas for p in f.paths])
     forms = [f.form for f in formulas]
     shown = tuple(dict.fromkeys(s.reads for c in campaigns for s in c.read))
-    plant = Plant.of(spec, [*forms, *known], tuple(knobs), [s.reads for s in data.given], shown)
+    tried = tuple(dict.fromkeys(path for f in formulas for path in f.sized))
+    plant = Plant.of(spec, [*forms, *known], tuple(knobs), [s.reads for s in data.given], shown, tried)
     observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
     problem = Problem(observed, card.day_cooling_sd)
     return Setting(scenario, spec, card, roles, ranges, causes, known, formulas, plant, problem, oils)

@@ -59,7 +59,8 @@ def planetary() -> tuple[Plant, Campaign, list[Formula]]:
     known = formulas(data, Roles.of(scenario.spec))
     knobs = dict.fromkeys(["gear_set.k_mu", "oil.c_p", *(p for f in known for p in f.paths)])
     given, shown = [s.reads for s in data.given], [s.reads for s in data.read]
-    return Plant.of(scenario.spec, [f.form for f in known], tuple(knobs), given, shown), data, known
+    tried = tuple(dict.fromkeys(path for f in known for path in f.sized))
+    return Plant.of(scenario.spec, [f.form for f in known], tuple(knobs), given, shown, tried), data, known
 
 
 @pytest.fixture

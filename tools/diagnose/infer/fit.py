@@ -13,8 +13,8 @@ from ...model.errors import SolveError
 from .evidence import WIDTHS, White, log_bayes_factor
 from .problem import Acting, Look, Noise, Problem
 
-#: Steps at most, tries of each with more damping, gain in log likelihood below which a step is the last.
-STEPS, TRIES, LITTLE = 12, 5, 0.02
+#: Steps at most, tries of each with more damping, gain in log likelihood that a further step must promise.
+STEPS, TRIES, LITTLE = 12, 5, 0.05
 #: Rounds of point and scatter in turn at most, and change of a scale's logarithm below which the last is done.
 ROUNDS, SETTLED = 4, 0.1
 #: Longest step of a nuisance, a size (or that share of it) and a shape; shapes stay inside so many deviations.
@@ -178,6 +178,9 @@ def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> tuple[Lo
         J = white(look.jacobian)
         H = J.T @ J + np.diag(vector.precision)
         gradient = J.T @ white(problem.measured - look.shown) - vector.precision * look.x
+        change = vector.step(look.x, H, gradient) - look.x
+        if change @ gradient - 0.5 * change @ H @ change < LITTLE:
+            break
         for _ in range(TRIES):
             new = vector.step(look.x, H + damping * np.diag(np.diag(H)), gradient)
             with suppress(SolveError):
@@ -188,9 +191,7 @@ def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> tuple[Lo
             damping = max(5 * damping, 0.3)
         else:
             break
-        gained, damping, look, cost = cost - value, damping / 5, trial, value
-        if gained < LITTLE:
-            break
+        damping, look, cost = damping / 5, trial, value
     return look, cost
 
 

@@ -11,7 +11,7 @@ from scipy.optimize import minimize
 
 from ...model.errors import SolveError
 from ..model.formula import Formula
-from ..model.noise import Term, alike, input_scatter, stacked, terms
+from ..model.noise import Term, alike, input_scatter, stacked, summed, terms
 from ..model.observe import Observed, Seen
 from .evidence import White
 
@@ -76,9 +76,7 @@ class Noise:
     @cached_property
     def parts(self) -> tuple[np.ndarray, list[np.ndarray]]:
         """The sum of all fixed terms, and each loose one (M, M)."""
-        fixed = [t.matrix for t in self.terms if t.loose == 0]
-        loose = [t.matrix for t in self.loose]
-        return np.sum(fixed, axis=0) if fixed else np.zeros_like(loose[0]), loose
+        return summed([t for t in self.terms if t.loose == 0]), [t.matrix for t in self.loose]
 
     @cached_property
     def covariance(self) -> np.ndarray:

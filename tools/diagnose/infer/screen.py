@@ -17,7 +17,7 @@ from .problem import Acting, Problem
 #: one with a threshold, of which each place may have a best fit of its own, so many: of physics, and of instruments.
 FIRST, FURTHER, MOST, THRESHOLDS = 3, 1, 6, (6, 8)
 #: Draws of the alarm's null.
-DRAWS = 2000
+DRAWS = 1000
 
 
 @dataclass(frozen=True)
@@ -94,9 +94,15 @@ def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarra
     """Effects weighed against a whitened residual."""
     g = white(effects)
     s, q = g.T @ e, (g**2).sum(axis=0)
-    low, high = (np.array([bounds(c)[i][0] for c in candidates]) for i in (0, 1))
+    low, high = _limits(candidates)
     sizes = np.clip(s / (q + 0.1), low, high)
     return Look(candidates, owner, effects, g, log_bayes_factors(s, q, low, high), sizes)
+
+
+def _limits(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray]:
+    """Lowest and highest sizes of candidates, in prior half widths (k,)."""
+    sizes = [c.formula.cause.size for c in candidates]
+    return np.array([s.low / s.sd for s in sizes]), np.array([s.high / s.sd for s in sizes])
 
 
 def null_draws(found: Look, weights: np.ndarray, seed: int) -> np.ndarray:
@@ -111,5 +117,5 @@ def null_draws(found: Look, weights: np.ndarray, seed: int) -> np.ndarray:
     E = rng.standard_normal((found.white.shape[0], DRAWS))
     S = (found.white.T @ E).T
     q = (found.white**2).sum(axis=0)
-    low, high = (np.array([bounds(c)[i][0] for c in found.candidates]) for i in (0, 1))
+    low, high = _limits(found.candidates)
     return np.asarray(logsumexp(log_bayes_factors(S, q, low, high) + weights, axis=1))

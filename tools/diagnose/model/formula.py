@@ -67,6 +67,8 @@ class Formula:
         pace = form.pace(theta, row) if form.pace else 1.0
         self.paths, self.given, self.read = tuple(values), tuple(truth), tuple(shown)
         self.paced = form.pace is not None
+        #: Those of `paths` that the size itself changes; the others follow shapes alone.
+        self.sized = tuple(p for p, v in values.items() if ca.jacobian(ca.SX(v), self.t[0]).nnz())
         self._arguments = [self.t, self._base.column, self._sensors.column, self._reads.column, features]
         physics = [*values.values(), *truth.values(), pace]
         self._physics = self._function("physics", physics, [self.t, self._base.column])

@@ -15,10 +15,10 @@ typedef struct { const whole *begin, *row; } Pattern;
 
 /* A rig: sizes, compiled formulas of (w, u, p), patterns of their matrices. */
 typedef struct {
-  whole nx, nw, nu, np, knobs, given, shown;
+  whole nx, nw, nu, np, knobs, given, shown, tried;
   whole n_arg, n_res, n_iw, n_work, most;
-  Formula rates, slopes, readings, reading_slopes;
-  Pattern rates_w, rates_by, shown_w, shown_by;
+  Formula rates, slopes, readings, reading_slopes, trials;
+  Pattern rates_w, rates_by, shown_w, shown_by, rates_tried, shown_tried;
   const double *scale, *guess, *thermal;
 } Plant;
 
@@ -31,9 +31,10 @@ typedef struct {
   const double *local0, *local1, *start, *x0; /* (n, F, given, H), (n, F, given, H), (n, given), (n, nx) */
 } Duty;
 
-/* What is shown (n, R, shown) and its derivatives by knobs and pace (n, S, H, knobs + 1, R, shown), by given readings
-   (n, given, H, R, shown); those are left out where `by` is none. */
-typedef struct { double *y, *by, *local; } Found;
+/* What is shown (n, R, shown) and its derivatives: by knobs and pace (n, H, knobs + 1, R, shown), by given readings
+   (n, given, H, R, shown), by the tried knobs at the further settings (n, S - 1, H, tried, R, shown); all are left out
+   where `by` is none. */
+typedef struct { double *y, *by, *local, *tried; } Found;
 
 /* The method of Alexander (1977): third order, L-stable, stiffly accurate. A holds the weights over the diagonal's. */
 #define STAGES 3
@@ -263,7 +264,7 @@ static void added(Run *R, const Found *found, const Stage *s, whole column, doub
   const Duty *D = R->duty;
   const whole width = D->R * P->shown, g = column - P->knobs - 1;
   if (g < 0) {
-    const whole row = (R->run * D->S + R->setting) * D->H + D->row[s->phase];
+    const whole row = R->run * D->H + D->row[s->phase];
     double *by = found->by + (row * (P->knobs + 1) + column) * width + from;
     for (whole c = 0; c < to - from; c++) by[c] += part * v[c];
     return;
@@ -283,14 +284,37 @@ static void reading(Run *R, const Found *found, const Stage *s) {
   const whole width = R->duty->R * P->shown, c = s->read * P->shown;
   const double one = 1;
   call(R, P->reading_slopes, s->w, R->sparse, R->direct);
-  for (whole j = 0; j < P->nw && R->setting == 0; j++)
+  for (whole j = 0; j < P->nw; j++)
     for (whole e = P->shown_w.begin[j]; e < P->shown_w.begin[j + 1]; e++)
       R->mu[j * width + c + P->shown_w.row[e]] += R->sparse[e];
-  for (whole j = 0; j < P->knobs + (R->setting ? 0 : P->given); j++)
+  for (whole j = 0; j < P->knobs + P->given; j++)
     for (whole e = P->shown_by.begin[j]; e < P->shown_by.begin[j + 1]; e++) {
       const whole own = c + P->shown_by.row[e];
       added(R, found, s, j + (j >= P->knobs), R->direct[e], &one, own, own + 1);
     }
+}
+
+/* Derivatives by the tried knobs at the further settings. */
+static void tried(Run *R, const Found *found, const Stage *s, whole from) {
+  const Plant *P = R->plant;
+  const Duty *D = R->duty;
+  const whole width = D->R * P->shown;
+  for (R->setting = 1; R->setting < D->S; R->setting++) {
+    const whole row = (R->run * (D->S - 1) + R->setting - 1) * D->H + D->row[s->phase];
+    call(R, P->trials, s->w, R->sparse, R->direct);
+    for (whole j = 0; j < P->tried; j++) {
+      double *own = found->tried + (row * P->tried + j) * width;
+      for (whole e = P->rates_tried.begin[j]; e < P->rates_tried.begin[j + 1]; e++) {
+        const whole i = P->rates_tried.row[e];
+        const double part = R->sparse[e] * (i < P->nx ? s->length : -1), *mu = R->mu + i * width;
+        if (part != 0)
+          for (whole c = from; c < width; c++) own[c] += part * mu[c];
+      }
+      for (whole e = P->shown_tried.begin[j]; e < P->shown_tried.begin[j + 1] && s->read >= 0; e++)
+        own[s->read * P->shown + P->shown_tried.row[e]] += R->direct[e];
+    }
+  }
+  R->setting = 0;
 }
 
 /* One stage back: R->lambda is by the states after a step, and becomes that by those before it. */
@@ -301,8 +325,7 @@ static void back(Run *R, const Found *found, const Stage *s, int k, whole from) 
   inputs(R, s->share);
   memset(R->mu, 0, P->nw * width * sizeof *R->mu);
   memset(R->later, 0, all * sizeof *R->later);
-  for (R->setting = 0; R->setting < R->duty->S && s->read >= 0; R->setting++) reading(R, found, s);
-  R->setting = 0;
+  if (s->read >= 0) reading(R, found, s);
   for (int l = k + 1; l < STAGES; l++)
     for (whole i = 0; i < all; i++) R->later[i] += A[l][k] * R->behind[l * all + i];
   if (k == STAGES - 1) {
@@ -315,18 +338,16 @@ static void back(Run *R, const Found *found, const Stage *s, int k, whole from) 
     R->behind[k * all + i] = R->mu[i] - R->later[i];
     R->lambda[i] += R->behind[k * all + i];
   }
-  for (; R->setting < R->duty->S; R->setting++) {
-    call(R, P->slopes, s->w, R->sparse, 0);
-    for (whole j = 0; j < P->knobs + (R->setting ? 0 : P->given); j++)
-      for (whole e = P->rates_by.begin[j]; e < P->rates_by.begin[j + 1]; e++) {
-        const whole i = P->rates_by.row[e];
-        const double part = R->sparse[e] * (i < P->nx ? s->length : -1);
-        if (part != 0) added(R, found, s, j + (j >= P->knobs), part, R->mu + i * width + from, from, width);
-      }
-  }
-  R->setting = 0;
+  call(R, P->slopes, s->w, R->sparse, 0);
+  for (whole j = 0; j < P->knobs + P->given; j++)
+    for (whole e = P->rates_by.begin[j]; e < P->rates_by.begin[j + 1]; e++) {
+      const whole i = P->rates_by.row[e];
+      const double part = R->sparse[e] * (i < P->nx ? s->length : -1);
+      if (part != 0) added(R, found, s, j + (j >= P->knobs), part, R->mu + i * width + from, from, width);
+    }
   for (whole i = 0; i < P->nx; i++)
     added(R, found, s, P->knobs, s->time * s->r[i], R->mu + i * width + from, from, width);
+  tried(R, found, s, from);
 }
 
 /* Derivatives of what is read, from the last stage back. */
@@ -387,8 +408,8 @@ static void *prepared(Run *R, int kept) {
 __attribute__((visibility("default"))) int march(const Plant *plant, const Duty *duty, const Found *found, whole from,
                                                  whole to) {
   const int kept = found->by != 0;
-  const whole shown = duty->R * plant->shown, by = duty->S * duty->H * (plant->knobs + 1) * shown;
-  const whole local = plant->given * duty->H * shown;
+  const whole shown = duty->R * plant->shown, by = duty->H * (plant->knobs + 1) * shown;
+  const whole local = plant->given * duty->H * shown, others = (duty->S - 1) * duty->H * plant->tried * shown;
   Run R = {.plant = plant, .duty = duty};
   void *block = prepared(&R, kept);
   if (!block) return 0;
@@ -398,7 +419,9 @@ __attribute__((visibility("default"))) int march(const Plant *plant, const Duty 
     if (fine && kept) backward(&R, found);
     if (fine) continue;
     lost(y, shown);
-    if (kept) lost(found->by + R.run * by, by), lost(found->local + R.run * local, local);
+    if (!kept) continue;
+    lost(found->by + R.run * by, by), lost(found->local + R.run * local, local);
+    lost(found->tried + R.run * others, others);
   }
   free(block);
   return 1;

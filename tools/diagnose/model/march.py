@@ -48,12 +48,14 @@ class Slopes:
     """Derivatives of what is shown.
 
     Args:
-        by: by the plant's knobs in each row, then by its pace, at each setting (N, S, H, knobs + 1, reads, shown)
+        by: by the plant's knobs in each row, then by its pace (N, H, knobs + 1, reads, shown)
         local: by given readings of each row (N, given, H, reads, shown)
+        tried: by the plant's tried knobs at each further setting (N, S - 1, H, tried, reads, shown)
     """
 
     by: np.ndarray
     local: np.ndarray
+    tried: np.ndarray
 
 
 @dataclass(frozen=True)
@@ -85,13 +87,14 @@ def march(
     reads = sum(map(len, phases.read))
     found = {"y": np.empty((n, reads, len(plant.shown)))}
     if turned:
-        found["by"] = np.zeros((n, len(p), height, len(plant.knobs) + 1, reads, len(plant.shown)))
+        found["by"] = np.zeros((n, height, len(plant.knobs) + 1, reads, len(plant.shown)))
         found["local"] = np.zeros((n, given, height, reads, len(plant.shown)))
-    result = record(**({"y": 0, "by": 0, "local": 0} | found))
+        found["tried"] = np.zeros((n, len(p) - 1, height, len(plant.tried), reads, len(plant.shown)))
+    result = record(**({"y": 0, "by": 0, "local": 0, "tried": 0} | found))
     duty = _duty(phases, x0, p, pace)
     places = [ctypes.byref(r) for r in (plant.record, duty, result)]
     shared(lambda begin, end: int(library().march(*places, begin, end)), n, n, 0 if n > 1 else 1)
-    return Marched(found["y"], Slopes(found["by"], found["local"]) if turned else None)
+    return Marched(found["y"], Slopes(found["by"], found["local"], found["tried"]) if turned else None)
 
 
 def _duty(phases: Phases, x0: np.ndarray, p: np.ndarray, pace: np.ndarray) -> Any:

@@ -60,6 +60,18 @@ class Term:
         return self.columns
 
 
+def summed(terms: Sequence[Term]) -> np.ndarray:
+    """The covariance of some terms together (m, m)."""
+    columns = np.concatenate([t.columns for t in terms if t.columns is not None], axis=1)
+    found = columns @ columns.T
+    for t in terms:
+        if t.variance is not None:
+            found[np.diag_indices(len(found))] += t.variance
+        if t.covariance is not None:
+            found += t.covariance
+    return np.asarray(found)
+
+
 def reading_scatter(o: Observed) -> Iterator[tuple[str, np.ndarray]]:
     """Scatter of each compared sensor from reading to reading: name and variances (m,)."""
     for i, s in enumerate(o.read):

@@ -218,7 +218,8 @@ class _Look:
         value, by_t, _ = self._physics(formula, _none(t))
         slopes, n_paths = by_t[:, :, 0], len(formula.paths)
         setting = self._setting(dict(zip(formula.paths, value, strict=False)))
-        self.tried_slopes += [(setting, path, self.d, slopes[i]) for i, path in enumerate(formula.paths)]
+        sized = [(path, slopes[i]) for i, path in enumerate(formula.paths) if path in formula.sized]
+        self.tried_slopes += [(setting, path, self.d, slope) for path, slope in sized]
         for i, name in enumerate(formula.given, start=n_paths):
             self.truth_slopes[name] = total([(1.0, self.truth_slopes[name]), (1.0, {self.d: slopes[i]})])
         if formula.paced:
@@ -253,10 +254,11 @@ class _Look:
             logged = self._paced(np.ones(self.n), turned)
             found.y[:, along] = logged.y[:, along]
             if found.slopes is not None and logged.slopes is not None:
-                found.slopes.by[:, :, :, :, along] = logged.slopes.by[:, :, :, :, along]
+                found.slopes.by[:, :, :, along] = logged.slopes.by[:, :, :, along]
                 found.slopes.local[:, :, :, along] = logged.slopes.local[:, :, :, along]
+                found.slopes.tried[:, :, :, :, along] = logged.slopes.tried[:, :, :, :, along]
         if found.slopes is not None:
-            found.slopes.by[:, :, :, -1, along] = 0.0
+            found.slopes.by[:, :, -1, along] = 0.0
         return found
 
     def _paced(self, pace: np.ndarray, turned: bool) -> Marched:
@@ -353,9 +355,10 @@ class _Look:
         local = found.slopes.local[test, :, :, o.reads]
         signs = np.array([o.signs[s.name] for s in o.given])
         by_truth = local.swapaxes(1, 2) * signs[:, o.rows[test]].transpose(1, 2, 0)[..., None]  # p, H, given, shown
-        by_knobs = found.slopes.by[test, :, :, :, o.reads].swapaxes(1, 2)  # p, H, settings, knobs + 1, shown
-        own = by_knobs.reshape(len(test), o.height, -1, found.y.shape[2])
-        all_by, entries = np.concatenate([own, by_truth], axis=2), sorted(self._entries(), key=lambda e: e[0])
+        own = found.slopes.by[test, :, :, o.reads]  # p, H, knobs + 1, shown
+        tried = found.slopes.tried[test, :, :, :, o.reads].swapaxes(1, 2)  # p, H, further settings, tried knobs, shown
+        tried = tried.reshape(len(test), o.height, -1, found.y.shape[2])
+        all_by, entries = np.concatenate([own, by_truth, tried], axis=2), sorted(self._entries(), key=lambda e: e[0])
         by = np.zeros((len(test), found.y.shape[2], self.d))
         if entries:
             places, first = np.unique([i for i, _, _ in entries], return_index=True)
@@ -365,15 +368,18 @@ class _Look:
         return found.y[test, o.reads], by, local
 
     def _entries(self) -> list[tuple[int, int, np.ndarray]]:
-        """All slopes: direction, column (knobs and pace of each setting, then the given sensors), of each row."""
-        place = {name: k for k, name in enumerate(self.o.plant.knobs)}
-        wide = len(place) + 1
+        """All slopes: direction, column (knobs, pace, given sensors, tried knobs of each further setting), of each row."""
+        plant = self.o.plant
+        place = {name: k for k, name in enumerate(plant.knobs)}
+        sizes = {name: k for k, name in enumerate(plant.tried)}
         slopes = [(place[name], slope) for name, slope in self.slopes.items() if name in place]
         slopes.append((len(place), self.pace_slopes))
-        first = wide * (1 + len(self.settings))
-        slopes += [(k, self.truth_slopes[s.name]) for k, s in enumerate(self.o.given, start=first)]
-        tried = [(i, wide * setting + place[path], v) for setting, path, i, v in self.tried_slopes]
-        return [*((i, k, v) for k, slope in slopes for i, v in slope.items()), *tried]
+        slopes += [(k, self.truth_slopes[s.name]) for k, s in enumerate(self.o.given, start=len(place) + 1)]
+        first = len(place) + 1 + len(self.o.given)
+        found = [(i, k, v) for k, slope in slopes for i, v in slope.items()]
+        for setting, path, i, v in self.tried_slopes:
+            found.append((i, first + len(sizes) * (setting - 1) + sizes[path] if setting else place[path], v))
+        return found
 
 
 def _none(t: np.ndarray) -> np.ndarray:

@@ -41,13 +41,22 @@ class Plant:
         knobs: parameters that anything changes, the columns of `slopes`
         given: inputs that sensors give, further columns of `slopes`
         shown: states, outputs or inputs that sensors read
+        tried: the knobs that sizes of causes change, the only columns beside setting 0 of a march
 
     Raises:
         FmuError: the compiler fails
     """
 
-    def __init__(self, flat: FlatModel, knobs: Sequence[str], given: Sequence[str], shown: Sequence[str]) -> None:
+    def __init__(
+        self,
+        flat: FlatModel,
+        knobs: Sequence[str],
+        given: Sequence[str],
+        shown: Sequence[str],
+        tried: Sequence[str] = (),
+    ) -> None:
         self.flat, self.knobs, self.given, self.shown = flat, tuple(knobs), tuple(given), tuple(shown)
+        self.tried = tuple(tried)
         self.nx, self.nz = len(flat.states), len(flat.algebraic)
         self.p = flat.starts("parameter")
         self.place = {q.name: i for i, q in enumerate(flat.parameters)}
@@ -56,6 +65,7 @@ class Plant:
         self.scale = np.array([q.nominal for q in (*flat.states, *flat.algebraic)])
         w, both = ca.vertcat(flat.x, flat.z), ca.densify(ca.vertcat(flat.ode, flat.residual))
         by = ca.vertcat(*(flat.p[self.place[k]] for k in knobs), *(flat.u[self.u_place[g]] for g in given))
+        sizes = ca.vertcat(*(flat.p[self.place[k]] for k in tried)) if tried else ca.SX(0, 1)
         groups = {"state": flat.x, "input": flat.u, "output": flat.y}
         found = [flat.locate(path) for path in shown]
         y = ca.densify(ca.vertcat(*(groups[kind][i] for kind, i in found)))
@@ -64,6 +74,7 @@ class Plant:
             "slopes": [ca.jacobian(both, by)],
             "readings": [y],
             "reading_slopes": [ca.jacobian(y, w), ca.jacobian(y, by)],
+            "trials": [ca.jacobian(both, sizes), ca.jacobian(y, sizes)],
         }
         self._compiled = Compiled([w, flat.u, flat.p], results)
         self.record = self._record(self._compiled)
@@ -97,8 +108,8 @@ class Plant:
     def _record(self, compiled: Compiled) -> Any:
         """The plant as the march through its runs knows it."""
         unknowns = (*self.flat.states, *self.flat.algebraic)
-        (_, rates), (slopes,), (_,), shown = compiled.patterns.values()
-        patterns = [entries for pattern in (rates, slopes, *shown) for entries in pattern]
+        (_, rates), (slopes,), (_,), shown, trials = compiled.patterns.values()
+        patterns = [entries for pattern in (rates, slopes, *shown, *trials) for entries in pattern]
         return record(
             nx=self.nx,
             nw=self.nx + self.nz,
@@ -107,6 +118,7 @@ class Plant:
             knobs=len(self.knobs),
             given=len(self.given),
             shown=len(self.shown),
+            tried=len(self.tried),
             **dict(zip(("n_arg", "n_res", "n_iw", "n_work"), compiled.sizes, strict=True)),
             most=max(len(entries) for entries in patterns),
             **{name: compiled.place(name) for name in compiled.patterns},
@@ -118,21 +130,26 @@ class Plant:
 
     @staticmethod
     def of(
-        spec: Spec, forms: Iterable[Form | Nuisance], knobs: Sequence[str], given: Sequence[str], shown: Sequence[str]
+        spec: Spec,
+        forms: Iterable[Form | Nuisance],
+        knobs: Sequence[str],
+        given: Sequence[str],
+        shown: Sequence[str],
+        tried: Sequence[str] = (),
     ) -> Plant:
         """The superset of a rig and some forms.
 
         Args:
             spec: the rig, driven as the campaign drives it
             forms: what may act in it, and nuisances that need parts
-            knobs, given, shown: see the class
+            knobs, given, shown, tried: see the class
 
         Raises:
             GearheatError: the superset has no sound equations
         """
         flat, own = flatten(assemble(superset(spec, forms))), {part.name for part in spec.parts}
         added = {q.name for q in flat.parameters if q.name.partition(".")[0] not in own}
-        return Plant(_settled(flat, added - set(knobs)), knobs, given, shown)
+        return Plant(_settled(flat, added - set(knobs)), knobs, given, shown, tried)
 
 
 def _settled(flat: FlatModel, fixed: Collection[str]) -> FlatModel:
