@@ -62,14 +62,10 @@ class Term:
 
 def summed(terms: Sequence[Term]) -> np.ndarray:
     """The covariance of some terms together (m, m)."""
-    columns = np.concatenate([t.columns for t in terms if t.columns is not None], axis=1)
-    found = columns @ columns.T
-    for t in terms:
-        if t.variance is not None:
-            found[np.diag_indices(len(found))] += t.variance
-        if t.covariance is not None:
-            found += t.covariance
-    return np.asarray(found)
+    columns = [t.columns for t in terms if t.columns is not None]
+    others = [t.matrix for t in terms if t.columns is None]
+    found = [np.concatenate(columns, axis=1)] if columns else []
+    return np.asarray(sum((c @ c.T for c in found), np.sum(others, axis=0)))
 
 
 def reading_scatter(o: Observed) -> Iterator[tuple[str, np.ndarray]]:
