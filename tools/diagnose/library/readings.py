@@ -33,17 +33,6 @@ def wrong(sensor: Sensor, size: str, error: Error) -> Form:
     return Form(shown=shown)
 
 
-def sign(sensor: Sensor, row: Row) -> Num:
-    """What the column of a magnitude does where the value itself rises: +1 or -1 by direction.
-
-    Args:
-        sensor: the instrument
-        row: of the reading
-    """
-    forward, backward = sensor.signs
-    return forward if forward == backward else forward * row.direction
-
-
 def one_of(sensor: Sensor, own: Sequence[Sensor]) -> str:
     """Name of a form for one of several instruments.
 

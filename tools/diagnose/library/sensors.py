@@ -15,9 +15,11 @@ from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta
 from .extra_parts import step
 from .forms import GENERAL, USUAL, WIDTH, Context
 from .probes import heated, lag, position, swapped
-from .readings import one_of, sign, wrong
+from .readings import one_of, wrong
 from .roles import Roles
 
+#: Share of the errors of magnitudes that turn with the direction.
+TURNED = 0.3
 #: How gradually something sets in with the running order, which goes from 0 to 1.
 ORDER_STEP = 0.02
 
@@ -63,7 +65,10 @@ NAMES = {"sensor.ambient.offset": "sensor.ambient.bias", "sensor.torque.since": 
 
 @dataclass(frozen=True)
 class Mode:
-    """One way to err: factor on the size by (theta, row, true value), its shapes, and what else a form says."""
+    """One way to err: factor on the size by (theta, row, true value), its shapes, and what else a form says.
+
+    `turns`: a column of magnitudes may hold the error of the signed value, too, which turns with the direction.
+    """
 
     name: str
     weight: float
@@ -71,6 +76,18 @@ class Mode:
     shapes: tuple[Shape, ...] = ()
     spread: str = ""
     regime: Mapping[str, str] | None = None
+    turns: bool = False
+
+
+def turned(mode: Mode) -> Mode:
+    """The same error in the signed value of what a column shows as a magnitude."""
+    name = ", ".join(filter(None, (mode.name, "opposite signs")))
+    return replace(
+        mode,
+        name=name,
+        weight=TURNED * mode.weight,
+        factor=lambda theta, row, value: row.direction * mode.factor(theta, row, value),
+    )
 
 
 def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
@@ -123,18 +140,24 @@ class _Instruments:
         found = []
         for sensor in self.own:
             for mode in modes:
-                form = wrong(sensor, size, self._error(sensor, mode, size))
-                name = ", ".join(filter(None, (sensor.name if len(self.own) > 1 else "", mode.name)))
-                weight, regime = mode.weight / len(self.own), mode.regime or {}
-                form = replace(form, name=name, weight=weight, shapes=mode.shapes, spread=mode.spread, regime=regime)
-                found.append(form)
+                if mode.turns and sensor.signs[0] != sensor.signs[1]:
+                    found += [self._form(sensor, replace(mode, weight=(1 - TURNED) * mode.weight), size)]
+                    found += [self._form(sensor, turned(mode), size)]
+                else:
+                    found.append(self._form(sensor, mode, size))
         return tuple(found)
+
+    def _form(self, sensor: Sensor, mode: Mode, size: str) -> Form:
+        form = wrong(sensor, size, self._error(sensor, mode, size))
+        name = ", ".join(filter(None, (sensor.name if len(self.own) > 1 else "", mode.name)))
+        weight, regime = mode.weight / len(self.own), mode.regime or {}
+        return replace(form, name=name, weight=weight, shapes=mode.shapes, spread=mode.spread, regime=regime)
 
     def _error(self, sensor: Sensor, mode: Mode, size: str) -> Callable[[Theta, Row, Num], Num]:
         if size == "gain":
             return mode.factor
         scale = self.scale[sensor.name]
-        return lambda theta, row, value: scale * sign(sensor, row) * mode.factor(theta, row, value)
+        return lambda theta, row, value: scale * mode.factor(theta, row, value)
 
     def cause(
         self,
@@ -176,7 +199,7 @@ class _Instruments:
             yield from self.over_time()
         if "mounting" in known:
             doc, size = f"The {words} errs anew with each mounting or filling.", "standard deviation of the errors"
-            mode = Mode("", 1.0, _one, spread="mounting")
+            mode = Mode("", 1.0, _one, spread="mounting", turns=True)
             yield self.cause("mounting", doc, self.size(size, signed=False), [mode], MOUNTINGS, "order", 0.5)
 
     def gain(self) -> Cause:
@@ -202,7 +225,7 @@ class _Instruments:
         modes = [replace(m, weight=m.weight / total) for m in modes]
         yield self.cause("since", f"The {words} is wrong from one test on.", size, modes, REPEAT, "order", 0.5)
         size = self.size("standard deviation of a step", 0.5, signed=False)
-        mode = Mode("", 1.0, _one, spread="walk")
+        mode = Mode("", 1.0, _one, spread="walk", turns=True)
         doc = f"The error of the {words} wanders from test to test."
         yield self.cause("random_walk", doc, size, [mode], REPEAT, "order", 0.3)
         if any(s.role == "read" for s in self.own):
@@ -267,7 +290,7 @@ def _changed(theta: Theta, row: Row, value: Num) -> Num:
 ZERO = Shape("zero", "1", "where the reading is right: 0 before the change, 1 after", 0.0, 1.0)
 PLACE = Shape("threshold", "1", "where in the running order: 0 first test, 1 last", 0.0, 1.0)
 FROM_THEN = {"quantity": "order above", "shape": "threshold"}
-SINCE = Mode("", 0.7, _changed, (PLACE, ZERO), regime=FROM_THEN)
+SINCE = Mode("", 0.7, _changed, (PLACE, ZERO), regime=FROM_THEN, turns=True)
 #: The same in one direction of the power flow only.
 DIRECTED = (
     Mode("driving only", 0.15, lambda t, row, value: _changed(t, row, value) * (1 + row.direction) / 2, (PLACE, ZERO)),
@@ -283,6 +306,7 @@ DRIFT = Mode(
     1.0,
     lambda theta, row, value: (row.order + 1e-9) ** theta["power"] - theta["zero"],
     (Shape("power", "1", "exponent of the running order", 0.5, 2.0, 1.0, 0.3), ZERO),
+    turns=True,
 )
 HALVES = "the halves of a test in reversed order"
 MOUNTINGS = "the same point in two mountings or with two fillings"
