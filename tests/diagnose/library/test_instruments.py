@@ -49,12 +49,21 @@ def test_where_a_room_probe_reads_too_much_the_room_was_colder(planetary):
     assert truth(planetary, cause, cause.forms[0], 2.0) == {"T_amb": pytest.approx(np.full(6, -2.0))}
 
 
-def test_the_zero_of_a_transducer_has_opposite_signs_on_magnitudes(planetary):
+def test_the_zero_of_a_transducer_is_the_same_on_magnitudes_of_both_directions(planetary):
     cause = planetary.cause("sensor.torque.offset")
-    assert truth(planetary, cause, form_of(cause, "T_carrier"), 4.0)["T_carrier"] == pytest.approx(-4.0 * DIRECTION)
+    assert truth(planetary, cause, form_of(cause, "T_carrier"), 4.0)["T_carrier"] == pytest.approx(np.full(6, -4.0))
     wrong = shown(planetary, cause, form_of(cause, "T_sun"), 4.0)["T_sun"]
     share = planetary.ranges.mid["T_sun"] / planetary.ranges.mid["T_carrier"]
-    assert wrong == pytest.approx(-4.0 * share * DIRECTION)
+    assert wrong == pytest.approx(np.full(6, 4.0 * share))
+
+
+def test_a_zero_that_moves_may_belong_to_the_signed_value(planetary):
+    cause = planetary.cause("sensor.torque.drift")
+    at = {"power": 1.0, "zero": 0.0}
+    wrong = truth(planetary, cause, form_of(cause, "T_carrier"), 4.0, **at)["T_carrier"]
+    assert wrong == pytest.approx(-4.0 * ORDER, abs=1e-6)
+    signed = truth(planetary, cause, form_of(cause, "T_carrier", "opposite signs"), 4.0, **at)["T_carrier"]
+    assert signed == pytest.approx(-4.0 * ORDER * DIRECTION, abs=1e-6)
 
 
 def test_a_gain_is_a_share_of_the_magnitude_in_both_directions(planetary):
