@@ -111,7 +111,7 @@ def _chosen(found: Found, problem: Problem, null: Fit) -> tuple[list[Fit], np.nd
     formulas = found.formulas
     share = np.array([np.log(f.form.weight) + found.prior.share[f.cause.id] for f in formulas])
     white, e = null.linear(problem)
-    whole = screen.judged(found.first.candidates, found.first.owner, found.first.effects, white, e)
+    whole = screen.judged(found.first.candidates, found.first.owner, found.first.effects, null.views(problem))
     short = _leading(formulas, whole.by_form(len(formulas)) + share)
     first = screen.look(problem, null, [formulas[k] for k in short])
     value = first.by_form(len(short)) + share[short]

@@ -57,6 +57,8 @@ def smoothed(logs: np.ndarray) -> Correction:
     order = np.argsort(logs)
     tail = order[-max(int(min(0.2 * n, 3 * n**0.5)), 5) :]
     top = float(logs[order[-1]])
+    if not np.isfinite(top):  # none of them can be run
+        return Correction(-float(np.log(n)), 1.0)
     weights = np.exp(logs - top)
     cut = float(weights[order[-len(tail) - 1]])
     excess = weights[tail] - cut

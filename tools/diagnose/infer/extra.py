@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -42,12 +42,11 @@ class Extra:
 
 def extras(problem: Problem, fit: Fit, spreads: Sequence[Formula]) -> Iterator[tuple[Extra, float]]:
     """Each extra with the log of what it adds to the evidence, its own prior apart."""
-    base, e = fit.linear(problem)
-    V, r = base.L @ base.L.T, base.L @ e
-    without = base.log_density(e)
-    stated = replace(fit.noise, scales=np.zeros_like(fit.noise.scales))
-    #: What a spread explains need not be in the scales of the scatter: they may be as found, or as stated.
-    scatters = [(V, 0.0), (V + stated.covariance - fit.noise.covariance, -fit.noise.log_prior)]
+    views = fit.views(problem)
+    without = views[0].white.log_density(views[0].e)
+    r = views[0].white.L @ views[0].e
+    scatters = [v.white.L @ v.white.L.T for v in views]
+    penalties = [v.log - v.white.log_density(v.e) for v in views]
     if spreads:
         own = [Acting(f, np.zeros(f.size)) for f in spreads]
         effects = problem.tangents(fit.look.z, fit.look.acting, own)
@@ -56,12 +55,17 @@ def extras(problem: Problem, fit: Fit, spreads: Sequence[Formula]) -> Iterator[t
             if columns is None or not np.isfinite(columns).all():
                 continue
             C = columns @ columns.T
-            each = np.array([[_log(W + size**2 * C, r) + more - without for size in SIZES] for W, more in scatters])
+            each = np.array(
+                [
+                    [_log(W + size**2 * C, r) + more for size in SIZES]
+                    for W, more in zip(scatters, penalties, strict=True)
+                ]
+            )
             logs = logsumexp(each, axis=0) - np.log(len(scatters))
             best = SIZES[int(np.argmax(logs))]
             gain = float(logsumexp(logs) - np.log(len(SIZES)) + np.log(formula.form.weight))
             yield Extra(formula.cause.id, formula.form.name, best, (), best**2 * C), gain
-    yield from _remainders(problem, V, r, without)
+    yield from _remainders(problem, scatters[0], r, without)
 
 
 def _columns(problem: Problem, formula: Formula, effect: np.ndarray) -> np.ndarray | None:

@@ -19,8 +19,19 @@ STEPS, TRIES, LITTLE = 12, 5, 0.05
 ROUNDS, SETTLED = 4, 0.1
 #: Longest step of a nuisance, a size (or that share of it) and a shape; shapes stay inside so many deviations.
 LONGEST, LONGEST_SIZE, LONGEST_SHAPE, FAR = 1.5, 1.0, 0.8, 2.4
+#: A scale whose logarithm is beyond this has grown.
+GROWN = 0.2
 #: Standard deviations of what a form leaves of a true effect, as shares of it, and their probabilities.
 FORM = {0.01: 0.25, 0.03: 0.25, 0.06: 0.25, 0.12: 0.18, 0.24: 0.07}
+
+
+@dataclass(frozen=True)
+class View:
+    """Whitening by all that is uncertain, the residual in it, and the log of its density over that as found."""
+
+    white: White
+    e: np.ndarray
+    log: float
 
 
 @dataclass(frozen=True)
@@ -49,6 +60,20 @@ class Fit:
     def split(self, problem: Problem, x: np.ndarray) -> tuple[np.ndarray, tuple[Acting, ...]]:
         """Nuisances and causes of another point of the same vector."""
         return _Vector(problem, self.look.acting).split(x)
+
+    def views(self, problem: Problem) -> list[View]:
+        """The linearised problem beside this hypothesis, with the scatter as found and as stated.
+
+        What is not yet explained need not be scatter: a scale that has grown hides it. As stated, it shows.
+        """
+        white, e = self.linear(problem)
+        found = [View(white, e, 0.0)]
+        if np.abs(self.noise.scales).max(initial=0.0) > GROWN:
+            stated = replace(self, noise=replace(self.noise, scales=np.zeros_like(self.noise.scales)))
+            other, own = stated.linear(problem)
+            log = other.log_density(own) - white.log_density(e) - self.noise.log_prior
+            found.append(View(other, own, log))
+        return found
 
     def linear(self, problem: Problem) -> tuple[White, np.ndarray]:
         """The linearised problem beside this hypothesis: whitening by all that is uncertain, and the residual in it.

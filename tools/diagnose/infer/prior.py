@@ -8,8 +8,8 @@ import numpy as np
 
 from ..library.cause import Cause
 
-#: Prior odds of two causes against one, and of each further one.
-TWO, MORE = 0.22, 0.25
+#: Prior odds of two causes against one, of each further one, and of one more of the same kind of instrument.
+TWO, MORE, SAME = 0.22, 0.25, 0.2
 
 
 class Prior:
@@ -38,4 +38,6 @@ class Prior:
         names = list(causes)
         orders = float(np.prod(np.arange(1, len(names) + 1)))
         pairs = sum(np.log(TWO if k == 1 else MORE) for k in range(1, len(names)))
-        return float(sum(self.share[c] for c in names) + pairs + np.log(orders))
+        kinds = [c.rpartition(".")[0] for c in names if c.startswith("sensor.")]
+        same = (len(kinds) - len(set(kinds))) * np.log(SAME)
+        return float(sum(self.share[c] for c in names) + pairs + same + np.log(orders))

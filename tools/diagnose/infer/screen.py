@@ -9,13 +9,15 @@ import numpy as np
 from scipy.special import logsumexp, ndtri
 
 from ..model.formula import Formula
-from .evidence import White, log_bayes_factors
-from .fit import Fit, bounds
+from .evidence import WIDTHS, log_bayes_factors
+from .fit import Fit, View, bounds
 from .problem import Acting, Problem
 
 #: Samples of a form: one in the middle of its shapes, and so many more for the first shape and for each further one; of
 #: one with a threshold, of which each place may have a best fit of its own, so many: of physics, and of instruments.
 FIRST, FURTHER, MOST, THRESHOLDS = 3, 1, 6, (6, 8)
+#: Places of a change in the running order at most.
+PLACES = 40
 #: Draws of the alarm's null.
 DRAWS = 1000
 
@@ -28,6 +30,8 @@ class Look:
         candidates: forms with their shapes, size zero
         owner: number of each candidate's formula (k,)
         effects: of one prior half width (M, k)
+        white: the same, whitened by what the fit leaves uncertain (M, k)
+        views: scatter as found and as stated
         log_bf: log Bayes factor of each candidate beside what acts (k,)
         sizes: their most likely sizes, in prior half widths (k,)
     """
@@ -36,6 +40,7 @@ class Look:
     owner: np.ndarray
     effects: np.ndarray
     white: np.ndarray
+    views: tuple[View, ...]
     log_bf: np.ndarray
     sizes: np.ndarray
 
@@ -51,25 +56,48 @@ class Look:
         """Where a fit of a formula begins: at the best of its candidates."""
         own = np.flatnonzero(self.owner == formula)
         best = int(own[np.argmax(self.log_bf[own])])
-        candidate = self.candidates[best]
+        return self.begun(best, self.sizes[best])
+
+    def begun(self, k: int, size: float) -> Acting:
+        """A candidate at a size, not too near to zero."""
+        candidate = self.candidates[k]
         low, high = bounds(candidate)
-        size = float(np.clip(self.sizes[best], low[0], high[0]))
-        least = 0.1 if high[0] > 0.1 else -0.1
+        size, least = float(np.clip(size, low[0], high[0])), 0.1 if high[0] > 0.1 else -0.1
         return replace(candidate, t=np.r_[size if abs(size) > 0.1 else least, candidate.t[1:]])
 
 
-def samples(formulas: Sequence[Formula]) -> tuple[tuple[Acting, ...], np.ndarray]:
-    """Candidates spread over the prior of each formula's shapes, the middle first, and their owners."""
+def samples(formulas: Sequence[Formula], orders: np.ndarray) -> tuple[tuple[Acting, ...], np.ndarray]:
+    """Candidates spread over the prior of each formula's shapes, the middle first, and their owners.
+
+    Args:
+        formulas: forms
+        orders: places in the running order between two tests, each of which a change may have
+    """
     found, owner = [], []
+    between = ndtri(orders)
     for k, formula in enumerate(formulas):
-        d = formula.size - 1
+        shapes = [shape.name for shape in formula.form.shapes]
+        d = len(shapes)
         n = min(1 + (FIRST + FURTHER * (d - 1) if d else 0), MOST)
-        if any(shape.name == "threshold" for shape in formula.form.shapes):
-            n = THRESHOLDS[not formula.paths]
-        for u in spread(n, d):
+        since = formula.form.regime.get("quantity") == "order above" and len(orders)
+        if "threshold" in shapes:
+            n = len(orders) if since else THRESHOLDS[not formula.paths]
+        points = spread(n, d)
+        if since:
+            points[:, shapes.index("threshold")] = between
+        for u in points:
             found.append(Acting(formula, np.r_[0.0, u]))
             owner.append(k)
     return tuple(found), np.array(owner)
+
+
+def changes(problem: Problem) -> np.ndarray:
+    """Places in the running order between two tests, of many tests some."""
+    order = np.unique(problem.data.campaign.progress)
+    found = (order[1:] + order[:-1]) / 2
+    return (
+        found[np.unique(np.linspace(0, len(found) - 1, min(len(found), PLACES)).astype(int))] if len(found) else found
+    )
 
 
 def spread(n: int, d: int) -> np.ndarray:
@@ -83,20 +111,41 @@ def spread(n: int, d: int) -> np.ndarray:
 
 def look(problem: Problem, fit: Fit, formulas: Sequence[Formula]) -> Look:
     """What every form would explain beside a fitted hypothesis."""
-    candidates, owner = samples(formulas)
+    candidates, owner = samples(formulas, changes(problem))
     effects = problem.tangents(fit.look.z, fit.look.acting, candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
-    white, e = fit.linear(problem)
-    return judged(candidates, owner, effects, white, e)
+    return judged(candidates, owner, effects, fit.views(problem))
 
 
-def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarray, white: White, e: np.ndarray) -> Look:
-    """Effects weighed against a whitened residual."""
-    g = white(effects)
-    s, q = g.T @ e, (g**2).sum(axis=0)
+def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarray, views: Sequence[View]) -> Look:
+    """Effects weighed against a whitened residual, by scatter as found or as stated."""
     low, high = _limits(candidates)
-    sizes = np.clip(s / (q + 0.1), low, high)
-    return Look(candidates, owner, effects, g, log_bayes_factors(s, q, low, high), sizes)
+    logs, sizes = [], []
+    for view in views:
+        g = view.white(effects)
+        s, q = g.T @ view.e, (g**2).sum(axis=0)
+        logs.append(view.log + log_bayes_factors(s, q, low, high))
+        sizes.append(np.clip(s / (q + 0.1), low, high))
+    best = np.argmax(logs, axis=0)
+    log_bf = logsumexp(logs, axis=0) - np.log(len(views))
+    own = views[0].white(effects)
+    return Look(candidates, owner, effects, own, tuple(views), log_bf, np.choose(best, sizes))
+
+
+def couples(found: Look) -> tuple[np.ndarray, np.ndarray]:
+    """Log Bayes factors (k, k) of all pairs of candidates against none, and the size (k, k) of the first in each.
+
+    The scatter is that as stated, the widths of the sizes are one in the middle; -inf where a size is out of bounds.
+    """
+    view, low, high = found.views[-1], *_limits(found.candidates)
+    g, precision = view.white(found.effects), 1 / WIDTHS[2] ** 2
+    A, s = g.T @ g, g.T @ view.e
+    a = np.diag(A) + precision
+    det = np.maximum(np.multiply.outer(a, a) - A**2, 1e-9 * np.multiply.outer(a, a))
+    sizes = (np.multiply.outer(s, a) - A * s) / det
+    logs = 0.5 * (s[:, None] * sizes + s * sizes.T) - 0.5 * np.log(det / precision**2) + view.log
+    inside = (sizes >= low[:, None]) & (sizes <= high[:, None])
+    return np.where(inside & inside.T, logs, -np.inf), sizes
 
 
 def _limits(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray]:
@@ -114,8 +163,12 @@ def null_draws(found: Look, weights: np.ndarray, seed: int) -> np.ndarray:
         seed: of the draws
     """
     rng = np.random.default_rng(seed)
-    E = rng.standard_normal((found.white.shape[0], DRAWS))
-    S = (found.white.T @ E).T
-    q = (found.white**2).sum(axis=0)
+    E = found.views[0].white.L @ rng.standard_normal((len(found.effects), DRAWS))
     low, high = _limits(found.candidates)
-    return np.asarray(logsumexp(log_bayes_factors(S, q, low, high) + weights, axis=1))
+    logs, none = [], found.views[0].white.log_densities(E)
+    for view in found.views:
+        g, e = view.white(found.effects), view.white(E)
+        own = log_bayes_factors((g.T @ e).T, (g**2).sum(axis=0), low, high) + weights
+        more = view.log - view.white.log_density(view.e) + found.views[0].white.log_density(found.views[0].e)
+        logs.append(logsumexp(own, axis=1) + view.white.log_densities(E) - none + more)
+    return np.asarray(logsumexp(logs, axis=0) - np.log(len(logs)))

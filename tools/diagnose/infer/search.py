@@ -25,8 +25,9 @@ from .problem import Acting, Aside, Problem
 OUTSIDE = 0.06
 #: Forms fitted: within so many nats of the best, at most so many, of one cause at most, and causes at least.
 WITHIN, FORMS, EACH, LEAST = 9.0, 14, 3, 4
-#: Singles from which pairs are grown, pairs fitted, and how far behind the best hypothesis one may promise to be.
-GROWN, PAIRS, BEHIND = 4, 6, 5.0
+#: Singles from which pairs are grown, pairs fitted of those and of the ones that look best, and how far behind the best
+#: hypothesis one may promise to be.
+GROWN, PAIRS, BEHIND = 3, 5, 5.0
 #: p of any cause above which little is fitted.
 QUIET = 0.3
 #: Hypotheses within so many nats of the best are weighed by draws of the exact model.
@@ -208,13 +209,7 @@ class Search:
     def _alarm(self) -> None:
         """p of any cause by draws of the null, and the prior of none that agrees with it."""
         first = self.first
-        counts = np.bincount(first.owner, minlength=len(self.formulas))
-        weights = np.array(
-            [
-                self.prior.share[c.id] + np.log(c.formula.form.weight) - np.log(counts[k])
-                for c, k in zip(first.candidates, first.owner, strict=True)
-            ]
-        )
+        weights = self._weights(first) + [self.prior.share[c.id] for c in first.candidates]
         self.drawn = drawn = screen.null_draws(first, weights, self.seed)
         seen = float(logsumexp(first.log_bf + weights))
         self.critical = float(np.quantile(drawn, 1 - self.alpha))
@@ -256,34 +251,85 @@ class Search:
         return sorted(found, key=lambda h: -h.log_joint)
 
     def _grown(self, singles: Sequence[Hypothesis]) -> list[Hypothesis]:
-        """Hypotheses of two causes and more, each from a leading one with one cause fewer."""
+        """Hypotheses of two causes and more: pairs that look best to first order, and leading ones with one more."""
         found: dict[frozenset[str], Hypothesis] = {}
+        known = {h.causes[0]: h for h in singles}
+        for start in self._couples():
+            self._together(found, known, start, self.null)
         beam = [h for h in singles if h.log_joint > singles[0].log_joint - 2 * BEHIND][:GROWN]
         for size in range(2, self.most + 1):
             best = max(h.log_joint for h in [*singles, *found.values()])
             promised = sorted((p for h in beam for p in self._beside_causes(h)), key=lambda p: -p[0])
-            new: dict[frozenset[str], Hypothesis] = {}
-            for log, h, k, start in promised:
-                names = frozenset([*h.causes, self.formulas[k].cause.id])
-                if names in new or len(new) >= PAIRS or log < best - BEHIND:
-                    continue
-                with suppress(SolveError):
-                    fit = fitted(self.problem, [*h.fit.look.acting, start], h.fit.look.z, h.fit.noise.scales)
-                    causes = (*h.causes, self.formulas[k].cause.id)
-                    # the other forms of each cause count as beside the other
-                    spread = sum(logsumexp(list(w.values())) - max(w.values()) for w in h.forms.values())
-                    weight = sum(np.log(a.formula.form.weight) for a in fit.look.acting)
-                    new[names] = Hypothesis(
-                        causes, fit, fit.evidence + weight + spread + self.prior(causes), None, h.forms
-                    )
-            found |= new
-            beam = sorted(new.values(), key=lambda h: -h.log_joint)[:2]
+            before = len(found)
+            for log, h, start in promised:
+                if log < best - BEHIND or len(found) >= before + PAIRS:
+                    break
+                self._together(found, known, [*h.fit.look.acting, start], h.fit)
+            beam = sorted((h for h in found.values() if len(h.causes) == size), key=lambda h: -h.log_joint)[:2]
             if not beam or beam[0].log_joint < best or size == self.most:
                 break
         return list(found.values())
 
-    def _beside_causes(self, h: Hypothesis) -> list[tuple[float, Hypothesis, int, Acting]]:
-        """What each form promises beside a fitted hypothesis: log joint, the hypothesis, the formula and its start."""
+    def _together(
+        self,
+        found: dict[frozenset[str], Hypothesis],
+        singles: Mapping[str, Hypothesis],
+        start: Sequence[Acting],
+        near: Fit,
+    ) -> None:
+        """Fits causes together unless they are among what was found; the other forms of each count as alone.
+
+        Args:
+            found: hypotheses so far
+            singles: fitted causes alone
+            start: where the fit begins
+            near: a fit whose nuisances and scatter it begins with
+        """
+        causes = tuple(a.id for a in start)
+        if frozenset(causes) in found:
+            return
+        with suppress(SolveError):
+            fit = fitted(self.problem, start, near.look.z, near.noise.scales)
+            forms = {c: singles[c].forms[c] for c in causes if c in singles}
+            spread = sum(logsumexp(list(w.values())) - max(w.values()) for w in forms.values())
+            weight = sum(np.log(a.formula.form.weight) for a in start)
+            log = float(fit.evidence + weight + spread + self.prior(causes))
+            found[frozenset(causes)] = Hypothesis(causes, fit, log, None, forms)
+
+    def _couples(self) -> list[list[Acting]]:
+        """Pairs of causes that together explain most to first order, and more than any alone."""
+        first, ids = self.first, list(dict.fromkeys(c.id for c in self.first.candidates))
+        weights = self._weights(first)
+        begins = np.searchsorted([ids.index(c.id) for c in first.candidates], np.arange(len(ids)))
+        alone = np.maximum.reduceat(first.log_bf + weights, begins) + [self.prior([c]) for c in ids]
+        logs, sizes = screen.couples(first)
+        logs += weights[:, None] + weights
+        best = np.maximum.reduceat(np.maximum.reduceat(logs, begins, axis=0), begins, axis=1)
+        family = [self.prior.causes[c].family for c in ids]
+        for i, one in enumerate(ids):
+            for k, other in enumerate(ids):
+                best[i, k] += self.prior([one, other]) if k > i and family[i] != family[k] else -np.inf
+        found = []
+        for place in np.argsort(-best, axis=None)[:PAIRS]:
+            i, k = np.unravel_index(place, best.shape)
+            if best[i, k] < max(alone.max(), best.max() - 2 * BEHIND):
+                break
+            rows, columns = (slice(begins[j], [*begins, len(weights)][j + 1]) for j in (i, k))
+            at = np.unravel_index(np.argmax(logs[rows, columns]), logs[rows, columns].shape)
+            one, other = rows.start + at[0], columns.start + at[1]
+            found.append([first.begun(one, sizes[one, other]), first.begun(other, sizes[other, one])])
+        return found
+
+    @staticmethod
+    def _weights(first: screen.Look) -> np.ndarray:
+        """Log share of each candidate in its cause."""
+        counts = np.bincount(first.owner)
+        return np.array(
+            [np.log(c.formula.form.weight / counts[k]) for c, k in zip(first.candidates, first.owner, strict=True)]
+        )
+
+    def _beside_causes(self, h: Hypothesis) -> list[tuple[float, Hypothesis, Acting]]:
+        """What each cause promises beside a fitted hypothesis: log joint, the hypothesis, and its start."""
         try:
             beside = screen.look(self.problem, h.fit, self.formulas)
         except SolveError:
@@ -298,7 +344,7 @@ class Search:
         for cause, k in best.items():
             gain = log_bf[k] + np.log(self.formulas[k].form.weight)
             log = h.log_joint - self.prior(h.causes) + gain + self.prior([*h.causes, cause])
-            found.append((float(log), h, k, beside.start(k)))
+            found.append((float(log), h, beside.start(k)))
         return found
 
     def _corrected(self, base: Sequence[Hypothesis]) -> list[Hypothesis]:

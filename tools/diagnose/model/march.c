@@ -202,7 +202,7 @@ static int stage(Run *R, double time, double share, whole read, int kept) {
   const double ahead = R->now > R->before ? (share - R->now) / (R->now - R->before) : 0;
   inputs(R, share);
   for (int line = 1; line >= 0; line--) {
-    for (whole i = 0; i < P->nw; i++) R->trial[i] = R->w[i] + (line ? ahead * (R->w[i] - R->last[i]) : 0);
+    for (whole i = 0; i < P->nw; i++) R->trial[i] = R->w[i] + (line && ahead != 0 ? ahead * (R->w[i] - R->last[i]) : 0);
     if (newton(R, R->trial, length, 0)) break;
     if (!line || ahead == 0) return 0;
   }
@@ -388,8 +388,8 @@ static void *prepared(Run *R, int kept) {
   const whole n = sizeof parts / sizeof *parts, integers = P->n_iw + nw * (stages + 1);
   whole size = 0;
   for (whole i = 0; i < n; i++) size += parts[i].size;
-  char *block = malloc(size * sizeof(double) + integers * sizeof(whole) + stages * sizeof(Stage) +
-                       (P->n_arg + P->n_res) * sizeof(double *));
+  char *block = calloc(1, size * sizeof(double) + integers * sizeof(whole) + stages * sizeof(Stage) +
+                              (P->n_arg + P->n_res) * sizeof(double *));
   if (!block) return 0;
   double *next = (double *)block;
   for (whole i = 0; i < n; i++) *parts[i].place = next, next += parts[i].size;
