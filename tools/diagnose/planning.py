@@ -12,7 +12,7 @@ from .answer.experiments import experiments
 from .answer.grid import planned_campaign
 from .answer.plan import Outlook, Planner, verdict
 from .answer.sets import Effects
-from .infer.screen import samples
+from .infer.screen import changes, samples
 from .report.compose_design import isolability
 from .report.plan import Outlook as Shown
 from .report.plan import Plan, Planned, PlannedCause, PlannedPair
@@ -41,7 +41,7 @@ def planned(inputs: PlanInputs, progress: Callable[[str, float], None]) -> Plan:
     problem = made.problem
     look = problem.look(np.zeros(problem.nz))
     noise = problem.noise(look)
-    candidates, _ = samples([f for f in made.formulas if not f.form.spread])
+    candidates, _ = samples([f for f in made.formulas if not f.form.spread], changes(problem))
     effects = problem.tangents(look.z, (), candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
     V = noise.covariance + look.jacobian @ look.jacobian.T

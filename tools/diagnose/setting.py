@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 
 from ..model.machines.spec import Spec
 from ..scenarios.scenario import Scenario
 from .campaign.card import Card
+from .campaign.nominal import Nominal
+from .campaign.sensors import driven_by
 from .campaign.table import Campaign
 from .infer.problem import Problem
 from .library.cause import Cause, Nuisance, Ranges
@@ -46,6 +49,11 @@ class Setting:
     problem: Problem
     oils: dict[str, dict[str, float]]
 
+    @cached_property
+    def ratios(self) -> Mapping[str, float]:
+        """Speed of each shaft end over that of the first that turns."""
+        return Nominal(driven_by(self.scenario, self.problem.data.campaign.sensors)).ratios
+
 
 def setting(
     scenario: Scenario,
@@ -68,7 +76,7 @@ def setting(
     Raises:
         GearheatError: rig, card and data do not go together
     """
-    driven = _driven(scenario, data)
+    driven = driven_by(scenario, data.sensors)
     spec = lubricated(driven.spec, card.lubrication)
     roles = Roles.of(spec)
     campaigns = [c for c in (data, reference, *others) if c is not None]
@@ -92,14 +100,3 @@ def setting(
     observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
     problem = Problem(observed, card.day_cooling_sd)
     return Setting(scenario, spec, card, roles, ranges, causes, known, formulas, plant, problem, oils)
-
-
-def _driven(scenario: Scenario, data: Campaign) -> Scenario:
-    """The rig driven at its shaft ends by what the campaign's sensors give."""
-    ends = scenario.spec.of_type("ShaftEnd")
-    given: dict[str, tuple[str, ...]] = {}
-    for s in data.given:
-        end, _, quantity = s.reads.rpartition(".")
-        if end in ends:
-            given[end] = (*given.get(end, ()), quantity)
-    return scenario.driven(given) if given else scenario

@@ -10,11 +10,13 @@ import numpy as np
 from scipy.special import logsumexp
 from scipy.stats import norm
 
+from ..campaign.table import Sensor
 from ..infer.evidence import WIDTHS, White, log_bayes_factors
 from ..infer.fit import Fit, bounds
 from ..infer.problem import Acting, Problem
 from ..infer.search import Found, Hypothesis
 from ..library.cause import Cause, Form, Shape
+from ..model.observe import Observed
 from .decide import Member
 
 Bound = Literal["", "low", "high"]
@@ -40,7 +42,7 @@ class Estimate:
 
 @dataclass(frozen=True)
 class Impact:
-    """Mean change of a compared sensor over the rows of the data, with 95 % interval [SI]."""
+    """A mean change over the rows of the data, with 95 % interval [SI]."""
 
     value: float
     ci95: tuple[float, float]
@@ -181,26 +183,63 @@ def regime(form: Form, theta: Mapping[str, float]) -> dict[str, tuple[float | No
     return {f"{quantity} [{unit}]": (value, None) if side == "above" else (None, value)}
 
 
-def impact(problem: Problem, h: Hypothesis, only: str | None = None) -> dict[str, Impact]:
-    """Mean change of each compared sensor by the causes of a hypothesis, or by one of them."""
-    fit, o = h.fit, problem.data
+def impact(
+    problem: Problem, h: Hypothesis, means: Mapping[str, np.ndarray], only: str | None = None
+) -> dict[str, Impact]:
+    """Mean changes by the causes of a hypothesis, or by one of them.
+
+    Args:
+        problem: data and model
+        h: the hypothesis
+        means: name -> weights of the data's readings (m,) in a mean
+        only: id of the one cause
+    """
+    fit = h.fit
     moved = [a for a in fit.look.acting if only is None or a.id == only]
     if not moved:
         return {}
     without = [replace(a, t=np.r_[0.0, a.t[1:]]) if a in moved else a for a in fit.look.acting]
-    change = fit.look.shown - problem.shown(fit.look.z, without)
+    change = (fit.look.shown - problem.shown(fit.look.z, without))[problem.own]
     spans = zip(places(problem, h), fit.look.acting, strict=True)
     own = np.concatenate([np.arange(begin, begin + a.formula.size) for begin, a in spans if a in moved])
     covariance = posterior(problem, h)[1][np.ix_(own, own)]
     found = {}
-    for i, s in enumerate(o.read):
-        rows = np.flatnonzero(o.kind == i)
-        if not len(rows):
-            continue
-        slope = fit.look.jacobian[np.ix_(rows, own)].mean(axis=0)
-        value, sd = float(change[rows].mean()), float(np.sqrt(slope @ covariance @ slope))
-        found[s.name] = Impact(value, (value - WIDE * sd, value + WIDE * sd))
+    for name, weights in means.items():
+        slope = weights @ fit.look.jacobian[problem.own][:, own]
+        value, sd = float(weights @ change), float(np.sqrt(slope @ covariance @ slope))
+        found[name] = Impact(value, (value - WIDE * sd, value + WIDE * sd))
     return found
+
+
+def sensor_means(o: Observed) -> dict[str, np.ndarray]:
+    """Compared sensor -> weights of its readings (m,) in their mean."""
+    found = {s.name: np.where(o.kind == i, 1.0, 0.0) for i, s in enumerate(o.read)}
+    return {name: weights / weights.sum() for name, weights in found.items() if weights.any()}
+
+
+def loss_means(o: Observed, ratios: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray] | None:
+    """Weights of the readings (m,) in the mean loss torque [N.m] and in the mean loss [W]; None without a torque.
+
+    Args:
+        o: the data
+        ratios: speed of each shaft end over that of the one at which the loss is stated
+    """
+    torque, power = np.zeros(o.m), np.zeros(o.m)
+    speed = next((s for s in o.campaign.sensors if s.kind == "speed" and ratios.get(_end(s))), None)
+    ends = set[str]()
+    for i, s in enumerate(o.read):
+        mine = o.kind == i
+        if s.kind != "torque" or _end(s) in ends or not np.isfinite(ratios.get(_end(s), np.nan)) or not mine.any():
+            continue
+        ends.add(_end(s))
+        share = np.where(mine, ratios[_end(s)] * o.signs[s.name][o.row] / mine.sum(), 0.0)
+        w = (o.sensors[speed.name] * o.signs[speed.name])[o.row] / ratios[_end(speed)] if speed else np.ones(o.m)
+        torque, power = torque + np.sign(w) * share, power + w * share
+    return (torque, power if speed else np.zeros(0)) if ends else None
+
+
+def _end(sensor: Sensor) -> str:
+    return sensor.reads.partition(".")[0]
 
 
 def detectable(found: Found) -> dict[str, float]:

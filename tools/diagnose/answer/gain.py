@@ -19,8 +19,8 @@ from ...model.errors import SolveError
 from ..infer import screen
 from ..infer.evidence import White
 from ..infer.extra import REMAINDERS
-from ..infer.fit import Fit, fitted, prior_precision
-from ..infer.problem import Acting, Aside, Problem
+from ..infer.fit import Fit, Start, fitted, joined, prior_precision
+from ..infer.problem import Aside, Problem
 from ..infer.search import Found
 from ..model.formula import Formula
 from .folds import schemes
@@ -110,7 +110,6 @@ def _chosen(found: Found, problem: Problem, null: Fit) -> tuple[list[Fit], np.nd
     """
     formulas = found.formulas
     share = np.array([np.log(f.form.weight) + found.prior.share[f.cause.id] for f in formulas])
-    white, e = null.linear(problem)
     whole = screen.judged(found.first.candidates, found.first.owner, found.first.effects, null.views(problem))
     short = _leading(formulas, whole.by_form(len(formulas)) + share)
     first = screen.look(problem, null, [formulas[k] for k in short])
@@ -118,7 +117,7 @@ def _chosen(found: Found, problem: Problem, null: Fit) -> tuple[list[Fit], np.nd
     fits, logs = [null], [null.evidence + found.critical]
     for i in _best(formulas, short, value)[:FITTED]:
         with suppress(SolveError):
-            fit = _begun(found, problem, (first.start(i),), null)
+            fit = _begun(found, problem, null, first.start(i))
             own = [j for j, k in enumerate(short) if formulas[k].cause.id == formulas[short[i]].cause.id and j != i]
             others = [min(null.evidence + value[j], fit.evidence + share[short[j]]) for j in own]
             fits.append(fit)
@@ -158,19 +157,18 @@ def _paired(found: Found, problem: Problem, one: Fit, log: float, short: Sequenc
     beside = screen.look(problem, one, formulas)
     share = np.array([np.log(f.form.weight) + found.prior.share[f.cause.id] for f in formulas])
     k = int(np.argmax(beside.by_form(len(formulas)) + share))
-    fit = _begun(found, problem, (acting, beside.start(k)), one)
+    fit = _begun(found, problem, one, beside.start(k))
     prior = found.prior([acting.id, formulas[k].cause.id]) - found.prior([acting.id])
     return fit, log + fit.evidence - one.evidence + prior + float(np.log(formulas[k].form.weight))
 
 
-def _begun(found: Found, problem: Problem, start: tuple[Acting, ...], near: Fit) -> Fit:
-    """Causes fitted to the kept readings; where all data have a fit of the same forms it begins there."""
-    forms = {id(a.formula) for a in start}
+def _begun(found: Found, problem: Problem, near: Fit, start: Start) -> Fit:
+    """A cause that joins, fitted to the kept readings; where all data have a fit of these forms it begins there."""
+    forms = {id(a.formula) for a in (*near.look.acting, start.acting)}
     for h in found.hypotheses:
         if {id(a.formula) for a in h.fit.look.acting} == forms:
-            near, start = h.fit, h.fit.look.acting
-            break
-    return fitted(problem, start, near.look.z, near.noise.scales, STEPS)
+            return fitted(problem, h.fit.look.acting, h.fit.look.z, h.fit.noise.scales, STEPS)
+    return joined(problem, near, [start], STEPS)
 
 
 def _errors(problem: Problem, fit: Fit, held: np.ndarray) -> np.ndarray:

@@ -7,6 +7,8 @@ from contextlib import suppress
 from dataclasses import dataclass, replace
 
 import numpy as np
+from scipy.linalg import solve_triangular
+from scipy.optimize import lsq_linear
 from scipy.special import logsumexp
 
 from ...model.errors import SolveError
@@ -75,6 +77,13 @@ class Fit:
             found.append(View(other, own, log))
         return found
 
+    def moved(self, problem: Problem, effect: np.ndarray) -> tuple[np.ndarray, tuple[Acting, ...]]:
+        """Nuisances and causes where they go, to first order, as something with an effect (M,) joins."""
+        vector, white = _Vector(problem, self.look.acting), White.of(self.noise.covariance)
+        J = white(self.look.jacobian)
+        change = np.linalg.solve(J.T @ J + np.diag(vector.precision), J.T @ white(effect))
+        return vector.split(np.clip(self.look.x - change, vector.low, vector.high))
+
     def linear(self, problem: Problem) -> tuple[White, np.ndarray]:
         """The linearised problem beside this hypothesis: whitening by all that is uncertain, and the residual in it.
 
@@ -87,6 +96,30 @@ class Fit:
             V = V + self.form**2 * _rough(problem, self.look, vector)
         white = White.of(V)
         return white, white(problem.measured - self.look.shown + J @ self.look.x)
+
+
+@dataclass(frozen=True)
+class Start:
+    """A cause about to join a fit, and its effect (M,) to first order."""
+
+    acting: Acting
+    effect: np.ndarray
+
+
+def joined(problem: Problem, near: Fit, starts: Sequence[Start], steps: int = STEPS) -> Fit:
+    """A fitted hypothesis with further causes, fitted from where all of them are expected.
+
+    Args:
+        problem: data and model
+        near: the hypothesis
+        starts: what joins
+        steps: at most
+
+    Raises:
+        SolveError: the model cannot be run where the fit begins
+    """
+    z, acting = near.moved(problem, np.sum([s.effect for s in starts], axis=0))
+    return fitted(problem, [*acting, *(s.acting for s in starts)], z, near.noise.scales, steps)
 
 
 def prior_precision(problem: Problem, acting: Sequence[Acting]) -> np.ndarray:
@@ -149,20 +182,13 @@ class _Vector:
         return x[: self.nz], tuple(found)
 
     def step(self, x: np.ndarray, H: np.ndarray, gradient: np.ndarray) -> np.ndarray:
-        """The step downhill that stays inside the bounds."""
-        free = np.ones(len(x), dtype=bool)
-        change = np.zeros(len(x))
-        for _ in range(4):
-            change = np.zeros(len(x))
-            change[free] = np.linalg.solve(H[np.ix_(free, free)], gradient[free])
-            longest = self.longest.copy()
-            longest[self.sizes] = np.maximum(longest[self.sizes], 0.6 * np.abs(x[self.sizes]))
-            change = np.clip(change, -longest, longest)
-            out = free & (((x + change < self.low) & (x <= self.low)) | ((x + change > self.high) & (x >= self.high)))
-            if not out.any():
-                break
-            free &= ~out
-        return np.clip(x + change, self.low, self.high)
+        """The step that lowers a quadratic cost most, inside the bounds and not longer than is trusted."""
+        longest = self.longest.copy()
+        longest[self.sizes] = np.maximum(longest[self.sizes], 0.6 * np.abs(x[self.sizes]))
+        low, high = np.maximum(self.low - x, -longest), np.minimum(self.high - x, longest)
+        root = np.linalg.cholesky(H)
+        wanted = solve_triangular(root, gradient, lower=True)
+        return np.asarray(lsq_linear(root.T, wanted, (low, np.maximum(high, low + 1e-12)), method="bvls").x)
 
 
 def fitted(
@@ -203,13 +229,14 @@ def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> tuple[Lo
         J = white(look.jacobian)
         H = J.T @ J + np.diag(vector.precision)
         gradient = J.T @ white(problem.measured - look.shown) - vector.precision * look.x
-        change = vector.step(look.x, H, gradient) - look.x
+        change = vector.step(look.x, H, gradient)
         if change @ gradient - 0.5 * change @ H @ change < LITTLE:
             break
         for _ in range(TRIES):
-            new = vector.step(look.x, H + damping * np.diag(np.diag(H)), gradient)
+            if damping:
+                change = vector.step(look.x, H + damping * np.diag(np.diag(H)), gradient)
             with suppress(SolveError):
-                trial = problem.look(*vector.split(new))
+                trial = problem.look(*vector.split(look.x + change))
                 value = _cost(problem, vector, white, trial)
                 if value <= cost + 1e-9:
                     break

@@ -10,7 +10,7 @@ from scipy.special import logsumexp, ndtri
 
 from ..model.formula import Formula
 from .evidence import WIDTHS, log_bayes_factors
-from .fit import Fit, View, bounds
+from .fit import Fit, Start, View, bounds
 from .problem import Acting, Problem
 
 #: Samples of a form: one in the middle of its shapes, and so many more for the first shape and for each further one; of
@@ -52,18 +52,19 @@ class Look:
             found[k] = logsumexp(own) - np.log(len(own))
         return found
 
-    def start(self, formula: int) -> Acting:
+    def start(self, formula: int) -> Start:
         """Where a fit of a formula begins: at the best of its candidates."""
         own = np.flatnonzero(self.owner == formula)
         best = int(own[np.argmax(self.log_bf[own])])
         return self.begun(best, self.sizes[best])
 
-    def begun(self, k: int, size: float) -> Acting:
+    def begun(self, k: int, size: float) -> Start:
         """A candidate at a size, not too near to zero."""
         candidate = self.candidates[k]
         low, high = bounds(candidate)
         size, least = float(np.clip(size, low[0], high[0])), 0.1 if high[0] > 0.1 else -0.1
-        return replace(candidate, t=np.r_[size if abs(size) > 0.1 else least, candidate.t[1:]])
+        size = size if abs(size) > 0.1 else least
+        return Start(replace(candidate, t=np.r_[size, candidate.t[1:]]), size * self.effects[:, k])
 
 
 def samples(formulas: Sequence[Formula], orders: np.ndarray) -> tuple[tuple[Acting, ...], np.ndarray]:

@@ -15,11 +15,11 @@ from ..model.formula import Formula
 from . import screen
 from .draws import correction
 from .extra import Extra, extras
-from .fit import Fit, fitted
+from .fit import Fit, Start, fitted, joined
 from .gross import MOST as MOST_ASIDE
 from .gross import after_all, outliers
 from .prior import Prior
-from .problem import Acting, Aside, Problem
+from .problem import Aside, Problem
 
 #: Prior odds of a remainder beside a hypothesis.
 OUTSIDE = 0.06
@@ -200,8 +200,7 @@ class Search:
         """A form fitted alone, None where it cannot be run."""
         if k not in self._fits:
             try:
-                start = self.first.start(k)
-                self._fits[k] = fitted(self.problem, [start], self.null.look.z, self.null.noise.scales)
+                self._fits[k] = joined(self.problem, self.null, [self.first.start(k)])
             except SolveError:
                 self._fits[k] = None
         return self._fits[k]
@@ -254,8 +253,8 @@ class Search:
         """Hypotheses of two causes and more: pairs that look best to first order, and leading ones with one more."""
         found: dict[frozenset[str], Hypothesis] = {}
         known = {h.causes[0]: h for h in singles}
-        for start in self._couples():
-            self._together(found, known, start, self.null)
+        for starts in self._couples():
+            self._together(found, known, self.null, starts)
         beam = [h for h in singles if h.log_joint > singles[0].log_joint - 2 * BEHIND][:GROWN]
         for size in range(2, self.most + 1):
             best = max(h.log_joint for h in [*singles, *found.values()])
@@ -264,7 +263,7 @@ class Search:
             for log, h, start in promised:
                 if log < best - BEHIND or len(found) >= before + PAIRS:
                     break
-                self._together(found, known, [*h.fit.look.acting, start], h.fit)
+                self._together(found, known, h.fit, [start])
             beam = sorted((h for h in found.values() if len(h.causes) == size), key=lambda h: -h.log_joint)[:2]
             if not beam or beam[0].log_joint < best or size == self.most:
                 break
@@ -274,29 +273,29 @@ class Search:
         self,
         found: dict[frozenset[str], Hypothesis],
         singles: Mapping[str, Hypothesis],
-        start: Sequence[Acting],
         near: Fit,
+        starts: Sequence[Start],
     ) -> None:
         """Fits causes together unless they are among what was found; the other forms of each count as alone.
 
         Args:
             found: hypotheses so far
             singles: fitted causes alone
-            start: where the fit begins
-            near: a fit whose nuisances and scatter it begins with
+            near: what is there
+            starts: what joins
         """
-        causes = tuple(a.id for a in start)
+        causes = (*near.causes, *(s.acting.id for s in starts))
         if frozenset(causes) in found:
             return
         with suppress(SolveError):
-            fit = fitted(self.problem, start, near.look.z, near.noise.scales)
+            fit = joined(self.problem, near, starts)
             forms = {c: singles[c].forms[c] for c in causes if c in singles}
             spread = sum(logsumexp(list(w.values())) - max(w.values()) for w in forms.values())
-            weight = sum(np.log(a.formula.form.weight) for a in start)
+            weight = sum(np.log(a.formula.form.weight) for a in fit.look.acting)
             log = float(fit.evidence + weight + spread + self.prior(causes))
             found[frozenset(causes)] = Hypothesis(causes, fit, log, None, forms)
 
-    def _couples(self) -> list[list[Acting]]:
+    def _couples(self) -> list[list[Start]]:
         """Pairs of causes that together explain most to first order, and more than any alone."""
         first, ids = self.first, list(dict.fromkeys(c.id for c in self.first.candidates))
         weights = self._weights(first)
@@ -328,7 +327,7 @@ class Search:
             [np.log(c.formula.form.weight / counts[k]) for c, k in zip(first.candidates, first.owner, strict=True)]
         )
 
-    def _beside_causes(self, h: Hypothesis) -> list[tuple[float, Hypothesis, Acting]]:
+    def _beside_causes(self, h: Hypothesis) -> list[tuple[float, Hypothesis, Start]]:
         """What each cause promises beside a fitted hypothesis: log joint, the hypothesis, and its start."""
         try:
             beside = screen.look(self.problem, h.fit, self.formulas)

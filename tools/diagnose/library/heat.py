@@ -54,7 +54,7 @@ def external_source(at: Context) -> Cause:
     return Cause(
         id="heat.external_source",
         doc="Heat from a motor, a neighbour or the sun: it warms, and no torque shows it.",
-        size=at.power("heat flow rate", 0.085, -0.2, 0.7),
+        size=at.power("heat flow rate", 0.085, -0.3, 1.2),
         forms=(
             *(replace(f, name=n, weight=share / len(single)) for f, n in zip(single, names, strict=True)),
             *(replace(f, weight=(1 - share) / len(sides)) for f in sides),

@@ -63,7 +63,7 @@ def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
     yield Cause(
         id="losses.churning",
         doc="A loss without load that grows with speed: what turns in the oil moves it.",
-        size=at.power("loss", 0.085, 0.0, 0.6),
+        size=at.power("loss", 0.085, 0.0, 1.2),
         forms=Extras("churning", at).losses(places, churning, at.regimes(("w", "T"))),
         exposes="points at higher speed and little load; a coast-down without load",
         like=NO_LOAD,
@@ -77,7 +77,7 @@ def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
     yield Cause(
         id="losses.oil_level",
         doc="Oil level off its mark: a no-load loss that follows viscosity and, less, speed.",
-        size=at.power("loss", 0.07, -0.15, 0.6),
+        size=at.power("loss", 0.07, -0.15, 1.0),
         forms=Extras("level", at).losses(places[:1], level),
         exposes="the same point at two oil levels",
         like=NO_LOAD,
@@ -87,7 +87,7 @@ def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
     yield Cause(
         id="losses.windage",
         doc="A loss without load, steep in speed and without viscosity: air and mist are moved.",
-        size=at.power("loss", 0.057, 0.0, 0.6),
+        size=at.power("loss", 0.057, 0.0, 1.0),
         forms=Extras("windage", at).losses(places[:1], windage, at.regimes(("w",))),
         exposes="points at higher speed and little load, at two oil levels",
         like=NO_LOAD,
@@ -130,7 +130,7 @@ def bearing_preload(at: Context, places: Sequence[Place]) -> Cause:
     return Cause(
         id="losses.bearing_preload",
         doc="A friction torque that hardly follows load: bearings preloaded more or less than assumed.",
-        size=at.power("loss of all bearings", 0.07, -0.2, 0.6),
+        size=at.power("loss of all bearings", 0.07, -0.2, 1.2),
         forms=Extras("preload", at).losses(places, shapes, at.regimes(("w", "tau", "T", "direction"))),
         exposes="drag torque measured by hand, temperature at the bearings",
         like=SHAFTS,
@@ -149,7 +149,7 @@ def seal_drag(at: Context, places: Sequence[Place]) -> Cause:
     return Cause(
         id="losses.seal_drag",
         doc="A friction torque without load dependence: lips that press more, or run dry.",
-        size=at.power("loss of all seals", 0.057, -0.12, 0.45),
+        size=at.power("loss of all seals", 0.057, -0.12, 1.0),
         forms=Extras("seal", at).losses(places, shapes, at.regimes(("w", "T", "direction"))),
         exposes="drag torque measured by hand, temperature at the lips",
         like=SHAFTS,
@@ -168,7 +168,7 @@ def mesh_friction(at: Context, places: Sequence[Place]) -> Cause:
     return Cause(
         id="losses.mesh_friction",
         doc="A loss that grows with load: friction of the teeth, roughness, additives.",
-        size=at.power("loss of all teeth", 0.07, -0.2, 0.6),
+        size=at.power("loss of all teeth", 0.07, -0.3, 1.2),
         forms=Extras("mesh", at).losses(places, shapes, at.regimes(("w", "tau", "T"))),
         exposes="points at small and at large load, at one speed",
         acts_on=at.first("torque"),
@@ -190,7 +190,7 @@ def mesh_direction(at: Context, places: Sequence[Place]) -> Cause:
     return Cause(
         id="losses.mesh_direction",
         doc="A loss under load in one direction of the power flow only.",
-        size=at.power("loss where the shaft is driven less that where it drives", 0.07, -0.45, 0.45),
+        size=at.power("loss where the shaft is driven less that where it drives", 0.07, -0.8, 0.8),
         forms=Extras("direction", at).losses(places, shapes, as_keys=sides),
         exposes="the halves of a test in reversed order",
         acts_on=at.first("torque"),
@@ -223,7 +223,7 @@ def film_starvation(at: Context, places: Sequence[Place]) -> Cause:
     return Cause(
         id="losses.film_starvation",
         doc="A loss under load that grows where films are thin: slow and hot, or so fast that they are starved.",
-        size=at.power("loss where it acts", 0.085, 0.0, 0.9),
+        size=at.power("loss where it acts", 0.085, 0.0, 1.5),
         forms=tuple(replace(kind, weight=kind.weight / total) for kind in kinds),
         exposes="points at high load and low viscosity, with and without fresh oil",
         acts_on=at.first("oil_temp"),
@@ -247,7 +247,7 @@ def torque_only(at: Context) -> Iterator[Cause]:
     yield Cause(
         id="losses.torque_only",
         doc="A loss that the torques show and the machine does not feel as heat: couplings, bearings of the test rig.",
-        size=at.power("loss", 0.07, -0.2, 0.6),
+        size=at.power("loss", 0.07, -0.3, 1.0),
         forms=Extras("torque_only", at).losses([place], shapes, heats=floor),
         exposes="a run with the gearbox taken out; a transducer at the gearbox's shaft",
         acts_on=at.first("speed"),

@@ -368,7 +368,7 @@ class _Look:
         return found.y[test, o.reads], by, local
 
     def _entries(self) -> list[tuple[int, int, np.ndarray]]:
-        """All slopes: direction, column (knobs, pace, given sensors, tried knobs of each further setting), of each row."""
+        """All slopes: direction, column (knobs, pace, given sensors, tried knobs of further settings), of each row."""
         plant = self.o.plant
         place = {name: k for k, name in enumerate(plant.knobs)}
         sizes = {name: k for k, name in enumerate(plant.tried)}

@@ -12,12 +12,14 @@ from ..answer.decide import UNEXPLAINED, Chance, Decision, Joint
 from ..answer.gain import Gain
 from ..campaign.table import Campaign
 from ..infer.search import Found, Hypothesis
-from ..library.cause import Cause
+from ..setting import Setting
 from . import channels, findings
 from .estimate import Estimate
 
 #: Hypotheses that are listed, and the least probability of one.
 MOST, LISTED = 12, 0.005
+#: Changes of the loss by name, with their units.
+LOSS = {"loss_Nm": "N.m", "heat_W": "W"}
 
 
 def about(own: Campaign, rig: str, reference: Campaign | None, seed: int) -> findings.About:
@@ -60,14 +62,14 @@ def answers(joints: Sequence[Joint]) -> tuple[findings.Answer, ...]:
     )
 
 
-def causes(library: Sequence[Cause], found: Found, decision: Decision) -> tuple[findings.Cause, ...]:
+def causes(made: Setting, found: Found, decision: Decision) -> tuple[findings.Cause, ...]:
     """All causes, most probable first."""
     smallest = estimate.detectable(found)
     none = Chance(0.0, 0.0)
     told = []
-    for cause in library:
+    for cause in made.causes:
         chance = decision.marginal.get(cause.id, none)
-        size = _sized(cause.id, found, decision) if chance.probability > LISTED else {}
+        size = _sized(made, cause.id, found, decision) if chance.probability > LISTED else {}
         told.append(
             findings.Cause(
                 id=cause.id,
@@ -88,7 +90,7 @@ def causes(library: Sequence[Cause], found: Found, decision: Decision) -> tuple[
     return tuple(sorted(told, key=lambda c: (-c.probability, c.id)))
 
 
-def _sized(cause: str, found: Found, decision: Decision) -> dict[str, Any]:
+def _sized(made: Setting, cause: str, found: Found, decision: Decision) -> dict[str, Any]:
     """Size, shapes and forms of a cause, and what it alone changes."""
     members = decision.members[cause]
     shares = estimate.form_shares(cause, members)
@@ -102,23 +104,25 @@ def _sized(cause: str, found: Found, decision: Decision) -> dict[str, Any]:
     if acting is not None:
         h, one = acting
         own["regime"] = estimate.regime(one.formula.form, one.formula.theta(one.t))
-        own["impact"] = impacts(found, h, cause)
+        own["impact"] = impacts(made, found, h, cause)
     return own
 
 
-def impacts(found: Found, h: Hypothesis, only: str | None = None) -> dict[str, findings.Impact]:
-    """Mean change of each compared sensor by a hypothesis, or by one of its causes."""
-    known = {s.name: s for s in found.problem.data.read}
+def impacts(made: Setting, found: Found, h: Hypothesis, only: str | None = None) -> dict[str, findings.Impact]:
+    """Mean change of each compared sensor, and of the loss, by a hypothesis or by one of its causes."""
+    o = found.problem.data
+    means, known = estimate.sensor_means(o), {s.name: s for s in o.read}
+    names = {name: (channels.change_name(known[name]), known[name]) for name in means}
     told = {}
-    for name, change in estimate.impact(found.problem, h, only).items():
-        s = known[name]
-        low, high = (channels.difference(s, v) for v in change.ci95)
-        told[channels.change_name(s)] = findings.Impact(
-            value=channels.difference(s, change.value),
-            ci95=(low, high),
-            unit=channels.unit_of_difference(s),
-            what=channels.words(s),
-        )
+    for name, change in estimate.impact(found.problem, h, means, only).items():
+        key, s = names[name]
+        value, low, high = (channels.difference(s, v) for v in (change.value, *change.ci95))
+        unit = channels.unit_of_difference(s)
+        told[key] = findings.Impact(value=value, ci95=(low, high), unit=unit, what=channels.words(s))
+    loss = estimate.loss_means(o, made.ratios)
+    weights = {} if loss is None else {key: w for key, w in zip(LOSS, loss, strict=True) if len(w)}
+    for key, change in estimate.impact(found.problem, h, weights, only).items():
+        told[key] = findings.Impact(value=change.value, ci95=change.ci95, unit=LOSS[key], what="loss")
     return told
 
 
