@@ -369,9 +369,10 @@ class Search:
                 if extra.cause is None:
                     log = h.log_joint + gain + np.log(OUTSIDE)
                     found.append(replace(h, log_joint=float(log), extra=extra))
-                elif extra.cause not in h.causes:
-                    causes = (*h.causes, extra.cause)
-                    log = h.log_joint + gain + self._added(h.causes, extra.cause)
+                else:
+                    new = extra.cause not in h.causes
+                    causes = (*h.causes, extra.cause) if new else h.causes
+                    log = h.log_joint + gain + (self._added(h.causes, extra.cause) if new else 0.0)
                     found.append(replace(h, causes=causes, log_joint=float(log), extra=extra))
         return found
 

@@ -16,6 +16,8 @@ from .sensors import FROM_THEN, PLACE, since
 
 #: What early readings are a share of where they are early by a time [s], and rounding of a pace near zero.
 EARLY, ROUND = 7200.0, 0.1
+#: Share of the form in which each test is early by a share of its own.
+AT_RANDOM = 0.15
 #: How much of the size each half has, by the form's name, and the forms' weights.
 HALVES = {"": (1.0, 1.0, 0.6), "first half": (1.0, 0.0, 0.25), "later halves": (0.0, 1.0, 0.15)}
 
@@ -64,7 +66,7 @@ def _pace(missing: Num) -> Num:
 
 
 def not_stationary() -> Cause:
-    """Readings taken too early: by a share of the dwell or by some minutes."""
+    """Readings taken too early: by a share of the dwell, by some minutes, or now more and now less."""
 
     def pace(first: float, later: float, minutes: bool) -> Callable[[Theta, Row], Num]:
         def of(theta: Theta, row: Row) -> Num:
@@ -77,7 +79,8 @@ def not_stationary() -> Cause:
     for minutes, words in ((False, ""), (True, "by minutes")):
         for name, (first, later, weight) in HALVES.items():
             known = ", ".join(filter(None, (words, name)))
-            forms.append(Form(known, weight / 2, pace=pace(first, later, minutes)))
+            forms.append(Form(known, (1 - AT_RANDOM) * weight / 2, pace=pace(first, later, minutes)))
+    forms.append(Form("at random", AT_RANDOM, pace=pace(1.0, 1.0, False), spread="test"))
     return Cause(
         id="procedure.not_stationary",
         doc="Readings taken earlier than the protocol says, while the gearbox still warms.",
