@@ -25,15 +25,15 @@ from .problem import Aside, Problem
 OUTSIDE = 0.06
 #: Forms fitted: within so many nats of the best, at most so many, of one cause at most, and causes at least.
 WITHIN, FORMS, EACH, LEAST = 9.0, 14, 3, 4
-#: Singles from which pairs are grown, pairs fitted of those and of the ones that look best, and how far behind the best
-#: hypothesis one may promise to be.
-GROWN, PAIRS, BEHIND = 3, 5, 5.0
+#: Pairs that look best, those fitted of them and of such as are grown from some singles, those fitted because they are
+#: like the best one, and how far behind the best hypothesis a pair may promise to be.
+COUPLES, PAIRS, GROWN, LIKE, BEHIND = 40, 5, 3, 4, 5.0
 #: p of any cause above which little is fitted.
 QUIET = 0.3
 #: Hypotheses within so many nats of the best are weighed by draws of the exact model.
 NEAR = 3.0
 #: Searches at most, where the leading hypothesis changes which readings are gross.
-LOOKS = 3
+LOOKS = 2
 
 
 @dataclass(frozen=True)
@@ -253,8 +253,14 @@ class Search:
         """Hypotheses of two causes and more: pairs that look best to first order, and leading ones with one more."""
         found: dict[frozenset[str], Hypothesis] = {}
         known = {h.causes[0]: h for h in singles}
-        for starts in self._couples():
+        couples = self._couples()
+        for starts in couples[:PAIRS]:
             self._together(found, known, self.null, starts)
+        top = max(found.values(), key=lambda h: h.log_joint, default=singles[0])
+        if top.log_joint > singles[0].log_joint:  # others that look like one of the two
+            like = [own for own in couples[PAIRS:] if any(s.acting.id in top.causes for s in own)]
+            for starts in like[:LIKE]:
+                self._together(found, known, self.null, starts)
         beam = [h for h in singles if h.log_joint > singles[0].log_joint - 2 * BEHIND][:GROWN]
         for size in range(2, self.most + 1):
             best = max(h.log_joint for h in [*singles, *found.values()])
@@ -309,7 +315,7 @@ class Search:
             for k, other in enumerate(ids):
                 best[i, k] += self.prior([one, other]) if k > i and family[i] != family[k] else -np.inf
         found = []
-        for place in np.argsort(-best, axis=None)[:PAIRS]:
+        for place in np.argsort(-best, axis=None)[:COUPLES]:
             i, k = np.unravel_index(place, best.shape)
             if best[i, k] < max(alone.max(), best.max() - 2 * BEHIND):
                 break

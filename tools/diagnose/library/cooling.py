@@ -9,7 +9,7 @@ import casadi as ca
 
 from ...model.laws.smooth import smooth_abs
 from ..campaign.table import Sensor
-from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
+from .cause import Cause, Form, Ranges, Row, Shape, Size, Theta, Values
 from .extra_parts import step
 from .extras import Extras
 from .forms import Context, shared
@@ -170,17 +170,14 @@ def contact(roles: Roles, ranges: Ranges) -> Cause:
 
 def oil_wall(at: Context) -> Cause:
     """Oil that gives its heat to bodies better or worse."""
-    roles, ranges, speed = at.roles, at.ranges, at.first("speed")
+    roles, speed = at.roles, at.first("speed")
     shapes = (Shape("c", "1", "exponent of the speed in that logarithm", -0.8, 0.8, 0.0, 0.3),)
 
     def values(names: Sequence[str]) -> Callable[[Theta, Row], Values]:
         paths = roles.scaled(*names)
 
         def changed(theta: Theta, row: Row) -> Values:
-            log: Num = theta["ln_factor"]
-            if speed:
-                ratio = smooth_abs(row.sensors[speed] / max(ranges.mid.get(speed, 1.0), 1e-9), 0.05)
-                log = log * ca.exp(theta["c"] * ca.log(ratio))
+            log = theta["ln_factor"] * (at.by_speed(row, theta["c"]) if speed else 1.0)
             return {path: row.base[path] * ca.exp(3 * ca.tanh(log / 3)) for path in paths}
 
         return changed

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
+import casadi as ca
+
+from ...model.laws.smooth import smooth_abs
 from ..campaign.table import Sensor
 from .cause import Form, Num, Ranges, Row, Shape, Size, Theta, Values
 from .roles import Roles
@@ -16,6 +19,8 @@ Changes = Callable[[Theta, Row], Values]
 GENERAL = 0.5
 #: How gradually a form usually sets in at a threshold, over the range of its quantity.
 USUAL = 0.04
+#: Share of the middle speed below which what follows the speed no longer does.
+SLOW = 0.05
 #: No more places than these have forms of their own.
 MOST_PLACES = 6
 WIDTH = Shape("width", "1", "how gradually it sets in at the threshold, over the usual", 0.4, 3.0, 1.0, 0.75)
@@ -91,6 +96,15 @@ class Context:
         """Name of the first sensor of a kind, those that drive the model first; "" without any."""
         own = [s for s in self.sensors if s.kind == kind]
         return next((s.name for s in sorted(own, key=lambda s: s.role != "given")), "")
+
+    def by_speed(self, row: Row, exponent: Num) -> Num:
+        """Speed over its middle to an exponent; 1 where no speed is measured."""
+        name = self.first("speed")
+        if not name:
+            return 1.0
+        return ca.exp(
+            exponent * ca.log(smooth_abs(row.sensors[name] / max(self.ranges.mid.get(name, 1.0), 1e-9), SLOW))
+        )
 
     def power(self, doc: str, sd: float, low: float, high: float) -> Size:
         """A power [W] at the middle of the data.

@@ -56,8 +56,7 @@ def _drawn(
         place = row.sensors[other.name] if other.role == "given" else true[other.name]
         share: Num = more * theta["share"]
         if speed:
-            ratio = smooth_abs(row.sensors[speed] / max(at.ranges.mid.get(speed, 1.0), 1e-9), 0.05)
-            share = share * ca.exp(theta["a"] * ca.log(ratio))
+            share = share * at.by_speed(row, theta["a"])
         return {probe.name: true[probe.name] - share * (true[probe.name] - place)}
 
     return shown

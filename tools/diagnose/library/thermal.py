@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
 
 from ...model.machines.spec import PartSpec
 from ..campaign.table import Sensor
-from .cause import Cause, Form, Num, Ranges, Row, Size, Theta, Values
+from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 from .cooling import factors
 from .extra_parts import step
+from .forms import Context
 from .heat import bodies
 from .roles import Roles
 
@@ -27,16 +29,15 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
         ranges: of the data
         sensors: of the campaign
     """
+    at = Context(roles, ranges, sensors)
     if roles.inside or roles.outside:
         yield mass(roles)
-    if forms := [*capacity_moved(roles), *heat_moved(roles), *losses_moved(roles)]:
+    if forms := [*capacity_moved(roles), *heat_moved(roles), *losses_moved(at)]:
         yield Cause(
             id="thermal.split",
             doc="Capacity, or the heat of losses, belongs to what turns instead of to the housing or the oil.",
             size=Size("shift", "1", "share of all capacity, or of that heat, moved to what turns", 0.2, -0.6, 0.6),
-            forms=tuple(
-                Form(f.name, 1 / len(forms), values=f.values, parts=f.parts, connections=f.connections) for f in forms
-            ),
+            forms=tuple(replace(f, weight=1 / len(forms)) for f in forms),
             exposes="a probe on the shaft; a logged warm-up",
         )
 
@@ -98,29 +99,31 @@ def _shifted(share: float, shift: Num) -> Num:
     return 1 / (1 + ca.exp(-(at + 4 * shift))) - s
 
 
-def losses_moved(roles: Roles) -> Iterator[Form]:
-    """Heat of all losses from the housing or the oil to what turns."""
+def losses_moved(at: Context) -> Iterator[Form]:
+    """Heat of all losses from the housing or the oil to what turns, or from the oil to the housing."""
+    roles = at.roles
     inside, outside = bodies(roles)
-    ends = roles.ends
-    if not 1 <= len(ends) <= 2:
+    if not 1 <= len(roles.ends) <= 2:
         return
-    for name, place in (
-        ("heat of all losses, from the housing", outside[0]),
-        ("heat of all losses, from the oil", roles.oil_heat),
+    for name, part, a, b in (
+        ("heat of all losses, from the housing", "extra_move_housing", outside[0], inside),
+        ("heat of all losses, from the oil", "extra_move_oil", roles.oil_heat, inside),
+        ("heat of all losses, from the oil to the housing", "extra_move_out", roles.oil_heat, outside[0]),
     ):
-        if roles.nets.meet(place, inside):
-            continue
-        yield _move(roles, name, f"extra_move_{'oil' if place == roles.oil_heat else 'housing'}", place, inside)
+        if not roles.nets.meet(a, b):
+            yield _move(at, name, part, a, b)
 
 
-def _move(roles: Roles, name: str, part: str, a: str, b: str) -> Form:
+def _move(at: Context, name: str, part: str, a: str, b: str) -> Form:
     """A share of the loss taken from a to b."""
-    readings = [roles.reading_of(end) for end in roles.ends]
+    readings = [at.roles.reading_of(end) for end in at.roles.ends]
+    shapes = (Shape("a", "1", "exponent of the speed in that share", -0.8, 0.8, 0.0, 0.25),)
+    shapes = shapes if at.first("speed") else ()
     kind = "HeatMove" if len(readings) == 1 else "HeatMoveOfTwo"
     nets = [(f"{part}.a", a), (f"{part}.b", b)]
     nets += [(f"{part}.{key}", reading) for key, reading in zip(("first", "second"), readings, strict=False)]
 
     def values(theta: Theta, row: Row) -> Values:
-        return {f"{part}.share": theta["shift"]}
+        return {f"{part}.share": theta["shift"] * (at.by_speed(row, theta["a"]) if shapes else 1.0)}
 
-    return Form(name, parts=(PartSpec(part, kind, {"share": 0.0}),), connections=tuple(nets), values=values)
+    return Form(name, 1.0, shapes, (PartSpec(part, kind, {"share": 0.0}),), tuple(nets), values)
