@@ -42,6 +42,9 @@ def diagnose(
     causes: Annotated[int, typer.Option(help="Largest number of simultaneous causes.")] = 2,
     alpha: Annotated[float, typer.Option(help="Accepted rate of false alarms.")] = 0.05,
     seed: Annotated[int, typer.Option(help="The same seed gives the same result.")] = 0,
+    quick: Annotated[
+        bool, typer.Option("--quick", help="Without gain on readings left out, and without next experiments.")
+    ] = False,
     everything: Everything = False,
     json: Json = None,
     report: Annotated[Path | None, typer.Option(help="HTML page to write.")] = None,
@@ -65,6 +68,7 @@ def diagnose(
         libraries,
         predict,
         causes=causes,
+        quick=quick,
         alpha=alpha,
         seed=seed,
         series=series,

@@ -44,7 +44,7 @@ def ask_command(files: Mapping[str, Path], place: Path, seed: int = 0) -> None:
     Raises:
         DataError: it ends with another exit code than 0, or takes too long
     """
-    words = ["diagnose", str(files["data"]), "--rig", "planetary", "--seed", str(seed)]
+    words = ["diagnose", str(files["data"]), "--rig", "planetary", "--quick", "--seed", str(seed)]
     words += ["--json", str(place / "RESULT.json")]
     for name, option in OPTIONS.items():
         if name in files:

@@ -27,6 +27,7 @@ def diagnose(
     library: Files = None,
     predict: File | None = None,
     causes: int = 2,
+    quick: bool = False,
     alpha: float = 0.05,
     seed: int = 0,
     series: File | None = None,
@@ -45,6 +46,7 @@ def diagnose(
         library: files with further causes
         predict: points to predict
         causes: how many may act together
+        quick: without gain on readings left out and without next experiments
         alpha: accepted rate of false alarms
         seed: of everything that is drawn
         series: logged courses of the tests of `data`, `reference_series` of those of `reference`
@@ -64,6 +66,7 @@ def diagnose(
         _paths(library),
         _path(predict),
         causes=causes,
+        quick=quick,
         alpha=alpha,
         seed=seed,
         series=_path(series),

@@ -44,7 +44,9 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
     )
     decision = decided(found)
     wrong = decision.verdict != "consistent"
-    held = gains(found, request.seed, lambda share: progress("readings left out", 0.82 + 0.13 * share)) if wrong else []
+    held: Sequence[Gain] = ()
+    if wrong and not request.quick:
+        held = gains(found, request.seed, lambda share: progress("readings left out", 0.82 + 0.13 * share))
     progress("what was found", 0.95)
     findings = _composed(inputs, made, found, decision, held)
     progress("done", 1.0)
@@ -74,7 +76,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         played=compose_design.played(found, decision) if wrong else {},
         confusable=tuple(s.causes for s in sets),
         sets=sets,
-        next_experiment=compose_design.next_experiments(made, found, decision) if wrong else (),
+        next_experiment=(compose_design.next_experiments(made, found, decision) if wrong and not request.quick else ()),
         isolability=compose_design.isolability(compose_design.seen(found)),
         rows=rows,
         views=compose_pictures.views(found),

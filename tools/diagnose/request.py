@@ -45,6 +45,7 @@ class Request:
         libraries: files with further causes
         predict: points to predict
         causes: how many may act together
+        quick: without gain on readings left out and without next experiments
         alpha: accepted rate of false alarms
         seed: of everything that is drawn
         series: logged courses of the tests of `data`, `reference_series` of those of `reference`
@@ -60,6 +61,7 @@ class Request:
     libraries: tuple[Path, ...] = ()
     predict: Path | None = None
     causes: int = 2
+    quick: bool = False
     alpha: float = 0.05
     seed: int = 0
     series: Path | None = None

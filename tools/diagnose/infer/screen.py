@@ -19,7 +19,7 @@ FIRST, FURTHER, MOST, THRESHOLDS = 3, 1, 6, (6, 8)
 #: Places of a change in the running order at most.
 PLACES = 40
 #: Draws of the alarm's null.
-DRAWS = 1000
+DRAWS = 500
 
 
 @dataclass(frozen=True)

@@ -13,11 +13,13 @@ from dataclasses import dataclass, replace
 from ..campaign.table import Sensor
 from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta
 from .extra_parts import step
-from .forms import GENERAL, USUAL, WIDTH, Context
+from .forms import USUAL, WIDTH, Context
 from .probes import heated, lag, position, swapped
 from .readings import one_of, wrong
 from .roles import Roles
 
+#: Share of the offsets that show on one side of a speed or load only.
+ONE_SIDE = 0.2
 #: Share of the errors of magnitudes that turn with the direction.
 TURNED = 0.3
 #: How gradually something sets in with the running order, which goes from 0 to 1.
@@ -188,7 +190,7 @@ class _Instruments:
         """All of them."""
         words, known = self.kind.words, self.at.ranges.known
         sides = one_side(self.at)
-        general = Mode("", GENERAL if sides else 1.0, _one)
+        general = Mode("", 1 - ONE_SIDE if sides else 1.0, _one)
         doc = f"Offset: the {words} reads too high or too low."
         yield self.cause("offset", doc, self.size("reading less truth"), [general, *sides], self.kind.calibrate)
         yield self.gain()
@@ -269,7 +271,7 @@ def one_side(at: Context) -> list[Mode]:
 
             told = {"quantity": f"{word} {name}", "shape": "threshold"}
             modes.append(Mode(f"{name} a {word}", 1.0, factor, (threshold, WIDTH), regime=told))
-    return [replace(mode, weight=(1 - GENERAL) / len(modes)) for mode in modes]
+    return [replace(mode, weight=ONE_SIDE / len(modes)) for mode in modes]
 
 
 def since(theta: Theta, row: Row) -> Num:
