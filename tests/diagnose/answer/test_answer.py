@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 from gearheat.diagnose.answer import estimate, gain
@@ -55,10 +57,31 @@ def test_size_and_impact(wrong: tuple[Setting, Found]) -> None:
     size = estimate.estimates(found, TRUE, decision.members[TRUE])[0]
     assert size.ci95[0] < OFFSET < size.ci95[1]
     assert abs(size.value - OFFSET) < 1.0
-    changed = estimate.impact(found.problem, decision.leader)
+    means = estimate.sensor_means(found.problem.data)
+    changed = estimate.impact(found.problem, decision.leader, means)
     oil = next(s.name for s in found.problem.data.read if s.kind == "oil_temp")
     assert changed[oil].value == pytest.approx(size.value, rel=0.2)
-    assert sum(estimate.form_shares(TRUE, decision.members[TRUE]).values()) == pytest.approx(1.0)
+
+
+def test_the_loss_follows_the_torque_at_the_other_end(wrong: tuple[Setting, Found]) -> None:
+    """Ratio 4, one row each way: the torque out falls by 1 where the machine drives, rises where it is driven."""
+    assert estimate.loss_means(wrong[1].problem.data, {"input": 1.0}) is None
+    speed, out = (
+        SimpleNamespace(name=name, kind=kind, reads=reads)
+        for name, kind, reads in (("n", "speed", "low.w"), ("T", "torque", "high.tau"))
+    )
+    o = SimpleNamespace(
+        m=2,
+        read=[out],
+        kind=np.zeros(2, dtype=int),
+        row=np.arange(2),
+        signs={"n": np.ones(2), "T": np.array([-1.0, 1.0])},
+        sensors={"n": np.array([10.0, 10.0])},
+        campaign=SimpleNamespace(sensors=[speed, out]),
+    )
+    torque, power = estimate.loss_means(o, {"low": 1.0, "high": 4.0})
+    change = np.array([-1.0, 1.0])
+    assert (torque @ change, power @ change) == pytest.approx((4.0, 40.0))
 
 
 def test_a_size_that_was_found_is_detectable(wrong: tuple[Setting, Found]) -> None:

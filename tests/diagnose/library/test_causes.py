@@ -225,15 +225,21 @@ def test_capacity_is_moved_not_made(case):
     assert gained == pytest.approx(0.1 * total, rel=1e-3)
 
 
-@pytest.mark.parametrize("form", ["heat of all losses, from the housing", "heat of all losses, from the oil"])
-def test_moved_heat_warms_what_turns_and_loses_none(case, form):
+def test_moved_heat_warms_what_it_reaches_and_loses_none(case):
     c = case("planetary")
-    f = next(f for f in c.cause("thermal.split").forms if f.name == form)
-    flat = flatten(assemble(c.scenario.spec.with_parts(f.parts, f.connections, EXTRA_PARTS)))
-    values = {k: float(v) for k, v in f.values({"shift": 0.2}, Row(base={}, sensors={})).items()}
-    found = steady(flat, {**c.scenario.operating_point, **values})
-    assert found["gears.T"][0] > c.nominal["gears.T"][0] + 0.5
-    assert found["room.Q_flow"][0] == pytest.approx(found["efficiency.P_loss"][0], rel=1e-6)
+    sensors = {s.name: c.ranges.mid[s.name] for s in c.sensors}
+    forms = {f.name: f for f in c.cause("thermal.split").forms}
+    for name, warmer in (
+        ("heat of all losses, from the housing", "gears.T"),
+        ("heat of all losses, from the oil", "gears.T"),
+        ("heat of all losses, from the oil to the housing", "wall.T"),
+    ):
+        f = forms[name]
+        flat = flatten(assemble(c.scenario.spec.with_parts(f.parts, f.connections, EXTRA_PARTS)))
+        values = f.values({"shift": 0.2, "a": 0.0}, Row(base={}, sensors=sensors))
+        found = steady(flat, {**c.scenario.operating_point, **{k: float(v) for k, v in values.items()}})
+        assert found[warmer][0] - found["oil.T"][0] > c.nominal[warmer][0] - c.nominal["oil.T"][0] + 0.5, name
+        assert found["room.Q_flow"][0] == pytest.approx(found["efficiency.P_loss"][0], rel=1e-6)
 
 
 def test_a_loss_of_the_couplings_is_seen_by_torque_and_not_by_heat(case):
