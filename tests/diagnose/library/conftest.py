@@ -20,7 +20,7 @@ from gearheat.scenarios.load import load
 from gearheat.scenarios.scenario import Scenario
 
 #: All that may be known of the rows of a campaign.
-ALL_KNOWN = frozenset({"order", "dwell", "mounting", "humidity", "logs"})
+ALL_KNOWN = frozenset({"order", "dwell", "mounting", "humidity", "logs", "still: T_wall", "still: T_oil"})
 
 
 @dataclass(frozen=True)

@@ -39,6 +39,9 @@ class Sensor:
         return np.where(direction < 0, self.signs[1], self.signs[0])
 
 
+#: Last tests in which a sensor that hangs shows the same, and how far apart scatter brings their readings, in
+#: standard deviations.
+STILL, SPREAD = 3, 6.0
 #: Places in a dwell at which its logged course is compared, as shares of the stated dwell.
 PLACES = (0.08, 0.25, 0.6)
 
@@ -156,6 +159,13 @@ class Campaign:
     def read(self) -> tuple[Sensor, ...]:
         """Sensors that are compared."""
         return tuple(s for s in self.sensors if s.role == "read")
+
+    def still(self, sensor: Sensor) -> bool:
+        """Whether a sensor shows about the same in the last tests, or what it shows is not known."""
+        values = self.values[sensor.name][np.argsort(self.order[self.test], kind="stable")]
+        values = values[np.isfinite(values)]
+        last = values[-max(STILL * len(values) // max(self.n_tests, 1), 2) :]
+        return not len(values) or bool(np.ptp(last) <= SPREAD * sensor.repeat_sd)
 
     @property
     def progress(self) -> np.ndarray:

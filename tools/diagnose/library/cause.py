@@ -177,7 +177,8 @@ class Ranges:
             "film" = w nu [m2/s2], "order", "direction"; and the magnitude of each sensor's column by the sensor's name
         loss: typical total loss of the nominal [W]
         rise: typical rise of the oil over the room [K]
-        known: what else is known of the rows: "order", "dwell" (timed ones), "mounting", "humidity", "logs"
+        known: what else is known of the rows: "order", "dwell" (timed ones), "mounting", "humidity", "logs", and
+            "still: NAME" of sensors that may hang
     """
 
     low: Mapping[str, float]

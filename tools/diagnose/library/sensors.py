@@ -230,12 +230,12 @@ class _Instruments:
         mode = Mode("", 1.0, _one, spread="walk", turns=True)
         doc = f"The error of the {words} wanders from test to test."
         yield self.cause("random_walk", doc, size, [mode], REPEAT, "order", 0.3)
-        if any(s.role == "read" for s in self.own):
-            yield self.frozen()
+        if hanging := [s for s in self.own if s.role == "read" and f"still: {s.name}" in self.at.ranges.known]:
+            yield self.frozen(hanging)
 
-    def frozen(self) -> Cause:
+    def frozen(self, read: Sequence[Sensor]) -> Cause:
         """A reading that no longer moves."""
-        ranges, read = self.at.ranges, [s for s in self.own if s.role == "read"]
+        ranges = self.at.ranges
         place = Shape("threshold", "1", "where in the running order: 0 first test, 1 last", 0.0, 1.0)
         forms = []
         for s in read:

@@ -58,5 +58,6 @@ def ranges_of(
     known |= {"dwell"} if np.isfinite(campaign.dwell).any() else set()
     known |= {"humidity"} if np.isfinite(campaign.humidity).any() else set()
     known |= {"mounting"} if len(set(campaign.mounting)) > 1 else set()
+    known |= {f"still: {s.name}" for s in campaign.read if campaign.still(s)}
     rise = max(float(np.median((T - room)[fine])), 1.0)
     return Ranges(low, mid, high, max(loss, 1e-3), rise, frozenset(known))
