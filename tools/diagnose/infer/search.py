@@ -255,12 +255,12 @@ class Search:
         known = {h.causes[0]: h for h in singles}
         couples = self._couples()
         for starts in couples[:PAIRS]:
-            self._together(found, known, self.null, starts)
+            self._paired(found, known, starts)
         top = max(found.values(), key=lambda h: h.log_joint, default=singles[0])
         if top.log_joint > singles[0].log_joint:  # others that look like one of the two
             like = [own for own in couples[PAIRS:] if any(s.acting.id in top.causes for s in own)]
             for starts in like[:LIKE]:
-                self._together(found, known, self.null, starts)
+                self._paired(found, known, starts)
         beam = [h for h in singles if h.log_joint > singles[0].log_joint - 2 * BEHIND][:GROWN]
         for size in range(2, self.most + 1):
             best = max(h.log_joint for h in [*singles, *found.values()])
@@ -274,6 +274,23 @@ class Search:
             if not beam or beam[0].log_joint < best or size == self.most:
                 break
         return list(found.values())
+
+    def _paired(
+        self, found: dict[frozenset[str], Hypothesis], singles: Mapping[str, Hypothesis], starts: Sequence[Start]
+    ) -> None:
+        """Fits two causes together, from the likelier one as it was fitted alone.
+
+        Args:
+            found: hypotheses so far
+            singles: fitted causes alone
+            starts: of both
+        """
+        alone = [singles[s.acting.id] for s in starts if s.acting.id in singles]
+        best = max(alone, key=lambda h: h.log_joint, default=None)
+        if best is None:
+            self._together(found, singles, self.null, starts)
+        else:
+            self._together(found, singles, best.fit, [s for s in starts if s.acting.id not in best.causes])
 
     def _together(
         self,
