@@ -12,8 +12,9 @@ from scipy.stats import norm
 
 from ..campaign.table import Sensor
 from ..infer.evidence import WIDTHS, White, log_bayes_factors
-from ..infer.fit import Fit, bounds
+from ..infer.fit import Fit
 from ..infer.problem import Acting, Problem
+from ..infer.screen import limits
 from ..infer.search import Found, Hypothesis
 from ..library.cause import Cause, Form, Shape
 from ..model.observe import Observed
@@ -251,7 +252,7 @@ def detectable(found: Found) -> dict[str, float]:
     places_of = list(first.values())
     candidates = [found.first.candidates[k] for k in places_of]
     q = (found.first.white[:, places_of] ** 2).sum(axis=0)
-    low, high = (np.array([bounds(c)[i][0] for c in candidates]) for i in (0, 1))
+    low, high = limits(candidates)
     needed = np.array([found.critical - share[c.id] for c in candidates])
     sign = np.where(high > 0, 1.0, -1.0)
     below, above = np.zeros(len(q)), np.where(sign > 0, high, -low)

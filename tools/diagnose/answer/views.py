@@ -15,7 +15,7 @@ from scipy.stats import chi2
 
 from ..campaign.table import Sensor
 from ..infer.evidence import White, log_bayes_factors
-from ..infer.fit import bounds
+from ..infer.screen import limits
 from ..infer.search import Found
 
 #: Causes that a channel names at least this probable.
@@ -50,14 +50,8 @@ def views(found: Found) -> tuple[View, ...]:
     V, r = whole.L @ whole.L.T, whole.L @ e
     kinds = [i for i in range(len(o.read)) if (o.kind == i).any()]
     share = found.prior.share
-    counts = np.bincount(first.owner, minlength=len(found.formulas))
-    weights = np.array(
-        [
-            share[c.id] + np.log(c.formula.form.weight) - np.log(counts[k])
-            for c, k in zip(first.candidates, first.owner, strict=True)
-        ]
-    )
-    low, high = (np.array([bounds(c)[k][0] for c in first.candidates]) for k in (0, 1))
+    weights = first.weights + [share[c.id] for c in first.candidates]
+    low, high = limits(first.candidates)
     ids = np.array([c.id for c in first.candidates])
     told = []
     for i in kinds if len(kinds) > 1 else ():

@@ -9,7 +9,7 @@ import numpy as np
 from scipy.special import logsumexp, ndtri
 
 from ..model.formula import Formula
-from .evidence import WIDTHS, log_bayes_factors
+from .evidence import log_bayes_factors
 from .fit import Fit, Start, View, bounds
 from .problem import Acting, Problem
 
@@ -43,6 +43,13 @@ class Look:
     views: tuple[View, ...]
     log_bf: np.ndarray
     sizes: np.ndarray
+
+    @property
+    def weights(self) -> np.ndarray:
+        """Log share of each candidate in its cause (k,)."""
+        counts = np.bincount(self.owner)
+        shares = [c.formula.form.weight / counts[k] for c, k in zip(self.candidates, self.owner, strict=True)]
+        return np.asarray(np.log(shares))
 
     def by_form(self, n: int) -> np.ndarray:
         """Log Bayes factor of each of n formulas: mean over its candidates (n,)."""
@@ -120,7 +127,7 @@ def look(problem: Problem, fit: Fit, formulas: Sequence[Formula]) -> Look:
 
 def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarray, views: Sequence[View]) -> Look:
     """Effects weighed against a whitened residual, by scatter as found or as stated."""
-    low, high = _limits(candidates)
+    low, high = limits(candidates)
     logs, sizes = [], []
     for view in views:
         g = view.white(effects)
@@ -133,23 +140,7 @@ def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarra
     return Look(candidates, owner, effects, own, tuple(views), log_bf, np.choose(best, sizes))
 
 
-def couples(found: Look) -> tuple[np.ndarray, np.ndarray]:
-    """Log Bayes factors (k, k) of all pairs of candidates against none, and the size (k, k) of the first in each.
-
-    The scatter is that as stated, the widths of the sizes are one in the middle; -inf where a size is out of bounds.
-    """
-    view, low, high = found.views[-1], *_limits(found.candidates)
-    g, precision = view.white(found.effects), 1 / WIDTHS[2] ** 2
-    A, s = g.T @ g, g.T @ view.e
-    a = np.diag(A) + precision
-    det = np.maximum(np.multiply.outer(a, a) - A**2, 1e-9 * np.multiply.outer(a, a))
-    sizes = (np.multiply.outer(s, a) - A * s) / det
-    logs = 0.5 * (s[:, None] * sizes + s * sizes.T) - 0.5 * np.log(det / precision**2) + view.log
-    inside = (sizes >= low[:, None]) & (sizes <= high[:, None])
-    return np.where(inside & inside.T, logs, -np.inf), sizes
-
-
-def _limits(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray]:
+def limits(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest sizes of candidates, in prior half widths (k,)."""
     sizes = [c.formula.cause.size for c in candidates]
     return np.array([s.low / s.sd for s in sizes]), np.array([s.high / s.sd for s in sizes])
@@ -165,7 +156,7 @@ def null_draws(found: Look, weights: np.ndarray, seed: int) -> np.ndarray:
     """
     rng = np.random.default_rng(seed)
     E = found.views[0].white.L @ rng.standard_normal((len(found.effects), DRAWS))
-    low, high = _limits(found.candidates)
+    low, high = limits(found.candidates)
     logs, none = [], found.views[0].white.log_densities(E)
     for view in found.views:
         g, e = view.white(found.effects), view.white(E)

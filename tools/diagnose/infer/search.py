@@ -12,7 +12,7 @@ from scipy.stats import chi2
 
 from ...model.errors import SolveError
 from ..model.formula import Formula
-from . import screen
+from . import pairs, screen
 from .draws import correction
 from .extra import Extra, extras
 from .fit import Fit, Start, fitted, joined
@@ -208,7 +208,7 @@ class Search:
     def _alarm(self) -> None:
         """p of any cause by draws of the null, and the prior of none that agrees with it."""
         first = self.first
-        weights = self._weights(first) + [self.prior.share[c.id] for c in first.candidates]
+        weights = first.weights + [self.prior.share[c.id] for c in first.candidates]
         self.drawn = drawn = screen.null_draws(first, weights, self.seed)
         seen = float(logsumexp(first.log_bf + weights))
         self.critical = float(np.quantile(drawn, 1 - self.alpha))
@@ -253,7 +253,7 @@ class Search:
         """Hypotheses of two causes and more: pairs that look best to first order, and leading ones with one more."""
         found: dict[frozenset[str], Hypothesis] = {}
         known = {h.causes[0]: h for h in singles}
-        couples = self._couples()
+        couples = pairs.couples(self.first, self.prior)[:COUPLES]
         for starts in couples[:PAIRS]:
             self._paired(found, known, starts)
         top = max(found.values(), key=lambda h: h.log_joint, default=singles[0])
@@ -317,38 +317,6 @@ class Search:
             weight = sum(np.log(a.formula.form.weight) for a in fit.look.acting)
             log = float(fit.evidence + weight + spread + self.prior(causes))
             found[frozenset(causes)] = Hypothesis(causes, fit, log, None, forms)
-
-    def _couples(self) -> list[list[Start]]:
-        """Pairs of causes that together explain most to first order, and more than any alone."""
-        first, ids = self.first, list(dict.fromkeys(c.id for c in self.first.candidates))
-        weights = self._weights(first)
-        begins = np.searchsorted([ids.index(c.id) for c in first.candidates], np.arange(len(ids)))
-        alone = np.maximum.reduceat(first.log_bf + weights, begins) + [self.prior([c]) for c in ids]
-        logs, sizes = screen.couples(first)
-        logs += weights[:, None] + weights
-        best = np.maximum.reduceat(np.maximum.reduceat(logs, begins, axis=0), begins, axis=1)
-        family = [self.prior.causes[c].family for c in ids]
-        for i, one in enumerate(ids):
-            for k, other in enumerate(ids):
-                best[i, k] += self.prior([one, other]) if k > i and family[i] != family[k] else -np.inf
-        found = []
-        for place in np.argsort(-best, axis=None)[:COUPLES]:
-            i, k = np.unravel_index(place, best.shape)
-            if best[i, k] < max(alone.max(), best.max() - 2 * BEHIND):
-                break
-            rows, columns = (slice(begins[j], [*begins, len(weights)][j + 1]) for j in (i, k))
-            at = np.unravel_index(np.argmax(logs[rows, columns]), logs[rows, columns].shape)
-            one, other = rows.start + at[0], columns.start + at[1]
-            found.append([first.begun(one, sizes[one, other]), first.begun(other, sizes[other, one])])
-        return found
-
-    @staticmethod
-    def _weights(first: screen.Look) -> np.ndarray:
-        """Log share of each candidate in its cause."""
-        counts = np.bincount(first.owner)
-        return np.array(
-            [np.log(c.formula.form.weight / counts[k]) for c, k in zip(first.candidates, first.owner, strict=True)]
-        )
 
     def _beside_causes(self, h: Hypothesis) -> list[tuple[float, Hypothesis, Start]]:
         """What each cause promises beside a fitted hypothesis: log joint, the hypothesis, and its start."""

@@ -117,8 +117,8 @@ def losses_moved(at: Context) -> Iterator[Form]:
 def _move(at: Context, name: str, part: str, a: str, b: str) -> Form:
     """A share of the loss taken from a to b."""
     readings = [at.roles.reading_of(end) for end in at.roles.ends]
-    shapes = (Shape("a", "1", "exponent of the speed in that share", -0.8, 0.8, 0.0, 0.25),)
-    shapes = shapes if at.first("speed") else ()
+    exponent = Shape("a", "1", "exponent of the speed in that share", -0.8, 0.8, 0.0, 0.25)
+    shapes = (exponent,) if at.first("speed") else ()
     kind = "HeatMove" if len(readings) == 1 else "HeatMoveOfTwo"
     nets = [(f"{part}.a", a), (f"{part}.b", b)]
     nets += [(f"{part}.{key}", reading) for key, reading in zip(("first", "second"), readings, strict=False)]
