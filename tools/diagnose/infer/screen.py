@@ -103,9 +103,8 @@ def changes(problem: Problem) -> np.ndarray:
     """Places in the running order between two tests, of many tests some."""
     order = np.unique(problem.data.campaign.progress)
     found = (order[1:] + order[:-1]) / 2
-    return (
-        found[np.unique(np.linspace(0, len(found) - 1, min(len(found), PLACES)).astype(int))] if len(found) else found
-    )
+    kept = np.linspace(0, len(found) - 1, min(len(found), PLACES)).astype(int)
+    return np.asarray(found[kept])
 
 
 def spread(n: int, d: int) -> np.ndarray:
