@@ -175,7 +175,7 @@ def test_what_is_not_known_of_the_rows_is_left_out(without):
         "dwell": ["procedure.not_stationary"],
         "mounting": ["sensor.torque.mounting"],
         "logs": ["heat.parked", "sensor.wall_temp.lag"],
-        "order": ["procedure.order", "sensor.torque.drift", "sensor.oil_temp.frozen"],
+        "order": ["procedure.order", "sensor.torque.drift", "sensor.oil_temp.since"],
     }.items():
         others = {"order", "dwell", "mounting", "humidity", "logs"} - {known}
         assert set(ids) <= set(everything) and not set(ids) & set(without("planetary", *others))
