@@ -11,7 +11,7 @@ from ..campaign.table import Campaign
 #: Levels further apart than this share of their range are different ones.
 GAP = 0.06
 #: Rows of a small campaign, of which tests are left out only; folds of its one scheme, and of each scheme of others.
-SMALL, FEW, MOST = 48, 4, 4
+SMALL, FEW, MOST = 48, 4, 3
 #: Fewer rows than these cannot be kept.
 LEAST = 6
 

@@ -16,7 +16,7 @@ from .fit import Fit
 from .problem import Acting, Problem
 
 #: Standard deviations of a spread, in half widths of the cause's prior.
-SIZES = (0.5, 1.0, 2.0, 4.0)
+SIZES = (0.25, 0.5, 1.0, 2.0, 4.0)
 #: Standard deviations of a remainder, in those of one reading of its channel.
 REMAINDERS = (2.0, 4.0, 8.0, 16.0)
 

@@ -229,7 +229,7 @@ class _Instruments:
         size = self.size("standard deviation of a step", 0.5, signed=False)
         mode = Mode("", 1.0, _one, spread="walk", turns=True)
         doc = f"The error of the {words} wanders from test to test."
-        yield self.cause("random_walk", doc, size, [mode], REPEAT, "order", 0.3)
+        yield self.cause("random_walk", doc, size, [mode], REPEAT, "order", 0.5)
         if hanging := [s for s in self.own if s.role == "read" and f"still: {s.name}" in self.at.ranges.known]:
             yield self.frozen(hanging)
 
