@@ -41,9 +41,9 @@ class White:
         """Logarithm of the covariance's determinant."""
         return float(2 * np.log(np.diag(self.L)).sum())
 
-    def log_densities(self, residuals: np.ndarray) -> np.ndarray:
-        """Of columns of residuals (M, k), without the constant of 2 pi (k,)."""
-        return np.asarray(-0.5 * (self(residuals) ** 2).sum(axis=0) - 0.5 * self.log_det)
+    def log_densities(self, e: np.ndarray) -> np.ndarray:
+        """Of columns of whitened residuals (M, k), without the constant of 2 pi (k,)."""
+        return np.asarray(-0.5 * (e**2).sum(axis=0) - 0.5 * self.log_det)
 
     def log_density(self, e: np.ndarray) -> float:
         """Log density of a whitened residual, without the constant of 2 pi."""

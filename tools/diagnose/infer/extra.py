@@ -46,7 +46,6 @@ def extras(problem: Problem, fit: Fit, spreads: Sequence[Formula]) -> Iterator[t
     without = views[0].white.log_density(views[0].e)
     r = views[0].white.L @ views[0].e
     scatters = [v.white.L @ v.white.L.T for v in views]
-    penalties = [v.log - v.white.log_density(v.e) for v in views]
     if spreads:
         own = [Acting(f, np.zeros(f.size)) for f in spreads]
         effects = problem.tangents(fit.look.z, fit.look.acting, own)
@@ -55,13 +54,11 @@ def extras(problem: Problem, fit: Fit, spreads: Sequence[Formula]) -> Iterator[t
             if columns is None or not np.isfinite(columns).all():
                 continue
             C = columns @ columns.T
-            each = np.array(
-                [
-                    [_log(W + size**2 * C, r) + more for size in SIZES]
-                    for W, more in zip(scatters, penalties, strict=True)
-                ]
-            )
-            logs = logsumexp(each, axis=0) - np.log(len(scatters))
+            each = [
+                [_log(W + size**2 * C, r) - without + view.prior for size in SIZES]
+                for W, view in zip(scatters, views, strict=True)
+            ]
+            logs = logsumexp(each, axis=0) - np.log(len(views))
             best = SIZES[int(np.argmax(logs))]
             gain = float(logsumexp(logs) - np.log(len(SIZES)) + np.log(formula.form.weight))
             yield Extra(formula.cause.id, formula.form.name, best, (), best**2 * C), gain

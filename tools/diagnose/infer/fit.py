@@ -29,11 +29,14 @@ FORM = {0.01: 0.25, 0.03: 0.25, 0.06: 0.25, 0.12: 0.18, 0.24: 0.07}
 
 @dataclass(frozen=True)
 class View:
-    """Whitening by all that is uncertain, the residual in it, and the log of its density over that as found."""
+    """Whitening by all that is uncertain, the residual in it, the log of its density over that as found, and how much
+    of it is the prior of the scatter's scales.
+    """
 
     white: White
     e: np.ndarray
-    log: float
+    log: float = 0.0
+    prior: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -69,12 +72,12 @@ class Fit:
         What is not yet explained need not be scatter: a scale that has grown hides it. As stated, it shows.
         """
         white, e = self.linear(problem)
-        found = [View(white, e, 0.0)]
+        found = [View(white, e)]
         if np.abs(self.noise.scales).max(initial=0.0) > GROWN:
             stated = replace(self, noise=replace(self.noise, scales=np.zeros_like(self.noise.scales)))
             other, own = stated.linear(problem)
-            log = other.log_density(own) - white.log_density(e) - self.noise.log_prior
-            found.append(View(other, own, log))
+            prior = -self.noise.log_prior
+            found.append(View(other, own, other.log_density(own) - white.log_density(e) + prior, prior))
         return found
 
     def moved(self, problem: Problem, effect: np.ndarray) -> tuple[np.ndarray, tuple[Acting, ...]]:

@@ -127,16 +127,15 @@ def look(problem: Problem, fit: Fit, formulas: Sequence[Formula]) -> Look:
 def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarray, views: Sequence[View]) -> Look:
     """Effects weighed against a whitened residual, by scatter as found or as stated."""
     low, high = limits(candidates)
+    white = [view.white(effects) for view in views]
     logs, sizes = [], []
-    for view in views:
-        g = view.white(effects)
+    for g, view in zip(white, views, strict=True):
         s, q = g.T @ view.e, (g**2).sum(axis=0)
         logs.append(view.log + log_bayes_factors(s, q, low, high))
         sizes.append(np.clip(s / (q + 0.1), low, high))
     best = np.argmax(logs, axis=0)
     log_bf = logsumexp(logs, axis=0) - np.log(len(views))
-    own = views[0].white(effects)
-    return Look(candidates, owner, effects, own, tuple(views), log_bf, np.choose(best, sizes))
+    return Look(candidates, owner, effects, white[0], tuple(views), log_bf, np.choose(best, sizes))
 
 
 def limits(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray]:
@@ -154,12 +153,12 @@ def null_draws(found: Look, weights: np.ndarray, seed: int) -> np.ndarray:
         seed: of the draws
     """
     rng = np.random.default_rng(seed)
-    E = found.views[0].white.L @ rng.standard_normal((len(found.effects), DRAWS))
+    drawn = rng.standard_normal((len(found.effects), DRAWS))
+    E, none = found.views[0].white.L @ drawn, found.views[0].white.log_densities(drawn)
     low, high = limits(found.candidates)
-    logs, none = [], found.views[0].white.log_densities(E)
+    logs = []
     for view in found.views:
         g, e = view.white(found.effects), view.white(E)
         own = log_bayes_factors((g.T @ e).T, (g**2).sum(axis=0), low, high) + weights
-        more = view.log - view.white.log_density(view.e) + found.views[0].white.log_density(found.views[0].e)
-        logs.append(logsumexp(own, axis=1) + view.white.log_densities(E) - none + more)
+        logs.append(logsumexp(own, axis=1) + view.white.log_densities(e) - none + view.prior)
     return np.asarray(logsumexp(logs, axis=0) - np.log(len(logs)))

@@ -177,7 +177,7 @@ def oil_wall(at: Context) -> Cause:
         paths = roles.scaled(*names)
 
         def changed(theta: Theta, row: Row) -> Values:
-            log = theta["ln_factor"] * (at.by_speed(row, theta["c"]) if speed else 1.0)
+            log = theta["ln_factor"] * at.by_speed(row, theta, "c")
             return {path: row.base[path] * ca.exp(3 * ca.tanh(log / 3)) for path in paths}
 
         return changed

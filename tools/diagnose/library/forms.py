@@ -97,14 +97,13 @@ class Context:
         own = [s for s in self.sensors if s.kind == kind]
         return next((s.name for s in sorted(own, key=lambda s: s.role != "given")), "")
 
-    def by_speed(self, row: Row, exponent: Num) -> Num:
-        """Speed over its middle to an exponent; 1 where no speed is measured."""
+    def by_speed(self, row: Row, theta: Theta, exponent: str) -> Num:
+        """Speed over its middle to an exponent, a shape by its name; 1 where no speed is measured."""
         name = self.first("speed")
         if not name:
             return 1.0
-        return ca.exp(
-            exponent * ca.log(smooth_abs(row.sensors[name] / max(self.ranges.mid.get(name, 1.0), 1e-9), SLOW))
-        )
+        ratio = row.sensors[name] / max(self.ranges.mid.get(name, 1.0), 1e-9)
+        return ca.exp(theta[exponent] * ca.log(smooth_abs(ratio, SLOW)))
 
     def power(self, doc: str, sd: float, low: float, high: float) -> Size:
         """A power [W] at the middle of the data.

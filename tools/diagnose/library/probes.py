@@ -35,7 +35,7 @@ def position(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
         for other, more in others:
             name = ", ".join(filter(None, (one_of(probe, read), f"towards {other.name}")))
             weight = (1.0 if len(others) == 1 else 0.6 if more == 1.0 else 0.4) / len(read)
-            forms.append(Form(name, weight, shapes, shown=_drawn(at, probe, other, more, speed)))
+            forms.append(Form(name, weight, shapes, shown=_drawn(at, probe, other, more)))
     if forms:
         yield Cause(
             id="sensor.oil_temp.position",
@@ -47,16 +47,12 @@ def position(at: Context, own: Sequence[Sensor]) -> Iterator[Cause]:
         )
 
 
-def _drawn(
-    at: Context, probe: Sensor, other: Sensor, more: float, speed: str
-) -> Callable[[Theta, Row, Values], Values]:
+def _drawn(at: Context, probe: Sensor, other: Sensor, more: float) -> Callable[[Theta, Row, Values], Values]:
     """What a probe shows that is drawn towards what another reads."""
 
     def shown(theta: Theta, row: Row, true: Values) -> Values:
         place = row.sensors[other.name] if other.role == "given" else true[other.name]
-        share: Num = more * theta["share"]
-        if speed:
-            share = share * at.by_speed(row, theta["a"])
+        share = more * theta["share"] * at.by_speed(row, theta, "a")
         return {probe.name: true[probe.name] - share * (true[probe.name] - place)}
 
     return shown

@@ -124,6 +124,6 @@ def _move(at: Context, name: str, part: str, a: str, b: str) -> Form:
     nets += [(f"{part}.{key}", reading) for key, reading in zip(("first", "second"), readings, strict=False)]
 
     def values(theta: Theta, row: Row) -> Values:
-        return {f"{part}.share": theta["shift"] * (at.by_speed(row, theta["a"]) if shapes else 1.0)}
+        return {f"{part}.share": theta["shift"] * at.by_speed(row, theta, "a")}
 
     return Form(name, 1.0, shapes, (PartSpec(part, kind, {"share": 0.0}),), tuple(nets), values)

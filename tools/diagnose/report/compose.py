@@ -111,18 +111,18 @@ def _sized(made: Setting, cause: str, found: Found, decision: Decision) -> dict[
 def impacts(made: Setting, found: Found, h: Hypothesis, only: str | None = None) -> dict[str, findings.Impact]:
     """Mean change of each compared sensor, and of the loss, by a hypothesis or by one of its causes."""
     o = found.problem.data
-    means, known = estimate.sensor_means(o), {s.name: s for s in o.read}
-    names = {name: (channels.change_name(known[name]), known[name]) for name in means}
+    means, sensors = estimate.sensor_means(o), {s.name: s for s in o.read}
+    if loss := estimate.loss_means(o, made.ratios):
+        means |= {key: weights for key, weights in zip(LOSS, loss, strict=True) if len(weights)}
     told = {}
     for name, change in estimate.impact(found.problem, h, means, only).items():
-        key, s = names[name]
+        if name in LOSS:
+            told[name] = findings.Impact(value=change.value, ci95=change.ci95, unit=LOSS[name], what="loss")
+            continue
+        s = sensors[name]
         value, low, high = (channels.difference(s, v) for v in (change.value, *change.ci95))
-        unit = channels.unit_of_difference(s)
-        told[key] = findings.Impact(value=value, ci95=(low, high), unit=unit, what=channels.words(s))
-    loss = estimate.loss_means(o, made.ratios)
-    weights = {} if loss is None else {key: w for key, w in zip(LOSS, loss, strict=True) if len(w)}
-    for key, change in estimate.impact(found.problem, h, weights, only).items():
-        told[key] = findings.Impact(value=change.value, ci95=change.ci95, unit=LOSS[key], what="loss")
+        unit, what = channels.unit_of_difference(s), channels.words(s)
+        told[channels.change_name(s)] = findings.Impact(value=value, ci95=(low, high), unit=unit, what=what)
     return told
 
 
