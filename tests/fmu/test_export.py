@@ -75,7 +75,8 @@ def test_the_binary_needs_an_old_c_library_and_nothing_else(heat_fmu: Path) -> N
 
 
 def zig(*arguments: str, **options: Any) -> subprocess.CompletedProcess[str]:
-    command = [sys.executable, "-m", "ziglang", "cc", *arguments]
+    """The compiler with the headers it brings: for a target of its own, not for what the machine has."""
+    command = [sys.executable, "-m", "ziglang", "cc", "-target", compiling.host_platform().targets[0], *arguments]
     cache = compiling.cache_folder() / "zig"
     folders = {f"ZIG_{kind.upper()}_CACHE_DIR": str(cache / kind) for kind in ("global", "local")}
     return subprocess.run(

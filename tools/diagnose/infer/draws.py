@@ -1,4 +1,7 @@
-"""How far the Gaussian approximation of an evidence is off: importance sampling with smoothed weights."""
+"""How far the Gaussian approximation of an evidence is off: importance sampling with smoothed weights.
+
+Sizes and shapes are drawn, which the readings follow with a bend; nuisances follow them and are integrated linearly.
+"""
 
 from __future__ import annotations
 
@@ -13,7 +16,7 @@ from .fit import Fit, prior_precision
 from .problem import Problem
 
 #: Draws of a hypothesis, and how much wider than the fit says they are taken.
-DRAWS, WIDER = 32, 1.1
+DRAWS, WIDER = 32, 1.3
 
 
 @dataclass(frozen=True)
@@ -32,17 +35,29 @@ def correction(problem: Problem, fit: Fit, seed: int) -> Correction:
         fit: the hypothesis
         seed: of the draws
     """
-    look, white = fit.look, White.of(fit.noise.covariance)
+    look, nz = fit.look, problem.nz
+    if not look.acting:
+        return Correction(0.0, 0.0)
     precision = prior_precision(problem, look.acting)
-    J = white(look.jacobian)
-    root = np.linalg.cholesky(np.linalg.inv(J.T @ J + np.diag(precision)))
-    normal = norm.ppf(np.clip(qmc.Sobol(len(look.x), seed=seed).random(DRAWS), 1e-6, 1 - 1e-6))
-    at_mode = _log_joint(problem, white, precision, look.shown, look.x)
+    J = White.of(fit.noise.covariance)(look.jacobian)
+    covariance = np.linalg.inv(J.T @ J + np.diag(precision))
+    own, known = covariance[nz:, nz:], look.jacobian[:, :nz]
+    white = White.of(fit.noise.covariance + known @ known.T)
+
+    def log_joint(x: np.ndarray, shown: np.ndarray) -> float:
+        if not np.isfinite(shown).all():
+            return -np.inf
+        e = white(problem.measured - shown + known @ x[:nz])
+        return float(-0.5 * e @ e - 0.5 * precision[nz:] @ x[nz:] ** 2)
+
+    root = np.linalg.cholesky(own)
+    along = covariance[:, nz:] @ np.linalg.solve(own, root)
+    at_mode = log_joint(look.x, look.shown)
+    normal = norm.ppf(np.clip(qmc.Sobol(len(own), seed=seed).random(DRAWS), 1e-6, 1 - 1e-6))
     logs = []
     for u in WIDER * normal:
-        x = look.x + root @ u
-        shown = problem.shown(*fit.split(problem, x))
-        log = _log_joint(problem, white, precision, shown, x) - at_mode
+        x = look.x + along @ u
+        log = log_joint(x, problem.shown(*fit.split(problem, x))) - at_mode
         logs.append(log + 0.5 * (u / WIDER) @ (u / WIDER) + len(u) * np.log(WIDER))
     return smoothed(np.array(logs))
 
@@ -68,13 +83,6 @@ def smoothed(logs: np.ndarray) -> Correction:
         weights[tail] = np.minimum(cut + genpareto.ppf(ranks, min(shape, 0.9), scale=scale), 1.0)
     mean = float(weights.mean())
     return Correction(top + float(np.log(mean)), float(weights.std(ddof=1) / mean / n**0.5))
-
-
-def _log_joint(problem: Problem, white: White, precision: np.ndarray, shown: np.ndarray, x: np.ndarray) -> float:
-    if not np.isfinite(shown).all():
-        return -np.inf
-    e = white(problem.measured - shown)
-    return float(-0.5 * e @ e - 0.5 * precision @ x**2)
 
 
 def errors(log_joints: np.ndarray, log_errors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

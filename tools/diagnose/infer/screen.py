@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import logsumexp, ndtri
 
+from ..library.cause import Mostly
 from ..model.formula import Formula
 from .evidence import log_bayes_factors
 from .fit import Fit, Start, View, bounds
@@ -93,6 +94,7 @@ def samples(formulas: Sequence[Formula], orders: np.ndarray) -> tuple[tuple[Acti
         points = spread(n, d)
         if since:
             points[:, shapes.index("threshold")] = between
+        points[:, [isinstance(shape, Mostly) for shape in formula.form.shapes]] = 0.0
         for u in points:
             found.append(Acting(formula, np.r_[0.0, u]))
             owner.append(k)

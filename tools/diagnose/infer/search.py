@@ -23,8 +23,9 @@ from .problem import Aside, Problem
 
 #: Prior odds of a remainder beside a hypothesis.
 OUTSIDE = 0.06
-#: Forms fitted: within so many nats of the best, at most so many, of one cause at most, and causes at least.
-WITHIN, FORMS, EACH, LEAST = 9.0, 14, 3, 4
+#: Forms fitted: within so many nats of the best, at most so many, of one cause at most, causes at least; one of each
+#: cause within a share of the best, as a first look is off by a share of what it finds.
+WITHIN, FORMS, EACH, LEAST, SHARE = 9.0, 14, 3, 4, 0.35
 #: Pairs that look best, those fitted of them and of such as are grown from some singles, those fitted because they are
 #: like the best one, and how far behind the best hypothesis a pair may promise to be.
 COUPLES, PAIRS, GROWN, LIKE, BEHIND = 40, 5, 3, 4, 5.0
@@ -219,10 +220,11 @@ class Search:
         value = log_bf + np.array([np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas])
         chosen: list[int] = []
         taken: dict[str, int] = {}
+        best = float(value.max())
         for k in np.argsort(-value):
             cause = self.formulas[k].cause.id
-            far = value[k] < value.max() - WITHIN
-            if taken.get(cause, 0) >= EACH or (far and (len(taken) >= LEAST or cause in taken)):
+            far, lost = value[k] < best - WITHIN, value[k] < best - max(WITHIN, SHARE * best)
+            if taken.get(cause, 0) >= EACH or (far and cause in taken) or (lost and len(taken) >= LEAST):
                 continue
             chosen.append(int(k))
             taken[cause] = taken.get(cause, 0) + 1

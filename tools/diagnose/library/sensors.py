@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ..campaign.table import Sensor
-from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta
+from .cause import Cause, Form, Mostly, Num, Ranges, Row, Shape, Size, Theta
 from .extra_parts import step
 from .forms import USUAL, WIDTH, Context
 from .probes import heated, lag, position, swapped
@@ -19,7 +19,7 @@ from .readings import one_of, wrong
 from .roles import Roles
 
 #: Share of the offsets that show on one side of a speed or load only.
-ONE_SIDE = 0.2
+ONE_SIDE = 0.1
 #: Share of the errors of magnitudes that turn with the direction.
 TURNED = 0.3
 #: How gradually something sets in with the running order, which goes from 0 to 1.
@@ -289,7 +289,7 @@ def _changed(theta: Theta, row: Row, value: Num) -> Num:
     return since(theta, row) - theta["zero"]
 
 
-ZERO = Shape("zero", "1", "where the reading is right: 0 before the change, 1 after", 0.0, 1.0)
+ZERO = Mostly("zero", "1", "where the reading is right: 0 before the change, 1 after", 0.0, 1.0)
 PLACE = Shape("threshold", "1", "where in the running order: 0 first test, 1 last", 0.0, 1.0)
 FROM_THEN = {"quantity": "order above", "shape": "threshold"}
 SINCE = Mode("", 0.7, _changed, (PLACE, ZERO), regime=FROM_THEN, turns=True)
