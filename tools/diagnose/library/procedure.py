@@ -9,7 +9,7 @@ import casadi as ca
 
 from ...model.laws.smooth import smooth_max
 from ..campaign.table import Sensor
-from .cause import Cause, Form, Mostly, Num, Ranges, Row, Shape, Size, Theta, Values
+from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 from .cooling import DAYS, factors
 from .roles import Roles
 from .sensors import FROM_THEN, PLACE, since
@@ -107,7 +107,7 @@ def order(roles: Roles) -> Cause:
 
         return values
 
-    zero = Mostly("zero", "1", "where the nominal holds: 0 before the change, 1 after", 0.0, 1.0)
+    zero = Shape("zero", "1", "where the nominal holds: 0 before the change, 1 after", 0.0, 1.0)
     total = sum(weight for _, weight in kept.values())
     return Cause(
         id="procedure.order",

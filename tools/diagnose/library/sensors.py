@@ -307,7 +307,10 @@ DRIFT = Mode(
     "",
     1.0,
     lambda theta, row, value: (row.order + 1e-9) ** theta["power"] - theta["zero"],
-    (Shape("power", "1", "exponent of the running order", 0.5, 2.0, 1.0, 0.3), ZERO),
+    (
+        Shape("power", "1", "exponent of the running order", 0.5, 2.0, 1.0, 0.3),
+        Shape("zero", "1", "where the reading is right: 0 at the first test, 1 at the last", 0.0, 1.0),
+    ),
     turns=True,
 )
 HALVES = "the halves of a test in reversed order"
