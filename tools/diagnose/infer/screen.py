@@ -94,7 +94,7 @@ def samples(formulas: Sequence[Formula], orders: np.ndarray) -> tuple[tuple[Acti
         points = spread(n, d)
         if since:
             points[:, shapes.index("threshold")] = between
-        points[:, [isinstance(shape, Mostly) for shape in formula.form.shapes]] = 0.0
+            points[:, [isinstance(shape, Mostly) for shape in formula.form.shapes]] = 0.0
         for u in points:
             found.append(Acting(formula, np.r_[0.0, u]))
             owner.append(k)

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from ..campaign.table import Sensor
-from .cause import Cause, Ranges, Shape
+from .cause import Cause, Mostly, Ranges, Shape
 from .extras import Extras
 from .forms import GENERAL, Context
 from .roles import Roles
@@ -41,7 +41,7 @@ def external_source(at: Context) -> Cause:
     extras = Extras("source", at)
     inside, outside = bodies(at.roles)
     shapes = (
-        Shape("a", "1", "exponent of the speed", 0.0, 1.8),
+        Mostly("a", "1", "exponent of the speed", 0.0, 1.8),
         Shape("oil_share", "1", "share of the heat that goes into the oil", 0.0, 0.5, 0.1, 0.1),
         Shape("inner_share", "1", "share of the rest that enters by the shaft", 0.0, 1.0, 0.0, 0.4),
     )
