@@ -14,6 +14,7 @@ from ..scenarios.scenario import Scenario
 from .campaign.logs import Log, read_log
 from .infer.logs import Fleet, Moved, Progress, Question, Weighed, fleet, question, weigh
 from .model.windows import windows
+from .report import compose_logs
 from .report import findings as f
 from .report.estimate import Estimate
 from .report.quality import DataQuality, GrossReading
@@ -22,6 +23,8 @@ from .request import Inputs
 
 #: An answer is named alone, or its set is, from this probability on.
 SURE = 0.9
+#: Causes that have a picture, at most.
+PICTURES = 3
 #: Units in which temperatures are shown.
 SHOWN = {"K": ("degC", -273.15), "rad/s": ("rpm", 0.0), "N.m": ("N.m", 0.0), "W": ("W", 0.0)}
 UNITS = {"oil_temp": "degC", "wall_temp": "degC", "ambient": "degC", "torque": "N.m", "speed": "rad/s", "power": "W"}
@@ -160,6 +163,8 @@ def _findings(
     answers = _answers(whole)
     verdict: f.Verdict = "consistent" if whole.nothing > 0.5 else "explained" if len(answers) == 1 else "ambiguous"
     best = max(whole.moved, key=lambda m: m.evidence)
+    leading = [whole.best(c) for c in dict.fromkeys(c for answer in answers for (c,) in answer.causes)]
+    rows, pictures = compose_logs.pictures(known, asked, leading[:PICTURES], logs[0].read)
     warnings = [
         text for w in (_lacking(reference, siblings), *(_year_text(y, w) for y, w in years.items())) if (text := w)
     ]
@@ -196,6 +201,8 @@ def _findings(
             for s in logs[0].sensors
         ),
         gain=_gain(known, asked, logs, whole) if verdict != "consistent" else None,
+        rows=rows,
+        pictures=pictures,
         warnings=tuple(warnings),
     )
 
@@ -246,7 +253,7 @@ def _cause(whole: Weighed, cause: str) -> f.Cause:
 def _estimate(m: Moved) -> Estimate:
     name, doc = ("ln_factor", "logarithm of the factor") if m.knob.unit == "1" else ("shift", "change")
     interval = (m.size - 1.96 * m.sd, m.size + 1.96 * m.sd)
-    return Estimate(name=name, value=m.size, ci95=interval, unit=m.knob.unit, doc=f"{doc}, {m.knob.name}, {m.when}")
+    return Estimate(name=name, value=m.size, ci95=interval, unit=m.knob.unit, doc=doc)
 
 
 def _answers(whole: Weighed) -> tuple[f.Answer, ...]:

@@ -94,3 +94,17 @@ def test_what_has_changed_is_found(farm: Farm, name: str, size: float, since: fl
     assert told.findings.causes[0].id == cause
     assert Findings.model_validate(as_object(told.findings)).verdict == told.findings.verdict
     assert best.size == pytest.approx(size, abs=4 * best.sd + 0.2 * abs(size))
+
+
+def test_the_picture_of_a_cause_shows_the_past_and_what_the_cause_takes_away(farm: Farm) -> None:
+    told = farm.asked(200, "cooler: conductance", float(np.log(0.7))).findings
+    picture = told.pictures[0]
+    days = np.array(told.rows.quantities[picture.quantity].values)
+    before, after = np.array(picture.before), np.array(picture.after)
+    past, now = days < 0, days >= 0
+    assert past.any() and now.any() and (np.diff(days) >= 0).all()
+    np.testing.assert_array_equal(before[past], after[past])
+    assert np.mean(after[now] ** 2) < 0.7 * np.mean(before[now] ** 2)
+    assert np.std(after[now]) < 0.4 * np.std(before[now])  # a year's constant is no fault and stays
+    shown = told.rows.channels[picture.channel]
+    assert np.array(shown.measured) - np.array(shown.nominal) == pytest.approx(before, abs=1e-3)

@@ -189,7 +189,7 @@ class _Pass:
         S = np.zeros((n, self.nx, self.k))
         likelihood, g, H = np.zeros(n), np.zeros((n, self.k)), np.zeros((n, self.k, self.k))
         error, variance, shown = (np.full((n, length, reads), np.nan) for _ in range(3))
-        for t in range(length):
+        for t in range(int(self.lengths.max(initial=0))):
             m = int((self.lengths > t).sum())
             step = _Step(self, w[:m], t)
             y = step.mean + self.offset[:m]

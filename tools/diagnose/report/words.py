@@ -157,7 +157,7 @@ def _size(findings: Findings) -> str:
             found = [c for member in group if (c := findings.cause(member)) is not None]
             if sizes := [text for c in found if (text := _sized(c))]:
                 said.append(f"{sentence('; or '.join(sizes))}.")
-    return " ".join(said)
+    return " ".join(dict.fromkeys(said))
 
 
 def _sized(cause: Cause) -> str:
