@@ -1,10 +1,12 @@
-"""The page for a gearbox of one's own is true: its card, its table's head and its command work as they stand."""
+"""The pages are true: one's own gearbox works as it stands there, and the measured campaign says what is printed."""
 
 import csv
+import json
 import re
 import shutil
 from pathlib import Path
 
+import pytest
 from diagnose.hidden.benches import HELICAL
 from diagnose.hidden.cases import HIDDEN
 from diagnose.hidden.maker import make
@@ -41,3 +43,53 @@ def test_the_page_for_ones_own_gearbox(tmp_path, monkeypatch) -> None:
     run = CliRunner().invoke(app, words)
     assert run.exit_code == 0, run.output
     assert "churning" in (tmp_path / "diagnosis.html").read_text("utf-8")
+
+
+SCHEMES = {
+    "some of the tests": "leave-out-tests",
+    "one speed": "leave-one-speed",
+    "one load": "leave-one-load",
+    "one oil": "leave-one-oil",
+}
+
+
+@pytest.fixture(scope="module")
+def campaign(tmp_path_factory: pytest.TempPathFactory):
+    """The measured campaign of the planetary rig, diagnosed, and the README's section about it."""
+    out = tmp_path_factory.mktemp("campaign") / "found.json"
+    files = [str(RIGS / "planetary" / name) for name in ("measured.csv", "card.json")]
+    run = CliRunner().invoke(app, ["diagnose", files[0], "--card", files[1], "--json", str(out)])
+    assert run.exit_code == 0, run.output
+    (section,) = re.findall(
+        r"^### The measured campaign\n(.*?)^### ", (ROOT / "README.md").read_text("utf-8"), re.MULTILINE | re.DOTALL
+    )
+    return json.loads(out.read_text("utf-8")), section
+
+
+def test_the_gain_of_the_measured_campaign_is_what_the_readme_prints(campaign) -> None:
+    found, section = campaign
+    gains = {(g["scheme"], g["channel"]): g for g in (found["gain"], *found["gain_grouped"])}
+    lines = [line.strip("|").split("|") for line in section.splitlines() if re.match(r"\| (some|one) ", line)]
+    assert len(lines) == 8
+    for left_out, channel, before, after, both, rival in ([cell.strip() for cell in line] for line in lines):
+        gain = gains[SCHEMES[left_out], channel]
+        told = [gain[side][key] for key in ("without", "with") for side in ("before", "after")]
+        printed = [float(v) for v in (before, after, *both.split(", "), rival)]
+        assert [*told, gain["rivals"]["linear in the given sensors"]] == pytest.approx(printed, abs=0.02), left_out
+
+
+def test_the_channels_of_the_measured_campaign_say_what_the_readme_prints(campaign) -> None:
+    found, section = campaign
+    views = {v["channel"]: v for v in found["views"]}
+    lines = re.findall(r"^\| (T_\w+), [^|]* \| ([\d.]+) \| (.*) \|$", section, re.MULTILINE)
+    assert {channel for channel, _, _ in lines} == set(views)
+    for channel, p, answers in lines:
+        view = views[channel]
+        assert view["p"] == pytest.approx(float(p), abs=0.02)
+        alone = {c["id"]: c["probability"] for c in view["causes"]}
+        for id, percent in re.findall(r"([\w.]+) (\d+) %", answers):
+            assert alone[id] == pytest.approx(float(percent) / 100, abs=0.02)
+    best = found["answers"][0]
+    assert best["causes"] == [["sensor.wall_temp.offset"], ["sensor.ambient.since"]]
+    assert best["probability"] == pytest.approx(0.93, abs=0.02)
+    assert found["remainder"]["channels"][0]["channel"] == "T_oil"
