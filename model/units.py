@@ -12,6 +12,24 @@ from .errors import ScenarioError
 #: Unit shown to a person for an SI unit of the model, with pint's name for it.
 DISPLAY = {"K": "degC", "rad/s": "rpm"}
 
+#: Spellings met in practice -> the one that is used here.
+SPELLINGS = {
+    **dict.fromkeys(("Nm", "N*m", "N m", "N·m"), "N.m"),
+    **dict.fromkeys(("kNm", "kN*m", "kN m", "kN·m"), "kN.m"),
+    **dict.fromkeys(("C", "°C", "º C", "ºC", "℃", "° C", "deg C", "Celsius", "celsius", "deg_C"), "degC"),
+    **dict.fromkeys(("F", "°F", "ºF", "℉", "deg F", "Fahrenheit"), "degF"),
+    **dict.fromkeys(("1/min", "min-1", "min^-1", "min⁻¹", "/min"), "rpm"),
+    **dict.fromkeys(("U/min", "r/min", "RPM", "Rpm", "rev/min", "Umdr/min"), "rpm"),
+    **dict.fromkeys(("lb ft", "lb-ft", "lb.ft", "lbft", "ft lb", "ft-lb", "ft.lb", "lbf ft", "lbf.ft"), "lbf*ft"),
+    "PS": "metric_horsepower",
+    "%": "percent",
+    "-": "1",
+}
+#: Of rotational speeds alone: a frequency of rotation counts revolutions.
+ROTATIONS = dict.fromkeys(("Hz", "rev/s", "r/s", "U/s", "rps"), "revolution/s")
+#: Either revolutions or radians per second.
+UNCLEAR = ("1/s", "s-1", "s^-1", "s⁻¹", "/s")
+
 
 @functools.cache
 def _registry() -> Any:
@@ -20,9 +38,15 @@ def _registry() -> Any:
     return pint.UnitRegistry()
 
 
+def spelled(unit: str) -> str:
+    """A unit as the rest of the program writes it: "1/min" is "rpm", "Nm" is "N.m"."""
+    text = " ".join(unit.split())
+    return SPELLINGS.get(text, text)
+
+
 def _pint_unit(text: str) -> str:
     """The model's spelling of a unit in pint's: a dot between letters multiplies, a digit behind one is a power."""
-    text = re.sub(r"(?<!\d)\.|\.(?!\d)", "*", text.replace("·", "*").replace("°C", "degC").replace("^", "**"))
+    text = re.sub(r"(?<!\d)\.|\.(?!\d)", "*", spelled(text).replace("·", "*").replace("^", "**"))
     return "" if text == "1" else re.sub(r"([a-zA-Z])(\d)", r"\1**\2", text)
 
 
@@ -74,6 +98,13 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
         )
     if written == target:
         return _finite(number, name, value)
+    if target == "rad/s":
+        if written in UNCLEAR:
+            raise ScenarioError(
+                f'{name} = "{value}": "{written}" may mean revolutions or radians. Write rpm, Hz (revolutions per'
+                " second) or rad/s."
+            )
+        written = ROTATIONS.get(written, written)
 
     ureg = _registry()
     try:

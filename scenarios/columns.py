@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..model.errors import ScenarioError
-from ..model.units import to_si
+from ..model.units import spelled, to_si
 
 #: What the ending of a column's name says about its unit.
 ENDINGS: Mapping[str, str] = {
@@ -28,20 +28,6 @@ ENDINGS: Mapping[str, str] = {
     "_pct": "percent",
 }
 
-#: Spellings of units in the heads of tables -> how the rest of the program writes them.
-SPELLINGS: Mapping[str, str] = {
-    "Nm": "N.m",
-    "kNm": "kN.m",
-    "C": "degC",
-    "°C": "degC",
-    "1/min": "rpm",
-    "min-1": "rpm",
-    "min^-1": "rpm",
-    "U/min": "rpm",
-    "%": "percent",
-    "-": "1",
-}
-
 _BRACKET = re.compile(r"(.*\S)\s*[\[(]\s*([^\])]+?)\s*[\])]")
 
 
@@ -57,11 +43,6 @@ def split_unit(column: str) -> tuple[str, str]:
         if column.endswith(ending) and len(column) > len(ending):
             return column.removesuffix(ending), unit
     return column, ""
-
-
-def spelled(unit: str) -> str:
-    """A unit as the rest of the program writes it."""
-    return SPELLINGS.get(unit.strip(), unit.strip())
 
 
 def scale(unit: str, si: str, *, name: str) -> tuple[float, float]:

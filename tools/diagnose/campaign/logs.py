@@ -15,7 +15,8 @@ from typing import IO, Any
 import numpy as np
 
 from ...model.errors import DataError, GearheatError, suggestion
-from ...scenarios.columns import in_si, spelled, split_unit
+from ...model.units import spelled
+from ...scenarios.columns import in_si, split_unit
 from ...scenarios.csv_table import raise_all
 from ...scenarios.scenario import Scenario
 from .card import Card

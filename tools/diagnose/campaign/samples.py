@@ -8,7 +8,8 @@ from pathlib import Path
 import numpy as np
 
 from ...model.errors import GearheatError
-from ...scenarios.columns import in_si, spelled, split_unit
+from ...model.units import spelled
+from ...scenarios.columns import in_si, split_unit
 from ...scenarios.csv_table import Column, Table, parse, raise_all, read_cells
 from ...scenarios.scenario import Scenario
 from .card import Card

@@ -11,8 +11,8 @@ from ...model.errors import DataError, GearheatError, suggestion
 from ...model.parts.lubrication import OilBath
 from ...model.parts.shaft import ShaftEnd
 from ...model.parts.thermal import Room
-from ...model.units import text, to_si
-from ...scenarios.columns import spelled, split_unit
+from ...model.units import spelled, text, to_si
+from ...scenarios.columns import split_unit
 from ...scenarios.instruments import Instrument
 from ...scenarios.scenario import Scenario
 from .card import Card
