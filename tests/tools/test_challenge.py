@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -147,6 +148,24 @@ def test_look_alikes_are_near_and_others_far(drawn: tuple[cases.Drawn, Yardstick
     churning = d.draw("losses.churning", "single", oil(*drawn), rng)
     snr, near = rival("called otherwise", "losses.churning")
     assert near < 0.3 * snr < rival("sensor.torque.offset", "sensor.torque.offset")[1]
+
+
+def test_rivals_of_a_limited_fault_are_limited_as_well(drawn: tuple[cases.Drawn, Yardstick]) -> None:
+    """Above a speed only, a seal's drag is near to churning above that speed, if far from churning everywhere."""
+    d, yard = drawn
+    rng = np.random.default_rng(3)
+    faults = (d.draw("losses.seal_drag", "regime", oil(*drawn), rng) for _ in range(200))
+    limited = next(f for f in faults if f.regime.get("speed") == "above")
+
+    def distance(fault: Any) -> float:
+        rivals = Rivals(
+            yard, {"other": partial(d.draw, "losses.churning", "single", oil(*drawn))}, np.random.default_rng(4)
+        )
+        return rivals.nearest(fault, 8.0)[1].distance
+
+    acting = yard.acting(limited.regime)
+    assert (acting == (d.plan.n > limited.regime["threshold"])).all()
+    assert distance(limited) < 0.9 * distance(replace(limited, regime={}))
 
 
 # ------------------------------------------------------------------------------------------------------------ cases

@@ -8,8 +8,9 @@ their readings tell them; with a reference campaign also a smooth remainder over
 A reference adds its readings, in which the signature is zero; parameters and tolerances are shared.
 
 A rival is a fault of another class in any form. Its distance is what the best non-negative mixture of drawn forms and
-amounts of one cause leaves of the whitened signature: shapes, heat locations and sizes are free. Below 2.5 to 3 the
-right answer names both.
+amounts of one cause leaves of the whitened signature: shapes, heat locations and sizes are free. A fault that acts
+under some conditions only has rivals that do so as well: to first order, their signatures in those readings. Below 2.5
+to 3 the right answer names both.
 """
 
 from __future__ import annotations
@@ -143,6 +144,27 @@ class Yardstick:
         padded[: flat.shape[1]] = np.where(np.isfinite(flat).all(axis=1)[:, None], flat, 0.0).T
         return np.asarray(solve_triangular(self._root, padded, lower=True))
 
+    def acting(self, regime: Mapping[str, Any]) -> np.ndarray:
+        """Whether a limited fault acts, by reading (2, tests).
+
+        Args:
+            regime: of the fault: a quantity and its side ("above" or "below") in one text or as key and value, and the
+                threshold
+        """
+        plan = self.setting.plan
+        at = regime["at"] if "at" in regime else regime["threshold"]
+        what, side = str(regime["where"]).split() if "where" in regime else next(iter(regime.items()))
+        oil = self.quiet[self.setting.channels.index("T_oil_C")]
+        seen = {
+            "speed": plan.n,
+            "load": plan.load,
+            "oil": oil,
+            "temperature": oil,
+            "order": plan.progress,
+            "direction": np.array([[1.0], [2.0]]),
+        }[what]
+        return np.broadcast_to((seen > at) == (side == "above"), oil.shape)
+
     def survey(self, fault: Any, amounts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Signal-to-noise for some amounts, and which of them change no oil temperature by more than `OBVIOUS`."""
         change = self.signatures([fault] * len(amounts), amounts)
@@ -193,8 +215,8 @@ class Rivals:
     rng: np.random.Generator
     _known: dict[str, np.ndarray] = field(default_factory=dict)
 
-    def _white(self) -> Mapping[str, np.ndarray]:
-        """Whitened signatures (readings, forms) of every cause."""
+    def _signatures(self) -> Mapping[str, np.ndarray]:
+        """Signatures (forms, channels, 2, tests) of every cause."""
         if not self._known:
             faults, amounts, causes = [], [], []
             for cause, family in self.families.items():
@@ -204,8 +226,8 @@ class Rivals:
                         faults.append(fault)
                         amounts.append(a)
                         causes.append(cause)
-            white, named = self.yard.whitened(self.yard.signatures(faults, np.array(amounts))), np.array(causes)
-            self._known = {cause: white[:, named == cause] for cause in self.families}
+            found, named = self.yard.signatures(faults, np.array(amounts)), np.array(causes)
+            self._known = {cause: found[named == cause] for cause in self.families}
         return self._known
 
     def nearest(self, fault: Any, amount: float, beside: Iterable[tuple[Any, float]] = ()) -> tuple[float, Rival]:
@@ -223,9 +245,11 @@ class Rivals:
             q = np.linalg.qr(rest)[0]
             t = t - q @ (q.T @ t)
         own = {merged(f.cause) for f in faults}
+        limits = [self.yard.acting(f.regime) for f in faults if f.regime]
         found = [Rival("nothing", float(np.linalg.norm(t)))]
-        for cause, columns in self._white().items():
+        for cause, forms in self._signatures().items():
             if merged(cause) not in own:
+                columns = self.yard.whitened(np.concatenate([forms, *(forms * limit for limit in limits)]))
                 apart = columns - q @ (q.T @ columns) if others else columns
                 found.append(Rival(cause, _left(apart, t)))
         return found[0].distance, min(found[1:], key=lambda r: r.distance)

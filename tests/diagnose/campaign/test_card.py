@@ -119,7 +119,8 @@ mu = "10 %"
     assert len(error.value.problems) == 7
     for words in (
         "card.toml: schema = 'gearheat.card/3' does not fit.",
-        "card.toml: day_cooling_sd = -1 does not fit. Expected: relative scatter of the cooling from day to day.",
+        "card.toml: day_cooling_sd = -1 does not fit. Expected: relative scatter from day to day of what surfaces and"
+        " coolers give off.",
         'card.toml: unknown key "columms". Did you mean "columns"?',
         "card.toml [channels.T_oil]: repeat_sd = True does not fit.",
         "card.toml [protocol]: stop_min = -1 does not fit.",

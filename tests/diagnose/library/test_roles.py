@@ -29,7 +29,7 @@ def test_planetary_gearbox():
     assert roles.oil_side == ("oil_gears", "oil_carrier_body", "oil_wall")
     assert roles.contacts == ("carrier_body_wall", "wall_surface")
     assert (roles.inside, roles.outside) == (("gears", "carrier_body"), ("wall", "surface"))
-    assert roles.cooling == ("cooling.A", "foot.G")
+    assert roles.cooling == ("cooling.A", "foot.G") and roles.air_side == ("cooling.A",)
     bearing = roles.places["bearing"][0]
     assert (bearing.shaft, bearing.inner, bearing.outer) == tuple(
         f"carrier_bearing.{port}" for port in ("shaft", "inner", "outer")

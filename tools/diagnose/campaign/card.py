@@ -79,7 +79,9 @@ class Card(Strict):
     schema_: Literal["gearheat.card/1", "gearheat.card/2"] = Field(
         default="gearheat.card/2", alias="schema", description="version of the format"
     )
-    day_cooling_sd: float = Field(default=0.015, ge=0, description="relative scatter of the cooling from day to day")
+    day_cooling_sd: float = Field(
+        default=0.015, ge=0, description="relative scatter from day to day of what surfaces and coolers give off"
+    )
     series: bool = Field(default=False, description="whether the tests were logged, too; for the reader")
     columns: dict[str, str] = Field(default={}, description="sensor, path or optional column = column of your table")
     units: dict[str, str] = Field(default={}, description="column of the table = its unit")

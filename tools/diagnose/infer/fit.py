@@ -276,14 +276,15 @@ def weighed(problem: Problem, look: Look, noise: Noise, cost: float) -> Fit:
     known, G = J[:, linear], J[:, vector.sizes]
     residual = problem.measured - look.shown + J @ look.x
     noise = problem.noise(look, noise.scales)
-    wide = known @ known.T + WIDTHS[-1] ** 2 * G @ G.T
+    sizes, (low, high) = look.x[vector.sizes], (b[vector.sizes] for b in (vector.low, vector.high))
+    free = G[:, (sizes > low) & (sizes < high)]  # one that stands at its bound explains nothing more
+    wide = known @ known.T + WIDTHS[-1] ** 2 * free @ free.T
     noise = noise.fitted(residual, wide)
     V = noise.covariance + known @ known.T
     if not look.acting:
         white = White.of(V)
         return Fit(look, noise, cost, white.log_density(white(residual)) + noise.log_prior, 0.0)
     rough = _rough(problem, look, vector)
-    low, high = (b[vector.sizes] for b in (vector.low, vector.high))
     logs = []
     for share, weight in FORM.items():
         white = White.of(V + share**2 * rough)

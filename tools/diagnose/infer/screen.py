@@ -8,15 +8,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 from scipy.special import logsumexp, ndtri
 
-from ..library.cause import Mostly
 from ..model.formula import Formula
 from .evidence import log_bayes_factors
 from .fit import Fit, Start, View, bounds
 from .problem import Acting, Problem
 
 #: Samples of a form: one in the middle of its shapes, and so many more for the first shape and for each further one; of
-#: one with a threshold, of which each place may have a best fit of its own, so many: of physics, and of instruments.
+#: one with a threshold, of which each place may have a best fit of its own, so many places: of physics, of instruments.
 FIRST, FURTHER, MOST, THRESHOLDS = 3, 1, 6, (6, 8)
+#: How far behind the best candidate of a form a second one is tried.
+NEAR = 3.0
 #: Places of a change in the running order at most.
 PLACES = 40
 #: Draws of the alarm's null.
@@ -62,9 +63,15 @@ class Look:
 
     def start(self, formula: int) -> Start:
         """Where a fit of a formula begins: at the best of its candidates."""
+        return self.starts(formula)[0]
+
+    def starts(self, formula: int) -> list[Start]:
+        """The best of a formula's candidates and, as each threshold may have a best fit of its own, a near second."""
         own = np.flatnonzero(self.owner == formula)
-        best = int(own[np.argmax(self.log_bf[own])])
-        return self.begun(best, self.sizes[best])
+        ranked = own[np.argsort(-self.log_bf[own], kind="stable")]
+        two = any(shape.name == "threshold" for shape in self.candidates[own[0]].formula.form.shapes)
+        near = [k for k in ranked[: 1 + two] if self.log_bf[k] > self.log_bf[ranked[0]] - NEAR]
+        return [self.begun(k, self.sizes[k]) for k in near]
 
     def begun(self, k: int, size: float) -> Start:
         """A candidate at a size, not too near to zero."""
@@ -89,12 +96,12 @@ def samples(formulas: Sequence[Formula], orders: np.ndarray) -> tuple[tuple[Acti
         d = len(shapes)
         n = min(1 + (FIRST + FURTHER * (d - 1) if d else 0), MOST)
         since = formula.form.regime.get("quantity") == "order above" and len(orders)
-        if "threshold" in shapes:
-            n = len(orders) if since else THRESHOLDS[not formula.paths]
         points = spread(n, d)
-        if since:
-            points[:, shapes.index("threshold")] = between
-            points[:, [isinstance(shape, Mostly) for shape in formula.form.shapes]] = 0.0
+        if "threshold" in shapes:
+            inside = THRESHOLDS[not formula.paths]
+            places = between if since else ndtri((np.arange(inside) + 0.5) / inside)
+            points = np.zeros((len(places), d))
+            points[:, shapes.index("threshold")] = places
         for u in points:
             found.append(Acting(formula, np.r_[0.0, u]))
             owner.append(k)

@@ -25,7 +25,7 @@ from .problem import Aside, Problem
 OUTSIDE = 0.06
 #: Forms fitted: within so many nats of the best, at most so many, of one cause at most, causes at least; one of each
 #: cause within a share of the best, as a first look is off by a share of what it finds.
-WITHIN, FORMS, EACH, LEAST, SHARE = 9.0, 14, 3, 4, 0.35
+WITHIN, FORMS, EACH, LEAST, SHARE = 12.0, 16, 4, 4, 0.35
 #: Pairs that look best, those fitted of them and of such as are grown from some singles, those fitted because they are
 #: like the best one, and how far behind the best hypothesis a pair may promise to be.
 COUPLES, PAIRS, GROWN, LIKE, BEHIND = 40, 5, 3, 4, 5.0
@@ -200,10 +200,11 @@ class Search:
     def _alone(self, k: int) -> Fit | None:
         """A form fitted alone, None where it cannot be run."""
         if k not in self._fits:
-            try:
-                self._fits[k] = joined(self.problem, self.null, [self.first.start(k)])
-            except SolveError:
-                self._fits[k] = None
+            fits = []
+            for start in self.first.starts(k):
+                with suppress(SolveError):
+                    fits.append(joined(self.problem, self.null, [start]))
+            self._fits[k] = max(fits, key=lambda fit: fit.evidence, default=None)
         return self._fits[k]
 
     def _alarm(self) -> None:

@@ -8,7 +8,7 @@ from dataclasses import replace
 from ...model.laws.oil import kinematic_viscosity
 from ...model.machines.spec import PartSpec
 from .cause import Form, Num, Row, Shape, Theta, Values
-from .forms import GENERAL, MOST_PLACES, Context, Regime
+from .forms import BESIDE, MOST_PLACES, ONE_PLACE, SIDE, Context, Regime
 from .roles import Place
 
 #: An extra part and what it meets.
@@ -139,7 +139,7 @@ class Extras:
         weight: float = 1.0,
         as_keys: Keys = as_they_are,
     ) -> tuple[Form, ...]:
-        """One form for all parts, one for each of several, one for each regime; they share the weight.
+        """One form for all parts, one for each of several, one for each regime.
 
         Args:
             made: the parts
@@ -150,13 +150,13 @@ class Extras:
             as_keys: size, shapes and row -> parameters of the extra part
         """
         single = list(zip(names, made, strict=True)) if 1 < len(made) <= MOST_PLACES else []
-        rest = (1 - GENERAL) * weight / max(len(single) + len(limits), 1)
-        general = GENERAL * weight if single or limits else weight
-        found = [replace(self.with_parts(made, shapes, None, as_keys), weight=general)]
-        found += [
-            replace(self.with_parts([part], shapes, None, as_keys), name=name, weight=rest) for name, part in single
-        ]
-        found += [replace(self.with_parts(made, shapes, limit, as_keys), weight=rest) for limit in limits]
+        places = (BESIDE if limits else ONE_PLACE) if single else 0.0
+        general = 1 - places - SIDE * len(limits)
+        found = [replace(self.with_parts(made, shapes, None, as_keys), weight=weight * general)]
+        for name, part in single:
+            own = self.with_parts([part], shapes, None, as_keys)
+            found.append(replace(own, name=name, weight=weight * places / len(single)))
+        found += [replace(self.with_parts(made, shapes, limit, as_keys), weight=weight * SIDE) for limit in limits]
         return tuple(found)
 
     def with_parts(

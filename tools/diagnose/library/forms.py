@@ -15,8 +15,10 @@ from .roles import Roles
 #: What changes values of the machine.
 Changes = Callable[[Theta, Row], Values]
 
-#: Share of a cause's prior of the form that acts everywhere, in all parts; places and regimes share the rest.
-GENERAL = 0.5
+#: Share of a cause's prior of the forms that act in one of several parts only.
+ONE_PLACE = 0.5
+#: The same beside regimes, and of each side of a regime: as likely for every cause.
+BESIDE, SIDE = 0.25, 0.05
 #: How gradually a form usually sets in at a threshold, over the range of its quantity.
 USUAL = 0.04
 #: Share of the middle speed below which what follows the speed no longer does.
@@ -145,7 +147,7 @@ def shared(
         shapes: of all forms
     """
     own = list(single) if 1 < len(single) <= MOST_PLACES else []
-    general = (GENERAL if own else 1.0) / len(together)
+    general = (1 - ONE_PLACE if own else 1.0) / len(together)
     found = [Form(", ".join(p) if k else "", general, shapes, values=v) for k, (p, v) in enumerate(together)]
-    found += [Form(", ".join(p), (1 - GENERAL) / len(own), shapes, values=v) for p, v in own]
+    found += [Form(", ".join(p), ONE_PLACE / len(own), shapes, values=v) for p, v in own]
     return tuple(found)

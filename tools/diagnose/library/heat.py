@@ -8,7 +8,7 @@ from dataclasses import replace
 from ..campaign.table import Sensor
 from .cause import Cause, Mostly, Ranges, Shape
 from .extras import Extras
-from .forms import GENERAL, Context
+from .forms import SIDE, Context
 from .roles import Roles
 
 #: A machine stands below this share of its typical speed, with as gradual a change.
@@ -49,7 +49,7 @@ def external_source(at: Context) -> Cause:
     single = [extras.with_parts([part], shapes) for part in made]
     limits = at.regimes(("w", "tau", "direction"))
     sides = [extras.with_parts(made[-1:], shapes, limit) for limit in limits]
-    share = GENERAL if sides else 1.0
+    share = 1 - SIDE * len(sides)
     names = [port.partition(".")[0] if len(outside) > 1 else "" for port in outside]
     return Cause(
         id="heat.external_source",
@@ -57,7 +57,7 @@ def external_source(at: Context) -> Cause:
         size=at.power("heat flow rate", 0.085, -0.3, 1.2),
         forms=(
             *(replace(f, name=n, weight=share / len(single)) for f, n in zip(single, names, strict=True)),
-            *(replace(f, weight=(1 - share) / len(sides)) for f in sides),
+            *(replace(f, weight=SIDE) for f in sides),
         ),
         exposes="temperatures with the gearbox at rest and its neighbours running",
         acts_on=at.first("speed"),

@@ -110,7 +110,12 @@ class Roles:
     @property
     def cooling(self) -> tuple[str, ...]:
         """Paths that scale what the machine gives to its surroundings."""
-        paths = self.scaled(*self.surfaces, *self.foundation, *self.coolers)
+        return (*self.air_side, *self.scaled(*self.foundation))
+
+    @property
+    def air_side(self) -> tuple[str, ...]:
+        """Those of surfaces and coolers, which a day changes: draught, humidity, what stands around."""
+        paths = self.scaled(*self.surfaces, *self.coolers)
         told = (f"{name}.emissivity" for name in self.surfaces if f"{name}.A" not in paths)
         return (*paths, *told)
 
