@@ -91,5 +91,5 @@ def test_the_channels_of_the_measured_campaign_say_what_the_readme_prints(campai
             assert alone[id] == pytest.approx(float(percent) / 100, abs=0.02)
     best = found["answers"][0]
     assert best["causes"] == [["sensor.wall_temp.offset"], ["sensor.ambient.since"]]
-    assert best["probability"] == pytest.approx(0.93, abs=0.02)
+    assert best["probability"] == pytest.approx(0.94, abs=0.02)
     assert found["remainder"]["channels"][0]["channel"] == "T_oil"
