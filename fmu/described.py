@@ -13,6 +13,7 @@ from typing import Any
 import fmpy
 from gearheat.model.core.flat import Quantity
 from gearheat.model.errors import FmuError
+from gearheat.model.files import reading
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ def described(path: Path) -> Described:
         FmuError: the file is no FMU for FMI 2.0 co-simulation, or holds no binary for this machine
     """
     try:
-        with zipfile.ZipFile(path) as file:
+        with zipfile.ZipFile(reading(path)) as file:
             root = ET.fromstring(file.read("modelDescription.xml"))
         if (version := root.get("fmiVersion")) != "2.0":
             raise FmuError(f"{path}: this FMU is for FMI {version}. Only FMI 2.0 for co-simulation can be played.")

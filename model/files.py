@@ -1,28 +1,79 @@
-"""Files that are whole or not there at all."""
+"""Files that are whole or not there at all, and never written over what a command reads."""
 
 from __future__ import annotations
 
+import errno
 import os
+import shutil
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
+from contextvars import ContextVar
 from pathlib import Path
+
+#: Files that the command has read, by device and number; none outside a command.
+_READ: ContextVar[set[tuple[int, int]] | None] = ContextVar("_READ", default=None)
+
+
+@contextmanager
+def inputs_kept() -> Iterator[None]:
+    """Within the block, what `reading` is told of cannot be written over."""
+    token = _READ.set(set())
+    try:
+        yield
+    finally:
+        _READ.reset(token)
+
+
+def reading(path: Path) -> Path:
+    """The path of a file that is about to be read."""
+    known = _READ.get()
+    if known is not None and path.is_file():
+        known.add(_identity(path))
+    return path
+
+
+def place(path: Path) -> Path:
+    """Where output that is called `path` goes: the file behind a link, never one that the command reads.
+
+    Raises:
+        OSError: the command reads it, or it is a folder
+    """
+    path = Path(os.path.realpath(path)) if path.is_symlink() else path
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, "it is a folder")
+    if path.is_file() and _identity(path) in (_READ.get() or ()):
+        raise FileExistsError(errno.EEXIST, "it is read by this command")
+    return path
+
+
+def _identity(path: Path) -> tuple[int, int]:
+    found = path.stat()
+    return found.st_dev, found.st_ino
 
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
     """A file beside a place, to be written within the block: it moves there at the end, and is removed after an error.
 
+    What a pipe or a device is given, such as /dev/stdout, goes through it.
+
     Args:
         path: the place; its folder exists
 
     Raises:
-        OSError: the folder cannot be written to
+        OSError: the folder cannot be written to, or the command reads that file
     """
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=path.parent)
+    path = place(path)
+    flows = path.exists() and not path.is_file()
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=None if flows else path.parent)
     os.close(handle)
     try:
         yield Path(name)
+        if flows:
+            with open(name, "rb") as whole, path.open("wb") as stream:
+                shutil.copyfileobj(whole, stream)
+            return
         mask = os.umask(0)  # the only way to ask for it
         os.umask(mask)
         os.chmod(name, 0o666 & ~mask)

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ..model.errors import GearheatError, ScenarioError, suggestion
+from ..model.files import reading
 
 #: Kinds of source beside a citation ("Dias2014, table 5.7"): they need a reason behind the colon.
 SOURCE_KINDS = ("assumed", "inferred", "calibrated")
@@ -29,7 +30,7 @@ def read_text(path: Path, kind: str, refused: type[GearheatError]) -> str:
         GearheatError: of that class: there is no such file, it is not UTF-8 text, or it cannot be read
     """
     try:
-        return path.read_text(encoding="utf-8-sig")
+        return reading(path).read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         raise refused(f"{path}: there is no such file. Check the path.") from None
     except UnicodeDecodeError:

@@ -5,6 +5,7 @@ Imports nothing heavy: `gearheat --help` goes through here.
 
 from __future__ import annotations
 
+import errno
 import functools
 import json
 import math
@@ -16,11 +17,13 @@ from pathlib import Path
 from typing import Any, ParamSpec
 
 from ..model.errors import DataError, GearheatError
-from ..model.files import replacing
+from ..model.files import inputs_kept, place, replacing
 
 P = ParamSpec("P")
 
 BAD_INPUT = 2
+#: Of a device without room.
+FULL = (errno.ENOSPC, errno.EDQUOT)
 INTERRUPTED = 130
 
 
@@ -30,7 +33,9 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
         try:
-            command(*args, **kwargs)
+            with inputs_kept():
+                command(*args, **kwargs)
+            sys.stdout.flush()
         except GearheatError as error:
             for problem in error.problems:
                 note(f"error: {problem}")
@@ -39,9 +44,21 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
             note("interrupted")
             sys.exit(INTERRUPTED)
         except BrokenPipeError:  # the reader of stdout, a pager for example, has gone
-            os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+            _silence()
+        except OSError as error:
+            if error.errno not in FULL:
+                raise
+            note(f"error: {error.filename or 'standard output'}: {error.strerror}. Make room, or set TMPDIR.")
+            if error.filename is None:
+                _silence()
+            sys.exit(BAD_INPUT)
 
     return run
+
+
+def _silence() -> None:
+    """Nothing more goes to stdout."""
+    os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
 
 
 def note(text: str) -> None:
@@ -105,10 +122,10 @@ def writable(*paths: Path | None) -> None:
     problems = []
     for path in (p for p in paths if p is not None):
         try:
-            if path.is_dir():
-                raise IsADirectoryError(21, "it is a folder")
-            with tempfile.TemporaryFile(dir=path.parent):
-                continue
+            goes = place(path)
+            if not goes.exists() or goes.is_file():
+                with tempfile.TemporaryFile(dir=goes.parent):
+                    continue
         except OSError as error:
             problems.append(_cannot_write(path, error))
     if problems:
@@ -130,6 +147,8 @@ def folder(path: Path) -> Path:
 
 
 def _cannot_write(path: Path, error: OSError) -> str:
+    if isinstance(error, FileExistsError):
+        return f"{path}: cannot be written ({error.strerror}). Give the output another name."
     return f"{path}: cannot be written ({error.strerror or error}). Give a folder that exists and may be written."
 
 

@@ -1,11 +1,18 @@
 from __future__ import annotations
 
+import errno
 import json
 import math
+import os
+import subprocess
+import sys
+import threading
+from pathlib import Path
 
 import numpy as np
 import pytest
 from gearheat.model.errors import DataError, SolveError
+from gearheat.model.files import reading
 from gearheat.tools.console import as_json, cell, folder, guarded, table, writable, write
 
 
@@ -75,3 +82,67 @@ def test_numbers_stand_right_and_words_left(capsys):
     assert short.index("a") == long.index("long")
     assert short.index("1") + 1 == long.index("22.5") + 4
     assert short.index("K") == long.index("N.m")
+
+
+def test_what_a_command_reads_is_not_written_over(tmp_path, capsys):
+    source, link, other = (tmp_path / name for name in ("in.csv", "link.csv", "out.csv"))
+    source.write_text("before")
+    link.symlink_to(source)
+
+    @guarded
+    def command(out: Path) -> None:
+        reading(source)
+        writable(out)
+        write(out, "after")
+
+    for out in (source, link, tmp_path / "." / "in.csv"):
+        with pytest.raises(SystemExit) as ended:
+            command(out)
+        assert ended.value.code == 2
+        assert "it is read by this command" in capsys.readouterr().err
+    command(other)
+    assert (source.read_text(), other.read_text()) == ("before", "after")
+    write(source, "later")  # no command that reads it
+    assert source.read_text() == "later"
+
+
+def test_output_follows_links(tmp_path):
+    target, link = tmp_path / "target", tmp_path / "link"
+    target.write_text("before")
+    link.symlink_to(target)
+    write(link, "after")
+    assert link.is_symlink() and target.read_text() == "after"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="pipes and devices of Unix")
+def test_pipes_and_devices_are_written_through(tmp_path):
+    pipe, got = tmp_path / "pipe", []
+    os.mkfifo(pipe)
+    reader = threading.Thread(target=lambda: got.append(pipe.read_text()))
+    reader.start()
+    writable(pipe, Path("/dev/null"))
+    write(pipe, "through")
+    reader.join(10)
+    assert got == ["through"] and pipe.is_fifo()
+    write(Path("/dev/null"), "gone")
+    assert Path("/dev/null").is_char_device()
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device that is always full")
+def test_a_full_device_is_a_message():
+    command = [sys.executable, "-m", "gearheat.tools.cli", "list"]
+    with Path("/dev/full").open("w") as full:
+        said = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert said.returncode == 2
+    assert said.stderr == "error: standard output: No space left on device. Make room, or set TMPDIR.\n"
+
+
+def test_a_full_disk_is_a_message(capsys):
+    @guarded
+    def command() -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "/tmp/gearheat-x")
+
+    with pytest.raises(SystemExit) as ended:
+        command()
+    assert ended.value.code == 2
+    assert capsys.readouterr().err.startswith("error: /tmp/gearheat-x: No space left")

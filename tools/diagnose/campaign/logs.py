@@ -15,6 +15,7 @@ from typing import IO, Any
 import numpy as np
 
 from ...model.errors import DataError, GearheatError, suggestion
+from ...model.files import reading
 from ...model.units import spelled
 from ...scenarios.columns import in_si, split_unit
 from ...scenarios.csv_table import raise_all
@@ -147,14 +148,14 @@ def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]
 
 
 def _opened(path: Path) -> IO[str]:
-    if path.suffix == ".gz":
+    if reading(path).suffix == ".gz":
         return gzip.open(path, "rt", encoding="utf-8-sig")
     return path.open(encoding="utf-8-sig")
 
 
 def _parquet(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]:
     try:
-        table = import_module("pyarrow.parquet").read_table(path)
+        table = import_module("pyarrow.parquet").read_table(reading(path))
     except ImportError:
         raise DataError([f'{path.name}: Parquet files need pyarrow: pip install "gearheat[parquet]".']) from None
     columns = {name: table.column(name).to_pylist() for name in table.column_names}
