@@ -64,6 +64,14 @@ def test_calibrated_values_come_first_and_stay_within_their_range(tmp_path: Path
     assert again.spec.part(OIL).values["nu_40"] == pytest.approx(1e-4 * float(ca.exp(0.5)))
 
 
+def test_a_value_that_the_file_leaves_to_its_default_is_written(tmp_path: Path) -> None:
+    """A fan is a factor on the speed of the air, which no rig file states."""
+    assert "k_air" not in RIG.spec.part("room").values
+    factor = Form(values=lambda theta, row: {"room.k_air": row.base["room.k_air"] * ca.exp(theta["G"])})
+    again = load(written(tmp_path, extended_rig(RIG, {}, [applied(factor, "cooling.fan", G=0.5)], "a.csv", PARTS)))
+    assert again.spec.part("room").values["k_air"] == pytest.approx(float(ca.exp(0.5)))
+
+
 def test_several_oils_keep_their_own_values(tmp_path: Path) -> None:
     factor = Form(values=lambda theta, row: {f"{OIL}.nu_40": row.base[f"{OIL}.nu_40"] * theta["G"]})
     text = extended_rig(RIG, {}, [applied(factor, G=1.5)], "mine.csv", PARTS, oils=3)

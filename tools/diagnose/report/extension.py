@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...model.core.component import Component
-from ...model.core.declare import Output, declared
+from ...model.core.declare import Output, Parameter, declared
 from ...model.machines.spec import PartSpec
 from ...scenarios.scenario import Scenario
 from ...scenarios.write import DIAGNOSED, rig_text
@@ -95,7 +95,9 @@ def _added(
     """The scenario with a cause, and what of it the machine cannot hold."""
     form, outside = one.form, f"Not a matter of the machine, hence not below: {one.told}."
     with_parts = scenario.spec.with_parts(form.parts, form.connections, types)
-    base = {f"{p.name}.{key}": value for p in with_parts.parts for key, value in p.values.items()}
+    declarations = {p.name: declared(with_parts.types[p.type], Parameter) for p in with_parts.parts}
+    base = {f"{name}.{key}": d.default for name, own in declarations.items() for key, d in own.items()}
+    base |= {f"{p.name}.{key}": value for p in with_parts.parts for key, value in p.values.items()}
     changed = None if form.spread else _changed(form, one.theta, base)
     if not changed:
         differs = (
