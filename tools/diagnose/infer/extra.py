@@ -47,7 +47,7 @@ def extras(problem: Problem, fit: Fit, spreads: Sequence[Formula]) -> Iterator[t
     r = views[0].white.L @ views[0].e
     scatters = [v.white.L @ v.white.L.T for v in views]
     if spreads:
-        own = [Acting(f, np.zeros(f.size)) for f in spreads]
+        own = [Acting(f, np.r_[float(f.paced), np.zeros(f.size - 1)]) for f in spreads]
         effects = problem.tangents(fit.look.z, fit.look.acting, own)
         for formula, effect in zip(spreads, effects.T, strict=True):
             columns = _columns(problem, formula, effect)

@@ -264,8 +264,15 @@ class Problem:
         return frozenset(np.flatnonzero(effect > 0.05 * effect.max(initial=1e-300)).tolist())
 
     def tangents(self, z: np.ndarray, acting: Sequence[Acting], candidates: Sequence[Acting]) -> np.ndarray:
-        """Effects (M, k) of one prior half width of each candidate beside what acts, to first order at size zero."""
+        """Effects (M, k) of one prior half width of each candidate beside what acts.
+
+        To first order at size zero; of a candidate with a size, the secant up to there.
+        """
         found = np.zeros((self.m, len(candidates)))
         parts = [(a.formula, a.t) for a in acting]
         found[self.own] = self.data.tangents(np.append(z, 0.0), parts, [(c.formula, c.t) for c in candidates])
+        far = [k for k, c in enumerate(candidates) if c.t[0]]
+        without = self.shown(z, acting) if far else found
+        for k in far:
+            found[:, k] = (self.shown(z, [*acting, candidates[k]]) - without) / candidates[k].t[0]
         return found

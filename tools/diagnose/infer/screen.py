@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from itertools import product
 
 import numpy as np
 from scipy.special import logsumexp, ndtri
@@ -16,6 +17,8 @@ from .problem import Acting, Problem
 #: Samples of a form: one in the middle of its shapes, and so many more for the first shape and for each further one; of
 #: one with a threshold, of which each place may have a best fit of its own, so many places: of physics, of instruments.
 FIRST, FURTHER, MOST, THRESHOLDS = 3, 1, 6, (6, 8)
+#: Sizes up to which causes that shorten dwells are judged: readings that end a dwell hardly follow its last minutes.
+PACES = (1.0, 2.5)
 #: How far behind the best candidate of a form a second one is tried.
 NEAR = 3.0
 #: Places of a change in the running order at most.
@@ -29,7 +32,7 @@ class Look:
     """All forms of all causes at one linearisation.
 
     Args:
-        candidates: forms with their shapes, size zero
+        candidates: forms with their shapes, at size zero or at that up to which they are judged
         owner: number of each candidate's formula (k,)
         effects: of one prior half width (M, k)
         white: the same, whitened by what the fit leaves uncertain (M, k)
@@ -102,8 +105,9 @@ def samples(formulas: Sequence[Formula], orders: np.ndarray) -> tuple[tuple[Acti
             places = between if since else ndtri((np.arange(inside) + 0.5) / inside)
             points = np.zeros((len(places), d))
             points[:, shapes.index("threshold")] = places
-        for u in points:
-            found.append(Acting(formula, np.r_[0.0, u]))
+        sizes = PACES if formula.paced else (0.0,)
+        for size, u in product(sizes, points):
+            found.append(Acting(formula, np.r_[size, u]))
             owner.append(k)
     return tuple(found), np.array(owner)
 
