@@ -223,8 +223,8 @@ class Search:
         taken: dict[str, int] = {}
         best = float(value.max())
         for k in np.argsort(-value):
-            cause = self.formulas[k].cause.id
-            far, lost = value[k] < best - WITHIN, value[k] < best - max(WITHIN, SHARE * best)
+            cause, paced = self.formulas[k].cause.id, self.formulas[k].paced  # no first look shows early readings well
+            far, lost = (not paced and value[k] < best - d for d in (WITHIN, max(WITHIN, SHARE * best)))
             if taken.get(cause, 0) >= EACH or (far and cause in taken) or (lost and len(taken) >= LEAST):
                 continue
             chosen.append(int(k))

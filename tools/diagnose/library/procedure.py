@@ -36,11 +36,17 @@ class Course:
 COURSES = (
     Course(
         "",
-        0.7,
+        0.5,
         Shape("power", "1", "exponent of the running order", 0.3, 2.0, 0.9, 0.35),
         lambda theta, row: (row.order + 1e-9) ** theta["power"],
     ),
-    Course("from one test on", 0.3, PLACE, since, FROM_THEN),
+    Course(
+        "settling",
+        0.25,
+        Shape("decay", "1", "share of the campaign in which it settles: running in", 0.05, 0.6),
+        lambda theta, row: (1 - ca.exp(-row.order / theta["decay"])) / (1 - ca.exp(-1 / theta["decay"])),
+    ),
+    Course("from one test on", 0.25, PLACE, since, FROM_THEN),
 )
 
 
