@@ -11,38 +11,44 @@ from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
 
-#: Files that the command has read, by device and number; none outside a command.
-_READ: ContextVar[set[tuple[int, int]] | None] = ContextVar("_READ", default=None)
+#: Whether the command has read a file, by device and number, or made it; none outside a command.
+_KNOWN: ContextVar[dict[tuple[int, int], bool] | None] = ContextVar("_KNOWN", default=None)
 
 
 @contextmanager
 def inputs_kept() -> Iterator[None]:
     """Within the block, what `reading` is told of cannot be written over."""
-    token = _READ.set(set())
+    token = _KNOWN.set({})
     try:
         yield
     finally:
-        _READ.reset(token)
+        _KNOWN.reset(token)
 
 
 def reading(path: Path) -> Path:
     """The path of a file that is about to be read."""
-    known = _READ.get()
-    if known is not None and path.is_file():
-        known.add(_identity(path))
+    _noted(path, read=True)
     return path
+
+
+def _noted(path: Path, *, read: bool) -> None:
+    """A file as read or made by the command, whichever came first."""
+    known = _KNOWN.get()
+    if known is not None and path.is_file():
+        known.setdefault(_identity(path), read)
 
 
 def place(path: Path) -> Path:
     """Where output that is called `path` goes: the file behind a link, never one that the command reads.
 
     Raises:
-        OSError: the command reads it, or it is a folder
+        IsADirectoryError: it is a folder
+        FileExistsError: the command reads it
     """
     path = Path(os.path.realpath(path)) if path.is_symlink() else path
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, "it is a folder")
-    if path.is_file() and _identity(path) in (_READ.get() or ()):
+    if path.is_file() and (_KNOWN.get() or {}).get(_identity(path)):
         raise FileExistsError(errno.EEXIST, "it is read by this command")
     return path
 
@@ -68,6 +74,7 @@ def replacing(path: Path) -> Iterator[Path]:
     flows = path.exists() and not path.is_file()
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=None if flows else path.parent)
     os.close(handle)
+    _noted(Path(name), read=False)
     try:
         yield Path(name)
         if flows:

@@ -18,14 +18,15 @@ SPELLINGS = {
     **dict.fromkeys(("kNm", "kN*m", "kN m", "kN·m"), "kN.m"),
     **dict.fromkeys(("C", "°C", "º C", "ºC", "℃", "° C", "deg C", "Celsius", "celsius", "deg_C"), "degC"),
     **dict.fromkeys(("F", "°F", "ºF", "℉", "deg F", "Fahrenheit"), "degF"),
-    **dict.fromkeys(("1/min", "min-1", "min^-1", "min⁻¹", "/min"), "rpm"),
     **dict.fromkeys(("U/min", "r/min", "RPM", "Rpm", "rev/min", "Umdr/min"), "rpm"),
     **dict.fromkeys(("lb ft", "lb-ft", "lb.ft", "lbft", "ft lb", "ft-lb", "ft.lb", "lbf ft", "lbf.ft"), "lbf*ft"),
     "PS": "metric_horsepower",
     "%": "percent",
     "-": "1",
 }
-#: Of rotational speeds alone: a frequency of rotation counts revolutions.
+#: The same of rotational speeds alone, as they are written in minutes; of other things these are rates.
+PER_MINUTE = dict.fromkeys(("1/min", "min-1", "min^-1", "min⁻¹", "/min"), "rpm")
+#: A frequency of rotation counts revolutions.
 ROTATIONS = dict.fromkeys(("Hz", "rev/s", "r/s", "U/s", "rps"), "revolution/s")
 #: Either revolutions or radians per second.
 UNCLEAR = ("1/s", "s-1", "s^-1", "s⁻¹", "/s")
@@ -38,15 +39,20 @@ def _registry() -> Any:
     return pint.UnitRegistry()
 
 
-def spelled(unit: str) -> str:
-    """A unit as the rest of the program writes it: "1/min" is "rpm", "Nm" is "N.m"."""
+def spelled(unit: str, *, turns: bool = True) -> str:
+    """A unit as the rest of the program writes it: "Nm" is "N.m", and "1/min" is "rpm".
+
+    Args:
+        unit: as a user writes it
+        turns: whether "1/min" may be a rotational speed
+    """
     text = " ".join(unit.split())
-    return SPELLINGS.get(text, text)
+    return PER_MINUTE.get(text, SPELLINGS.get(text, text)) if turns else SPELLINGS.get(text, text)
 
 
 def _pint_unit(text: str) -> str:
     """The model's spelling of a unit in pint's: a dot between letters multiplies, a digit behind one is a power."""
-    text = re.sub(r"(?<!\d)\.|\.(?!\d)", "*", spelled(text).replace("·", "*").replace("^", "**"))
+    text = re.sub(r"(?<!\d)\.|\.(?!\d)", "*", spelled(text, turns=False).replace("·", "*").replace("^", "**"))
     return "" if text == "1" else re.sub(r"([a-zA-Z])(\d)", r"\1**\2", text)
 
 
@@ -104,7 +110,7 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
                 f'{name} = "{value}": "{written}" may mean revolutions or radians. Write rpm, Hz (revolutions per'
                 " second) or rad/s."
             )
-        written = ROTATIONS.get(written, written)
+        written = ROTATIONS.get(written, spelled(written))
 
     ureg = _registry()
     try:

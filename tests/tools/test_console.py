@@ -103,6 +103,15 @@ def test_what_a_command_reads_is_not_written_over(tmp_path, capsys):
     command(other)
     assert (source.read_text(), other.read_text()) == ("before", "after")
     write(source, "later")  # no command that reads it
+
+    @guarded
+    def again() -> None:
+        write(other, "made")
+        reading(other)
+        write(other, "made anew")
+
+    again()
+    assert other.read_text() == "made anew"
     assert source.read_text() == "later"
 
 
