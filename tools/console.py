@@ -22,9 +22,9 @@ from ..model.files import inputs_kept, place, replacing
 P = ParamSpec("P")
 
 BAD_INPUT = 2
+INTERRUPTED = 130
 #: Of a device without room.
 FULL = (errno.ENOSPC, errno.EDQUOT)
-INTERRUPTED = 130
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
@@ -124,8 +124,7 @@ def writable(*paths: Path | None) -> None:
         try:
             goes = place(path)
             if not goes.exists() or goes.is_file():
-                with tempfile.TemporaryFile(dir=goes.parent):
-                    continue
+                tempfile.TemporaryFile(dir=goes.parent).close()
         except OSError as error:
             problems.append(_cannot_write(path, error))
     if problems:

@@ -151,7 +151,7 @@ def test_look_alikes_are_near_and_others_far(drawn: tuple[cases.Drawn, Yardstick
 
 
 def test_rivals_of_a_limited_fault_are_limited_as_well(drawn: tuple[cases.Drawn, Yardstick]) -> None:
-    """Above a speed only, a seal's drag is near to churning above that speed, if far from churning everywhere."""
+    """Above a speed only, a seal's drag is nearer to churning above that speed than to churning everywhere."""
     d, yard = drawn
     rng = np.random.default_rng(3)
     faults = (d.draw("losses.seal_drag", "regime", oil(*drawn), rng) for _ in range(200))

@@ -213,10 +213,10 @@ class Rivals:
     yard: Yardstick
     families: Mapping[str, Callable[[np.random.Generator], Any]]
     rng: np.random.Generator
-    _known: dict[str, np.ndarray] = field(default_factory=dict)
+    _known: dict[str, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
 
-    def _signatures(self) -> Mapping[str, np.ndarray]:
-        """Signatures (forms, channels, 2, tests) of every cause."""
+    def _signatures(self) -> Mapping[str, tuple[np.ndarray, np.ndarray]]:
+        """Signatures (forms, channels, 2, tests) of every cause, and whitened (readings, forms)."""
         if not self._known:
             faults, amounts, causes = [], [], []
             for cause, family in self.families.items():
@@ -227,7 +227,8 @@ class Rivals:
                         amounts.append(a)
                         causes.append(cause)
             found, named = self.yard.signatures(faults, np.array(amounts)), np.array(causes)
-            self._known = {cause: found[named == cause] for cause in self.families}
+            white = self.yard.whitened(found)
+            self._known = {c: (found[named == c], white[:, named == c]) for c in self.families}
         return self._known
 
     def nearest(self, fault: Any, amount: float, beside: Iterable[tuple[Any, float]] = ()) -> tuple[float, Rival]:
@@ -247,9 +248,9 @@ class Rivals:
         own = {merged(f.cause) for f in faults}
         limits = [self.yard.acting(f.regime) for f in faults if f.regime]
         found = [Rival("nothing", float(np.linalg.norm(t)))]
-        for cause, forms in self._signatures().items():
+        for cause, (forms, white_forms) in self._signatures().items():
             if merged(cause) not in own:
-                columns = self.yard.whitened(np.concatenate([forms, *(forms * limit for limit in limits)]))
+                columns = np.hstack([white_forms, *(self.yard.whitened(forms * limit) for limit in limits)])
                 apart = columns - q @ (q.T @ columns) if others else columns
                 found.append(Rival(cause, _left(apart, t)))
         return found[0].distance, min(found[1:], key=lambda r: r.distance)

@@ -89,7 +89,7 @@ def setting(
     films = habit(Context(roles, ranges, sensors))
     known = (*nuisances(roles, card.prior_sd, driven.uncertainties), *([films] if films else ()))
     known = tuple(replace(n, sd=n.wide) if wide else n for n in known if wide or n.sd > 0)
-    day = Nuisance("day", dict.fromkeys(roles.air_side or roles.cooling, 1.0), 1.0, 1.0)
+    day = Nuisance("day", dict.fromkeys(roles.daily, 1.0), 1.0, 1.0)
     names, reads = [s.name for s in sensors], [s.name for s in data.read]
     formulas = tuple(Formula(cause, form, names, reads) for cause in causes for form in cause.forms)
     knobs = dict.fromkeys([p for n in (*known, day) for p in n.paths] + [p for f in formulas for p in f.paths])

@@ -268,11 +268,16 @@ class Problem:
 
         To first order at size zero; of a candidate with a size, the secant up to there.
         """
+        whole, parts, tried = (
+            np.append(z, 0.0),
+            [(a.formula, a.t) for a in acting],
+            [(c.formula, c.t) for c in candidates],
+        )
+        effects = self.data.tangents(whole, parts, tried)
+        if far := [k for k, (_, t) in enumerate(tried) if t[0]]:
+            without = self.data.shown_by(whole, parts)
+            for k in far:
+                effects[:, k] = (self.data.shown_by(whole, [*parts, tried[k]]) - without) / tried[k][1][0]
         found = np.zeros((self.m, len(candidates)))
-        parts = [(a.formula, a.t) for a in acting]
-        found[self.own] = self.data.tangents(np.append(z, 0.0), parts, [(c.formula, c.t) for c in candidates])
-        far = [k for k, c in enumerate(candidates) if c.t[0]]
-        without = self.shown(z, acting) if far else found
-        for k in far:
-            found[:, k] = (self.shown(z, [*acting, candidates[k]]) - without) / candidates[k].t[0]
+        found[self.own] = effects
         return found

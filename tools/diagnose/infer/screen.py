@@ -97,14 +97,14 @@ def samples(formulas: Sequence[Formula], orders: np.ndarray) -> tuple[tuple[Acti
     for k, formula in enumerate(formulas):
         shapes = [shape.name for shape in formula.form.shapes]
         d = len(shapes)
-        n = min(1 + (FIRST + FURTHER * (d - 1) if d else 0), MOST)
-        since = formula.form.regime.get("quantity") == "order above" and len(orders)
-        points = spread(n, d)
         if "threshold" in shapes:
+            since = formula.form.regime.get("quantity") == "order above" and len(orders)
             inside = THRESHOLDS[not formula.paths]
             places = between if since else ndtri((np.arange(inside) + 0.5) / inside)
             points = np.zeros((len(places), d))
             points[:, shapes.index("threshold")] = places
+        else:
+            points = spread(min(1 + (FIRST + FURTHER * (d - 1) if d else 0), MOST), d)
         sizes = PACES if formula.paced else (0.0,)
         for size, u in product(sizes, points):
             found.append(Acting(formula, np.r_[size, u]))

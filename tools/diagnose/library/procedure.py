@@ -143,7 +143,7 @@ def day_scatter(roles: Roles) -> Cause:
         size=Size(
             "sd", "1", "relative standard deviation of the days' cooling beside what the card states", 0.05, 0.0, 0.6
         ),
-        forms=(Form(spread="test", values=factors(roles.air_side or roles.cooling, "sd")),),
+        forms=(Form(spread="test", values=factors(roles.daily, "sd")),),
         exposes="the same point on several days; draught and neighbours logged",
         like=DAYS,
         acts_on="order",

@@ -119,6 +119,11 @@ class Roles:
         told = (f"{name}.emissivity" for name in self.surfaces if f"{name}.A" not in paths)
         return (*paths, *told)
 
+    @property
+    def daily(self) -> tuple[str, ...]:
+        """What differs from day to day: the air side, or all cooling where there is none."""
+        return self.air_side or self.cooling
+
     def having(self, *roles: str) -> tuple[str, ...]:
         """Names of all parts with one of the roles that their classes state."""
         return tuple(p.name for p in self.spec.parts if self.spec.types[p.type].role in roles)
