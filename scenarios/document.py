@@ -46,6 +46,8 @@ def read_toml(path: Path) -> dict[str, Any]:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise ScenarioError(_syntax_problem(path.name, text, str(error))) from None
+    except RecursionError:
+        raise ScenarioError(f"{path.name}: its lists or tables lie too deep in each other. Write them flat.") from None
 
 
 def _syntax_problem(name: str, text: str, message: str) -> str:

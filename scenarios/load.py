@@ -45,6 +45,7 @@ A source is a citation ("Dias2014, table 5.7") or one of "assumed: ...", "inferr
 from __future__ import annotations
 
 from collections.abc import Mapping
+from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
@@ -107,12 +108,13 @@ def load(name_or_path: str | Path, types: Mapping[str, type[Component]] = PARTS)
 def _find(name_or_path: str | Path) -> Path:
     path = Path(name_or_path)
     shipped = RIGS / path / "rig.toml"
-    if len(path.parts) == 1 and shipped.is_file():
-        return shipped
-    if path.is_dir() and (path / "rig.toml").is_file():
-        return path / "rig.toml"
-    if path.is_file() or path.suffix == ".toml":
-        return path
+    with suppress(OSError):  # no name of a file at all
+        if len(path.parts) == 1 and shipped.is_file():
+            return shipped
+        if path.is_dir() and (path / "rig.toml").is_file():
+            return path / "rig.toml"
+        if path.is_file() or path.suffix == ".toml":
+            return path
     names = [p.parent.name for p in sorted(RIGS.glob("*/rig.toml"))]
     close = suggestion(str(name_or_path), names)
     raise ScenarioError(f'there is no rig "{name_or_path}" and no such file.{close} Shipped rigs: {", ".join(names)}.')
@@ -221,6 +223,12 @@ class _Loader:
                 point[path] = in_range(f"{where}: ", raw, known[path])
             except GearheatError as error:
                 self.problems += error.problems
+        for end, quantities in self.table.drive.items():
+            for path in (f"{end}.{quantity}" for quantity in quantities if f"{end}.{quantity}" in known):
+                if path not in dict(paths(self.table.operating_point)):
+                    self.problems.append(
+                        f"{where}: {path} is missing, which [drive] says is given. Give its usual value."
+                    )
         return point
 
     def _drive(self) -> dict[str, tuple[str, ...]]:

@@ -30,6 +30,34 @@ class Override:
     entry: str
 
 
+#: Sizes of everything in a gearbox, by SI unit; what lies outside is a slip of a unit or an exponent. Zero is none.
+SENSIBLE: Mapping[str, tuple[float, float]] = {
+    "m": (1e-10, 1e3),
+    "m2": (1e-12, 1e5),
+    "m3": (1e-12, 1e4),
+    "m2/s": (1e-9, 1.0),
+    "m/s": (1e-9, 1e3),
+    "rad/s": (1e-9, 1e5),
+    "N.m": (1e-12, 1e9),
+    "N": (1e-9, 1e10),
+    "W": (1e-12, 1e10),
+    "W/K": (1e-9, 1e9),
+    "W/(m.K)": (1e-4, 1e5),
+    "W/(m2.K)": (1e-6, 1e8),
+    "J/K": (1e-6, 1e12),
+    "J/(kg.K)": (1.0, 1e5),
+    "kg.m2": (1e-15, 1e10),
+    "kg/m3": (1e-2, 1e5),
+    "Pa": (1.0, 1e14),
+    "Pa.s": (1e-7, 1e5),
+    "K": (1.0, 5e3),
+    "K (difference)": (1e-9, 5e3),
+    "rad": (1e-9, 1e3),
+}
+#: The same of all other units.
+OTHERS = (1e-30, 1e30)
+
+
 @dataclass(frozen=True)
 class PartValues:
     """What the table of one part gives: SI values and choices, where each is from, and all that is wrong.
@@ -68,10 +96,17 @@ def in_range(where: str, raw: object, quantity: Quantity) -> float:
     """
     name = f"{where}{quantity.name}"
     value = to_si(raw, quantity.unit, name=name)
+    written = f'"{raw}"' if isinstance(raw, str) else raw
     if (problem := quantity.problem(value)) is not None:
-        written = f'"{raw}"' if isinstance(raw, str) else raw
         bound = problem.partition("out of range. ")[2].replace(" 1.", ".")  # no unit to show
         raise ScenarioError(f"{name} = {written} is out of range. {bound}")
+    unit = quantity.unit.removesuffix("(difference)").strip()
+    least, most = SENSIBLE.get(quantity.unit, OTHERS)
+    if value and not least <= abs(value) <= most:
+        raise ScenarioError(
+            f"{name} = {written} cannot be of a gearbox: expected {least:g} to {most:g} {unit} in size."
+            " Check its unit and its exponent."
+        )
     return value
 
 
@@ -84,9 +119,14 @@ def meant(key: str, known: Mapping[str, str]) -> str | None:
     """
     if near := difflib.get_close_matches(key, known, n=1):
         return near[0]
-    meanings = {doc.partition(",")[0]: name for name, doc in known.items()}
+    meanings = {_brief(doc): name for name, doc in known.items()}
     described = difflib.get_close_matches(key.replace("_", " "), meanings, n=1)
     return meanings[described[0]] if described else None
+
+
+def _brief(doc: str) -> str:
+    """A meaning without what is said behind a comma or in brackets."""
+    return doc.partition(",")[0].partition(" (")[0]
 
 
 def entry_values(found: Entry, declarations: Mapping[str, Declaration]) -> dict[str, float]:
@@ -203,7 +243,7 @@ class _PartReader:
     def _unknown(self, key: str) -> str:
         if (name := meant(key, self.meanings)) is None:
             return f'{self.where}: unknown key "{key}". Known: {", ".join(self.meanings) or "none"}.'
-        return f'{self.where}: unknown key "{key}". Did you mean "{name}" ({self.meanings[name].partition(",")[0]})?'
+        return f'{self.where}: unknown key "{key}". Did you mean "{name}" ({_brief(self.meanings[name])})?'
 
     def _check_component(self, complete: bool, failed: Iterable[str]) -> None:
         """What the part itself finds: missing values, unknown choices; without what follows from other problems."""

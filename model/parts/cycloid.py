@@ -64,9 +64,15 @@ class CycloidDrive(Component):
     d_VK = Parameter("m", "diameter of the pins of the output rollers", nominal=0.01, above=0.0)
     d_CZ = Parameter("m", "inner diameter of the rollers' path in a disc's bearing", nominal=0.01, above=0.0)
     D_CZ = Parameter("m", "outer diameter of the rollers' path in a disc's bearing", nominal=0.01, above=0.0)
-    mu_r1 = Parameter("1", "coefficient of rolling friction of the eccentric bearing", nominal=1e-3, at_least=0.0)
-    mu_r2 = Parameter("1", "coefficient of rolling friction of the output rollers", nominal=1e-3, at_least=0.0)
-    mu_r3 = Parameter("1", "coefficient of rolling friction of the rollers on the pins", nominal=1e-3, at_least=0.0)
+    mu_r1 = Parameter(
+        "1", "coefficient of rolling friction of the eccentric bearing", nominal=1e-3, at_least=0.0, at_most=1.0
+    )
+    mu_r2 = Parameter(
+        "1", "coefficient of rolling friction of the output rollers", nominal=1e-3, at_least=0.0, at_most=1.0
+    )
+    mu_r3 = Parameter(
+        "1", "coefficient of rolling friction of the rollers on the pins", nominal=1e-3, at_least=0.0, at_most=1.0
+    )
     P_loss = Output("W", "friction power", nominal=100.0, at_least=0.0)
     tau_loss = Output("N.m", "friction torque, on the output", nominal=10.0, at_least=0.0, guess=0.0)
     F_N = Output("N", "sum of the forces between a disc and its pins", nominal=1000.0)
@@ -154,8 +160,8 @@ class CycloidalReducer(CycloidDrive):
 
     lubricant = Lubricant()
 
-    mu_ref = Parameter("1", "sliding friction of rollers on pins at the reference", nominal=0.1, above=0.0)
-    mu_fluid = Parameter("1", "sliding friction of a full film", nominal=0.1, at_least=0.0)
+    mu_ref = Parameter("1", "sliding friction of rollers on pins at the reference", nominal=0.1, above=0.0, at_most=1.0)
+    mu_fluid = Parameter("1", "sliding friction of a full film", nominal=0.1, at_least=0.0, at_most=1.0)
     mu_bl = Parameter("1", "sliding friction without a film", nominal=0.1, above=0.0, at_most=0.3)
     eta_ref = Parameter("Pa.s", "dynamic viscosity at the reference", nominal=0.1, above=0.0)
     w_ref = Parameter("rad/s", "speed of the input at the reference", nominal=100.0, above=0.0)
@@ -230,8 +236,8 @@ class MalhotraReducer(CycloidDrive):
 
     scale: ClassVar[tuple[str, ...]] = ("mu_r1", "mu_r2", "mu_r3", "mu_s1", "mu_s2")
 
-    mu_s1 = Parameter("1", "sliding friction of output rollers on pins", nominal=0.1, at_least=0.0)
-    mu_s2 = Parameter("1", "sliding friction of ring rollers on pins", nominal=0.1, at_least=0.0)
+    mu_s1 = Parameter("1", "sliding friction of output rollers on pins", nominal=0.1, at_least=0.0, at_most=1.0)
+    mu_s2 = Parameter("1", "sliding friction of ring rollers on pins", nominal=0.1, at_least=0.0, at_most=1.0)
     n_counted = Parameter("1", "number of discs whose loss torques are counted", above=0.0, whole=True)
     turns_ring = Parameter("1", "turns counted for the ring rollers per turn of the input", above=0.0)
     P_rated = Parameter("W", "rated power at the input", nominal=1000.0, above=0.0)

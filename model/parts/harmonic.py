@@ -77,8 +77,10 @@ class FlankFilm(Component):
     approach = Parameter("m", "how far the flanks approach per radian of the wave generator", 1e-6, at_least=0.0)
     Rz_1 = Parameter("m", "roughness Rz of the flexspline's flanks", nominal=1e-6, above=0.0)
     Rz_2 = Parameter("m", "roughness Rz of the circular spline's flanks", nominal=1e-6, above=0.0)
-    mu_fluid = Parameter("1", "friction of the full film but for its viscous drag", nominal=0.1, at_least=0.0)
-    mu_boundary = Parameter("1", "friction of touching flanks", nominal=0.1, at_least=0.0)
+    mu_fluid = Parameter(
+        "1", "friction of the full film but for its viscous drag", nominal=0.1, at_least=0.0, at_most=1.0
+    )
+    mu_boundary = Parameter("1", "friction of touching flanks", nominal=0.1, at_least=0.0, at_most=1.0)
     h_adm = Parameter(
         "m",
         "least film that the source admits",

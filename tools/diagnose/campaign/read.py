@@ -107,7 +107,8 @@ class _Reader:
         for name, column in self.context.items():
             doc, kind, _ = CONTEXT[name]
             options = DIRECTIONS if name == "direction" else ()
-            found.append(Column(column, doc, kind, required=False, options=options))
+            above, least = (0.0 if name == n else -np.inf for n in ("dwell_min", "stop_min"))
+            found.append(Column(column, doc, kind, required=False, options=options, above=above, at_least=least))
         return found
 
     def _values(self, table: Table, sensor: Sensor) -> np.ndarray:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
@@ -23,9 +24,11 @@ from .problem import Aside, Problem
 
 #: Prior odds of a remainder beside a hypothesis.
 OUTSIDE = 0.06
-#: Forms fitted: within so many nats of the best, at most so many, of one cause at most, causes at least; one of each
-#: cause within a share of the best, as a first look is off by a share of what it finds.
-WITHIN, FORMS, EACH, LEAST, SHARE = 12.0, 16, 4, 4, 0.35
+#: Causes fitted: within so many nats of the best or a share of it, as a first look is off by a share of what it finds;
+#: at most, and at least, so many.
+WITHIN, SHARE, CAUSES, LEAST = 12.0, 0.35, 12, 4
+#: Further forms of those that fit well: at most so many, forms of one cause; how much more than it looks one may be.
+FURTHER, EACH, MORE = 8, 4, 4.0
 #: Pairs that look best, those fitted of them and of such as are grown from some singles, those fitted because they are
 #: like the best one, and how far behind the best hypothesis a pair may promise to be.
 COUPLES, PAIRS, GROWN, LIKE, BEHIND = 40, 5, 3, 4, 5.0
@@ -101,23 +104,30 @@ def searched(
     problem, null = _cleaned(problem, fitted(problem, (), np.zeros(problem.nz)))
     progress("gross readings", 0.05)
     search = Search(problem, formulas, null, alpha, seed, most, progress)
-    leader = search.leader()
+    leaders = [search.leader()]
     for _ in range(LOOKS):
-        aside = _aside(problem, leader)
+        aside = _aside(problem, leaders)
         if aside != problem.aside:
             problem = problem.without(aside)
             search = Search(problem, formulas, fitted(problem, (), null.look.z), alpha, seed, most, progress)
         found = search.run()
-        leader = found.hypotheses[0].fit
-        if _aside(problem, leader) == problem.aside:
+        leaders = _leaders(found)
+        if _aside(problem, leaders) == problem.aside:
             break
     return found
 
 
-def _aside(problem: Problem, fit: Fit) -> frozenset[Aside]:
-    """The gross readings beside a hypothesis: those that it does not explain, and others that show beside it."""
-    aside = problem.aside - after_all(problem, fit)
-    found = [s.aside for s in outliers(problem, fit)]
+def _leaders(found: Found) -> list[Fit]:
+    """The leading hypothesis, and the likeliest of its causes alone: a gross reading may be all the other explains."""
+    top = found.hypotheses[0]
+    alone = [h.fit for h in found.hypotheses if len(h.causes) == 1 < len(top.causes) and h.causes[0] in top.causes]
+    return [top.fit, *alone[:1]]
+
+
+def _aside(problem: Problem, fits: Sequence[Fit]) -> frozenset[Aside]:
+    """The gross readings: those that the first hypothesis does not explain, and others that show beside one of them."""
+    aside = problem.aside - after_all(problem, fits[0])
+    found = [s.aside for fit in fits for s in outliers(problem, fit)]
     return aside | frozenset(found[: max(2, int(MOST_ASIDE * problem.m))])
 
 
@@ -162,6 +172,7 @@ class Search:
         progress("effects of all causes", 0.1)
         self.first = screen.look(problem, null, self.formulas)
         self._alarm()
+        self.couples = [] if self.p_any > QUIET else pairs.couples(self.first, self.prior)[:COUPLES]
         self._fits: dict[int, Fit | None] = {}
 
     def run(self) -> Found:
@@ -194,7 +205,7 @@ class Search:
     def leader(self) -> Fit:
         """The likeliest of no cause and a few alone, quickly."""
         log_bf = self.first.by_form(len(self.formulas))
-        fits = [self._alone(k) for k in self._forms(log_bf, LEAST - 1)]
+        fits = [self._alone(k) for k in self._leading(self._value(log_bf), LEAST - 1)]
         return max([self.null, *(f for f in fits if f is not None)], key=lambda fit: fit.evidence)
 
     def _alone(self, k: int) -> Fit | None:
@@ -216,28 +227,52 @@ class Search:
         self.critical = float(np.quantile(drawn, 1 - self.alpha))
         self.p_any = float((1 + (drawn >= seen).sum()) / (1 + len(drawn)))
 
-    def _forms(self, log_bf: np.ndarray, most: int) -> list[int]:
-        """Formulas worth a fit, so many at most, best first."""
-        value = log_bf + np.array([np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas])
-        chosen: list[int] = []
-        taken: dict[str, int] = {}
-        best = float(value.max())
+    def _value(self, log_bf: np.ndarray) -> np.ndarray:
+        """What forms promise at a first look: their log Bayes factors and priors."""
+        return log_bf + np.array([np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas])
+
+    def _leading(self, value: np.ndarray, most: int) -> list[int]:
+        """The best-looking forms of the causes worth a fit, so many at most, best first."""
+        chosen: dict[str, int] = {}
+        worst = value.max() - max(WITHIN, SHARE * value.max())
         for k in np.argsort(-value):
-            cause, paced = self.formulas[k].cause.id, self.formulas[k].paced  # no first look shows early readings well
-            far, lost = (not paced and value[k] < best - d for d in (WITHIN, max(WITHIN, SHARE * best)))
-            if taken.get(cause, 0) >= EACH or (far and cause in taken) or (lost and len(taken) >= LEAST):
-                continue
-            chosen.append(int(k))
-            taken[cause] = taken.get(cause, 0) + 1
-            if len(chosen) >= most:
+            if len(chosen) >= most or (value[k] < worst and len(chosen) >= LEAST):
                 break
-        return chosen
+            chosen.setdefault(self.formulas[k].cause.id, int(k))
+        return list(chosen.values())
+
+    def _further(self, log_bf: np.ndarray) -> None:
+        """Fits further forms of the causes that fit well, which promise as much more than they look as those fitted."""
+        prior, none = self._value(log_bf) - log_bf, self.null.evidence
+        fits = {k: fit for k, fit in self._fits.items() if fit}
+        more: dict[str, float] = {}
+        for k, fit in fits.items():
+            cause = self.formulas[k].cause.id
+            more[cause] = max(more.get(cause, 1.0), min((fit.evidence - none) / max(log_bf[k], 1.0), MORE))
+        promise = none + prior + log_bf * [more.get(f.cause.id, 0.0) for f in self.formulas]
+        tried = Counter(self.formulas[k].cause.id for k in self._fits)
+        lead, end = max(fit.evidence + prior[k] for k, fit in fits.items()), len(self._fits) + FURTHER
+        for k in np.argsort(-promise):
+            if promise[k] < lead - max(WITHIN, SHARE * (lead - none)) or len(self._fits) == end:
+                break
+            cause = self.formulas[k].cause.id
+            if cause in more and k not in self._fits and tried[cause] < EACH:
+                tried[cause] += 1
+                fit = self._alone(int(k))
+                lead = max(lead, fit.evidence + prior[k]) if fit else lead
 
     def _singles(self) -> list[Hypothesis]:
         """Every cause alone: its leading forms fitted, the others as they look at first."""
         log_bf = self.first.by_form(len(self.formulas))
-        chosen = self._forms(log_bf, FORMS if self.p_any < QUIET else LEAST)
-        fits = {k: fit for k in chosen if (fit := self._alone(k)) is not None}
+        value = self._value(log_bf)
+        early = [k for k in np.argsort(-value) if self.formulas[k].paced]  # no first look shows early readings well
+        paired = {id(start.acting.formula) for couple in self.couples[:PAIRS] for start in couple}  # each alone, too
+        both = [k for k, f in enumerate(self.formulas) if id(f) in paired]
+        for k in [*self._leading(value, CAUSES if self.p_any < QUIET else LEAST), *early[:EACH], *both]:
+            self._alone(int(k))
+        if self.p_any < QUIET:
+            self._further(log_bf)
+        fits = {k: fit for k, fit in self._fits.items() if fit is not None}
         found = []
         for cause in dict.fromkeys(self.formulas[k].cause.id for k in fits):
             own = {k: fit for k, fit in fits.items() if self.formulas[k].cause.id == cause}
@@ -256,12 +291,11 @@ class Search:
         """Hypotheses of two causes and more: pairs that look best to first order, and leading ones with one more."""
         found: dict[frozenset[str], Hypothesis] = {}
         known = {h.causes[0]: h for h in singles}
-        couples = pairs.couples(self.first, self.prior)[:COUPLES]
-        for starts in couples[:PAIRS]:
+        for starts in self.couples[:PAIRS]:
             self._paired(found, known, starts)
         top = max(found.values(), key=lambda h: h.log_joint, default=singles[0])
         if top.log_joint > singles[0].log_joint:  # others that look like one of the two
-            like = [own for own in couples[PAIRS:] if any(s.acting.id in top.causes for s in own)]
+            like = [own for own in self.couples[PAIRS:] if any(s.acting.id in top.causes for s in own)]
             for starts in like[:LIKE]:
                 self._paired(found, known, starts)
         beam = [h for h in singles if h.log_joint > singles[0].log_joint - 2 * BEHIND][:GROWN]

@@ -1,0 +1,48 @@
+"""Every value of every part, written wrongly: refused with its place, what was found, and what to write instead."""
+
+import pytest
+from gearheat.model.core.declare import Parameter, declared
+from gearheat.model.parts import PARTS
+from gearheat.scenarios.values import part_values, settable
+
+#: What may be written wrongly -> words of the answer.
+WRONG = {
+    "nan": "not finite",
+    "inf": "not finite",
+    "about 3": "no number",
+    "3 candela": "does not fit",
+    "1e280": "",
+    "": "",
+    True: "is no value",
+}
+
+
+def said_of(kind, key, raw):
+    """What is said of one value of a part."""
+    return part_values("rig.toml [part.x]", "x", PARTS[kind], {key: raw, "source": "assumed: test"}).problems
+
+
+@pytest.mark.parametrize("kind", PARTS)
+def test_values_that_are_none(kind):
+    for key, declaration in settable(PARTS[kind]).items():
+        unit = declaration.unit.removesuffix("(difference)").strip()
+        for wrong, words in WRONG.items():
+            raw = f"{wrong} {unit}" if wrong in ("nan", "inf", "1e280") and unit != "1" else wrong
+            problems = said_of(kind, key, raw)
+            told = [p for p in problems if p.startswith(f"rig.toml [part.x]: {key} = ")]
+            assert told, (key, raw, problems)
+            assert words in told[0], told
+            assert any(word in told[0] for word in ("Write", "expected", "must be")), told
+
+
+@pytest.mark.parametrize("kind", PARTS)
+def test_values_out_of_range(kind):
+    for key, d in declared(PARTS[kind], Parameter).items():
+        unit = "" if d.unit == "1" else f" {d.unit.removesuffix('(difference)').strip()}"
+        low, high = (d.at_least if d.above is None else d.above), (d.at_most if d.below is None else d.below)
+        for bound, beyond in ((low, -1.0), (high, 1.0)):
+            if bound is None:
+                continue
+            raw = f"{bound + beyond * max(1.0, abs(bound))!r}{unit}"
+            problems = said_of(kind, key, raw)
+            assert any(f"{key} = " in p and "out of range. It must be" in p for p in problems), (key, raw, problems)
