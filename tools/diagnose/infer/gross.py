@@ -11,7 +11,7 @@ from .problem import Aside, Problem
 
 #: Standard deviations from what the others say beyond which a reading is gross, and so many times those which nine of
 #: ten readings keep within.
-GROSS, OUT = 6.0, 2.5
+GROSS, OUT = 5.0, 2.5
 #: Half of a normal scatter lies within so many standard deviations; no scatter is taken for less than that share.
 HALF, LEAST = 0.6745, 0.2
 #: A given reading is suspected before a compared one only where it stands out by so much more.
