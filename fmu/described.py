@@ -15,6 +15,8 @@ from gearheat.model.core.flat import Quantity
 from gearheat.model.errors import FmuError
 from gearheat.model.files import reading
 
+from .unpacking import check
+
 
 @dataclass(frozen=True)
 class Described:
@@ -58,10 +60,12 @@ def described(path: Path) -> Described:
     """The description of an FMU that this machine can play.
 
     Raises:
-        FmuError: the file is no FMU for FMI 2.0 co-simulation, or holds no binary for this machine
+        FmuError: the file is no FMU for FMI 2.0 co-simulation, holds no binary for this machine, or what cannot be
+            unpacked safely
     """
     try:
         with zipfile.ZipFile(reading(path)) as file:
+            check(path, file)
             root = ET.fromstring(file.read("modelDescription.xml"))
         if (version := root.get("fmiVersion")) != "2.0":
             raise FmuError(f"{path}: this FMU is for FMI {version}. Only FMI 2.0 for co-simulation can be played.")

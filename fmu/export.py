@@ -43,6 +43,7 @@ from .icon import icon
 from .parameter_set import parameter_set
 from .related import related
 from .source import GUID_MARK, source
+from .unpacking import remember
 from .variables import Table, table
 
 #: A check that was made and its result.
@@ -98,11 +99,16 @@ def export(
         **_extra(kept, variables, about),
         **{f"binaries/{p.name}/{identifier(flat.name)}{p.suffix}": binary(code, p) for p in chosen},
     }
-    store(path, archive(content))
+    _made(path, archive(content))
     if verify is not None:
         checked = documentation(kept, variables, about, verify(path))
-        store(path, archive({**content, _PAGE: checked.encode()}))
+        _made(path, archive({**content, _PAGE: checked.encode()}))
     return path
+
+
+def _made(path: Path, content: bytes) -> None:
+    store(path, content)
+    remember(content)
 
 
 def _exported(flat: FlatModel, start: Mapping[str, float]) -> tuple[FlatModel, Table]:

@@ -8,6 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 from gearheat.model.errors import FmuError
 
+#: Communication steps of a run at most.
+MOST_STEPS = 1e7
+
 #: Input name -> (times, values), linear between the points; a time given twice is a jump.
 Inputs = Mapping[str, tuple[np.ndarray, np.ndarray]]
 
@@ -75,6 +78,11 @@ def _problems(
         problems.append(f"the run goes from {begin:g} s to {stop:g} s. Its end must lie after its start.")
     if not (np.isfinite(step) and step > 0):
         problems.append(f"the communication step is {step:g} s. It must be above 0 s.")
+    elif not problems and (stop - begin) / step > MOST_STEPS:
+        problems.append(
+            f"{stop - begin:g} s in steps of {step:g} s are {(stop - begin) / step:.3g}, at most {MOST_STEPS:g} are"
+            " taken. Give a longer step or a shorter run."
+        )
     for name, (time, values) in columns.items():
         if len(time) != len(values) or not len(time):
             problems.append(f'input "{name}": {len(time)} times and {len(values)} values.')

@@ -24,6 +24,7 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
 from ..model.run.schedule import Schedule
 from ..model.units import shown, to_si
+from .columns import split_unit
 from .csv_table import number, raise_all, read_cells
 
 TIME = Quantity("time", "s", "time")
@@ -93,8 +94,11 @@ def _split(cell: str) -> tuple[str, str]:
 def _column(cell: str, known: Mapping[str, Quantity]) -> DutyColumn:
     """What a header cell says. Raises DataError for an unknown name, a missing or a wrong unit."""
     name, unit = _split(cell)
-    if TIME.name in known and name != TIME.name:
-        raise DataError(f'the first column is "{cell}". It must be the time with its unit, for example "time [min]".')
+    if TIME.name in known:
+        name, unit = split_unit(cell)
+        if name.casefold() not in (TIME.name, "t"):
+            raise DataError(f'the first column is "{cell}". It must be the time with its unit, such as "time [min]".')
+        name = TIME.name
     if name not in known:
         close = suggestion(name, known) or f" Inputs: {', '.join(known)}."
         raise DataError(f'there is no input "{name}".{close}')

@@ -152,13 +152,14 @@ def play(
     duty: Annotated[Path, typer.Option(help="CSV with time and inputs, units in the header.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write, units in the header.")],
     step: Annotated[str, typer.Option(help="Communication step.")] = "60 s",
+    trust: Annotated[bool, typer.Option("--trust", help="Run native code of an FMU that was not made here.")] = False,
     set_: Set = None,
     json: Json = None,
 ) -> None:
     """Play an FMU over a duty cycle."""
     from . import transients
 
-    transients.play_command(fmu, duty, out, step, set_ or [], json)
+    transients.play_command(fmu, duty, out, step, set_ or [], json, trust=trust)
 
 
 @app.command()

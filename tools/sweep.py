@@ -142,6 +142,11 @@ def command(request: Request) -> None:
         store.remove()
     payload = summary.payload(request.out)
     answer(payload, request.json, partial(_print, summary, payload["outside"], request.out, seconds, bool(left)))
+    if not summary.count:
+        raise SolveError(
+            f"{request.out}: none of its {len(plan.values)} rows has a result. Run one of them with `gearheat"
+            f" {'steady' if plan.kind == 'steady' else 'simulate'}` to see why, and choose other ranges."
+        )
 
 
 def planned(request: Request) -> Plan:

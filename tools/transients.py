@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..model.core.flat import FlatModel, Quantity
-from ..model.errors import ScenarioError
+from ..model.errors import FmuError, ScenarioError
 from ..model.run.schedule import Schedule
 from ..model.run.simulate import simulate
 from ..model.units import from_si, shown, to_si
@@ -62,12 +63,24 @@ def first_temperatures(scenario: Scenario, flat: FlatModel, schedule: Schedule |
     return {q.name: T for q in flat.states if q.unit == "K" and q.name not in own}
 
 
-def play_command(fmu: Path, duty: Path, out: Path, step: str, assignments: Sequence[str], json: str | None) -> None:
-    """Play an FMU over a duty."""
+def play_command(
+    fmu: Path, duty: Path, out: Path, step: str, assignments: Sequence[str], json: str | None, *, trust: bool = False
+) -> None:
+    """Play an FMU over a duty; one that was not made here only if it is trusted."""
+    from ..fmu.described import described
     from ..fmu.play import Player
+    from ..fmu.unpacking import trusted
 
     writable(out, file_of(json))
     dt = to_si(step, "s", name="--step")
+    made_by = described(fmu).description.generationTool or "an unknown tool"
+    if not trusted(fmu) and not trust:
+        raise FmuError(
+            f"{fmu}: was not made by gearheat on this machine (but by {made_by}), and playing it runs native code of it"
+            " with your rights. Add --trust if you trust its maker."
+        )
+    if not trusted(fmu):
+        print(f"{fmu}: running native code of {made_by}", file=sys.stderr)
     with Player(fmu) as player:
         told = player.described
         schedule = read_duty(duty, told.quantities("input"))

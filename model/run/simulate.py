@@ -21,6 +21,8 @@ from .schedule import Schedule
 
 #: Rows of a result where nothing else is asked for [s].
 OUTPUT_STEP = 60.0
+#: Rows of a result at most.
+MOST_ROWS = 5e6
 
 #: Methods by name.
 METHODS = ("idas", "lsoda")
@@ -132,6 +134,11 @@ def _stretches(flat: FlatModel, schedule: Schedule, u: np.ndarray) -> list[Stret
 
 def _rows(schedule: Schedule, stretches: Sequence[Stretch]) -> _Rows:
     """A row every output step, and one at both ends of every stretch."""
+    if (n := (schedule.stop - schedule.start) / OUTPUT_STEP) > MOST_ROWS:
+        raise ScenarioError(
+            f"simulate: a duty of {schedule.stop - schedule.start:g} s has {n:.3g} rows of {OUTPUT_STEP:g} s, at most"
+            f" {MOST_ROWS:g} are written. Give a shorter duty."
+        )
     every = np.arange(schedule.start, schedule.stop, OUTPUT_STEP)
     times = []
     for s in stretches:

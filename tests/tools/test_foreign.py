@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import csv
 import os
+import stat
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 
 import fmpy
@@ -59,7 +61,8 @@ def duty(tmp_path):
 
 def test_it_plays_with_differences_shown_without_the_offset(gearheat, tank, duty, tmp_path):
     out = tmp_path / "out.csv"
-    answer = gearheat("play", tank(), "--duty", duty, "-o", out, "--set", "k=0.6 1/min", "--json", "-")
+    answer = gearheat("play", tank(), "--trust", "--duty", duty, "-o", out, "--set", "k=0.6 1/min", "--json", "-")
+    assert "running native code of Another tool" in answer.err
     assert answer.code == 0, answer.err
     with out.open(encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -80,9 +83,9 @@ def test_it_is_run_again_although_it_cannot_be_reset(tank):
 
 def test_its_own_message_is_passed_on(gearheat, tank, duty, tmp_path):
     hot = ("--set", "T[1,2]=900 degC")
-    answer = gearheat("play", tank(), "--duty", duty, "-o", tmp_path / "out.csv", *hot)
+    answer = gearheat("play", tank(), "--trust", "--duty", duty, "-o", tmp_path / "out.csv", *hot)
     assert answer.code == 2
-    assert answer.problems() == ["tank.fmu: the tank boils\n"]
+    assert "error: tank.fmu: the tank boils\n" in answer.err
 
 
 def test_steps_of_one_length(tank):
@@ -127,6 +130,40 @@ def test_what_cannot_be_played_is_said(gearheat, tank, duty, tmp_path, change, t
     assert answer.code == 2
     assert told in answer.err
     assert "Traceback" not in answer.err
+
+
+def test_its_code_runs_only_if_it_is_trusted(gearheat, tank, duty, tmp_path):
+    answer = gearheat("play", tank(), "--duty", duty, "-o", tmp_path / "out.csv")
+    assert answer.code == 2
+    assert "was not made by gearheat on this machine (but by Another tool)" in answer.err
+    assert "Add --trust" in answer.err
+    assert not (tmp_path / "out.csv").exists()
+
+
+def _linked(file):
+    entry = zipfile.ZipInfo("resources/link")
+    entry.external_attr = (stat.S_IFLNK | 0o777) << 16
+    file.writestr(entry, "/etc/hosts")
+
+
+@pytest.mark.parametrize(
+    ("add", "told"),
+    [
+        (lambda file: file.writestr("../beside.txt", "x"), 'holds "../beside.txt", which lies outside'),
+        (lambda file: file.writestr("/beside.txt", "x"), 'holds "/beside.txt", which lies outside'),
+        (lambda file: file.writestr("C:\\beside.txt", "x"), "lies outside"),
+        (_linked, "is a link"),
+        (lambda file: [file.writestr(f"resources/{k}", "") for k in range(10_001)], "At most 10000 are taken"),
+        (lambda file: file.writestr("resources/zero", bytes((1 << 30) + 1)), "unpacks to 1024 MiB"),
+    ],
+)
+def test_archives_that_are_no_fmu_of_an_honest_tool(gearheat, tank, duty, tmp_path, add, told):
+    path = tank()
+    with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED, compresslevel=1) as file:
+        add(file)
+    answer = gearheat("play", path, "--trust", "--duty", duty, "-o", tmp_path / "out.csv")
+    assert answer.code == 2
+    assert told in answer.err
 
 
 def test_a_binary_for_another_machine(gearheat, tank, duty, tmp_path):
