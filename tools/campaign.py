@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import os
 import re
+import signal
+import threading
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
@@ -184,6 +186,19 @@ def jobs(
 
 
 @contextmanager
+def _deaf() -> Iterator[None]:
+    """Without Ctrl-C for a moment: processes that start in it inherit that, and the parent alone answers."""
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    heard = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        yield
+    finally:
+        signal.signal(signal.SIGINT, heard)
+
+
+@contextmanager
 def crew(workers: int) -> Iterator[ProcessPoolExecutor | None]:
     """Worker processes, started at once so that they load while the parent prepares; None for a single one.
 
@@ -198,8 +213,9 @@ def crew(workers: int) -> Iterator[ProcessPoolExecutor | None]:
         return
     pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=playing.ready)
     try:
-        for _ in range(count):
-            pool.submit(int)
+        with _deaf():
+            for _ in range(count):
+                pool.submit(int)
         yield pool
     finally:
         pool.shutdown(wait=True, cancel_futures=True)

@@ -331,10 +331,5 @@ app.command()(cli_contact.film)
 app.command("verify-contact")(cli_contact.verify_contact)
 
 
-def main() -> None:
-    """Entry point of the program."""
-    app()
-
-
 if __name__ == "__main__":
-    main()
+    app()

@@ -48,7 +48,8 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
         except OSError as error:
             if error.errno not in FULL:
                 raise
-            note(f"error: {error.filename or 'standard output'}: {error.strerror}. Make room, or set TMPDIR.")
+            place = error.filename or "standard output or a temporary file"
+            note(f"error: {place}: {error.strerror}. Make room, or set TMPDIR.")
             if error.filename is None:
                 _silence()
             sys.exit(BAD_INPUT)

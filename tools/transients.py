@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..fmu.described import Described, described, settable
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import FmuError, ScenarioError
 from ..model.run.schedule import Schedule
@@ -67,7 +68,6 @@ def play_command(
     fmu: Path, duty: Path, out: Path, step: str, assignments: Sequence[str], json: str | None, *, trust: bool = False
 ) -> None:
     """Play an FMU over a duty; one that was not made here only if it is trusted."""
-    from ..fmu.described import described
     from ..fmu.play import Player
     from ..fmu.unpacking import trusted
 
@@ -85,6 +85,8 @@ def play_command(
         told = player.described
         schedule = read_duty(duty, told.quantities("input"))
         start = _start(told.quantities("start"), told.quantities("output"), assignments, fmu)
+        first = start | {name: float(values[0]) for name, values in schedule.values.items()}
+        start = _at_room(told, first) | start
         inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
         played = player.run(inputs, schedule.stop, dt, begin=schedule.start, start=start)
     units = {name: q.unit for name, q in told.quantities("input", "output").items()}
@@ -97,6 +99,21 @@ def play_command(
         **_summary(played.time, columns, units),
     }
     answer(found, json, lambda: print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s"))
+
+
+def _at_room(told: Described, first: Mapping[str, float]) -> dict[str, float]:
+    """Start temperatures of an FMU of gearheat that are its room's, where the run gives the room another one.
+
+    Args:
+        told: description of the FMU
+        first: what the run sets, and the first value of what it gives
+    """
+    if not (told.description.generationTool or "").startswith("gearheat"):
+        return {}
+    warm = [v for v in told.variables.values() if v.unit == "K" and v.start and settable(v)]
+    rooms = {float(v.start): first[v.name] for v in warm if v.causality == "input" and v.name in first}
+    states = [v for v in warm if v.causality in ("output", "local") and float(v.start) in rooms]
+    return {v.name: rooms[float(v.start)] for v in states}
 
 
 def _start(

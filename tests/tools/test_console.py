@@ -8,11 +8,13 @@ import subprocess
 import sys
 import threading
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from gearheat.model.errors import DataError, SolveError
 from gearheat.model.files import reading
+from gearheat.tools import entry
 from gearheat.tools.console import as_json, cell, folder, guarded, table, writable, write
 
 
@@ -143,7 +145,9 @@ def test_a_full_device_is_a_message():
     with Path("/dev/full").open("w") as full:
         said = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert said.returncode == 2
-    assert said.stderr == "error: standard output: No space left on device. Make room, or set TMPDIR.\n"
+    assert said.stderr == (
+        "error: standard output or a temporary file: No space left on device. Make room, or set TMPDIR.\n"
+    )
 
 
 def test_a_full_disk_is_a_message(capsys):
@@ -155,3 +159,14 @@ def test_a_full_disk_is_a_message(capsys):
         command()
     assert ended.value.code == 2
     assert capsys.readouterr().err.startswith("error: /tmp/gearheat-x: No space left")
+
+
+def test_ctrl_c_while_the_program_loads(monkeypatch, capsys):
+    def app():
+        raise KeyboardInterrupt
+
+    monkeypatch.setitem(sys.modules, "gearheat.tools.cli", SimpleNamespace(app=app))
+    with pytest.raises(SystemExit) as ended:
+        entry.main()
+    assert ended.value.code == 130
+    assert capsys.readouterr().err == "interrupted\n"

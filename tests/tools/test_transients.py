@@ -54,6 +54,20 @@ def test_the_fmu_gives_what_the_model_gives(gearheat, duty, tmp_path):
     assert theirs["efficiency.P_loss [W]"] == pytest.approx(ours["efficiency.P_loss [W]"], abs=1e-2)
 
 
+def test_both_start_at_the_room_of_the_duty(gearheat, tmp_path):
+    fmu, duty, out = tmp_path / "rig.fmu", tmp_path / "duty.csv", tmp_path / "out.csv"
+    duty.write_text("Time (min),carrier.w [rpm],carrier.tau [N.m],room.T [degC]\n0,100,1500,35\n10,100,1500,35\n")
+    assert gearheat("export", "planetary", "-o", fmu).code == 0
+    first = []
+    for command in (("simulate", "planetary"), ("play", fmu)):
+        assert gearheat(*command, "--duty", duty, "-o", out).code == 0
+        first.append([columns(out)[name][0] for name in ("oil.T [degC]", "wall.T [degC]")])
+    assert first[0] == pytest.approx([35.0, 35.0])
+    assert first[1] == pytest.approx(first[0])
+    assert gearheat("play", fmu, "--duty", duty, "-o", out, "--set", "oil.T=50 degC").code == 0
+    assert [columns(out)[name][0] for name in ("oil.T [degC]", "wall.T [degC]")] == pytest.approx([50.0, 35.0])
+
+
 def test_parameters_and_states_of_an_fmu_can_be_set(gearheat, duty, tmp_path):
     fmu, out = tmp_path / "rig.fmu", tmp_path / "played.csv"
     assert gearheat("export", "planetary", "-o", fmu).code == 0
