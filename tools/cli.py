@@ -13,12 +13,29 @@ from .cli_options import Json, Set
 
 app = typer.Typer(
     name="gearheat",
-    help="Losses and temperatures of gearboxes: simulate, design, export as FMU, compare with measurements.",
     no_args_is_help=True,
     add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+def _version(asked: bool) -> None:
+    if asked:
+        from importlib.metadata import version
+
+        print(f"gearheat {version('gearheat')}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_version, is_eager=True, help="Print the version.")
+    ] = False,
+) -> None:
+    """Losses and temperatures of gearboxes: simulate, design, export as FMU, compare with measurements."""
+
 
 Rig = Annotated[str, typer.Argument(help="Name of a shipped rig (see `gearheat list`), or path of a rig file.")]
 Workers = Annotated[int, typer.Option(min=0, help="Processes to use; 0 for one per core.")]
@@ -240,6 +257,29 @@ def list_(json: Json = None) -> None:
     from . import describe
 
     describe.list_command(json)
+
+
+@app.command()
+@console.guarded
+def parts(
+    kind: Annotated[str | None, typer.Argument(metavar="TYPE", help="Part type; all types if left out.")] = None,
+    json: Json = None,
+) -> None:
+    """What a rig can be built of: part types, and all about one with an example."""
+    from . import parts
+
+    parts.parts_command(kind, json)
+
+
+@app.command()
+@console.guarded
+def schema(
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; printed if left out.")] = None,
+) -> None:
+    """JSON schema of rig files: editors complete and check them with it."""
+    from . import parts
+
+    parts.schema_command(out)
 
 
 @app.command()
