@@ -6,7 +6,8 @@ from collections.abc import Callable, Sequence
 
 from .answer.decide import Decision, decided
 from .answer.gain import Gain, gains
-from .infer.search import Found, searched
+from .infer.found import Found
+from .infer.search import searched
 from .logs import diagnosed_logs
 from .report import compose, compose_data, compose_design, compose_pictures, compose_points, compose_rig
 from .report.channels import channel

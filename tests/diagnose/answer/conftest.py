@@ -9,7 +9,8 @@ import pytest
 from gearheat.diagnose.answer.grid import planned_campaign
 from gearheat.diagnose.campaign.card import Card
 from gearheat.diagnose.campaign.table import Campaign
-from gearheat.diagnose.infer.search import Found, searched
+from gearheat.diagnose.infer.found import Found
+from gearheat.diagnose.infer.search import searched
 from gearheat.diagnose.library.extra_parts import EXTRA_PARTS
 from gearheat.diagnose.setting import Setting, setting
 from gearheat.model.parts import PARTS

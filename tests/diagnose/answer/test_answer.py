@@ -13,7 +13,7 @@ from gearheat.diagnose.answer.experiments import added, experiments
 from gearheat.diagnose.answer.predict import predictions
 from gearheat.diagnose.answer.quality import adequacy, scatters
 from gearheat.diagnose.answer.sets import Effects, alike
-from gearheat.diagnose.infer.search import Found
+from gearheat.diagnose.infer.found import Found
 from gearheat.diagnose.setting import Setting
 
 TRUE = "sensor.oil_temp.offset"

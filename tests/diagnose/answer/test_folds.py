@@ -9,7 +9,7 @@ from gearheat.diagnose.answer import rivals
 from gearheat.diagnose.answer.folds import levels, schemes
 from gearheat.diagnose.answer.grid import planned_campaign
 from gearheat.diagnose.campaign.card import Card
-from gearheat.diagnose.infer.search import Found
+from gearheat.diagnose.infer.found import Found
 from gearheat.diagnose.setting import Setting
 from gearheat.scenarios.load import load
 

@@ -10,9 +10,9 @@ import numpy as np
 import pytest
 from gearheat.diagnose.infer import screen
 from gearheat.diagnose.infer.fit import fitted
+from gearheat.diagnose.infer.found import Found, Hypothesis
 from gearheat.diagnose.infer.prior import Prior
 from gearheat.diagnose.infer.problem import Acting
-from gearheat.diagnose.infer.search import Found, Hypothesis
 from gearheat.diagnose.report import compose_data, compose_pictures, compose_points, compose_rig
 from gearheat.diagnose.request import Inputs, Request, read
 from gearheat.diagnose.setting import Setting, setting

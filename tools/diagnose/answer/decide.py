@@ -11,7 +11,7 @@ from scipy.special import logsumexp
 from scipy.stats import chi2
 
 from ..infer.evidence import White
-from ..infer.search import Found, Hypothesis
+from ..infer.found import Found, Hypothesis
 
 Verdict = Literal["consistent", "explained", "ambiguous", "unexplained"]
 #: The name of whatever the library lacks.

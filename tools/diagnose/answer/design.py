@@ -8,8 +8,8 @@ from itertools import combinations
 
 import numpy as np
 
+from ..infer.found import Found
 from ..infer.problem import Acting, Look, Noise, Problem
-from ..infer.search import Found
 from ..model.noise import terms
 from ..model.observe import Observed, Seen
 from ..setting import Setting

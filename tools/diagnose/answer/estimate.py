@@ -13,9 +13,9 @@ from scipy.stats import norm
 from ..campaign.table import Sensor
 from ..infer.evidence import WIDTHS, White, log_bayes_factors
 from ..infer.fit import Fit
+from ..infer.found import Found, Hypothesis
 from ..infer.problem import Acting, Problem
 from ..infer.screen import limits
-from ..infer.search import Found, Hypothesis
 from ..library.cause import Cause, Form, Shape
 from ..model.observe import Observed
 from .decide import Member

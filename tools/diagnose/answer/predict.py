@@ -10,8 +10,8 @@ import numpy as np
 from ..campaign.table import Campaign
 from ..infer.evidence import White
 from ..infer.fit import Fit
+from ..infer.found import Found
 from ..infer.problem import Problem
-from ..infer.search import Found
 from ..model.noise import Term, terms
 from ..model.observe import Observed
 from ..setting import Setting

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..infer.found import Found, Hypothesis
 from ..infer.gross import distances
-from ..infer.search import Found, Hypothesis
 from .decide import p_adequacy
 from .estimate import posterior
 

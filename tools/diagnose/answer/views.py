@@ -15,8 +15,8 @@ from scipy.stats import chi2
 
 from ..campaign.table import Sensor
 from ..infer.evidence import White, log_bayes_factors
+from ..infer.found import Found
 from ..infer.screen import limits
-from ..infer.search import Found
 
 #: Causes that a channel names at least this probable.
 NAMED = 0.02

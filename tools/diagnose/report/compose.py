@@ -11,7 +11,7 @@ from ..answer import estimate
 from ..answer.decide import UNEXPLAINED, Chance, Decision, Joint
 from ..answer.gain import Gain
 from ..campaign.table import Campaign
-from ..infer.search import Found, Hypothesis
+from ..infer.found import Found, Hypothesis
 from ..setting import Setting
 from . import channels, findings
 from .estimate import Estimate

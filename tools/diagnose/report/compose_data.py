@@ -8,7 +8,7 @@ import numpy as np
 
 from ..answer import quality as answer
 from ..campaign.table import Campaign
-from ..infer.search import Found, Hypothesis
+from ..infer.found import Found, Hypothesis
 from ..setting import Setting
 from . import channels, quality
 from .compose_points import repeated

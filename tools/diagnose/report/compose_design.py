@@ -9,7 +9,7 @@ from ..answer.decide import UNEXPLAINED, Decision
 from ..answer.design import Ranked, of_search, ranked
 from ..answer.experiments import experiments
 from ..answer.sets import Effects, alike
-from ..infer.search import Found
+from ..infer.found import Found
 from ..library.cause import Cause
 from ..setting import Setting
 from . import channels, findings

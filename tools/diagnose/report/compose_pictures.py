@@ -8,7 +8,7 @@ import numpy as np
 
 from ..answer import views as answer
 from ..campaign.table import Campaign, Sensor
-from ..infer.search import Found, Hypothesis
+from ..infer.found import Found, Hypothesis
 from . import channels
 from .evidence import Picture, View
 from .names import listed

@@ -8,7 +8,7 @@ from ..answer import predict
 from ..campaign.repeats import Repeat as Repeated
 from ..campaign.repeats import repeats, scatters
 from ..campaign.table import Campaign
-from ..infer.search import Found
+from ..infer.found import Found
 from ..setting import Setting
 from . import channels
 from .findings import Prediction

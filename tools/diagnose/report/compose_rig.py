@@ -8,7 +8,7 @@ import numpy as np
 
 from ...model.units import from_si
 from ..infer.fit import Fit
-from ..infer.search import Found, Hypothesis
+from ..infer.found import Found, Hypothesis
 from ..library.cause import Cause, Form, Nuisance, Row, Size, Theta, Values
 from ..library.extra_parts import EXTRA_PARTS
 from ..setting import Setting

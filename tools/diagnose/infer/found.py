@@ -1,0 +1,66 @@
+"""What a search finds: hypotheses with their fits, weighed, and how unusual the data are without a cause."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ..model.formula import Formula
+from . import screen
+from .extra import Extra
+from .fit import Fit
+from .prior import Prior
+from .problem import Problem
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """Causes that act together, the best fit, and the log of their joint probability with the data.
+
+    Args:
+        causes: ids; none: nothing is wrong
+        fit: at the most likely forms
+        log_joint: log evidence, all forms counted, plus log prior
+        extra: a spread of sizes or a remainder beside them
+        forms: log weight of each form of each cause, by id and name
+        error: standard error of the log evidence by importance sampling; 0 where none was needed
+    """
+
+    causes: tuple[str, ...]
+    fit: Fit
+    log_joint: float
+    extra: Extra | None = None
+    forms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    error: float = 0.0
+
+
+@dataclass(frozen=True)
+class Found:
+    """Result of a search.
+
+    Args:
+        formulas: all forms, those of spreads last
+        null: the fit without a cause
+        first: all causes at a first look
+        hypotheses: all that were fitted, most probable first
+        probabilities: of them
+        p_any: p of the log Bayes factor of any cause
+        critical: its critical value
+        prior: of hypotheses
+        drawn: that log Bayes factor in campaigns without a cause, as drawn
+        p_omnibus: chi-square p of the null
+    """
+
+    problem: Problem
+    formulas: tuple[Formula, ...]
+    null: Fit
+    first: screen.Look
+    hypotheses: tuple[Hypothesis, ...]
+    probabilities: np.ndarray
+    p_any: float
+    critical: float
+    drawn: np.ndarray
+    p_omnibus: float
+    prior: Prior
