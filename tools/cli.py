@@ -261,6 +261,24 @@ def list_(json: Json = None) -> None:
 
 @app.command()
 @console.guarded
+def new(
+    name: Annotated[str, typer.Argument(help="Name of the rig, and of its file.")],
+    stages: Annotated[str, typer.Option(help="Stages from the input on: helical, spur.")],
+    ratio: Annotated[float, typer.Option(help="Speed of the input over that of the output.")],
+    power: Annotated[str, typer.Option(help='Power at the input, such as "7.5 kW".')],
+    speed: Annotated[str, typer.Option(help='Speed of the input, such as "1450 rpm".')],
+    oil: Annotated[str, typer.Option(help="Oil of the catalogue, see `gearheat list`.")] = "ISO VG 220 mineral",
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; NAME.toml if left out.")] = None,
+    json: Json = None,
+) -> None:
+    """A rig of your own from a name plate: it runs at once, and tells the rule of every number."""
+    from . import new
+
+    new.new_command(name, stages, ratio, power, speed, oil, out, json)
+
+
+@app.command()
+@console.guarded
 def parts(
     kind: Annotated[str | None, typer.Argument(metavar="TYPE", help="Part type; all types if left out.")] = None,
     json: Json = None,

@@ -17,6 +17,7 @@ COMMANDS = (
     "compare",
     "calibrate",
     "list",
+    "new",
     "parts",
     "schema",
     "show",

@@ -1,0 +1,109 @@
+"""`gearheat new`: a rig from a name plate that runs at once."""
+
+from __future__ import annotations
+
+import math
+
+import casadi as ca
+import pytest
+from gearheat.model.parts import TwoGearSupport
+from gearheat.tools import sizing
+from gearheat.tools.rigs import load
+from gearheat.tools.settings import flat_of
+
+FORCES = ("F_t", "F_r", "F_a")
+PLATES = {
+    "two": ("helical,helical", 12.56, "7.5 kW"),
+    "three": ("helical,helical,helical", 60.0, "5.5 kW"),
+    "spur": ("spur", 3.0, "2 kW"),
+    "mixed": ("spur,helical", 9.0, "1.5 kW"),
+    "four": ("helical,helical,helical,helical", 300.0, "0.75 kW"),
+}
+
+
+@pytest.fixture
+def made(gearheat, tmp_path):
+    def make(name):
+        stages, ratio, power = PLATES[name]
+        path = tmp_path / f"{name}.toml"
+        plate = ("--stages", stages, "--ratio", ratio, "--power", power, "--speed", "1450 1/min")
+        return path, gearheat("new", name, *plate, "--oil", "ISO VG 220", "-o", path, "--json", "-")
+
+    return make
+
+
+@pytest.mark.parametrize("name", PLATES)
+def test_it_runs_and_says_of_every_number_how_it_came_about(made, name):
+    path, answer = made(name)
+    assert answer.code == 0, answer.err
+    found = answer.json
+    assert found["ratio"] == pytest.approx(PLATES[name][1], rel=0.04)
+    assert 0.9 < found["efficiency"] < 0.995
+    assert 21 < found["oil_degC"] < 80
+    scenario = load(path)
+    assert all(source for source in scenario.value_sources.values())
+    assert found["assumed"] > 50
+    turned = (-1) ** len(found["stages"])  # external pairs turn the sense, and the load is against it
+    assert math.copysign(1, scenario.operating_point["output.tau"]) == -turned
+    assert flat_of(scenario).states
+
+
+def test_it_is_what_one_would_draw(made):
+    _, answer = made("two")
+    first, second = answer.json["stages"]
+    assert (first["a"], second["a"]) == (0.1, 0.125)  # as in the rig helical_two_stage, drawn by hand
+    assert answer.json["oil_degC"] == pytest.approx(40.3, abs=4)
+    assert all(life > sizing.LIFE for shaft in answer.json["bearings"] for life in shaft["lives_h"])
+
+
+def test_bearings_carry_what_they_were_chosen_for():
+    """The statics of the middle shaft's part give the load that its bearings' lives belong to."""
+    unit = sizing.unit(["helical"] * 3, 60.0, 5500.0, 1450 * math.pi / 30)
+    wheel, pinion, shaft = unit.stages[0], unit.stages[1], unit.shafts[1]
+    places = {"x": wheel.x, "r": wheel.r_2, "x_2": pinion.x, "r_2": pinion.r_1}
+    part = TwoGearSupport("shaft", span=unit.span, axial_share_a=1.0, phi=math.pi, **places)
+    ports = [(part.mesh, wheel.forces), (part.mesh_2, pinion.forces)]
+    given = [(getattr(port, key), F) for port, forces in ports for key, F in zip(FORCES, forces, strict=True)]
+    found = {e.name: e.rhs for e in part.equations()}
+    symbols = [s for s, _ in given] + [part.symbols[key] for key in part.parameters]
+    values = [F for _, F in given] + [part.values[key] for key in part.parameters]
+    F = {name: float(ca.Function("F", symbols, [rhs])(*values)) for name, rhs in found.items()}
+    for end, bearing, life in zip("ab", shaft.bearings, shaft.lives, strict=True):
+        F_r, F_a = F[f"bearing {end} radially"], F[f"bearing {end} axially"]
+        P = max(F_r, 0.56 * F_r + 1.6 * F_a)
+        assert life == pytest.approx(1e6 / (3600 * shaft.n) * (sizing.RATINGS[bearing] / P) ** 3, rel=0.01)
+
+
+def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
+    path = tmp_path / "a.toml"
+    plate = ("--stages", "spur,worm", "--ratio", "90", "--power", "2 kW", "--speed", "1450 rpm", "-o", path)
+    answer = gearheat("new", "a", *plate)
+    assert answer.code == 2
+    assert 'no stage "worm". Stages: spur, helical.' in answer.err
+    assert "Give 3 stages or more" in answer.err
+    assert not path.exists()
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        (("--power", "900 kW"), "no ball bearing of the catalogue"),
+        (("--power", "2 kg"), 'unit "kg" does not fit'),
+        (("--oil", "ISO VG 221"), 'no oil "ISO VG 221"'),
+        (("--ratio", "0.5"), "expected 1 to 8"),
+        (("--stages", ","), "no stage is given"),
+        (("--speed", "0 rpm"), "must be above 0"),
+    ],
+)
+def test_name_plates_that_are_wrong(gearheat, tmp_path, options, words):
+    plate = {"--stages": "helical", "--ratio": "4", "--power": "2 kW", "--speed": "1450 rpm"} | dict([options])
+    answer = gearheat("new", "a", *(item for pair in plate.items() for item in pair), "-o", tmp_path / "a.toml")
+    assert answer.code == 2
+    assert words in answer.err
+
+
+def test_a_file_that_is_there_stays(gearheat, tmp_path):
+    (path := tmp_path / "a.toml").write_text("mine")
+    plate = ("--stages", "spur", "--ratio", "3", "--power", "2 kW", "--speed", "1450 rpm")
+    assert "is there already" in gearheat("new", "a", *plate, "-o", path).err
+    assert path.read_text() == "mine"

@@ -1,0 +1,228 @@
+"""The command `new`: a rig file from a name plate, that runs at once and says of every number how it came about."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from ..model.errors import ScenarioError, suggestion
+from ..model.run.steady import steady
+from ..model.units import to_si
+from ..scenarios.entries import catalogue
+from . import sizing
+from .console import answer, note, writable, write
+from .points import conditions
+from .rigs import load
+from .settings import flat_of
+from .sizing import GAP, KINDS, SIDE, WIDTH, Unit, unit
+
+#: Efficiency of a stage with its bearings, for the load at the output; steel and cast iron [kg/m3]; oil [kg/m3].
+STAGE, STEEL, IRON, OIL = 0.985, 7850.0, 7200.0, 835.0
+#: Speed at which churning is told [rad/s].
+CHURNED = 200 * math.pi / 30
+
+
+def new_command(
+    name: str, stages: str, ratio: float, power: str, speed: str, oil: str, out: Path | None, json_: str | None
+) -> None:
+    """Write a rig of a name, run it once, and tell what it is.
+
+    Raises:
+        ScenarioError: all that is wrong with the name plate at once
+    """
+    path = out or Path(f"{name}.toml")
+    kinds = [kind.strip() for kind in stages.split(",") if kind.strip()]
+    made, entry = (
+        unit(kinds, ratio, to_si(power, "W", name="--power"), to_si(speed, "rad/s", name="--speed")),
+        _oil(oil),
+    )
+    if not re.fullmatch(r"[\w.-]+", name):
+        raise ScenarioError(f'"{name}" is no name. Take letters, digits, _, - and dots.')
+    if path.exists():
+        raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")
+    writable(path)
+    doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
+    write(path, text(made, doc, speed, entry))
+    scenario = load(path)
+    flat = flat_of(scenario)
+    found = steady(flat, conditions(scenario, flat))
+    kept = {key: float(found[key][0]) for key in ("oil.T", "efficiency.P_loss", "efficiency.eta")}
+    payload = {
+        "schema": "gearheat.new/1",
+        "file": str(path),
+        "ratio": made.ratio,
+        "stages": [{k: getattr(s, k) for k in ("kind", "z_1", "z_2", "m_n", "beta", "a", "b")} for s in made.stages],
+        "bearings": [{"a": s.bearings[0], "b": s.bearings[1], "lives_h": s.lives} for s in made.shafts],
+        "assumed": sum(source.startswith("assumed") for source in scenario.value_sources.values()),
+        "oil_degC": kept["oil.T"] - 273.15,
+        "loss_W": kept["efficiency.P_loss"],
+        "efficiency": kept["efficiency.eta"],
+    }
+    answer(payload, json_, lambda: _print(payload))
+    for shaft in made.shafts:
+        for bearing, life in zip(shaft.bearings, shaft.lives, strict=True):
+            if life < sizing.LIFE:
+                note(f"{bearing}: a life of {life:.0f} h only; the catalogue has no stronger one.")
+
+
+def _print(found: dict[str, Any]) -> None:
+    print(f"{found['file']}: i = {found['ratio']:.5g}, {found['assumed']} values assumed, each with its rule")
+    for k, s in enumerate(found["stages"], start=1):
+        print(f"  stage {k}: {s['kind']} {s['z_1']}/{s['z_2']}, m_n {1e3 * s['m_n']:g} mm, a {1e3 * s['a']:g} mm")
+    print(f"  at the name plate: oil {found['oil_degC']:.1f} degC, loss {found['loss_W']:.0f} W,", end=" ")
+    print(f"efficiency {100 * found['efficiency']:.2f} %")
+    print(f"Next: put your numbers into the file, then `gearheat steady {found['file']}`.")
+
+
+def _oil(name: str) -> str:
+    """The catalogue's name of an oil; one of a class alone is taken for a mineral oil."""
+    for known in (name, f"{name} mineral"):
+        if known in catalogue("oil"):
+            return known
+    raise ScenarioError(f'there is no oil "{name}".{suggestion(name, catalogue("oil"))} See `gearheat list`.')
+
+
+def text(made: Unit, doc: str, speed: str, oil: str) -> str:
+    """The rig file of a unit.
+
+    Args:
+        made: its sizes
+        doc: what it is
+        speed: of the input, as it is written
+        oil: entry of the catalogue
+    """
+    n, efficiency = len(made.stages), STAGE ** len(made.stages)
+    names = ["input", *(f"middle_{k}" if n > 2 else "middle" for k in range(1, n)), "output"]
+    values = {
+        "doc": doc,
+        "speed": speed,
+        "efficiency": efficiency,
+        "load": -((-1) ** n) * made.stages[0].T * made.ratio * efficiency,  # external pairs turn the sense each time
+        "oil": oil,
+        "span": made.span,
+        "side": SIDE,
+        "gap": GAP,
+        "width": WIDTH,
+        "stages": [_stage(made, k) for k in range(n)],
+        "shafts": [_shaft(made, names, k) for k in range(n + 1)],
+        "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d} for k in (0, -1)],
+        "nets": _nets(names),
+        "losses": _losses(names),
+        **_bodies(made),
+    }
+    templates = Environment(loader=PackageLoader("gearheat.tools", "templates"), undefined=StrictUndefined)
+    return templates.get_template("new_rig.toml").render(values, num=_num, mm=_mm).strip() + "\n"
+
+
+def _num(value: float) -> str:
+    return f"{value:.4g}"
+
+
+def _mm(value: float) -> str:
+    return f"{1000 * value:.6g}"
+
+
+def _stage(made: Unit, k: int) -> dict[str, Any]:
+    s = made.stages[k]
+    twist = f"beta for a = {_mm(s.a)} mm" if KINDS[s.kind] else "a follows from the teeth"
+    rule = f"F_t/(b d_1) (u + 1)/u of {sizing.K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"
+    c = 0.5 * OIL * CHURNED**3 * s.b * s.r_2**4
+    shape = {key: getattr(s, key) for key in ("z_1", "z_2", "m_n", "b", "a")}
+    name = {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}"}
+    return {**name, **shape, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule, "c": c}
+
+
+def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
+    s, n = made.shafts[k], len(made.stages)
+    wheel = [{"x": made.stages[k - 1].x, "r": made.stages[k - 1].r_2}] if k else []
+    pinion = [{"x": made.stages[k].x, "r": made.stages[k].r_1}] if k < n else []
+    places = [
+        {"name": f"{names[k]}_bearing_{end}", "bearing": bearing, "life": _num(life)}
+        for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)
+    ]
+    support = "TwoGearSupport" if wheel and pinion else "ShaftSupport"
+    return {"name": names[k], "support": support, "gears": wheel + pinion, "bearings": places, "d": s.d}
+
+
+def _bodies(made: Unit) -> dict[str, float]:
+    """Capacities, conductances and the box."""
+    gears = [(r, s.b) for s in made.stages for r in (s.r_1, s.r_2)]
+    masses = [STEEL * math.pi * r**2 * b for r, b in gears]
+    slow = [math.prod(t.u for t in made.stages[:k]) for k in range(len(made.stages) + 1)]
+    ratios = [slow[k + j] for k in range(len(made.stages)) for j in (0, 1)]
+    wheels = [(s.r_2, s.b) for s in made.stages]
+    seats = [(made.shafts[k + 1].d, s.b) for k, s in enumerate(made.stages)]
+    shafts = sum(STEEL * math.pi / 4 * s.d**2 * (made.span + 0.1) for s in made.shafts)
+    mass = 1.25 * IRON * made.area * made.wall
+    return {
+        "inertia": sum(m * r**2 / 2 / i**2 for (r, _), m, i in zip(gears, masses, ratios, strict=True)),
+        "C_gears": 470 * sum(masses),
+        "C_shafts": 470 * shafts,
+        "mass": mass,
+        "C_half": 500 * mass / 2,
+        "wall": made.wall,
+        "volume": 1000 * 0.16 * made.length * made.width * made.height,
+        "G_gears": 400 * sum(math.pi * r**2 + 2 * math.pi * r * b for r, b in wheels),
+        "G_seats": 4000 * sum(math.pi * d * b for d, b in seats),
+        "G_wall": 200 * 0.55 * made.area,
+        "G_rings": 2.0 * 2 * len(made.shafts),
+        "G_through": 50 * made.area / made.wall,
+        "area": made.area,
+        "length": made.length,
+        "width_box": made.width,
+        "height": made.height,
+        "share": made.length * made.width / made.area,
+    }
+
+
+def _nets(names: Sequence[str]) -> list[dict[str, str]]:
+    """What meets, by name of the net."""
+    n = len(names) - 1
+    bearings = [f"{name}_bearing_{end}" for name in names for end in "ab"]
+    seals = ["input_seal", "output_seal"]
+    stages, churnings = ([f"{what}_{k}" for k in range(1, n + 1)] for what in ("stage", "churning"))
+    nets: dict[str, list[str]] = {}
+    for k, name in enumerate(names):
+        ends = [f"{name}.flange"] if k in (0, n) else []
+        ends += ["rotor.flange"] if k == 0 else []
+        ends += [f"{stages[k - 1]}.wheel", f"{churnings[k - 1]}.shaft"] if k else []
+        ends += [f"{stages[k]}.pinion"] if k < n else []
+        turning = [f"{name}_bearing_{end}.shaft" for end in "ab"] + ([f"{name}_seal.shaft"] if k in (0, n) else [])
+        nets[f"{name}_shaft"] = [*ends, *turning]
+    for k, stage in enumerate(stages):
+        driven = "mesh_2" if k else "mesh"
+        nets[f"force_{k + 1}"] = [f"{stage}.force", f"{names[k]}_support.{driven}", f"{names[k + 1]}_support.mesh"]
+    for name in names:
+        nets |= {f"load_{name}_{e}": [f"{name}_support.load_{e}", f"{name}_bearing_{e}.load"] for e in "ab"}
+    nets["reading_input"], nets["reading_output"] = (
+        [f"{end}.reading", f"efficiency.{port}"] for end, port in (("input", "a"), ("output", "b"))
+    )
+    nets["lubricant"] = ["oil.lubricant", *(f"{part}.lubricant" for part in (*stages, *churnings, *bearings))]
+    churned = [f"{part}.{side}" for part in churnings for side in ("inner", "outer")]
+    nets["heat_oil"] = ["oil.heat", *churned, "oil_gears.a", "oil_wall.a"]
+    nets["heat_gears"] = ["gears.heat", *(f"{stage}.gears" for stage in stages), "oil_gears.b", "gears_shafts.a"]
+    rubbing = [*bearings, *seals]
+    nets["heat_shafts"] = ["shafts.heat", "gears_shafts.b", "shafts_wall.a", *(f"{part}.inner" for part in rubbing)]
+    outer = [f"{part}.outer" for part in rubbing]
+    nets["heat_wall"] = ["wall.heat", "oil_wall.b", "shafts_wall.b", "wall_surface.a", *outer]
+    nets["heat_surface"] = ["surface.heat", "wall_surface.b", "cooling.surface", "foot.a"]
+    nets |= {"air": ["room.air", "cooling.air"], "floor": ["room.floor", "foot.b"]}
+    return [{"name": name, "ports": json.dumps(ports)} for name, ports in nets.items()]
+
+
+def _losses(names: Sequence[str]) -> dict[str, str]:
+    """Columns of the losses' table."""
+    stages = range(1, len(names))
+    found = {
+        "P_mesh_W": [f"stage_{k}.P_loss" for k in stages],
+        "P_dgb_W": [f"{name}_bearing_{end}.P_loss" for name in names for end in "ab"],
+        "P_seal_W": ["input_seal.P_loss", "output_seal.P_loss"],
+        "P_churn_W": [f"churning_{k}.P_loss" for k in stages],
+    }
+    return {column: json.dumps(parts) for column, parts in found.items()}
