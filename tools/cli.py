@@ -8,8 +8,8 @@ from typing import Annotated, Literal
 
 import typer
 
-from . import cli_contact, cli_diagnosis, cli_logs, console
-from .cli_options import Json, Set
+from . import cli_contact, cli_diagnosis, cli_logs, cli_rigs, console
+from .cli_options import Json, Rig, Set
 
 app = typer.Typer(
     name="gearheat",
@@ -37,7 +37,6 @@ def options(
     """Losses and temperatures of gearboxes: simulate, design, export as FMU, compare with measurements."""
 
 
-Rig = Annotated[str, typer.Argument(help="Name of a shipped rig (see `gearheat list`), or path of a rig file.")]
 Workers = Annotated[int, typer.Option(min=0, help="Processes to use; 0 for one per core.")]
 Extended = Annotated[
     Path | None, typer.Option(metavar="FILE", help="Rig file that `diagnose` wrote; it takes the rig's place.")
@@ -261,47 +260,6 @@ def list_(json: Json = None) -> None:
 
 @app.command()
 @console.guarded
-def new(
-    name: Annotated[str, typer.Argument(help="Name of the rig, and of its file.")],
-    stages: Annotated[str, typer.Option(help="Stages from the input on: helical, spur.")],
-    ratio: Annotated[float, typer.Option(help="Speed of the input over that of the output.")],
-    power: Annotated[str, typer.Option(help='Power at the input, such as "7.5 kW".')],
-    speed: Annotated[str, typer.Option(help='Speed of the input, such as "1450 rpm".')],
-    oil: Annotated[str, typer.Option(help="Oil of the catalogue, see `gearheat list`.")] = "ISO VG 220 mineral",
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; NAME.toml if left out.")] = None,
-    json: Json = None,
-) -> None:
-    """A rig of your own from a name plate: it runs at once, and tells the rule of every number."""
-    from . import new
-
-    new.new_command(name, stages, ratio, power, speed, oil, out, json)
-
-
-@app.command()
-@console.guarded
-def parts(
-    kind: Annotated[str | None, typer.Argument(metavar="TYPE", help="Part type; all types if left out.")] = None,
-    json: Json = None,
-) -> None:
-    """What a rig can be built of: part types, and all about one with an example."""
-    from . import parts
-
-    parts.parts_command(kind, json)
-
-
-@app.command()
-@console.guarded
-def schema(
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; printed if left out.")] = None,
-) -> None:
-    """JSON schema of rig files: editors complete and check them with it."""
-    from . import parts
-
-    parts.schema_command(out)
-
-
-@app.command()
-@console.guarded
 def show(
     rig: Rig,
     errata: Annotated[bool, typer.Option("--errata", help="Show where the rig's sources are wrong.")] = False,
@@ -387,6 +345,11 @@ def bench(
 
 app.command()(cli_contact.film)
 app.command("verify-contact")(cli_contact.verify_contact)
+app.command()(cli_rigs.new)
+app.command()(cli_rigs.parts)
+app.command()(cli_rigs.schema)
+app.command("map")(cli_rigs.map_)
+app.command()(cli_rigs.rating)
 
 
 if __name__ == "__main__":

@@ -17,6 +17,8 @@ COMMANDS = (
     "compare",
     "calibrate",
     "list",
+    "map",
+    "rating",
     "new",
     "parts",
     "schema",
