@@ -54,11 +54,9 @@ def platforms(choice: str) -> tuple[Platform, ...]:
     Raises:
         FmuError: unknown platform
     """
-    if choice == "host":
-        return (host_platform(),)
     if choice == "all":
         return tuple(PLATFORMS.values())
-    names = [name.strip() for name in choice.split(",")]
+    names = [host_platform().name if name.strip() == "host" else name.strip() for name in choice.split(",")]
     known = ("host", "all", *PLATFORMS)
     unknown = [n for n in names if n not in PLATFORMS]
     if unknown:

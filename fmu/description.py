@@ -99,7 +99,14 @@ def _inverse(pattern: np.ndarray) -> np.ndarray:
 
 
 def description(
-    flat: FlatModel, model: Equations, table: Table, guid: str, dependent: Dependencies | None = None
+    flat: FlatModel,
+    model: Equations,
+    table: Table,
+    guid: str,
+    dependent: Dependencies | None = None,
+    *,
+    licence: str = "",
+    with_sources: bool = True,
 ) -> bytes:
     """modelDescription.xml.
 
@@ -109,6 +116,8 @@ def description(
         table: its variables
         guid: unique identification, "" while it is still to be computed
         dependent: the result of `dependencies`, computed when not given
+        licence: under which its owner gives it away; none is told where it is empty
+        with_sources: whether the FMU holds its sources
     """
     dependent = dependent or dependencies(model, table)
     root = ET.Element(
@@ -118,11 +127,11 @@ def description(
         guid=guid,
         description="; ".join(filter(None, (flat.doc, *flat.joined))),
         generationTool=tool(),
-        license="BSD-3-Clause",
+        **({"license": licence} if licence else {}),
         variableNamingConvention="structured",
         numberOfEventIndicators="0",
     )
-    _interfaces(root, identifier(flat.name))
+    _interfaces(root, identifier(flat.name), with_sources)
     _unit_definitions(root, table)
     categories = ET.SubElement(root, "LogCategories")
     for name, text in LOG_CATEGORIES.items():
@@ -137,11 +146,11 @@ def description(
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
 
 
-def _interfaces(root: ET.Element, name: str) -> None:
+def _interfaces(root: ET.Element, name: str, with_sources: bool) -> None:
     own = {"modelIdentifier": name, **_CAPABILITIES}
     exchange = ET.SubElement(root, "ModelExchange", {**own, "completedIntegratorStepNotNeeded": "true"})
     simulation = ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
-    for interface in (exchange, simulation):
+    for interface in (exchange, simulation) if with_sources else ():
         ET.SubElement(ET.SubElement(interface, "SourceFiles"), "File", name="all.c")
 
 

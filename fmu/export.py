@@ -31,6 +31,7 @@ import uuid
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from typing import Any
 
 from gearheat.model.core.flat import FlatModel
 
@@ -62,6 +63,8 @@ def export(
     uncertainties: Mapping[str, float] | None = None,
     picture: str = "",
     verify: Callable[[Path], Sequence[Check]] | None = None,
+    licence: str = "",
+    with_sources: bool = True,
 ) -> Path:
     """Write a model as an FMU that serves co-simulation and model exchange. The same model gives the same bytes.
 
@@ -78,6 +81,8 @@ def export(
         uncertainties: parameter -> standard uncertainty of its value, in the unit of the value
         picture: the model drawn as SVG, for the documentation
         verify: called with the finished file; the checks and results it gives are written into the documentation
+        licence: under which its owner gives it away; none is told where it is empty
+        with_sources: whether it holds its C source
 
     Returns:
         the path
@@ -90,12 +95,12 @@ def export(
     held = {q.name for q in kept.parameters}
     idle = tuple(q.name for q in flat.parameters if q.name not in held)
     about = About(sources or {}, uncertainties or {}, picture, idle)
-    code, told = _code(kept, variables)
+    code, told = _code(kept, variables, licence=licence, with_sources=with_sources)
     content = {
         "modelDescription.xml": told,
         "model.png": icon(),
         _PAGE: documentation(kept, variables, about).encode(),
-        "sources/all.c": code.encode(),
+        **({"sources/all.c": code.encode()} if with_sources else {}),
         **_extra(kept, variables, about),
         **{f"binaries/{p.name}/{identifier(flat.name)}{p.suffix}": binary(code, p) for p in chosen},
     }
@@ -119,11 +124,11 @@ def _exported(flat: FlatModel, start: Mapping[str, float]) -> tuple[FlatModel, T
     return kept, table(kept, {name: value for name, value in start.items() if name in known})
 
 
-def _code(flat: FlatModel, variables: Table) -> tuple[str, bytes]:
+def _code(flat: FlatModel, variables: Table, **told: Any) -> tuple[str, bytes]:
     """The C source and the description, with the identification that follows from both."""
     model = equations(flat)
     code = source(flat, model, variables)
-    without_guid = description(flat, model, variables, GUID_MARK, dependencies(model, variables))
+    without_guid = description(flat, model, variables, GUID_MARK, dependencies(model, variables), **told)
     guid = _guid(code.encode() + without_guid)
     return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode())
 

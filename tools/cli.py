@@ -149,7 +149,13 @@ def export(
             help="speed: speed and torque of the driving shaft are inputs; torque: the torques of all shaft ends are."
         ),
     ] = "speed",
-    platform: Annotated[str, typer.Option(help='"host", "all" or names such as linux64,win64.')] = "host",
+    platform: Annotated[str, typer.Option(help='"host", "all" or names such as linux64,win64.')] = "host,win64",
+    license_: Annotated[str, typer.Option("--license", help="Licence under which you give it away.")] = "",
+    sources: Annotated[bool, typer.Option("--sources/--no-sources", help="With its C source.")] = True,
+    origins: Annotated[
+        bool,
+        typer.Option("--parameters-source/--no-parameters-source", help="Telling where values are from."),
+    ] = True,
     extras: Annotated[
         Path | None, typer.Option(metavar="FOLDER", help="Write parameter sets (.ssv) and a reference result there.")
     ] = None,
@@ -158,7 +164,19 @@ def export(
     """Write the rig as an FMU for FMI 2.0."""
     from . import exporting
 
-    exporting.export_command(str(extended or rig), out, set_ or [], drive, given, platform, extras, json)
+    exporting.export_command(
+        str(extended or rig),
+        out,
+        set_ or [],
+        drive,
+        given,
+        platform,
+        extras,
+        json,
+        licence=license_,
+        with_sources=sources,
+        with_origins=origins,
+    )
 
 
 @app.command()

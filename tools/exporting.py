@@ -42,6 +42,10 @@ def export_command(
     platform: str,
     extras: Path | None,
     json: str | None,
+    *,
+    licence: str = "",
+    with_sources: bool = True,
+    with_origins: bool = True,
 ) -> None:
     """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
     writable(out, file_of(json))
@@ -53,7 +57,9 @@ def export_command(
     start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, assignments)
     beside = folder(extras) if extras is not None else None
     duty = reference_duty(flat, start, setting.shaft_paths())
-    write_fmu(setting, flat, out, platform=platform, start=start, verify=lambda fmu: checked(fmu, flat, duty, start))
+    told = {} if with_origins else {"sources": {}, "uncertainties": {}}
+    options: dict[str, Any] = {"platform": platform, "start": start, "licence": licence, "with_sources": with_sources}
+    write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, start), **told, **options)
     kept = effective(flat, start)
     named = {q.name for q in kept.parameters}
     written = [] if beside is None else write_extras(out, beside, setting, kept, duty, start, sources_of(setting, kept))
@@ -90,14 +96,8 @@ def write_fmu(scenario: Scenario, flat: FlatModel, out: Path, **options: Any) ->
         out: file to write
         options: of `gearheat.fmu.export.export`
     """
-    return export(
-        flat,
-        out,
-        sources=sources_of(scenario, flat),
-        uncertainties=scenario.uncertainties,
-        picture=network_svg(assemble(scenario.spec)),
-        **options,
-    )
+    known = {"sources": sources_of(scenario, flat), "uncertainties": scenario.uncertainties}
+    return export(flat, out, picture=network_svg(assemble(scenario.spec)), **{**known, **options})
 
 
 def sources_of(scenario: Scenario, flat: FlatModel) -> dict[str, str]:

@@ -63,7 +63,9 @@ def exported(tmp_path_factory):
     for name, (options, _) in VARIANTS.items():
         path = folder / f"{name}.fmu"
         extras = ("--extras", str(folder / name)) if name.startswith("carrier") else ()
-        result = CliRunner().invoke(app, ["export", "planetary", "-o", str(path), *options, *extras, "--json", "-"])
+        result = CliRunner().invoke(
+            app, ["export", "--platform", "host", "planetary", "-o", str(path), *options, *extras, "--json", "-"]
+        )
         assert result.exit_code == 0, result.stderr
         found[name] = (path, json.loads(result.stdout))
     return found
@@ -114,7 +116,7 @@ def test_both_shafts_with_a_given_speed_start_at_the_same_operating_point_and_st
 )
 def test_every_variant_runs_for_hours_at_its_defaults(gearheat, tmp_path, rig, options):
     """A speed that is given holds while the machine warms up; where torques are given nothing moves from the start."""
-    assert gearheat("export", rig, "-o", tmp_path / "rig.fmu", *options).code == 0
+    assert gearheat("export", "--platform", "host", rig, "-o", tmp_path / "rig.fmu", *options).code == 0
     with Player(tmp_path / "rig.fmu") as player:
         told = player.described.quantities("output")
         played = player.run({}, 8 * 3600.0, 60.0, record=list(told))
@@ -142,7 +144,7 @@ def test_what_is_set_stays_set(gearheat, tmp_path, elsewhere):
         "--set",
         "oil.T=50 degC",
     )
-    assert gearheat("export", "planetary", "-o", path, *options).code == 0
+    assert gearheat("export", "--platform", "host", "planetary", "-o", path, *options).code == 0
     start = {v.name: v.start for v in fmpy.read_model_description(str(path)).modelVariables}
     assert float(start["sun.tau"]) == -500.0
     assert float(start["rotor.w"]) == 10.0
@@ -273,7 +275,7 @@ def test_fmpy_reproduces_the_reference(exported, name):
 
 def test_the_same_rig_gives_the_same_bytes_with_and_without_extras(exported, gearheat, tmp_path):
     path, found = exported["carrier-speed"]
-    again = gearheat("export", "planetary", "-o", tmp_path / "again.fmu", "--json", "-").json
+    again = gearheat("export", "--platform", "host", "planetary", "-o", tmp_path / "again.fmu", "--json", "-").json
     assert again["sha256"] == found["sha256"]
     assert (tmp_path / "again.fmu").read_bytes() == path.read_bytes()
     assert again["extras"] == []
@@ -283,7 +285,7 @@ def test_the_same_rig_gives_the_same_bytes_with_and_without_extras(exported, gea
 def test_for_another_machine_the_reference_is_made_all_the_same(gearheat, tmp_path, elsewhere):
     path = tmp_path / "rig.fmu"
     more = ("--platform", elsewhere, "--extras", tmp_path / "more")
-    found = gearheat("export", "planetary", "-o", path, *more, "--json", "-").json
+    found = gearheat("export", "--platform", "host", "planetary", "-o", path, *more, "--json", "-").json
     assert found["platforms"] == [elsewhere]
     assert (tmp_path / "more" / "rig_ref.csv").is_file()
     with zipfile.ZipFile(path) as file:
@@ -293,7 +295,7 @@ def test_for_another_machine_the_reference_is_made_all_the_same(gearheat, tmp_pa
 
 
 def test_the_sentence_for_people(gearheat, tmp_path):
-    answer = gearheat("export", "planetary", "-o", tmp_path / "rig.fmu", "--extras", tmp_path)
+    answer = gearheat("export", "--platform", "host", "planetary", "-o", tmp_path / "rig.fmu", "--extras", tmp_path)
     assert answer.code == 0, answer.err
     first, second, third = answer.out.splitlines()
     assert (
@@ -306,7 +308,7 @@ def test_the_sentence_for_people(gearheat, tmp_path):
 def test_an_extended_rig_has_its_oils_too(gearheat, tmp_path):
     rig, fmu = tmp_path / "extended.toml", tmp_path / "rig.fmu"
     rig.write_text(rig_text(load("planetary")), encoding="utf-8")
-    found = gearheat("export", rig, "-o", fmu, "--extras", tmp_path / "more", "--json", "-").json
+    found = gearheat("export", "--platform", "host", rig, "-o", fmu, "--extras", tmp_path / "more", "--json", "-").json
     assert len(list((tmp_path / "more" / "oils").iterdir())) == len(found["extras"]) - 4 >= 40
     assert provenance(held(fmu, PARAMETERS))["foot.G"]["standardUncertainty"] == "0.19"
 
@@ -331,7 +333,31 @@ def test_a_machine_listed_part_by_part(gearheat, tmp_path, elsewhere):
     ],
 )
 def test_what_is_wrong_is_told_before_anything_is_written(gearheat, tmp_path, options, told):
-    answer = gearheat("export", "planetary", "-o", tmp_path / "rig.fmu", *options)
+    answer = gearheat("export", "--platform", "host", "planetary", "-o", tmp_path / "rig.fmu", *options)
     assert answer.code == 2
     assert told in answer.err
     assert list(tmp_path.iterdir()) == []
+
+
+def test_what_a_company_may_keep_to_itself(gearheat, tmp_path):
+    path = tmp_path / "own.fmu"
+    keep = ("--license", "Example Ltd, all rights reserved", "--no-sources", "--no-parameters-source")
+    found = gearheat("export", "helical_two_stage", "-o", path, *keep, "--json", "-").json
+    assert found["platforms"] == list(dict.fromkeys([compiling.host_platform().name, "win64"]))
+    with zipfile.ZipFile(path) as file:
+        description = file.read("modelDescription.xml").decode()
+        assert 'license="Example Ltd, all rights reserved"' in description
+        assert "SourceFiles" not in description
+        assert not [name for name in file.namelist() if name.startswith("sources/")]
+        for name in (n for n in file.namelist() if n.endswith((".xml", ".html", ".ssv"))):
+            assert b"assumed: standard module" not in file.read(name), name
+    with Player(path) as player:
+        assert player.run({}, 600, 60.0).time[-1] == 600
+
+
+def test_no_licence_is_told_that_was_not_given(gearheat, tmp_path):
+    path = tmp_path / "rig.fmu"
+    gearheat("export", "--platform", "host", "helical_two_stage", "-o", path)
+    with zipfile.ZipFile(path) as file:
+        assert "license=" not in file.read("modelDescription.xml").decode()
+        assert "assumed: standard module" in file.read("documentation/index.html").decode()

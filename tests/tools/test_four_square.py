@@ -37,13 +37,13 @@ def test_design_finds_the_twist_for_a_loss_torque(gearheat):
 @pytest.mark.parametrize("given", ["speed", "torque"])
 def test_its_fmu_validates(gearheat, tmp_path, given):
     path = tmp_path / "four_square.fmu"
-    assert gearheat("export", RIG, "--out", path, "--given", given).code == 0
+    assert gearheat("export", "--platform", "host", RIG, "--out", path, "--given", given).code == 0
     assert validate_fmu(str(path)) == []
 
 
 def test_its_fmu_comes_to_the_steady_state(gearheat, tmp_path):
     path = tmp_path / "four_square.fmu"
-    gearheat("export", RIG, "--out", path)
+    gearheat("export", "--platform", "host", RIG, "--out", path)
     steady = gearheat("steady", RIG, "--json", "-").json["values"]
     end = fmpy.simulate_fmu(
         str(path), stop_time=36000.0, output_interval=600.0, output=["motor.tau", "oil.T", "clutch.slip"]
@@ -67,7 +67,7 @@ def test_ratios_that_do_not_fit_are_refused(gearheat):
 
 def test_its_fmu_refuses_ratios_that_do_not_fit(gearheat, tmp_path):
     path = tmp_path / "four_square.fmu"
-    gearheat("export", RIG, "--out", path)
+    gearheat("export", "--platform", "host", RIG, "--out", path)
     told = []
     other = {"slave_gears.z_1": 15.0, "slave_gears.z_2": 25.0}
     with pytest.raises(fmpy.fmi1.FMICallException):

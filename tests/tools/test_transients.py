@@ -44,7 +44,7 @@ def test_simulate_starts_at_the_room_and_shows_both_sides_of_a_jump(gearheat, du
 def test_the_fmu_gives_what_the_model_gives(gearheat, duty, tmp_path):
     fmu, simulated, played = (tmp_path / name for name in ("rig.fmu", "simulated.csv", "played.csv"))
     settings = ("--set", "cooling.A=0.7 m2", "--set", "room.T=20 degC")
-    assert gearheat("export", "planetary", "-o", fmu, *settings).code == 0
+    assert gearheat("export", "--platform", "host", "planetary", "-o", fmu, *settings).code == 0
     assert gearheat("simulate", "planetary", "--duty", duty, "-o", simulated, *settings).code == 0
     assert gearheat("play", fmu, "--duty", duty, "-o", played).code == 0
     ours, theirs = columns(simulated), columns(played)
@@ -57,7 +57,7 @@ def test_the_fmu_gives_what_the_model_gives(gearheat, duty, tmp_path):
 def test_both_start_at_the_room_of_the_duty(gearheat, tmp_path):
     fmu, duty, out = tmp_path / "rig.fmu", tmp_path / "duty.csv", tmp_path / "out.csv"
     duty.write_text("Time (min),carrier.w [rpm],carrier.tau [N.m],room.T [degC]\n0,100,1500,35\n10,100,1500,35\n")
-    assert gearheat("export", "planetary", "-o", fmu).code == 0
+    assert gearheat("export", "--platform", "host", "planetary", "-o", fmu).code == 0
     first = []
     for command in (("simulate", "planetary"), ("play", fmu)):
         assert gearheat(*command, "--duty", duty, "-o", out).code == 0
@@ -70,7 +70,7 @@ def test_both_start_at_the_room_of_the_duty(gearheat, tmp_path):
 
 def test_parameters_and_states_of_an_fmu_can_be_set(gearheat, duty, tmp_path):
     fmu, out = tmp_path / "rig.fmu", tmp_path / "played.csv"
-    assert gearheat("export", "planetary", "-o", fmu).code == 0
+    assert gearheat("export", "--platform", "host", "planetary", "-o", fmu).code == 0
     small = gearheat("play", fmu, "--duty", duty, "-o", out, "--json", "-", "--set", "cooling.A=0.3 m2").json
     large = gearheat("play", fmu, "--duty", duty, "-o", out, "--json", "-", "--set", "oil.T=20 degC").json
     assert small["final"]["oil.T"] > large["final"]["oil.T"] + 1
@@ -90,7 +90,9 @@ def test_parameters_and_states_of_an_fmu_can_be_set(gearheat, duty, tmp_path):
     ],
 )
 def test_inputs_of_an_fmu_follow_from_what_is_given(gearheat, tmp_path, options, inputs):
-    found = gearheat("export", "planetary", "-o", tmp_path / "rig.fmu", *options, "--json", "-").json
+    found = gearheat(
+        "export", "--platform", "host", "planetary", "-o", tmp_path / "rig.fmu", *options, "--json", "-"
+    ).json
     assert {name for name in found["inputs"] if name.endswith((".w", ".tau"))} == inputs
     assert {"room.T", "room.air_speed", "oil.Q_flow_external"} <= set(found["inputs"])
 

@@ -71,7 +71,7 @@ def test_oils_of_a_campaign_count() -> None:
         ["steady", "helical_two_stage"],
         ["losses", "helical_two_stage"],
         ["design", "helical_two_stage", "--free", "input.w", "--target", "oil.T=60 degC"],
-        ["export", "helical_two_stage", "--out", "OUT.fmu"],
+        ["export", "--platform", "host", "helical_two_stage", "--out", "OUT.fmu"],
         ["simulate", "helical_two_stage", "--duty", "DUTY", "--out", "OUT.csv"],
         ["sweep", "helical_two_stage", "--vary", "room.T=10..30 degC", "--sample", "3", "--out", "OUT.csv"],
     ],
