@@ -24,6 +24,8 @@
     [connect]                             # nets of one's own: name = ports that meet
     cooler_in = ["oil.heat", "cooler.a"]
 
+    [template.bearing]                    # what parts with use = "bearing" share; "x_{a,b}" names two parts: `repeats`
+
     [sensors]                             # column of a measured table = path in the model
     T_oil_C = "oil.T"
 
@@ -63,6 +65,7 @@ from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
 from .instruments import Instrument, instruments
 from .protocol import Driven, Protocol
+from .repeats import expanded
 from .scenario import Erratum, Scenario
 from .tables import RigTable, validate
 from .values import PartValues, in_range, part_values, readable, settable
@@ -129,7 +132,9 @@ class _Loader:
         self.file = path.name
         self.name = path.resolve().parent.name if path.name == "rig.toml" else path.stem
         self.table: RigTable
-        self.table, self.problems = validate(self.file, raw)
+        whole, repeated = expanded(self.file, raw)
+        self.table, self.problems = validate(self.file, whole)
+        self.problems += repeated
         if self.table.kind not in LAYOUTS and (self.table.kind or not self.problems):
             close = suggestion(self.table.kind, LAYOUTS) or f" Kinds: {', '.join(LAYOUTS)}."
             self.problems.append(f'{self.file}: unknown kind "{self.table.kind}".{close}')

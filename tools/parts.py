@@ -219,6 +219,7 @@ def schema() -> dict[str, Any]:
     own = [{"$ref": f"#/$defs/part_{kind}"} for kind in PARTS]
     named = {"type": "object", "not": {"required": ["type"]}, "description": "a part of the machine named by `kind`"}
     found["properties"]["part"]["additionalProperties"] = {"anyOf": [*own, named]}
+    found["properties"]["template"] = {"type": "object", "description": "values that parts share by use = NAME"}
     found["properties"]["sensors"]["additionalProperties"] = {
         "anyOf": [{"type": "string"}, found["properties"]["sensors"]["additionalProperties"]]
     }
@@ -227,7 +228,10 @@ def schema() -> dict[str, Any]:
 
 def _part_schema(kind: str) -> dict[str, Any]:
     cls = PARTS[kind]
-    properties: dict[str, Any] = {"type": {"const": kind, "description": _doc(cls)}}
+    properties: dict[str, Any] = {
+        "type": {"const": kind, "description": _doc(cls)},
+        "use": {"type": "string", "description": "template whose values the part has"},
+    }
     for key, d in settable(cls).items():
         about = ", ".join(filter(None, (d.doc, _range(d.quantity(key)), shown(d.unit) if d.unit != "1" else "")))
         taken = ["number", "string"] if d.unit == "1" else ["string"]

@@ -1,0 +1,119 @@
+"""Repetition in rig files: tables that parts share, and names in braces that stand for several.
+
+[template.ball]                               # what parts with `use = "ball"` have, unless they say otherwise
+type = "DeepGrooveBallBearing"
+K_rs = 3e-8
+
+[part."input_bearing_{a,b}"]                  # two parts, input_bearing_a and input_bearing_b
+use = "ball"
+bearing = "SKF 6306"
+
+[connect]
+shaft = ["input.flange", "input_bearing_{a,b}.shaft"]                       # all of them meet
+"load_{a,b}" = ["input_support.load_{a,b}", "input_bearing_{a,b}.load"]     # a net for each
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping
+from typing import Any
+
+from ..model.errors import suggestion
+from .document import ABOUT
+
+#: Keys of a part's table that hold tables: a part adds to those of its template.
+ADDED = (ABOUT[2], "uncertainties")
+
+_BRACES = re.compile(r"\{([^{}]*)\}")
+_RANGE = re.compile(r"\s*(\d+)\s*\.\.\s*(\d+)\s*")
+
+
+def options(text: str) -> list[str]:
+    """What the first braces of a text stand for: "a,b" is two words, "1..3" three numbers; none without braces."""
+    match = _BRACES.search(text)
+    if match is None:
+        return []
+    if ends := _RANGE.fullmatch(match[1]):
+        return [str(k) for k in range(int(ends[1]), int(ends[2]) + 1)]
+    return [word.strip() for word in match[1].split(",")]
+
+
+def meant(text: str) -> list[str]:
+    """All that a text stands for: "a_{1,2}" is "a_1" and "a_2".
+
+    Args:
+        text: with any number of braces
+    """
+    if not (found := options(text)):
+        return [text]
+    return [whole for word in found for whole in meant(_BRACES.sub(word, text, count=1))]
+
+
+def expanded(file: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+    """A rig file without templates and braces, and all that is wrong with these.
+
+    Args:
+        file: its name, for messages
+        raw: what TOML makes of it
+    """
+    templates = raw.get("template", {})
+    if not isinstance(templates, Mapping) or not all(isinstance(t, Mapping) for t in templates.values()):
+        return dict(raw), [f"{file} [template]: is no table of tables. Write [template.NAME] for each."]
+    problems = [
+        f'{file} [template.{name}]: uses "{table["use"]}". A template holds values, it uses no other.'
+        for name, table in templates.items()
+        if "use" in table
+    ]
+    found = {key: value for key, value in raw.items() if key != "template"}
+    if isinstance(parts := raw.get("part"), Mapping):
+        found["part"] = {}
+        for written, table in parts.items():
+            whole = _used(f"{file} [part.{written}]", table, templates, problems)
+            for name in meant(written):
+                if name in found["part"]:
+                    problems.append(f'{file} [part.{written}]: there is a part "{name}" already. Rename one.')
+                found["part"][name] = whole
+    if isinstance(nets := raw.get("connect"), Mapping):
+        found["connect"] = {name: ports for written, own in nets.items() for name, ports in _nets(written, own)}
+    if isinstance(losses := raw.get("losses"), Mapping):
+        found["losses"] = {column: _flat(paths) for column, paths in losses.items()}
+    return found, problems
+
+
+def _used(where: str, table: Any, templates: Mapping[str, Any], problems: list[str]) -> Any:
+    """The table of a part with what its template holds."""
+    if not isinstance(table, Mapping) or "use" not in table:
+        return table
+    own = {key: value for key, value in table.items() if key != "use"}
+    if (name := table["use"]) not in templates:
+        close = suggestion(str(name), templates) or f" Templates: {', '.join(templates) or 'none'}."
+        problems.append(f'{where}: there is no template "{name}".{close}')
+        return own
+    base = templates[name]
+    both = [key for key in ADDED if isinstance(base.get(key), Mapping) and isinstance(own.get(key), Mapping)]
+    return {**base, **own, **{key: {**base[key], **own[key]} for key in both}}
+
+
+def _flat(texts: Any) -> Any:
+    if not isinstance(texts, list):
+        return texts
+    return [name for text in texts for name in (meant(text) if isinstance(text, str) else [text])]
+
+
+def _nets(written: str, ports: Any) -> list[tuple[str, Any]]:
+    """The nets that a name in braces stands for: ports with as many options go with it one by one."""
+    if not (own := options(written)):
+        return [(written, _flat(ports))]
+    found = []
+    for k, word in enumerate(own):
+        mine = ports
+        if isinstance(ports, list):
+            mine = [
+                _BRACES.sub(theirs[k], port, count=1)
+                if isinstance(port, str) and len(theirs := options(port)) == len(own)
+                else port
+                for port in ports
+            ]
+        found += _nets(_BRACES.sub(word, written, count=1), mine)
+    return found
