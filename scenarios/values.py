@@ -12,7 +12,7 @@ from ..model.core.declare import Choice, Declaration, Input, Output, Parameter, 
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.parts import PARTS
-from ..model.units import to_si
+from ..model.units import in_unit, spelled, split, to_si
 from .document import ABOUT, sources_of
 from .entries import FILES, Entry, entry
 
@@ -97,10 +97,12 @@ def in_range(where: str, raw: object, quantity: Quantity) -> float:
     name = f"{where}{quantity.name}"
     value = to_si(raw, quantity.unit, name=name)
     written = f'"{raw}"' if isinstance(raw, str) else raw
-    if (problem := quantity.problem(value)) is not None:
-        bound = problem.partition("out of range. ")[2].replace(" 1.", ".")  # no unit to show
-        raise ScenarioError(f"{name} = {written} is out of range. {bound}")
     unit = quantity.unit.removesuffix("(difference)").strip()
+    if (broken := quantity.bound(value)) is not None:
+        words, number = broken
+        theirs = spelled(split(raw)[1]) if isinstance(raw, str) and "(" not in quantity.unit else ""
+        known = f"{in_unit(number, theirs):.6g} {theirs}" if theirs else f"{number:g} {unit}"
+        raise ScenarioError(f"{name} = {written} is out of range. It must be {words} {known.removesuffix(' 1')}.")
     least, most = SENSIBLE.get(quantity.unit, OTHERS)
     if value and not least <= abs(value) <= most:
         raise ScenarioError(

@@ -33,17 +33,22 @@ class Quantity:
     high_open: bool = False
     refusal: str = ""
 
+    def bound(self, value: float) -> tuple[str, float] | None:
+        """The bound that a value does not keep, in words and in SI, or None."""
+        if value <= self.low if self.low_open else value < self.low:
+            return ("above" if self.low_open else "at least"), self.low
+        if value >= self.high if self.high_open else value > self.high:
+            return ("below" if self.high_open else "at most"), self.high
+        return None
+
     def problem(self, value: float) -> str | None:
         """What is wrong with a value, or None."""
         if not np.isfinite(value):
             return f"{self.name} = {value} is not finite"
-        if value <= self.low if self.low_open else value < self.low:
-            bound = f"{'above' if self.low_open else 'at least'} {self.low:g}"
-        elif value >= self.high if self.high_open else value > self.high:
-            bound = f"{'below' if self.high_open else 'at most'} {self.high:g}"
-        else:
+        if (broken := self.bound(value)) is None:
             return None
-        return f"{self.name} = {value:g} {self.unit} is out of range. It must be {bound} {self.unit}."
+        words, number = broken
+        return f"{self.name} = {value:g} {self.unit} is out of range. It must be {words} {number:g} {self.unit}."
 
 
 @dataclass(frozen=True)

@@ -25,14 +25,14 @@ FACE = 'b = "42 mm"'
         (FACE, 'b = "42 kg"', GEARS + ': b = "42 kg": unit "kg" does not fit m. Write for example "62 mm".'),
         (FACE, 'b = "42 mn"', GEARS + ': b = "42 mn": unit "mn" does not fit m. Write for example "62 mm".'),
         (FACE, 'b = "wide"', GEARS + ': b = "wide" is no number with a unit. Write for example "62 mm".'),
-        (FACE, 'b = "-42 mm"', GEARS + ': b = "-42 mm" is out of range. It must be above 0 m.'),
+        (FACE, 'b = "-42 mm"', GEARS + ': b = "-42 mm" is out of range. It must be above 0 mm.'),
         (FACE, 'b = "nan mm"', GEARS + ": b = 'nan mm' is not finite. Write a finite number."),
         (
             'C = "9000 J/K"',
             'C = "-9 kJ/K"',
-            'rig.toml [part.wall]: C = "-9 kJ/K" is out of range. It must be above 0 J/K.',
+            'rig.toml [part.wall]: C = "-9 kJ/K" is out of range. It must be above 0 kJ/K.',
         ),
-        ('V = "1 l"', 'V = "-1 l"', 'rig.toml [part.oil]: V = "-1 l" is out of range. It must be above 0 m3.'),
+        ('V = "1 l"', 'V = "-1 l"', 'rig.toml [part.oil]: V = "-1 l" is out of range. It must be above 0 l.'),
         (
             'material = "painted"',
             "emissivity = 1.2",
@@ -41,7 +41,7 @@ FACE = 'b = "42 mm"'
         (
             'room.T = "25 degC"',
             'room.T = "-300 degC"',
-            'rig.toml [operating_point]: room.T = "-300 degC" is out of range. It must be at least 213.15 K.',
+            'rig.toml [operating_point]: room.T = "-300 degC" is out of range. It must be at least -60 degC.',
         ),
         (
             'room.T = "25 degC"',

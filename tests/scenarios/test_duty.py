@@ -65,8 +65,8 @@ def test_the_inputs_of_a_rig_and_of_a_flat_model(tmp_path: Path) -> None:
     [
         ("time,room.T [degC]", 'column "time" has no unit. Write it in brackets: "time [s]".'),
         (
-            "t [s],room.T [degC]",
-            'the first column is "t [s]". It must be the time with its unit, for example "time [min]".',
+            "moment [s],room.T [degC]",
+            'the first column is "moment [s]". It must be the time with its unit, such as "time [min]".',
         ),
         ("time [K],room.T [degC]", 'column "time [K]": the unit does not fit time. Write it in brackets: "time [s]".'),
         ("time [s],room.T", 'column "room.T" has no unit. Write it in brackets: "room.T [degC]".'),
@@ -81,6 +81,11 @@ def test_the_inputs_of_a_rig_and_of_a_flat_model(tmp_path: Path) -> None:
 )
 def test_a_wrong_header(tmp_path: Path, header: str, expected: str) -> None:
     assert problems(table(tmp_path, "0,20", "1,20", header=header)) == (f"duty.csv line 1: {expected}",)
+
+
+@pytest.mark.parametrize("name", ["Time [s]", "time (s)", "time_s", "t [s]", "t_s"])
+def test_the_time_as_it_is_met(tmp_path: Path, name: str) -> None:
+    assert read_duty(table(tmp_path, "0,20", "60,21", header=f"{name},room.T [degC]"), INPUTS).stop == 60
 
 
 def test_no_input(tmp_path: Path) -> None:
