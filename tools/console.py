@@ -152,27 +152,67 @@ def _cannot_write(path: Path, error: OSError) -> str:
     return f"{path}: cannot be written ({error.strerror or error}). Give a folder that exists and may be written."
 
 
-def table(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]], *, wrapped: bool = False) -> None:
+def table(
+    title: str,
+    columns: Sequence[str],
+    rows: Iterable[Sequence[Any]],
+    *,
+    wrapped: bool = False,
+    width: int | None = None,
+) -> None:
     """Print a table: columns of numbers to the right, columns of words to the left.
+
+    Numbers and names are never broken into lines. Where there is no room for all columns, the last ones of words are
+    left out, and said so.
 
     Args:
         title: above it
         columns: names of the columns
         rows: a value per column
         wrapped: whether the first column may be broken into lines; names that are typed must not
+        width: of the screen; that of the terminal, or 160
     """
     from rich import box
     from rich.console import Console
     from rich.table import Table
 
     body = [[cell(value) for value in row] for row in rows]
+    words = [any(not _is_number(row[i]) for row in body) for i in range(len(columns))]
+    whole = [not words[i] or (i == 0 and not wrapped) for i in range(len(columns))]
+    screen = Console(width=width or (None if sys.stdout.isatty() else 160), markup=False, emoji=False)
+    widest = [max(len(text) for text in (name, *(row[i] for row in body))) for i, name in enumerate(columns)]
+    kept = _fitting(
+        [n if stiff else min(n, LEAST) for n, stiff in zip(widest, whole, strict=True)], whole, screen.width
+    )
     drawn = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
-    for i, column in enumerate(columns):
-        words = any(not _is_number(row[i]) for row in body)
-        drawn.add_column(column, justify="left" if words else "right", overflow="fold", no_wrap=i == 0 and not wrapped)
+    for i in kept:
+        drawn.add_column(
+            columns[i],
+            justify="left" if words[i] else "right",
+            overflow="fold",
+            no_wrap=whole[i],
+            min_width=min(4, widest[i]),
+        )
     for row in body:
-        drawn.add_row(*row)
-    Console(width=None if sys.stdout.isatty() else 160, markup=False, emoji=False).print(drawn)
+        drawn.add_row(*(row[i] for i in kept))
+    screen.print(drawn)
+    if left := [name for i, name in enumerate(columns) if i not in kept]:
+        screen.print(f"left out for want of room: {', '.join(left)}; widen the screen, or take --json\n")
+
+
+#: Width that a column of words gets at least.
+LEAST = 14
+
+
+def _fitting(widths: Sequence[int], whole: Sequence[bool], room: int) -> list[int]:
+    """Numbers of the columns that fit beside each other: those of words go first, from the last on."""
+    kept = list(range(len(widths)))
+    order = [*(i for i in reversed(kept) if not whole[i]), *(i for i in reversed(kept) if whole[i])]
+    for i in order[:-1]:
+        if sum(widths[k] + 2 for k in kept) + 2 <= room:
+            break
+        kept.remove(i)
+    return kept
 
 
 def _is_number(text: str) -> bool:

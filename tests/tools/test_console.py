@@ -170,3 +170,20 @@ def test_ctrl_c_while_the_program_loads(monkeypatch, capsys):
         entry.main()
     assert ended.value.code == 130
     assert capsys.readouterr().err == "interrupted\n"
+
+
+def test_a_narrow_screen_never_breaks_a_number(capsys):
+    columns = ("name", "value", "unit", "doc", "source")
+    rows = [
+        ("cooling.share_top", -123456.789, "W", "a long meaning " * 6, "a source " * 9),
+        ("x", 1.5e-7, "", "b", "c"),
+    ]
+    for width in (80, 60, 40, 30):
+        table("Narrow", columns, rows, width=width)
+        printed = capsys.readouterr().out
+        for whole in ("cooling.share_top", cell(-123456.789), cell(1.5e-7)):
+            assert whole in printed, width
+        assert max(map(len, printed.split("left out")[0].splitlines())) <= width
+        assert ("left out for want of room" in printed) == (width < 80), width
+    table("Wide", columns, rows, width=160)
+    assert "left out" not in capsys.readouterr().out
