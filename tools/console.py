@@ -209,7 +209,7 @@ def _fitting(widths: Sequence[int], whole: Sequence[bool], room: int) -> list[in
     kept = list(range(len(widths)))
     order = [*(i for i in reversed(kept) if not whole[i]), *(i for i in reversed(kept) if whole[i])]
     for i in order[:-1]:
-        if sum(widths[k] + 2 for k in kept) + 2 <= room:
+        if sum(widths[k] + 3 for k in kept) + 1 <= room:  # what is drawn around a column
             break
         kept.remove(i)
     return kept

@@ -178,7 +178,7 @@ def test_a_narrow_screen_never_breaks_a_number(capsys):
         ("cooling.share_top", -123456.789, "W", "a long meaning " * 6, "a source " * 9),
         ("x", 1.5e-7, "", "b", "c"),
     ]
-    for width in (80, 60, 40, 30):
+    for width in (80, 60, 40, 32):
         table("Narrow", columns, rows, width=width)
         printed = capsys.readouterr().out
         for whole in ("cooling.share_top", cell(-123456.789), cell(1.5e-7)):
