@@ -12,7 +12,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from gearheat.model.core.flat import FlatModel
+from gearheat.model.core.flat import FlatModel, Quantity
 
 from . import units
 from .equations import Equations
@@ -20,6 +20,8 @@ from .variables import Table, Variable
 
 #: Relative tolerance when the importer gives none: an error of one step is at most this times the nominal.
 TOLERANCE = 1e-5
+#: What an importer does when nothing is asked: four hours, most of a warm-up, in steps of a minute.
+EXPERIMENT = {"startTime": "0.0", "stopTime": "14400.0", "stepSize": "60.0"}
 
 LOG_CATEGORIES = {
     "logStatusError": "why a call was refused",
@@ -136,7 +138,7 @@ def description(
     categories = ET.SubElement(root, "LogCategories")
     for name, text in LOG_CATEGORIES.items():
         ET.SubElement(categories, "Category", name=name, description=text)
-    ET.SubElement(root, "DefaultExperiment", startTime="0.0", tolerance=repr(TOLERANCE))
+    ET.SubElement(root, "DefaultExperiment", {**EXPERIMENT, "tolerance": repr(TOLERANCE)})
     variables = ET.SubElement(root, "ModelVariables")
     for variable in table:
         _scalar_variable(variables, variable)
@@ -164,9 +166,9 @@ def _unit_definitions(root: ET.Element, table: Table) -> None:
             if defined.factor != 1:
                 base["factor"] = repr(defined.factor)
             ET.SubElement(element, "BaseUnit", base)
-        if defined.shown != name:
-            shown = {"name": defined.shown, "factor": repr(defined.shown_factor), "offset": repr(defined.shown_offset)}
-            ET.SubElement(element, "DisplayUnit", shown)
+        for shown in defined.shown:
+            about = {"name": shown.name, "factor": repr(shown.factor), "offset": repr(shown.offset)}
+            ET.SubElement(element, "DisplayUnit", about)
 
 
 def _scalar_variable(variables: ET.Element, variable: Variable) -> None:
@@ -176,7 +178,7 @@ def _scalar_variable(variables: ET.Element, variable: Variable) -> None:
         "ScalarVariable",
         name=variable.name,
         valueReference=str(variable.reference),
-        description=q.doc,
+        description=_meaning(q),
         causality=variable.causality,
         variability=variable.variability,
     )
@@ -186,8 +188,8 @@ def _scalar_variable(variables: ET.Element, variable: Variable) -> None:
     real = ET.SubElement(element, "Real", unit=unit)
     if units.is_difference(q.unit):
         real.set("relativeQuantity", "true")
-    elif units.unit(unit).shown != unit:
-        real.set("displayUnit", units.unit(unit).shown)
+    elif (shown := units.unit(unit).display(abs(variable.start or q.nominal))) is not None:
+        real.set("displayUnit", shown.name)
     low, high = variable.bounds
     for key, value in (("min", low), ("max", high)):
         if math.isfinite(value):
@@ -198,6 +200,12 @@ def _scalar_variable(variables: ET.Element, variable: Variable) -> None:
         real.set("start", repr(float(variable.start)))
     if variable.state is not None:
         real.set("derivative", str(variable.state + 1))
+
+
+def _meaning(q: Quantity) -> str:
+    """What a variable is, and of which part: no two variables of a machine are described alike."""
+    part, dot, _ = q.name.rpartition(".")
+    return f"{part}: {q.doc}" if dot and not q.name.startswith("der(") else q.doc
 
 
 def _model_structure(root: ET.Element, table: Table, dependent: Dependencies) -> None:

@@ -36,19 +36,41 @@ _NAMED: dict[str, tuple[float, dict[str, int]]] = {
 }
 
 
+#: Units in which values of a size are shown, by SI unit: from which size on, name and factor; the others are shown as
+#: the program shows them everywhere.
+SHOWN: Mapping[str, tuple[tuple[float, str, float], ...]] = {
+    "m": ((0.0, "um", 1e6), (1e-4, "mm", 1e3)),
+    "m2/s": ((0.0, "mm2/s", 1e6),),
+    "m3": ((0.0, "l", 1e3),),
+    "rad": ((0.0, "deg", 57.29577951308232),),
+    "Pa": ((0.0, "MPa", 1e-6), (1e9, "GPa", 1e-9)),
+    "J": ((0.0, "kJ", 1e-3),),
+}
+
+
+@dataclass(frozen=True)
+class Display:
+    """A unit in which values are shown: shown value = factor * value + offset."""
+
+    name: str
+    factor: float
+    offset: float = 0.0
+
+
 @dataclass(frozen=True)
 class Unit:
-    """A unit with its base exponents (None when it is not understood) and the unit it is shown in.
-
-    shown value = factor * value + offset
-    """
+    """A unit with its base exponents (None when it is not understood) and the units that it is shown in."""
 
     name: str
     factor: float
     exponents: Mapping[str, int] | None
-    shown: str
-    shown_factor: float
-    shown_offset: float
+    shown: tuple[Display, ...]
+
+    def display(self, size: float) -> Display | None:
+        """How a value of a typical size is shown; None where the unit itself serves."""
+        if self.name not in SHOWN:
+            return next(iter(self.shown), None)
+        return [d for (least, _, _), d in zip(SHOWN[self.name], self.shown, strict=True) if size >= least][-1]
 
 
 def fmi_unit(unit: str) -> str:
@@ -63,10 +85,14 @@ def is_difference(unit: str) -> bool:
 
 def unit(name: str) -> Unit:
     """Definition of a unit the model writes, like "W/(m2.K)"."""
+    factor, exponents = _parse(name)
+    if name in SHOWN:
+        return Unit(name, factor, exponents, tuple(Display(word, times) for _, word, times in SHOWN[name]))
     zero = model_units.from_si(0.0, name)
     slope = model_units.from_si(1.0, name) - zero
-    factor, exponents = _parse(name)
-    return Unit(name, factor, exponents, model_units.shown(name), float(f"{slope:.15g}"), zero)
+    words = model_units.shown(name)
+    own = () if words == name else (Display(words, float(f"{slope:.15g}"), zero),)
+    return Unit(name, factor, exponents, own)
 
 
 def _parse(name: str) -> tuple[float, Mapping[str, int] | None]:

@@ -2,6 +2,7 @@
 
 import xml.etree.ElementTree as ET
 import zipfile
+from collections import Counter
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -11,11 +12,13 @@ import pytest
 from fmpy.validation import validate_fmu
 from fmu_in_c import planetary
 from gearheat.fmu import units
-from gearheat.fmu.description import identifier
+from gearheat.fmu.description import description, identifier
+from gearheat.fmu.equations import equations
 from gearheat.fmu.export import export
 from gearheat.fmu.variables import per_second, table
 from gearheat.model.errors import FmuError
 from gearheat.model.run.rows import evaluate_at
+from gearheat.model.units import in_unit
 
 
 @pytest.fixture(scope="module")
@@ -142,3 +145,26 @@ def test_same_model_same_bytes(models: SimpleNamespace, rc_fmu: Path, tmp_path: 
     guids = {fmpy.read_model_description(str(p)).guid for p in (rc_fmu, again, other)}
     assert len(guids) == 2
     assert {i.date_time[0] for i in zipfile.ZipFile(again).infolist()} == {1980}
+
+
+def test_values_are_shown_in_the_units_of_their_size() -> None:
+    sizes = {("m", 1e-6): "um", ("m", 0.1): "mm", ("m2/s", 1e-4): "mm2/s", ("m3", 1e-3): "l", ("rad", 0.2): "deg"}
+    sizes |= {("Pa", 2e11): "GPa", ("Pa", 1e6): "MPa", ("K", 300.0): "degC", ("rad/s", 100.0): "rpm"}
+    for (unit, size), name in sizes.items():
+        shown = units.unit(unit).display(size)
+        assert shown is not None and shown.name == name, unit
+        known = {"degC": size - 273.15, "rpm": size * 30 / np.pi}
+        assert shown.factor * size + shown.offset == pytest.approx(known.get(name, in_unit(size, name)), rel=1e-12)
+    assert units.unit("W/K").display(10.0) is None
+
+
+def test_no_two_variables_of_a_rig_are_described_alike() -> None:
+    flat = planetary()[0]
+    root = ET.fromstring(description(flat, equations(flat), table(flat), "{1}"))
+    told = [v.get("description") for v in root.iterfind("ModelVariables/ScalarVariable")]
+    assert all(told)
+    assert [text for text, n in Counter(told).items() if n > 1] == []
+    units_used = {real.get("displayUnit") or real.get("unit") for real in root.iter("Real")}
+    named = {u.get("name") for u in root.iter("Unit")} | {d.get("name") for d in root.iter("DisplayUnit")}
+    assert units_used <= named
+    assert root.find("DefaultExperiment").attrib.keys() == {"startTime", "stopTime", "stepSize", "tolerance"}
