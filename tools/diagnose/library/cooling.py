@@ -12,7 +12,7 @@ from ..campaign.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size, Theta, Values
 from .extra_parts import step
 from .extras import Extras
-from .forms import Context, shared
+from .forms import SIDE, Context, Regime, shared
 from .roles import Roles
 
 AIR = "moving air: a better coefficient and faster air are one answer"
@@ -36,7 +36,7 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
     if roles.room and (roles.foundation or roles.surfaces):
         yield foundation(at)
     if roles.contacts:
-        yield contact(roles, ranges)
+        yield contact(at)
     if roles.oil_side:
         yield oil_wall(at)
     if roles.surfaces and "humidity" in ranges.known:
@@ -87,7 +87,7 @@ def air(at: Context) -> Cause:
         id="cooling.air",
         doc="More or less convection: draught, a cover, a fan.",
         size=at.conductance("conductance to the air more than assumed", 0.14, -0.45, 1.15),
-        forms=Extras("air", at).conductors(ports, shapes, at.regimes(("T", "direction"))),
+        forms=Extras("air", at).conductors(ports, shapes, at.regimes(("T", "direction", "order"))),
         exposes="a fan switched on and off at one point; a cold room",
         like=AIR,
         acts_on="rise",
@@ -122,24 +122,29 @@ def foundation(at: Context) -> Cause:
         id="cooling.foundation",
         doc="Another conductance of feet and shafts to the foundation.",
         size=at.conductance("conductance more than assumed", 0.14, -0.6, 1.15),
-        forms=Extras("foundation", at).conductors(ports, shapes),
+        forms=Extras("foundation", at).conductors(ports, shapes, at.regimes(("order",))),
         exposes="transients in a cold room; the temperature of the foundation",
         acts_on="rise",
     )
 
 
-def contact(roles: Roles, ranges: Ranges) -> Cause:
+def contact(at: Context) -> Cause:
     """A resistance between bodies, most likely next to the outer surface."""
+    roles, ranges, limits = at.roles, at.ranges, at.regimes(("order",))
     outer = {p for name in (*roles.surfaces, *roles.foundation) for p in roles.nets.met_by(name)}
+    shape = Shape("e", "1", "change of its logarithm by as much rise more", -2.0, 1.2, 0.0, 0.8)
 
-    def values(name: str) -> Callable[[Theta, Row], Values]:
+    def form(name: str, weight: float, limit: Regime | None) -> Form:
         G, paths = roles.conductance(name), roles.scaled(name)
 
         def changed(theta: Theta, row: Row) -> Values:
             R = theta["R"] * ca.exp(theta["e"] * (row.rise / ranges.rise - 1))
+            R = R if limit is None else R * limit.share(theta, row)
             return {path: row.base[path] / smooth_abs(1 + R * G, 0.05) * smooth_abs(1.0, 0.05) for path in paths}
 
-        return changed
+        words = (name if len(roles.contacts) > 1 else "", limit.name if limit else "")
+        more, told = (limit.shapes(ranges), limit.told) if limit else ((), {})
+        return Form(", ".join(filter(None, words)), weight, (shape, *more), values=changed, regime=told)
 
     weights = [2.0 if outer & set(roles.nets.met_by(name)) else 1.0 for name in roles.contacts]
     stiffest = max(roles.conductance(name) for name in roles.contacts)
@@ -155,13 +160,9 @@ def contact(roles: Roles, ranges: Ranges) -> Cause:
             1.4 / ranges.conductance,
         ),
         forms=tuple(
-            Form(
-                name if len(roles.contacts) > 1 else "",
-                weight / sum(weights),
-                (Shape("e", "1", "change of its logarithm by as much rise more", -2.0, 1.2, 0.0, 0.8),),
-                values=values(name),
-            )
+            form(name, (SIDE if limit else 1 - SIDE * len(limits)) * weight / sum(weights), limit)
             for name, weight in zip(roles.contacts, weights, strict=True)
+            for limit in (None, *limits)
         ),
         exposes="transients; a second probe on the outer surface",
         acts_on="rise",

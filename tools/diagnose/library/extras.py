@@ -175,7 +175,8 @@ class Extras:
         def values(theta: Theta, row: Row) -> Values:
             given = as_keys(theta, row)
             keys = {key: given[key] for key in KEYS if key in given}
-            keys |= {size: given[size] / len(names) for size in ("P_ref", "G_ref") if size in given}
+            share = (1.0 if limit is None else limit.share(theta, row)) / len(names)
+            keys |= {size: given[size] * share for size in ("P_ref", "G_ref") if size in given}
             if limit is not None:
                 keys |= limit.limits(theta, self.ranges)
             return {f"{name}.{key}": value for name in names for key, value in keys.items()}

@@ -10,6 +10,7 @@ import casadi as ca
 from ...model.laws.smooth import smooth_abs
 from ..campaign.table import Sensor
 from .cause import Form, Num, Ranges, Row, Shape, Size, Theta, Values
+from .extra_parts import step
 from .roles import Roles
 
 #: What changes values of the machine.
@@ -26,7 +27,16 @@ SLOW = 0.05
 #: No more places than these have forms of their own.
 MOST_PLACES = 6
 WIDTH = Shape("width", "1", "how gradually it sets in at the threshold, over the usual", 0.4, 3.0, 1.0, 0.75)
+#: How gradually something sets in with the running order, which goes from 0 to 1.
+ORDER_STEP = 0.02
+PLACE = Shape("threshold", "1", "where in the running order: 0 first test, 1 last", 0.0, 1.0)
+FROM_THEN = {"quantity": "order above", "shape": "threshold"}
 INNER_SHARE = Shape("inner_share", "1", "share of the rest that goes to what turns", 0.0, 1.0, 0.5, 0.3)
+
+
+def since(theta: Theta, row: Row) -> Num:
+    """0 before and 1 after a place in the running order."""
+    return step((row.order - theta["threshold"]) / ORDER_STEP)
 
 
 def oil_share(mean: float, sd: float) -> Shape:
@@ -36,7 +46,7 @@ def oil_share(mean: float, sd: float) -> Shape:
 
 @dataclass(frozen=True)
 class Regime:
-    """One side of a quantity ("w", "tau", "T", "film"), or one direction of the power flow ("direction")."""
+    """One side of a quantity ("w", "tau", "T", "film"), one direction ("direction"), or from a test on ("order")."""
 
     quantity: str
     above: bool
@@ -48,19 +58,27 @@ class Regime:
         """In words."""
         if self.quantity == "direction":
             return "driving only" if self.above else "driven only"
+        if self.quantity == "order":
+            return "from one test on"
         return f"{'above' if self.above else 'below'} a {self.WORDS[self.quantity]}"
 
     def shapes(self, ranges: Ranges) -> tuple[Shape, ...]:
         """Threshold and width."""
-        if self.quantity == "direction":
-            return ()
+        if self.quantity in ("direction", "order"):
+            return (PLACE,) if self.quantity == "order" else ()
         unit = {"w": "rad/s", "tau": "N.m", "T": "K", "film": "m2/s2"}[self.quantity]
         low, high = ranges.low[self.quantity], ranges.high[self.quantity]
         threshold = Shape("threshold", unit, f"threshold of the {self.WORDS[self.quantity]}", low, high)
         return (threshold,) if self.quantity == "film" else (threshold, WIDTH)
 
+    def share(self, theta: Theta, row: Row) -> Num:
+        """How much of the size acts in a row."""
+        return since(theta, row) if self.quantity == "order" else 1.0
+
     def limits(self, theta: Theta, ranges: Ranges) -> dict[str, Num]:
         """Values of an extra part by key."""
+        if self.quantity == "order":
+            return {}
         if self.quantity == "direction":
             return {"backward" if self.above else "forward": 0.0}
         if self.quantity == "film":
@@ -78,6 +96,8 @@ class Regime:
         """For the words of the report."""
         if self.quantity == "direction":
             return {"quantity": self.name, "shape": ""}
+        if self.quantity == "order":
+            return FROM_THEN
         return {"quantity": f"{self.WORDS[self.quantity]} {'above' if self.above else 'below'}", "shape": "threshold"}
 
 
@@ -128,10 +148,11 @@ class Context:
         return Size("G_ref", "W/K", doc, sd * G, low * G, high * G)
 
     def regimes(self, quantities: Iterable[str]) -> tuple[Regime, ...]:
-        """Both sides of each quantity ("w", "tau", "T", "direction") that varies enough."""
+        """Both sides of each quantity ("w", "tau", "T", "direction") that varies enough; from a test on ("order")."""
         least = {"w": 0.1, "tau": 0.1, "T": 5.0 / self.ranges.mid.get("T", 330.0)}
-        kept = [q for q in quantities if (self.both_ways if q == "direction" else self.ranges.varies(q, least[q]))]
-        return tuple(Regime(q, above) for q in kept for above in (True, False))
+        known = {"direction": self.both_ways, "order": "order" in self.ranges.known}
+        kept = [q for q in quantities if (known[q] if q in known else self.ranges.varies(q, least[q]))]
+        return tuple(Regime(q, above) for q in kept for above in ((True, False) if q != "order" else (True,)))
 
 
 def shared(

@@ -47,7 +47,7 @@ def external_source(at: Context) -> Cause:
     )
     made = [extras.heat(inside, port, k, len(outside)) for k, port in enumerate(outside)]
     single = [extras.with_parts([part], shapes) for part in made]
-    limits = at.regimes(("w", "tau", "direction"))
+    limits = at.regimes(("w", "tau", "direction", "order"))
     sides = [extras.with_parts(made[-1:], shapes, limit) for limit in limits]
     share = 1 - SIDE * len(sides)
     names = [port.partition(".")[0] if len(outside) > 1 else "" for port in outside]

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
 
 import casadi as ca
 
@@ -12,7 +12,6 @@ from ..campaign.table import Sensor
 from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 from .cooling import DAYS, factors
 from .roles import Roles
-from .sensors import FROM_THEN, PLACE, since
 
 #: What early readings are a share of where they are early by a time [s], and rounding of a pace near zero.
 EARLY, ROUND = 7200.0, 0.1
@@ -30,23 +29,21 @@ class Course:
     share: float
     shape: Shape
     at: Callable[[Theta, Row], Num]
-    regime: Mapping[str, str] = field(default_factory=dict)
 
 
 COURSES = (
     Course(
         "",
-        0.5,
+        0.65,
         Shape("power", "1", "exponent of the running order", 0.3, 2.0, 0.9, 0.35),
         lambda theta, row: (row.order + 1e-9) ** theta["power"],
     ),
     Course(
         "settling",
-        0.25,
+        0.35,
         Shape("decay", "1", "share of the campaign in which it settles: running in", 0.05, 0.6),
         lambda theta, row: (1 - ca.exp(-row.order / theta["decay"])) / (1 - ca.exp(-1 / theta["decay"])),
     ),
-    Course("from one test on", 0.25, PLACE, since, FROM_THEN),
 )
 
 
@@ -125,7 +122,6 @@ def order(roles: Roles) -> Cause:
                 weight * course.share / total,
                 (course.shape, zero),
                 values=changing(paths, course.at),
-                regime=course.regime,
             )
             for target, (paths, weight) in kept.items()
             for course in COURSES

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 from ..campaign.table import Sensor
 from .cause import Cause, Form, Mostly, Num, Ranges, Row, Shape, Size, Theta
 from .extra_parts import step
-from .forms import USUAL, WIDTH, Context
+from .forms import FROM_THEN, PLACE, USUAL, WIDTH, Context, since
 from .probes import heated, lag, position, swapped
 from .readings import one_of, wrong
 from .roles import Roles
@@ -22,8 +22,6 @@ from .roles import Roles
 ONE_SIDE = 0.1
 #: Share of the errors of magnitudes that turn with the direction.
 TURNED = 0.3
-#: How gradually something sets in with the running order, which goes from 0 to 1.
-ORDER_STEP = 0.02
 
 
 @dataclass(frozen=True)
@@ -236,14 +234,14 @@ class _Instruments:
     def frozen(self, read: Sequence[Sensor]) -> Cause:
         """A reading that no longer moves."""
         ranges = self.at.ranges
-        place = Shape("threshold", "1", "where in the running order: 0 first test, 1 last", 0.0, 1.0)
         forms = []
         for s in read:
             low, high = (bound.get(s.name, 0.0) for bound in (ranges.low, ranges.high))
             held = Shape("held", self.kind.unit, "what it keeps showing", min(low, high - 1e-6), high)
             form = wrong(s, "share", lambda theta, row, value: since(theta, row) * (theta["held"] - value))
-            told = {"quantity": "order above", "shape": "threshold"}
-            forms.append(replace(form, name=one_of(s, read), weight=1 / len(read), shapes=(place, held), regime=told))
+            forms.append(
+                replace(form, name=one_of(s, read), weight=1 / len(read), shapes=(PLACE, held), regime=FROM_THEN)
+            )
         size = Size("share", "1", "1 where it does not follow at all", 0.6, 0.0, 1.0)
         doc = f"The {self.kind.words} hangs: from one test on it shows the same whatever happens."
         return Cause(f"sensor.{self.name}.frozen", doc, size, tuple(forms), REPEAT, acts_on="order", common=0.2)
@@ -274,11 +272,6 @@ def one_side(at: Context) -> list[Mode]:
     return [replace(mode, weight=ONE_SIDE / len(modes)) for mode in modes]
 
 
-def since(theta: Theta, row: Row) -> Num:
-    """0 before and 1 after a place in the running order."""
-    return step((row.order - theta["threshold"]) / ORDER_STEP)
-
-
 def _one(theta: Theta, row: Row, value: Num) -> Num:
     """The same in every row."""
     return 1.0
@@ -290,8 +283,6 @@ def _changed(theta: Theta, row: Row, value: Num) -> Num:
 
 
 ZERO = Mostly("zero", "1", "where the reading is right: 0 before the change, 1 after", 0.0, 1.0)
-PLACE = Shape("threshold", "1", "where in the running order: 0 first test, 1 last", 0.0, 1.0)
-FROM_THEN = {"quantity": "order above", "shape": "threshold"}
 SINCE = Mode("", 0.7, _changed, (PLACE, ZERO), regime=FROM_THEN, turns=True)
 #: The same in one direction of the power flow only.
 DIRECTED = (
