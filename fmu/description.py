@@ -129,10 +129,11 @@ def description(
         guid=guid,
         description="; ".join(filter(None, (flat.doc, *flat.joined))),
         generationTool=tool(),
-        **({"license": licence} if licence else {}),
         variableNamingConvention="structured",
         numberOfEventIndicators="0",
     )
+    if licence:
+        root.set("license", licence)
     _interfaces(root, identifier(flat.name), with_sources)
     _unit_definitions(root, table)
     categories = ET.SubElement(root, "LogCategories")

@@ -7,6 +7,8 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from ..model.core.component import Component
 from ..model.core.declare import Choice, Declaration, Input, Output, Parameter, State, declared
 from ..model.core.flat import Quantity
@@ -30,7 +32,8 @@ class Override:
     entry: str
 
 
-#: Sizes of everything in a gearbox, by SI unit; what lies outside is a slip of a unit or an exponent. Zero is none.
+#: Sizes of everything in a gearbox, by SI unit; what lies outside is a slip of a unit or an exponent. Zero is none, and
+#: what may be negative is no size.
 SENSIBLE: Mapping[str, tuple[float, float]] = {
     "m": (1e-10, 1e3),
     "m2": (1e-12, 1e5),
@@ -104,7 +107,7 @@ def in_range(where: str, raw: object, quantity: Quantity) -> float:
         known = f"{in_unit(number, theirs):.6g} {theirs}" if theirs else f"{number:g} {unit}"
         raise ScenarioError(f"{name} = {written} is out of range. It must be {words} {known.removesuffix(' 1')}.")
     least, most = SENSIBLE.get(quantity.unit, OTHERS)
-    if value and not least <= abs(value) <= most:
+    if value and np.isfinite(quantity.low) and not least <= abs(value) <= most:
         raise ScenarioError(
             f"{name} = {written} cannot be of a gearbox: expected {least:g} to {most:g} {unit} in size."
             " Check its unit and its exponent."

@@ -57,7 +57,7 @@ def export_command(
     start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, assignments)
     beside = folder(extras) if extras is not None else None
     duty = reference_duty(flat, start, setting.shaft_paths())
-    told = {} if with_origins else {"sources": {}, "uncertainties": {}}
+    told: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
     options: dict[str, Any] = {"platform": platform, "start": start, "licence": licence, "with_sources": with_sources}
     write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, start), **told, **options)
     kept = effective(flat, start)

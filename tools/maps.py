@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
@@ -72,8 +72,7 @@ def map_command(
     names = [*paths, *shows]
     units = [plan.flat.quantity(name).unit for name in names]
     columns = [
-        from_si(column, unit)  # type: ignore[arg-type]
-        for column, unit in zip([*plan.values.T, *rows[:, : len(shows)].T], units, strict=True)
+        _shown(column, unit) for column, unit in zip([*plan.values.T, *rows[:, : len(shows)].T], units, strict=True)
     ]
     write(out, table_text([f"{n} [{shown(u)}]" for n, u in zip(names, units, strict=True)], columns))
     shape = tuple(len(np.unique(column)) for column in plan.values.T)
@@ -90,6 +89,11 @@ def map_command(
         "ranges": {n: {"unit": u, "low": np.nanmin(c), "high": np.nanmax(c)} for n, (u, c) in fields.items()},
     }
     answer(payload, json, lambda: _print_map(payload))
+
+
+def _shown(values: np.ndarray, unit: str) -> np.ndarray:
+    """SI values in the unit they are shown in."""
+    return np.asarray(from_si(cast(Any, values), unit))
 
 
 def told(scenario: Scenario) -> list[str]:
@@ -170,7 +174,8 @@ def rating_command(
         powers[k] = abs(float(found.result[f"{torque.partition('.')[0]}.P"][0]))
     if np.isnan(powers).all():
         raise SolveError([f"{place}: {reason}" for place, reason in list(why.items())[:3]])
-    columns = [from_si(values[:, 0], "K"), from_si(values[:, 1], "rad/s"), torques, powers / 1000]  # type: ignore[arg-type]
+    shown_values = [_shown(values[:, k], unit) for k, unit in enumerate(("K", "rad/s"))]
+    columns: list[np.ndarray] = [*shown_values, torques, powers / 1000]
     head = [f"{room} [degC]", f"{speed} [rpm]", f"{torque} [N.m]", "power [kW]"]
     if out is not None:
         write(out, table_text(head, columns))

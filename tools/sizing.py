@@ -175,7 +175,7 @@ def _share(ratio: float, stages: int) -> float:
     """Ratio of the next stage: the first ones have more, so that all wheels are of like size."""
     share = {1: ratio, 2: 0.8 * ratio ** (2 / 3), 3: 0.6 * ratio ** (4 / 7)}.get(stages, ratio ** (1 / stages))
     low, high = ratio / MOST ** (stages - 1), ratio / LEAST ** (stages - 1)
-    return min(max(share, low, LEAST), high, MOST)
+    return float(min(max(share, low, LEAST), high, MOST))
 
 
 def _stage(kind: str, u: float, T: float, n: float, x: float) -> Stage:

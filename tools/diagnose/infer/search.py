@@ -179,7 +179,7 @@ class Search:
 
     def _value(self, log_bf: np.ndarray) -> np.ndarray:
         """What forms promise at a first look: their log Bayes factors and priors."""
-        return log_bf + np.array([np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas])
+        return np.asarray(log_bf + [np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas])
 
     def _leading(self, value: np.ndarray, most: int) -> list[int]:
         """The best-looking forms of the causes worth a fit, so many at most, best first."""
@@ -208,8 +208,8 @@ class Search:
             cause = self.formulas[k].cause.id
             if cause in more and k not in self._fits and tried[cause] < EACH:
                 tried[cause] += 1
-                fit = self._alone(int(k))
-                lead = max(lead, fit.evidence + prior[k]) if fit else lead
+                if (more_fit := self._alone(int(k))) is not None:
+                    lead = max(lead, more_fit.evidence + prior[k])
 
     def _singles(self) -> list[Hypothesis]:
         """Every cause alone: its leading forms fitted, the others as they look at first."""
