@@ -5,6 +5,7 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +18,7 @@ from ..model.sources import recording, sources
 from ..model.units import example, from_si, shown, text
 from ..scenarios.entries import DESCRIPTIVE, FILES, Entry, catalogue
 from ..scenarios.load import list_rigs, load
+from ..scenarios.scenario import Scenario
 from ..scenarios.tables import RigTable
 from ..scenarios.values import UNCERTAINTIES, settable
 from .console import answer, as_json, table, write
@@ -105,13 +107,17 @@ def _fits(entry: Entry, cls: type[Component]) -> bool:
     return set(entry.values) - set(DESCRIPTIVE.get(entry.kind, {})) <= set(settable(cls))
 
 
+@cache
+def _shipped() -> tuple[Scenario, ...]:
+    return tuple(load(rig) for rig in list_rigs())
+
+
 def _example(kind: str) -> tuple[str, dict[str, Any], Mapping[str, str]]:
     """A shipped rig with such a part, its values, and its catalogue entries; "" and typical sizes where none has it."""
     found: list[tuple[str, dict[str, Any], Mapping[str, str]]] = []
-    for rig in list_rigs():
-        scenario = load(rig)
+    for scenario in _shipped():
         for name in scenario.spec.of_type(kind):
-            found.append((rig, dict(scenario.spec.part(name).values), scenario.entries.get(name, {})))
+            found.append((scenario.name, dict(scenario.spec.part(name).values), scenario.entries.get(name, {})))
     if found:
         return next((e for e in found if e[2]), found[0])
     needed = {k: d for k, d in declared(PARTS[kind], Parameter).items() if d.default is None and d.derived is None}

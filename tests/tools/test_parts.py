@@ -11,6 +11,8 @@ from gearheat.model.parts import PARTS
 from gearheat.scenarios.load import RIGS
 from gearheat.tools import parts
 
+SCHEMA = parts.schema()
+
 
 def test_all_types_are_listed(gearheat):
     types = gearheat("parts", "--json", "-").json["types"]
@@ -28,7 +30,7 @@ def test_everything_about_a_type(kind):
         assert line["doc"], line
     example = tomllib.loads(found["example"])
     assert example["part"]["name"]["type"] == kind
-    assert set(example["part"]["name"]) <= set(parts.schema()["$defs"][f"part_{kind}"]["properties"])
+    assert set(example["part"]["name"]) <= set(SCHEMA["$defs"][f"part_{kind}"]["properties"])
 
 
 def test_one_type_for_a_reader(gearheat):
