@@ -36,25 +36,25 @@ _NAMED: dict[str, tuple[float, dict[str, int]]] = {
 }
 
 
-#: Units in which values of a size are shown, by SI unit: from which size on, name and factor; the others are shown as
-#: the program shows them everywhere.
-SHOWN: Mapping[str, tuple[tuple[float, str, float], ...]] = {
-    "m": ((0.0, "um", 1e6), (1e-4, "mm", 1e3)),
-    "m2/s": ((0.0, "mm2/s", 1e6),),
-    "m3": ((0.0, "l", 1e3),),
-    "rad": ((0.0, "deg", 57.29577951308232),),
-    "Pa": ((0.0, "MPa", 1e-6), (1e9, "GPa", 1e-9)),
-    "J": ((0.0, "kJ", 1e-3),),
-}
-
-
 @dataclass(frozen=True)
 class Display:
-    """A unit in which values are shown: shown value = factor * value + offset."""
+    """A unit in which values from a size on are shown: shown value = factor * value + offset."""
 
     name: str
     factor: float
     offset: float = 0.0
+    least: float = 0.0
+
+
+#: Units in which values are shown, by SI unit, small ones first; the others are shown as the program shows them.
+SHOWN: Mapping[str, tuple[Display, ...]] = {
+    "m": (Display("um", 1e6), Display("mm", 1e3, least=1e-4)),
+    "m2/s": (Display("mm2/s", 1e6),),
+    "m3": (Display("l", 1e3),),
+    "rad": (Display("deg", 57.29577951308232),),
+    "Pa": (Display("MPa", 1e-6), Display("GPa", 1e-9, least=1e9)),
+    "J": (Display("kJ", 1e-3),),
+}
 
 
 @dataclass(frozen=True)
@@ -68,9 +68,7 @@ class Unit:
 
     def display(self, size: float) -> Display | None:
         """How a value of a typical size is shown; None where the unit itself serves."""
-        if self.name not in SHOWN:
-            return next(iter(self.shown), None)
-        return [d for (least, _, _), d in zip(SHOWN[self.name], self.shown, strict=True) if size >= least][-1]
+        return next((d for d in reversed(self.shown) if size >= d.least), None)
 
 
 def fmi_unit(unit: str) -> str:
@@ -87,7 +85,7 @@ def unit(name: str) -> Unit:
     """Definition of a unit the model writes, like "W/(m2.K)"."""
     factor, exponents = _parse(name)
     if name in SHOWN:
-        return Unit(name, factor, exponents, tuple(Display(word, times) for _, word, times in SHOWN[name]))
+        return Unit(name, factor, exponents, SHOWN[name])
     zero = model_units.from_si(0.0, name)
     slope = model_units.from_si(1.0, name) - zero
     words = model_units.shown(name)

@@ -32,6 +32,11 @@ class Source:
     year: int | str
     where: str = ""
 
+    @property
+    def cited(self) -> str:
+        """In a line."""
+        return f"{self.author} {self.year}, {self.title}"
+
 
 #: What may stand between two arguments of a law in the name of a range: "F_a / C_0".
 _BETWEEN: Mapping[str, Callable[[Any, Any], Any]] = {"-": operator.sub, "/": operator.truediv}

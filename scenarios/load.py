@@ -228,12 +228,13 @@ class _Loader:
                 point[path] = in_range(f"{where}: ", raw, known[path])
             except GearheatError as error:
                 self.problems += error.problems
-        for end, quantities in self.table.drive.items():
-            for path in (f"{end}.{quantity}" for quantity in quantities if f"{end}.{quantity}" in known):
-                if path not in dict(paths(self.table.operating_point)):
-                    self.problems.append(
-                        f"{where}: {path} is missing, which [drive] says is given. Give its usual value."
-                    )
+        written = dict(paths(self.table.operating_point))
+        given = [f"{end}.{quantity}" for end, quantities in self.table.drive.items() for quantity in quantities]
+        self.problems += [
+            f"{where}: {path} is missing, which [drive] says is given. Give its usual value."
+            for path in given
+            if path in known and path not in written
+        ]
         return point
 
     def _drive(self) -> dict[str, tuple[str, ...]]:

@@ -20,10 +20,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..model.errors import suggestion
-from .document import ABOUT
+from .values import UNCERTAINTIES
 
 #: Keys of a part's table that hold tables: a part adds to those of its template.
-ADDED = (ABOUT[2], "uncertainties")
+ADDED = ("sources", UNCERTAINTIES)
 
 _BRACES = re.compile(r"\{([^{}]*)\}")
 _RANGE = re.compile(r"\s*(\d+)\s*\.\.\s*(\d+)\s*")

@@ -25,6 +25,8 @@ BAD_INPUT = 2
 INTERRUPTED = 130
 #: Of a device without room.
 FULL = (errno.ENOSPC, errno.EDQUOT)
+#: Width that a column of words gets at least.
+LEAST = 14
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
@@ -198,10 +200,6 @@ def table(
     screen.print(drawn)
     if left := [name for i, name in enumerate(columns) if i not in kept]:
         screen.print(f"left out for want of room: {', '.join(left)}; widen the screen, or take --json\n")
-
-
-#: Width that a column of words gets at least.
-LEAST = 14
 
 
 def _fitting(widths: Sequence[int], whole: Sequence[bool], room: int) -> list[int]:

@@ -126,7 +126,7 @@ def laws(flat: FlatModel) -> list[dict[str, Any]]:
     return [
         {
             "law": law.name,
-            "source": f"{known[law.source].author} {known[law.source].year}, {known[law.source].title}",
+            "source": known[law.source].cited,
             "where": law.where,
             "valid": law.valid,
             "verified": law.verified,

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, cast
@@ -23,8 +22,8 @@ from .settings import adjusted, flat_of
 from .sweep import Request, planned
 from .sweep_rows import local
 
-#: Ranges where none is given, as shares of the operating point, and of rooms [K].
-USUAL, ROOMS = (0.2, 1.2), (273.15, 313.15)
+#: Ranges where none is given, as shares of the operating point.
+USUAL = (0.2, 1.2)
 #: Torque up to which a rating is looked for, in those of the operating point.
 MOST_LOAD = 20.0
 
@@ -111,7 +110,7 @@ def picture(fields: Mapping[str, tuple[str, np.ndarray]], suffix: str) -> bytes:
         fields: name -> unit and values (n, m)
         suffix: of the file
     """
-    from ..diagnose.report.drawing import empty, svg
+    from ..diagnose.report.drawing import empty, png, svg
 
     (x_name, (x_unit, x)), (y_name, (y_unit, y)), *rest = fields.items()
     figure, panels = empty(4.6 * len(rest), 3.9, 1, len(rest))
@@ -122,9 +121,7 @@ def picture(fields: Mapping[str, tuple[str, np.ndarray]], suffix: str) -> bytes:
         panel.set_ylabel(f"{y_name} [{y_unit}]")
     if suffix == ".svg":
         return svg(figure).encode()
-    drawn = io.BytesIO()
-    figure.savefig(drawn, format="png", dpi=150, metadata={"Software": None})
-    return drawn.getvalue()
+    return png(figure)
 
 
 def _print_map(found: Mapping[str, Any]) -> None:
@@ -148,11 +145,9 @@ def rating_command(
     writable(out, file_of(json))
     scenario = load(rig)
     (speed, torque), room = driving(scenario), _room(scenario)
-    written = [
-        f"{room}={ranges['room'] or '0..40 degC'}",
-        f"{speed}={ranges['w'] or usual(scenario, speed)}",
-    ]
-    varied = sampling.read(written)
+    varied = sampling.read(
+        [f"{room}={ranges['room'] or '0..40 degC'}", f"{speed}={ranges['w'] or usual(scenario, speed)}"]
+    )
     setting = adjusted(scenario, assignments, named=[room, speed])
     flat = flat_of(setting)
     aim = parse_assignments(flat, [limit])

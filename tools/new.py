@@ -38,10 +38,8 @@ def new_command(
     """
     path = out or Path(f"{name}.toml")
     kinds = [kind.strip() for kind in stages.split(",") if kind.strip()]
-    made, entry = (
-        unit(kinds, ratio, to_si(power, "W", name="--power"), to_si(speed, "rad/s", name="--speed")),
-        _oil(oil),
-    )
+    made = unit(kinds, ratio, to_si(power, "W", name="--power"), to_si(speed, "rad/s", name="--speed"))
+    entry = _oil(oil)
     if not re.fullmatch(r"[\w.-]+", name):
         raise ScenarioError(f'"{name}" is no name. Take letters, digits, _, - and dots.')
     if path.exists():

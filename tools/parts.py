@@ -58,7 +58,7 @@ def described(kind: str) -> dict[str, Any]:
         "role": cls.role,
         "doc": inspect.cleandoc(cls.__doc__ or ""),
         "ports": [_port(name, port) for name, port in declared(cls, Port).items()],
-        "parameters": [_parameter(cls, name, d) for name, d in declared(cls, Parameter).items()],
+        "parameters": [_parameter(name, d) for name, d in declared(cls, Parameter).items()],
         "choices": [
             {"name": name, "options": [str(o) for o in c.options], "default": _told(c.default), "doc": c.doc}
             for name, c in declared(cls, Choice).items()
@@ -89,7 +89,7 @@ def _line(name: str, d: Declaration) -> dict[str, Any]:
     return {"name": name, "unit": shown(d.unit), "range": _range(d.quantity(name)), "doc": d.doc}
 
 
-def _parameter(cls: type[Component], name: str, d: Parameter) -> dict[str, Any]:
+def _parameter(name: str, d: Parameter) -> dict[str, Any]:
     default = "follows from others" if d.derived else "" if d.default is None else text(d.default, d.unit)
     return {**_line(name, d), "default": default}
 
@@ -135,7 +135,7 @@ def _inside(cls: type[Component], values: Mapping[str, Any]) -> tuple[list[str],
     return names, [
         {
             "law": law.name,
-            "source": f"{known[law.source].author} {known[law.source].year}, {known[law.source].title}",
+            "source": known[law.source].cited,
             "where": law.where,
             "valid": law.valid,
         }
@@ -147,7 +147,7 @@ def _snippet(kind: str, values: Mapping[str, Any], entries: Mapping[str, str]) -
     """A table of a rig file with these values, and the ports to connect."""
     cls = PARTS[kind]
     lines = ["[part.name]", f'type = "{kind}"', *(f'{k} = "{name}"  # catalogue' for k, name in entries.items())]
-    brought = {k for kind, name in entries.items() for k in catalogue(kind)[name].values}
+    brought = {k for entry, name in entries.items() for k in catalogue(entry)[name].values}
     for key, d in {**settable(cls), **declared(cls, Choice)}.items():
         default = d.default if isinstance(d, Parameter | Choice) else None
         if key not in values or key in brought or values[key] == default:
@@ -248,7 +248,8 @@ def _part_schema(kind: str) -> dict[str, Any]:
         properties[key] = {"description": c.doc, **options}
     words = {"type": "string"}
     properties |= {
-        kind: {**words, "description": about, "examples": list(catalogue(kind))[:3]} for kind, about in ENTRIES.items()
+        entry: {**words, "description": about, "examples": list(catalogue(entry))[:3]}
+        for entry, about in ENTRIES.items()
     }
     properties |= {
         "source": {

@@ -118,7 +118,7 @@ def _laws(laws: Sequence[LawInfo]) -> Markup:
     body = []
     for law in laws:
         source = known.get(law.source)
-        cited = f"{source.author} {source.year}, {source.title}" if source else law.source
+        cited = source.cited if source else law.source
         body.append((law.name, cited, law.where, law.valid, "verified" if law.verified else "unverified"))
     return html_table(("law", "source", "place", "valid", "against print"), body, text=(1, 2, 3, 4))
 

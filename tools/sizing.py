@@ -23,8 +23,8 @@ LEAST, MOST = 1.0, 8.0
 K_STAR, WIDTH, TEETH = 2.5e6, 0.8, 19
 #: Standard modules and centre distances (preferred numbers R 20) [mm].
 MODULES = (0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0)
-CENTRES = tuple(m * 10**k for k in (1, 2) for m in (1, 1.12, 1.25, 1.4, 1.6, 1.8, 2, 2.24, 2.5, 2.8, 3.15, 3.55, 4))
-CENTRES += tuple(m * 10**k for k in (1, 2) for m in (4.5, 5, 5.6, 6.3, 7.1, 8, 9))
+R_20 = (1, 1.12, 1.25, 1.4, 1.6, 1.8, 2, 2.24, 2.5, 2.8, 3.15, 3.55, 4, 4.5, 5, 5.6, 6.3, 7.1, 8, 9)
+CENTRES = tuple(m * 10**k for k in (1, 2) for m in R_20)
 #: How far below the wanted centre distance a standard one may lie.
 SHORT = 0.93
 #: Pressure angle [rad], shear stress of shafts [Pa], wanted life of bearings [h].
@@ -158,7 +158,7 @@ def unit(kinds: Sequence[str], ratio: float, power: float, speed: float) -> Unit
 def _check(kinds: Sequence[str], ratio: float, power: float, speed: float) -> None:
     problems = [f'there is no stage "{k}". Stages: {", ".join(KINDS)}.' for k in kinds if k not in KINDS]
     if not kinds:
-        problems.append(f"no stage is given. Name them from the input on, for example {','.join(['helical'] * 2)}.")
+        problems.append("no stage is given. Name them from the input on, for example helical,helical.")
     if not (power > 0 and speed > 0):
         problems.append("power and speed must be above 0.")
     if kinds and not LEAST <= ratio ** (1 / len(kinds)) <= MOST:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -17,7 +16,7 @@ from ..model.run.simulate import simulate
 from ..model.units import from_si, shown, to_si
 from ..scenarios.duty import duty_names, read_duty
 from ..scenarios.scenario import Scenario
-from .console import answer, file_of, writable, write
+from .console import answer, file_of, note, writable, write
 from .playing import series
 from .points import outside_of, tell_outside
 from .rigs import load
@@ -74,13 +73,13 @@ def play_command(
     writable(out, file_of(json))
     dt = to_si(step, "s", name="--step")
     made_by = described(fmu).description.generationTool or "an unknown tool"
-    if not trusted(fmu) and not trust:
-        raise FmuError(
-            f"{fmu}: was not made by gearheat on this machine (but by {made_by}), and playing it runs native code of it"
-            " with your rights. Add --trust if you trust its maker."
-        )
     if not trusted(fmu):
-        print(f"{fmu}: running native code of {made_by}", file=sys.stderr)
+        if not trust:
+            raise FmuError(
+                f"{fmu}: was not made by gearheat on this machine (but by {made_by}), and playing it runs native code"
+                " of it with your rights. Add --trust if you trust its maker."
+            )
+        note(f"{fmu}: running native code of {made_by}")
     with Player(fmu) as player:
         told = player.described
         schedule = read_duty(duty, told.quantities("input"))

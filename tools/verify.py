@@ -104,7 +104,7 @@ def as_dict(machines: Sequence[Machine], laws: Sequence[Verdict]) -> dict[str, A
 def _cited(places: Iterable[str]) -> dict[str, str]:
     """The sources whose keys stand in places such as "Dias2014, table 5.7": key -> author, year and title."""
     words = {word for place in places for word in re.findall(r"\w+", place)}
-    return {key: f"{s.author} {s.year}, {s.title}" for key, s in sources().items() if key in words}
+    return {key: s.cited for key, s in sources().items() if key in words}
 
 
 def _machine(values: RigValues, rows: Sequence[Row], advance: Any) -> Machine:

@@ -216,8 +216,8 @@ class Search:
         log_bf = self.first.by_form(len(self.formulas))
         value = self._value(log_bf)
         early = [k for k in np.argsort(-value) if self.formulas[k].paced]  # no first look shows early readings well
-        paired = {id(start.acting.formula) for couple in self.couples[:PAIRS] for start in couple}  # each alone, too
-        both = [k for k, f in enumerate(self.formulas) if id(f) in paired]
+        paired = {start.acting.formula for couple in self.couples[:PAIRS] for start in couple}  # each alone, too
+        both = [k for k, f in enumerate(self.formulas) if f in paired]
         for k in [*self._leading(value, CAUSES if self.p_any < QUIET else LEAST), *early[:EACH], *both]:
             self._alone(int(k))
         if self.p_any < QUIET:

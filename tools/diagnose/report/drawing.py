@@ -34,6 +34,14 @@ def svg(figure: Figure) -> str:
     return re.sub(r"^.*?(?=<svg)", "", text.getvalue(), flags=re.DOTALL)
 
 
+def png(figure: Figure) -> bytes:
+    """A figure as PNG without the name of a program."""
+    data = io.BytesIO()
+    with mpl.rc_context(STYLE):
+        figure.savefig(data, format="png", dpi=150, metadata={"Software": None})
+    return data.getvalue()
+
+
 def empty(width: float, height: float, rows: int, columns: int, **kwargs: Any) -> tuple[Figure, list[Axes]]:
     """An empty figure of so many inches, and its panels row by row."""
     with mpl.rc_context(STYLE):

@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Iterable
 from typing import Any, Literal
 
-import matplotlib as mpl
 from pydantic import Field
 
 from . import phrases
-from .drawing import COLOURS, STYLE, empty, legend, svg
+from .drawing import COLOURS, empty, legend, png, svg
 from .findings import Isolability
 from .names import listed, name_of, names_of
 from .numbers import Model, Number
@@ -242,10 +240,7 @@ def picture(plan: Plan, form: Literal["png", "svg"]) -> bytes:
     legend(figure, panel)
     if form == "svg":
         return svg(figure).encode()
-    data = io.BytesIO()
-    with mpl.rc_context(STYLE):
-        figure.savefig(data, format="png", dpi=150, metadata={"Software": None})
-    return data.getvalue()
+    return png(figure)
 
 
 def _after(outlook: Outlook, pair: tuple[str, str]) -> float:
