@@ -1,6 +1,6 @@
 """A sound small gearbox of real parts, and what a slip in it does: one function a slip, its docstring says which.
 
-The tests ask for the message of each, and the README shows them.
+The tests ask for the message of each, and the page `howto/assemblies.md` shows them.
 """
 
 from __future__ import annotations

@@ -1,9 +1,11 @@
-"""Nothing dead: what a module defines, the source or an example of the README uses; tests do not count."""
+"""Nothing dead: what a module defines, the source or an example of the pages uses; tests do not count."""
 
 import ast
 import re
 from collections import Counter
 from pathlib import Path
+
+from gearheat.tools.docs.blocks import blocks
 
 ROOT = Path(__file__).parents[2]
 TREES = {
@@ -13,8 +15,13 @@ TREES = {
 }
 #: Decorators that register what they decorate: commands of the program, checks of a file's table.
 REGISTERED = ("command", "field_validator", "model_validator")
-#: Python examples of the README: what is offered to users.
-EXAMPLES = re.findall(r"^```python.*?\n(.*?)^```$", (ROOT / "README.md").read_text("utf-8"), re.MULTILINE | re.DOTALL)
+#: Python examples of the pages: what is offered to users.
+EXAMPLES = [
+    block.text
+    for page in (ROOT / "tools" / "docs" / "pages").rglob("*.md")
+    for block in blocks(page.read_text("utf-8"))
+    if block.language == "python"
+]
 #: Laws by the rows of published numbers that `gearheat verify` calls them for.
 VERIFIED = re.findall(
     r'^law = "\w+\.(\w+)"$',

@@ -1,4 +1,4 @@
-"""All of the README that can be run is run, in its order and in one folder; its table says what an FMU declares."""
+"""README and pages: all blocks that can be run are run, links lead somewhere, tables are what the code says."""
 
 import importlib
 import re
@@ -15,77 +15,86 @@ from gearheat.fmu.variables import table
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import StructureError
 from gearheat.tools.cli import app
+from gearheat.tools.docs.blocks import PAGES, SHOWN, Reader, blocks, missing, pages, same
 from small_parts import rc
-from typer.testing import CliRunner
 
 ROOT = Path(__file__).parents[2]
-README = (ROOT / "README.md").read_text(encoding="utf-8")
-BLOCKS = re.findall(r"^```(\w*) *(.*?)\n(.*?)^```$", README, flags=re.MULTILINE | re.DOTALL)
-
-#: Commands that work for minutes: only their options are read here, their own tests run them.
-LONG = {"bench", "calibrate", "challenge", "diagnose"}
-
-#: Languages of blocks that need a program this project does not install, or that are pictures.
-NOT_RUN = {"matlab", "text", ""}
+README = ROOT / "README.md"
+EVERY = [README, ROOT / "CONTRIBUTING.md", *pages()]
+PROGRAM = typer.main.get_command(app)
 
 
-def commands(block: str) -> list[list[str]]:
-    """The arguments of every command of a shell block, lines that go on joined."""
-    lines = block.replace("\\\n", " ").splitlines()
-    return [words for line in lines if (words := shlex.split(line, comments=True))]
+def name(page: Path) -> str:
+    return page.relative_to(ROOT).as_posix()
 
 
-def installs(block: str) -> bool:
-    """Whether a block makes its own environment: the continuous integration runs it as a whole."""
-    return "-m venv" in block
-
-
-def read(arguments: list[str]) -> None:
-    """Read the options of a command without running it. Raises for wrong ones."""
-    group = typer.main.get_command(app)
-    group.commands[arguments[0]].make_context(arguments[0], list(arguments[1:]))
-
-
-def test_every_block_is_of_a_kind_that_is_known() -> None:
-    assert {language for language, _, _ in BLOCKS} <= {"sh", "python", "csv"} | NOT_RUN
-    assert sum(language == "python" for language, _, _ in BLOCKS) >= 2
-
-
-def test_the_blocks_run_in_their_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(tmp_path)
+@pytest.mark.parametrize("page", EVERY, ids=name)
+def test_the_blocks_run_in_their_order(page: Path, tmp_path: Path) -> None:
     (tmp_path / "scenarios").symlink_to(ROOT / "scenarios")  # paths as in a checkout
-    names: dict[str, object] = {}
-    for language, title, block in BLOCKS:
-        if language == "csv":
-            (tmp_path / title).write_text(block, encoding="utf-8")
-        elif language == "python":
-            exec(compile(block, "README.md", "exec"), names)
-        elif language == "sh" and not installs(block):
-            for program, *arguments in commands(block):
-                assert program == "gearheat", program
-                if arguments[0] in LONG:
-                    read(arguments)
-                    continue
-                result = CliRunner().invoke(app, arguments)
-                assert result.exit_code == 0, (arguments, result.stderr)
-    made = {path.name for path in tmp_path.rglob("*")}
-    assert {"warmup.csv", "played.csv", "planetary.ssv", "MINR.ssv", "planetary_ref.opt", "cooled.fmu"} <= made
+    assert not Reader(PROGRAM, tmp_path).problems(page)
+
+
+@pytest.mark.parametrize("page", EVERY, ids=name)
+def test_links_and_languages(page: Path) -> None:
+    text = page.read_text(encoding="utf-8")
+    known = {"sh", "console", "python", "csv", "toml", "diff", "c"} | SHOWN
+    assert {block.language for block in blocks(text)} <= known
+    prose = re.sub(r"^```.*?^```$", "", text, flags=re.MULTILINE | re.DOTALL)
+    links = [link for link in re.findall(r"\]\(([^)\s]+)\)", prose) if not link.startswith(("http", "#"))]
+    dead = [link for link in links if not (page.parent / link.partition("#")[0]).exists()]
+    assert not [link for link in dead if "/generated/" not in f"/{link}"]
+
+
+def test_the_readme_is_short() -> None:
+    assert len(README.read_text(encoding="utf-8").splitlines()) <= 150
 
 
 def test_the_blocks_that_install_name_commands_that_exist() -> None:
-    blocks = [block for language, _, block in BLOCKS if language == "sh" and installs(block)]
-    assert len(blocks) == 2
-    for block in blocks:
-        for program, arguments in re.findall(r"\.venv/bin/(gearheat|python) (.*)", block):
+    installs = [block for block in blocks(README.read_text(encoding="utf-8")) if block.installs]
+    assert len(installs) == 2
+    for block in installs:
+        for program, arguments in re.findall(r"\.venv/bin/(gearheat|python) (.*)", block.text):
             if program == "gearheat":
-                read(shlex.split(arguments))
+                Reader(PROGRAM, ROOT).read(shlex.split(arguments))
             else:
                 assert importlib.util.find_spec(shlex.split(arguments)[1]) is not None
 
 
-def test_a_wrong_option_would_be_found() -> None:
-    with pytest.raises(Exception, match="No such option"):
-        read(["bench", "--quick"])
+class TestReader:
+    """A page that is not true is found."""
+
+    def problems(self, folder: Path, text: str) -> list[str]:
+        page = folder / "page.md"
+        page.write_text(text, encoding="utf-8")
+        return Reader(PROGRAM, folder).problems(page)
+
+    def test_a_wrong_option(self, tmp_path: Path) -> None:
+        with pytest.raises(Exception, match="No such option"):
+            Reader(PROGRAM, tmp_path).read(["bench", "--quick"])
+
+    def test_a_command_that_fails_and_one_that_prints_something_else(self, tmp_path: Path) -> None:
+        (failed,) = self.problems(tmp_path, "# A\n\n```sh\ngearheat steady planetry\n```\n")
+        assert failed.startswith("page.md line 3: gearheat steady planetry ends with 2") and "planetary" in failed
+        (other,) = self.problems(tmp_path, "```console\n$ gearheat --version\ngearheat 9.9\n```\n")
+        assert "does not print 'gearheat 9.9'" in other
+
+    def test_an_edit_of_what_is_not_there(self, tmp_path: Path) -> None:
+        text = "```toml a.toml\na = 1\n```\n\n```diff a.toml\n-a = {}\n+a = 3\n```\n"
+        assert not self.problems(tmp_path, text.format(1))
+        assert (tmp_path / "a.toml").read_text(encoding="utf-8") == "a = 3\n"
+        (problem,) = self.problems(tmp_path, text.format(2))
+        assert "0 times, not once" in problem
+
+    def test_lines_are_the_same_to_their_last_digit(self) -> None:
+        assert same("oil.T  36.14 degC", " oil.T 36.15   degC ")
+        assert not same("oil.T  36.14 degC", "oil.T 36.16 degC")
+        assert not same("oil.T  36.14 degC", "wall.T 36.14 degC")
+        assert same("oil.T  36.1 ...", "oil.T 36.1 degC temperature")
+        assert not same("12 tests", "13 tests")
+
+    def test_lines_stand_in_their_order(self) -> None:
+        assert not list(missing(["a 1", "b 2"], "a 1\nc\nb 2\n"))
+        assert list(missing(["b 2", "a 1"], "a 1\nb 2\n")) == ["a 1"]
 
 
 def test_the_capability_table_is_what_an_fmu_declares() -> None:
@@ -95,13 +104,14 @@ def test_the_capability_table_is_what_an_fmu_declares() -> None:
     for interface in ("ModelExchange", "CoSimulation"):
         declared |= root.find(interface).attrib
     del declared["modelIdentifier"]
-    section = README.partition("### What it declares, and has")[2].partition("\n### ")[0]
+    page = (PAGES / "howto" / "fmu.md").read_text(encoding="utf-8")
+    section = page.partition("## What it declares, and has")[2].partition("\n## ")[0]
     assert dict(re.findall(r"^\| `(\w+)` \| (\w+) \|", section, flags=re.MULTILINE)) == declared
 
 
 def test_the_table_of_broken_assemblies_is_what_the_program_says() -> None:
-    section = README.partition("## When an assembly does not work")[2].partition("\n## ")[0]
-    rows = re.findall(r"^\| (.+?) \| (.+) \|$", section, flags=re.MULTILINE)[1:]
+    page = (PAGES / "howto" / "assemblies.md").read_text(encoding="utf-8")
+    rows = re.findall(r"^\| (.+?) \| (.+) \|$", page, flags=re.MULTILINE)[1:]
     slips = {make.__doc__: make for make in BROKEN}
     assert len(rows) >= 12
     for what, says in rows:

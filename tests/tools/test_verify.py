@@ -10,10 +10,11 @@ from gearheat.model.errors import ScenarioError
 from gearheat.scenarios.golden import golden_rows
 from gearheat.scenarios.load import RIGS, list_rigs
 from gearheat.scenarios.published import Row, read_published
+from gearheat.tools.docs.blocks import PAGES
 from gearheat.tools.verdicts import CONTRADICTED, NOT_REPRODUCED, REPRODUCED, VERDICTS, Value, judged
 from gearheat.tools.verify import law_of
 
-README = (Path(__file__).parents[2] / "README.md").read_text(encoding="utf-8")
+PAGE = (PAGES / "trust" / "verified.md").read_text(encoding="utf-8")
 #: A line of its table of counts: name, then six numbers.
 LINE = r"^\| ([a-z]\w*(?: all)?) \| (\d[\d |]*)\|$"
 ROW = {"name": "a number", "where": "nowhere", "run": "steady", "path": "oil.T"}
@@ -23,7 +24,7 @@ def row(**values: object) -> Row:
     return Row.model_validate(ROW | values)
 
 
-def test_every_number_of_every_rig_and_the_counts_of_the_readme(gearheat, tmp_path: Path) -> None:
+def test_every_number_of_every_rig_and_the_counts_of_the_page(gearheat, tmp_path: Path) -> None:
     page = tmp_path / "page.html"
     answer = gearheat("verify", "--json", "-", "--html", page)
     found = answer.json
@@ -34,8 +35,7 @@ def test_every_number_of_every_rig_and_the_counts_of_the_readme(gearheat, tmp_pa
     assert answer.code == 0
     assert parts.keys() >= set(list_rigs())
     assert page.read_text(encoding="utf-8").count("<h2>") == len(list_rigs()) + 2  # laws and sources
-    section = README.partition("### What is verified")[2].partition("\n#")[0]
-    printed = {name: [int(n) for n in cells.split("|")[:6]] for name, cells in re.findall(LINE, section, re.MULTILINE)}
+    printed = {name: [int(n) for n in cells.split("|")[:6]] for name, cells in re.findall(LINE, PAGE, re.MULTILINE)}
     counted = {name: [*part["counts"].values(), *part["kinds"].values()] for name, part in parts.items()}
     assert printed == {name: numbers for name, numbers in counted.items() if any(numbers)}
 

@@ -4,15 +4,15 @@ from __future__ import annotations
 
 import re
 import tomllib
-from pathlib import Path
 
 import pytest
 from gearheat.diagnose.campaign.card import Card, Oil, Protocol, read_card
 from gearheat.diagnose.campaign.context import CONTEXT
 from gearheat.diagnose.campaign.read import read_campaign
 from gearheat.scenarios.tables import SensorTable
+from gearheat.tools.docs.blocks import PAGES
 
-PAGE = (Path(__file__).parents[3] / "tools" / "diagnose" / "campaign" / "README.md").read_text(encoding="utf-8")
+PAGE = (PAGES / "reference" / "card.md").read_text(encoding="utf-8")
 BLOCKS = re.findall(r"^```(\w+) ?([\w.]*)\n(.*?)^```$", PAGE, flags=re.MULTILINE | re.DOTALL)
 
 

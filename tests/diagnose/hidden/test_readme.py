@@ -4,7 +4,6 @@ import csv
 import json
 import re
 import shutil
-from pathlib import Path
 
 import pytest
 from diagnose.hidden.benches import HELICAL
@@ -12,15 +11,15 @@ from diagnose.hidden.cases import HIDDEN
 from diagnose.hidden.maker import make
 from gearheat.scenarios.load import RIGS
 from gearheat.tools.cli import app
+from gearheat.tools.docs.blocks import PAGES
 from typer.testing import CliRunner
 
-ROOT = Path(__file__).parents[3]
-PAGE = (ROOT / "tools" / "diagnose" / "README.md").read_text("utf-8")
+PAGE = (PAGES / "tutorials" / "diagnosis.md").read_text("utf-8")
 
 
 def block(language: str) -> str:
     """The page's example in a language."""
-    (found,) = re.findall(rf"^```{language}\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
+    (found,) = re.findall(rf"^```{language}[^\n]*\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)
     return found
 
 
@@ -55,18 +54,16 @@ SCHEMES = {
 
 @pytest.fixture(scope="module")
 def campaign(tmp_path_factory: pytest.TempPathFactory):
-    """The measured campaign of the planetary rig, diagnosed, and the README's section about it."""
+    """The measured campaign of the planetary rig, diagnosed, and the page's section about it."""
     out = tmp_path_factory.mktemp("campaign") / "found.json"
     files = [str(RIGS / "planetary" / name) for name in ("measured.csv", "card.json")]
     run = CliRunner().invoke(app, ["diagnose", files[0], "--card", files[1], "--json", str(out)])
     assert run.exit_code == 0, run.output
-    (section,) = re.findall(
-        r"^### The measured campaign\n(.*?)^### ", (ROOT / "README.md").read_text("utf-8"), re.MULTILINE | re.DOTALL
-    )
-    return json.loads(out.read_text("utf-8")), section
+    page = (PAGES / "trust" / "diagnosis.md").read_text("utf-8")
+    return json.loads(out.read_text("utf-8")), page.partition("## The measured campaign\n")[2]
 
 
-def test_the_gain_of_the_measured_campaign_is_what_the_readme_prints(campaign) -> None:
+def test_the_gain_of_the_measured_campaign_is_what_the_page_prints(campaign) -> None:
     found, section = campaign
     gains = {(g["scheme"], g["channel"]): g for g in (found["gain"], *found["gain_grouped"])}
     lines = [line.strip("|").split("|") for line in section.splitlines() if re.match(r"\| (some|one) ", line)]
@@ -78,7 +75,7 @@ def test_the_gain_of_the_measured_campaign_is_what_the_readme_prints(campaign) -
         assert [*told, gain["rivals"]["linear in the given sensors"]] == pytest.approx(printed, abs=0.02), left_out
 
 
-def test_the_channels_of_the_measured_campaign_say_what_the_readme_prints(campaign) -> None:
+def test_the_channels_of_the_measured_campaign_say_what_the_page_prints(campaign) -> None:
     found, section = campaign
     views = {v["channel"]: v for v in found["views"]}
     lines = re.findall(r"^\| (T_\w+), [^|]* \| ([\d.]+) \| (.*) \|$", section, re.MULTILINE)

@@ -2,15 +2,14 @@
 
 import re
 from importlib.metadata import EntryPoint
-from pathlib import Path
 
-import gearheat.diagnose.library as package
 import pytest
 from gearheat.diagnose.library import registry
 from gearheat.model.errors import DataError
+from gearheat.tools.docs.blocks import PAGES
 
-README = Path(package.__file__).with_name("README.md").read_text("utf-8")
-EXAMPLE = re.search(r"^```python\n(.*?)^```$", README, re.MULTILINE | re.DOTALL)[1]
+PAGE = (PAGES / "contributing" / "cause.md").read_text("utf-8")
+EXAMPLE = re.search(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)[1]
 ONE = """
 from gearheat.diagnose.library import Cause, Form, Size
 

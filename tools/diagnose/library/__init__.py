@@ -1,4 +1,7 @@
-"""What may be wrong: causes, sensors' faults and nuisances, one file a family. README.md shows how to add a cause."""
+"""What may be wrong: causes, sensors' faults and nuisances, one file a family.
+
+The page `contributing/cause.md` of the documentation shows how to add a cause.
+"""
 
 from ..campaign.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size
