@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 
 import typer
 
-from . import cli_contact, cli_diagnosis, cli_logs, cli_rigs, console
+from . import cli_contact, cli_diagnosis, cli_docs, cli_logs, cli_rigs, console
 from .cli_options import Json, Rig, Set
 
 app = typer.Typer(
@@ -368,6 +368,7 @@ app.command()(cli_rigs.parts)
 app.command()(cli_rigs.schema)
 app.command("map")(cli_rigs.map_)
 app.command()(cli_rigs.rating)
+app.command()(cli_docs.docs)
 
 
 if __name__ == "__main__":

@@ -65,6 +65,8 @@ def blocks(text: str) -> list[Block]:
     found = []
     for match in FENCE.finditer(text):
         language, rest, body = match.groups()
+        if rest.startswith("{"):
+            continue
         words = rest.split()
         file = next((word for word in words if word != "slow"), "")
         found.append(Block(language, file, "slow" in words, body, text.count("\n", 0, match.start()) + 1))
@@ -137,13 +139,19 @@ class Reader:
             path = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
             run = subprocess.run(words, env={**os.environ, "PATH": path}, capture_output=True, text=True, check=False)
             return run.returncode, run.stdout + run.stderr
-        out = io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(out):
-            try:
-                self.program.main(words[1:], prog_name="gearheat")
-            except SystemExit as end:
-                return int(end.code or 0), out.getvalue()
-        return 0, out.getvalue()
+        code, out, said = called(self.program, words[1:])
+        return code, out + said
+
+
+def called(program: TyperGroup, arguments: list[str]) -> tuple[int, str, str]:
+    """Exit code, standard output and standard error of a command, run in this process."""
+    out, said = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(said):
+        try:
+            program.main(arguments, prog_name="gearheat")
+        except SystemExit as end:
+            return int(end.code or 0), out.getvalue(), said.getvalue()
+    return 0, out.getvalue(), said.getvalue()
 
 
 def missing(expected: Iterable[str], out: str) -> Iterator[str]:

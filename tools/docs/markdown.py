@@ -1,0 +1,63 @@
+"""Pages as text: tables, escaped words, docstrings with their formulas."""
+
+from __future__ import annotations
+
+import inspect
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+MATH = re.compile(r"^\.\. math::[ \n]*((?:.+\n?)+?)(?:\n|\Z)", re.MULTILINE)
+
+
+def words(value: Any) -> str:
+    """A value as words of a page: nothing in it is markup but text between backticks."""
+    text = ", ".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
+    parts = re.split(r"(`[^`]*`)", " ".join(text.split()))
+    plain = [part if k % 2 else re.sub(r"([*<\[\]|])", r"\\\1", part) for k, part in enumerate(parts)]
+    return "".join(plain).replace("`|`", "`\\|`")
+
+
+def code(value: Any) -> str:
+    """A name or a value as code; nothing for nothing."""
+    text = str(value).replace("|", "\\|")
+    return f"`{text}`" if text else ""
+
+
+def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table, nothing where it has no rows."""
+    lines = [f"| {' | '.join(row)} |" for row in rows]
+    return "\n".join([f"| {' | '.join(head)} |", f"|{'---|' * len(head)}", *lines]) + "\n\n" if lines else ""
+
+
+def listing(lines: Sequence[Mapping[str, Any]], keys: Sequence[str], names: Sequence[str] = ("name",)) -> str:
+    """A table of dictionaries, columns in which all are empty left out.
+
+    Args:
+        lines: the rows
+        keys: the columns
+        names: those that are code
+    """
+    kept = [key for key in keys if any(str(line[key]) for line in lines)]
+    shown = ((code(line[key]) if key in names else words(line[key]) for key in kept) for line in lines)
+    return table([key.replace("_", " ") for key in kept], [list(row) for row in shown])
+
+
+def fenced(language: str, text: str) -> str:
+    """A block of code."""
+    return f"```{language}\n{text.rstrip()}\n```\n\n"
+
+
+def docstring(of: Any) -> str:
+    """What a docstring says before its arguments, its formulas as formulas."""
+    text = re.split(r"^(?:Args|Returns|Raises):$", inspect.getdoc(of) or "", maxsplit=1, flags=re.MULTILINE)[0]
+    pieces = MATH.split(text)
+    shown = [fenced("{math}", p) if k % 2 else "\n\n".join(map(words, p.split("\n\n"))) for k, p in enumerate(pieces)]
+    return "\n\n".join(piece.strip() for piece in shown if piece.strip()) + "\n\n"
+
+
+def arguments(of: Any) -> str:
+    """The arguments that a docstring tells, as a list."""
+    told = (inspect.getdoc(of) or "").partition("Args:\n")[2].partition("\n\n")[0]
+    found = re.findall(r"^    (\w[\w, ]*): (.*(?:\n {5,}.*)*)", told, re.MULTILINE)
+    return "".join(f"- `{name}`: {words(text)}\n" for name, text in found) + "\n" if found else ""
