@@ -20,10 +20,13 @@ from .console import answer, note, writable, write
 from .points import conditions
 from .rigs import load
 from .settings import flat_of
-from .sizing import GAP, KINDS, SIDE, WIDTH, Unit, unit
+from .sizing import GAP, KINDS, OVERHANG, SIDE, BevelStage, Unit, unit
 
 #: Efficiency of a stage with its bearings, for the load at the output; steel and cast iron [kg/m3]; oil [kg/m3].
 STAGE, STEEL, IRON, OIL = 0.985, 7850.0, 7200.0, 835.0
+#: What is told of a stage, and the size by which one of its kind is known.
+TOLD = ("kind", "z_1", "z_2", "m_n", "beta", "b")
+SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2"}
 #: Speed at which churning is told [rad/s].
 CHURNED = 200 * math.pi / 30
 
@@ -55,7 +58,7 @@ def new_command(
         "schema": "gearheat.new/1",
         "file": str(path),
         "ratio": made.ratio,
-        "stages": [{k: getattr(s, k) for k in ("kind", "z_1", "z_2", "m_n", "beta", "a", "b")} for s in made.stages],
+        "stages": [{k: getattr(s, k) for k in (*TOLD, SIZES[s.kind])} for s in made.stages],
         "bearings": [{"a": s.bearings[0], "b": s.bearings[1], "lives_h": s.lives} for s in made.shafts],
         "assumed": sum(source.startswith("assumed") for source in scenario.value_sources.values()),
         "oil_degC": kept["oil.T"] - 273.15,
@@ -72,7 +75,10 @@ def new_command(
 def _print(found: dict[str, Any]) -> None:
     print(f"{found['file']}: i = {found['ratio']:.5g}, {found['assumed']} values assumed, each with its rule")
     for k, s in enumerate(found["stages"], start=1):
-        print(f"  stage {k}: {s['kind']} {s['z_1']}/{s['z_2']}, m_n {1e3 * s['m_n']:g} mm, a {1e3 * s['a']:g} mm")
+        key, words = SIZES[s["kind"]]
+        print(
+            f"  stage {k}: {s['kind']} {s['z_1']}/{s['z_2']}, m_n {1e3 * s['m_n']:.4g} mm, {words} {1e3 * s[key]:g} mm"
+        )
     print(f"  at the name plate: oil {found['oil_degC']:.1f} degC, loss {found['loss_W']:.0f} W,", end=" ")
     print(f"efficiency {100 * found['efficiency']:.2f} %")
     print(f"Next: put your numbers into the file, then `gearheat steady {found['file']}`.")
@@ -103,14 +109,13 @@ def text(made: Unit, doc: str, speed: str, oil: str) -> str:
         "efficiency": efficiency,
         "load": -((-1) ** n) * made.stages[0].T * made.ratio * efficiency,  # external pairs turn the sense each time
         "oil": oil,
-        "span": made.span,
         "side": SIDE,
         "gap": GAP,
-        "width": WIDTH,
+        "overhang": OVERHANG,
         "stages": [_stage(made, k) for k in range(n)],
         "shafts": [_shaft(made, names, k) for k in range(n + 1)],
         "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d} for k in (0, -1)],
-        "nets": _nets(names),
+        "nets": _nets(names, made),
         "losses": _losses(names),
         **_bodies(made),
     }
@@ -128,24 +133,28 @@ def _mm(value: float) -> str:
 
 def _stage(made: Unit, k: int) -> dict[str, Any]:
     s = made.stages[k]
-    twist = f"beta for a = {_mm(s.a)} mm" if KINDS[s.kind] else "a follows from the teeth"
-    rule = f"F_t/(b d_1) (u + 1)/u of {sizing.K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"
+    if isinstance(s, BevelStage):
+        rule = f"F_t/(b d_v1) (u_v + 1)/u_v of {sizing.K_BEVEL / 1e6:g} N/mm2 at mid face, d_e2 of {_mm(s.d_e2)} mm"
+        shape: dict[str, Any] = {"type": "BevelGearPair", "m_et": s.m_et, "x_1": s.x_1, "width": sizing.FACE}
+    else:
+        twist = f"beta for a = {_mm(s.a)} mm" if KINDS[s.kind] else "a follows from the teeth"
+        rule = f"F_t/(b d_1) (u + 1)/u of {sizing.K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"
+        shape = {"type": "HelicalGearPair", "m_n": s.m_n, "a": s.a, "width": sizing.WIDTH}
     c = 0.5 * OIL * CHURNED**3 * s.b * s.r_2**4
-    shape = {key: getattr(s, key) for key in ("z_1", "z_2", "m_n", "b", "a")}
-    name = {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}"}
-    return {**name, **shape, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule, "c": c}
+    shape |= {"z_1": s.z_1, "z_2": s.z_2, "b": s.b, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule, "c": c}
+    return {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", **shape}
 
 
 def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
     s, n = made.shafts[k], len(made.stages)
-    wheel = [{"x": made.stages[k - 1].x, "r": made.stages[k - 1].r_2}] if k else []
-    pinion = [{"x": made.stages[k].x, "r": made.stages[k].r_1}] if k < n else []
+    radii = ([made.stages[k - 1].r_2] if k else []) + ([made.stages[k].r_1] if k < n else [])
     places = [
         {"name": f"{names[k]}_bearing_{end}", "bearing": bearing, "life": _num(life)}
         for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)
     ]
-    support = "TwoGearSupport" if wheel and pinion else "ShaftSupport"
-    return {"name": names[k], "support": support, "gears": wheel + pinion, "bearings": places, "d": s.d}
+    gears = [{"x": x, "r": r} for x, r in zip(s.places, radii, strict=True)]
+    support = "TwoGearSupport" if len(gears) > 1 else "ShaftSupport"
+    return {"name": names[k], "support": support, "gears": gears, "span": s.span, "bearings": places, "d": s.d}
 
 
 def _bodies(made: Unit) -> dict[str, float]:
@@ -156,7 +165,7 @@ def _bodies(made: Unit) -> dict[str, float]:
     ratios = [slow[k + j] for k in range(len(made.stages)) for j in (0, 1)]
     wheels = [(s.r_2, s.b) for s in made.stages]
     seats = [(made.shafts[k + 1].d, s.b) for k, s in enumerate(made.stages)]
-    shafts = sum(STEEL * math.pi / 4 * s.d**2 * (made.span + 0.1) for s in made.shafts)
+    shafts = sum(STEEL * math.pi / 4 * s.d**2 * (s.span + 0.1) for s in made.shafts)
     mass = 1.25 * IRON * made.area * made.wall
     return {
         "inertia": sum(m * r**2 / 2 / i**2 for (r, _), m, i in zip(gears, masses, ratios, strict=True)),
@@ -179,7 +188,7 @@ def _bodies(made: Unit) -> dict[str, float]:
     }
 
 
-def _nets(names: Sequence[str]) -> list[dict[str, str]]:
+def _nets(names: Sequence[str], made: Unit) -> list[dict[str, str]]:
     """What meets, by name of the net."""
     n = len(names) - 1
     bearings = [f"{name}_bearing_{end}" for name in names for end in "ab"]
@@ -194,8 +203,12 @@ def _nets(names: Sequence[str]) -> list[dict[str, str]]:
         turning = [f"{name}_bearing_{end}.shaft" for end in "ab"] + ([f"{name}_seal.shaft"] if k in (0, n) else [])
         nets[f"{name}_shaft"] = [*ends, *turning]
     for k, stage in enumerate(stages):
-        driven = "mesh_2" if k else "mesh"
-        nets[f"force_{k + 1}"] = [f"{stage}.force", f"{names[k]}_support.{driven}", f"{names[k + 1]}_support.mesh"]
+        on_pinion, on_wheel = f"{names[k]}_support.{'mesh_2' if k else 'mesh'}", f"{names[k + 1]}_support.mesh"
+        if isinstance(made.stages[k], BevelStage):
+            nets[f"force_{k + 1}_pinion"] = [f"{stage}.pinion_force", on_pinion]
+            nets[f"force_{k + 1}_wheel"] = [f"{stage}.wheel_force", on_wheel]
+        else:
+            nets[f"force_{k + 1}"] = [f"{stage}.force", on_pinion, on_wheel]
     for name in names:
         nets |= {f"load_{name}_{e}": [f"{name}_support.load_{e}", f"{name}_bearing_{e}.load"] for e in "ab"}
     nets["reading_input"], nets["reading_output"] = (

@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import inspect
 import math
+import tomllib
 from collections.abc import Mapping
 from functools import cache
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +17,7 @@ from ..model.core.flat import Quantity
 from ..model.errors import ScenarioError, suggestion
 from ..model.parts import PARTS
 from ..model.sources import recording, sources
-from ..model.units import example, from_si, shown, text
+from ..model.units import example, from_si, shown, text, to_si
 from ..scenarios.entries import DESCRIPTIVE, FILES, Entry, catalogue
 from ..scenarios.load import list_rigs, load
 from ..scenarios.scenario import Scenario
@@ -113,7 +115,10 @@ def _shipped() -> tuple[Scenario, ...]:
 
 
 def _example(kind: str) -> tuple[str, dict[str, Any], Mapping[str, str]]:
-    """A shipped rig with such a part, its values, and its catalogue entries; "" and typical sizes where none has it."""
+    """A shipped rig with such a part, its values, and its catalogue entries; "" and typical sizes where none has it.
+
+    The sizes of parts that need some which fit each other are those of a template, the rest nominal ones.
+    """
     found: list[tuple[str, dict[str, Any], Mapping[str, str]]] = []
     for scenario in _shipped():
         for name in scenario.spec.of_type(kind):
@@ -122,7 +127,18 @@ def _example(kind: str) -> tuple[str, dict[str, Any], Mapping[str, str]]:
         return next((e for e in found if e[2]), found[0])
     needed = {k: d for k, d in declared(PARTS[kind], Parameter).items() if d.default is None and d.derived is None}
     grown = {k: d.nominal * (1 + i / 2 if d.unit == "m" else 1) for i, (k, d) in enumerate(needed.items())}
-    return "", grown, {}
+    return "", grown | _typical().get(kind, {}), {}
+
+
+@cache
+def _typical() -> dict[str, dict[str, Any]]:
+    """Sizes of part types that no shipped rig has, by type, in SI."""
+    written = files("gearheat.tools").joinpath("templates", "parts.toml").read_text(encoding="utf-8")
+    found: dict[str, dict[str, Any]] = tomllib.loads(written)
+    for kind, sizes in found.items():
+        known = settable(PARTS[kind])
+        sizes |= {key: to_si(sizes[key], known[key].unit, name=key) for key in sizes.keys() & known.keys()}
+    return found
 
 
 def _inside(cls: type[Component], values: Mapping[str, Any]) -> tuple[list[str], list[dict[str, Any]]]:

@@ -10,7 +10,7 @@ from typing import Any, ClassVar
 import casadi as ca
 
 from ..errors import ScenarioError, suggestion
-from ..sources import recording
+from ..sources import LawUse, recording
 from ..units import text
 from .declare import Choice, Declaration, Given, Input, Output, Parameter, Port, State, Variable, declared
 from .flat import Relation, broken
@@ -75,8 +75,7 @@ class Component:
         self.values: dict[str, float] = {k: d.default for k, d in self.parameters.items() if d.default is not None}
         self.values |= {k: d.start for k, d in self.states.items()} | {k: d.start for k, d in self.inputs.items()}
         self.values |= {k: v for k, v in values.items() if k in self.values or k in self.parameters}
-        with recording() as self.uses:
-            self._derive()
+        self.uses = self._derive()
         if problems := self._problems(values):
             raise ScenarioError(problems)
 
@@ -103,10 +102,11 @@ class Component:
                 found.append(f"{where}: {key} {wrong}. Choose one of: {options}.")
         return sorted(found) or [f"{where}: {problem}" for problem in self._contradictions()]
 
-    def _derive(self) -> None:
-        """Put expressions in the place of the parameters that follow from others."""
+    def _derive(self) -> list[LawUse]:
+        """Put expressions in the place of the parameters that follow from others; the laws they use."""
         own = [self.symbols[key] for key in self.derived]
-        found = [ca.SX(d.derived(self)) for d in self.derived.values() if d.derived is not None]
+        with recording() as uses:
+            found = [ca.SX(d.derived(self)) for d in self.derived.values() if d.derived is not None]
         for _ in own[1:]:  # one may follow from another, whatever their order
             found = ca.substitute(found, own, found)
         for key, expression in zip(tuple(self.derived), found, strict=True):
@@ -116,6 +116,9 @@ class Component:
             self.symbols[key] = expression
             if (value := self._number(expression)) is not None:
                 self.values[key] = value
+        return [
+            LawUse(u.law, {k: ca.substitute([ca.SX(x)], own, found)[0] for k, x in u.arguments.items()}) for u in uses
+        ]
 
     def _number(self, expression: Any) -> float | None:
         """Value of an expression of the parameters, None where the value of one of them is missing."""

@@ -2,10 +2,11 @@
 
 from ..core.component import Component
 from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
+from .bevel import BevelGearPair
 from .churning import Churning
 from .cycloid import CycloidalReducer, MalhotraReducer
 from .drum import BeltContact, BeltPull, DrumChurning, DrumCooling, DrumOil, WettedWall
-from .gears import HelicalGearPair, PlanetarySet
+from .gears import HelicalGearPair, InternalGearPair
 from .grey import Cooler, FlowConductor, GreyBearing, GreyTeeth, OilJet, Thermostat
 from .harmonic import HarmonicContact, HarmonicMesh
 from .housing import (
@@ -18,6 +19,7 @@ from .housing import (
 )
 from .lubrication import Grease, OilBath
 from .motor import Motor
+from .planetary import PlanetarySet
 from .rv import CycloidPinStage
 from .sealing import LipSeal
 from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit, TurningFrame
@@ -48,6 +50,8 @@ PARTS: dict[str, type[Component]] = {
         Motor,
         PlanetarySet,
         HelicalGearPair,
+        InternalGearPair,
+        BevelGearPair,
         CycloidalReducer,
         MalhotraReducer,
         CycloidPinStage,

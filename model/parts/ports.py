@@ -63,7 +63,10 @@ class BearingLoad(Port):
 
 
 class ToothForce(Port):
-    """The force between two gears at the pitch point, magnitudes: information, not power."""
+    """The force on a gear at the pitch point: information, not power.
+
+    Of bevel gears, whose forces may point either way, F_r is positive towards the axis, F_a away from the apex.
+    """
 
     missing = "nothing says which tooth force acts"
     source = "the force of a gear pair"

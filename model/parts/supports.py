@@ -16,7 +16,10 @@ FORCE_WIDTH = 1.0
 
 
 class ShaftSupport(Component):
-    """Statics of a shaft with one gear on two bearings a and b."""
+    """Statics of a shaft with one gear on two bearings a and b.
+
+    A positive axial force pushes the gear towards bearing a: of a bevel gear, the apex is on the side of bearing b.
+    """
 
     mesh = ToothForce()
     load_a = BearingLoad()
@@ -61,7 +64,10 @@ class ShaftSupport(Component):
 
 
 class TwoGearSupport(ShaftSupport):
-    """Statics of an intermediate shaft: a driven wheel (`mesh`) and a driving pinion (`mesh_2`) of the same hand."""
+    """Statics of an intermediate shaft: a driven wheel (`mesh`) and a driving pinion (`mesh_2`) of the same hand.
+
+    The axial force of the wheel pushes towards bearing a, that of the pinion towards bearing b.
+    """
 
     mesh_2 = ToothForce()
 

@@ -16,6 +16,7 @@ from gearheat.model.laws.oil import density, kinematic_viscosity, pressure_visco
 from gearheat.model.laws.rolling import boundary_share
 from gearheat.model.parts import PARTS as PHYSICS
 from gearheat.model.parts.ports import Flange, HeatPort
+from gearheat.model.parts.teeth import ToothedPart
 from gearheat.model.run.rows import evaluate_at
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -57,6 +58,9 @@ EXAMPLES: dict[str, dict] = {
     | dict(N=3.0, z_3=108.0, eps_alpha_sp=1.666, eps_alpha_pr=1.883, H_v_sp=0.168, H_v_pr=0.062)
     | dict(n_axial_carrier=1.0, n_axial_sun=3.0, s_planet=0.021),
     "HelicalGearPair": TEETH | dict(z_2=72.0, a_w=0.1097, x_1=0.0, x_2=0.0),
+    "InternalGearPair": TEETH | dict(z_2=108.0, x_1=-0.0189, x_2=0.0566),
+    "BevelGearPair": {k: v for k, v in TEETH.items() if k not in ("m_n", "a_w")}
+    | dict(z_1=14.0, z_2=39.0, m_et=4.536e-3, beta=math.radians(35), b=0.0254, x_1=0.4, shaft_angle=math.pi / 2),
     "BeltPull": dict(D=0.32, k_pull=2.0),
     "HarmonicMesh": FLANK | dict(z_1=132.0, z_2=134.0, m_n=6e-4, alpha=math.radians(20), pairs=40.0),
     "HarmonicContact": FLANK | dict(eta_0=0.06, alpha_p=2e-8, F_0=240.0),
@@ -120,6 +124,9 @@ GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level", "BeltPull.load"} 
     "OilBath.lubricant",
     "Grease.lubricant",
     "HelicalGearPair.force",
+    "InternalGearPair.force",
+    "BevelGearPair.pinion_force",
+    "BevelGearPair.wheel_force",
 }
 GIVES |= {"Thermostat.opening"}
 GIVES |= {"LoadingClutch.reading"}
@@ -130,7 +137,9 @@ GIVES |= {f"{s}.{k}" for s in ("ShaftSupport", "TwoGearSupport") for k in ("load
 GIVES |= {f"RoundHousing.{k}" for k in ("flat_inside", "flat_outside", "cylinder_inside", "cylinder_outside")}
 #: What is given at the flanges of a part with several of them; elsewhere the speed (a storage: the torque).
 GIVEN = {
-    "HelicalGearPair": {"pinion": ("w", "tau"), "wheel": ()},
+    **{
+        kind: {"pinion": ("w", "tau"), "wheel": ()} for kind in ("HelicalGearPair", "InternalGearPair", "BevelGearPair")
+    },
     "HarmonicMesh": {"wave_generator": ("w",), "flexspline": ("tau",), "circular_spline": ("w",), "wave": ("tau",)},
     "CycloidalReducer": {"input": ("w",), "output": ("tau",)},
     "MalhotraReducer": {"input": ("w",), "output": ("tau",)},
@@ -191,6 +200,7 @@ LOSSES = ("part.P_loss", "part.P_loss_sp", "part.P_loss_pr", "part.P")
 #: Each kind once, gears and bearings under each of their choices.
 CASES = [(kind, {}) for kind in PARTS] + [("PlanetarySet", {"power_flow": "ideal"}), ("Inertia", {"dynamic": False})]
 CASES += [("PlanetarySet", {"line_load": "F_bt/b"}), ("HelicalGearPair", {"line_load": "F_bt/b"})]
+CASES += [("BevelGearPair", {"spiral": "towards"}), ("HelicalGearPair", {"beta": 0.0, "a_w": 0.108})]
 CASES += [(k, {"film": f}) for k in ("HarmonicMesh", "HarmonicContact") for f in ("moes", "dowson_higginson_printed")]
 CASES += [("CycloidPinStage", {"pin": p, "disc_torque": t}) for p in ("held", "rolling") for t in ("output", "statics")]
 CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath")]
@@ -328,7 +338,7 @@ def test_colder_never_means_less_drag(kind: str, choices: dict) -> None:
     for w, load in itertools.product(SPEEDS, LOADS):
         cooling = [273.15 + T for T in range(150, -41, -5)]
         slack = 1e-9
-        if kind in ("HelicalGearPair", "PlanetarySet"):
+        if issubclass(PARTS[kind], ToothedPart):
             cooling, slack = [T for T in cooling if oil_at(T)["nu"] > 1.2e-3], 3e-3
         elif kind.endswith(("BallBearing", "RollerBearing")) and choices.get("mixed_friction", True):
             cooling = [T for T in cooling if boundary_share(w, oil_at(T)["nu"], EXAMPLES[kind]["d_m"]) < 1e-3]

@@ -5,7 +5,7 @@ from typing import Any
 import casadi as ca
 import pytest
 from gearheat.model.parts import PARTS
-from gearheat.model.parts.gears import ToothedPart
+from gearheat.model.parts.teeth import ToothedPart
 from gearheat.scenarios.load import list_rigs, load
 
 #: Values of what the friction of a part depends on beside its parameters: lubricant, force and speed.

@@ -19,6 +19,8 @@ from .problem import Acting, Problem
 SIZES = (0.25, 0.5, 1.0, 2.0, 4.0)
 #: Standard deviations of a remainder, in those of one reading of its channel.
 REMAINDERS = (2.0, 4.0, 8.0, 16.0)
+#: How far behind the likeliest spread the scatter is fitted anew beside another one.
+NEAR = 5.0
 
 
 @dataclass(frozen=True)
@@ -46,6 +48,7 @@ def extras(problem: Problem, fit: Fit, spreads: Sequence[Formula]) -> Iterator[t
     without = views[0].white.log_density(views[0].e)
     r = views[0].white.L @ views[0].e
     scatters = [v.white.L @ v.white.L.T for v in views]
+    found = []
     if spreads:
         own = [Acting(f, np.r_[float(f.paced), np.zeros(f.size - 1)]) for f in spreads]
         effects = problem.tangents(fit.look.z, fit.look.acting, own)
@@ -58,10 +61,17 @@ def extras(problem: Problem, fit: Fit, spreads: Sequence[Formula]) -> Iterator[t
                 [_log(W + size**2 * C, r) - without + view.prior for size in SIZES]
                 for W, view in zip(scatters, views, strict=True)
             ]
-            logs = logsumexp(each, axis=0) - np.log(len(views))
-            best = SIZES[int(np.argmax(logs))]
-            gain = float(logsumexp(logs) - np.log(len(SIZES)) + np.log(formula.form.weight))
-            yield Extra(formula.cause.id, formula.form.name, best, (), best**2 * C), gain
+            found.append((formula, C, logsumexp(each, axis=0) - np.log(len(views))))
+    least = max((logs.max() for _, _, logs in found), default=0.0) - NEAR
+    known = scatters[0] - fit.noise.covariance
+    for formula, C, logs in found:
+        if len(views) > 1 and logs.max() > least:  # what the spread explains is no scatter: scales are smaller beside it
+            noise = fit.noise.fitted(r, known + SIZES[int(np.argmax(logs))] ** 2 * C)
+            V, prior = known + noise.covariance, noise.log_prior - fit.noise.log_prior
+            logs = np.maximum(logs, [_log(V + size**2 * C, r) - without + prior for size in SIZES])
+        best = SIZES[int(np.argmax(logs))]
+        gain = float(logsumexp(logs) - np.log(len(SIZES)) + np.log(formula.form.weight))
+        yield Extra(formula.cause.id, formula.form.name, best, (), best**2 * C), gain
     yield from _remainders(problem, scatters[0], r, without)
 
 
