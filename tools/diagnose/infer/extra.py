@@ -63,16 +63,29 @@ def extras(problem: Problem, fit: Fit, spreads: Sequence[Formula]) -> Iterator[t
             ]
             found.append((formula, C, logsumexp(each, axis=0) - np.log(len(views))))
     least = max((logs.max() for _, _, logs in found), default=0.0) - NEAR
-    known = scatters[0] - fit.noise.covariance
-    for formula, C, logs in found:
-        if len(views) > 1 and logs.max() > least:  # what the spread explains is no scatter: scales are smaller beside it
-            noise = fit.noise.fitted(r, known + SIZES[int(np.argmax(logs))] ** 2 * C)
-            V, prior = known + noise.covariance, noise.log_prior - fit.noise.log_prior
-            logs = np.maximum(logs, [_log(V + size**2 * C, r) - without + prior for size in SIZES])
+    for formula, C, seen in found:
+        swallowed = len(views) > 1 and seen.max() > least
+        logs = np.maximum(seen, _anew(fit, scatters[0], r, C, seen) - without) if swallowed else seen
         best = SIZES[int(np.argmax(logs))]
         gain = float(logsumexp(logs) - np.log(len(SIZES)) + np.log(formula.form.weight))
         yield Extra(formula.cause.id, formula.form.name, best, (), best**2 * C), gain
     yield from _remainders(problem, scatters[0], r, without)
+
+
+def _anew(fit: Fit, V: np.ndarray, r: np.ndarray, C: np.ndarray, seen: np.ndarray) -> np.ndarray:
+    """Log density at each size with the scatter fitted anew: what the spread explains is no scatter.
+
+    Args:
+        fit: the hypothesis, whose scales have grown
+        V: covariance of the residual r without the spread (M, M)
+        r: residual (M,)
+        C: covariance of the spread at size 1 (M, M)
+        seen: log density at each size with the scatter as it was, where it is largest
+    """
+    known = V - fit.noise.covariance
+    noise = fit.noise.fitted(r, known + SIZES[int(np.argmax(seen))] ** 2 * C)
+    V, prior = known + noise.covariance, noise.log_prior - fit.noise.log_prior
+    return np.array([_log(V + size**2 * C, r) + prior for size in SIZES])
 
 
 def _columns(problem: Problem, formula: Formula, effect: np.ndarray) -> np.ndarray | None:
