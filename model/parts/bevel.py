@@ -7,7 +7,7 @@ from collections.abc import Iterator
 import casadi as ca
 
 from ..core.component import Equation, Related, equation
-from ..core.declare import Choice, Parameter
+from ..core.declare import Choice, Output, Parameter
 from ..laws.bevel import bevel_axial_force, bevel_radial_force, mean_diameter, pitch_angle, virtual_teeth
 from ..laws.smooth import Num, smooth_sign
 from .gears import GearPair
@@ -48,6 +48,9 @@ class BevelGearPair(GearPair):
         above=0.0,
         derived=lambda p: p.radius(sum(p.teeth())),
     )
+
+    F_a_1 = Output("N", "axial force on the pinion, positive away from the apex", nominal=1000.0)
+    F_a_2 = Output("N", "axial force on the wheel, positive away from the apex", nominal=1000.0)
 
     def cones(self) -> tuple[Num, Num]:
         """Pitch angles of pinion and wheel [rad]."""
@@ -98,10 +101,11 @@ class BevelGearPair(GearPair):
         """Each gear has forces of its own; the torque decides which flanks bear, and so where the spiral pushes."""
         yield from super().equations()
         away = smooth_sign(self.pinion.tau, self.tau_width) * (1 if self.spiral == "away" else -1)
-        told = {"pinion": (self.pinion_force, away), "wheel": (self.wheel_force, -away)}
-        for (name, (force, k)), delta in zip(told.items(), self.cones(), strict=True):
-            yield equation(f"tangential force on the {name}", force.F_t, self.F_t)
+        ways = ((self.pinion_force, self.F_a_1, away), (self.wheel_force, self.F_a_2, -away))
+        for name, delta, (force, F_a, k) in zip(("pinion", "wheel"), self.cones(), ways, strict=True):
             radial = bevel_radial_force(self.F_t, self.alpha_n, self.beta, delta, k)
             axial = bevel_axial_force(self.F_t, self.alpha_n, self.beta, delta, k)
+            yield equation(f"tangential force on the {name}", force.F_t, self.F_t)
             yield equation(f"radial force on the {name}", force.F_r, radial)
-            yield equation(f"axial force on the {name}", force.F_a, axial)
+            yield equation(f"axial force on the {name}", F_a, axial)
+            yield equation(f"axial force on the {name} told", force.F_a, F_a)

@@ -17,6 +17,8 @@ PLATES = {
     "three": ("helical,helical,helical", 60.0, "5.5 kW"),
     "spur": ("spur", 3.0, "2 kW"),
     "mixed": ("spur,helical", 9.0, "1.5 kW"),
+    "bevel": ("bevel,helical", 20.0, "5.5 kW"),
+    "bevel_alone": ("bevel", 2.0, "3 kW"),
     "four": ("helical,helical,helical,helical", 300.0, "0.75 kW"),
 }
 
@@ -51,18 +53,19 @@ def test_it_runs_and_says_of_every_number_how_it_came_about(made, name):
 def test_it_is_what_one_would_draw(made):
     _, answer = made("two")
     first, second = answer.json["stages"]
-    assert (first["a"], second["a"]) == (0.1, 0.125)  # as in the rig helical_two_stage, drawn by hand
+    assert (first["a"], second["a"]) == pytest.approx((0.1, 0.125))  # as in the rig helical_two_stage, drawn by hand
     assert answer.json["oil_degC"] == pytest.approx(40.3, abs=4)
     assert all(life > sizing.LIFE for shaft in answer.json["bearings"] for life in shaft["lives_h"])
 
 
-def test_bearings_carry_what_they_were_chosen_for():
+@pytest.mark.parametrize("first", ["helical", "bevel"])
+def test_bearings_carry_what_they_were_chosen_for(first):
     """The statics of the middle shaft's part give the load that its bearings' lives belong to."""
-    unit = sizing.unit(["helical"] * 3, 60.0, 5500.0, 1450 * math.pi / 30)
+    unit = sizing.unit([first, "helical", "helical"], 60.0, 5500.0, 1450 * math.pi / 30)
     wheel, pinion, shaft = unit.stages[0], unit.stages[1], unit.shafts[1]
     places = {"x": wheel.x, "r": wheel.r_2, "x_2": pinion.x, "r_2": pinion.r_1}
-    part = TwoGearSupport("shaft", span=unit.span, axial_share_a=1.0, phi=math.pi, **places)
-    ports = [(part.mesh, wheel.forces), (part.mesh_2, pinion.forces)]
+    part = TwoGearSupport("shaft", span=shaft.span, axial_share_a=1.0, phi=math.pi, **places)
+    ports = [(part.mesh, wheel.forces[1]), (part.mesh_2, pinion.forces[0])]
     given = [(getattr(port, key), F) for port, forces in ports for key, F in zip(FORCES, forces, strict=True)]
     found = {e.name: e.rhs for e in part.equations()}
     symbols = [s for s, _ in given] + [part.symbols[key] for key in part.parameters]
@@ -74,12 +77,23 @@ def test_bearings_carry_what_they_were_chosen_for():
         assert life == pytest.approx(1e6 / (3600 * shaft.n) * (sizing.RATINGS[bearing] / P) ** 3, rel=0.01)
 
 
+def test_a_bevel_helical_unit_is_what_makers_offer(made, gearheat):
+    """i = 20 and 5.5 kW: 93 to 96.5 % efficiency; forces on the pinion's bearings are those it was drawn with."""
+    path, answer = made("bevel")
+    assert 0.93 < answer.json["efficiency"] < 0.965
+    assert [s["kind"] for s in answer.json["stages"]] == ["bevel", "helical"]
+    found = gearheat("steady", path, "--json", "-").json["values"]
+    stage = sizing.unit(["bevel", "helical"], 20.0, 5500.0, 1450 * math.pi / 30).stages[0]
+    for k, forces in enumerate(stage.forces, start=1):
+        assert found[f"stage_1.F_a_{k}"] == pytest.approx(forces[2], rel=0.03)
+
+
 def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
     path = tmp_path / "a.toml"
     plate = ("--stages", "spur,worm", "--ratio", "90", "--power", "2 kW", "--speed", "1450 rpm", "-o", path)
     answer = gearheat("new", "a", *plate)
     assert answer.code == 2
-    assert 'no stage "worm". Stages: spur, helical.' in answer.err
+    assert 'no stage "worm". Stages: spur, helical, bevel.' in answer.err
     assert "Give 3 stages or more" in answer.err
     assert not path.exists()
 
@@ -92,6 +106,7 @@ def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
         (("--oil", "ISO VG 221"), 'no oil "ISO VG 221"'),
         (("--ratio", "0.5"), "expected 1 to 8"),
         (("--stages", ","), "no stage is given"),
+        (("--stages", "helical,bevel"), "a bevel stage comes first"),
         (("--speed", "0 rpm"), "must be above 0"),
     ],
 )
