@@ -128,7 +128,8 @@ class Reader:
             if code != 0:
                 yield f"{shlex.join(words)} ends with {code}: {out[-2000:]}"
             for line in missing(expected, out):
-                now = next((printed for printed in out.splitlines() if same(line, printed, numbers=False)), "nothing like it")
+                near = [printed for printed in out.splitlines() if same(line, printed, numbers=False)]
+                now = max(near, key=lambda p: len(set(p.split()) & set(line.split())), default="nothing like it")
                 yield f"{shlex.join(words)} does not print {line!r} but {now!r}"
 
     def read(self, arguments: list[str]) -> None:

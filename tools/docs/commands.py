@@ -56,6 +56,8 @@ ASKED = (
     "simulate helical_two_stage --duty duty.csv -o warmup.csv",
     "verify fzg_four_square",
 )
+#: Keys whose entries are named by the rig or the catalogue.
+NAMED = ("rigs", "reproduces", "sensors")
 DUTY = "time [min],input.w [rpm],output.tau [N.m],room.T [degC]\n0,1450,-500,20\n10,1450,-500,20\n"
 
 
@@ -110,17 +112,18 @@ def _keys_of(program: TyperGroup, command: str) -> str:
         raise GearheatError(f"docs: gearheat {command} ends with {code_}: {said}")
     keys = dict(_keys(json.loads(out)))
     rows = [(code(key), kind) for key, kind in keys.items()]
-    return f"## {command.split()[0]}\n\n{fenced('sh', f'gearheat {command} --json -')}{table(('key', 'type'), rows)}"
+    return f"## {command.split(maxsplit=1)[0]}\n\n{fenced('sh', f'gearheat {command} --json -')}{table(('key', 'type'), rows)}"
 
 
 def _keys(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
     """Every path into a value with its type; names that are data, such as parts or columns, are one path."""
     if isinstance(value, Mapping) and value:
-        named = path and not all(key.isidentifier() for key in value) or path.endswith(("rigs", "reproduces"))
+        named = path in NAMED or (path and not all(key.isidentifier() for key in value))
         for key, entry in value.items():
             yield from _keys(entry, f"{path}.*" if named else f"{path}.{key}".strip("."))
     elif isinstance(value, list) and value:
-        yield from _keys(value[0], f"{path}[]")
+        for entry in reversed(value):  # of several types that of the first
+            yield from _keys(entry, f"{path}[]")
     else:
         kinds = {"str": "text", "NoneType": "null", "bool": "true or false", "int": "number", "float": "number"}
         yield path, kinds.get(type(value).__name__, f"empty {type(value).__name__}")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib
 import inspect
 import pkgutil
+import re
 import shutil
 from collections import Counter
 from collections.abc import Iterator
@@ -66,7 +67,9 @@ def toctree(names: Iterator[str] | list[str]) -> str:
 
 
 def _parts() -> Iterator[tuple[str, str]]:
-    rows = [(f"[{kind}]({kind}.md)", cls.role, words(inspect.getdoc(cls)).split(". ")[0]) for kind, cls in PARTS.items()]
+    rows = [
+        (f"[{kind}]({kind}.md)", cls.role, words(inspect.getdoc(cls)).split(". ")[0]) for kind, cls in PARTS.items()
+    ]
     text = "What rigs are built of; `gearheat parts TYPE` prints the same.\n\n"
     yield "parts/index.md", f"# Part types\n\n{text}{table(('type', 'role', 'what it is'), rows)}{toctree(list(PARTS))}"
     for kind in PARTS:
@@ -122,7 +125,7 @@ def _laws() -> Iterator[tuple[str, str]]:
 
 def _title(about: str) -> str:
     """The first sentence, or what stands before its colon."""
-    return about.split(". ")[0].split(": ")[0].rstrip(".")
+    return re.split(r"\.(?: |$)|: ", about, maxsplit=1)[0]
 
 
 def _law(function: object, rows: int) -> str:
@@ -132,7 +135,9 @@ def _law(function: object, rows: int) -> str:
         "Source": f"{law.source}, {law.where}",
         "Valid": law.valid,
         "Range, in SI": ranges,
-        "Compared": f"{rows} golden rows{'' if law.verified else ', none of them from print'}" if rows else "with no row",
+        "Compared": f"{rows} golden rows{'' if law.verified else ', none of them from print'}"
+        if rows
+        else "with no row",
     }
     told = "".join(f"- {key}: {words(value)}\n" for key, value in facts.items() if value)
     return f"## {law.name}\n\n{docstring(function)}{arguments(function)}{told}\n"
@@ -154,7 +159,8 @@ def _rig_file() -> str:
         for model in models
     )
     schema = "`gearheat schema -o rig.schema.json` writes the JSON schema with which editors complete and check it.\n\n"
-    return f"# Rig file\n\n{words(text)} {schema}{fenced('toml', inspect.cleandoc(example))}A source is {words(rest)}\n\n{keys}"
+    shown = fenced("toml", inspect.cleandoc(example))
+    return f"# Rig file\n\n{words(text)} {schema}{shown}A source is {words(rest)}\n\n{keys}"
 
 
 def _card_file() -> str:
@@ -164,13 +170,13 @@ def _card_file() -> str:
 
 
 def _units() -> str:
-    text = "Values are text with a unit, `\"62 mm\"`; a bare number only where the unit is 1. Spellings beside those of pint:"
+    text = 'Values are text with a unit, `"62 mm"`; a bare number only where the unit is 1. Spellings beyond pint's:'
     rows = [(", ".join(code(s) for s in same), code(unit)) for unit, same in _grouped(SPELLINGS)]
     turns = [(", ".join(code(s) for s in same), code(unit)) for unit, same in _grouped({**PER_MINUTE, **ROTATIONS})]
     unclear = ", ".join(code(u) for u in UNCLEAR)
     return (
         f"# Units\n\n{text}\n\n{table(('written', 'read as'), rows)}Of rotational speeds alone:\n\n"
-        f"{table(('written', 'read as'), turns)}Refused for a speed, as they may mean revolutions or radians: {unclear}.\n"
+        f"{table(('written', 'read as'), turns)}Refused for a speed, as revolutions or radians may be meant: {unclear}.\n"
     )
 
 
@@ -186,7 +192,10 @@ def _catalogues() -> str:
         f"## {kind}\n\n"
         + table(
             ("name", "what it is", "checked"),
-            [(code(name), words(e.doc), words("; ".join(f"{k}: {v}" for k, v in e.checked.items()))) for name, e in catalogue(kind).items()],
+            [
+                (code(name), words(e.doc), words("; ".join(f"{k}: {v}" for k, v in e.checked.items())))
+                for name, e in catalogue(kind).items()
+            ],
         )
         for kind in FILES
     )
