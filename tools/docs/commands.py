@@ -112,7 +112,8 @@ def _keys_of(program: TyperGroup, command: str) -> str:
         raise GearheatError(f"docs: gearheat {command} ends with {code_}: {said}")
     keys = dict(_keys(json.loads(out)))
     rows = [(code(key), kind) for key, kind in keys.items()]
-    return f"## {command.split(maxsplit=1)[0]}\n\n{fenced('sh', f'gearheat {command} --json -')}{table(('key', 'type'), rows)}"
+    shown = fenced("sh", f"gearheat {command} --json -")
+    return f"## {command.split(maxsplit=1)[0]}\n\n{shown}{table(('key', 'type'), rows)}"
 
 
 def _keys(value: Any, path: str = "") -> Iterator[tuple[str, str]]:

@@ -14,11 +14,11 @@ from itertools import groupby
 from pathlib import Path
 
 from ...diagnose.campaign.card import read_card
-from ...diagnose.model.lubrication import oils_of
 from ...diagnose.campaign.read import read_campaign
 from ...diagnose.campaign.write import as_toml, default_card
 from ...diagnose.library.registry import library
 from ...diagnose.library.roles import Roles
+from ...diagnose.model.lubrication import oils_of
 from ...diagnose.model.ranges import ranges_of
 from ...model import laws
 from ...model.parts import PARTS
@@ -170,13 +170,13 @@ def _card_file() -> str:
 
 
 def _units() -> str:
-    text = 'Values are text with a unit, `"62 mm"`; a bare number only where the unit is 1. Spellings beyond pint's:'
+    text = 'Values are text with a unit, `"62 mm"`; a bare number only where the unit is 1. Spellings that pint lacks:'
     rows = [(", ".join(code(s) for s in same), code(unit)) for unit, same in _grouped(SPELLINGS)]
     turns = [(", ".join(code(s) for s in same), code(unit)) for unit, same in _grouped({**PER_MINUTE, **ROTATIONS})]
     unclear = ", ".join(code(u) for u in UNCLEAR)
     return (
         f"# Units\n\n{text}\n\n{table(('written', 'read as'), rows)}Of rotational speeds alone:\n\n"
-        f"{table(('written', 'read as'), turns)}Refused for a speed, as revolutions or radians may be meant: {unclear}.\n"
+        f"{table(('written', 'read as'), turns)}Refused for a speed, which may mean radians: {unclear}.\n"
     )
 
 
