@@ -15,18 +15,19 @@ from ..model.errors import ScenarioError, suggestion
 from ..model.run.steady import steady
 from ..model.units import to_si
 from ..scenarios.entries import catalogue
-from . import sizing
+from . import sizing, stages
 from .console import answer, note, writable, write
 from .points import conditions
 from .rigs import load
 from .settings import flat_of
-from .sizing import GAP, KINDS, OVERHANG, SIDE, BevelStage, Unit, unit
+from .sizing import APART, GAP, OVERHANG, SIDE, Unit, unit
+from .stages import KINDS, BevelStage, WormStage
 
-#: Efficiency of a stage with its bearings, for the load at the output; steel and cast iron [kg/m3]; oil [kg/m3].
-STAGE, STEEL, IRON, OIL = 0.985, 7850.0, 7200.0, 835.0
+#: Steel, cast iron and oil [kg/m3].
+STEEL, IRON, OIL = 7850.0, 7200.0, 835.0
 #: What is told of a stage, and the size by which one of its kind is known.
 TOLD = ("kind", "z_1", "z_2", "m_n", "beta", "b")
-SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2"}
+SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2", "worm": "a"}
 #: Speed at which churning is told [rad/s].
 CHURNED = 200 * math.pi / 30
 
@@ -75,10 +76,9 @@ def new_command(
 def _print(found: dict[str, Any]) -> None:
     print(f"{found['file']}: i = {found['ratio']:.5g}, {found['assumed']} values assumed, each with its rule")
     for k, s in enumerate(found["stages"], start=1):
-        key, words = SIZES[s["kind"]]
-        print(
-            f"  stage {k}: {s['kind']} {s['z_1']}/{s['z_2']}, m_n {1e3 * s['m_n']:.4g} mm, {words} {1e3 * s[key]:g} mm"
-        )
+        known = SIZES[s["kind"]]
+        print(f"  stage {k}: {s['kind']} {s['z_1']}/{s['z_2']}", end=", ")
+        print(f"module {1e3 * s['m_n']:.4g} mm, {known} {1e3 * s[known]:g} mm")
     print(f"  at the name plate: oil {found['oil_degC']:.1f} degC, loss {found['loss_W']:.0f} W,", end=" ")
     print(f"efficiency {100 * found['efficiency']:.2f} %")
     print(f"Next: put your numbers into the file, then `gearheat steady {found['file']}`.")
@@ -101,7 +101,7 @@ def text(made: Unit, doc: str, speed: str, oil: str) -> str:
         speed: of the input, as it is written
         oil: entry of the catalogue
     """
-    n, efficiency = len(made.stages), STAGE ** len(made.stages)
+    n, efficiency = len(made.stages), math.prod(s.efficiency for s in made.stages)
     names = ["input", *(f"middle_{k}" if n > 2 else "middle" for k in range(1, n)), "output"]
     values = {
         "doc": doc,
@@ -112,6 +112,7 @@ def text(made: Unit, doc: str, speed: str, oil: str) -> str:
         "side": SIDE,
         "gap": GAP,
         "overhang": OVERHANG,
+        "apart": APART,
         "stages": [_stage(made, k) for k in range(n)],
         "shafts": [_shaft(made, names, k) for k in range(n + 1)],
         "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d} for k in (0, -1)],
@@ -134,12 +135,17 @@ def _mm(value: float) -> str:
 def _stage(made: Unit, k: int) -> dict[str, Any]:
     s = made.stages[k]
     if isinstance(s, BevelStage):
-        rule = f"F_t/(b d_v1) (u_v + 1)/u_v of {sizing.K_BEVEL / 1e6:g} N/mm2 at mid face, d_e2 of {_mm(s.d_e2)} mm"
-        shape: dict[str, Any] = {"type": "BevelGearPair", "m_et": s.m_et, "x_1": s.x_1, "width": sizing.FACE}
+        rule = f"F_t/(b d_v1) (u_v + 1)/u_v of {stages.K_BEVEL / 1e6:g} N/mm2 at mid face, d_e2 of {_mm(s.d_e2)} mm"
+        shape: dict[str, Any] = {"type": "BevelGearPair", "m_et": s.m_et, "x_1": s.x_1, "width": stages.FACE}
+    elif isinstance(s, WormStage):
+        rule = (
+            f"wheel's torque over a3 of {stages.T_WORM / 1e6:g} N/mm2 as makers rate units, standard a = {_mm(s.a)} mm"
+        )
+        shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "width": stages.SLIM}
     else:
         twist = f"beta for a = {_mm(s.a)} mm" if KINDS[s.kind] else "a follows from the teeth"
-        rule = f"F_t/(b d_1) (u + 1)/u of {sizing.K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"
-        shape = {"type": "HelicalGearPair", "m_n": s.m_n, "a": s.a, "width": sizing.WIDTH}
+        rule = f"F_t/(b d_1) (u + 1)/u of {stages.K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"
+        shape = {"type": "HelicalGearPair", "m_n": s.m_n, "a": s.a, "width": stages.WIDTH}
     c = 0.5 * OIL * CHURNED**3 * s.b * s.r_2**4
     shape |= {"z_1": s.z_1, "z_2": s.z_2, "b": s.b, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule, "c": c}
     return {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", **shape}
@@ -188,6 +194,11 @@ def _bodies(made: Unit) -> dict[str, float]:
     }
 
 
+def _driver(made: Unit, k: int) -> str:
+    """Port of the gear that drives a stage."""
+    return "worm" if isinstance(made.stages[k], WormStage) else "pinion"
+
+
 def _nets(names: Sequence[str], made: Unit) -> list[dict[str, str]]:
     """What meets, by name of the net."""
     n = len(names) - 1
@@ -199,13 +210,14 @@ def _nets(names: Sequence[str], made: Unit) -> list[dict[str, str]]:
         ends = [f"{name}.flange"] if k in (0, n) else []
         ends += ["rotor.flange"] if k == 0 else []
         ends += [f"{stages[k - 1]}.wheel", f"{churnings[k - 1]}.shaft"] if k else []
-        ends += [f"{stages[k]}.pinion"] if k < n else []
+        ends += [f"{stages[k]}.{_driver(made, k)}"] if k < n else []
         turning = [f"{name}_bearing_{end}.shaft" for end in "ab"] + ([f"{name}_seal.shaft"] if k in (0, n) else [])
         nets[f"{name}_shaft"] = [*ends, *turning]
     for k, stage in enumerate(stages):
         on_pinion, on_wheel = f"{names[k]}_support.{'mesh_2' if k else 'mesh'}", f"{names[k + 1]}_support.mesh"
-        if isinstance(made.stages[k], BevelStage):
-            nets[f"force_{k + 1}_pinion"] = [f"{stage}.pinion_force", on_pinion]
+        if isinstance(made.stages[k], BevelStage | WormStage):
+            driver = _driver(made, k)
+            nets[f"force_{k + 1}_{driver}"] = [f"{stage}.{driver}_force", on_pinion]
             nets[f"force_{k + 1}_wheel"] = [f"{stage}.wheel_force", on_wheel]
         else:
             nets[f"force_{k + 1}"] = [f"{stage}.force", on_pinion, on_wheel]

@@ -13,30 +13,15 @@ from dataclasses import dataclass
 from ..model.errors import ScenarioError
 from ..model.units import si_of
 from ..scenarios.entries import catalogue
+from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, Stage, WormStage
 
-#: Kinds of stages -> helix or spiral angle that is aimed at [rad], and the largest ratio of one stage; the least is 1.
-KINDS = {"spur": 0.0, "helical": math.radians(14.0), "bevel": math.radians(35.0)}
-LEAST, MOST = 1.0, {"spur": 8.0, "helical": 8.0, "bevel": 4.0}
-#: Load intensity F_t / (b d_1) (u + 1)/u of case-hardened gears [Pa], face width over the pinion's diameter, and its
-#: least number of teeth.
-K_STAR, WIDTH, TEETH = 2.5e6, 0.8, 19
-#: The same of case-hardened bevel gears [Pa] on their virtual gears, and face width over outer cone distance.
-K_BEVEL, FACE = 2.0e6, 0.3
-#: Teeth of a bevel pinion: largest ratio -> number.
-BEVEL_TEETH = {1.5: 24, 2.5: 20, 3.5: 16, 4.0: 13}
-#: Standard modules and centre distances (preferred numbers R 20) [mm].
-MODULES = (0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0)
-R_20 = (1, 1.12, 1.25, 1.4, 1.6, 1.8, 2, 2.24, 2.5, 2.8, 3.15, 3.55, 4, 4.5, 5, 5.6, 6.3, 7.1, 8, 9)
-CENTRES = tuple(m * 10**k for k in (1, 2) for m in R_20)
-#: How far below the wanted centre distance a standard one may lie.
-SHORT = 0.93
-#: Pressure angle [rad], shear stress of shafts [Pa], wanted life of bearings [h].
-ALPHA, SHEAR, LIFE = math.radians(20.0), 25e6, 20_000.0
+#: Shear stress of shafts [Pa], wanted life of bearings [h].
+SHEAR, LIFE = 25e6, 20_000.0
 #: From the middle of a bearing to a gear, and between gears [m].
 SIDE, GAP = 0.020, 0.010
-#: Distance of the bearings of a bevel pinion over how far its mid face overhangs.
-OVERHANG = 2.5
-#: Dynamic load ratings of the catalogue's deep groove ball bearings [N], from makers' tables, compared with no print.
+#: Distance of the bearings of a bevel pinion over how far its mid face overhangs; of those of a worm over its wheel's
+#: diameter.
+OVERHANG, APART = 2.5, 0.9
 RATINGS = {
     "SKF 6205": 14.8e3,
     "SKF 6206": 20.3e3,
@@ -53,87 +38,6 @@ RATINGS = {
     "SKF 6310": 65.0e3,
     "SKF 6312": 85.2e3,
 }
-
-
-#: Tangential, radial and axial force [N].
-Forces = tuple[float, float, float]
-
-
-@dataclass(frozen=True)
-class Stage:
-    """A pair of gears; SI units, n in 1/s of the pinion, T its torque, x its place along the shafts."""
-
-    kind: str
-    z_1: int
-    z_2: int
-    m_n: float
-    beta: float
-    b: float
-    T: float
-    n: float
-    x: float
-
-    @property
-    def u(self) -> float:
-        """Ratio."""
-        return self.z_2 / self.z_1
-
-    @property
-    def r_1(self) -> float:
-        """Reference radius of the pinion, of bevel gears at mid face."""
-        return self.m_n * self.z_1 / math.cos(self.beta) / 2
-
-    @property
-    def r_2(self) -> float:
-        """Reference radius of the wheel."""
-        return self.r_1 * self.u
-
-    @property
-    def a(self) -> float:
-        """Centre distance; of bevel gears how far the pinion reaches from the wheel's shaft."""
-        return self.r_1 + self.r_2
-
-    @property
-    def forces(self) -> tuple[Forces, Forces]:
-        """Tangential, radial and axial tooth force on pinion and wheel."""
-        F_t = self.T / self.r_1
-        found = F_t, F_t * math.tan(ALPHA) / math.cos(self.beta), F_t * math.tan(self.beta)
-        return found, found
-
-
-@dataclass(frozen=True)
-class BevelStage(Stage):
-    """Spiral bevel gears on shafts at a right angle, the spiral pushing the driving pinion away from the apex."""
-
-    m_et: float
-
-    @property
-    def delta_1(self) -> float:
-        """Pitch angle of the pinion."""
-        return math.atan2(1, self.u)
-
-    @property
-    def x_1(self) -> float:
-        """Profile shift of the pinion."""
-        return round(0.39 * (1 - 1 / self.u**2), 2)
-
-    @property
-    def d_e2(self) -> float:
-        """Outer pitch diameter of the wheel."""
-        return self.m_et * self.z_2
-
-    @property
-    def a(self) -> float:
-        """How far the pinion reaches from the wheel's shaft."""
-        return self.d_e2 / 2
-
-    @property
-    def forces(self) -> tuple[Forces, Forces]:
-        """As `BevelGearPair` has them."""
-        F_t, tan, sin = self.T / self.r_1 / math.cos(self.beta), math.tan(ALPHA), math.sin(self.beta)
-        c, s = math.cos(self.delta_1), math.sin(self.delta_1)
-        out, across = F_t * (tan * s + sin * c), F_t * (tan * c - sin * s)
-        return (self.T / self.r_1, across, out), (self.T / self.r_1, out, across)
 
 
 @dataclass(frozen=True)
@@ -188,23 +92,20 @@ def unit(kinds: Sequence[str], ratio: float, power: float, speed: float) -> Unit
     found: list[Stage] = []
     left = ratio
     for k, kind in enumerate(kinds):
-        make = _bevel if kind == "bevel" else _cylindrical
-        made = make(kind, _share(left, kinds[k:]), T, n, x)
+        made = MAKE[kind](kind, _share(left, kinds[k:]), T, n, x)
         found.append(made)
         T, n, x, left = T * made.u, n / made.u, x + made.b + GAP, left / made.u
     span = x - GAP + SIDE
     shafts = tuple(_shaft(found, k, span) for k in range(len(found) + 1))
     wall = max(0.008, 0.025 * found[-1].a + 0.003)
     tips = [(s.r_1 + s.m_n, s.r_2 + s.m_n) for s in found]
-    ahead = shafts[0].span if isinstance(found[0], BevelStage) else tips[0][0]
-    return Unit(
-        tuple(found),
-        shafts,
-        wall,
-        length=sum(s.a for s in found) + ahead + tips[-1][1] + 0.040 + 2 * wall,
-        width=span + 0.090,
-        height=2 * max(max(pair) for pair in tips) + 0.080 + 2 * wall,
-    )
+    length = sum(s.a for s in found) + tips[-1][1] + 0.040 + 2 * wall
+    height = 2 * max(max(pair) for pair in tips) + 0.080 + 2 * wall
+    if isinstance(found[0], WormStage):  # the wheel stands on the worm
+        length, height = shafts[0].span + 0.090, found[0].a + sum(tips[0]) + 0.080 + 2 * wall
+    else:
+        length += shafts[0].span if isinstance(found[0], BevelStage) else tips[0][0]
+    return Unit(tuple(found), shafts, wall, length, span + 0.090, height)
 
 
 def _check(kinds: Sequence[str], ratio: float, power: float, speed: float) -> None:
@@ -213,13 +114,18 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float) -> No
         problems.append("no stage is given. Name them from the input on, for example helical,helical.")
     if "bevel" in kinds[1:]:
         problems.append("a bevel stage comes first: here its pinion is on the input shaft.")
+    if "worm" in kinds and len(kinds) > 1:
+        problems.append("a worm stage stands alone here.")
     if not (power > 0 and speed > 0):
         problems.append("power and speed must be above 0.")
-    most = math.prod(MOST.get(kind, MOST["helical"]) for kind in kinds) ** (1 / max(len(kinds), 1))
-    if kinds and not LEAST <= ratio ** (1 / len(kinds)) <= most:
+    least, most = (
+        math.prod(limit.get(kind, other) for kind in kinds) ** (1 / max(len(kinds), 1))
+        for limit, other in ((LEAST, 1.0), (MOST, MOST["helical"]))
+    )
+    if kinds and not least <= ratio ** (1 / len(kinds)) <= most:
         needed = max(1, math.ceil(math.log(max(ratio, 1.01)) / math.log(most)))
         problems.append(
-            f"a ratio of {ratio:g} in {len(kinds)} stages is {ratio ** (1 / len(kinds)):.3g} each, expected {LEAST:g}"
+            f"a ratio of {ratio:g} in {len(kinds)} stages is {ratio ** (1 / len(kinds)):.3g} each, expected {least:.3g}"
             f" to {most:.3g}. Give {needed} stages or more."
         )
     if problems:
@@ -230,48 +136,7 @@ def _share(ratio: float, kinds: Sequence[str]) -> float:
     """Ratio of the next stage: the first ones have more, so that all wheels are of like size."""
     stages = len(kinds)
     share = {1: ratio, 2: 0.8 * ratio ** (2 / 3), 3: 0.6 * ratio ** (4 / 7)}.get(stages, ratio ** (1 / stages))
-    low, high = ratio / math.prod(MOST[kind] for kind in kinds[1:]), ratio / LEAST ** (stages - 1)
-    return float(min(max(share, low, LEAST), high, MOST[kinds[0]]))
-
-
-def _cylindrical(kind: str, u: float, T: float, n: float, x: float) -> Stage:
-    """Gears for a torque at the pinion, by load intensity; whole teeth without a common factor."""
-    d_1 = (2 * T * (u + 1) / (u * K_STAR * WIDTH)) ** (1 / 3)
-    wanted = 1000 * d_1 * (1 + u) / 2
-    a = min((c for c in CENTRES if c >= SHORT * wanted), default=0.0) / 1000
-    if not a:
-        raise ScenarioError(f"a stage for {T:g} N.m at its pinion needs {wanted:.0f} mm between its shafts, too much.")
-    d_1 = 2 * a / (1 + u)
-    aim = KINDS[kind]
-    m_n = max((m for m in MODULES if m <= 1000 * d_1 * math.cos(aim) / TEETH), default=MODULES[0]) / 1000
-    teeth = round(2 * a * math.cos(aim) / m_n)
-    near = round(teeth / (1 + u))
-    z_1 = min(range(max(8, near - 2), near + 3), key=lambda z: _fault(z, teeth - z, u))
-    if aim:
-        while teeth * m_n >= 2 * a:
-            teeth -= 1
-    beta = math.acos(teeth * m_n / (2 * a)) if aim else 0.0
-    b = round(1000 * WIDTH * m_n * z_1 / math.cos(beta)) / 1000
-    return Stage(kind, z_1, teeth - z_1, m_n, beta, b, T, n, x + b / 2)
-
-
-def _bevel(kind: str, u: float, T: float, n: float, x: float) -> BevelStage:
-    """Bevel gears by the load intensity of their virtual gears at mid face; outer diameter in steps of 5 mm."""
-    slim = FACE / (1 - FACE / 2) / 2  # face width over mean diameter of the pinion and sqrt(u^2 + 1)
-    d_m = (2 * T / (slim * u * K_BEVEL)) ** (1 / 3)
-    z_1 = next(z for most, z in BEVEL_TEETH.items() if u <= most + 1e-9)
-    z_2 = min(range(round(u * z_1) - 1, round(u * z_1) + 2), key=lambda z: _fault(z_1, z, u))
-    sin_1, sin_2 = (z / math.hypot(z_1, z_2) for z in (z_1, z_2))
-    d_e = 0.005 * math.ceil(d_m * z_2 / z_1 / (1 - FACE / 2) / 0.005)
-    b = math.floor(1000 * FACE * d_e / 2 / sin_2) / 1000
-    m_et, beta = round(1e6 * d_e / z_2) / 1e6, KINDS[kind]
-    m_n = (m_et - b * sin_1 / z_1) * math.cos(beta)
-    return BevelStage(kind, z_1, z_2, m_n, beta, b, T, n, x + b / 2, m_et)
-
-
-def _fault(z_1: int, z_2: int, u: float) -> float:
-    """How bad numbers of teeth are: off the ratio, or with a common factor."""
-    return abs(z_2 / z_1 / u - 1) + 0.02 * (math.gcd(z_1, z_2) > 1)
+    return float(min(max(share, ratio / math.prod(MOST[kind] for kind in kinds[1:]), 1.0), ratio, MOST[kinds[0]]))
 
 
 def _shaft(stages: Sequence[Stage], k: int, span: float) -> Shaft:
@@ -285,6 +150,9 @@ def _shaft(stages: Sequence[Stage], k: int, span: float) -> Shaft:
         beyond = SIDE + stages[0].b / 2
         span = OVERHANG * beyond
         gears = [(stages[0].forces[0], span + beyond, stages[0].r_1)]
+    elif k == 0 and isinstance(stages[0], WormStage):
+        span = APART * 2 * stages[0].r_2
+        gears = [(stages[0].forces[0], span / 2, stages[0].r_1)]
     axial = abs(sum((1 if i else -1) * F[2] for i, (F, _, _) in enumerate(gears)))
     planes = [(F[0], (1 if i else -1) * F[1], x, F[2] * r) for i, (F, x, r) in enumerate(gears)]
     far = [sum(p[0] * p[2] for p in planes) / span, sum(p[1] * p[2] + p[3] for p in planes) / span]

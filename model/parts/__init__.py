@@ -35,6 +35,7 @@ from .thermal import (
     Room,
     ThermalConductor,
 )
+from .worm import WormPair
 
 PARTS: dict[str, type[Component]] = {
     part.__name__: part
@@ -52,6 +53,7 @@ PARTS: dict[str, type[Component]] = {
         HelicalGearPair,
         InternalGearPair,
         BevelGearPair,
+        WormPair,
         CycloidalReducer,
         MalhotraReducer,
         CycloidPinStage,

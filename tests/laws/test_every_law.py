@@ -56,7 +56,8 @@ NOMINAL = {
     **{"r": 0.15, "T_oil": 345.0, "nu_50": 30e-6, "Ra_1": 0.4e-6, "Ra_2": 0.4e-6, "c_q": 1.25},
     **{"xi": 0.4, "F": 240.0, "C": 1e-17},
     **{"w_0": 0.64e-3, "r_convex": 0.0192194, "r_concave": 0.0192307, "E_eff": 230e9, "u_0": 0.03, "u_m": 0.03},
-    **{"shaft_angle": 1.57, "d_e": 0.18, "delta": 1.2, "F_t": 5000.0, "away": 1.0},
+    **{"shaft_angle": 1.57, "d_e": 0.18, "delta": 1.2, "F_t": 5000.0, "away": 1.0, "m_x": 4e-3},
+    **{"d_1": 0.05, "gamma": 0.2, "F_n": 5000.0, "drive": 1.0},
     **{"g_V": 20.0, "g_E": 5.0, "rigid_isoviscous": 0.5, "rigid_piezoviscous": 0.4, "elastic_isoviscous": 0.3},
 }
 CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
@@ -66,6 +67,7 @@ OWN = {
     "cycloid.output_roller_power": CYCLOID | {"D": 0.014, "d": 0.007},
     "cycloid.ring_roller_power": CYCLOID | {"D": 0.014, "d": 0.008},
     "bevel.mean_diameter": {"b": 0.025},
+    "worm.lead_angle": {"z_1": 2.0},
     "rolling.starvation": {"s": 0.2},
     "harmonic.conforming_radius": {"r_concave": 0.02},
     "harmonic.flank_speed_radius": {"phi": 0.2},

@@ -61,6 +61,7 @@ EXAMPLES: dict[str, dict] = {
     "InternalGearPair": TEETH | dict(z_2=108.0, x_1=-0.0189, x_2=0.0566),
     "BevelGearPair": {k: v for k, v in TEETH.items() if k not in ("m_n", "a_w")}
     | dict(z_1=14.0, z_2=39.0, m_et=4.536e-3, beta=math.radians(35), b=0.0254, x_1=0.4, shaft_angle=math.pi / 2),
+    "WormPair": dict(z_1=2.0, z_2=41.0, m_x=4e-3, d_1=0.044, alpha_n=math.radians(20), k_mu=1.0),
     "BeltPull": dict(D=0.32, k_pull=2.0),
     "HarmonicMesh": FLANK | dict(z_1=132.0, z_2=134.0, m_n=6e-4, alpha=math.radians(20), pairs=40.0),
     "HarmonicContact": FLANK | dict(eta_0=0.06, alpha_p=2e-8, F_0=240.0),
@@ -127,6 +128,8 @@ GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level", "BeltPull.load"} 
     "InternalGearPair.force",
     "BevelGearPair.pinion_force",
     "BevelGearPair.wheel_force",
+    "WormPair.worm_force",
+    "WormPair.wheel_force",
 }
 GIVES |= {"Thermostat.opening"}
 GIVES |= {"LoadingClutch.reading"}
@@ -140,6 +143,7 @@ GIVEN = {
     **{
         kind: {"pinion": ("w", "tau"), "wheel": ()} for kind in ("HelicalGearPair", "InternalGearPair", "BevelGearPair")
     },
+    "WormPair": {"worm": ("w",), "wheel": ("tau",)},
     "HarmonicMesh": {"wave_generator": ("w",), "flexspline": ("tau",), "circular_spline": ("w",), "wave": ("tau",)},
     "CycloidalReducer": {"input": ("w",), "output": ("tau",)},
     "MalhotraReducer": {"input": ("w",), "output": ("tau",)},
@@ -200,6 +204,7 @@ LOSSES = ("part.P_loss", "part.P_loss_sp", "part.P_loss_pr", "part.P")
 #: Each kind once, gears and bearings under each of their choices.
 CASES = [(kind, {}) for kind in PARTS] + [("PlanetarySet", {"power_flow": "ideal"}), ("Inertia", {"dynamic": False})]
 CASES += [("PlanetarySet", {"line_load": "F_bt/b"}), ("HelicalGearPair", {"line_load": "F_bt/b"})]
+CASES += [("WormPair", {"z_1": 1.0, "d_1": 0.09})]  # self-locking
 CASES += [("BevelGearPair", {"spiral": "towards"}), ("HelicalGearPair", {"beta": 0.0, "a_w": 0.108})]
 CASES += [(k, {"film": f}) for k in ("HarmonicMesh", "HarmonicContact") for f in ("moes", "dowson_higginson_printed")]
 CASES += [("CycloidPinStage", {"pin": p, "disc_torque": t}) for p in ("held", "rolling") for t in ("output", "statics")]
