@@ -14,8 +14,7 @@ def words(value: Any) -> str:
     """A value as words of a page: nothing in it is markup but text between backticks."""
     text = ", ".join(map(str, value)) if isinstance(value, list | tuple) else str(value)
     parts = re.split(r"(`[^`]*`)", " ".join(text.split()))
-    plain = [part if k % 2 else re.sub(r"([*<\[\]|])", r"\\\1", part) for k, part in enumerate(parts)]
-    return "".join(plain).replace("`|`", "`\\|`")
+    return "".join(re.sub(r"(\|)" if k % 2 else r"([*<\[\]|])", r"\\\1", part) for k, part in enumerate(parts))
 
 
 def code(value: Any) -> str:

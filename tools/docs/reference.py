@@ -54,6 +54,8 @@ def copy_pictures(place: Path) -> None:
     if (CONTACT / "README.md").exists():
         shutil.copy(CONTACT / "README.md", place / "contacts.md")
         shutil.copytree(CONTACT / "verification", place / "verification")
+        rows = place / "verification" / "verification.md"
+        rows.write_text(f"---\norphan: true\n---\n\n{rows.read_text(encoding='utf-8')}", encoding="utf-8")
     for picture in (p for kind in ("*/*.svg", "*/*.png") for p in RIGS.glob(kind)):
         shutil.copy(picture, place / "rigs")
 

@@ -1,0 +1,27 @@
+"""The command `docs`: the web site builds without a warning, and holds what the code declares."""
+
+from pathlib import Path
+
+import pytest
+from gearheat.model.laws import rolling
+from gearheat.model.parts import PARTS
+from gearheat.tools.docs import markdown
+
+
+def test_the_site_builds_and_has_a_page_for_every_part(gearheat, tmp_path: Path) -> None:
+    pytest.importorskip("myst_parser")
+    answer = gearheat("docs", "-o", tmp_path / "site", "--run", "none")
+    assert answer.code == 0, answer.err
+    pages = {page.stem for page in (tmp_path / "site" / "generated" / "parts").glob("*.html")}
+    assert pages >= set(PARTS)
+    commands = (tmp_path / "site" / "generated" / "commands.html").read_text(encoding="utf-8")
+    assert "--power-flow" in commands
+    tutorial = (tmp_path / "site" / "tutorials" / "own_gearbox.html").read_text(encoding="utf-8")
+    assert '<span class="caption-text">card.toml</span>' in tutorial
+
+
+def test_a_docstring_becomes_a_formula_and_a_list() -> None:
+    law = rolling.shear_heating
+    assert "```{math}\n\\phi_{ish} = \\frac" in markdown.docstring(law)
+    assert "- `d_m`: mean diameter, (d + D)/2 \\[m\\]\n" in markdown.arguments(law)
+    assert markdown.words("a|b <c> `d|e`") == "a\\|b \\<c> `d\\|e`"
