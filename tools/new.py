@@ -20,16 +20,25 @@ from .console import answer, note, writable, write
 from .points import conditions
 from .rigs import load
 from .settings import flat_of
-from .sizing import APART, GAP, OVERHANG, SIDE, Unit, unit
-from .stages import KINDS, BevelStage, WormStage
+from .sizing import APART, GAP, LIGHT, OVERHANG, SIDE, Unit, unit
+from .stages import KINDS, BevelStage, PlanetaryStage, Stage, WormStage
 
 #: Steel, cast iron and oil [kg/m3].
 STEEL, IRON, OIL = 7850.0, 7200.0, 835.0
 #: What is told of a stage, and the size by which one of its kind is known.
 TOLD = ("kind", "z_1", "z_2", "m_n", "beta", "b")
-SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2", "worm": "a"}
+SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2", "worm": "a", "planetary": "a"}
 #: Speed at which churning is told [rad/s].
 CHURNED = 200 * math.pi / 30
+
+#: What meets in a planetary unit beside its two shafts.
+PLANETARY = {
+    "ring": ["stage_1.ring", "ring_mount.flange"],
+    "planets": ["stage_1.planet", "planet_bearing.shaft"],
+    "load_input": ["stage_1.sun_load", "input_bearing_a.load", "input_bearing_b.load"],
+    "load_output": ["stage_1.carrier_load", "output_bearing_a.load", "output_bearing_b.load"],
+    "load_planets": ["stage_1.planet_load", "planet_bearing.load"],
+}
 
 
 def new_command(
@@ -107,17 +116,18 @@ def text(made: Unit, doc: str, speed: str, oil: str) -> str:
         "doc": doc,
         "speed": speed,
         "efficiency": efficiency,
-        "load": -((-1) ** n) * made.stages[0].T * made.ratio * efficiency,  # external pairs turn the sense each time
+        "load": -made.turn * made.stages[0].T * made.ratio * efficiency,
         "oil": oil,
         "side": SIDE,
         "gap": GAP,
         "overhang": OVERHANG,
         "apart": APART,
+        "own_load": 0.0 if made.shafts[0].places else LIGHT,
         "stages": [_stage(made, k) for k in range(n)],
         "shafts": [_shaft(made, names, k) for k in range(n + 1)],
         "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d} for k in (0, -1)],
         "nets": _nets(names, made),
-        "losses": _losses(names),
+        "losses": _losses(names, made),
         **_bodies(made),
     }
     templates = Environment(loader=PackageLoader("gearheat.tools", "templates"), undefined=StrictUndefined)
@@ -137,16 +147,22 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
     if isinstance(s, BevelStage):
         rule = f"F_t/(b d_v1) (u_v + 1)/u_v of {stages.K_BEVEL / 1e6:g} N/mm2 at mid face, d_e2 of {_mm(s.d_e2)} mm"
         shape: dict[str, Any] = {"type": "BevelGearPair", "m_et": s.m_et, "x_1": s.x_1, "width": stages.FACE}
+    elif isinstance(s, PlanetaryStage):
+        rule = (
+            f"F_t/(b d_1) (u + 1)/u of {stages.K_STAR / 1e6:g} N/mm2 of sun and planet, standard module, straight teeth"
+        )
+        shape = {"type": "PlanetarySet", "N": s.count, "z_3": s.z_3, "m_n": s.m_n, "a": s.a, "width": stages.WIDTH}
+        shape |= {"s_planet": s.b / 2, "d_planet": s.d_planet} | s.ratios
     elif isinstance(s, WormStage):
         rule = (
-            f"wheel's torque over a3 of {stages.T_WORM / 1e6:g} N/mm2 as makers rate units, standard a = {_mm(s.a)} mm"
+            f"wheel's torque over a3 of {stages.T_WORM / 1e6:g} N/mm2 as makers rate them, standard a = {_mm(s.a)} mm"
         )
         shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "width": stages.SLIM}
     else:
         twist = f"beta for a = {_mm(s.a)} mm" if KINDS[s.kind] else "a follows from the teeth"
         rule = f"F_t/(b d_1) (u + 1)/u of {stages.K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"
         shape = {"type": "HelicalGearPair", "m_n": s.m_n, "a": s.a, "width": stages.WIDTH}
-    c = 0.5 * OIL * CHURNED**3 * s.b * s.r_2**4
+    c = 0.5 * OIL * CHURNED**3 * s.b * s.reach**4
     shape |= {"z_1": s.z_1, "z_2": s.z_2, "b": s.b, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule, "c": c}
     return {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", **shape}
 
@@ -154,28 +170,27 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
 def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
     s, n = made.shafts[k], len(made.stages)
     radii = ([made.stages[k - 1].r_2] if k else []) + ([made.stages[k].r_1] if k < n else [])
+    if not s.places:
+        radii = []
     places = [
         {"name": f"{names[k]}_bearing_{end}", "bearing": bearing, "life": _num(life)}
         for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)
     ]
     gears = [{"x": x, "r": r} for x, r in zip(s.places, radii, strict=True)]
-    support = "TwoGearSupport" if len(gears) > 1 else "ShaftSupport"
+    support = ("", "ShaftSupport", "TwoGearSupport")[len(gears)]
     return {"name": names[k], "support": support, "gears": gears, "span": s.span, "bearings": places, "d": s.d}
 
 
 def _bodies(made: Unit) -> dict[str, float]:
     """Capacities, conductances and the box."""
-    gears = [(r, s.b) for s in made.stages for r in (s.r_1, s.r_2)]
-    masses = [STEEL * math.pi * r**2 * b for r, b in gears]
-    slow = [math.prod(t.u for t in made.stages[:k]) for k in range(len(made.stages) + 1)]
-    ratios = [slow[k + j] for k in range(len(made.stages)) for j in (0, 1)]
-    wheels = [(s.r_2, s.b) for s in made.stages]
+    slow = [math.prod(t.u for t in made.stages[:k]) for k in range(len(made.stages))]
+    wheels = [(s.r_2, s.b) for s in made.stages for _ in range(s.count)]
     seats = [(made.shafts[k + 1].d, s.b) for k, s in enumerate(made.stages)]
     shafts = sum(STEEL * math.pi / 4 * s.d**2 * (s.span + 0.1) for s in made.shafts)
     mass = 1.25 * IRON * made.area * made.wall
     return {
-        "inertia": sum(m * r**2 / 2 / i**2 for (r, _), m, i in zip(gears, masses, ratios, strict=True)),
-        "C_gears": 470 * sum(masses),
+        "inertia": sum(STEEL * s.inertia / i**2 for s, i in zip(made.stages, slow, strict=True)),
+        "C_gears": 470 * STEEL * sum(s.volume for s in made.stages),
         "C_shafts": 470 * shafts,
         "mass": mass,
         "C_half": 500 * mass / 2,
@@ -194,9 +209,10 @@ def _bodies(made: Unit) -> dict[str, float]:
     }
 
 
-def _driver(made: Unit, k: int) -> str:
-    """Port of the gear that drives a stage."""
-    return "worm" if isinstance(made.stages[k], WormStage) else "pinion"
+def _ports(stage: Stage) -> tuple[str, str]:
+    """Ports of a stage's part at the shafts that drive and are driven."""
+    planets, worm = isinstance(stage, PlanetaryStage), isinstance(stage, WormStage)
+    return ("sun", "carrier") if planets else ("worm" if worm else "pinion", "wheel")
 
 
 def _nets(names: Sequence[str], made: Unit) -> list[dict[str, str]]:
@@ -209,27 +225,27 @@ def _nets(names: Sequence[str], made: Unit) -> list[dict[str, str]]:
     for k, name in enumerate(names):
         ends = [f"{name}.flange"] if k in (0, n) else []
         ends += ["rotor.flange"] if k == 0 else []
-        ends += [f"{stages[k - 1]}.wheel", f"{churnings[k - 1]}.shaft"] if k else []
-        ends += [f"{stages[k]}.{_driver(made, k)}"] if k < n else []
+        ends += [f"{stages[k - 1]}.{_ports(made.stages[k - 1])[1]}", f"{churnings[k - 1]}.shaft"] if k else []
+        ends += [f"{stages[k]}.{_ports(made.stages[k])[0]}"] if k < n else []
         turning = [f"{name}_bearing_{end}.shaft" for end in "ab"] + ([f"{name}_seal.shaft"] if k in (0, n) else [])
         nets[f"{name}_shaft"] = [*ends, *turning]
-    for k, stage in enumerate(stages):
-        on_pinion, on_wheel = f"{names[k]}_support.{'mesh_2' if k else 'mesh'}", f"{names[k + 1]}_support.mesh"
-        if isinstance(made.stages[k], BevelStage | WormStage):
-            driver = _driver(made, k)
-            nets[f"force_{k + 1}_{driver}"] = [f"{stage}.{driver}_force", on_pinion]
-            nets[f"force_{k + 1}_wheel"] = [f"{stage}.wheel_force", on_wheel]
-        else:
-            nets[f"force_{k + 1}"] = [f"{stage}.force", on_pinion, on_wheel]
-    for name in names:
-        nets |= {f"load_{name}_{e}": [f"{name}_support.load_{e}", f"{name}_bearing_{e}.load"] for e in "ab"}
+    planets = ["planet_bearing"] if isinstance(made.stages[0], PlanetaryStage) else []
+    nets |= PLANETARY if planets else _forces(names, made)
     nets["reading_input"], nets["reading_output"] = (
         [f"{end}.reading", f"efficiency.{port}"] for end, port in (("input", "a"), ("output", "b"))
     )
-    nets["lubricant"] = ["oil.lubricant", *(f"{part}.lubricant" for part in (*stages, *churnings, *bearings))]
+    nets["reading_output"] += ["stage_1.reading"] if planets else []
+    nets["lubricant"] = ["oil.lubricant", *(f"{part}.lubricant" for part in (*stages, *churnings, *bearings, *planets))]
     churned = [f"{part}.{side}" for part in churnings for side in ("inner", "outer")]
     nets["heat_oil"] = ["oil.heat", *churned, "oil_gears.a", "oil_wall.a"]
-    nets["heat_gears"] = ["gears.heat", *(f"{stage}.gears" for stage in stages), "oil_gears.b", "gears_shafts.a"]
+    heated = [f"{part}.{side}" for part in planets for side in ("inner", "outer")]
+    nets["heat_gears"] = [
+        "gears.heat",
+        *(f"{stage}.gears" for stage in stages),
+        *heated,
+        "oil_gears.b",
+        "gears_shafts.a",
+    ]
     rubbing = [*bearings, *seals]
     nets["heat_shafts"] = ["shafts.heat", "gears_shafts.b", "shafts_wall.a", *(f"{part}.inner" for part in rubbing)]
     outer = [f"{part}.outer" for part in rubbing]
@@ -239,13 +255,31 @@ def _nets(names: Sequence[str], made: Unit) -> list[dict[str, str]]:
     return [{"name": name, "ports": json.dumps(ports)} for name, ports in nets.items()]
 
 
-def _losses(names: Sequence[str]) -> dict[str, str]:
+def _forces(names: Sequence[str], made: Unit) -> dict[str, list[str]]:
+    """Tooth forces on the supports of the shafts, and what their bearings carry."""
+    nets = {}
+    for k, stage in enumerate(made.stages):
+        name, driver = f"stage_{k + 1}", _ports(stage)[0]
+        on_pinion, on_wheel = f"{names[k]}_support.{'mesh_2' if k else 'mesh'}", f"{names[k + 1]}_support.mesh"
+        if isinstance(stage, BevelStage | WormStage):
+            nets[f"force_{k + 1}_{driver}"] = [f"{name}.{driver}_force", on_pinion]
+            nets[f"force_{k + 1}_wheel"] = [f"{name}.wheel_force", on_wheel]
+        else:
+            nets[f"force_{k + 1}"] = [f"{name}.force", on_pinion, on_wheel]
+    for name in names:
+        nets |= {f"load_{name}_{e}": [f"{name}_support.load_{e}", f"{name}_bearing_{e}.load"] for e in "ab"}
+    return nets
+
+
+def _losses(names: Sequence[str], made: Unit) -> dict[str, str]:
     """Columns of the losses' table."""
-    stages = range(1, len(names))
+    stages, planets = range(1, len(names)), isinstance(made.stages[0], PlanetaryStage)
     found = {
-        "P_mesh_W": [f"stage_{k}.P_loss" for k in stages],
+        "P_mesh_W": ["stage_1.P_loss_sp", "stage_1.P_loss_pr"] if planets else [f"stage_{k}.P_loss" for k in stages],
         "P_dgb_W": [f"{name}_bearing_{end}.P_loss" for name in names for end in "ab"],
         "P_seal_W": ["input_seal.P_loss", "output_seal.P_loss"],
         "P_churn_W": [f"churning_{k}.P_loss" for k in stages],
     }
+    if planets:
+        found["P_needle_W"] = ["planet_bearing.P_loss"]
     return {column: json.dumps(parts) for column, parts in found.items()}

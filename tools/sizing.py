@@ -13,10 +13,12 @@ from dataclasses import dataclass
 from ..model.errors import ScenarioError
 from ..model.units import si_of
 from ..scenarios.entries import catalogue
-from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, Stage, WormStage
+from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, PlanetaryStage, Stage, WormStage
 
 #: Shear stress of shafts [Pa], wanted life of bearings [h].
 SHEAR, LIFE = 25e6, 20_000.0
+#: Least load of a bearing [N], and kinds of stages that stand alone.
+LIGHT, ALONE = 100.0, ("worm", "planetary")
 #: From the middle of a bearing to a gear, and between gears [m].
 SIDE, GAP = 0.020, 0.010
 #: Distance of the bearings of a bevel pinion over how far its mid face overhangs; of those of a worm over its wheel's
@@ -70,6 +72,11 @@ class Unit:
         return math.prod(s.u for s in self.stages)
 
     @property
+    def turn(self) -> int:
+        """Sense of rotation of the output, 1 for that of the input."""
+        return math.prod(s.turn for s in self.stages)
+
+    @property
     def area(self) -> float:
         """Of the box."""
         return 2 * (self.length * self.width + self.length * self.height + self.width * self.height)
@@ -103,6 +110,8 @@ def unit(kinds: Sequence[str], ratio: float, power: float, speed: float) -> Unit
     height = 2 * max(max(pair) for pair in tips) + 0.080 + 2 * wall
     if isinstance(found[0], WormStage):  # the wheel stands on the worm
         length, height = shafts[0].span + 0.090, found[0].a + sum(tips[0]) + 0.080 + 2 * wall
+    elif isinstance(found[0], PlanetaryStage):
+        length = height = 2 * found[0].reach + 8 * found[0].m_n + 0.040 + 2 * wall
     else:
         length += shafts[0].span if isinstance(found[0], BevelStage) else tips[0][0]
     return Unit(tuple(found), shafts, wall, length, span + 0.090, height)
@@ -114,8 +123,7 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float) -> No
         problems.append("no stage is given. Name them from the input on, for example helical,helical.")
     if "bevel" in kinds[1:]:
         problems.append("a bevel stage comes first: here its pinion is on the input shaft.")
-    if "worm" in kinds and len(kinds) > 1:
-        problems.append("a worm stage stands alone here.")
+    problems += [f"a {kind} stage stands alone here." for kind in ALONE if kind in kinds and len(kinds) > 1]
     if not (power > 0 and speed > 0):
         problems.append("power and speed must be above 0.")
     least, most = (
@@ -153,6 +161,8 @@ def _shaft(stages: Sequence[Stage], k: int, span: float) -> Shaft:
     elif k == 0 and isinstance(stages[0], WormStage):
         span = APART * 2 * stages[0].r_2
         gears = [(stages[0].forces[0], span / 2, stages[0].r_1)]
+    elif isinstance(stages[0], PlanetaryStage):  # the forces on sun and carrier are in balance
+        gears = []
     axial = abs(sum((1 if i else -1) * F[2] for i, (F, _, _) in enumerate(gears)))
     planes = [(F[0], (1 if i else -1) * F[1], x, F[2] * r) for i, (F, x, r) in enumerate(gears)]
     far = [sum(p[0] * p[2] for p in planes) / span, sum(p[1] * p[2] + p[3] for p in planes) / span]
@@ -165,7 +175,7 @@ def _shaft(stages: Sequence[Stage], k: int, span: float) -> Shaft:
 
 def _bearing(d: float, F_r: float, F_a: float, n: float) -> tuple[str, float]:
     """The smallest bearing of the catalogue with a bore and the wanted life, else the strongest; and its life [h]."""
-    P = max(F_r, 0.56 * F_r + 1.6 * F_a)
+    P = max(F_r, 0.56 * F_r + 1.6 * F_a, LIGHT)
     sizes = {name: [si_of(catalogue("bearing")[name].values[key]) for key in ("D", "d")] for name in RATINGS}
     fitting = [name for name in RATINGS if sizes[name][1] >= 0.999 * d]
     if not fitting:

@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 from ..model.errors import ScenarioError
 from ..model.laws.worm import worm_friction
+from ..model.parts.gears import HelicalGearPair, InternalGearPair
 
 #: Kinds of stages -> helix or spiral angle that is aimed at [rad], least and largest ratio of one stage.
-KINDS = {"spur": 0.0, "helical": math.radians(14.0), "bevel": math.radians(35.0), "worm": 0.0}
-LEAST = {"worm": 7.0}
-MOST = {"spur": 8.0, "helical": 8.0, "bevel": 4.0, "worm": 60.0}
+KINDS = {"spur": 0.0, "helical": math.radians(14.0), "bevel": math.radians(35.0), "worm": 0.0, "planetary": 0.0}
+LEAST = {"worm": 7.0, "planetary": 3.0}
+MOST = {"spur": 8.0, "helical": 8.0, "bevel": 4.0, "worm": 60.0, "planetary": 10.0}
 #: Load intensity F_t / (b d_1) (u + 1)/u of case-hardened gears [Pa], face width over the pinion's diameter, and its
 #: least number of teeth.
 K_STAR, WIDTH, TEETH = 2.5e6, 0.8, 19
@@ -23,6 +24,8 @@ BEVEL_TEETH = {1.5: 24, 2.5: 20, 3.5: 16, 4.0: 13}
 #: Torque of a worm wheel over the cube of the centre distance, as makers rate units of bronze and steel [Pa]; starts by
 #: largest ratio; mean diameter of the worm over the centre distance.
 T_WORM, STARTS, SLIM = 5.5e5, {10.0: 4, 28.0: 2, 60.0: 1}, 0.4
+#: Planets, teeth of suns to choose from, least teeth of a planet.
+PLANETS, SUNS, LEAST_PLANET = 3, range(18, 61), 24
 #: Standard modules and centre distances (preferred numbers R 20) [mm].
 MODULES = (0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0)
 R_20 = (1, 1.12, 1.25, 1.4, 1.6, 1.8, 2, 2.24, 2.5, 2.8, 3.15, 3.55, 4, 4.5, 5, 5.6, 6.3, 7.1, 8, 9)
@@ -69,6 +72,31 @@ class Stage:
     def a(self) -> float:
         """Centre distance; of bevel gears how far the pinion reaches from the wheel's shaft."""
         return self.r_1 + self.r_2
+
+    @property
+    def count(self) -> int:
+        """Wheels on the pinion."""
+        return 1
+
+    @property
+    def turn(self) -> int:
+        """Sense of rotation of what is driven, 1 for that of the pinion."""
+        return -1
+
+    @property
+    def reach(self) -> float:
+        """Radius of what moves the oil."""
+        return self.r_2
+
+    @property
+    def volume(self) -> float:
+        """Of all gears, as full discs."""
+        return math.pi * self.b * (self.r_1**2 + self.count * self.r_2**2)
+
+    @property
+    def inertia(self) -> float:
+        """Of the gears seen at the pinion, over their density."""
+        return math.pi / 2 * self.b * (self.r_1**4 + self.r_2**4 / self.u**2)
 
     @property
     def efficiency(self) -> float:
@@ -164,6 +192,59 @@ class WormStage(Stage):
         return (F_t1, F_r, F_t2), (F_t2, F_r, F_t1)
 
 
+@dataclass(frozen=True)
+class PlanetaryStage(Stage):
+    """Sun, three planets and a ring that is held; the sun drives the carrier. z_2 and r_2 are those of a planet."""
+
+    z_3: int
+
+    @property
+    def u(self) -> float:
+        """Ratio of sun to carrier."""
+        return 1 + self.z_3 / self.z_1
+
+    @property
+    def r_2(self) -> float:
+        """Radius of a planet."""
+        return self.m_n * self.z_2 / 2
+
+    @property
+    def count(self) -> int:
+        """Planets."""
+        return PLANETS
+
+    @property
+    def turn(self) -> int:
+        """The carrier turns with the sun."""
+        return 1
+
+    @property
+    def reach(self) -> float:
+        """Of the planets round the axis."""
+        return self.r_1 + 2 * self.r_2
+
+    @property
+    def inertia(self) -> float:
+        """With planets that turn about their pins and go round with the carrier."""
+        spin, orbit = self.z_1 / self.z_2 * (1 - 1 / self.u), self.a / self.u
+        each = self.r_2**2 * (self.r_2**2 / 2 * spin**2 + orbit**2)
+        return math.pi * self.b * (self.r_1**4 / 2 + self.count * each)
+
+    @property
+    def d_planet(self) -> float:
+        """Mean diameter of the needles in a planet."""
+        return self.r_2
+
+    @property
+    def ratios(self) -> dict[str, float]:
+        """Contact ratios and tooth loss factors of the two kinds of meshes, as the pairs of gears have them."""
+        size = {"m_n": self.m_n, "alpha_n": ALPHA, "beta": 0.0, "b": self.b, "a_w": self.a, "x_1": 0.0, "x_2": 0.0}
+        size |= {"Ra": 1e-6, "k_mu": 1.0, "E": 2e11, "poisson": 0.3}
+        outer = HelicalGearPair("sp", z_1=self.z_1, z_2=self.z_2, line_load="F_bn/l", **size).values
+        inner = InternalGearPair("pr", z_1=self.z_2, z_2=self.z_3, line_load="F_bn/l", **size).values
+        return {f"{key}_{mesh}": v[key] for mesh, v in (("sp", outer), ("pr", inner)) for key in ("eps_alpha", "H_v")}
+
+
 def _cylindrical(kind: str, u: float, T: float, n: float, x: float) -> Stage:
     """Gears for a torque at the pinion, by load intensity; whole teeth without a common factor."""
     d_1 = (2 * T * (u + 1) / (u * K_STAR * WIDTH)) ** (1 / 3)
@@ -218,10 +299,29 @@ def _fault(z_1: int, z_2: int, u: float) -> float:
     return abs(z_2 / z_1 / u - 1) + 0.02 * (math.gcd(z_1, z_2) > 1)
 
 
+def _planetary(kind: str, u: float, T: float, n: float, x: float) -> PlanetaryStage:
+    """A sun of the next standard module, by the load intensity of sun and planet; planets at equal angles."""
+    part = max(u / 2 - 1, 0.5)
+    d_1 = (2 * T / PLANETS * (part + 1) / (part * K_STAR * WIDTH)) ** (1 / 3)
+    sizes = [(z, z_3) for z in SUNS for z_3 in range(z + 2 * LEAST_PLANET, 12 * z, 1) if _fits(z, z_3)]
+    z_1, z_3 = min(sizes, key=lambda size: (round(abs(1 + size[1] / size[0] - u) / u, 2), size[0]))
+    m_n = next((m for m in MODULES if m * z_1 >= 1000 * d_1), 0.0) / 1000
+    if not m_n:
+        raise ScenarioError(f"a sun of {T:g} N.m needs teeth of more than {MODULES[-1]:g} mm, too much.")
+    b = round(1000 * min(WIDTH * m_n * z_1, WIDTH * d_1**3 / (m_n * z_1) ** 2)) / 1000
+    return PlanetaryStage(kind, z_1, (z_3 - z_1) // 2, m_n, 0.0, b, T, n, x + b / 2, z_3)
+
+
+def _fits(z_1: int, z_3: int) -> bool:
+    """Whether whole planets stand at equal angles."""
+    return (z_3 - z_1) % 2 == 0 and (z_1 + z_3) % PLANETS == 0
+
+
 #: Who makes a stage of a kind.
 MAKE: Mapping[str, Callable[[str, float, float, float, float], Stage]] = {
     "spur": _cylindrical,
     "helical": _cylindrical,
     "bevel": _bevel,
     "worm": _worm,
+    "planetary": _planetary,
 }

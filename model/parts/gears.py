@@ -32,6 +32,8 @@ SHIFT_LEFT = 0.05
 UNDERCUT_LEFT = 0.5
 #: Teeth that a ring has more than its pinion, at least: below, standard tips interfere.
 LEAST_DIFFERENCE = 8.0
+#: How far the tips of a ring may reach: a little beyond the pinion's involute they are shortened, which is not told here.
+BEYOND = 1.1
 
 
 class GearPair(ToothedPart):
@@ -195,7 +197,13 @@ class InternalGearPair(HelicalGearPair):
         return self.z_1, -self.z_2
 
     def cut(self, key: str, z: Num, x: Num) -> Iterator[Related]:
-        """A ring has no undercut, but its tips must find an involute on the pinion."""
+        """A ring has no undercut, but its tips must find an involute on the pinion.
+
+        Args:
+            key: of the gear in the names of its parameters
+            z: number of teeth, negative for the ring [1]
+            x: profile shift [1]
+        """
         if key == "1":
             yield from super().cut(key, z, x)
             return
@@ -206,7 +214,7 @@ class InternalGearPair(HelicalGearPair):
             "path of contact at the ring's tips over its end at the pinion's base circle",
             reach / (self.radius(self.z_1) * ca.cos(alpha_t) * ca.tan(alpha_wt)),
             0.0,
-            1.0,
+            BEYOND,
             remedy="Give more teeth or a smaller x_2.",
         )
         yield self.relation(

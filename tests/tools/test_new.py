@@ -20,6 +20,7 @@ PLATES = {
     "bevel": ("bevel,helical", 20.0, "5.5 kW"),
     "bevel_alone": ("bevel", 2.0, "3 kW"),
     "worm": ("worm", 20.0, "1.5 kW"),
+    "planetary": ("planetary", 4.0, "5.5 kW"),
     "four": ("helical,helical,helical,helical", 300.0, "0.75 kW"),
 }
 
@@ -46,7 +47,7 @@ def test_it_runs_and_says_of_every_number_how_it_came_about(made, name):
     scenario = load(path)
     assert all(source for source in scenario.value_sources.values())
     assert found["assumed"] > 50
-    turned = (-1) ** len(found["stages"])  # external pairs turn the sense, and the load is against it
+    turned = 1 if name == "planetary" else (-1) ** len(found["stages"])  # external pairs turn the sense each time
     assert math.copysign(1, scenario.operating_point["output.tau"]) == -turned
     assert flat_of(scenario).states
 
@@ -102,7 +103,7 @@ def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
     plate = ("--stages", "spur,warm", "--ratio", "90", "--power", "2 kW", "--speed", "1450 rpm", "-o", path)
     answer = gearheat("new", "a", *plate)
     assert answer.code == 2
-    assert 'no stage "warm". Stages: spur, helical, bevel, worm.' in answer.err
+    assert 'no stage "warm". Stages: spur, helical, bevel, worm, planetary.' in answer.err
     assert "Give 3 stages or more" in answer.err
     assert not path.exists()
 
@@ -118,6 +119,7 @@ def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
         (("--stages", "helical,bevel"), "a bevel stage comes first"),
         (("--stages", "worm,helical"), "a worm stage stands alone"),
         (("--stages", "worm"), "expected 7 to 60"),
+        (("--stages", "helical,planetary"), "a planetary stage stands alone"),
         (("--speed", "0 rpm"), "must be above 0"),
     ],
 )
