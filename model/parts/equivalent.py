@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
-from typing import Protocol, runtime_checkable
+from typing import Any, Protocol, runtime_checkable
 
 from ..core.component import Component
 from ..core.declare import Parameter, Port, declared
@@ -90,7 +90,9 @@ class CylindricalPair:
     @property
     def outsides(self) -> tuple[float, float]:
         """Tip diameters of these gears [m]."""
-        d_a1, d_a2 = (float(tip_diameter(d, self.m_n, x)) for d, x in zip(self.references, (self.x_1, self.x_2)))
+        d_a1, d_a2 = (
+            float(tip_diameter(d, self.m_n, x)) for d, x in zip(self.references, (self.x_1, self.x_2), strict=True)
+        )
         return d_a1, d_a2
 
     @property
@@ -99,7 +101,8 @@ class CylindricalPair:
         p_et = transverse_base_pitch(self.m_n, self.beta, self.alpha_t)
         bases = (base_diameter(d, self.alpha_t) for d in self.references)
         eps_1, eps_2 = (
-            float(addendum_contact_ratio(d_a, d_b, self.alpha_wt, p_et)) for d_a, d_b in zip(self.outsides, bases)
+            float(addendum_contact_ratio(d_a, d_b, self.alpha_wt, p_et))
+            for d_a, d_b in zip(self.outsides, bases, strict=True)
         )
         return eps_1, eps_2
 
@@ -130,5 +133,6 @@ def pair_of(part: Component) -> CylindricalPair | None:
         return part.equivalent_pair(part.values)
     keys = {f.name for f in fields(CylindricalPair)} - {"r_1", "tips"}
     if keys <= declared(type(part), Parameter).keys() and declared(type(part), Port).keys() >= PORTS:
-        return CylindricalPair(**{key: part.values[key] for key in keys})
+        given: dict[str, Any] = {key: part.values[key] for key in keys}
+        return CylindricalPair(**given)
     return None

@@ -11,14 +11,17 @@ from scipy.optimize import brentq
 from ...model.core.flat import Quantity
 from ...model.errors import GearheatError, ScenarioError
 from ...model.parts.ports import COLDEST, HOTTEST
+from ...model.sources import LawInfo, LawUse, recording
 from ...model.units import from_si
 from ...scenarios.values import in_range
 from ..console import answer, table
+from ..points import tell_outside
 from ..rigs import load
 from ..settings import adjusted
 from .bearings import FACTORS
-from .machine import Machine, machine_of
-from .methods import METHODS, Losses, Method
+from .gather import machine_of
+from .machine import Machine
+from .methods import METHODS, Method
 
 #: Largest multiple of the load that a rating looks for.
 MOST_LOAD = 100.0
@@ -77,7 +80,8 @@ def compared(machine: Machine, method: Method, T_limit: float, k: float | None) 
 
     T_sump = _root(surplus, machine.T_room, HOTTEST)
     share = _root(lambda s: surplus(T_limit, s), 0.0, MOST_LOAD)
-    columns = {"model": machine.ours, "method": method.losses(machine, machine.T_oil)}
+    with recording() as uses:
+        columns = {"model": machine.ours, "method": method.losses(machine, machine.T_oil)}
     if T_sump is not None:
         columns["method_at_sump"] = method.losses(machine, T_sump)
     temperatures = {"model": machine.T_oil, "method": machine.T_oil, "method_at_sump": T_sump}
@@ -101,8 +105,30 @@ def compared(machine: Machine, method: Method, T_limit: float, k: float | None) 
             for m in machine.meshes
         ],
         "not_treated": [asdict(u) for u in machine.untreated],
+        "outside": _outside(method, uses),
         "assumptions": list(method.assumptions),
     }
+
+
+def _outside(method: Method, uses: Sequence[LawUse]) -> list[dict[str, Any]]:
+    """The laws that a method uses outside their range, as results list them."""
+    met: dict[tuple[LawInfo, str], list[float]] = {}
+    for use in uses:
+        for argument, value in use.arguments.items():
+            low, high = use.law.ranges[argument]
+            if not low <= float(value) <= high:
+                met.setdefault((use.law, argument), []).append(float(value))
+    return [
+        {
+            "part": method.title,
+            "law": law.name,
+            "argument": argument,
+            "range": list(law.ranges[argument]),
+            "met": [min(values), max(values)],
+            "regime": "",
+        }
+        for (law, argument), values in met.items()
+    ]
 
 
 def total(losses: Mapping[str, Mapping[str, float]]) -> float:
@@ -110,15 +136,17 @@ def total(losses: Mapping[str, Mapping[str, float]]) -> float:
     return sum(power for parts in losses.values() for power in parts.values())
 
 
-def _summed(losses: Losses) -> dict[str, float]:
+def _summed(losses: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
     return {kind: sum(parts.values()) for kind, parts in losses.items()} | {"total": total(losses)}
 
 
 def _rating(machine: Machine, T_limit: float, share: float | None, at_no_load: float) -> dict[str, Any]:
     """The power that keeps the sump at its limit; none where it is beyond reach, and why."""
     found = {"limit_C": _celsius(T_limit), "load_share": share, "power_W": None, "why": ""}
+    if share is not None and machine.P_in is None:
+        return found | {"why": f"{share:.3g} times the load, but no power passes through the rig"}
     if share is not None:
-        return found | {"power_W": share * machine.P_in}
+        return found | {"power_W": share * (machine.P_in or 0.0)}
     if at_no_load > 0:
         return found | {"power_W": 0.0, "why": "without load the sump already gets hotter than that"}
     return found | {"why": f"even {MOST_LOAD:g} times the load keeps the sump below that"}
@@ -168,5 +196,6 @@ def _print(method: Method, found: Mapping[str, Any]) -> None:
     print(f"thermal rating at {rating['limit_C']:.1f} degC: {power}{why}")
     for u in found["not_treated"]:
         print(f"not treated: {u['part']} ({u['type']}): {u['why']}; in the model {u['power']:.4g} W")
+    tell_outside(found["outside"])
     for assumption in found["assumptions"]:
         print(f"assumed: {assumption}")

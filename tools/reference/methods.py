@@ -130,7 +130,7 @@ def conductance_2(machine: Machine, T: float) -> float:
 
 def _surface_2(surface: Surface, T: float, T_room: float) -> float:
     v = surface.values
-    wet, dry = v["A"], v["A"] + v.get("A_fins", 0.0)
+    wet, dry = float(v["A"]), float(v["A"] + v.get("A_fins", 0.0))
 
     def outside(T_wall: float) -> float:
         free = float(part_2.free_convection(T_wall, T_room, surface.height))
@@ -138,7 +138,7 @@ def _surface_2(surface: Surface, T: float, T_room: float) -> float:
 
     if abs(T - T_room) < 1e-6:
         return outside(T) / (1 + outside(T) / (part_2.H_OIL * wet))
-    T_wall = brentq(lambda x: part_2.H_OIL * wet * (T - x) - outside(x) * (x - T_room), T_room, T)
+    T_wall = float(brentq(lambda x: part_2.H_OIL * wet * (T - x) - outside(x) * (x - T_room), T_room, T))
     return part_2.H_OIL * wet * (T - T_wall) / (T - T_room)
 
 
@@ -165,7 +165,7 @@ METHODS: Mapping[str, Method] = {
         (
             NOT_COMPARED,
             BEARINGS,
-            "churning: shafts in one level plane; it acts on the shaft of the gear that dips deeper; squeezing left out",
+            "churning: shafts in one level plane; acts on the shaft of the gear that dips deeper; squeezing left out",
             "heat: oil to wall, free convection over bare area and fins, radiation over the bare area; no fan, no feet",
         ),
     ),
