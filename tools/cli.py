@@ -87,7 +87,9 @@ def losses(
         Literal["iso14179-1", "iso14179-2"] | None,
         typer.Option(help="Losses at the operating point beside those of a reference method, and its thermal rating."),
     ] = None,
-    limit: Annotated[str, typer.Option(help="With --method: sump temperature that the rating keeps.")] = "95 degC",
+    limit: Annotated[
+        str | None, typer.Option(help="With --method: sump temperature that the rating keeps; 95 degC if left out.")
+    ] = None,
     k: Annotated[
         str | None, typer.Option("--k", help='With --method: heat transfer of the bare housing, "20 W/(m2.K)".')
     ] = None,
@@ -98,13 +100,13 @@ def losses(
     json: Json = None,
 ) -> None:
     """Every loss at every measured reading, or beside those of a reference method."""
-    if method is not None:
-        from .reference import command
-
-        command.command(rig, method, limit, k, dip or [], set_ or [], json)
-        return
     from . import losses
+    from .reference import command
 
+    others = {"--data": data, "--card": card, "--power-flow": power_flow, "--contacts": contacts}
+    if command.asked(method, {"--limit": limit, "--k": k, "--dip": dip}, others):
+        command.command(rig, method or "", limit or "95 degC", k, dip or [], set_ or [], json)
+        return
     losses.command(rig, data, card, temperature, power_flow, set_ or [], json, contacts=contacts)
 
 

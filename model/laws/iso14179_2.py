@@ -1,13 +1,12 @@
 """Losses and heat of enclosed gear drives after ISO/TR 14179-2, the method of Niemann and Winter.
 
-Tooth friction is `mesh.friction_schlenk` with the load per face width, seals are `sealing.lip_seal_torque`, bearings
-`rolling.needle_torque_viscous` and `needle_torque_load`, which hold for all rolling bearings. What stands here was
-compared with no print of the standard.
+What stands here was compared with no print of the standard. The rest of the method is elsewhere: tooth friction is
+`mesh.friction_schlenk` with the load per face width; the tooth loss factor, with 1 - eps_1 - eps_2 + eps_1^2 + eps_2^2,
+is `mesh.tooth_loss_factor` for one to two pairs in contact; seals are `sealing.lip_seal_torque`, bearings
+`rolling.needle_torque_viscous` and `needle_torque_load`, radiation is `radiation.radiation_coefficient`.
 """
 
 from __future__ import annotations
-
-import math
 
 import casadi as ca
 
@@ -16,28 +15,6 @@ from .smooth import Num, smooth_abs
 
 #: Heat transfer from the oil to the inner wall [W/(m2.K)].
 H_OIL = 200.0
-
-
-@law(
-    source="ISO14179-2",
-    where="tooth loss factor",
-    valid="load shared equally, 1 to 2 pairs in contact",
-    verified=False,
-)
-def loss_factor(z_1: Num, u: Num, beta_b: Num, eps_1: Num, eps_2: Num) -> Num:
-    r"""Tooth loss factor [1].
-
-    .. math:: H_V = \frac{\pi (u + 1)}{z_1 u \cos\beta_b}
-        \left(1 - \varepsilon_1 - \varepsilon_2 + \varepsilon_1^2 + \varepsilon_2^2\right)
-
-    Args:
-        z_1: number of teeth of the pinion [1]
-        u: teeth ratio z_2/z_1 [1]
-        beta_b: helix angle at the base cylinder [rad]
-        eps_1: addendum contact ratio of the pinion [1]
-        eps_2: addendum contact ratio of the wheel [1]
-    """
-    return math.pi * (u + 1) / (z_1 * u * ca.cos(beta_b)) * (1 - eps_1 - eps_2 + eps_1**2 + eps_2**2)
 
 
 @law(source="ISO14179-2", where="splash oil factor", valid="splash lubrication", verified=False)
@@ -87,17 +64,3 @@ def free_convection(T_s: Num, T_f: Num, height: Num, *, dT_width: float = 1e-2) 
         dT_width: rounding at equal temperatures [K]
     """
     return 18 * height**-0.1 * (smooth_abs(T_s - T_f, dT_width) / T_f) ** 0.3
-
-
-@law(source="ISO14179-2", where="radiation of the housing", valid="grey surface, large room", verified=False)
-def radiation(T_1: Num, T_2: Num, emissivity: Num) -> Num:
-    r"""Heat transfer coefficient of radiation [W/(m2.K)].
-
-    .. math:: \alpha = 0.23 \cdot 10^{-6} \varepsilon \left(\frac{T_1 + T_2}{2}\right)^3
-
-    Args:
-        T_1: temperature of the surface [K]
-        T_2: temperature of the room [K]
-        emissivity: emissivity of the surface [1]
-    """
-    return 0.23e-6 * emissivity * ((T_1 + T_2) / 2) ** 3

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, fields
-from typing import Any, Protocol, runtime_checkable
+from dataclasses import dataclass
+from typing import Protocol, runtime_checkable
 
 from ..core.component import Component
-from ..core.declare import Parameter, Port, declared
+from ..core.declare import Output, Parameter, Port, declared
 from ..laws.gears import (
     addendum_contact_ratio,
     base_diameter,
@@ -20,9 +19,10 @@ from ..laws.gears import (
     transverse_pressure_angle,
     working_pressure_angle,
 )
+from ..laws.smooth import Num
 
-#: Ports of a pair: both shafts, and the force between the gears.
-PORTS = {"pinion", "wheel", "force"}
+#: Parameters that tell the teeth of a pair but for their numbers.
+KEYS = ("m_n", "alpha_n", "beta", "b", "a_w", "x_1", "x_2", "Ra")
 
 
 @dataclass(frozen=True)
@@ -38,8 +38,7 @@ class CylindricalPair:
         a_w: working centre distance [m]
         x_1, x_2: profile shifts [1]
         Ra: roughness of the flanks [m]
-        r_1: radius of the real pinion at which the tangential force acts; that of its pitch cylinder if None [m]
-        tips: tip diameters of the real gears, which dip into the oil; those of these gears if None [m]
+        diameters: reference diameters of the real gears, of bevel gears at mid face [m]
     """
 
     z_1: float
@@ -52,8 +51,7 @@ class CylindricalPair:
     x_1: float
     x_2: float
     Ra: float
-    r_1: float | None = None
-    tips: tuple[float, float] | None = None
+    diameters: tuple[float, float]
 
     @property
     def u(self) -> float:
@@ -96,6 +94,12 @@ class CylindricalPair:
         return d_a1, d_a2
 
     @property
+    def tips(self) -> tuple[float, float]:
+        """Tip diameters of the real gears, which dip into the oil [m]."""
+        d_1, d_2 = self.diameters
+        return d_1 + 2 * self.m_n * (1 + self.x_1), d_2 + 2 * self.m_n * (1 + self.x_2)
+
+    @property
     def contact_ratios(self) -> tuple[float, float]:
         """Addendum contact ratios of pinion and wheel [1]."""
         p_et = transverse_base_pitch(self.m_n, self.beta, self.alpha_t)
@@ -114,25 +118,27 @@ class CylindricalPair:
 
 
 @runtime_checkable
-class TellsPair(Protocol):
-    """A part whose gears are not cylindrical, and that knows the cylindrical ones which stand for them."""
+class TellsTeeth(Protocol):
+    """A part with gears that are not cylindrical."""
 
-    name: str
-
-    def equivalent_pair(self, values: Mapping[str, float]) -> CylindricalPair:
-        """The equivalent gears.
-
-        Args:
-            values: parameters of the part by key, in SI
-        """
+    def teeth(self) -> tuple[Num, Num]:
+        """Numbers of teeth of the cylindrical gears that mesh as they do, negative for an internal gear [1]."""
 
 
 def pair_of(part: Component) -> CylindricalPair | None:
-    """The cylindrical gears of a part: those it tells, or those it declares; None where it is no gear pair."""
-    if isinstance(part, TellsPair):
-        return part.equivalent_pair(part.values)
-    keys = {f.name for f in fields(CylindricalPair)} - {"r_1", "tips"}
-    if keys <= declared(type(part), Parameter).keys() and declared(type(part), Port).keys() >= PORTS:
-        given: dict[str, Any] = {key: part.values[key] for key in keys}
-        return CylindricalPair(**given)
-    return None
+    """The cylindrical gears that a part declares or tells; None where it is no pair of external gears.
+
+    A pair has the shafts `pinion` and `wheel`, the numbers of teeth `z_1` and `z_2`, the parameters `KEYS`, and shows
+    its tangential force `F_t`.
+    """
+    kind = type(part)
+    parameters, ports = declared(kind, Parameter).keys(), declared(kind, Port).keys()
+    if not ({"z_1", "z_2", *KEYS} <= parameters and {"pinion", "wheel"} <= ports and "F_t" in declared(kind, Output)):
+        return None
+    v = part.values
+    real = v["z_1"], v["z_2"]
+    z_1, z_2 = (part.number_at(z, v) for z in part.teeth()) if isinstance(part, TellsTeeth) else real
+    if z_1 < 0 or z_2 < 0:
+        return None
+    d_1, d_2 = (float(reference_diameter(v["m_n"], z, v["beta"])) for z in real)
+    return CylindricalPair(z_1=z_1, z_2=z_2, diameters=(d_1, d_2), **{key: v[key] for key in KEYS})

@@ -56,10 +56,15 @@ NOMINAL = {
     **{"r": 0.15, "T_oil": 345.0, "nu_50": 30e-6, "Ra_1": 0.4e-6, "Ra_2": 0.4e-6, "c_q": 1.25},
     **{"xi": 0.4, "F": 240.0, "C": 1e-17},
     **{"w_0": 0.64e-3, "r_convex": 0.0192194, "r_concave": 0.0192307, "E_eff": 230e9, "u_0": 0.03, "u_m": 0.03},
+    **{"F_t": 2300.0, "d_w1": 0.041, "d_w": 0.041, "H_s": 0.32, "H_t": 0.28, "m_t": 0.003, "dip": 0.16},
+    **{"e_max": 0.03, "h_c": 0.1, "l_h": 0.29, "C_Sp": 0.2},
     **{"g_V": 20.0, "g_E": 5.0, "rigid_isoviscous": 0.5, "rigid_piezoviscous": 0.4, "elastic_isoviscous": 0.3},
 }
 CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
 OWN = {
+    "iso14179_1.mesh_friction": {"K": 5e6},
+    "iso14179_1.tip_sliding": {"d_a": 0.045},
+    "iso14179_2.hydraulic_torque": {"e": 0.03},
     **{f"cycloid.{key}": CYCLOID for key in ("pin_force_sum", "pin_force_along_crank", "eccentric_force")},
     "cycloid.roller_loss_torque": CYCLOID | {"D": 0.014, "d": 0.008},
     "cycloid.output_roller_power": CYCLOID | {"D": 0.014, "d": 0.007},
@@ -99,7 +104,7 @@ ZERO = {
 NOT_NEGATIVE = {"P_a", "h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c", "T_pour"}
 #: Torques and losses: magnitudes, never negative.
 MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.", "film_line.", "film_point.")
-MAGNITUDES += ("cycloid.",)
+MAGNITUDES += ("cycloid.", "iso14179_1.", "iso14179_2.")
 
 
 def every_function() -> dict[str, Callable[..., Any]]:

@@ -31,6 +31,27 @@ K = Quantity("--k", "W/(m2.K)", "heat transfer coefficient", low=0.0, low_open=T
 DEPTH = Quantity("", "m", "depth to which a gear dips", low=0.0)
 
 
+def asked(method: str | None, own: Mapping[str, object], others: Mapping[str, object]) -> bool:
+    """Whether a reference method is asked for.
+
+    Args:
+        method: its name, None without one
+        own: option -> value, of those that only a method takes
+        others: option -> value, of those that no method takes
+
+    Raises:
+        ScenarioError: options that do not go together
+    """
+    wrong = [name for name, value in (own if method is None else others).items() if value]
+    if wrong and method is None:
+        raise ScenarioError(
+            f"{', '.join(wrong)} belongs to --method. Add --method {next(iter(METHODS))}, or leave it out."
+        )
+    if wrong:
+        raise ScenarioError(f"{', '.join(wrong)} does not go with --method. Leave out one of them.")
+    return method is not None
+
+
 def command(
     rig: str,
     method: str,

@@ -24,6 +24,10 @@ from .readings import reading, with_readings
 KINDS = {"teeth": "mesh", "churning": "churning", "bearing": "bearings", "seal": "seals"}
 #: Depth to which a wheel dips unless given, in normal modules: twice the height of a tooth.
 DIP = 4.5
+#: How far a pitch radius may differ, relative, and still be that of the same gear.
+SAME = 0.02
+#: Depth of a gear that runs clear of the oil, over its diameter.
+DRY = 1e-3
 
 Parts = Mapping[str, Component]
 Values = Mapping[str, float]
@@ -47,6 +51,7 @@ def machine_of(scenario: Scenario, bearing_types: Sequence[str], dips: Mapping[s
     surfaces = tuple(Surface(name, part.values) for name, part in parts.items() if _is_surface(part))
     _check(scenario, pairs, {"oil bath": baths, "room": rooms, "surface with area and emissivity": surfaces}, dips)
     at = _at_operating_point(scenario, [n for n, p in parts.items() if n in pairs or p.role in ("bearing", "seal")])
+    dips = {**_told_dips(scenario, parts, pairs, at), **dips}
     meshes = tuple(_mesh(name, pair, at, dips) for name, pair in pairs.items())
     bearings = tuple(_bearing(part, at) for part in parts.values() if type(part).__name__ in bearing_types)
     seals = tuple(
@@ -55,7 +60,7 @@ def machine_of(scenario: Scenario, bearing_types: Sequence[str], dips: Mapping[s
         if part.role == "seal" and "d_sh" in part.values
     )
     ends = scenario.spec.of_type("ShaftEnd")
-    treated = {x.name for x in meshes} | {x.name for x in bearings} | {x.name for x in (*seals, *surfaces)}
+    treated = {*pairs, *(b.name for b in bearings), *(s.name for s in seals), *(s.name for s in surfaces)}
     passes = scenario.spec.of_type(Efficiency.__name__)
     return Machine(
         meshes,
@@ -107,7 +112,24 @@ def _at_operating_point(scenario: Scenario, read: Sequence[str]) -> dict[str, fl
 def _mesh(name: str, pair: CylindricalPair, at: Values, dips: Mapping[str, float]) -> Mesh:
     pinion, wheel = (at[f"{reading(name, gear)}.w"] for gear in ("pinion", "wheel"))
     depths = dips.get(f"{name}.pinion", 0.0), dips.get(f"{name}.wheel", DIP * pair.m_n)
-    return Mesh(name, pair, at[f"{reading(name, 'force')}.F_t"], (pinion, wheel), depths)
+    return Mesh(name, pair, at[f"{name}.F_t"], (pinion, wheel), depths)
+
+
+def _told_dips(scenario: Scenario, parts: Parts, pairs: Mapping[str, CylindricalPair], at: Values) -> dict[str, float]:
+    """Depths of the gears for which a churning part on the same shaft, of the same pitch radius, knows its own [m].
+
+    Such a part declares its pitch radius `r` and shows the depth `h` to which the pitch circle dips.
+    """
+    told = [p for n, p in parts.items() if p.role == "churning" and "r" in p.values and f"{n}.h" in at]
+    found = {}
+    for name, pair in pairs.items():
+        for gear, d in zip(("pinion", "wheel"), pair.diameters, strict=True):
+            shaft = {path for net in scenario.spec.connections if f"{name}.{gear}" in net for path in net}
+            for part in told:
+                if f"{part.name}.shaft" in shaft and abs(2 * part.values["r"] / d - 1) < SAME:
+                    depth = at[f"{part.name}.h"]
+                    found[f"{name}.{gear}"] = depth + pair.m_n if depth > DRY * d else 0.0
+    return found
 
 
 def _bearing(part: Component, at: Values) -> Bearing:

@@ -20,19 +20,9 @@ class Mesh:
     dips: tuple[float, float]
 
     @property
-    def r_1(self) -> float:
-        """Radius of the pinion at which the tangential force acts [m]."""
-        return self.pair.pitches[0] / 2 if self.pair.r_1 is None else self.pair.r_1
-
-    @property
     def v(self) -> float:
-        """Speed of the pitch line [m/s]."""
-        return abs(self.w[0]) * self.r_1
-
-    @property
-    def tips(self) -> tuple[float, float]:
-        """Tip diameters of what dips [m]."""
-        return self.pair.tips or self.pair.outsides
+        """Speed at the reference diameter, where the force acts [m/s]."""
+        return abs(self.w[0]) * self.pair.diameters[0] / 2
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,8 @@ from scipy.optimize import brentq
 
 from ...model.laws import iso14179_1 as part_1
 from ...model.laws import iso14179_2 as part_2
-from ...model.laws.mesh import friction_schlenk, load_per_face_width, mesh_loss
+from ...model.laws.mesh import friction_schlenk, load_per_face_width, mesh_loss, tooth_loss_factor
+from ...model.laws.radiation import radiation_coefficient
 from ...model.laws.sealing import lip_seal_torque
 from .bearings import bearing_loss
 from .machine import Machine, Mesh, Surface
@@ -64,7 +65,7 @@ def _mesh_1(m: Mesh, nu: float) -> float:
 
 def _churning_1(m: Mesh, nu: float) -> float:
     m_t, total = m.pair.m_n / math.cos(m.pair.beta), 0.0
-    for w, D, dip in zip(m.w, m.tips, m.dips, strict=True):
+    for w, D, dip in zip(m.w, m.pair.tips, m.dips, strict=True):
         f_g = min(1.0, dip / D)
         total += float(part_1.side_churning(w, nu, D, f_g))
         total += float(part_1.tooth_churning(w, nu, D, m.pair.b, m.pair.beta, m_t, f_g))
@@ -91,7 +92,7 @@ def _mesh_2(m: Mesh, eta: float, X_L: float) -> float:
     pair, v_sum = m.pair, 2 * m.v * math.sin(m.pair.alpha_wt)
     load = load_per_face_width(m.F_t / math.cos(pair.alpha_wt), pair.b)
     mu = friction_schlenk(load, v_sum, pair.R, eta, pair.Ra, X_L)
-    H_v = part_2.loss_factor(pair.z_1, pair.u, pair.beta_b, *pair.contact_ratios)
+    H_v = tooth_loss_factor(pair.z_1, pair.u, pair.beta_b, *pair.contact_ratios)
     return float(mesh_loss(m.F_t * m.v, mu, H_v))
 
 
@@ -100,7 +101,7 @@ def _churning_2(m: Mesh, surfaces: tuple[Surface, ...]) -> float:
     if not e_max:
         return 0.0
     deeper = m.dips.index(e_max)
-    h_c, C_Sp = m.tips[deeper] / 2, 1.0
+    h_c, C_Sp = m.pair.tips[deeper] / 2, 1.0
     boxes = [s.values for s in surfaces if {"length", "width"} <= s.values.keys()]
     if boxes:
         length, width = boxes[0]["length"], boxes[0]["width"]
@@ -134,7 +135,7 @@ def _surface_2(surface: Surface, T: float, T_room: float) -> float:
 
     def outside(T_wall: float) -> float:
         free = float(part_2.free_convection(T_wall, T_room, surface.height))
-        return free * dry + float(part_2.radiation(T_wall, T_room, v["emissivity"])) * wet
+        return free * dry + float(radiation_coefficient(T_wall, T_room, v["emissivity"])) * wet
 
     if abs(T - T_room) < 1e-6:
         return outside(T) / (1 + outside(T) / (part_2.H_OIL * wet))

@@ -1,4 +1,4 @@
-"""Parts that read what a model does not tell of itself: speeds of shafts, loads of bearings, tooth forces."""
+"""Parts that read what a model does not tell of itself: speeds of shafts and loads of bearings."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from ...model.core.component import Component, Equation, equation
 from ...model.core.declare import Output, Port, declared
 from ...model.machines.spec import PartSpec, Spec
-from ...model.parts.ports import BearingLoad, Flange, ToothForce
+from ...model.parts.ports import BearingLoad, Flange
 
 
 class FlangeReading(Component):
@@ -35,29 +35,17 @@ class LoadReading(Component):
         yield equation("axial load read", self.F_a, self.port.F_a)
 
 
-class ForceReading(Component):
-    """Force between two gears."""
-
-    port = ToothForce()
-    F_t = Output("N", "tangential force", nominal=1000.0)
-
-    def equations(self) -> Iterator[Equation]:
-        """The tangential force."""
-        yield equation("tangential force read", self.F_t, self.port.F_t)
-
-
 #: Port -> the part that reads it.
 READINGS: Mapping[type[Port], type[Component]] = {
     Flange: FlangeReading,
     BearingLoad: LoadReading,
-    ToothForce: ForceReading,
 }
 
 
 def with_readings(spec: Spec, parts: Iterable[str]) -> Spec:
-    """The spec with a reading at every shaft, load and tooth force of some of its parts.
+    """The spec with a reading at every shaft and load of some of its parts.
 
-    The outputs of the readings are `reading(part, port)` and ".w", ".F_r", ".F_a" or ".F_t".
+    The outputs of the readings are `reading(part, port)` and ".w", ".F_r" or ".F_a".
 
     Args:
         spec: the machine

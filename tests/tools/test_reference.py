@@ -1,0 +1,132 @@
+"""`gearheat losses --method`: reference methods beside the model."""
+
+from __future__ import annotations
+
+import functools
+import json
+
+import pytest
+from gearheat.tools.cli import app
+from gearheat.tools.reference.methods import METHODS
+from typer.testing import CliRunner
+
+RIG = "helical_two_stage"
+COLUMNS = ("model", "method", "method_at_sump")
+
+
+@pytest.fixture(scope="module")
+def compared():
+    """The answer of a method about the rig with two helical stages, each computed once."""
+
+    @functools.cache
+    def answer(method: str, *options: str, rig: str = RIG) -> dict:
+        result = CliRunner().invoke(app, ["losses", rig, "--method", method, "--json", "-", *options])
+        assert result.exit_code == 0, result.stderr
+        return json.loads(result.stdout)
+
+    return answer
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_keys_and_sums(compared, method):
+    found = compared(method)
+    assert found["schema"] == "gearheat.reference/1"
+    for column in COLUMNS:
+        losses, parts = found["losses_W"][column], found["parts_W"][column]
+        assert {"mesh", "churning", "bearings", "seals", "total"} <= losses.keys()
+        assert losses["total"] == pytest.approx(sum(p for kind in parts.values() for p in kind.values()))
+        assert 0.9 < found["eta"][column] < 1
+    keys = "T_sump_C,T_room_C,T_oil_C,conductance_W_K,rating,gears,not_treated,outside,assumptions"
+    assert set(keys.split(",")) <= found.keys()
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_model_stands_as_it_is(compared, gearheat, method):
+    """What reads speeds and loads changes nothing."""
+    found, steady = compared(method), gearheat("steady", RIG, "--json", "-").json["values"]
+    assert found["T_oil_C"]["model"] == pytest.approx(steady["oil.T"], rel=1e-9)
+    assert found["losses_W"]["model"]["total"] == pytest.approx(steady["efficiency.P_loss"], rel=1e-6)
+    assert found["eta"]["model"] == pytest.approx(steady["efficiency.eta"], rel=1e-6)
+    assert [gear["F_t_N"] for gear in found["gears"]] == pytest.approx([steady[f"stage_{i}.F_t"] for i in (1, 2)])
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_losses_equal_heat_at_the_sump(compared, method):
+    found = compared(method)
+    heat = found["conductance_W_K"] * (found["T_sump_C"] - found["T_room_C"])
+    assert found["losses_W"]["method_at_sump"]["total"] == pytest.approx(heat, rel=1e-6)
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_the_rated_load_heats_the_sump_to_its_limit(compared, method):
+    """The bearings carry what the gears bring, and a little less of it where stages lose more: half a kelvin."""
+    share = compared(method, "--limit", "60 degC")["rating"]["load_share"]
+    again = compared(method, "--set", f"output.tau={-590 * share:.6f} N.m")
+    assert again["T_sump_C"] == pytest.approx(60, abs=0.5)
+
+
+def test_the_second_part_uses_the_tooth_friction_of_the_model_with_its_own_line_load(compared):
+    """F_bt/b in place of F_bn/l: eps_alpha^0.2 more, for the same oil and the same loads."""
+    options = ("--set", "stage_1.line_load=F_bt/b", "--set", "stage_2.line_load=F_bt/b")
+    found = compared("iso14179-2", *options)
+    model, method = (found["parts_W"][column]["mesh"] for column in ("model", "method"))
+    assert method == pytest.approx(model, rel=0.01)
+
+
+@pytest.mark.parametrize(("method", "power"), [("iso14179-1", 1.0), ("iso14179-2", 1.5)])
+def test_gears_that_dip_deeper_churn_more(compared, method, power):
+    depths = [("--dip", "stage_1.wheel=0 mm", "--dip", f"stage_2.wheel={mm} mm") for mm in (20, 40)]
+    low, high = (compared(method, *dips)["losses_W"]["method"] for dips in depths)
+    assert high["churning"] >= 2**power * low["churning"] * (1 - 1e-9)
+    assert {k: v for k, v in low.items() if k not in ("churning", "total")} == pytest.approx(
+        {k: v for k, v in high.items() if k not in ("churning", "total")}
+    )
+
+
+def test_heat_transfer_may_be_given(compared):
+    found = compared("iso14179-1", "--k", "34 W/(m2.K)")
+    assert found["conductance_W_K"] == pytest.approx(2 * compared("iso14179-1")["conductance_W_K"])
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_what_has_no_rule_is_named(compared, method):
+    (foot,) = compared(method)["not_treated"]
+    assert (foot["part"], foot["type"]) == ("foot", "ThermalConductor")
+    assert foot["power"] > 0
+    assert any("no print" in text for text in compared(method)["assumptions"])
+
+
+def test_a_slow_stage_is_outside_the_range(compared):
+    (outside,) = compared("iso14179-1")["outside"]
+    assert (outside["law"], outside["argument"]) == ("mesh_friction", "v")
+    assert outside["met"][0] == pytest.approx(compared("iso14179-1")["gears"][1]["v_m_s"])
+
+
+def test_a_closed_loop_has_no_efficiency(compared):
+    found = compared("iso14179-2", rig="fzg_four_square")
+    assert set(found["eta"].values()) == {None}
+    assert found["rating"]["power_W"] is None and found["rating"]["load_share"] > 0
+
+
+def test_a_limit_out_of_reach_is_said(compared):
+    assert compared("iso14179-1", "--limit", "21 degC")["rating"]["power_W"] == 0
+    assert "even 100 times" in compared("iso14179-1", "--k", "1000 W/(m2.K)")["rating"]["why"]
+
+
+def test_text_for_people(gearheat):
+    out = gearheat("losses", RIG, "--method", "iso14179-1").out
+    for words in ("sump by ISO/TR 14179-1", "thermal rating at 95.0 degC", "not treated: foot", "outside its range"):
+        assert words in out
+
+
+def test_refusals(gearheat):
+    planetary = gearheat("losses", "planetary", "--method", "iso14179-1")
+    assert planetary.code == 2 and "gear_set (PlanetarySet)" in planetary.err
+    wrong = gearheat(
+        "losses", RIG, "--method", "iso14179-1", "--dip", "stage_9.wheel=1 mm", "--dip", "stage_1.ring=1 mm"
+    )
+    assert wrong.code == 2 and len(wrong.problems()) == 2
+    assert gearheat("losses", RIG, "--method", "iso14179-1", "--limit", "95 bar").code == 2
+    assert gearheat("losses", RIG, "--method", "iso14179-1", "--dip", "stage_1.wheel").code == 2
+    assert gearheat("losses", RIG, "--method", "iso14179-1", "--contacts").code == 2
+    assert gearheat("losses", RIG, "--k", "20 W/(m2.K)").code == 2
