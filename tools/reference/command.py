@@ -103,6 +103,8 @@ def compared(machine: Machine, method: Method, T_limit: float, k: float | None) 
     share = _root(lambda s: surplus(T_limit, s), 0.0, MOST_LOAD)
     with recording() as uses:
         columns = {"model": machine.ours, "method": method.losses(machine, machine.T_oil)}
+        if share is not None:
+            method.losses(machine.loaded(share), T_limit)
     if T_sump is not None:
         columns["method_at_sump"] = method.losses(machine, T_sump)
     temperatures = {"model": machine.T_oil, "method": machine.T_oil, "method_at_sump": T_sump}
@@ -116,13 +118,7 @@ def compared(machine: Machine, method: Method, T_limit: float, k: float | None) 
         "conductance_W_K": conductance(T_sump) if T_sump is not None else None,
         "rating": _rating(machine, T_limit, share, surplus(T_limit, 0.0)),
         "gears": [
-            {
-                "part": m.name,
-                "v_m_s": m.v,
-                "F_t_N": m.F_t,
-                "dip_pinion_mm": 1e3 * m.dips[0],
-                "dip_wheel_mm": 1e3 * m.dips[1],
-            }
+            {"part": m.name, "v_m_s": m.v, "F_t_N": m.F_t, "dips_mm": [1e3 * dip for dip in m.dips]}
             for m in machine.meshes
         ],
         "not_treated": [asdict(u) for u in machine.untreated],
@@ -132,7 +128,7 @@ def compared(machine: Machine, method: Method, T_limit: float, k: float | None) 
 
 
 def _outside(method: Method, uses: Sequence[LawUse]) -> list[dict[str, Any]]:
-    """The laws that a method uses outside their range, as results list them."""
+    """The laws that a method uses outside their range, now or at its rating, as results list them."""
     met: dict[tuple[LawInfo, str], list[float]] = {}
     for use in uses:
         for argument, value in use.arguments.items():
