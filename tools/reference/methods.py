@@ -89,8 +89,9 @@ def losses_2(machine: Machine, T: float) -> Losses:
 
 
 def _mesh_2(m: Mesh, eta: float, X_L: float) -> float:
-    pair, v_sum = m.pair, 2 * m.v * math.sin(m.pair.alpha_wt)
-    load = load_per_face_width(m.F_t / math.cos(pair.alpha_wt), pair.b)
+    pair = m.pair
+    v_sum = 2 * m.v * math.cos(pair.alpha_t) * math.tan(pair.alpha_wt)
+    load = load_per_face_width(m.F_t / math.cos(pair.alpha_t), pair.b)
     mu = friction_schlenk(load, v_sum, pair.R, eta, pair.Ra, X_L)
     H_v = tooth_loss_factor(pair.z_1, pair.u, pair.beta_b, *pair.contact_ratios)
     return float(mesh_loss(m.F_t * m.v, mu, H_v))
