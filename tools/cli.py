@@ -83,12 +83,30 @@ def losses(
     contacts: Annotated[
         bool, typer.Option("--contacts", help="Also every contact over a mesh cycle: loads, speeds, films, friction.")
     ] = False,
+    method: Annotated[
+        Literal["iso14179-1", "iso14179-2"] | None,
+        typer.Option(help="Losses at the operating point beside those of a reference method, and its thermal rating."),
+    ] = None,
+    limit: Annotated[
+        str | None, typer.Option(help="With --method: sump temperature that the rating keeps; 95 degC if left out.")
+    ] = None,
+    k: Annotated[
+        str | None, typer.Option("--k", help='With --method: heat transfer of the bare housing, "20 W/(m2.K)".')
+    ] = None,
+    dip: Annotated[
+        list[str] | None, typer.Option(help='With --method: depth to which a gear dips, "stage_1.wheel=20 mm".')
+    ] = None,
     set_: Set = None,
     json: Json = None,
 ) -> None:
-    """Every loss at every measured reading."""
+    """Every loss at every measured reading, or beside those of a reference method."""
     from . import losses
+    from .reference import command
 
+    others = {"--data": data, "--card": card, "--power-flow": power_flow, "--contacts": contacts}
+    if command.asked(method, {"--limit": limit, "--k": k, "--dip": dip}, others):
+        command.command(rig, method or "", limit or "95 degC", k, dip or [], set_ or [], json)
+        return
     losses.command(rig, data, card, temperature, power_flow, set_ or [], json, contacts=contacts)
 
 

@@ -27,6 +27,8 @@ NOMINAL = {
     **{"z_1": 36.0, "u": 2.0, "eps_1": 0.8, "eps_2": 0.9},
     **{"F_bt": 6e3, "F_bn": 6.1e3, "line_load": 8e4},
     **{"F_n_l": 8e4, "v_sum": 2.0, "u_sum": 2.0, "R": 0.0064, "eta_oil": 0.05, "eta_0": 0.05, "Ra": 0.6e-6, "X_L": 0.7},
+    **{"F_t": 2300.0, "d_w1": 0.041, "d_w": 0.041, "H_s": 0.32, "H_t": 0.28, "m_t": 0.003, "dip": 0.16},
+    **{"e_max": 0.03, "h_c": 0.1, "l_h": 0.29, "C_Sp": 0.2},
     **{"P_a": 16e3, "mu": 0.035, "H_v": 0.17, "alpha_p": 15e-9, "E_star_eff": 113e9},
     **{"beta_T": 0.03, "k": 0.13, "slide_roll": 0.3, "h": 5e-7, "sigma": 8e-7},
     **{"w": 26.0, "d_m": 0.1175, "K_rs": 3e-8, "K_Z": 3.1, "K_L": 0.7, "G_rr": 1.05, "phi": 0.97, "G_sl": 4300.0},
@@ -62,6 +64,9 @@ NOMINAL = {
 }
 CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
 OWN = {
+    "iso14179_1.mesh_friction": {"K": 5e6},
+    "iso14179_1.tip_sliding": {"d_a": 0.045},
+    "iso14179_2.hydraulic_torque": {"e": 0.03},
     **{f"cycloid.{key}": CYCLOID for key in ("pin_force_sum", "pin_force_along_crank", "eccentric_force")},
     "cycloid.roller_loss_torque": CYCLOID | {"D": 0.014, "d": 0.008},
     "cycloid.output_roller_power": CYCLOID | {"D": 0.014, "d": 0.007},
@@ -103,7 +108,7 @@ ZERO = {
 NOT_NEGATIVE = {"P_a", "h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c", "T_pour"}
 #: Torques and losses: magnitudes, never negative.
 MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.", "film_line.", "film_point.")
-MAGNITUDES += ("cycloid.",)
+MAGNITUDES += ("cycloid.", "iso14179_1.", "iso14179_2.")
 
 
 def every_function() -> dict[str, Callable[..., Any]]:

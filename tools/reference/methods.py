@@ -1,0 +1,174 @@
+"""Losses and heat of a machine after both parts of ISO/TR 14179, at a temperature of the sump."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+from scipy.optimize import brentq
+
+from ...model.laws import iso14179_1 as part_1
+from ...model.laws import iso14179_2 as part_2
+from ...model.laws.mesh import friction_schlenk, load_per_face_width, mesh_loss, tooth_loss_factor
+from ...model.laws.radiation import radiation_coefficient
+from ...model.laws.sealing import lip_seal_torque
+from .bearings import bearing_loss
+from .machine import Machine, Mesh, Surface
+
+#: Kind of loss -> part -> loss [W].
+Losses = dict[str, dict[str, float]]
+
+
+@dataclass(frozen=True)
+class Method:
+    """A reference method.
+
+    Args:
+        title: in words
+        losses: of a machine at a temperature of the sump [K]
+        conductance: from the sump at a temperature [K] to the air [W/K]
+        assumptions: what it takes for granted, and which of its constants were compared with no print
+    """
+
+    title: str
+    losses: Callable[[Machine, float], Losses]
+    conductance: Callable[[Machine, float], float]
+    assumptions: tuple[str, ...]
+
+
+def losses_1(machine: Machine, T: float) -> Losses:
+    """Losses after ISO/TR 14179-1.
+
+    Args:
+        machine: the machine
+        T: temperature of the sump [K]
+    """
+    nu = machine.nu(T)
+    return {
+        "mesh": {m.name: _mesh_1(m, nu) for m in machine.meshes},
+        "churning": {m.name: _churning_1(m, nu) for m in machine.meshes},
+        "bearings": {b.name: bearing_loss(b, nu) for b in machine.bearings},
+        "seals": {s.name: s.count * float(part_1.seal_torque(s.d_sh)) * abs(s.w) for s in machine.seals},
+    }
+
+
+def _mesh_1(m: Mesh, nu: float) -> float:
+    pair = m.pair
+    (d_w1, d_w2), (d_a1, d_a2), alpha_wt = pair.pitches, pair.outsides, pair.alpha_wt
+    mu = part_1.mesh_friction(nu, part_1.load_intensity(m.F_t, pair.b, d_w1, pair.u), m.v)
+    H_s = part_1.tip_sliding(d_a2, d_w2, alpha_wt, pair.u)
+    H_t = part_1.tip_sliding(d_a1, d_w1, alpha_wt, 1 / pair.u)
+    beta_w = math.atan(math.tan(pair.beta) * d_w1 / pair.references[0])
+    return float(part_1.mesh_loss(m.F_t * m.v, mu, H_s, H_t, alpha_wt, beta_w))
+
+
+def _churning_1(m: Mesh, nu: float) -> float:
+    m_t, total = m.pair.m_n / math.cos(m.pair.beta), 0.0
+    for w, D, dip in zip(m.w, m.pair.tips, m.dips, strict=True):
+        f_g = min(1.0, dip / D)
+        total += float(part_1.side_churning(w, nu, D, f_g))
+        total += float(part_1.tooth_churning(w, nu, D, m.pair.b, m.pair.beta, m_t, f_g))
+    return total
+
+
+def losses_2(machine: Machine, T: float) -> Losses:
+    """Losses after ISO/TR 14179-2.
+
+    Args:
+        machine: the machine
+        T: temperature of the sump [K]
+    """
+    nu, eta = machine.nu(T), machine.eta(T)
+    return {
+        "mesh": {m.name: _mesh_2(m, eta, machine.oil["X_L"]) for m in machine.meshes},
+        "churning": {m.name: _churning_2(m, machine.surfaces) for m in machine.meshes},
+        "bearings": {b.name: bearing_loss(b, nu) for b in machine.bearings},
+        "seals": {s.name: s.count * float(lip_seal_torque(s.d_sh)) * abs(s.w) for s in machine.seals},
+    }
+
+
+def _mesh_2(m: Mesh, eta: float, X_L: float) -> float:
+    pair = m.pair
+    v_sum = 2 * m.v * math.cos(pair.alpha_t) * math.tan(pair.alpha_wt)
+    load = load_per_face_width(m.F_t / math.cos(pair.alpha_t), pair.b)
+    mu = friction_schlenk(load, v_sum, pair.R, eta, pair.Ra, X_L)
+    H_v = tooth_loss_factor(pair.z_1, pair.u, pair.beta_b, *pair.contact_ratios)
+    return float(mesh_loss(m.F_t * m.v, mu, H_v))
+
+
+def _churning_2(m: Mesh, surfaces: tuple[Surface, ...]) -> float:
+    e_max = max(m.dips)
+    if not e_max:
+        return 0.0
+    deeper = m.dips.index(e_max)
+    h_c, C_Sp = m.pair.tips[deeper] / 2, 1.0
+    boxes = [s.values for s in surfaces if {"length", "width"} <= s.values.keys()]
+    if boxes:
+        length, width = boxes[0]["length"], boxes[0]["width"]
+        C_Sp = float(part_2.splash_factor(e_max, h_c, 2 * length * width / (length + width)))
+    return float(part_2.hydraulic_torque(m.v, sum(m.dips), m.pair.b, C_Sp)) * abs(m.w[deeper])
+
+
+def conductance_1(machine: Machine, T: float) -> float:
+    """From the sump to still air after ISO/TR 14179-1: one coefficient over the area without fins [W/K].
+
+    Args:
+        machine: the machine
+        T: temperature of the sump [K], without effect
+    """
+    return part_1.STILL_AIR * sum(s.values["A"] for s in machine.surfaces)
+
+
+def conductance_2(machine: Machine, T: float) -> float:
+    """From the sump to still air after ISO/TR 14179-2: oil to wall, free convection and radiation, fins as area [W/K].
+
+    Args:
+        machine: the machine
+        T: temperature of the sump [K]
+    """
+    return sum(_surface_2(s, T, machine.T_room) for s in machine.surfaces)
+
+
+def _surface_2(surface: Surface, T: float, T_room: float) -> float:
+    v = surface.values
+    wet, dry = float(v["A"]), float(v["A"] + v.get("A_fins", 0.0))
+
+    def outside(T_wall: float) -> float:
+        free = float(part_2.free_convection(T_wall, T_room, surface.height))
+        return free * dry + float(radiation_coefficient(T_wall, T_room, v["emissivity"])) * wet
+
+    if abs(T - T_room) < 1e-6:
+        return outside(T) / (1 + outside(T) / (part_2.H_OIL * wet))
+    T_wall = float(brentq(lambda x: part_2.H_OIL * wet * (T - x) - outside(x) * (x - T_room), T_room, T))
+    return part_2.H_OIL * wet * (T - T_wall) / (T - T_room)
+
+
+NOT_COMPARED = "its constants were compared with no print of the standard; see model/sources.toml"
+BEARINGS = "bearings: Palmgren's formula with factors for an oil bath from the middle of catalogue ranges"
+
+METHODS: Mapping[str, Method] = {
+    "iso14179-1": Method(
+        "ISO/TR 14179-1",
+        losses_1,
+        conductance_1,
+        (
+            NOT_COMPARED,
+            BEARINGS,
+            "seals: nitrile rubber",
+            "churning: sides and teeth of gears that dip; smooth shafts are left out, as no part declares them",
+            f"heat: {part_1.STILL_AIR:g} W/(m2.K) over the bare area, fins not counted, still air; --k takes another",
+        ),
+    ),
+    "iso14179-2": Method(
+        "ISO/TR 14179-2",
+        losses_2,
+        conductance_2,
+        (
+            NOT_COMPARED,
+            BEARINGS,
+            "churning: shafts in one level plane; acts on the shaft of the gear that dips deeper; squeezing left out",
+            "heat: oil to wall, free convection over bare area and fins, radiation over the bare area; no fan, no feet",
+        ),
+    ),
+}
