@@ -67,6 +67,11 @@ class Scenario:
         """Column of a measured table -> path in the model."""
         return {instrument.column: instrument.reads for instrument in self.instruments}
 
+    @property
+    def room(self) -> str | None:
+        """Path of the temperature of the room, of the first where there are several, None where there is none."""
+        return next((f"{name}.T" for name in self.spec.of_type("Room")), None)
+
     def settable(self) -> dict[str, Quantity]:
         """All that may be given a value, by path: parameters, start values of states, inputs."""
         return {

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
 
-from . import cli_contact, cli_diagnosis, cli_logs, cli_rigs, console
-from .cli_options import Json, Rig, Set
+from . import cli_contact, cli_developers, cli_diagnosis, cli_logs, cli_rigs, console
+from .cli_options import Jobs, Json, Plot, Rig, Set, Tests
 
 app = typer.Typer(
     name="gearheat",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -37,11 +35,9 @@ def options(
     """Losses and temperatures of gearboxes: simulate, design, export as FMU, compare with measurements."""
 
 
-Workers = Annotated[int, typer.Option(min=0, help="Processes to use; 0 for one per core.")]
 Extended = Annotated[
     Path | None, typer.Option(metavar="FILE", help="Rig file that `diagnose` wrote; it takes the rig's place.")
 ]
-Tests = Annotated[str | None, typer.Option(help="Only these tests, for example 1,13,22-26.")]
 
 
 @app.command()
@@ -49,12 +45,12 @@ Tests = Annotated[str | None, typer.Option(help="Only these tests, for example 1
 def run(
     rig: Rig = "planetary",
     out: Annotated[
-        Path, typer.Option(help="Folder for results; a run that was interrupted goes on from there.")
+        Path, typer.Option("-o", "--out", help="Folder for results; a run that was interrupted goes on from there.")
     ] = Path("out"),
     tests: Tests = None,
     step: Annotated[str, typer.Option(help="Communication step of the FMU.")] = "60 s",
     set_: Set = None,
-    workers: Workers = 0,
+    jobs: Jobs = 0,
     extended: Extended = None,
     data: Annotated[Path | None, typer.Option(help="Measured table; the rig's own if left out.")] = None,
     card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
@@ -63,7 +59,7 @@ def run(
     """The main job: export the FMU, play all measured tests, compare, report."""
     from . import run
 
-    run.command(rig, out, tests, step, set_ or [], workers, json, extended=extended, data=data, card=card)
+    run.command(rig, out, tests, step, set_ or [], jobs, json, extended=extended, data=data, card=card)
 
 
 @app.command()
@@ -94,11 +90,11 @@ def losses(
 
 @app.command()
 @console.guarded
-def steady(rig: Rig, set_: Set = None, extended: Extended = None, json: Json = None) -> None:
+def steady(rig: Rig, set_: Set = None, extended: Extended = None, plot: Plot = None, json: Json = None) -> None:
     """Steady temperatures and losses at one operating point."""
     from . import points
 
-    points.steady_command(str(extended or rig), set_ or [], json)
+    points.steady_command(str(extended or rig), set_ or [], json, plot=plot)
 
 
 @app.command()
@@ -127,12 +123,13 @@ def simulate(
     duty: Annotated[Path, typer.Option(help="CSV with time and inputs, units in the header.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write, units in the header.")],
     set_: Set = None,
+    plot: Plot = None,
     json: Json = None,
 ) -> None:
     """A transient over a duty cycle."""
     from . import transients
 
-    transients.simulate_command(rig, duty, out, set_ or [], json)
+    transients.simulate_command(rig, duty, out, set_ or [], json, plot=plot)
 
 
 @app.command()
@@ -188,12 +185,13 @@ def play(
     step: Annotated[str, typer.Option(help="Communication step.")] = "60 s",
     trust: Annotated[bool, typer.Option("--trust", help="Run native code of an FMU that was not made here.")] = False,
     set_: Set = None,
+    plot: Plot = None,
     json: Json = None,
 ) -> None:
     """Play an FMU over a duty cycle."""
     from . import transients
 
-    transients.play_command(fmu, duty, out, step, set_ or [], json, trust=trust)
+    transients.play_command(fmu, duty, out, step, set_ or [], json, trust=trust, plot=plot)
 
 
 @app.command()
@@ -237,34 +235,6 @@ app.command()(cli_diagnosis.diagnose)
 app.command()(cli_diagnosis.plan)
 app.command()(cli_diagnosis.card)
 app.command()(cli_logs.replay)
-
-
-@app.command()
-@console.guarded
-def challenge(
-    sheet: Annotated[
-        Literal["own", "foreign", "textbook", "practice", "all"],
-        typer.Option(
-            help="own: the rig behaves as the model; foreign: another simulator, with a healthy reference; textbook: a "
-            "frozen third one with rough readings; practice: the campaigns of --practice; all: these, pooled."
-        ),
-    ],
-    n: Annotated[int, typer.Option("--n", help="Number of cases of each sheet.")] = 150,
-    seed: Annotated[int, typer.Option(help="The same seed hides the same.")] = 0,
-    jobs: Annotated[int, typer.Option(min=0, help="Processes to use; 0 for one per core.")] = 0,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for cases and answers; a run that was interrupted goes on from there.")
-    ] = None,
-    only: Annotated[str | None, typer.Option(help='One kind of cases, for example "clean".')] = None,
-    practice: Annotated[
-        Path | None, typer.Option(help="Folder of campaigns: data.csv, card.json and key.json in a folder each.")
-    ] = None,
-    json: Json = None,
-) -> None:
-    """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
-    from .challenge import command
-
-    command.command(sheet, n, seed, jobs, out, only, practice, json)
 
 
 @app.command("list")
@@ -331,34 +301,18 @@ def sweep(
         str | None, typer.Option(help='Warm-up at constant inputs: how long, such as "330 min".')
     ] = None,
     every: Annotated[str | None, typer.Option(help="Warm-up: time between rows; only the end if left out.")] = None,
-    threads: Annotated[int, typer.Option(min=0, help="Threads to use; 0 for one per core.")] = 0,
+    jobs: Jobs = 0,
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Dask scheduler that spreads the rows over its workers.")
     ] = None,
+    plot: Plot = None,
     json: Json = None,
 ) -> None:
     """Many steady states or warm-ups at once: a grid, a Latin hypercube or chance; an interrupted sweep goes on."""
     from . import sweep
 
     options = (sample, grid, method, seed, set_ or [], output or [], kind, duty, duration, every)
-    sweep.command(sweep.Request(rig, vary, out, *options, threads, scheduler, json))
-
-
-@app.command()
-@console.guarded
-def bench(
-    rig: Rig = "planetary",
-    tests: Tests = None,
-    fmu: Annotated[bool, typer.Option("--fmu", help="The FMU against its peers, and the batch, instead.")] = False,
-    contact: Annotated[bool, typer.Option("--contact", help="The contact solver against slippy, instead.")] = False,
-    json: Json = None,
-) -> None:
-    """Time and memory of the main job, beside SciPy's LSODA on the same equations in the same run."""
-    if contact:
-        os.environ.setdefault("OMP_NUM_THREADS", "1")
-    from . import bench
-
-    bench.command(rig, tests, json, fmu, contact)
+    sweep.command(sweep.Request(rig, vary, out, *options, jobs, scheduler, json, plot))
 
 
 app.command()(cli_contact.film)
@@ -368,6 +322,8 @@ app.command()(cli_rigs.parts)
 app.command()(cli_rigs.schema)
 app.command("map")(cli_rigs.map_)
 app.command()(cli_rigs.rating)
+for _command in (cli_developers.challenge, cli_developers.bench):
+    app.command(rich_help_panel="For developers")(_command)
 
 
 if __name__ == "__main__":

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import Annotated
 
 import typer
+
+from .console import PICTURES
 
 Set = Annotated[
     list[str] | None,
@@ -12,3 +15,8 @@ Set = Annotated[
 ]
 Json = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
 Rig = Annotated[str, typer.Argument(help="Name of a shipped rig (see `gearheat list`), or path of a rig file.")]
+Plot = Annotated[
+    Path | None, typer.Option(metavar="FILE", help=f"Picture to write; its name ends in {', '.join(PICTURES)}.")
+]
+Jobs = Annotated[int, typer.Option("-j", "--jobs", min=0, help="How many to run at once; 0 for one per core.")]
+Tests = Annotated[str | None, typer.Option(help="Only these tests, for example 1,13,22-26.")]

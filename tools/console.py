@@ -16,7 +16,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, ParamSpec
 
-from ..model.errors import DataError, GearheatError
+from ..model.errors import DataError, GearheatError, ScenarioError
 from ..model.files import inputs_kept, place, replacing
 
 P = ParamSpec("P")
@@ -25,6 +25,8 @@ BAD_INPUT = 2
 INTERRUPTED = 130
 #: Of a device without room.
 FULL = (errno.ENOSPC, errno.EDQUOT)
+#: Kinds of pictures, by the ending of the file.
+PICTURES = (".html", ".svg", ".png")
 #: Width that a column of words gets at least.
 LEAST = 14
 
@@ -132,6 +134,18 @@ def writable(*paths: Path | None) -> None:
             problems.append(_cannot_write(path, error))
     if problems:
         raise DataError(problems)
+
+
+def plottable(path: Path | None) -> None:
+    """Check before long work that a picture can be written to a place.
+
+    Raises:
+        ScenarioError: its ending is that of no kind of picture
+        DataError: it cannot be written
+    """
+    if path is not None and path.suffix.lower() not in PICTURES:
+        raise ScenarioError(f"--plot {path}: unknown kind of picture. Its name must end in {' or '.join(PICTURES)}.")
+    writable(path)
 
 
 def folder(path: Path) -> Path:

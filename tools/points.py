@@ -3,16 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
+from ..model.core.declare import Port, State, declared
 from ..model.core.flat import FlatModel
+from ..model.core.flatten import flatten
 from ..model.errors import GearheatError, ScenarioError, SolveError
+from ..model.machines.spec import assemble
 from ..model.run.design import Design, design
 from ..model.run.result import Result
 from ..model.run.steady import steady
 from ..model.units import from_si, shown
 from ..scenarios.scenario import Scenario, parse_assignments
-from .console import answer, table
+from .console import answer, plottable, table
+from .heat_paths import heat_flows, heat_paths
 from .rigs import load
 from .settings import adjusted, flat_of
 from .unchecked import print_unchecked, unchecked
@@ -21,14 +26,43 @@ from .unchecked import print_unchecked, unchecked
 HEAD = ("name", "value", "unit", "meaning")
 
 
-def steady_command(rig: str, assignments: Sequence[str], json: str | None) -> None:
+def told(scenario: Scenario) -> list[str]:
+    """What a picture shows of a rig: the temperature of its oil, or of its first body; losses and efficiencies."""
+    warm = [p for p in scenario.spec.parts if "T" in declared(scenario.spec.types[p.type], State)]
+    warm.sort(key=lambda p: "lubricant" not in declared(scenario.spec.types[p.type], Port))
+    meters = scenario.spec.of_type("Efficiency")
+    return [*(f"{p.name}.T" for p in warm[:1]), *(f"{name}.{key}" for name in meters for key in ("P_loss", "eta"))]
+
+
+def steady_command(rig: str, assignments: Sequence[str], json: str | None, *, plot: Path | None = None) -> None:
     """Temperatures and losses of a rig at rest with its surroundings."""
+    plottable(plot)
     scenario = adjusted(load(rig), assignments)
     flat = flat_of(scenario)
     result = steady(flat, conditions(scenario, flat))
-    told = unchecked(scenario, flat)
-    found = {"schema": "gearheat.steady/1", "rig": scenario.name, **point_of(flat, result), "unchecked": told}
+    found = {
+        "schema": "gearheat.steady/1",
+        "rig": scenario.name,
+        "plot": plot and str(plot),
+        **point_of(flat, result),
+        "unchecked": unchecked(scenario, flat),
+    }
+    if plot is not None:
+        _plot_heat(scenario, flat, result, plot)
     answer(found, json, lambda: _print(f"{scenario.name}: steady state", flat, found))
+
+
+def _plot_heat(scenario: Scenario, flat: FlatModel, result: Result, plot: Path) -> None:
+    """Draw where the heat of a steady state comes from and where it goes."""
+    from .plotting import plotted
+    from .sankey import heat_picture
+
+    assembly = assemble(scenario.spec)
+    told = flatten(assembly, flows=heat_flows(assembly))
+    guess = {q.name: float(result[q.name][0]) for q in flat.states}
+    there = steady(told, conditions(scenario, told), guess=guess)
+    values = {name: float(column[0]) for name, column in there.columns.items()}
+    plotted(plot, heat_picture(scenario.name, heat_paths(assembly, values), values))
 
 
 def conditions(scenario: Scenario, flat: FlatModel) -> dict[str, float]:

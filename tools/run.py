@@ -129,11 +129,11 @@ def _study(
 
 def _curves(scenario: Scenario, study: Measured | None) -> dict[str, str]:
     """Columns of the curves over time -> path: the temperatures, each once, and the room."""
-    rooms = [s.reads for s in study.rooms] if study else [f"{name}.T" for name in scenario.spec.of_type("Room")]
+    room = next((s.reads for s in study.rooms), None) if study else scenario.room
     found: dict[str, str] = {}
     for column, path in sources(scenario, study.warm if study else ()).items():
         found |= {} if path in found.values() else {column: path}
-    return found | ({ROOM: rooms[0]} if rooms else {})
+    return found | ({ROOM: room} if room else {})
 
 
 def _telling(rows: Rows) -> list[int]:
