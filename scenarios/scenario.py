@@ -10,9 +10,10 @@ from ..model.core.declare import Given, Input, declared
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.machines.spec import Spec
-from .entries import FILES, Entry, catalogue, unchecked_entry
+from .entries import Entry, catalogue, unchecked_entry
 from .instruments import Instrument
 from .protocol import Protocol
+from .shipped import FILES
 from .values import Override, entry_values, in_range, readable, settable
 
 

@@ -241,9 +241,9 @@ app.command()(cli_logs.replay)
 @console.guarded
 def list_(json: Json = None) -> None:
     """The shipped rigs and catalogues."""
-    from . import describe
+    from . import listing
 
-    describe.list_command(json)
+    listing.list_command(json)
 
 
 @app.command()

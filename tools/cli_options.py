@@ -14,7 +14,19 @@ Set = Annotated[
     typer.Option("--set", help='NAME=VALUE with a unit, for example "carrier.w=250 rpm". Repeatable.'),
 ]
 Json = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
-Rig = Annotated[str, typer.Argument(help="Name of a shipped rig (see `gearheat list`), or path of a rig file.")]
+
+
+def _rigs(incomplete: str) -> list[str]:
+    """What the shell completes the name of a rig to."""
+    from ..scenarios.shipped import RIGS
+
+    return sorted(p.parent.name for p in RIGS.glob("*/rig.toml") if p.parent.name.startswith(incomplete))
+
+
+Rig = Annotated[
+    str,
+    typer.Argument(help="Name of a shipped rig (see `gearheat list`), or path of a rig file.", autocompletion=_rigs),
+]
 Plot = Annotated[
     Path | None, typer.Option(metavar="FILE", help=f"Picture to write; its name ends in {', '.join(PICTURES)}.")
 ]

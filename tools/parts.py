@@ -16,9 +16,10 @@ from ..model.errors import ScenarioError, suggestion
 from ..model.parts import PARTS
 from ..model.sources import recording, sources
 from ..model.units import example, from_si, shown, text
-from ..scenarios.entries import DESCRIPTIVE, FILES, Entry, catalogue
-from ..scenarios.load import list_rigs, load
+from ..scenarios.entries import DESCRIPTIVE, Entry, catalogue
+from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
+from ..scenarios.shipped import FILES, list_rigs
 from ..scenarios.tables import RigTable
 from ..scenarios.values import UNCERTAINTIES, settable
 from .console import answer, as_json, table, write
