@@ -40,7 +40,6 @@ Extended = Annotated[
 ]
 
 
-@app.command()
 @console.guarded
 def run(
     rig: Rig = "planetary",
@@ -62,7 +61,6 @@ def run(
     run.command(rig, out, tests, step, set_ or [], jobs, json, extended=extended, data=data, card=card)
 
 
-@app.command()
 @console.guarded
 def losses(
     rig: Rig = "planetary",
@@ -82,13 +80,12 @@ def losses(
     set_: Set = None,
     json: Json = None,
 ) -> None:
-    """Every loss at every measured reading."""
+    """Loss of every part at each measured reading."""
     from . import losses
 
     losses.command(rig, data, card, temperature, power_flow, set_ or [], json, contacts=contacts)
 
 
-@app.command()
 @console.guarded
 def steady(rig: Rig, set_: Set = None, extended: Extended = None, plot: Plot = None, json: Json = None) -> None:
     """Steady temperatures and losses at one operating point."""
@@ -97,7 +94,6 @@ def steady(rig: Rig, set_: Set = None, extended: Extended = None, plot: Plot = N
     points.steady_command(str(extended or rig), set_ or [], json, plot=plot)
 
 
-@app.command()
 @console.guarded
 def design(
     rig: Rig,
@@ -116,7 +112,6 @@ def design(
     points.design_command(str(extended or rig), free or [], target, set_ or [], among or [], json)
 
 
-@app.command()
 @console.guarded
 def simulate(
     rig: Rig,
@@ -126,13 +121,12 @@ def simulate(
     plot: Plot = None,
     json: Json = None,
 ) -> None:
-    """A transient over a duty cycle."""
+    """Temperatures and losses over a duty cycle."""
     from . import transients
 
     transients.simulate_command(rig, duty, out, set_ or [], json, plot=plot)
 
 
-@app.command()
 @console.guarded
 def export(
     rig: Rig,
@@ -176,7 +170,6 @@ def export(
     )
 
 
-@app.command()
 @console.guarded
 def play(
     fmu: Annotated[Path, typer.Argument(help="FMU to play.")],
@@ -194,7 +187,6 @@ def play(
     transients.play_command(fmu, duty, out, step, set_ or [], json, trust=trust, plot=plot)
 
 
-@app.command()
 @console.guarded
 def compare(
     result: Annotated[Path, typer.Argument(help="Simulated readings: CSV with test and direction, or point.")],
@@ -203,13 +195,12 @@ def compare(
     card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
     json: Json = None,
 ) -> None:
-    """Errors of simulated readings by grid, speed, torque, oil and direction, noise floor and rivals."""
+    """Errors of simulated readings by group, with the noise floor and statistical rivals."""
     from . import readings
 
     readings.command(result, data, rig, card, json)
 
 
-@app.command()
 @console.guarded
 def calibrate(
     rig: Rig,
@@ -231,13 +222,6 @@ def calibrate(
     calibrate.command(rig, grid, free, bounds or [], set_ or [], json, data=data, card=card)
 
 
-app.command()(cli_diagnosis.diagnose)
-app.command()(cli_diagnosis.plan)
-app.command()(cli_diagnosis.card)
-app.command()(cli_logs.replay)
-
-
-@app.command("list")
 @console.guarded
 def list_(json: Json = None) -> None:
     """The shipped rigs and catalogues."""
@@ -246,7 +230,6 @@ def list_(json: Json = None) -> None:
     listing.list_command(json)
 
 
-@app.command()
 @console.guarded
 def show(
     rig: Rig,
@@ -259,7 +242,6 @@ def show(
     describe.show_command(rig, errata, json)
 
 
-@app.command()
 @console.guarded
 def verify(
     rig: Annotated[
@@ -268,13 +250,12 @@ def verify(
     json: Json = None,
     html: Annotated[Path | None, typer.Option(metavar="FILE", help="HTML page to write.")] = None,
 ) -> None:
-    """Each published number of each machine, the corrected one, what the model gives, and the verdict."""
+    """Published numbers of each machine beside what the model gives."""
     from . import verify
 
     verify.command(rig, json, html)
 
 
-@app.command()
 @console.guarded
 def sweep(
     rig: Rig,
@@ -285,10 +266,10 @@ def sweep(
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="CSV or Parquet file to write.")],
-    sample: Annotated[int | None, typer.Option(help="Number of rows, spread at random.")] = None,
+    sample: Annotated[int | None, typer.Option(help="Number of random rows.")] = None,
     grid: Annotated[str | None, typer.Option(help="Rows of a grid, one number for each --vary, such as 20x10.")] = None,
     method: Annotated[
-        Literal["lhs", "monte-carlo"], typer.Option(help="How a sample is spread; lhs is a Latin hypercube.")
+        Literal["lhs", "monte-carlo"], typer.Option(help="How random rows are drawn; lhs: Latin hypercube.")
     ] = "lhs",
     seed: Annotated[int, typer.Option(help="The same seed gives the same sample.")] = 0,
     set_: Set = None,
@@ -308,22 +289,34 @@ def sweep(
     plot: Plot = None,
     json: Json = None,
 ) -> None:
-    """Many steady states or warm-ups at once: a grid, a Latin hypercube or chance; an interrupted sweep goes on."""
+    """Many steady states or warm-ups, on a grid or at random. An interrupted sweep goes on."""
     from . import sweep
 
     options = (sample, grid, method, seed, set_ or [], output or [], kind, duty, duration, every)
     sweep.command(sweep.Request(rig, vary, out, *options, jobs, scheduler, json, plot))
 
 
-app.command()(cli_contact.film)
-app.command("verify-contact")(cli_contact.verify_contact)
-app.command()(cli_rigs.new)
-app.command()(cli_rigs.parts)
-app.command()(cli_rigs.schema)
-app.command("map")(cli_rigs.map_)
-app.command()(cli_rigs.rating)
-for _command in (cli_developers.challenge, cli_developers.bench):
-    app.command(rich_help_panel="For developers")(_command)
+#: The commands by what they are for, in the order in which the help shows them.
+PANELS = {
+    "Your gearbox": (cli_rigs.new, list_, show, cli_rigs.parts, cli_rigs.schema),
+    "What it does": (steady, simulate, design, sweep, cli_rigs.map_, cli_rigs.rating),
+    "FMU": (export, play),
+    "Measured data": (
+        run,
+        losses,
+        compare,
+        calibrate,
+        cli_diagnosis.diagnose,
+        cli_diagnosis.plan,
+        cli_diagnosis.card,
+        cli_logs.replay,
+    ),
+    "Films, and proof": (cli_contact.film, verify, cli_contact.verify_contact),
+    "For developers": (cli_developers.challenge, cli_developers.bench),
+}
+for _panel, _commands in PANELS.items():
+    for _command in _commands:
+        app.command(_command.__name__.strip("_").replace("_", "-"), rich_help_panel=_panel)(_command)
 
 
 if __name__ == "__main__":

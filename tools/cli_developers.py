@@ -48,7 +48,7 @@ def bench(
     contact: Annotated[bool, typer.Option("--contact", help="The contact solver against slippy, instead.")] = False,
     json: Json = None,
 ) -> None:
-    """Time and memory of the main job, beside SciPy's LSODA on the same equations in the same run."""
+    """Time and memory of the main job, beside SciPy's LSODA on the same equations."""
     if contact:
         os.environ.setdefault("OMP_NUM_THREADS", "1")
     from . import bench

@@ -40,7 +40,7 @@ def rating(
     set_: Set = None,
     json: Json = None,
 ) -> None:
-    """Thermal power over room temperature and speed: what the rig carries for ever within a limit."""
+    """Thermal power over room temperature and speed: what the rig carries continuously within a limit."""
     from . import maps
 
     maps.rating_command(rig, limit, {"room": room, "w": speed}, grid, out, set_ or [], json)
@@ -57,7 +57,7 @@ def new(
     out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; NAME.toml if left out.")] = None,
     json: Json = None,
 ) -> None:
-    """A rig of your own from a name plate: it runs at once, and tells the rule of every number."""
+    """Make a rig of your own from its name plate. It runs at once and tells the rule behind every number."""
     from . import new
 
     new.new_command(name, stages, ratio, power, speed, oil, out, json)
@@ -68,7 +68,7 @@ def parts(
     kind: Annotated[str | None, typer.Argument(metavar="TYPE", help="Part type; all types if left out.")] = None,
     json: Json = None,
 ) -> None:
-    """What a rig can be built of: part types, and all about one with an example."""
+    """Part types that a rig can be built of, and everything about one of them."""
     from . import parts
 
     parts.parts_command(kind, json)
@@ -78,7 +78,7 @@ def parts(
 def schema(
     out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; printed if left out.")] = None,
 ) -> None:
-    """JSON schema of rig files: editors complete and check them with it."""
+    """JSON schema of rig files, for editors that complete and check them."""
     from . import parts
 
     parts.schema_command(out)
