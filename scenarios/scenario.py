@@ -163,13 +163,34 @@ class Scenario:
         found = self._entry(part, name)
         return {path: found.told(path.rpartition(".")[2], source) for path in self.entry_values(part, name)}
 
-    def _entry(self, part: str, name: str) -> Entry:
-        declarations = settable(self.spec.types[self.spec.part(part).type])
+    def alternatives(self, part: str) -> tuple[str, ...]:
+        """Names of the catalogue entries that give a part all that its own entries give it.
+
+        Args:
+            part: name of a part that is filled from a catalogue
+
+        Raises:
+            ScenarioError: there is no such part, or no catalogue fits it
+        """
+        known, taken = self._known(part), settable(self.spec.types[self.spec.part(part).type]).keys()
+        own = [known[name].values.keys() & taken for name in self.entries.get(part, {}).values() if name in known]
+        found = tuple(name for name, e in known.items() if all(e.values.keys() >= keys for keys in own))
+        if not found:
+            raise ScenarioError(f"{self.name}: no catalogue has values for {part}.")
+        return found
+
+    def _known(self, part: str) -> dict[str, Entry]:
+        """The catalogue entries that have values for a part."""
+        taken = settable(self.spec.types[self.spec.part(part).type]).keys()
         kinds = self.entries.get(part) or FILES
-        known = {n: e for kind in kinds for n, e in catalogue(kind).items() if e.values.keys() & declarations.keys()}
+        return {name: e for kind in kinds for name, e in catalogue(kind).items() if e.values.keys() & taken}
+
+    def _entry(self, part: str, name: str) -> Entry:
+        known = self._known(part)
         if name not in known:
+            kinds = " or ".join(self.entries.get(part) or FILES)
             close = suggestion(name, known) or f" Known: {', '.join(known) or 'none'}."
-            raise ScenarioError(f'{part} = {name}: unknown {" or ".join(kinds)} "{name}".{close}')
+            raise ScenarioError(f'{part} = {name}: unknown {kinds} "{name}".{close}')
         return known[name]
 
     def unchecked(self, filled: Iterable[tuple[str, str]] = ()) -> dict[tuple[str, str], tuple[str, ...]]:

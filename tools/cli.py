@@ -97,19 +97,27 @@ def steady(rig: Rig, set_: Set = None, extended: Extended = None, plot: Plot = N
 @console.guarded
 def design(
     rig: Rig,
-    target: Annotated[list[str], typer.Option(help="Value to reach, NAME=VALUE. Repeatable.")],
-    free: Annotated[list[str] | None, typer.Option(help="Unknown to solve for (one per target). Repeatable.")] = None,
+    target: Annotated[
+        list[str],
+        typer.Option(help="Value to reach, NAME=VALUE, or limit to keep, NAME<VALUE or NAME>VALUE. Repeatable."),
+    ],
+    free: Annotated[
+        list[str] | None, typer.Option(help="Parameter or input that may change, one per value to reach. Repeatable.")
+    ] = None,
     among: Annotated[
-        list[str] | None, typer.Option(help="Alternatives from a catalogue, for example oil=PAOR,MINR; each is solved.")
+        list[str] | None,
+        typer.Option(
+            help="Alternatives from a catalogue, for example oil=PAOR,MINR, or oil=all; the best comes first."
+        ),
     ] = None,
     set_: Set = None,
     extended: Extended = None,
     json: Json = None,
 ) -> None:
     """Find parameters or inputs for which outputs reach their targets."""
-    from . import points
+    from . import designing
 
-    points.design_command(str(extended or rig), free or [], target, set_ or [], among or [], json)
+    designing.design_command(str(extended or rig), free or [], target, set_ or [], among or [], json)
 
 
 @console.guarded

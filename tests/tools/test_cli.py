@@ -212,6 +212,35 @@ def test_design_among_oils_solves_each(gearheat):
     assert areas["MINR"] > areas["PAOR"]
 
 
+def test_design_keeps_to_limits_with_the_least_change(gearheat):
+    frees = ("--free", "cooling.A", "--free", "foot.G")
+    found = gearheat("design", "planetary", "--json", "-", *frees, "--target", "oil.T < 75 degC").json
+    assert found["met"] and list(found["free"]) == ["foot.G"]
+    assert found["targets"]["oil.T"] == pytest.approx(75.0, abs=1e-6)
+    assert found["notes"][0].startswith("or with a larger change: cooling.A = ")
+    answer = gearheat("design", "planetary", *frees, "--target", "oil.T<=90 degC")
+    assert "met already" in answer.out
+    answer = gearheat("design", "planetary", "--target", "oil.T<75 degC")
+    assert answer.code == 2 and "oil.T is 81.7787 degC, which is not < 75 degC" in answer.err
+    for wrong in ("oil.T", "oil.T<<80 degC", "oil.T<80", "oli.T<80 degC"):
+        answer = gearheat("design", "planetary", *frees, "--target", wrong)
+        assert answer.code == 2 and "Traceback" not in answer.err, wrong
+
+
+def test_design_goes_through_a_catalogue_the_best_first(gearheat):
+    aims = ("--target", "oil.T<80 degC", "--target", "gear_set.Lambda_sp>0.25")
+    found = gearheat("design", "planetary", "--json", "-", *aims, "--among", "oil=all").json
+    rows = found["alternatives"]
+    assert {"PAOR", "MINR", "ISO VG 220 PAO"} <= {row["oil"] for row in rows} and len(rows) > 20
+    met = [row["met"] for row in rows]
+    assert met == sorted(met, reverse=True) and 0 < sum(met) < len(met)
+    for row in rows:
+        values = row["values"]
+        assert row["met"] == (values["oil.T"] <= 80 and values["gear_set.Lambda_sp"] >= 0.25)
+    answer = gearheat("design", "planetary", *aims, "--among", "cooling=all")
+    assert answer.code == 2 and "catalogue" in answer.err
+
+
 def test_design_without_solution_says_so_and_ends_with_two(gearheat):
     answer = gearheat("design", "planetary", "--free", "cooling.A", "--target", "oil.T=5 degC")
     assert answer.code == 2
