@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
 from ..model.core.flat import FlatModel
@@ -25,18 +25,26 @@ ALL = "all"
 
 @dataclass(frozen=True)
 class _Case:
-    """A rig as set, its model, and what is asked of it."""
+    """A rig as set, its model, and what is asked of it; `own` are values in the place of the model's."""
 
     setting: Scenario
     flat: FlatModel
     targets: tuple[Target, ...]
     free: tuple[str, ...]
+    own: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def values(self) -> dict[str, float]:
         """What the search starts from: the inputs given, and the model's own values of what is free."""
         own = {name: self.flat.quantity(name).start for name in self.free}
-        return {**own, **conditions(self.setting, self.flat)}
+        return {**own, **conditions(self.setting, self.flat), **self.own}
+
+    def filled(self, part: str, name: str) -> _Case | None:
+        """The same with a part filled from another entry, where that changes no more than parameters of the model."""
+        own = self.setting.entry_values(part, name)
+        if any(self.flat.index.get(path, ("", 0))[0] != "parameter" for path in own):
+            return None
+        return replace(self, setting=adjusted(self.setting, [f"{part}={name}"], named=self.free), own=own)
 
 
 def design_command(
@@ -59,8 +67,9 @@ def design_command(
         return
     solved: list[tuple[tuple[float, ...], dict[str, Any]]] = []
     unsolved: list[dict[str, Any]] = []
+    first = _case(scenario, free, targets, assignments)
     for name in names:
-        case = _case(scenario, free, targets, [*assignments, f"{part}={name}"])
+        case = first.filled(part, name) or _case(scenario, free, targets, [*assignments, f"{part}={name}"])
         try:
             search = least_change(case.flat, case.free, case.targets, case.values) if free else None
             solution = search or unchanged(case.flat, case.targets, case.values)

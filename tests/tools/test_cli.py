@@ -237,7 +237,7 @@ def test_design_goes_through_a_catalogue_the_best_first(gearheat):
     for row in rows:
         values = row["values"]
         assert row["met"] == (values["oil.T"] <= 80 and values["gear_set.Lambda_sp"] >= 0.25)
-    answer = gearheat("design", "planetary", *aims, "--among", "cooling=all")
+    answer = gearheat("design", "planetary", *aims, "--among", "foot=all")
     assert answer.code == 2 and "catalogue" in answer.err
 
 
