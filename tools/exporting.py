@@ -62,7 +62,8 @@ def export_command(
     write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, start), **told, **options)
     kept = effective(flat, start)
     named = {q.name for q in kept.parameters}
-    written = [] if beside is None else write_extras(out, beside, setting, kept, duty, start, sources_of(setting, kept))
+    origins = sources_of(setting, kept) if with_origins else None
+    written = [] if beside is None else write_extras(out, beside, setting, kept, duty, start, origins)
     found = {
         "schema": "gearheat.export/1",
         "rig": scenario.name,
