@@ -12,7 +12,7 @@ from ..model.run.steady import steady
 from ..model.sources import LawInfo, sources
 from ..model.units import from_si, shown, text
 from ..scenarios.scenario import Scenario
-from .console import answer, table
+from .console import answer, say, table
 from .points import conditions, outside_of, tell_outside
 from .rigs import load
 from .settings import flat_of
@@ -144,9 +144,9 @@ def _doc(cls: type) -> str:
 
 
 def _print(found: dict[str, Any]) -> None:
-    print(f"{found['rig']}: {found['doc']}\n")
+    say(f"{found['rig']}: {found['doc']}\n")
     if found["reproduces"]:
-        print(f"Reproduces: {found['reproduces']}\n")
+        say(f"Reproduces: {found['reproduces']}\n")
     valued = ("name", "value", "unit", "doc")
     table("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")))
     known = ("name", "value", "kind", "uncertainty", "unit", "doc", "source")
@@ -159,16 +159,16 @@ def _print(found: dict[str, Any]) -> None:
     table("Laws", keys, _rows(found["laws"], keys))
     tell_outside(found["outside"])
     for problem in found["no_steady_state"]:
-        print(f"no steady state at the operating point: {problem}")
+        say(f"no steady state at the operating point: {problem}")
     print_unchecked(found["unchecked"])
     if found["errata"]:
-        print(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
+        say(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
 
 
 def _print_errata(found: dict[str, Any]) -> None:
     keys = ("place", "says", "should_be", "evidence")
     if not found["errata"]:
-        print(f"{found['rig']}: no corrections to its sources are known.")
+        say(f"{found['rig']}: no corrections to its sources are known.")
         return
     table(
         f"{found['rig']}: corrections to the sources",

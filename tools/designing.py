@@ -13,7 +13,7 @@ from ..model.run.design import Design
 from ..model.run.least import Target, least_change, rank, unchanged
 from ..model.units import from_si, shown
 from ..scenarios.scenario import Scenario, parse_assignments
-from .console import answer, table
+from .console import answer, say, table
 from .points import HEAD, conditions, point_of, print_point, tell_outside
 from .rigs import load
 from .settings import adjusted, flat_of
@@ -171,7 +171,7 @@ def _print_design(flat: FlatModel, found: Mapping[str, Any]) -> None:
         head = ("change of", *(f"per {units[t] if units[t] != 'degC' else 'K'} of {t}" for t in aims))
         table("Sensitivity", head, slopes)
     for note in found["notes"]:
-        print(note)
+        say(note)
     print_point(f"{found['rig']}: steady state there", flat, found)
 
 
@@ -187,9 +187,9 @@ def _print_alternatives(found: Mapping[str, Any]) -> None:
     table(f"{found['rig']}: alternatives, the best first", head, rows)
     for alternative in solved:
         if alternative["outside"]:
-            print(f"{part} = {alternative[part]}:")
+            say(f"{part} = {alternative[part]}:")
             tell_outside(alternative["outside"])
     for alternative in found["alternatives"]:
         for problem in alternative.get("problems", ()):
-            print(f"{part} = {alternative[part]}: {problem}")
+            say(f"{part} = {alternative[part]}: {problem}")
     print_unchecked({line["entry"]: line for a in solved for line in a["unchecked"]}.values())

@@ -19,7 +19,7 @@ from ..model.run.point import point
 from ..model.run.rows import evaluate_at
 from ..model.run.steady import steady
 from ..scenarios.scenario import Scenario
-from .console import answer, file_of, folder, writable
+from .console import answer, file_of, folder, say, writable
 from .extras import checked, reference_duty, write_extras
 from .network import network_svg
 from .rigs import load
@@ -82,9 +82,9 @@ def export_command(
 
 def _print(found: Mapping[str, Any]) -> None:
     words = ", ".join(f"{len(found[kind])} {kind}" for kind in ("inputs", "outputs", "parameters"))
-    print(f"{found['fmu']}: {words}, for {', '.join(found['platforms'])}")
+    say(f"{found['fmu']}: {words}, for {', '.join(found['platforms'])}")
     if found["extras"]:
-        print(f"{len(found['extras'])} files beside it, from {found['extras'][0]}")
+        say(f"{len(found['extras'])} files beside it, from {found['extras'][0]}")
     print_unchecked(found["unchecked"])
 
 

@@ -13,7 +13,7 @@ from ..model.run.design import design
 from ..model.units import from_si, shown, text
 from ..scenarios.scenario import Scenario, parse_assignments
 from . import sampling
-from .console import answer, file_of, note, plottable, table, writable, write
+from .console import answer, file_of, note, plottable, say, table, writable, write
 from .playing import table_text
 from .points import conditions, told
 from .rigs import load
@@ -100,7 +100,7 @@ def _print_map(found: Mapping[str, Any]) -> None:
     rows = [(name, r["low"], r["high"], r["unit"]) for name, r in found["ranges"].items()]
     table(f"{found['rig']}: map of {found['rows']} points", ("name", "low", "high", "unit"), rows)
     if found["without_result"]:
-        print(f"{found['without_result']} points have no steady state; their cells are nan")
+        say(f"{found['without_result']} points have no steady state; their cells are nan")
     print(", ".join(filter(None, (found["out"], found["plot"]))))
 
 

@@ -14,7 +14,7 @@ from ..model.run.result import Result
 from ..model.run.steady import steady
 from ..model.units import from_si, shown
 from ..scenarios.scenario import Scenario
-from .console import answer, plottable, table
+from .console import answer, plottable, say, table
 from .heat_paths import heat_flows, heat_paths
 from .rigs import load
 from .settings import adjusted, flat_of
@@ -100,7 +100,7 @@ def print_point(title: str, flat: FlatModel, found: Mapping[str, Any]) -> None:
     """Print a steady state, as `point_of` gives it."""
     body = [[n, v, found["units"][n], flat.quantity(n).doc] for n, v in found["values"].items()]
     table(title, HEAD, body)
-    print(f"power balance closed within {found['energy_residual']:.1e} of the throughput")
+    say(f"power balance closed within {found['energy_residual']:.1e} of the throughput")
     tell_outside(found["outside"])
     print_unchecked(found["unchecked"])
 
@@ -111,4 +111,4 @@ def tell_outside(outside: Sequence[Mapping[str, Any]]) -> None:
         (least, most), (low, high) = o["met"], o["range"]
         met = f"{least:.4g}" if least == most else f"{least:.4g} to {most:.4g}"
         there = f": {o['regime']}" if o["regime"] else ""
-        print(f"outside its range: {o['part']}: {o['law']}, {o['argument']} = {met} (valid {low:g} to {high:g}){there}")
+        say(f"outside its range: {o['part']}: {o['law']}, {o['argument']} = {met} (valid {low:g} to {high:g}){there}")

@@ -15,7 +15,7 @@ from ..model.units import shown, to_si
 from ..scenarios.scenario import Scenario
 from . import campaign, describe, summary
 from .compare import Comparison, Rows, compare, present
-from .console import answer, as_json, file_of, folder, note, table, writable, write
+from .console import answer, as_json, file_of, folder, note, say, table, writable, write
 from .exporting import write_fmu
 from .losses import oils_of
 from .measured import Measured, loaded, measured_of
@@ -178,4 +178,4 @@ def _print(rows: Rows, comparison: Comparison | None, scores: Sequence[Score], r
     else:
         summary.show(comparison, scores)
     print_unchecked(result["unchecked"])
-    print(f"{len(rows)} readings; energy balance closed within {result['energy_residual_max']:.1e} of the throughput")
+    say(f"{len(rows)} readings; energy balance closed within {result['energy_residual_max']:.1e} of the throughput")

@@ -22,7 +22,7 @@ from ..model.units import from_si, shown, to_si
 from ..scenarios.duty import duty_names, read_duty
 from ..scenarios.scenario import Scenario
 from . import sampling
-from .console import answer, file_of, note, plottable, table, writable
+from .console import answer, file_of, note, plottable, say, table, writable
 from .points import outside_of, tell_outside, told
 from .rigs import load
 from .settings import adjusted, flat_of
@@ -363,9 +363,9 @@ def _print(summary: _Summary, outside: dict[str, Any] | None, out: Path, seconds
     table(f"{summary.plan.rig}: {rows} {kind}", head, lines)
     failed = {s.name.lower(): n for s, n in summary.statuses.items() if n and s is not Status.OK}
     if failed:
-        print("rows without a result: " + ", ".join(f"{name} {n}" for name, n in failed.items()))
+        say("rows without a result: " + ", ".join(f"{name} {n}" for name, n in failed.items()))
     if outside is not None:
-        print(f"rows with a law outside the range of its source: {summary.outside}, most of all row {outside['row']}:")
+        say(f"rows with a law outside the range of its source: {summary.outside}, most of all row {outside['row']}:")
         tell_outside(outside["laws"])
     print_unchecked(summary.plan.unchecked)
     print(f"{out}" + (f" after {seconds:.1f} s" if worked else ""))
