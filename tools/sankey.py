@@ -16,7 +16,7 @@ from .heat_paths import Path
 from .plotting import Picture
 
 #: Inches of a column, a bar, a line of text, the space between places, and the height of the most heat.
-COLUMN, BAR, LINE, GAP, TALL = 2.0, 0.12, 0.17, 0.12, 3.2
+COLUMN, BAR, LINE, GAP, TALL = 1.75, 0.12, 0.18, 0.12, 3.2
 #: Colours of the bands: words stand on them, so no black.
 BANDS = COLOURS[:-1]
 
@@ -40,7 +40,7 @@ def heat_picture(rig: str, paths: Sequence[Path], values: Mapping[str, float]) -
         values: path -> value in SI, for the temperatures of places
     """
     named = {name: f"{name}.T" for path in paths for name in (path.begins, path.ends)}
-    temperatures = {name: text(values[key], "K") for name, key in named.items() if key in values}
+    temperatures = {name: text(values[key], "K", 4) for name, key in named.items() if key in values}
     title = f"{rig}: where the heat comes from and where it goes"
     rows = [(p.begins, p.ends, p.through, p.Q_flow) for p in sorted(paths, key=lambda p: -p.Q_flow)]
     note = "Heat flow rates of the steady state in W; bands are as wide as they are large."
@@ -127,7 +127,7 @@ def _draw_place(panel: Axes, place: Place, scale: float, temperature: str | None
     x = COLUMN * place.column
     panel.add_patch(Rectangle((x, place.y - tall / 2), BAR, tall, color="#333333", linewidth=0))
     words = f"{place.Q_flow:.4g} W" if temperature is None else f"{place.Q_flow:.4g} W, {temperature}"
-    panel.text(x + BAR + 0.05, place.y, f"{place.name}\n{words}", va="center", ha="left", fontsize=8, zorder=3)
+    panel.text(x + BAR + 0.05, place.y, f"{place.name}\n{words}", va="center", ha="left", fontsize=9, zorder=3)
 
 
 def _draw_paths(
