@@ -40,9 +40,9 @@ def problems_of(text: str) -> list[str]:
     tags = {tag for tag, _, _ in page.found}
     if 'name="viewport"' not in text:
         found.append("no viewport")
-    if "svg" in tags and not re.search(r"figure svg[^{]*{[^}]*max-width: 100%", css):
+    if "svg" in tags and not re.search(r"svg[^{]*{[^}]*max-width: ?100%", css):
         found.append("pictures may be wider than the page")
-    if "table" in tags and not re.search(r"\.scroll {[^}]*overflow-x: auto", css):
+    if "table" in tags and not re.search(r"\.scroll ?{[^}]*overflow-x: ?auto", css):
         found.append("tables cannot scroll")
     for tag, known, around in page.found:
         if tag == "table" and ("div", "scroll") not in around:

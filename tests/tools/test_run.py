@@ -88,6 +88,7 @@ def test_files_hold_the_same_numbers(ran):
 
 def test_the_report_is_one_file_that_needs_no_other(ran):
     page = (ran[0] / "report.html").read_text()
+    assert problems_of(page) == []
     for words in ("How close", "noise floor", "Warm-up", "Where the power goes", "Laws", "Parameters", "SKF"):
         assert words in page
     assert page.count("<svg") == 4
