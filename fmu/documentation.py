@@ -38,6 +38,7 @@ _STYLE = (
     "body{font:15px/1.5 sans-serif;max-width:80em;margin:2em auto;padding:0 1em;color:#222}"
     "table{border-collapse:collapse;margin:1em 0}td,th{text-align:left;padding:.2em .8em .2em 0;"
     "border-bottom:1px solid #ddd;vertical-align:top}code{background:#f3f3f3}svg{max-width:100%;height:auto}"
+    ".scroll{overflow-x:auto}"
 )
 
 _USE = f"""
@@ -86,10 +87,11 @@ def documentation(
     about = about or About()
     implicit = f"<p><code>{IMPLICIT}</code> is what the implicit equations leave, in units of their typical size.</p>"
     parts = [
-        f'<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><title>{escape(flat.name)}</title>',
+        '<!DOCTYPE html>\n<html lang="en"><head><meta charset="utf-8"><meta name="viewport" content="width=device-width">',
+        f"<title>{escape(flat.name)}</title>",
         f"<style>{_STYLE}</style></head><body>\n<h1>{escape(flat.name)}</h1>\n<p>{escape(flat.doc)}</p>",
         f"<p>Made by {escape(tool())}.</p>",
-        f"<h2>Network</h2>\n{about.picture}" if about.picture else "",
+        f"<h2>Network</h2>\n<figure>{about.picture}</figure>" if about.picture else "",
         f"<h2>Use</h2>{_USE}\n<h2>Energy and validity</h2>{_AUDIT}",
         implicit if flat.residual_names else "",
         *(_variables(title, table.of(kind)) for title, kind in _GROUPS),
@@ -181,5 +183,6 @@ def _table(title: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]], b
     if not rows and not before:
         return ""
     cells = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>\n" for row in rows)
-    table = f"<table><tr>{''.join(f'<th>{h}</th>' for h in head)}</tr>\n{cells}</table>" if rows else ""
+    line = "".join(f"<th>{h}</th>" for h in head)
+    table = f'<div class="scroll"><table><tr>{line}</tr>\n{cells}</table></div>' if rows else ""
     return f"<h2>{title}</h2>{before}\n{table}"

@@ -17,7 +17,7 @@ import numpy as np
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from gearheat.model.errors import FmuError, suggestion
 
-from .described import described, settable
+from .described import Described, described, settable
 from .grid import Grid, Inputs, grid
 
 
@@ -80,15 +80,18 @@ def play(
 class Player:
     """An FMU loaded once for any number of runs, each as from a fresh instance. A context manager."""
 
-    def __init__(self, path: Path | str) -> None:
+    def __init__(self, fmu: Path | str | Described) -> None:
         """Load the FMU.
+
+        Args:
+            fmu: the file, or its description where that has been read
 
         Raises:
             FmuError: the file is no FMU for FMI 2.0 co-simulation, or holds no binary for this machine
         """
-        self._path = Path(path)
         self._messages: list[str] = []
-        self.described = described(self._path)
+        self.described = fmu if isinstance(fmu, Described) else described(Path(fmu))
+        self._path = self.described.path
         self._description = self.described.description
         self._variables = self.described.variables
         self._folder = tempfile.mkdtemp(prefix="gearheat-")

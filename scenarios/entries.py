@@ -6,7 +6,6 @@ import functools
 import re
 from collections.abc import Mapping
 from dataclasses import dataclass
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -15,27 +14,13 @@ from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.parts import PARTS
 from ..model.units import to_si
 from .document import ABOUT, read_toml, sources_of
-
-#: Kind of entry, as it is called in a part's table -> its file.
-FILES: Mapping[str, str] = {
-    "oil": "oils.toml",
-    "bearing": "bearings.toml",
-    "seal": "seals.toml",
-    "material": "materials.toml",
-    "air": "air.toml",
-}
-
-FOLDER = Path(str(files("gearheat.scenarios").joinpath("catalogue")))
+from .shipped import CHECKED, FILES, FOLDER
 
 #: Keys that describe an entry to a reader, and that no part takes, with their SI unit.
 DESCRIPTIVE: Mapping[str, Mapping[str, str]] = {
     "material": {"rho": "kg/m3", "k": "W/(m.K)"},
     "air": {"k": "W/(m.K)", "nu": "m2/s", "Pr": "1"},
 }
-
-
-#: Key of what the values of an entry were compared with.
-CHECKED = "checked"
 
 _UNCHECKED = re.compile(r', unchecked \((\w+) "(.*)"\)$')
 

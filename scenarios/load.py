@@ -48,7 +48,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from contextlib import suppress
-from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
@@ -67,6 +66,7 @@ from .instruments import Instrument, instruments
 from .protocol import Driven, Protocol
 from .repeats import expanded
 from .scenario import Erratum, Scenario
+from .shipped import RIGS, list_rigs
 from .tables import RigTable, validate
 from .values import PartValues, in_range, part_values, readable, settable
 
@@ -80,18 +80,6 @@ LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
     "drum_motor": (drum_motor.PARTS, drum_motor.CONNECTIONS),
     "network": ({}, ()),
 }
-
-RIGS = Path(str(files("gearheat.scenarios").joinpath("rigs")))
-
-
-def list_rigs(key: str = "doc") -> dict[str, str]:
-    """The shipped rigs: name -> what they are.
-
-    Args:
-        key: text of the rig file to give: "doc", or "reproduces" for the published results that a rig reproduces
-    """
-    found = sorted(RIGS.glob("*/rig.toml"))
-    return {path.parent.name: str(read_toml(path).get(key, "")) for path in found}
 
 
 def load(name_or_path: str | Path, types: Mapping[str, type[Component]] = PARTS) -> Scenario:
@@ -118,7 +106,7 @@ def _find(name_or_path: str | Path) -> Path:
             return path / "rig.toml"
         if path.is_file() or path.suffix == ".toml":
             return path
-    names = [p.parent.name for p in sorted(RIGS.glob("*/rig.toml"))]
+    names = list_rigs()
     close = suggestion(str(name_or_path), names)
     raise ScenarioError(f'there is no rig "{name_or_path}" and no such file.{close} Shipped rigs: {", ".join(names)}.')
 

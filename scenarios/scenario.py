@@ -10,9 +10,10 @@ from ..model.core.declare import Given, Input, declared
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.machines.spec import Spec
-from .entries import FILES, Entry, catalogue, unchecked_entry
+from .entries import Entry, catalogue, unchecked_entry
 from .instruments import Instrument
 from .protocol import Protocol
+from .shipped import FILES
 from .values import Override, entry_values, in_range, readable, settable
 
 
@@ -66,6 +67,11 @@ class Scenario:
     def sensors(self) -> dict[str, str]:
         """Column of a measured table -> path in the model."""
         return {instrument.column: instrument.reads for instrument in self.instruments}
+
+    @property
+    def room(self) -> str | None:
+        """Path of the temperature of the room, of the first where there are several, None where there is none."""
+        return next((f"{name}.T" for name in self.spec.of_type("Room")), None)
 
     def settable(self) -> dict[str, Quantity]:
         """All that may be given a value, by path: parameters, start values of states, inputs."""
@@ -157,13 +163,34 @@ class Scenario:
         found = self._entry(part, name)
         return {path: found.told(path.rpartition(".")[2], source) for path in self.entry_values(part, name)}
 
-    def _entry(self, part: str, name: str) -> Entry:
-        declarations = settable(self.spec.types[self.spec.part(part).type])
+    def alternatives(self, part: str) -> tuple[str, ...]:
+        """Names of the catalogue entries that give a part all that its own entries give it.
+
+        Args:
+            part: name of a part that is filled from a catalogue
+
+        Raises:
+            ScenarioError: there is no such part, or no catalogue fits it
+        """
+        known, taken = self._known(part), settable(self.spec.types[self.spec.part(part).type]).keys()
+        own = [known[name].values.keys() & taken for name in self.entries.get(part, {}).values() if name in known]
+        found = tuple(name for name, e in known.items() if all(e.values.keys() >= keys for keys in own))
+        if not found:
+            raise ScenarioError(f"{self.name}: no catalogue has values for {part}.")
+        return found
+
+    def _known(self, part: str) -> dict[str, Entry]:
+        """The catalogue entries that have values for a part."""
+        taken = settable(self.spec.types[self.spec.part(part).type]).keys()
         kinds = self.entries.get(part) or FILES
-        known = {n: e for kind in kinds for n, e in catalogue(kind).items() if e.values.keys() & declarations.keys()}
+        return {name: e for kind in kinds for name, e in catalogue(kind).items() if e.values.keys() & taken}
+
+    def _entry(self, part: str, name: str) -> Entry:
+        known = self._known(part)
         if name not in known:
+            kinds = " or ".join(self.entries.get(part) or FILES)
             close = suggestion(name, known) or f" Known: {', '.join(known) or 'none'}."
-            raise ScenarioError(f'{part} = {name}: unknown {" or ".join(kinds)} "{name}".{close}')
+            raise ScenarioError(f'{part} = {name}: unknown {kinds} "{name}".{close}')
         return known[name]
 
     def unchecked(self, filled: Iterable[tuple[str, str]] = ()) -> dict[tuple[str, str], tuple[str, ...]]:

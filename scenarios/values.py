@@ -16,7 +16,8 @@ from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.parts import PARTS
 from ..model.units import in_unit, spelled, split, to_si
 from .document import ABOUT, sources_of
-from .entries import FILES, Entry, entry
+from .entries import Entry, entry
+from .shipped import FILES
 
 #: Key of the table of standard uncertainties of a part.
 UNCERTAINTIES = "uncertainties"

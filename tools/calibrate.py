@@ -17,7 +17,7 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import DataError, GearheatError, ScenarioError, SolveError
 from ..model.units import from_si, shown, to_si
 from . import campaign
-from .console import answer, note, table
+from .console import answer, note, say, table
 from .measured import Measured, measured_of
 from .rigs import load
 from .settings import adjusted, flat_of
@@ -213,5 +213,5 @@ def _print(found: Mapping[str, Any]) -> None:
     )
     table("Correlation", ("", *found["free"]), [[n, *line.values()] for n, line in found["correlation"].items()])
     for name in (n for n, f in found["free"].items() if f["at_bound"]):
-        print(f"{name} ended at its bound: the readings ask for more than it allows.")
-    print(f"root mean square: {found['rmse_before_K']:.3f} K before, {found['rmse_after_K']:.3f} K after")
+        say(f"{name} ended at its bound: the readings ask for more than it allows.")
+    say(f"root mean square: {found['rmse_before_K']:.3f} K before, {found['rmse_after_K']:.3f} K after")

@@ -2,19 +2,17 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
 
-from . import cli_contact, cli_diagnosis, cli_docs, cli_logs, cli_rigs, console
-from .cli_options import Json, Rig, Set
+from . import cli_contact, cli_developers, cli_diagnosis, cli_docs, cli_logs, cli_rigs, console
+from .cli_options import Jobs, Json, Plot, Rig, Set, Tests
 
 app = typer.Typer(
     name="gearheat",
     no_args_is_help=True,
-    add_completion=False,
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
@@ -37,24 +35,21 @@ def options(
     """Losses and temperatures of gearboxes: simulate, design, export as FMU, compare with measurements."""
 
 
-Workers = Annotated[int, typer.Option(min=0, help="Processes to use; 0 for one per core.")]
 Extended = Annotated[
     Path | None, typer.Option(metavar="FILE", help="Rig file that `diagnose` wrote; it takes the rig's place.")
 ]
-Tests = Annotated[str | None, typer.Option(help="Only these tests, for example 1,13,22-26.")]
 
 
-@app.command()
 @console.guarded
 def run(
     rig: Rig = "planetary",
     out: Annotated[
-        Path, typer.Option(help="Folder for results; a run that was interrupted goes on from there.")
+        Path, typer.Option("-o", "--out", help="Folder for results; a run that was interrupted goes on from there.")
     ] = Path("out"),
     tests: Tests = None,
     step: Annotated[str, typer.Option(help="Communication step of the FMU.")] = "60 s",
     set_: Set = None,
-    workers: Workers = 0,
+    jobs: Jobs = 0,
     extended: Extended = None,
     data: Annotated[Path | None, typer.Option(help="Measured table; the rig's own if left out.")] = None,
     card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
@@ -63,10 +58,9 @@ def run(
     """The main job: export the FMU, play all measured tests, compare, report."""
     from . import run
 
-    run.command(rig, out, tests, step, set_ or [], workers, json, extended=extended, data=data, card=card)
+    run.command(rig, out, tests, step, set_ or [], jobs, json, extended=extended, data=data, card=card)
 
 
-@app.command()
 @console.guarded
 def losses(
     rig: Rig = "planetary",
@@ -99,7 +93,7 @@ def losses(
     set_: Set = None,
     json: Json = None,
 ) -> None:
-    """Every loss at every measured reading, or beside those of a reference method."""
+    """Loss of every part at each measured reading, or beside those of a reference method."""
     from . import losses
     from .reference import command
 
@@ -110,50 +104,55 @@ def losses(
     losses.command(rig, data, card, temperature, power_flow, set_ or [], json, contacts=contacts)
 
 
-@app.command()
 @console.guarded
-def steady(rig: Rig, set_: Set = None, extended: Extended = None, json: Json = None) -> None:
+def steady(rig: Rig, set_: Set = None, extended: Extended = None, plot: Plot = None, json: Json = None) -> None:
     """Steady temperatures and losses at one operating point."""
     from . import points
 
-    points.steady_command(str(extended or rig), set_ or [], json)
+    points.steady_command(str(extended or rig), set_ or [], json, plot=plot)
 
 
-@app.command()
 @console.guarded
 def design(
     rig: Rig,
-    target: Annotated[list[str], typer.Option(help="Value to reach, NAME=VALUE. Repeatable.")],
-    free: Annotated[list[str] | None, typer.Option(help="Unknown to solve for (one per target). Repeatable.")] = None,
+    target: Annotated[
+        list[str],
+        typer.Option(help="Value to reach, NAME=VALUE, or limit to keep, NAME<VALUE or NAME>VALUE. Repeatable."),
+    ],
+    free: Annotated[
+        list[str] | None, typer.Option(help="Parameter or input that may change, one per value to reach. Repeatable.")
+    ] = None,
     among: Annotated[
-        list[str] | None, typer.Option(help="Alternatives from a catalogue, for example oil=PAOR,MINR; each is solved.")
+        list[str] | None,
+        typer.Option(
+            help="Alternatives from a catalogue, for example oil=PAOR,MINR, or oil=all; the best comes first."
+        ),
     ] = None,
     set_: Set = None,
     extended: Extended = None,
     json: Json = None,
 ) -> None:
     """Find parameters or inputs for which outputs reach their targets."""
-    from . import points
+    from . import designing
 
-    points.design_command(str(extended or rig), free or [], target, set_ or [], among or [], json)
+    designing.design_command(str(extended or rig), free or [], target, set_ or [], among or [], json)
 
 
-@app.command()
 @console.guarded
 def simulate(
     rig: Rig,
     duty: Annotated[Path, typer.Option(help="CSV with time and inputs, units in the header.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write, units in the header.")],
     set_: Set = None,
+    plot: Plot = None,
     json: Json = None,
 ) -> None:
-    """A transient over a duty cycle."""
+    """Temperatures and losses over a duty cycle."""
     from . import transients
 
-    transients.simulate_command(rig, duty, out, set_ or [], json)
+    transients.simulate_command(rig, duty, out, set_ or [], json, plot=plot)
 
 
-@app.command()
 @console.guarded
 def export(
     rig: Rig,
@@ -197,7 +196,6 @@ def export(
     )
 
 
-@app.command()
 @console.guarded
 def play(
     fmu: Annotated[Path, typer.Argument(help="FMU to play.")],
@@ -206,15 +204,15 @@ def play(
     step: Annotated[str, typer.Option(help="Communication step.")] = "60 s",
     trust: Annotated[bool, typer.Option("--trust", help="Run native code of an FMU that was not made here.")] = False,
     set_: Set = None,
+    plot: Plot = None,
     json: Json = None,
 ) -> None:
     """Play an FMU over a duty cycle."""
     from . import transients
 
-    transients.play_command(fmu, duty, out, step, set_ or [], json, trust=trust)
+    transients.play_command(fmu, duty, out, step, set_ or [], json, trust=trust, plot=plot)
 
 
-@app.command()
 @console.guarded
 def compare(
     result: Annotated[Path, typer.Argument(help="Simulated readings: CSV with test and direction, or point.")],
@@ -223,13 +221,12 @@ def compare(
     card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
     json: Json = None,
 ) -> None:
-    """Errors of simulated readings by grid, speed, torque, oil and direction, noise floor and rivals."""
+    """Errors of simulated readings by group, with the noise floor and statistical rivals."""
     from . import readings
 
     readings.command(result, data, rig, card, json)
 
 
-@app.command()
 @console.guarded
 def calibrate(
     rig: Rig,
@@ -251,50 +248,14 @@ def calibrate(
     calibrate.command(rig, grid, free, bounds or [], set_ or [], json, data=data, card=card)
 
 
-app.command()(cli_diagnosis.diagnose)
-app.command()(cli_diagnosis.plan)
-app.command()(cli_diagnosis.card)
-app.command()(cli_logs.replay)
-
-
-@app.command()
-@console.guarded
-def challenge(
-    sheet: Annotated[
-        Literal["own", "foreign", "textbook", "practice", "all"],
-        typer.Option(
-            help="own: the rig behaves as the model; foreign: another simulator, with a healthy reference; textbook: a "
-            "frozen third one with rough readings; practice: the campaigns of --practice; all: these, pooled."
-        ),
-    ],
-    n: Annotated[int, typer.Option("--n", help="Number of cases of each sheet.")] = 150,
-    seed: Annotated[int, typer.Option(help="The same seed hides the same.")] = 0,
-    jobs: Annotated[int, typer.Option(min=0, help="Processes to use; 0 for one per core.")] = 0,
-    out: Annotated[
-        Path | None, typer.Option(help="Folder for cases and answers; a run that was interrupted goes on from there.")
-    ] = None,
-    only: Annotated[str | None, typer.Option(help='One kind of cases, for example "clean".')] = None,
-    practice: Annotated[
-        Path | None, typer.Option(help="Folder of campaigns: data.csv, card.json and key.json in a folder each.")
-    ] = None,
-    json: Json = None,
-) -> None:
-    """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
-    from .challenge import command
-
-    command.command(sheet, n, seed, jobs, out, only, practice, json)
-
-
-@app.command("list")
 @console.guarded
 def list_(json: Json = None) -> None:
     """The shipped rigs and catalogues."""
-    from . import describe
+    from . import listing
 
-    describe.list_command(json)
+    listing.list_command(json)
 
 
-@app.command()
 @console.guarded
 def show(
     rig: Rig,
@@ -307,7 +268,6 @@ def show(
     describe.show_command(rig, errata, json)
 
 
-@app.command()
 @console.guarded
 def verify(
     rig: Annotated[
@@ -316,13 +276,12 @@ def verify(
     json: Json = None,
     html: Annotated[Path | None, typer.Option(metavar="FILE", help="HTML page to write.")] = None,
 ) -> None:
-    """Each published number of each machine, the corrected one, what the model gives, and the verdict."""
+    """Published numbers of each machine beside what the model gives."""
     from . import verify
 
     verify.command(rig, json, html)
 
 
-@app.command()
 @console.guarded
 def sweep(
     rig: Rig,
@@ -333,10 +292,10 @@ def sweep(
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="CSV or Parquet file to write.")],
-    sample: Annotated[int | None, typer.Option(help="Number of rows, spread at random.")] = None,
+    sample: Annotated[int | None, typer.Option(help="Number of random rows.")] = None,
     grid: Annotated[str | None, typer.Option(help="Rows of a grid, one number for each --vary, such as 20x10.")] = None,
     method: Annotated[
-        Literal["lhs", "monte-carlo"], typer.Option(help="How a sample is spread; lhs is a Latin hypercube.")
+        Literal["lhs", "monte-carlo"], typer.Option(help="How random rows are drawn; lhs: Latin hypercube.")
     ] = "lhs",
     seed: Annotated[int, typer.Option(help="The same seed gives the same sample.")] = 0,
     set_: Set = None,
@@ -349,44 +308,41 @@ def sweep(
         str | None, typer.Option(help='Warm-up at constant inputs: how long, such as "330 min".')
     ] = None,
     every: Annotated[str | None, typer.Option(help="Warm-up: time between rows; only the end if left out.")] = None,
-    threads: Annotated[int, typer.Option(min=0, help="Threads to use; 0 for one per core.")] = 0,
+    jobs: Jobs = 0,
     scheduler: Annotated[
         str | None, typer.Option(metavar="ADDRESS", help="Dask scheduler that spreads the rows over its workers.")
     ] = None,
+    plot: Plot = None,
     json: Json = None,
 ) -> None:
-    """Many steady states or warm-ups at once: a grid, a Latin hypercube or chance; an interrupted sweep goes on."""
+    """Many steady states or warm-ups, on a grid or at random. An interrupted sweep goes on."""
     from . import sweep
 
     options = (sample, grid, method, seed, set_ or [], output or [], kind, duty, duration, every)
-    sweep.command(sweep.Request(rig, vary, out, *options, threads, scheduler, json))
+    sweep.command(sweep.Request(rig, vary, out, *options, jobs, scheduler, json, plot))
 
 
-@app.command()
-@console.guarded
-def bench(
-    rig: Rig = "planetary",
-    tests: Tests = None,
-    fmu: Annotated[bool, typer.Option("--fmu", help="The FMU against its peers, and the batch, instead.")] = False,
-    contact: Annotated[bool, typer.Option("--contact", help="The contact solver against slippy, instead.")] = False,
-    json: Json = None,
-) -> None:
-    """Time and memory of the main job, beside SciPy's LSODA on the same equations in the same run."""
-    if contact:
-        os.environ.setdefault("OMP_NUM_THREADS", "1")
-    from . import bench
-
-    bench.command(rig, tests, json, fmu, contact)
-
-
-app.command()(cli_contact.film)
-app.command("verify-contact")(cli_contact.verify_contact)
-app.command()(cli_rigs.new)
-app.command()(cli_rigs.parts)
-app.command()(cli_rigs.schema)
-app.command("map")(cli_rigs.map_)
-app.command()(cli_rigs.rating)
-app.command()(cli_docs.docs)
+#: The commands by what they are for, in the order in which the help shows them.
+PANELS = {
+    "Your gearbox": (cli_rigs.new, list_, show, cli_rigs.parts, cli_rigs.schema),
+    "What it does": (steady, simulate, design, sweep, cli_rigs.map_, cli_rigs.rating),
+    "FMU": (export, play),
+    "Measured data": (
+        run,
+        losses,
+        compare,
+        calibrate,
+        cli_diagnosis.diagnose,
+        cli_diagnosis.plan,
+        cli_diagnosis.card,
+        cli_logs.replay,
+    ),
+    "Films, and proof": (cli_contact.film, verify, cli_contact.verify_contact),
+    "For developers": (cli_developers.challenge, cli_developers.bench, cli_docs.docs),
+}
+for _panel, _commands in PANELS.items():
+    for _command in _commands:
+        app.command(_command.__name__.strip("_").replace("_", "-"), rich_help_panel=_panel)(_command)
 
 
 if __name__ == "__main__":

@@ -27,7 +27,7 @@ def film(
     set_: Set = None,
     json: Json = None,
 ) -> None:
-    """Solve a contact over load, speed and temperature: a film map, and the law that parts take from it."""
+    """Solve a lubricated contact over load, speed and temperature; fit the film law that parts can use."""
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # its matrices are small
         os.environ.setdefault(name, "1")
     from . import film
@@ -47,7 +47,7 @@ def verify_contact(
     ] = None,
     json: Json = None,
 ) -> None:
-    """The contact solver beside published films, Hertz and measurements: table, convergence, figures."""
+    """Check the contact solver against published films, Hertz and measurements."""
     for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # times are those of one core
         os.environ.setdefault(name, "1")
     from .ehl import command

@@ -50,7 +50,7 @@ def diagnose(
     report: Annotated[Path | None, typer.Option(help="HTML page to write.")] = None,
     extended: Annotated[Path | None, typer.Option(help="Rig file to write: the rig with what was found.")] = None,
 ) -> None:
-    """What the model gets wrong in measured data: the causes by name, how big, how sure, and what to measure next."""
+    """What the model gets wrong in measured data: causes by name, size and certainty, and what to measure next."""
     _one_thread()
     from ..diagnose.request import Request
     from . import diagnosing

@@ -10,13 +10,15 @@ import functools
 import json
 import math
 import os
+import shutil
 import sys
 import tempfile
+import textwrap
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, ParamSpec
 
-from ..model.errors import DataError, GearheatError
+from ..model.errors import DataError, GearheatError, ScenarioError
 from ..model.files import inputs_kept, place, replacing
 
 P = ParamSpec("P")
@@ -25,6 +27,8 @@ BAD_INPUT = 2
 INTERRUPTED = 130
 #: Of a device without room.
 FULL = (errno.ENOSPC, errno.EDQUOT)
+#: Kinds of pictures, by the ending of the file.
+PICTURES = (".html", ".svg", ".png")
 #: Width that a column of words gets at least.
 LEAST = 14
 
@@ -134,6 +138,18 @@ def writable(*paths: Path | None) -> None:
         raise DataError(problems)
 
 
+def plottable(path: Path | None) -> None:
+    """Check before long work that a picture can be written to a place.
+
+    Raises:
+        ScenarioError: its ending is that of no kind of picture
+        DataError: it cannot be written
+    """
+    if path is not None and path.suffix.lower() not in PICTURES:
+        raise ScenarioError(f"--plot {path}: unknown kind of picture. Its name must end in {' or '.join(PICTURES)}.")
+    writable(path)
+
+
 def folder(path: Path) -> Path:
     """Make a folder for output, with its parents.
 
@@ -154,6 +170,23 @@ def _cannot_write(path: Path, error: OSError) -> str:
     return f"{path}: cannot be written ({error.strerror or error}). Give a folder that exists and may be written."
 
 
+def screen_width() -> int | None:
+    """Columns of the screen: of the terminal, or as COLUMNS says; None where nothing says it, as in a pipe."""
+    if not sys.stdout.isatty() and "COLUMNS" not in os.environ:
+        return None
+    return shutil.get_terminal_size().columns
+
+
+def say(text: str) -> None:
+    """Print sentences, broken between words where the screen ends; whole into files and pipes."""
+    width = screen_width()
+    if width is None:
+        print(text)
+        return
+    for line in text.split("\n"):
+        print(textwrap.fill(line, width, break_long_words=False, break_on_hyphens=False))
+
+
 def table(
     title: str,
     columns: Sequence[str],
@@ -165,14 +198,14 @@ def table(
     """Print a table: columns of numbers to the right, columns of words to the left.
 
     Numbers and names are never broken into lines. Where there is no room for all columns, the last ones of words are
-    left out, and said so.
+    left out, and said so; numbers go on in further tables.
 
     Args:
         title: above it
         columns: names of the columns
         rows: a value per column
         wrapped: whether the first column may be broken into lines; names that are typed must not
-        width: of the screen; that of the terminal, or 160
+        width: of the screen, see `screen_width`; 160 where nothing says it
     """
     from rich import box
     from rich.console import Console
@@ -181,36 +214,52 @@ def table(
     body = [[cell(value) for value in row] for row in rows]
     words = [any(not _is_number(row[i]) for row in body) for i in range(len(columns))]
     whole = [not words[i] or (i == 0 and not wrapped) for i in range(len(columns))]
-    screen = Console(width=width or (None if sys.stdout.isatty() else 160), markup=False, emoji=False)
+    screen = Console(width=width or screen_width() or 160, markup=False, emoji=False)
     widest = [max(len(text) for text in (name, *(row[i] for row in body))) for i, name in enumerate(columns)]
-    kept = _fitting(
-        [n if stiff else min(n, LEAST) for n, stiff in zip(widest, whole, strict=True)], whole, screen.width
-    )
-    drawn = Table(title=title, title_justify="left", box=box.SIMPLE_HEAD)
-    for i in kept:
-        drawn.add_column(
-            columns[i],
-            justify="left" if words[i] else "right",
-            overflow="fold",
-            no_wrap=whole[i],
-            min_width=min(4, widest[i]),
-        )
-    for row in body:
-        drawn.add_row(*(row[i] for i in kept))
-    screen.print(drawn)
-    if left := [name for i, name in enumerate(columns) if i not in kept]:
-        screen.print(f"left out for want of room: {', '.join(left)}; widen the screen, or take --json\n")
+    least = [n if stiff else min(n, LEAST) for n, stiff in zip(widest, whole, strict=True)]
+    kept, *others = _fitting(least, whole, screen.width, repeated=words[0])
+    screen.print(title, style="italic")
+    for group in (kept, *others):
+        drawn = Table(box=box.SIMPLE_HEAD)
+        for i in group:
+            drawn.add_column(
+                columns[i],
+                justify="left" if words[i] else "right",
+                overflow="fold",
+                no_wrap=whole[i],
+                min_width=min(4, widest[i]),
+            )
+        for row in body:
+            drawn.add_row(*(row[i] for i in group))
+        screen.print(drawn)
+    if left := [name for i, name in enumerate(columns) if not any(i in group for group in (kept, *others))]:
+        say(f"left out for want of room: {', '.join(left)}; widen the screen, or take --json\n")
 
 
-def _fitting(widths: Sequence[int], whole: Sequence[bool], room: int) -> list[int]:
-    """Numbers of the columns that fit beside each other: those of words go first, from the last on."""
+def _fitting(widths: Sequence[int], whole: Sequence[bool], room: int, *, repeated: bool) -> list[list[int]]:
+    """Columns that fit beside each other: those of words go first, from the last on; numbers go on in further tables.
+
+    Args:
+        widths: of the columns at least
+        whole: which of them are numbers or names
+        room: of the screen
+        repeated: whether further tables begin with the first column
+    """
+
+    def size(kept: Sequence[int]) -> int:
+        return sum(widths[k] + 3 for k in kept) + 1  # what is drawn around a column
+
     kept = list(range(len(widths)))
-    order = [*(i for i in reversed(kept) if not whole[i]), *(i for i in reversed(kept) if whole[i])]
-    for i in order[:-1]:
-        if sum(widths[k] + 3 for k in kept) + 1 <= room:  # what is drawn around a column
+    for i in (i for i in reversed(range(1, len(widths))) if not whole[i]):
+        if size(kept) <= room:
             break
         kept.remove(i)
-    return kept
+    groups: list[list[int]] = [[]]
+    for i in kept:
+        if groups[-1] and size([*groups[-1], i]) > room:
+            groups.append([0] if repeated else [])
+        groups[-1].append(i)
+    return groups
 
 
 def _is_number(text: str) -> bool:
@@ -227,4 +276,5 @@ def cell(value: Any) -> str:
         return ""
     if not isinstance(value, float):
         return str(value)
+    value += 0.0  # no zero is negative
     return f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"

@@ -8,7 +8,7 @@ from ..model.machines.spec import assemble
 from ..model.parts.contacts import ContactTable, TellsContacts, TellsFilmContact
 from ..model.run.result import Result
 from ..scenarios.scenario import Scenario
-from .console import table
+from .console import say, table
 
 #: Rows of the table for people; programs get all.
 SHOWN = 19
@@ -69,6 +69,6 @@ def print_contacts(name: str, found: ContactTable) -> None:
     every = max(1, (len(found.rows) - 1) // (SHOWN - 1))
     table(f"{name}: contacts over a mesh cycle", columns, [[row[c] for c in columns] for row in found.rows[::every]])
     for column, meaning in found.columns.items():
-        print(f"{column}: {meaning}")
+        say(f"{column}: {meaning}")
     for key, value in found.totals.items():
-        print(f"{key}: {value:.6g}")
+        say(f"{key}: {value:.6g}")

@@ -11,36 +11,12 @@ from ..model.errors import SolveError
 from ..model.run.steady import steady
 from ..model.sources import LawInfo, sources
 from ..model.units import from_si, shown, text
-from ..scenarios.entries import FILES, Entry, catalogue
-from ..scenarios.load import list_rigs
 from ..scenarios.scenario import Scenario
-from .console import answer, table
+from .console import answer, say, table
 from .points import conditions, outside_of, tell_outside
 from .rigs import load
 from .settings import flat_of
 from .unchecked import print_unchecked, unchecked
-
-
-def list_command(json: str | None) -> None:
-    """Rigs and catalogue entries that can be named."""
-    entries = {kind: {name: entry.doc for name, entry in catalogue(kind).items()} for kind in FILES}
-    checked = {kind: {name: _comparison(entry) for name, entry in catalogue(kind).items()} for kind in FILES}
-    found: dict[str, Any] = {
-        "schema": "gearheat.list/1",
-        "rigs": list_rigs(),
-        "reproduces": list_rigs("reproduces"),
-        "catalogues": entries,
-        "checked": checked,
-    }
-
-    def human() -> None:
-        rigs = [(name, doc, found["reproduces"][name]) for name, doc in found["rigs"].items()]
-        table("Rigs", ("name", "what it is", "reproduces"), rigs)
-        for kind, docs in entries.items():
-            rows = [(name, doc, checked[kind][name]) for name, doc in docs.items()]
-            table(f"Catalogue: {kind}", ("name", "what it is", "checked"), rows)
-
-    answer(found, json, human)
 
 
 def show_command(rig: str, errata: bool, json: str | None) -> None:
@@ -74,12 +50,6 @@ def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> dict[str, An
         return {"outside": outside_of(steady(flat, conditions(scenario, flat))), "no_steady_state": []}
     except SolveError as error:
         return {"outside": [], "no_steady_state": list(error.problems)}
-
-
-def _comparison(entry: Entry) -> str:
-    """Whether the values of a catalogue entry were compared with a print: "all", "none", or which were not."""
-    missing = [key for key in entry.values if key not in entry.checked]
-    return "all" if not missing else f"not {', '.join(missing)}" if entry.checked else "none"
 
 
 def source_of(scenario: Scenario, path: str) -> str:
@@ -174,9 +144,9 @@ def _doc(cls: type) -> str:
 
 
 def _print(found: dict[str, Any]) -> None:
-    print(f"{found['rig']}: {found['doc']}\n")
+    say(f"{found['rig']}: {found['doc']}\n")
     if found["reproduces"]:
-        print(f"Reproduces: {found['reproduces']}\n")
+        say(f"Reproduces: {found['reproduces']}\n")
     valued = ("name", "value", "unit", "doc")
     table("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")))
     known = ("name", "value", "kind", "uncertainty", "unit", "doc", "source")
@@ -189,16 +159,16 @@ def _print(found: dict[str, Any]) -> None:
     table("Laws", keys, _rows(found["laws"], keys))
     tell_outside(found["outside"])
     for problem in found["no_steady_state"]:
-        print(f"no steady state at the operating point: {problem}")
+        say(f"no steady state at the operating point: {problem}")
     print_unchecked(found["unchecked"])
     if found["errata"]:
-        print(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
+        say(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
 
 
 def _print_errata(found: dict[str, Any]) -> None:
     keys = ("place", "says", "should_be", "evidence")
     if not found["errata"]:
-        print(f"{found['rig']}: no corrections to its sources are known.")
+        say(f"{found['rig']}: no corrections to its sources are known.")
         return
     table(
         f"{found['rig']}: corrections to the sources",

@@ -19,7 +19,7 @@ from ..model.run.point import point
 from ..model.run.rows import evaluate_at
 from ..model.run.steady import steady
 from ..scenarios.scenario import Scenario
-from .console import answer, file_of, folder, writable
+from .console import answer, file_of, folder, say, writable
 from .extras import checked, reference_duty, write_extras
 from .network import network_svg
 from .rigs import load
@@ -62,7 +62,8 @@ def export_command(
     write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, start), **told, **options)
     kept = effective(flat, start)
     named = {q.name for q in kept.parameters}
-    written = [] if beside is None else write_extras(out, beside, setting, kept, duty, start, sources_of(setting, kept))
+    origins = sources_of(setting, kept) if with_origins else None
+    written = [] if beside is None else write_extras(out, beside, setting, kept, duty, start, origins)
     found = {
         "schema": "gearheat.export/1",
         "rig": scenario.name,
@@ -81,9 +82,9 @@ def export_command(
 
 def _print(found: Mapping[str, Any]) -> None:
     words = ", ".join(f"{len(found[kind])} {kind}" for kind in ("inputs", "outputs", "parameters"))
-    print(f"{found['fmu']}: {words}, for {', '.join(found['platforms'])}")
+    say(f"{found['fmu']}: {words}, for {', '.join(found['platforms'])}")
     if found["extras"]:
-        print(f"{len(found['extras'])} files beside it, from {found['extras'][0]}")
+        say(f"{len(found['extras'])} files beside it, from {found['extras'][0]}")
     print_unchecked(found["unchecked"])
 
 

@@ -100,7 +100,7 @@ def write_extras(
     flat: FlatModel,
     duty: Schedule,
     start: Mapping[str, float],
-    sources: Mapping[str, str],
+    sources: Mapping[str, str] | None,
 ) -> list[Path]:
     """Write what goes beside an FMU.
 
@@ -111,13 +111,13 @@ def write_extras(
         flat: its model, with the parameters of the FMU
         duty: of the reference result
         start: start values of the FMU that are not those of the model
-        sources: parameter -> where its value is from
+        sources: parameter -> where its value is from; None tells neither that nor how uncertain values are
 
     Returns:
         NAME.ssv, oils/OIL.ssv for every oil that gives all the rig's oil has, NAME_in.csv, NAME_ref.csv, NAME_ref.opt
     """
     files = {folder / f"{fmu.stem}.ssv": _set_of_rig(scenario, flat, sources)}
-    for oil, content in _sets_of_oils(scenario, flat).items():
+    for oil, content in _sets_of_oils(scenario, flat, told=sources is not None).items():
         files[folder / "oils" / f"{oil.replace(' ', '_')}.ssv"] = content
     for path, content in files.items():
         store(path, content)
@@ -128,18 +128,24 @@ def write_extras(
     return [*files, *reference]
 
 
-def _set_of_rig(scenario: Scenario, flat: FlatModel, sources: Mapping[str, str]) -> bytes:
+def _set_of_rig(scenario: Scenario, flat: FlatModel, sources: Mapping[str, str] | None) -> bytes:
     return parameter_set(
         scenario.name,
         flat.parameters,
         doc=scenario.doc,
         sources=sources,
-        uncertainties=scenario.uncertainties,
+        uncertainties=None if sources is None else scenario.uncertainties,
     )
 
 
-def _sets_of_oils(scenario: Scenario, flat: FlatModel) -> dict[str, bytes]:
-    """A set for every oil of the catalogue that gives the oil baths all that oils can give this model."""
+def _sets_of_oils(scenario: Scenario, flat: FlatModel, *, told: bool) -> dict[str, bytes]:
+    """A set for every oil of the catalogue that gives the oil baths all that oils can give this model.
+
+    Args:
+        scenario: the rig
+        flat: its model
+        told: whether the sets say where their values are from
+    """
     oils = {name: oil_values(name) for name in catalogue("oil")}
     given = {key for values in oils.values() for key in values}
     paths = {f"{bath}.{key}": key for bath in scenario.spec.of_type("OilBath") for key in given}
@@ -149,6 +155,6 @@ def _sets_of_oils(scenario: Scenario, flat: FlatModel) -> dict[str, bytes]:
         if all(paths[q.name] in values for q in filled):
             entry = catalogue("oil")[name]
             chosen = [replace(q, start=values[paths[q.name]]) for q in filled]
-            sources = {q.name: entry.sources[paths[q.name]] for q in filled}
+            sources = {q.name: entry.sources[paths[q.name]] for q in filled if told}
             sets[name] = parameter_set(name, chosen, doc=f"{entry.doc}, for {scenario.name}", sources=sources)
     return sets

@@ -299,7 +299,7 @@ def _print(case: MapCase, found: dict[str, Any]) -> None:
 
 def _plot(case: MapCase, points: np.ndarray, kept: np.ndarray, suffix: str) -> str | bytes:
     """Central film over speed at each load, a panel for each temperature, as a picture."""
-    from ..diagnose.report.drawing import COLOURS, empty, svg
+    from ..diagnose.report.drawing import COLOURS, empty, png, svg
 
     temperatures, loads = np.unique(points[:, 2]), np.unique(points[:, 0])
     figure, panels = empty(3.2 * len(temperatures) + 0.8, 3.6, 1, len(temperatures), sharey=True)
@@ -314,8 +314,4 @@ def _plot(case: MapCase, points: np.ndarray, kept: np.ndarray, suffix: str) -> s
     panels[0].set_ylabel("film [um]: central, minimum dotted")
     panels[0].legend()
     figure.suptitle(f"{case.name} {case.part}".strip())
-    if suffix == ".svg":
-        return svg(figure)
-    picture = io.BytesIO()
-    figure.savefig(picture, format="png", dpi=150, metadata={"Software": None})
-    return picture.getvalue()
+    return svg(figure) if suffix == ".svg" else png(figure)

@@ -8,15 +8,14 @@ from typing import Any, cast
 
 import numpy as np
 
-from ..model.core.declare import Port, State, declared
 from ..model.errors import ScenarioError, SolveError
 from ..model.run.design import design
 from ..model.units import from_si, shown, text
 from ..scenarios.scenario import Scenario, parse_assignments
 from . import sampling
-from .console import answer, file_of, note, table, writable, write
+from .console import answer, file_of, note, plottable, say, table, writable, write
 from .playing import table_text
-from .points import conditions
+from .points import conditions, told
 from .rigs import load
 from .settings import adjusted, flat_of
 from .sweep import Request, planned
@@ -60,32 +59,34 @@ def map_command(
     json: str | None,
 ) -> None:
     """Oil temperatures, losses and efficiencies over speed and torque, as a table and a picture."""
-    writable(out, plot, file_of(json))
+    writable(out, file_of(json))
+    plottable(plot)
     scenario = load(rig)
     paths = driving(scenario)
     vary = [f"{path}={ranges[key] or usual(scenario, path)}" for path, key in zip(paths, ("w", "tau"), strict=True)]
     shows = list(outputs) or told(scenario)
-    plan = planned(Request(rig, vary, out, grid=grid, assignments=assignments, outputs=shows))
+    plan = planned(Request(rig, vary, out, grid=grid, assignments=assignments, outputs=shows), scenario)
     rows = np.concatenate([found for _, found in sorted(local(plan.job, enumerate([plan.values]), 0))])
     rows[rows[:, len(shows)] != 0, : len(shows)] = np.nan
     names = [*paths, *shows]
-    units = [plan.flat.quantity(name).unit for name in names]
-    columns = [
-        _shown(column, unit) for column, unit in zip([*plan.values.T, *rows[:, : len(shows)].T], units, strict=True)
-    ]
-    write(out, table_text([f"{n} [{shown(u)}]" for n, u in zip(names, units, strict=True)], columns))
-    shape = tuple(len(np.unique(column)) for column in plan.values.T)
-    fields = {n: (shown(u), c.reshape(shape)) for n, u, c in zip(names, units, columns, strict=True)}
+    columns = [*plan.values.T, *rows[:, : len(shows)].T]
+    found = {n: _shown(c, plan.flat.quantity(n).unit) for n, c in zip(names, columns, strict=True)}
+    units = {n: shown(plan.flat.quantity(n).unit) for n in names}
+    write(out, table_text([f"{n} [{units[n]}]" for n in names], list(found.values())))
     if plot is not None:
-        write(plot, picture(fields, plot.suffix))
+        from .fields import Field, fields
+        from .plotting import plotted
+
+        drawn = [Field(n, units[n], c) for n, c in found.items()]
+        plotted(plot, fields(f"{plan.rig}: {paths[0]} and {paths[1]}", drawn[:2], drawn[2:]))
     payload = {
         "schema": "gearheat.map/1",
         "rig": plan.rig,
         "out": str(out),
         "plot": plot and str(plot),
         "rows": len(plan.values),
-        "without_result": int(np.isnan(columns[2]).sum()),
-        "ranges": {n: {"unit": u, "low": np.nanmin(c), "high": np.nanmax(c)} for n, (u, c) in fields.items()},
+        "without_result": int(np.isnan(found[names[2]]).sum()),
+        "ranges": {n: {"unit": units[n], "low": np.nanmin(c), "high": np.nanmax(c)} for n, c in found.items()},
     }
     answer(payload, json, lambda: _print_map(payload))
 
@@ -95,40 +96,11 @@ def _shown(values: np.ndarray, unit: str) -> np.ndarray:
     return np.asarray(from_si(cast(Any, values), unit))
 
 
-def told(scenario: Scenario) -> list[str]:
-    """What a map shows of a rig: the temperature of its oil, or of its first body; losses and efficiencies."""
-    warm = [p for p in scenario.spec.parts if "T" in declared(scenario.spec.types[p.type], State)]
-    warm.sort(key=lambda p: "lubricant" not in declared(scenario.spec.types[p.type], Port))
-    meters = scenario.spec.of_type("Efficiency")
-    return [*(f"{p.name}.T" for p in warm[:1]), *(f"{name}.{key}" for name in meters for key in ("P_loss", "eta"))]
-
-
-def picture(fields: Mapping[str, tuple[str, np.ndarray]], suffix: str) -> bytes:
-    """Contours of all fields over the first two, as SVG or PNG.
-
-    Args:
-        fields: name -> unit and values (n, m)
-        suffix: of the file
-    """
-    from ..diagnose.report.drawing import empty, png, svg
-
-    (x_name, (x_unit, x)), (y_name, (y_unit, y)), *rest = fields.items()
-    figure, panels = empty(4.6 * len(rest), 3.9, 1, len(rest))
-    for panel, (name, (unit, values)) in zip(panels, rest, strict=True):
-        lines = panel.contour(x, np.abs(y), values, levels=9, cmap="viridis")
-        panel.clabel(lines, fontsize=8)
-        panel.set(title=f"{name} [{unit}]" if unit != "1" else name, xlabel=f"{x_name} [{x_unit}]")
-        panel.set_ylabel(f"{y_name} [{y_unit}]")
-    if suffix == ".svg":
-        return svg(figure).encode()
-    return png(figure)
-
-
 def _print_map(found: Mapping[str, Any]) -> None:
     rows = [(name, r["low"], r["high"], r["unit"]) for name, r in found["ranges"].items()]
     table(f"{found['rig']}: map of {found['rows']} points", ("name", "low", "high", "unit"), rows)
     if found["without_result"]:
-        print(f"{found['without_result']} points have no steady state; their cells are nan")
+        say(f"{found['without_result']} points have no steady state; their cells are nan")
     print(", ".join(filter(None, (found["out"], found["plot"]))))
 
 
@@ -144,7 +116,9 @@ def rating_command(
     """Thermal power: what the rig carries for ever with an oil that just keeps to a limit, over room and speed."""
     writable(out, file_of(json))
     scenario = load(rig)
-    (speed, torque), room = driving(scenario), _room(scenario)
+    (speed, torque), room = driving(scenario), scenario.room
+    if room is None:
+        raise ScenarioError(f"{scenario.name}: has no room, so no heat leaves it.")
     varied = sampling.read(
         [f"{room}={ranges['room'] or '0..40 degC'}", f"{speed}={ranges['w'] or usual(scenario, speed)}"]
     )
@@ -183,13 +157,6 @@ def rating_command(
         "without_result": why,
     }
     answer(payload, json, lambda: _print_rating(payload, columns, room, speed))
-
-
-def _room(scenario: Scenario) -> str:
-    rooms = scenario.spec.of_type("Room")
-    if not rooms:
-        raise ScenarioError(f"{scenario.name}: has no room, so no heat leaves it.")
-    return f"{rooms[0]}.T"
 
 
 def _print_rating(found: Mapping[str, Any], columns: Sequence[np.ndarray], room: str, speed: str) -> None:

@@ -18,12 +18,13 @@ from ..model.errors import ScenarioError, suggestion
 from ..model.parts import PARTS
 from ..model.sources import recording, sources
 from ..model.units import example, from_si, shown, text, to_si
-from ..scenarios.entries import DESCRIPTIVE, FILES, Entry, catalogue
-from ..scenarios.load import list_rigs, load
+from ..scenarios.entries import DESCRIPTIVE, Entry, catalogue
+from ..scenarios.load import load
 from ..scenarios.scenario import Scenario
+from ..scenarios.shipped import FILES, list_rigs
 from ..scenarios.tables import RigTable
 from ..scenarios.values import UNCERTAINTIES, settable
-from .console import answer, as_json, table, write
+from .console import answer, as_json, say, table, write
 
 #: Parameters that a catalogue entry of a kind brings.
 ENTRIES: Mapping[str, str] = {kind: f"name of an entry, see `gearheat list`: values of {kind}s" for kind in FILES}
@@ -194,11 +195,11 @@ def _doc(cls: type) -> str:
 
 def _list(rows: list[tuple[str, str, str]]) -> None:
     table("Part types", ("type", "role", "what it is"), rows)
-    print("gearheat parts TYPE tells all of one of them, with an example to copy.")
+    say("gearheat parts TYPE tells all of one of them, with an example to copy.")
 
 
 def _print(found: dict[str, Any]) -> None:
-    print(f"{found['type']}: {found['doc']}\n")
+    say(f"{found['type']}: {found['doc']}\n")
     titles = {
         "ports": ("name", "type", "carries", "doc"),
         "parameters": ("name", "unit", "range", "default", "doc"),
@@ -211,9 +212,9 @@ def _print(found: dict[str, Any]) -> None:
     for title, keys in titles.items():
         if lines := found[title]:
             table(title.capitalize(), keys, [[_cell(line[key]) for key in keys] for line in lines])
-    print(f"Equations: {'; '.join(found['equations'])}\n")
+    say(f"Equations: {'; '.join(found['equations'])}\n")
     if found["entries"]:
-        print(f"Catalogues that may give values: {', '.join(found['entries'])} (gearheat list)\n")
+        say(f"Catalogues that may give values: {', '.join(found['entries'])} (gearheat list)\n")
     origin = f"values of the rig {found['example_from']}" if found["example_from"] else "typical sizes"
     print(f"Example ({origin}):\n\n{found['example']}")
 
@@ -231,7 +232,7 @@ def schema_command(out: Path | None) -> None:
         print(as_json(schema()), end="")
         return
     write(out, as_json(schema()))
-    print(f'{out}: put "#:schema {out.name}" into the first line of a rig file beside it')
+    say(f'{out}: put "#:schema {out.name}" into the first line of a rig file beside it')
 
 
 def schema() -> dict[str, Any]:

@@ -15,7 +15,7 @@ from ..model.units import shown, to_si
 from ..scenarios.scenario import Scenario
 from . import campaign, describe, summary
 from .compare import Comparison, Rows, compare, present
-from .console import answer, as_json, file_of, folder, note, table, writable, write
+from .console import answer, as_json, file_of, folder, note, say, table, writable, write
 from .exporting import write_fmu
 from .losses import oils_of
 from .measured import Measured, loaded, measured_of
@@ -129,11 +129,11 @@ def _study(
 
 def _curves(scenario: Scenario, study: Measured | None) -> dict[str, str]:
     """Columns of the curves over time -> path: the temperatures, each once, and the room."""
-    rooms = [s.reads for s in study.rooms] if study else [f"{name}.T" for name in scenario.spec.of_type("Room")]
+    room = next((s.reads for s in study.rooms), None) if study else scenario.room
     found: dict[str, str] = {}
     for column, path in sources(scenario, study.warm if study else ()).items():
         found |= {} if path in found.values() else {column: path}
-    return found | ({ROOM: rooms[0]} if rooms else {})
+    return found | ({ROOM: room} if room else {})
 
 
 def _telling(rows: Rows) -> list[int]:
@@ -178,4 +178,4 @@ def _print(rows: Rows, comparison: Comparison | None, scores: Sequence[Score], r
     else:
         summary.show(comparison, scores)
     print_unchecked(result["unchecked"])
-    print(f"{len(rows)} readings; energy balance closed within {result['energy_residual_max']:.1e} of the throughput")
+    say(f"{len(rows)} readings; energy balance closed within {result['energy_residual_max']:.1e} of the throughput")

@@ -22,8 +22,8 @@ from ..model.units import from_si, shown, to_si
 from ..scenarios.duty import duty_names, read_duty
 from ..scenarios.scenario import Scenario
 from . import sampling
-from .console import answer, file_of, note, table, writable
-from .points import outside_of, tell_outside
+from .console import answer, file_of, note, plottable, say, table, writable
+from .points import outside_of, tell_outside, told
 from .rigs import load
 from .settings import adjusted, flat_of
 from .sweep_file import SUFFIXES, Column, Store, parquet_missing, work_file, write_table
@@ -33,6 +33,8 @@ from .unchecked import print_unchecked, unchecked
 
 #: Rows of a block: what an interruption may cost, and what a worker of a cluster gets at a time.
 BLOCKS = {"steady": 8192, "warmup": 256}
+#: Quantities that a picture can be drawn over.
+MOST_DRAWN = 2
 
 
 @dataclass(frozen=True)
@@ -52,16 +54,18 @@ class Request:
     duty: Path | None = None
     duration: str | None = None
     every: str | None = None
-    threads: int = 0
+    jobs: int = 0
     scheduler: str | None = None
     json: str | None = None
+    plot: Path | None = None
 
 
 @dataclass(frozen=True)
 class Plan:
     """A sweep, ready to run: the values of its rows (rows, axes) and what is done with them.
 
-    `unchecked` holds the catalogue entries in use with values that were compared with no print.
+    `unchecked` holds the catalogue entries in use with values that were compared with no print, `drawn` the outputs
+    that a picture shows.
     """
 
     rig: str
@@ -71,6 +75,7 @@ class Plan:
     job: Job
     flat: FlatModel
     unchecked: Sequence[Mapping[str, Any]]
+    drawn: Sequence[str]
 
     @property
     def columns(self) -> list[Column]:
@@ -116,6 +121,7 @@ class Plan:
 def command(request: Request) -> None:
     """Plan, solve what an earlier run has not finished, write the table."""
     writable(request.out, file_of(request.json))
+    plottable(request.plot)
     plan = planned(request)
     blocks = plan.blocks
     key = plan.job.key(plan.values, BLOCKS[plan.kind])
@@ -128,7 +134,7 @@ def command(request: Request) -> None:
         if request.scheduler is not None:
             solved = clustered(plan.job, todo, request.scheduler)
         else:
-            solved = local(plan.job, todo, request.threads)
+            solved = local(plan.job, todo, request.jobs)
         began = time.perf_counter()
         try:
             for k, found in _watched(solved, [blocks[k] for k in left], blocks):
@@ -139,8 +145,10 @@ def command(request: Request) -> None:
         seconds = time.perf_counter() - began
         summary = _Summary(plan)
         write_table(request.out, plan.columns, (summary.seen(b, store.get(k)) for k, b in enumerate(blocks)))
+        if request.plot is not None and summary.count:
+            _plot(request.plot, plan, np.concatenate([store.get(k) for k in range(len(blocks))]))
         store.remove()
-    payload = summary.payload(request.out)
+    payload = {**summary.payload(request.out), "plot": request.plot and str(request.plot)}
     answer(payload, request.json, partial(_print, summary, payload["outside"], request.out, seconds, bool(left)))
     if not summary.count:
         raise SolveError(
@@ -149,8 +157,28 @@ def command(request: Request) -> None:
         )
 
 
-def planned(request: Request) -> Plan:
+def _plot(path: Path, plan: Plan, found: np.ndarray) -> None:
+    """Draw the rows of a sweep over what is varied; of a warm-up its end."""
+    from .fields import Field, fields
+    from .plotting import plotted
+
+    every = len(plan.job.times) or 1
+    ends = found[every - 1 :: every]
+    ends = np.where(ends[:, [len(plan.job.outputs)]] == Status.OK, ends, np.nan)
+    columns = {name: ends[:, plan.job.outputs.index(name)] for name in plan.drawn}
+    columns = {axis.name: plan.values[:, k] for k, axis in enumerate(plan.axes)} | columns
+    units = {name: plan.flat.quantity(name).unit for name in columns}
+    shows = [Field(n, shown(units[n]), Column(n, units[n]).values(c)) for n, c in columns.items()]
+    names = " and ".join(axis.name for axis in plan.axes)
+    plotted(path, fields(f"{plan.rig}: {names}", shows[: len(plan.axes)], shows[len(plan.axes) :]))
+
+
+def planned(request: Request, scenario: Scenario | None = None) -> Plan:
     """What a request means.
+
+    Args:
+        request: as the user wrote it
+        scenario: its rig, where that is loaded already
 
     Raises:
         GearheatError: all that is wrong with it, as far as it can be seen together
@@ -164,7 +192,7 @@ def planned(request: Request) -> Plan:
     names = [w.name for w in written]
     given = {text.partition("=")[0].strip() for text in request.assignments}
     problems += [f"--vary: {name} is set as well. Take one away." for name in names if name in given]
-    scenario = load(request.rig)
+    scenario = load(request.rig) if scenario is None else scenario
     scheduled: tuple[str, ...] = ()
     try:
         scheduled = duty_names(request.duty) if request.duty is not None else ()
@@ -189,7 +217,8 @@ def planned(request: Request) -> Plan:
     else:
         values = sampling.sampled(axes, request.sample or 0, request.method, request.seed)
     job = _job(request, scenario, flat, tuple(names))
-    return Plan(scenario.name, request.kind, axes, values, job, flat, unchecked(scenario, flat))
+    drawn = _outputs(request) or [name for name in told(scenario) if name in job.outputs]
+    return Plan(scenario.name, request.kind, axes, values, job, flat, unchecked(scenario, flat), drawn)
 
 
 def _problems(request: Request) -> list[str]:
@@ -201,6 +230,8 @@ def _problems(request: Request) -> list[str]:
         found.append(parquet_missing())
     if request.scheduler is not None:
         found.append(dask_missing())
+    if request.plot is not None and len(request.vary) > MOST_DRAWN:
+        found.append(f"--plot draws over one or two quantities; {len(request.vary)} are varied. Vary fewer.")
     if (request.sample is None) == (request.grid is None):
         found.append("Give the number of rows either by --sample N or by --grid NxM.")
     timed = [option for option in ("duty", "duration", "every") if getattr(request, option) is not None]
@@ -228,9 +259,8 @@ def _job(request: Request, scenario: Scenario, flat: FlatModel, varied: tuple[st
             raise ScenarioError(f"--duration {request.duration} is not above 0. Give a time such as 330 min.")
         schedule = Schedule(np.array([0.0, duration]), {})
     start: dict[str, float | str] = {**first_temperatures(scenario, flat, schedule)}
-    rooms = [f"{part}.T" for part in scenario.spec.of_type("Room")[:1]]
-    if set(rooms) & set(varied):  # a machine that nothing is said about starts at the temperature of its room
-        start = {name: rooms[0] for name in start}
+    if scenario.room in varied:  # a machine that nothing is said about starts at the temperature of its room
+        start = dict.fromkeys(start, scenario.room)
     start = {name: value for name, value in start.items() if name not in varied}
     return Job(Batch(flat), varied, outputs, start, schedule, _times(request, schedule))
 
@@ -333,9 +363,9 @@ def _print(summary: _Summary, outside: dict[str, Any] | None, out: Path, seconds
     table(f"{summary.plan.rig}: {rows} {kind}", head, lines)
     failed = {s.name.lower(): n for s, n in summary.statuses.items() if n and s is not Status.OK}
     if failed:
-        print("rows without a result: " + ", ".join(f"{name} {n}" for name, n in failed.items()))
+        say("rows without a result: " + ", ".join(f"{name} {n}" for name, n in failed.items()))
     if outside is not None:
-        print(f"rows with a law outside the range of its source: {summary.outside}, most of all row {outside['row']}:")
+        say(f"rows with a law outside the range of its source: {summary.outside}, most of all row {outside['row']}:")
         tell_outside(outside["laws"])
     print_unchecked(summary.plan.unchecked)
     print(f"{out}" + (f" after {seconds:.1f} s" if worked else ""))

@@ -16,7 +16,7 @@ from ..model.run.simulate import simulate
 from ..model.units import from_si, shown, to_si
 from ..scenarios.duty import duty_names, read_duty
 from ..scenarios.scenario import Scenario
-from .console import answer, file_of, note, writable, write
+from .console import answer, file_of, note, plottable, writable, write
 from .playing import series
 from .points import outside_of, tell_outside
 from .rigs import load
@@ -24,18 +24,23 @@ from .settings import adjusted, flat_of
 from .unchecked import print_unchecked, unchecked
 
 
-def simulate_command(rig: str, duty: Path, out: Path, assignments: Sequence[str], json: str | None) -> None:
+def simulate_command(
+    rig: str, duty: Path, out: Path, assignments: Sequence[str], json: str | None, *, plot: Path | None = None
+) -> None:
     """Run a rig through a duty; temperatures that are not set start at the room's."""
     writable(out, file_of(json))
+    plottable(plot)
     scenario = adjusted(load(rig), assignments, named=duty_names(duty))
     flat = flat_of(scenario)
     schedule = read_duty(duty, flat)
     result = simulate(flat, schedule, start=first_temperatures(scenario, flat, schedule))
     write(out, series(result.index, result.columns, result.units))
+    _plot(plot, f"{scenario.name}, {duty.stem}", result.index, result.columns, result.units)
     found = {
         "schema": "gearheat.simulate/1",
         "rig": scenario.name,
         "out": str(out),
+        "plot": plot and str(plot),
         **_summary(result.index, result.columns, result.units),
         "energy_residual": result.audit.residual,
         "outside": outside_of(result),
@@ -51,12 +56,21 @@ def simulate_command(rig: str, duty: Path, out: Path, assignments: Sequence[str]
     answer(found, json, human)
 
 
+def _plot(
+    plot: Path | None, title: str, time: np.ndarray, columns: Mapping[str, np.ndarray], units: Mapping[str, str]
+) -> None:
+    if plot is not None:
+        from .courses import courses
+        from .plotting import plotted
+
+        plotted(plot, courses(title, time, columns, units))
+
+
 def first_temperatures(scenario: Scenario, flat: FlatModel, schedule: Schedule | None) -> dict[str, float]:
     """Start temperatures: as set, else that of the room at the beginning of the schedule, or at the operating point."""
-    rooms = scenario.spec.of_type("Room")
-    if not rooms:
+    room = scenario.room
+    if room is None:
         return {}
-    room = f"{rooms[0]}.T"
     given = schedule is not None and room in schedule.values
     T = float(schedule.values[room][0]) if schedule is not None and given else flat.quantity(room).start
     own = {f"{part.name}.{key}" for part in scenario.spec.parts for key in part.values}
@@ -64,15 +78,25 @@ def first_temperatures(scenario: Scenario, flat: FlatModel, schedule: Schedule |
 
 
 def play_command(
-    fmu: Path, duty: Path, out: Path, step: str, assignments: Sequence[str], json: str | None, *, trust: bool = False
+    fmu: Path,
+    duty: Path,
+    out: Path,
+    step: str,
+    assignments: Sequence[str],
+    json: str | None,
+    *,
+    trust: bool = False,
+    plot: Path | None = None,
 ) -> None:
     """Play an FMU over a duty; one that was not made here only if it is trusted."""
     from ..fmu.play import Player
     from ..fmu.unpacking import trusted
 
     writable(out, file_of(json))
+    plottable(plot)
     dt = to_si(step, "s", name="--step")
-    made_by = described(fmu).description.generationTool or "an unknown tool"
+    told = described(fmu)
+    made_by = told.description.generationTool or "an unknown tool"
     if not trusted(fmu):
         if not trust:
             raise FmuError(
@@ -80,8 +104,7 @@ def play_command(
                 " of it with your rights. Add --trust if you trust its maker."
             )
         note(f"{fmu}: running native code of {made_by}")
-    with Player(fmu) as player:
-        told = player.described
+    with Player(told) as player:
         schedule = read_duty(duty, told.quantities("input"))
         start = _start(told.quantities("start"), told.quantities("output"), assignments, fmu)
         first = start | {name: float(values[0]) for name, values in schedule.values.items()}
@@ -91,10 +114,12 @@ def play_command(
     units = {name: q.unit for name, q in told.quantities("input", "output").items()}
     columns = {name: played.values[:, k] for k, name in enumerate(played.names)}
     write(out, series(played.time, columns, units))
+    _plot(plot, f"{fmu.stem}, {duty.stem}", played.time, columns, units)
     found = {
         "schema": "gearheat.play/1",
         "fmu": str(fmu),
         "out": str(out),
+        "plot": plot and str(plot),
         **_summary(played.time, columns, units),
     }
     answer(found, json, lambda: print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s"))

@@ -8,6 +8,7 @@ from typing import Any
 from ..fmu.effective import effective
 from ..model.core.flat import FlatModel
 from ..scenarios.scenario import Scenario
+from .console import say
 
 
 def unchecked(scenario: Scenario, flat: FlatModel, filled: Iterable[tuple[str, str]] = ()) -> list[dict[str, Any]]:
@@ -31,4 +32,4 @@ def unchecked_lines(found: Iterable[Mapping[str, Any]]) -> list[str]:
 def print_unchecked(found: Iterable[Mapping[str, Any]]) -> None:
     """Say which values of the catalogue were compared with no print."""
     for line in unchecked_lines(found):
-        print(f"catalogue values not checked against a print: {line}")
+        say(f"catalogue values not checked against a print: {line}")

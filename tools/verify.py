@@ -14,9 +14,9 @@ from ..model.errors import GearheatError, ScenarioError
 from ..model.sources import LawInfo, sources
 from ..model.units import si_of
 from ..scenarios.golden import golden_rows
-from ..scenarios.load import list_rigs
 from ..scenarios.published import Row, read_published
 from ..scenarios.scenario import Scenario
+from ..scenarios.shipped import list_rigs
 from .console import answer, file_of, writable, write
 from .describe import errata_of
 from .model_values import RigValues, single

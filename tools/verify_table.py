@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .console import table
+from .console import say, table
 from .verdicts import NOT_REPRODUCED, VERDICTS, Machine, Verdict, as_printed
 
 HEAD = ("number", "place", "published", "corrected", "model", "allowed", "verdict")
@@ -29,12 +29,12 @@ def show(machines: Sequence[Machine], laws: Sequence[Verdict], found: Mapping[st
     table("Numbers by verdict and by kind", ("", *VERDICTS, *found["kinds"]), body)
     for machine in machines:
         if not machine.verdicts:
-            print(f"{machine.name}: has no published numbers. {machine.reproduces}".strip())
+            say(f"{machine.name}: has no published numbers. {machine.reproduces}".strip())
     failed = [f"{m.name}: {v.row.name}" for m in machines for v in m.verdicts if v.verdict == NOT_REPRODUCED]
     failed += [f"{v.row.law}: {v.row.name}" for v in laws if v.verdict == NOT_REPRODUCED]
     if failed:
         numbers = "1 published number is" if len(failed) == 1 else f"{len(failed)} published numbers are"
-        print(f"{numbers} not reproduced: {'; '.join(failed)}.")
+        say(f"{numbers} not reproduced: {'; '.join(failed)}.")
 
 
 def _lines(verdicts: Sequence[Verdict]) -> list[list[Any]]:

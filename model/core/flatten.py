@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Iterable, Mapping
 from dataclasses import replace
 from itertools import accumulate
 from typing import Any
@@ -20,11 +20,12 @@ from .solve import Row, Solution, Unknown, column, inline, scaled_residual, solv
 from .structure import check_structure
 
 
-def flatten(assembly: Assembly) -> FlatModel:
+def flatten(assembly: Assembly, *, flows: Iterable[str] = ()) -> FlatModel:
     """Alias the potentials of each net, balance its flows, sort all equations and solve them block by block.
 
     Args:
         assembly: parts and their connections
+        flows: paths of flows of ports that are outputs as well ("foot.a.Q_flow")
 
     Raises:
         StructureError: ports that do not exist, too few or too many equations, a singular or unsolvable block
@@ -48,7 +49,7 @@ def flatten(assembly: Assembly) -> FlatModel:
     check_structure(assembly, reduced.rows, reduced.unknowns, typical)
     solution = Solution(typical)
     solve(assembly.name, reduced.rows, reduced.unknowns, solution)
-    return _flat_model(assembly, solution, aliased, checks, tuple(laws), reduced.joined)
+    return _flat_model(assembly, solution, aliased, checks, tuple(laws), reduced.joined, frozenset(flows))
 
 
 class _Alias:
@@ -118,18 +119,25 @@ def _flat_model(
     checks: list[tuple[Check, Any]],
     laws: tuple[LawInfo, ...],
     joined: Mapping[str, str],
+    flows: Container[str],
 ) -> FlatModel:
     parts = assembly.parts
     states = [(part, k) for part in parts for k in part.states if f"{part.name}.{k}" not in joined]
     inputs = [(part, k) for part in parts for k in part.inputs if part.is_input(k)]
     parameters = [(part, k) for part in parts for k in part.parameters]
     outputs = [(part, k, d) for part in parts for k, d in _shown(part, joined).items()]
+    told = {
+        path: (port.symbols[k], d)
+        for port in assembly.ports().values()
+        for k, d in type(port).flows().items()
+        if (path := f"{port.name}.{k}") in flows
+    }
     related = [pair for part in parts for pair in part.all_relations()]
     energies = [energies_of(part) for part in parts]
     supplies = aliased([power for powers, _ in energies for power in powers])
     expressions = {
         "ode": column([part.derivatives[k] for part, k in states]),
-        "y": column([part.symbols[k] for part, k, _ in outputs]),
+        "y": column([*(part.symbols[k] for part, k, _ in outputs), *(symbol for symbol, _ in told.values())]),
         "residual": column([test.residual for test in solution.tests]),
         "supply": sum(supplies, ca.SX(0)),
         "throughput": sum((ca.fabs(power) for power in supplies), ca.SX(0)),
@@ -147,7 +155,10 @@ def _flat_model(
         states=_quantities(states, "states"),
         inputs=_quantities(inputs, "inputs"),
         parameters=_quantities(parameters, "parameters"),
-        outputs=tuple(_output(part, k, d, joined) for part, k, d in outputs),
+        outputs=(
+            *(_output(part, k, d, joined) for part, k, d in outputs),
+            *(d.quantity(path) for path, (_, d) in told.items()),
+        ),
         algebraic=tuple(Quantity(u.name, u.unit, "", u.nominal, start_of(u)) for u in solution.torn),
         x=column([part.symbols[k] for part, k in states]),
         z=column([u.symbol for u in solution.torn]),

@@ -40,6 +40,7 @@ def test_what_is_kept_is_not_computed_again_and_gives_the_same_bytes(
     out, _ = quick
     before = {p.name: p.read_bytes() for p in out.iterdir() if p.is_file()}
     assert {"verification.md", "verification.html", "verification.csv", "films.svg", "convergence.svg"} <= set(before)
+    assert problems_of(before["verification.html"].decode()) == []
     assert all(len(content) < 200_000 for name, content in before.items() if name.endswith(".svg"))
     monkeypatch.setattr(steady, "solve", lambda *_, **__: pytest.fail("solved again"))
     command.command(out, True, None, None)

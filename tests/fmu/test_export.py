@@ -21,6 +21,7 @@ from gearheat.fmu.export import archive, export
 from gearheat.fmu.play import Player, play
 from gearheat.model.core.flat import FlatModel, Quantity
 from gearheat.model.errors import FmuError
+from pages import problems_of
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="reads a binary of Linux")
 
@@ -41,6 +42,7 @@ def test_what_an_fmu_holds(heat_fmu: Path) -> None:
     assert {"model.png", "documentation/index.html", "sources/all.c"} < set(held)
     assert held["model.png"].startswith(b"\x89PNG")
     page = held["documentation/index.html"].decode()
+    assert problems_of(page) == []
     for text in ("governor.w", "1432.39 rpm", "20 degC", "above 0", "viscous_torque", "Nobody2000", "energy.supplied"):
         assert text in page, text
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from gearheat.model.errors import ScenarioError, SolveError
 from gearheat.model.run.design import choose, design
+from gearheat.model.run.least import Target, change, least_change
 from gearheat.model.run.schedule import stepped
 from gearheat.model.run.sensitivity import sensitivities
 from gearheat.model.run.simulate import simulate
@@ -179,3 +180,45 @@ def test_all_wrong_names_at_once() -> None:
     assert "3 free values for 1 targets" in text
     with pytest.raises(ScenarioError, match="0 free values"):
         design(rc(), [], {}, {})
+
+
+def limit(name: str, sign: str, celsius: float) -> Target:
+    return Target(name, sign, celsius + 273.15)
+
+
+def test_a_limit_that_holds_changes_nothing() -> None:
+    found = least_change(brake(), ["foot.G"], [limit("oil.T", "<", 300.0)], WARM)
+    assert found.values == {} and found.notes == ("met already: nothing has to change",)
+    assert found.result["oil.T"][0] == pytest.approx(steady(brake(), WARM)["oil.T"][0])
+
+
+def test_the_least_change_of_several_is_taken() -> None:
+    flat, T = brake(), float(steady(brake(), WARM)["oil.T"][0]) - 273.15
+    aim = [limit("oil.T", "<", T - 10)]
+    found = least_change(flat, ["foot.G", "film.G"], aim, WARM)
+    alone = {name: design(flat, [name], {"oil.T": aim[0].value}, WARM) for name in ("foot.G",)}
+    assert change(flat, found, WARM) <= change(flat, alone["foot.G"], WARM)
+    assert len(found.values) == 1 and found.result["oil.T"][0] == pytest.approx(aim[0].value, abs=1e-6)
+    warmer = least_change(flat, ["foot.G"], [limit("oil.T", ">", T + 10)], WARM)
+    assert warmer.values["foot.G"] < alone["foot.G"].values["foot.G"]
+
+
+def test_a_value_and_limits_together() -> None:
+    flat = brake()
+    there = steady(flat, WARM)
+    oil, wall = (float(there[name][0]) - 273.15 for name in ("oil.T", "wall.T"))
+    loose = [Target("oil.T", "=", oil + 268.15), limit("wall.T", "<", wall + 50)]
+    assert len(least_change(flat, ["foot.G", "film.G"], loose, WARM).values) == 1
+    tight = [loose[0], limit("wall.T", "<", wall - 20)]
+    found = least_change(flat, ["foot.G", "film.G"], tight, WARM)
+    assert found.result["oil.T"][0] == pytest.approx(oil + 268.15, abs=1e-6)
+    assert found.result["wall.T"][0] <= wall + 253.15 + 1e-6
+
+
+def test_a_limit_with_nothing_free_says_how_far_it_is() -> None:
+    with pytest.raises(ScenarioError, match=r"oil\.T is .* degC, which is not < 26\.85 degC\. Free more"):
+        least_change(brake(), [], [Target("oil.T", "<", 300.0)], WARM)
+    with pytest.raises(ScenarioError, match=r"foot\.G"):
+        least_change(brake(), [], [Target("foot.G", "<", 1.0)], WARM)
+    with pytest.raises(SolveError, match="out of reach"):
+        least_change(brake(), ["foot.G"], [Target("oil.T", "<", 290.0)], WARM)

@@ -5,7 +5,7 @@ import gzip
 
 import numpy as np
 import pytest
-from gearheat.scenarios.load import RIGS
+from gearheat.scenarios.shipped import RIGS
 
 
 def cooler(machine: str) -> dict[bool, tuple[float, float]]:

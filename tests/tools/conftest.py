@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import pytest
-from gearheat.scenarios.load import RIGS
+from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.cli import app
 from typer.testing import CliRunner
 

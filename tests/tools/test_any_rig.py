@@ -64,7 +64,7 @@ PARTS = ("P_mesh_W", "P_dgb_W", "P_seal_W", "P_churn_W")
 def test_a_run_over_steady_states_reaches_them_and_compare_reads_it_back(gearheat, files, tmp_path):
     data, card = files
     options = ("--data", data, "--card", card)
-    arguments = ("--tests", "1,6", "--workers", "1", "--out", tmp_path / "out", "--json", "-")
+    arguments = ("--tests", "1,6", "--jobs", "1", "--out", tmp_path / "out", "--json", "-")
     found = gearheat("run", RIG, *options, *arguments).json
     assert [row["test"] for row in found["rows"]] == [1, 6]
     for row in found["rows"]:

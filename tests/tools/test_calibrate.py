@@ -12,7 +12,7 @@ import pytest
 def made(gearheat, rig, tmp_path):
     """A copy of the rig whose five MINR tests were measured on a machine with known area and foot."""
     settings = ("--set", "cooling.A=0.62 m2", "--set", "foot.G=7 W/K")
-    arguments = ("--out", tmp_path / "out", "--tests", "22-26", "--workers", "1", "--json", "-", *settings)
+    arguments = ("--out", tmp_path / "out", "--tests", "22-26", "--jobs", "1", "--json", "-", *settings)
     rows = {row["point"]: row for row in gearheat("run", "planetary", *arguments).json["rows"]}
     table = rig.folder / "measured.csv"
     lines = list(csv.DictReader(io.StringIO(table.read_text())))

@@ -1,10 +1,14 @@
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 
 import pytest
-from gearheat.scenarios.load import RIGS
+import typer
+from gearheat.scenarios.entries import catalogue
+from gearheat.scenarios.shipped import FILES, RIGS
+from gearheat.tools.cli import app
 
 COMMANDS = (
     "run",
@@ -28,17 +32,56 @@ COMMANDS = (
 )
 
 
-def test_help_loads_nothing_heavy():
+@pytest.mark.parametrize("argument", ["--help", "list"])
+def test_what_a_user_asks_first_loads_nothing_heavy(argument):
     code = (
-        "import sys; from gearheat.tools.cli import app\n"
-        "try:\n    app(['--help'])\nexcept SystemExit: pass\n"
-        "heavy = {'casadi', 'numpy', 'scipy', 'matplotlib', 'pint', 'pydantic', 'fmpy'} & set(sys.modules)\n"
+        f"import sys; from gearheat.tools.cli import app\n"
+        f"try:\n    app(['{argument}'])\nexcept SystemExit: pass\n"
+        "heavy = {'casadi', 'numpy', 'scipy', 'matplotlib', 'pint', 'fmpy'} & set(sys.modules)\n"
         "print(sorted(heavy), file=sys.stderr)"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     assert done.stderr.strip() == "[]"
-    for command in COMMANDS:
-        assert command in done.stdout
+    for name in COMMANDS if argument == "--help" else ("planetary", "PAOR"):
+        assert name in done.stdout
+
+
+def test_help_sets_the_commands_for_developers_apart(gearheat):
+    users, _, developers = gearheat("--help").out.partition("For developers")
+    for command in ("challenge", "bench"):
+        assert f" {command} " in developers and f" {command} " not in users
+
+
+@pytest.mark.parametrize(
+    ("typed", "found"),
+    [("gearheat stea", "steady"), ("gearheat show plan", "planetary"), ("gearheat map x --pl", "--plot")],
+)
+def test_the_shell_completes_commands_rigs_and_options(typed, found):
+    asked = {"_GEARHEAT_COMPLETE": "complete_bash", "COMP_WORDS": typed, "COMP_CWORD": str(typed.count(" "))}
+    code = "from gearheat.tools.cli import app; app(prog_name='gearheat')"
+    environment = {**os.environ, **asked}
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=False)
+    assert done.stdout.split() == [found]
+
+
+def test_options_are_spelt_alike_everywhere():
+    commands = typer.main.get_command(app).commands
+    names = {name: {o.name: set(o.opts) for o in command.params} for name, command in commands.items()}
+    for name, options in names.items():
+        assert options.get("json", {"--json"}) == {"--json"}, name
+        assert options.get("out", {"-o", "--out"}) == {"-o", "--out"}, name
+        assert options.get("jobs", {"-j", "--jobs"}) == {"-j", "--jobs"}, name
+        assert not {"workers", "threads", "output_file"} & options.keys(), name
+
+
+def test_list_tells_what_the_catalogues_hold(gearheat):
+    found = gearheat("list", "--json", "-").json
+    assert found["catalogues"] == {kind: {n: e.doc for n, e in catalogue(kind).items()} for kind in FILES}
+    for kind in FILES:
+        for name, e in catalogue(kind).items():
+            missing = [key for key in e.values if key not in e.checked]
+            told = "all" if not missing else f"not {', '.join(missing)}" if e.checked else "none"
+            assert found["checked"][kind][name] == told
 
 
 def test_every_command_explains_itself(gearheat):
@@ -167,6 +210,35 @@ def test_design_among_oils_solves_each(gearheat):
     ).json  # fmt: skip
     areas = {a["oil"]: a["free"]["cooling.A"] for a in found["alternatives"]}
     assert areas["MINR"] > areas["PAOR"]
+
+
+def test_design_keeps_to_limits_with_the_least_change(gearheat):
+    frees = ("--free", "cooling.A", "--free", "foot.G")
+    found = gearheat("design", "planetary", "--json", "-", *frees, "--target", "oil.T < 75 degC").json
+    assert found["met"] and list(found["free"]) == ["foot.G"]
+    assert found["targets"]["oil.T"] == pytest.approx(75.0, abs=1e-6)
+    assert found["notes"][0].startswith("or with a larger change: cooling.A = ")
+    answer = gearheat("design", "planetary", *frees, "--target", "oil.T<=90 degC")
+    assert "met already" in answer.out
+    answer = gearheat("design", "planetary", "--target", "oil.T<75 degC")
+    assert answer.code == 2 and "oil.T is 81.7787 degC, which is not < 75 degC" in answer.err
+    for wrong in ("oil.T", "oil.T<<80 degC", "oil.T<80", "oli.T<80 degC"):
+        answer = gearheat("design", "planetary", *frees, "--target", wrong)
+        assert answer.code == 2 and "Traceback" not in answer.err, wrong
+
+
+def test_design_goes_through_a_catalogue_the_best_first(gearheat):
+    aims = ("--target", "oil.T<80 degC", "--target", "gear_set.Lambda_sp>0.25")
+    found = gearheat("design", "planetary", "--json", "-", *aims, "--among", "oil=all").json
+    rows = found["alternatives"]
+    assert {"PAOR", "MINR", "ISO VG 220 PAO"} <= {row["oil"] for row in rows} and len(rows) > 20
+    met = [row["met"] for row in rows]
+    assert met == sorted(met, reverse=True) and 0 < sum(met) < len(met)
+    for row in rows:
+        values = row["values"]
+        assert row["met"] == (values["oil.T"] <= 80 and values["gear_set.Lambda_sp"] >= 0.25)
+    answer = gearheat("design", "planetary", *aims, "--among", "foot=all")
+    assert answer.code == 2 and "catalogue" in answer.err
 
 
 def test_design_without_solution_says_so_and_ends_with_two(gearheat):

@@ -52,5 +52,5 @@ def test_a_film_that_no_speed_gives_is_refused_by_name(gearheat, rig: str, targe
 
 @pytest.mark.parametrize("rig", RIGS)
 def test_a_run_without_measured_data_is_its_operating_point(gearheat, rig: str, tmp_path) -> None:
-    found = gearheat("run", rig, "--out", tmp_path / "out", "--workers", "1", "--json", "-").json
+    found = gearheat("run", rig, "--out", tmp_path / "out", "--jobs", "1", "--json", "-").json
     assert len(found["rows"]) == 1 and found["energy_residual_max"] < 1e-6

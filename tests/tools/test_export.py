@@ -340,9 +340,11 @@ def test_what_is_wrong_is_told_before_anything_is_written(gearheat, tmp_path, op
 
 
 def test_what_a_company_may_keep_to_itself(gearheat, tmp_path):
-    path = tmp_path / "own.fmu"
+    path, extras = tmp_path / "own.fmu", tmp_path / "extras"
     keep = ("--license", "Example Ltd, all rights reserved", "--no-sources", "--no-parameters-source")
-    found = gearheat("export", "helical_two_stage", "-o", path, *keep, "--json", "-").json
+    found = gearheat("export", "helical_two_stage", "-o", path, *keep, "--extras", extras, "--json", "-").json
+    beside = [place.read_text(encoding="utf-8") for place in sorted(extras.rglob("*.ssv"))]
+    assert len(beside) > 20 and not any("provenance" in text for text in beside)
     assert found["platforms"] == list(dict.fromkeys([compiling.host_platform().name, "win64"]))
     with zipfile.ZipFile(path) as file:
         description = file.read("modelDescription.xml").decode()

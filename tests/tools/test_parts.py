@@ -8,7 +8,7 @@ import tomllib
 import pytest
 from gearheat.model.core.declare import Parameter, Port, declared
 from gearheat.model.parts import PARTS
-from gearheat.scenarios.load import RIGS
+from gearheat.scenarios.shipped import RIGS
 from gearheat.tools import parts
 
 SCHEMA = parts.schema()

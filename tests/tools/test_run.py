@@ -23,7 +23,7 @@ def ran(tmp_path_factory):
     out = tmp_path_factory.mktemp("run") / "out"
     scratch = tmp_path_factory.mktemp("scratch")
     command = [sys.executable, "-m", "gearheat.tools.cli", "run", "planetary", "--out", str(out), "--tests", TESTS]
-    command += ["--workers", "2", "--json", "-"]
+    command += ["--jobs", "2", "--json", "-"]
     environment = {**os.environ, "TMPDIR": str(scratch)}
     done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
     assert not list(scratch.iterdir()), "a temporary file was left"
@@ -88,6 +88,7 @@ def test_files_hold_the_same_numbers(ran):
 
 def test_the_report_is_one_file_that_needs_no_other(ran):
     page = (ran[0] / "report.html").read_text()
+    assert problems_of(page) == []
     for words in ("How close", "noise floor", "Warm-up", "Where the power goes", "Laws", "Parameters", "SKF"):
         assert words in page
     assert page.count("<svg") == 4
@@ -106,7 +107,7 @@ def test_a_second_run_plays_nothing_again_and_gives_the_same_bytes(ran, gearheat
     files = [out / "result.json", out / "report.html", out / "rows.csv", out / "planetary.fmu"]
     before = [(f.read_bytes()) for f in files]
     stamps = {f: f.stat().st_mtime_ns for f in (out / "tests").iterdir()}
-    answer = gearheat("run", "planetary", "--out", out, "--tests", TESTS, "--workers", "1")
+    answer = gearheat("run", "planetary", "--out", out, "--tests", TESTS, "--jobs", "1")
     assert answer.code == 0
     assert "4 of 4 tests were finished before" in answer.err
     assert [f.read_bytes() for f in files] == before
@@ -115,7 +116,7 @@ def test_a_second_run_plays_nothing_again_and_gives_the_same_bytes(ran, gearheat
 
 def test_other_values_are_played_again(ran, gearheat, tmp_path):
     shutil.copytree(ran[0], tmp_path / "out")
-    arguments = ("run", "planetary", "--out", tmp_path / "out", "--tests", "1", "--workers", "1", "--json", "-")
+    arguments = ("run", "planetary", "--out", tmp_path / "out", "--tests", "1", "--jobs", "1", "--json", "-")
     answer = gearheat(*arguments, "--set", "cooling.A=2 m2")
     assert "finished before" not in answer.err
     assert answer.json["rows"][0]["T_oil_C"] < ran[1]["rows"][0]["T_oil_C"] - 1
@@ -124,7 +125,7 @@ def test_other_values_are_played_again(ran, gearheat, tmp_path):
 def test_an_interrupted_run_leaves_finished_tests_and_goes_on(tmp_path):
     out = tmp_path / "out"
     command = [sys.executable, "-m", "gearheat.tools.cli", "run", "planetary", "--out", str(out), "--tests", "1-10"]
-    command += ["--workers", "1", "--step", "3 s"]  # slow enough to be met half-way
+    command += ["--jobs", "1", "--step", "3 s"]  # slow enough to be met half-way
     before = signal.signal(signal.SIGINT, signal.default_int_handler)  # jobs of a shell may be told to ignore it
     process = subprocess.Popen(command, stderr=subprocess.PIPE, text=True)
     signal.signal(signal.SIGINT, before)
@@ -148,7 +149,7 @@ def test_an_interrupted_run_leaves_finished_tests_and_goes_on(tmp_path):
 
 @pytest.mark.parametrize("rig", ["helical_two_stage", "fzg_four_square"])
 def test_a_rig_without_measured_data_runs_too(gearheat, tmp_path, rig):
-    found = gearheat("run", rig, "--out", tmp_path / "out", "--workers", "1", "--json", "-").json
+    found = gearheat("run", rig, "--out", tmp_path / "out", "--jobs", "1", "--json", "-").json
     assert len(found["rows"]) == 1 and found["rmse"] == {}
     assert found["energy_residual_max"] < 1e-6
     assert "How close" not in (tmp_path / "out" / "report.html").read_text()

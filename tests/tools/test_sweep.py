@@ -126,7 +126,7 @@ def test_a_shaft_end_that_is_varied_is_driven(gearheat, tmp_path) -> None:
 def test_the_same_sweep_gives_the_same_bytes_on_any_number_of_threads(gearheat, tmp_path) -> None:
     outs = [tmp_path / f"{k}.csv" for k in range(3)]
     for out, threads in zip(outs, (1, 2, 3), strict=True):
-        answer = gearheat("sweep", "planetary", *VARY, "--sample", "100", "-o", out, "--threads", threads)
+        answer = gearheat("sweep", "planetary", *VARY, "--sample", "100", "-o", out, "--jobs", threads)
         assert answer.code == 0
         assert answer.err == ""
     assert outs[0].read_bytes() == outs[1].read_bytes() == outs[2].read_bytes()

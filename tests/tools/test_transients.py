@@ -3,6 +3,7 @@ from __future__ import annotations
 import csv
 
 import pytest
+from pages import problems_of
 
 DUTY = """time [min],carrier.w [rpm],carrier.tau [N.m],room.T [degC]
 0,150,2000,20
@@ -45,8 +46,12 @@ def test_the_fmu_gives_what_the_model_gives(gearheat, duty, tmp_path):
     fmu, simulated, played = (tmp_path / name for name in ("rig.fmu", "simulated.csv", "played.csv"))
     settings = ("--set", "cooling.A=0.7 m2", "--set", "room.T=20 degC")
     assert gearheat("export", "--platform", "host", "planetary", "-o", fmu, *settings).code == 0
-    assert gearheat("simulate", "planetary", "--duty", duty, "-o", simulated, *settings).code == 0
-    assert gearheat("play", fmu, "--duty", duty, "-o", played).code == 0
+    pages = tmp_path / "simulated.html", tmp_path / "played.html"
+    assert gearheat("simulate", "planetary", "--duty", duty, "-o", simulated, "--plot", pages[0], *settings).code == 0
+    assert gearheat("play", fmu, "--duty", duty, "-o", played, "--plot", pages[1]).code == 0
+    for page in pages:
+        text = page.read_text(encoding="utf-8")
+        assert problems_of(text) == [] and '"oil.T"' in text
     ours, theirs = columns(simulated), columns(played)
     assert ours["time [s]"] == theirs["time [s]"]
     for name in ("oil.T [degC]", "wall.T [degC]", "surface.T [degC]"):

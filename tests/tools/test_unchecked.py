@@ -94,7 +94,7 @@ def test_list_says_what_of_an_entry_is_checked(gearheat) -> None:
 
 
 def test_run_says_it_in_its_report(gearheat, tmp_path) -> None:
-    answer = gearheat("run", "helical_two_stage", "--out", str(tmp_path / "out"), "--workers", "1")
+    answer = gearheat("run", "helical_two_stage", "--out", str(tmp_path / "out"), "--jobs", "1")
     assert answer.code == 0, answer.err
     assert LINE in answer.out
     page = (tmp_path / "out" / "report.html").read_text("utf-8")

@@ -13,6 +13,7 @@ from gearheat.scenarios.published import Row, read_published
 from gearheat.tools.docs.blocks import PAGES
 from gearheat.tools.verdicts import CONTRADICTED, NOT_REPRODUCED, REPRODUCED, VERDICTS, Value, judged
 from gearheat.tools.verify import law_of
+from pages import problems_of
 
 PAGE = (PAGES / "trust" / "verified.md").read_text(encoding="utf-8")
 #: A line of its table of counts: name, then six numbers.
@@ -28,6 +29,7 @@ def test_every_number_of_every_rig_and_the_counts_of_the_page(gearheat, tmp_path
     page = tmp_path / "page.html"
     answer = gearheat("verify", "--json", "-", "--html", page)
     found = answer.json
+    assert problems_of(page.read_text(encoding="utf-8")) == []
     parts = {**{machine["name"]: machine for machine in found["machines"]}, "laws": found["laws"], "in all": found}
     every = [row for part in parts.values() for row in part.get("rows", ())]
     assert not [row for row in every if row["verdict"] not in (REPRODUCED, CONTRADICTED)]

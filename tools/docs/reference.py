@@ -25,9 +25,10 @@ from ...model.parts import PARTS
 from ...model.sources import LawInfo, sources
 from ...model.units import PER_MINUTE, ROTATIONS, SPELLINGS, UNCLEAR
 from ...scenarios import load as loading
-from ...scenarios.entries import FILES, catalogue
+from ...scenarios.entries import catalogue
 from ...scenarios.golden import golden_rows
-from ...scenarios.load import RIGS, list_rigs, load
+from ...scenarios.load import load
+from ...scenarios.shipped import FILES, RIGS, list_rigs
 from ...scenarios.tables import CampaignTable, ErratumTable, RigTable, SensorTable, Strict
 from ..cards import usual_priors
 from ..parts import described

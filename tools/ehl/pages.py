@@ -16,10 +16,12 @@ Row = Mapping[str, Any]
 COLUMNS = ("item", "case", "quantity", "reference", "ours", "deviation", "tolerance", "verdict")
 SUMMARY = ("what", "rows", "within", "outside", "largest deviation", "tolerance")
 HTML = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8"><title>gearheat: the contact solver, verified</title><style>
+<html lang="en"><head><meta charset="utf-8">
+<meta name="viewport" content="width=device-width"><title>gearheat: the contact solver, verified</title><style>
 body { font: 15px/1.5 sans-serif; max-width: 70rem; margin: 2rem auto; padding: 0 1rem; }
 table { border-collapse: collapse; font-size: .9rem; } td, th { padding: .2rem .6rem; border-bottom: 1px solid #ddd; }
 td { text-align: left; } .outside { background: #fcf1ea; } svg { max-width: 100%; height: auto; }
+.scroll { overflow-x: auto; }
 </style></head><body>
 <h1>The contact solver, verified</h1>
 <h2>Summary</h2>
@@ -29,9 +31,9 @@ td { text-align: left; } .outside { background: #fcf1ea; } svg { max-width: 100%
 {{ table(columns, body) }}
 </body></html>
 """
-TABLE = """{% macro table(columns, rows) %}<table><tr>{% for c in columns %}<th>{{ c }}</th>{% endfor %}</tr>
+TABLE = """{% macro table(columns, rows) %}<div class="scroll"><table><tr>{% for c in columns %}<th>{{ c }}</th>{% endfor %}</tr>
 {% for row in rows %}<tr class="{{ row[-1] }}">{% for v in row %}<td>{{ v }}</td>{% endfor %}</tr>
-{% endfor %}</table>{% endmacro %}"""
+{% endfor %}</table></div>{% endmacro %}"""
 
 
 def rows(found: Sequence[tuple[Job, Found]]) -> list[Row]:

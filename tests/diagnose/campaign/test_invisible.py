@@ -6,7 +6,7 @@ import pytest
 from gearheat.diagnose.campaign.card import Card
 from gearheat.diagnose.campaign.invisible import invisible
 from gearheat.diagnose.campaign.read import read_campaign
-from gearheat.scenarios.load import RIGS
+from gearheat.scenarios.shipped import RIGS
 
 
 @pytest.fixture(scope="module")

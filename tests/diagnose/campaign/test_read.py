@@ -7,7 +7,7 @@ import pytest
 from gearheat.diagnose.campaign.card import Card, read_card
 from gearheat.diagnose.campaign.read import read_campaign
 from gearheat.model.errors import DataError
-from gearheat.scenarios.load import RIGS
+from gearheat.scenarios.shipped import RIGS
 from made_tables import made, written
 
 MINUTE = 60.0

@@ -11,7 +11,7 @@ from fabricated_findings import explained
 from gearheat.diagnose.report.findings import Findings, Prediction
 from gearheat.diagnose.request import Inputs, Request
 from gearheat.model.errors import DataError
-from gearheat.scenarios.load import RIGS
+from gearheat.scenarios.shipped import RIGS
 from gearheat.tools import cli, diagnosing
 from gearheat.tools.diagnosing import Outputs, Progress, diagnose_command
 from jsonschema import validate

@@ -8,6 +8,7 @@ import pytest
 from fabricated_findings import KINDS, clean, explained, spoiled
 from gearheat.diagnose.report.evidence import Rows
 from gearheat.diagnose.report.page import render
+from pages import problems_of
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -15,6 +16,7 @@ def test_the_page_renders_and_needs_no_net(kind: str) -> None:
     page = render(KINDS[kind]())
     assert page.startswith("<!doctype html>")
     assert not re.search(r'(src|href)="(?!#)', page), "nothing is loaded"
+    assert problems_of(page) == []
     assert not re.search(r"\bNone\b|\bnan\b|\{\{|\d[eE]-\d\d", _text(page))
 
 

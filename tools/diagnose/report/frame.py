@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Sequence
 from functools import cache
+from importlib.resources import files
 from typing import Any
 
 from jinja2 import ChoiceLoader, Environment, PackageLoader
@@ -46,3 +48,16 @@ def html_table(head: Sequence[str], body: Iterable[Sequence[str]]) -> Markup:
 
     rows = [f"<tr>{row('th', head)}</tr>", *(f"<tr>{row('td', line)}</tr>" for line in lines)]
     return Markup("<table>\n" + "\n".join(rows) + "\n</table>")
+
+
+def as_data(value: Any) -> Markup:
+    """A value as JSON that may stand in a page."""
+    return Markup(json.dumps(value, ensure_ascii=False, allow_nan=False).replace("<", "\\u003c"))
+
+
+@cache
+def vendored() -> dict[str, Markup]:
+    """The plot library of the pages: its script, style and licence."""
+    names = {"script": "uPlot.iife.min.js", "css": "uPlot.min.css", "licence": "uPlot.LICENSE"}
+    folder = files(OWN).joinpath("vendor")
+    return {key: Markup(folder.joinpath(name).read_text(encoding="utf-8").strip()) for key, name in names.items()}

@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
-from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from markupsafe import Markup
@@ -34,9 +31,7 @@ def render(findings: Findings) -> str:
         doubt=phrases.gains_nothing(findings),
         **{name: _sections(made(findings)) for name, made in SECTIONS.items()},
         plot=_data(findings),
-        script=_vendor("uPlot.iife.min.js"),
-        licence=_vendor("uPlot.LICENSE"),
-        css=_vendor("uPlot.min.css"),
+        **frame.vendored(),
     )
 
 
@@ -96,16 +91,12 @@ def _data(findings: Findings) -> Markup:
         key: {"label": q.label, "unit": phrases.SHOWN.get(q.unit, q.unit), "values": q.values[every]}
         for key, q in rows.quantities.items()
     }
-    shown = {"row": rows.row[every], "test": rows.test[every], "direction": rows.direction[every]}
-    text = json.dumps(shown | {"channels": channels, "quantities": quantities}, ensure_ascii=False, allow_nan=False)
-    return Markup(text.replace("<", "\\u003c")) if channels and quantities else Markup("")
+    rest = {"row": rows.row[every], "test": rows.test[every], "direction": rows.direction[every]}
+    if not channels or not quantities:
+        return Markup("")
+    return frame.as_data(rest | {"channels": channels, "quantities": quantities})
 
 
 def _left(measured: Sequence[float | None], model: Sequence[float | None]) -> list[float | None]:
     pairs = zip(measured, model, strict=True)
     return [None if m is None or s is None else float(f"{m - s:.4g}") for m, s in pairs]
-
-
-@cache
-def _vendor(name: str) -> Markup:
-    return Markup(files(frame.OWN).joinpath("vendor", name).read_text(encoding="utf-8").strip())

@@ -1,0 +1,78 @@
+"""What is shipped: rigs and catalogues by name. Nothing of it is checked here, so it is told at once."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from .document import ABOUT, read_toml
+
+_ROOT = Path(str(files("gearheat.scenarios")))
+
+#: Folder of the shipped rigs, one folder each.
+RIGS = _ROOT / "rigs"
+
+#: Folder of the catalogues.
+FOLDER = _ROOT / "catalogue"
+
+#: Kind of entry, as it is called in a part's table -> its file.
+FILES: Mapping[str, str] = {
+    "oil": "oils.toml",
+    "bearing": "bearings.toml",
+    "seal": "seals.toml",
+    "material": "materials.toml",
+    "air": "air.toml",
+}
+
+#: Key of what the values of an entry were compared with.
+CHECKED = "checked"
+
+
+def list_rigs(key: str = "doc") -> dict[str, str]:
+    """The shipped rigs: name -> what they are.
+
+    Args:
+        key: text of the rig file to give: "doc", or "reproduces" for the published results that a rig reproduces
+    """
+    return {name: str(rig.get(key, "")) for name, rig in _rigs().items()}
+
+
+@cache
+def _rigs() -> Mapping[str, Mapping[str, Any]]:
+    """What stands in each rig file before its first table: the rest takes the most time to read."""
+    texts = {path.parent.name: path.read_text(encoding="utf-8") for path in sorted(RIGS.glob("*/rig.toml"))}
+    return {
+        name: tomllib.loads(re.split(r"^\[", text, maxsplit=1, flags=re.MULTILINE)[0]) for name, text in texts.items()
+    }
+
+
+@dataclass(frozen=True)
+class Listed:
+    """An entry of a catalogue as it is listed: what it is, and whether its values were compared with a print.
+
+    `checked` is "all", "none", or names the values that were not.
+    """
+
+    doc: str
+    checked: str
+
+
+def list_entries(kind: str) -> dict[str, Listed]:
+    """The entries of a catalogue by name.
+
+    Args:
+        kind: of the catalogue, a key of `FILES`
+    """
+    found = {}
+    for name, table in read_toml(FOLDER / FILES[kind]).items():
+        values, checked = [key for key in table if key not in (*ABOUT, CHECKED)], table[CHECKED]
+        missing = [] if isinstance(checked, str) else [key for key in values if not checked or key not in checked]
+        told = "all" if not missing else f"not {', '.join(missing)}" if checked else "none"
+        found[name] = Listed(str(table.get("doc", "")), told)
+    return found
