@@ -34,8 +34,8 @@ from ..cards import usual_priors
 from ..parts import described
 from .markdown import arguments, code, docstring, fenced, listing, table, words
 
-#: Where the page of the contact solver and its pictures stand.
-CONTACT = Path(str(files("gearheat.model.contact")))
+#: Where the pages of the contact solver and of the reference methods stand.
+CONTACT, METHODS = (Path(str(files(f"gearheat.{name}"))) for name in ("model.contact", "tools.reference"))
 
 
 def pages() -> Iterator[tuple[str, str]]:
@@ -51,12 +51,12 @@ def pages() -> Iterator[tuple[str, str]]:
 
 
 def copy_pictures(place: Path) -> None:
-    """Put the page of the contact solver, and what the pages of rigs show, where the generated pages are."""
-    if (CONTACT / "README.md").exists():
-        shutil.copy(CONTACT / "README.md", place / "contacts.md")
-        shutil.copytree(CONTACT / "verification", place / "verification")
-        rows = place / "verification" / "verification.md"
-        rows.write_text(f"---\norphan: true\n---\n\n{rows.read_text(encoding='utf-8')}", encoding="utf-8")
+    """Put pages that stand beside their code, and what the pages of rigs show, where the generated pages are."""
+    shutil.copy(CONTACT / "README.md", place / "contacts.md")
+    shutil.copytree(CONTACT / "verification", place / "verification")
+    rows = place / "verification" / "verification.md"
+    rows.write_text(f"---\norphan: true\n---\n\n{rows.read_text(encoding='utf-8')}", encoding="utf-8")
+    shutil.copy(METHODS / "README.md", place / "iso14179.md")
     for picture in (p for kind in ("*/*.svg", "*/*.png") for p in RIGS.glob(kind)):
         shutil.copy(picture, place / "rigs")
 
