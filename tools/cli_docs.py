@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, cast
 
 import typer
+from typer.core import TyperGroup
 
 from . import console
 
@@ -22,4 +23,4 @@ def docs(
     """Build the documentation as a web site; its code blocks are run and their output compared with the pages."""
     from .docs import build
 
-    build.docs_command(context.find_root().command, out, run)
+    build.docs_command(cast(TyperGroup, context.find_root().command), out, run)

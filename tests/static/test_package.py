@@ -25,9 +25,15 @@ def test_wheel_contents(tmp_path: Path) -> None:
     subprocess.run(command, check=True, capture_output=True)
     (wheel,) = tmp_path.glob("*.whl")
     held = set(zipfile.ZipFile(wheel).namelist())
-    folders = ("tools/templates", "tools/diagnose/report/templates", "tools/diagnose/report/vendor")
+    folders = (
+        "tools/templates",
+        *(f"tools/docs/pages/{kind}" for kind in ("tutorials", "howto", "reference")),
+        "tools/diagnose/report/templates",
+        "tools/diagnose/report/vendor",
+    )
     wanted = tracked("*.py", "py.typed", "*.toml", "*.csv", "*.c", "*.h", "*.schema.json")
     wanted |= {in_wheel(p) for folder in folders for p in (ROOT / folder).glob("*")}
+    wanted |= {in_wheel(p) for p in (ROOT / "tools/docs/pages").rglob("*.*")}
     assert wanted <= held, f"missing in the wheel: {sorted(wanted - held)}"
     assert not [name for name in held if not name.startswith("gearheat")], "the wheel holds foreign files"
 

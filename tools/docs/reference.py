@@ -208,7 +208,13 @@ def _catalogues() -> str:
 def _rigs() -> Iterator[tuple[str, str]]:
     reproduces = list_rigs("reproduces")
     rows = [(f"[{name}]({name}.md)", words(doc), words(reproduces[name])) for name, doc in list_rigs().items()]
-    yield "rigs/index.md", f"# Rigs\n\n{table(('rig', 'what it is', 'reproduces'), rows)}{toctree(list(reproduces))}"
+    about = (
+        "A source that prints results is a rig of its own, as printed; the physical rig beside it takes no shortcut."
+    )
+    yield (
+        "rigs/index.md",
+        f"# Rigs\n\n{about}\n\n{table(('rig', 'what it is', 'reproduces'), rows)}{toctree(list(reproduces))}",
+    )
     for name, doc in list_rigs().items():
         page = RIGS / name / "README.md"
         about = f"{words(doc)}\n\nReproduces: {words(reproduces[name])}\n\n`gearheat show {name}` prints all of it.\n"
