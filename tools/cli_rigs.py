@@ -49,7 +49,9 @@ def rating(
 @console.guarded
 def new(
     name: Annotated[str, typer.Argument(help="Name of the rig, and of its file.")],
-    stages: Annotated[str, typer.Option(help="Stages from the input: helical, spur; bevel first; worm or planetary alone.")],
+    stages: Annotated[
+        str, typer.Option(help="Stages from the input: helical, spur; bevel first; worm or planetary alone.")
+    ],
     ratio: Annotated[float, typer.Option(help="Speed of the input over that of the output.")],
     power: Annotated[str, typer.Option(help='Power at the input, such as "7.5 kW".')],
     speed: Annotated[str, typer.Option(help='Speed of the input, such as "1450 rpm".')],
