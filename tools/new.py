@@ -28,8 +28,8 @@ STEEL, IRON, OIL = 7850.0, 7200.0, 835.0
 #: What is told of a stage, and the size by which one of its kind is known.
 TOLD = ("kind", "z_1", "z_2", "m_n", "beta", "b")
 SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2", "worm": "a", "planetary": "a"}
-#: Speed at which churning is told [rad/s].
-CHURNED = 200 * math.pi / 30
+#: Speed at which churning is told [rad/s]; oil temperature that a unit should not reach [degC].
+CHURNED, HOT = 200 * math.pi / 30, 100.0
 
 #: What meets in a planetary unit beside its two shafts.
 PLANETARY = {
@@ -76,6 +76,8 @@ def new_command(
         "efficiency": kept["efficiency.eta"],
     }
     answer(payload, json_, lambda: _print(payload))
+    if payload["oil_degC"] > HOT:
+        note(f"the oil is hotter than {HOT:g} degC: such a unit needs a fan, fins or a cooler, or a larger housing.")
     for shaft in made.shafts:
         for bearing, life in zip(shaft.bearings, shaft.lives, strict=True):
             if life < sizing.LIFE:
