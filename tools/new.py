@@ -76,7 +76,7 @@ def new_command(
         "efficiency": kept["efficiency.eta"],
     }
     answer(payload, json_, lambda: _print(payload))
-    if payload["oil_degC"] > HOT:
+    if kept["oil.T"] - 273.15 > HOT:
         note(f"the oil is hotter than {HOT:g} degC: such a unit needs a fan, fins or a cooler, or a larger housing.")
     for shaft in made.shafts:
         for bearing, life in zip(shaft.bearings, shaft.lives, strict=True):
