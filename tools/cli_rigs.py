@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from . import console
-from .cli_options import Json, Plot, Rig, Set
+from .cli_options import Json, Rig, Set
 
 
 @console.guarded
@@ -18,7 +18,7 @@ def map_(
     speed: Annotated[str | None, typer.Option(help='Range such as "300..1800 rpm".')] = None,
     torque: Annotated[str | None, typer.Option(help='Range such as "-600..-60 N.m".')] = None,
     grid: Annotated[str, typer.Option(help="Points: speeds x torques.")] = "21x21",
-    plot: Plot = None,
+    plot: Annotated[Path | None, typer.Option(help="Picture to write, .svg or .png.")] = None,
     output: Annotated[list[str] | None, typer.Option(help="Output to map. Repeatable.")] = None,
     set_: Set = None,
     json: Json = None,
@@ -40,7 +40,7 @@ def rating(
     set_: Set = None,
     json: Json = None,
 ) -> None:
-    """Thermal power over room temperature and speed: what the rig carries continuously within a limit."""
+    """Thermal power over room temperature and speed: what the rig carries for ever within a limit."""
     from . import maps
 
     maps.rating_command(rig, limit, {"room": room, "w": speed}, grid, out, set_ or [], json)
@@ -50,7 +50,7 @@ def rating(
 def new(
     name: Annotated[str, typer.Argument(help="Name of the rig, and of its file.")],
     stages: Annotated[
-        str, typer.Option(help="Stages from the input on: helical, spur; bevel as the first; worm or planetary alone.")
+        str, typer.Option(help="Stages from the input: helical, spur; bevel first; worm or planetary alone.")
     ],
     ratio: Annotated[float, typer.Option(help="Speed of the input over that of the output.")],
     power: Annotated[str, typer.Option(help='Power at the input, such as "7.5 kW".')],
@@ -59,7 +59,7 @@ def new(
     out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; NAME.toml if left out.")] = None,
     json: Json = None,
 ) -> None:
-    """Make a rig of your own from its name plate. It runs at once and tells the rule behind every number."""
+    """A rig of your own from a name plate: it runs at once, and tells the rule of every number."""
     from . import new
 
     new.new_command(name, stages, ratio, power, speed, oil, out, json)
@@ -70,7 +70,7 @@ def parts(
     kind: Annotated[str | None, typer.Argument(metavar="TYPE", help="Part type; all types if left out.")] = None,
     json: Json = None,
 ) -> None:
-    """Part types that a rig can be built of, and everything about one of them."""
+    """What a rig can be built of: part types, and all about one with an example."""
     from . import parts
 
     parts.parts_command(kind, json)
@@ -80,7 +80,7 @@ def parts(
 def schema(
     out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; printed if left out.")] = None,
 ) -> None:
-    """JSON schema of rig files, for editors that complete and check them."""
+    """JSON schema of rig files: editors complete and check them with it."""
     from . import parts
 
     parts.schema_command(out)

@@ -15,21 +15,21 @@ from ..model.errors import ScenarioError, suggestion
 from ..model.run.steady import steady
 from ..model.units import to_si
 from ..scenarios.entries import catalogue
-from . import sizing, stages
+from . import sizing
 from .console import answer, note, writable, write
 from .points import conditions
 from .rigs import load
 from .settings import flat_of
 from .sizing import APART, GAP, LIGHT, OVERHANG, SIDE, Unit, unit
-from .stages import KINDS, BevelStage, PlanetaryStage, Stage, WormStage
+from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, BevelStage, PlanetaryStage, Stage, WormStage
 
 #: Steel, cast iron and oil [kg/m3].
 STEEL, IRON, OIL = 7850.0, 7200.0, 835.0
 #: What is told of a stage, and the size by which one of its kind is known.
 TOLD = ("kind", "z_1", "z_2", "m_n", "beta", "b")
 SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2", "worm": "a", "planetary": "a"}
-#: Speed at which churning is told [rad/s].
-CHURNED = 200 * math.pi / 30
+#: Speed at which churning is told [rad/s]; oil temperature that a unit should not reach [degC].
+CHURNED, HOT = 200 * math.pi / 30, 100.0
 
 #: What meets in a planetary unit beside its two shafts.
 PLANETARY = {
@@ -76,6 +76,8 @@ def new_command(
         "efficiency": kept["efficiency.eta"],
     }
     answer(payload, json_, lambda: _print(payload))
+    if kept["oil.T"] - 273.15 > HOT:
+        note(f"the oil is hotter than {HOT:g} degC: such a unit needs a fan, fins or a cooler, or a larger housing.")
     for shaft in made.shafts:
         for bearing, life in zip(shaft.bearings, shaft.lives, strict=True):
             if life < sizing.LIFE:
@@ -145,38 +147,32 @@ def _mm(value: float) -> str:
 def _stage(made: Unit, k: int) -> dict[str, Any]:
     s = made.stages[k]
     if isinstance(s, BevelStage):
-        rule = f"F_t/(b d_v1) (u_v + 1)/u_v of {stages.K_BEVEL / 1e6:g} N/mm2 at mid face, d_e2 of {_mm(s.d_e2)} mm"
-        shape: dict[str, Any] = {"type": "BevelGearPair", "m_et": s.m_et, "x_1": s.x_1, "width": stages.FACE}
+        rule = f"F_t/(b d_v1) (u_v + 1)/u_v of {K_BEVEL / 1e6:g} N/mm2 at mid face, d_e2 of {_mm(s.d_e2)} mm"
+        shape: dict[str, Any] = {"type": "BevelGearPair", "m_et": s.m_et, "x_1": s.x_1, "width": FACE}
     elif isinstance(s, PlanetaryStage):
-        rule = (
-            f"F_t/(b d_1) (u + 1)/u of {stages.K_STAR / 1e6:g} N/mm2 of sun and planet, standard module, straight teeth"
-        )
-        shape = {"type": "PlanetarySet", "N": s.count, "z_3": s.z_3, "m_n": s.m_n, "a": s.a, "width": stages.WIDTH}
+        rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2 of sun and planet, standard module, straight teeth"
+        shape = {"type": "PlanetarySet", "N": s.count, "z_3": s.z_3, "m_n": s.m_n, "a": s.a, "width": WIDTH}
         shape |= {"s_planet": s.b / 2, "d_planet": s.d_planet} | s.ratios
     elif isinstance(s, WormStage):
-        rule = (
-            f"wheel's torque over a3 of {stages.T_WORM / 1e6:g} N/mm2 as makers rate them, standard a = {_mm(s.a)} mm"
-        )
-        shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "width": stages.SLIM}
+        rule = f"wheel's torque over a3 of {T_WORM / 1e6:g} N/mm2 as makers rate them, standard a = {_mm(s.a)} mm"
+        shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "width": SLIM}
     else:
         twist = f"beta for a = {_mm(s.a)} mm" if KINDS[s.kind] else "a follows from the teeth"
-        rule = f"F_t/(b d_1) (u + 1)/u of {stages.K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"
-        shape = {"type": "HelicalGearPair", "m_n": s.m_n, "a": s.a, "width": stages.WIDTH}
+        rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"
+        shape = {"type": "HelicalGearPair", "m_n": s.m_n, "a": s.a, "width": WIDTH}
     c = 0.5 * OIL * CHURNED**3 * s.b * s.reach**4
     shape |= {"z_1": s.z_1, "z_2": s.z_2, "b": s.b, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule, "c": c}
     return {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", **shape}
 
 
 def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
-    s, n = made.shafts[k], len(made.stages)
-    radii = ([made.stages[k - 1].r_2] if k else []) + ([made.stages[k].r_1] if k < n else [])
-    if not s.places:
-        radii = []
+    s = made.shafts[k]
+    radii = [t.r_2 for t in made.stages[k - 1 : k]] + [t.r_1 for t in made.stages[k : k + 1]]
     places = [
         {"name": f"{names[k]}_bearing_{end}", "bearing": bearing, "life": _num(life)}
         for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)
     ]
-    gears = [{"x": x, "r": r} for x, r in zip(s.places, radii, strict=True)]
+    gears = [{"x": x, "r": r} for x, r in zip(s.places, radii, strict=False)]
     support = ("", "ShaftSupport", "TwoGearSupport")[len(gears)]
     return {"name": names[k], "support": support, "gears": gears, "span": s.span, "bearings": places, "d": s.d}
 

@@ -104,9 +104,9 @@ def unit(kinds: Sequence[str], ratio: float, power: float, speed: float) -> Unit
         T, n, x, left = T * made.u, n / made.u, x + made.b + GAP, left / made.u
     span = x - GAP + SIDE
     shafts = tuple(_shaft(found, k, span) for k in range(len(found) + 1))
-    wall = max(0.008, 0.025 * found[-1].a + 0.003)
+    wall = max(0.008, 0.025 * found[-1].along + 0.003)
     tips = [(s.r_1 + s.m_n, s.r_2 + s.m_n) for s in found]
-    length = sum(s.a for s in found) + tips[-1][1] + 0.040 + 2 * wall
+    length = sum(s.along for s in found) + tips[-1][1] + 0.040 + 2 * wall
     height = 2 * max(max(pair) for pair in tips) + 0.080 + 2 * wall
     if isinstance(found[0], WormStage):  # the wheel stands on the worm
         length, height = shafts[0].span + 0.090, found[0].a + sum(tips[0]) + 0.080 + 2 * wall

@@ -70,8 +70,13 @@ class Stage:
 
     @property
     def a(self) -> float:
-        """Centre distance; of bevel gears how far the pinion reaches from the wheel's shaft."""
+        """Centre distance."""
         return self.r_1 + self.r_2
+
+    @property
+    def along(self) -> float:
+        """Length of the box that it takes."""
+        return self.a
 
     @property
     def count(self) -> int:
@@ -133,8 +138,8 @@ class BevelStage(Stage):
         return self.m_et * self.z_2
 
     @property
-    def a(self) -> float:
-        """How far the pinion reaches from the wheel's shaft."""
+    def along(self) -> float:
+        """How far the pinion is from the wheel's shaft at its outer end."""
         return self.d_e2 / 2
 
     @property

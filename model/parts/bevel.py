@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 
 import casadi as ca
@@ -20,11 +21,11 @@ WIDEST = 0.4
 
 
 class BevelGearPair(GearPair):
-    """Two bevel gears on shafts that cross, 90 degrees apart or otherwise: spiral, or straight with beta = 0.
+    """Two bevel gears on shafts that intersect: spiral, or straight with beta = 0.
 
-    Friction, film and loss are those of the virtual cylindrical gears at mid face. Seen from their backs
-    the gears turn in opposite directions. An axial force is positive away from the apex; a support takes it as one
-    towards its bearing a.
+    Friction, film and loss are those of the virtual cylindrical gears at mid face. Seen from their backs the gears turn
+    in opposite directions. An axial force is positive away from the apex; a support takes it as one towards its
+    bearing a.
     """
 
     pinion_force = ToothForce()
@@ -35,7 +36,7 @@ class BevelGearPair(GearPair):
         "where the spiral pushes the pinion that drives forwards: away from the apex (concave flank) or towards it",
         default="away",
     )
-    shaft_angle = Parameter("rad", "angle between the shafts", above=0.0, below=3.1)
+    shaft_angle = Parameter("rad", "angle between the shafts", default=math.pi / 2, above=0.0, below=3.1)
     m_et = Parameter("m", "transverse module at the outer end", nominal=1e-3, above=0.0)
     m_n = Parameter("m", "normal module at mid face", nominal=1e-3, above=0.0, derived=lambda p: p.mean_module())
     beta = Parameter("rad", "spiral angle at mid face, 0 for straight teeth", at_least=0.0, below=1.2)

@@ -32,7 +32,7 @@ SHIFT_LEFT = 0.05
 UNDERCUT_LEFT = 0.5
 #: Teeth that a ring has more than its pinion, at least: below, standard tips interfere.
 LEAST_DIFFERENCE = 8.0
-#: How far the tips of a ring may reach: a little beyond the pinion's involute they are shortened, which is not told here.
+#: How far the tips of a ring may reach; a little beyond the pinion's involute they are shortened in practice.
 BEYOND = 1.1
 
 

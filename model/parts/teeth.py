@@ -49,7 +49,7 @@ class ToothedPart(Component):
     z_2 = Parameter("1", "number of teeth of the second gear (wheel, planet)", above=0.0, whole=True)
     m_n = Parameter("m", "normal module", nominal=1e-3, above=0.0)
     alpha_n = Parameter("rad", "normal pressure angle", above=0.0, below=1.0)
-    beta = Parameter("rad", "helix angle at the reference diameter", at_least=0.0, below=1.2)
+    beta = Parameter("rad", "helix angle at the reference diameter, 0 for straight teeth", at_least=0.0, below=1.2)
     b = Parameter("m", "face width", nominal=0.05, above=0.0)
     a_w = Parameter("m", "working centre distance", nominal=0.1, above=0.0)
     Ra = Parameter("m", "roughness Ra of each flank", nominal=1e-6, above=0.0)

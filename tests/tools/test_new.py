@@ -60,6 +60,14 @@ def test_what_it_made_is_told(gearheat, tmp_path):
         assert words in answer.out
 
 
+def test_what_is_too_hot_or_too_weak_is_told(gearheat, tmp_path):
+    plate = ("--stages", "worm", "--ratio", 60, "--power", "3 kW", "--speed", "1450 rpm")
+    answer = gearheat("new", "hot", *plate, "-o", tmp_path / "hot.toml")
+    assert answer.code == 0, answer.err
+    assert "needs a fan, fins or a cooler" in answer.err
+    assert "the catalogue has no stronger one" in answer.err
+
+
 def test_it_is_what_one_would_draw(made):
     _, answer = made("two")
     first, second = answer.json["stages"]
