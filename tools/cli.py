@@ -8,7 +8,7 @@ from typing import Annotated, Literal
 import typer
 
 from . import cli_contact, cli_developers, cli_diagnosis, cli_docs, cli_logs, cli_rigs, console
-from .cli_options import Jobs, Json, Plot, Rig, Set, Tests
+from .cli_options import Everything, Jobs, Json, Plot, Rig, Set, Tests
 
 app = typer.Typer(
     name="gearheat",
@@ -105,11 +105,18 @@ def losses(
 
 
 @console.guarded
-def steady(rig: Rig, set_: Set = None, extended: Extended = None, plot: Plot = None, json: Json = None) -> None:
+def steady(
+    rig: Rig,
+    set_: Set = None,
+    extended: Extended = None,
+    plot: Plot = None,
+    everything: Everything = False,
+    json: Json = None,
+) -> None:
     """Steady temperatures and losses at one operating point."""
     from . import points
 
-    points.steady_command(str(extended or rig), set_ or [], json, plot=plot)
+    points.steady_command(str(extended or rig), set_ or [], json, plot=plot, everything=everything)
 
 
 @console.guarded
@@ -130,12 +137,15 @@ def design(
     ] = None,
     set_: Set = None,
     extended: Extended = None,
+    everything: Everything = False,
     json: Json = None,
 ) -> None:
     """Find parameters or inputs for which outputs reach their targets."""
     from . import designing
 
-    designing.design_command(str(extended or rig), free or [], target, set_ or [], among or [], json)
+    designing.design_command(
+        str(extended or rig), free or [], target, set_ or [], among or [], json, everything=everything
+    )
 
 
 @console.guarded

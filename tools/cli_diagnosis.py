@@ -9,14 +9,13 @@ from typing import Annotated, Any
 import typer
 
 from . import console
-from .cli_options import Json
+from .cli_options import Everything, Json
 
 Card = Annotated[Path | None, typer.Option(help="Accuracies, priors and protocol: TOML or JSON, see `gearheat card`.")]
 Libraries = Annotated[
     list[Path] | None,
     typer.Option("--library", metavar="FILE", help="Python file with causes of your own. Repeatable."),
 ]
-Everything = Annotated[bool, typer.Option("--all", help="Print all tables, not the first screen alone.")]
 
 
 def _logs(text: str) -> Any:

@@ -32,3 +32,4 @@ Plot = Annotated[
 ]
 Jobs = Annotated[int, typer.Option("-j", "--jobs", min=0, help="How many to run at once; 0 for one per core.")]
 Tests = Annotated[str | None, typer.Option(help="Only these tests, for example 1,13,22-26.")]
+Everything = Annotated[bool, typer.Option("--all", help="Print everything, not the first screen alone.")]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
@@ -14,7 +14,7 @@ from ..model.run.least import Target, least_change, rank, unchanged
 from ..model.units import from_si, shown
 from ..scenarios.scenario import Scenario, parse_assignments
 from .console import answer, say, table
-from .points import HEAD, conditions, point_of, print_point, tell_outside
+from .points import HEAD, conditions, first_of, point_of, print_point, tell_outside
 from .rigs import load
 from .settings import adjusted, flat_of
 from .unchecked import print_unchecked, unchecked
@@ -54,6 +54,8 @@ def design_command(
     assignments: Sequence[str],
     among: Sequence[str],
     json: str | None,
+    *,
+    everything: bool = False,
 ) -> None:
     """Values of the freed names at which the targets hold, for each alternative of `among` where there is one."""
     scenario = load(rig)
@@ -63,7 +65,8 @@ def design_command(
         case = _case(scenario, free, targets, assignments)
         solution = least_change(case.flat, case.free, case.targets, case.values)
         found |= _solution(case, solution)
-        answer(found, json, lambda: _print_design(case.flat, found))
+        first = None if everything else first_of(case.setting, case.flat)
+        answer(found, json, lambda: _print_design(case.flat, found, first))
         return
     solved: list[tuple[tuple[float, ...], dict[str, Any]]] = []
     unsolved: list[dict[str, Any]] = []
@@ -162,7 +165,7 @@ def _solution(case: _Case, solution: Design) -> dict[str, Any]:
     }
 
 
-def _print_design(flat: FlatModel, found: Mapping[str, Any]) -> None:
+def _print_design(flat: FlatModel, found: Mapping[str, Any], first: Container[str] | None) -> None:
     units = found["units"]
     if body := [[n, v, units[n], flat.quantity(n).doc] for n, v in found["free"].items()]:
         table(f"{found['rig']}: found", HEAD, body)
@@ -172,7 +175,7 @@ def _print_design(flat: FlatModel, found: Mapping[str, Any]) -> None:
         table("Sensitivity", head, slopes)
     for note in found["notes"]:
         say(note)
-    print_point(f"{found['rig']}: steady state there", flat, found)
+    print_point(f"{found['rig']}: steady state there", flat, found, first)
 
 
 def _print_alternatives(found: Mapping[str, Any]) -> None:

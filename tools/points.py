@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -32,7 +32,9 @@ def told(scenario: Scenario) -> list[str]:
     return [*(f"{p.name}.T" for p in warm[:1]), *(f"{name}.{key}" for name in meters for key in ("P_loss", "eta"))]
 
 
-def steady_command(rig: str, assignments: Sequence[str], json: str | None, *, plot: Path | None = None) -> None:
+def steady_command(
+    rig: str, assignments: Sequence[str], json: str | None, *, plot: Path | None = None, everything: bool = False
+) -> None:
     """Temperatures and losses of a rig at rest with its surroundings."""
     plottable(plot)
     scenario = adjusted(load(rig), assignments)
@@ -47,7 +49,8 @@ def steady_command(rig: str, assignments: Sequence[str], json: str | None, *, pl
     }
     if plot is not None:
         _plot_heat(scenario, flat, result, plot)
-    answer(found, json, lambda: print_point(f"{scenario.name}: steady state", flat, found))
+    first = None if everything else first_of(scenario, flat)
+    answer(found, json, lambda: print_point(f"{scenario.name}: steady state", flat, found, first))
 
 
 def _plot_heat(scenario: Scenario, flat: FlatModel, result: Result, plot: Path) -> None:
@@ -96,10 +99,26 @@ def outside_of(result: Result) -> list[dict[str, Any]]:
     ]
 
 
-def print_point(title: str, flat: FlatModel, found: Mapping[str, Any]) -> None:
-    """Print a steady state, as `point_of` gives it."""
-    body = [[n, v, found["units"][n], flat.quantity(n).doc] for n, v in found["values"].items()]
-    table(title, HEAD, body)
+def first_of(scenario: Scenario, flat: FlatModel) -> set[str]:
+    """What a first answer holds of a point: states, what is given, shafts, losses, heat to rooms, efficiencies."""
+    told = {q.name for q in flat.states} | set(scenario.operating_point) | scenario.shaft_paths()
+    told |= {f"{room}.Q_flow" for room in scenario.spec.of_type("Room")}
+    return told | {q.name for q in flat.outputs if q.name.rpartition(".")[2].startswith(("P_loss", "eta"))}
+
+
+def print_point(title: str, flat: FlatModel, found: Mapping[str, Any], first: Container[str] | None = None) -> None:
+    """Print a steady state.
+
+    Args:
+        title: above it
+        flat: the model
+        found: the state, as `point_of` gives it
+        first: the values that are printed; all if None
+    """
+    told = [n for n in found["values"] if first is None or n in first]
+    table(title, HEAD, [[n, found["values"][n], found["units"][n], flat.quantity(n).doc] for n in told])
+    if more := len(found["values"]) - len(told):
+        say(f"{more} more values with --all")
     say(f"power balance closed within {found['energy_residual']:.1e} of the throughput")
     tell_outside(found["outside"])
     print_unchecked(found["unchecked"])

@@ -35,6 +35,8 @@ from .unchecked import print_unchecked, unchecked
 BLOCKS = {"steady": 8192, "warmup": 256}
 #: Quantities that a picture can be drawn over.
 MOST_DRAWN = 2
+#: Outputs that a picture shows of a rig without oil, body and efficiency.
+MOST_PANELS = 6
 
 
 @dataclass(frozen=True)
@@ -217,7 +219,7 @@ def planned(request: Request, scenario: Scenario | None = None) -> Plan:
     else:
         values = sampling.sampled(axes, request.sample or 0, request.method, request.seed)
     job = _job(request, scenario, flat, tuple(names))
-    drawn = _outputs(request) or [name for name in told(scenario) if name in job.outputs]
+    drawn = _outputs(request) or told(scenario) or job.outputs[:MOST_PANELS]
     return Plan(scenario.name, request.kind, axes, values, job, flat, unchecked(scenario, flat), drawn)
 
 

@@ -125,19 +125,13 @@ def _flat_model(
     states = [(part, k) for part in parts for k in part.states if f"{part.name}.{k}" not in joined]
     inputs = [(part, k) for part in parts for k in part.inputs if part.is_input(k)]
     parameters = [(part, k) for part in parts for k in part.parameters]
-    outputs = [(part, k, d) for part in parts for k, d in _shown(part, joined).items()]
-    told = {
-        path: (port.symbols[k], d)
-        for port in assembly.ports().values()
-        for k, d in type(port).flows().items()
-        if (path := f"{port.name}.{k}") in flows
-    }
+    outputs = [*_outputs(parts, joined), *_flows(assembly, flows)]
     related = [pair for part in parts for pair in part.all_relations()]
     energies = [energies_of(part) for part in parts]
     supplies = aliased([power for powers, _ in energies for power in powers])
     expressions = {
         "ode": column([part.derivatives[k] for part, k in states]),
-        "y": column([*(part.symbols[k] for part, k, _ in outputs), *(symbol for symbol, _ in told.values())]),
+        "y": column([symbol for symbol, _ in outputs]),
         "residual": column([test.residual for test in solution.tests]),
         "supply": sum(supplies, ca.SX(0)),
         "throughput": sum((ca.fabs(power) for power in supplies), ca.SX(0)),
@@ -155,10 +149,7 @@ def _flat_model(
         states=_quantities(states, "states"),
         inputs=_quantities(inputs, "inputs"),
         parameters=_quantities(parameters, "parameters"),
-        outputs=(
-            *(_output(part, k, d, joined) for part, k, d in outputs),
-            *(d.quantity(path) for path, (_, d) in told.items()),
-        ),
+        outputs=tuple(quantity for _, quantity in outputs),
         algebraic=tuple(Quantity(u.name, u.unit, "", u.nominal, start_of(u)) for u in solution.torn),
         x=column([part.symbols[k] for part, k in states]),
         z=column([u.symbol for u in solution.torn]),
@@ -178,6 +169,18 @@ def _flat_model(
 
 def _quantities(items: list[tuple[Component, str]], kind: str) -> tuple[Quantity, ...]:
     return tuple(getattr(part, kind)[k].quantity(f"{part.name}.{k}", part.values[k]) for part, k in items)
+
+
+def _outputs(parts: Iterable[Component], joined: Mapping[str, str]) -> list[tuple[Any, Quantity]]:
+    """Symbol and quantity of every output of the parts."""
+    shown = ((part, k, d) for part in parts for k, d in _shown(part, joined).items())
+    return [(part.symbols[k], _output(part, k, d, joined)) for part, k, d in shown]
+
+
+def _flows(assembly: Assembly, flows: Container[str]) -> list[tuple[Any, Quantity]]:
+    """Symbol and quantity of the flows of ports that are asked for."""
+    every = ((port, k, d) for port in assembly.ports().values() for k, d in type(port).flows().items())
+    return [(port.symbols[k], d.quantity(path)) for port, k, d in every if (path := f"{port.name}.{k}") in flows]
 
 
 def _shown(part: Component, joined: Mapping[str, str]) -> dict[str, Declaration]:

@@ -11,6 +11,7 @@ from gearheat.model.sources import sources
 from gearheat.tools.cli import app
 from gearheat.tools.ehl import cases, command, pages, peer, steady, store
 from gearheat.tools.ehl.rows import Job, bound, row
+from pages import problems_of
 from typer.testing import CliRunner
 
 ROOT = Path(__file__).parents[2]

@@ -12,6 +12,7 @@ import sys
 import time
 
 import pytest
+from pages import problems_of
 
 TESTS = "1,13,17,22"
 KEYS = ["point", "test", "direction", "oil", "T_oil_C", "T_wall_C", "T_amb_C", "loss_Nm", "P_loss_W", "efficiency"]

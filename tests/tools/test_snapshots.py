@@ -48,6 +48,7 @@ COMMANDS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
     "new": (new, ("new", "mine", "--stages", "helical,helical", "--ratio", "12.56", "--power", "7.5 kW",
                   "--speed", "1450 rpm")),
     "steady": (points, ("steady", "helical_two_stage")),
+    "steady_all": (points, ("steady", "harmonic", "--all")),
     "steady_outside": (points, ("steady", "cycloidal")),
     "design": (designing, ("design", "helical_two_stage", "--free", "cooling.A", "--target", "oil.T=45 degC")),
     "design_limit": (designing, ("design", "planetary", "--free", "cooling.A", "--free", "foot.G",

@@ -31,7 +31,8 @@ td { text-align: left; } .outside { background: #fcf1ea; } svg { max-width: 100%
 {{ table(columns, body) }}
 </body></html>
 """
-TABLE = """{% macro table(columns, rows) %}<div class="scroll"><table><tr>{% for c in columns %}<th>{{ c }}</th>{% endfor %}</tr>
+TABLE = """{% macro table(columns, rows) %}<div class="scroll"><table>
+<tr>{% for c in columns %}<th>{{ c }}</th>{% endfor %}</tr>
 {% for row in rows %}<tr class="{{ row[-1] }}">{% for v in row %}<td>{{ v }}</td>{% endfor %}</tr>
 {% endfor %}</table></div>{% endmacro %}"""
 
