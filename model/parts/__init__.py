@@ -2,7 +2,7 @@
 
 from ..core.component import Component
 from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
-from .churning import Churning
+from .churning import Churning, GearChurning, GearWindage
 from .cycloid import CycloidalReducer, MalhotraReducer
 from .drum import BeltContact, BeltPull, DrumChurning, DrumCooling, DrumOil, WettedWall
 from .gears import HelicalGearPair, PlanetarySet
@@ -62,6 +62,8 @@ PARTS: dict[str, type[Component]] = {
         NeedleBearing,
         LipSeal,
         Churning,
+        GearChurning,
+        GearWindage,
         DrumChurning,
         OilBath,
         DrumOil,

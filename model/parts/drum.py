@@ -44,6 +44,10 @@ class DrumOil(OilBath):
         derived=lambda p: math.pi * p.r**2 * p.L * fill_volume_share(p.beta),
     )
 
+    def has(self, name: str) -> bool:
+        """What a drum wets takes the place of a height."""
+        return name != "sump"
+
     def equations(self) -> Iterator[Equation]:
         """An oil bath that tells its level."""
         yield from super().equations()

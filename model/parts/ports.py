@@ -1,4 +1,4 @@
-"""The ports of the parts: two that carry power, and six that carry information only."""
+"""The ports of the parts: two that carry power, the others carry information only."""
 
 from __future__ import annotations
 
@@ -105,6 +105,17 @@ class OilLevel(Port):
     source = "the level of a DrumOil"
 
     share = Potential("1", "share of the drum's inside that the oil wets", nominal=0.4)
+
+
+class Sump(Port):
+    """How high the oil of a housing stands, and how much of it there is: information, not power."""
+
+    missing = "nothing says how high the oil stands"
+    source = "the sump of an OilBath with a level"
+    absent = "Give the OilBath a level: the height of its surface above the datum of the housing."
+
+    level = Potential("m", "height of the oil's surface at rest above the datum of the housing", nominal=0.1)
+    V = Potential("m3", "volume of oil", nominal=1e-3)
 
 
 class Opening(Port):

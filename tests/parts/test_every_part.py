@@ -30,6 +30,7 @@ BEARING = FRICTION | dict(d_m=0.14, F_r_0=100.0, F_a_0=50.0)
 SKF = BEARING | dict(d=0.11, D=0.17, K_Z=6.0, K_rs=6e-8, mu_bl=0.1, mu_EHL=0.002, H=0.03)
 TEETH = dict(z_1=36.0, z_2=36.0, m_n=0.002, alpha_n=math.radians(20), beta=math.radians(10), b=0.042, a_w=0.073035)
 TEETH |= dict(Ra=6e-7, k_mu=1.044, line_load="F_bn/l", E=2.06e11, poisson=0.3)
+WHEEL = dict(r=0.08, b=0.024, m_n=0.003)
 SURFACE = dict(A=0.8, emissivity=0.9)
 BOX = SURFACE | dict(height=0.3, length=0.4, width=0.2, share_top=0.2, share_bottom=0.2)
 EXTRA = dict(P_ref=50.0, w_ref=20.0, tau_ref=2000.0, a=2.0, c=0.5, forward=1.0, backward=0.5)
@@ -75,6 +76,8 @@ EXAMPLES: dict[str, dict] = {
     "NeedleBearing": BEARING | dict(d_m=0.044, f_0=7.0, f_1=2e-4),
     "LipSeal": FRICTION | dict(d_sh=0.14, c_sh=73.4),
     "Churning": FRICTION | dict(c=100.0, a=2.0, b=0.2),
+    "GearChurning": FRICTION | WHEEL | dict(height=0.08),
+    "GearWindage": FRICTION | WHEEL,
     "DrumChurning": FRICTION | dict(r=0.05, b=0.03, z=198.0, share_dip=0.4),
     "OilBath": OIL | dict(V=1e-3, c_p=2000.0),
     "DrumOil": OIL | dict(beta=0.7, r=0.15, L=0.25, c_p=2000.0),
@@ -118,6 +121,7 @@ GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level", "BeltPull.load"} 
     "OilBath.heat",
     "HeatCapacity.heat",
     "OilBath.lubricant",
+    "OilBath.sump",
     "Grease.lubricant",
     "HelicalGearPair.force",
 }
@@ -197,6 +201,7 @@ CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil
 PRINTED_DRUM = {"coefficient": "source", "P_N": 2200.0, "psi_1": 0.5, "psi_2": 0.9, "A_belt": 0.3}
 CASES += [("DrumCooling", PRINTED_DRUM)]
 CASES += [("Thermostat", {"relay": False})]
+CASES += [("OilBath", {"level": 0.05})]
 CASES += [(kind, {"oil_bath": False}) for kind in ("TaperedRollerBearing", "CylindricalRollerBearing")]
 _flat: dict = {}
 
