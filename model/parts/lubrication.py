@@ -60,8 +60,8 @@ class LubricantProperties(Component):
 class OilBath(LubricantProperties):
     """The oil of a gearbox: a body of one temperature that lubricates.
 
-    With a `level` it has a port `sump` that says how high the oil stands. Heights of a housing count from one datum, its
-    bottom or an axis, for the oil and for all that dips.
+    With a `level` it has a port `sump` that says how high the oil stands. Heights of a housing count from one datum,
+    its bottom or an axis, for the oil and for all that dips.
     """
 
     role: ClassVar[str] = "bath"
