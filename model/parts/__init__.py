@@ -1,7 +1,16 @@
 """Components: declarations followed by named equations. `PARTS` holds every type of the physics."""
 
 from ..core.component import Component
-from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
+from .bearings import (
+    AngularContactBallBearing,
+    CylindricalRollerBearing,
+    CylindricalRollerThrustBearing,
+    DeepGrooveBallBearing,
+    NeedleBearing,
+    SphericalRollerBearing,
+    TaperedRollerBearing,
+    ThrustBallBearing,
+)
 from .churning import Churning, GearChurning, GearWindage
 from .cycloid import CycloidalReducer, MalhotraReducer
 from .drum import BeltContact, BeltPull, DrumChurning, DrumCooling, DrumOil, WettedWall
@@ -16,6 +25,7 @@ from .housing import (
     RoundHousing,
     ShellCooling,
 )
+from .journal import PlainBearing
 from .lubrication import Grease, OilBath
 from .motor import Motor
 from .rv import CycloidPinStage
@@ -59,7 +69,12 @@ PARTS: dict[str, type[Component]] = {
         TaperedRollerBearing,
         DeepGrooveBallBearing,
         CylindricalRollerBearing,
+        AngularContactBallBearing,
+        SphericalRollerBearing,
+        ThrustBallBearing,
+        CylindricalRollerThrustBearing,
         NeedleBearing,
+        PlainBearing,
         LipSeal,
         Churning,
         GearChurning,

@@ -8,6 +8,16 @@ from typing import ClassVar
 from ..core.component import Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.cylindrical import crb_rolling_variable, crb_sliding_variable
+from ..laws.load_variables import (
+    acb_rolling_variable,
+    acb_sliding_variable,
+    srb_rolling_variable,
+    srb_sliding_variable,
+    thrust_ball_rolling_variable,
+    thrust_ball_sliding_variable,
+    thrust_roller_rolling_variable,
+    thrust_roller_sliding_variable,
+)
 from ..laws.rolling import (
     boundary_share,
     dgb_rolling_variable,
@@ -159,10 +169,9 @@ class CylindricalRollerBearing(RollerBearing):
         return rolling, crb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2)
 
 
-class DeepGrooveBallBearing(SkfBearing):
-    """Deep groove ball bearing, single row."""
+class BallBearing(SkfBearing):
+    """Base of the ball bearings: their drag in an oil bath."""
 
-    C_0 = Parameter("N", "basic static load rating", nominal=1e4, above=0.0)
     V_M = Parameter(
         "1",
         "drag loss factor of the oil level",
@@ -175,11 +184,73 @@ class DeepGrooveBallBearing(SkfBearing):
         """Drag of balls."""
         return drag_torque_ball(self.shaft.w, self.lubricant.nu, self.d, self.D, self.H, self.V_M, self.K_Z)
 
+
+class DeepGrooveBallBearing(BallBearing):
+    """Deep groove ball bearing, single row."""
+
+    C_0 = Parameter("N", "basic static load rating", nominal=1e4, above=0.0)
+
     def geometric_variables(self) -> tuple[Num, Num]:
         """Deep groove ball bearing."""
         F_r, F_a = self.loads()
         rolling = dgb_rolling_variable(F_r, F_a, self.d_m, self.R_1, self.R_2, self.C_0)
         return rolling, dgb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.C_0)
+
+
+class AngularContactBallBearing(BallBearing):
+    """Angular contact ball bearing, single or double row: fast balls press on its outer ring."""
+
+    R_3 = Parameter("1", "third rolling constant of the catalogue", nominal=1e-12, at_least=0.0)
+    S_3 = Parameter("1", "third sliding constant of the catalogue", nominal=1e-12, at_least=0.0)
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Angular contact ball bearing."""
+        (F_r, F_a), w = self.loads(), self.shaft.w
+        rolling = acb_rolling_variable(F_r, F_a, w, self.d_m, self.R_1, self.R_2, self.R_3)
+        return rolling, acb_sliding_variable(F_r, F_a, w, self.d_m, self.S_1, self.S_2, self.S_3)
+
+
+class SphericalRollerBearing(RollerBearing):
+    """Spherical roller bearing, double row."""
+
+    R_3 = Parameter("1", "third rolling constant of the catalogue", nominal=1e-6, above=0.0)
+    R_4 = Parameter("1", "fourth rolling constant of the catalogue", above=0.0)
+    S_3 = Parameter("1", "third sliding constant of the catalogue", nominal=1e-2, above=0.0)
+    S_4 = Parameter("1", "fourth sliding constant of the catalogue", nominal=100.0, above=0.0)
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Spherical roller bearing."""
+        F_r, F_a = self.loads()
+        rolling = srb_rolling_variable(F_r, F_a, self.d_m, self.R_1, self.R_2, self.R_3, self.R_4)
+        return rolling, srb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.S_3, self.S_4)
+
+
+class ThrustBallBearing(BallBearing):
+    """Thrust ball bearing, axial load only."""
+
+    def has(self, name: str) -> bool:
+        """It has one rolling and one sliding constant, and no radial load of its own."""
+        return super().has(name) and name not in ("R_2", "S_2", "F_r_0")
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Thrust ball bearing."""
+        F_a = self.F_a_0 + self.load.F_a
+        rolling = thrust_ball_rolling_variable(F_a, self.d_m, self.R_1)
+        return rolling, thrust_ball_sliding_variable(F_a, self.d_m, self.S_1)
+
+
+class CylindricalRollerThrustBearing(RollerBearing):
+    """Cylindrical roller thrust bearing, axial load only: its rollers slide at their ends."""
+
+    def has(self, name: str) -> bool:
+        """It has one rolling and one sliding constant, and no radial load of its own."""
+        return super().has(name) and name not in ("R_2", "S_2", "F_r_0")
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Cylindrical roller thrust bearing."""
+        F_a = self.F_a_0 + self.load.F_a
+        rolling = thrust_roller_rolling_variable(F_a, self.d_m, self.R_1)
+        return rolling, thrust_roller_sliding_variable(F_a, self.d_m, self.S_1)
 
 
 class NeedleBearing(RollingBearing):

@@ -28,6 +28,7 @@ FRICTION = dict(count=2.0, inner_share=0.4)
 GREY = FRICTION | dict(a=5000.0, b=0.01, m=1.5, e=0.4, w_ref=188.0, nu_ref=1.5e-4)
 BEARING = FRICTION | dict(d_m=0.14, F_r_0=100.0, F_a_0=50.0)
 SKF = BEARING | dict(d=0.11, D=0.17, K_Z=6.0, K_rs=6e-8, mu_bl=0.1, mu_EHL=0.002, H=0.03)
+THRUST = {k: v for k, v in SKF.items() if k != "F_r_0"}
 TEETH = dict(z_1=36.0, z_2=36.0, m_n=0.002, alpha_n=math.radians(20), beta=math.radians(10), b=0.042, a_w=0.073035)
 TEETH |= dict(Ra=6e-7, k_mu=1.044, line_load="F_bn/l", E=2.06e11, poisson=0.3)
 WHEEL = dict(r=0.08, b=0.024, m_n=0.003)
@@ -73,6 +74,12 @@ EXAMPLES: dict[str, dict] = {
     "TaperedRollerBearing": SKF | dict(R_1=2.38e-6, R_2=10.9, S_1=0.014, S_2=2.0, Y=1.4, B=0.038, K_L=0.7),
     "DeepGrooveBallBearing": SKF | dict(R_1=3.9e-7, R_2=1.7, S_1=3.23e-3, S_2=36.5, C_0=64e3),
     "CylindricalRollerBearing": SKF | dict(R_1=1e-6, S_1=0.16, S_2=1.5e-3, B=0.038, K_L=0.65),
+    "AngularContactBallBearing": SKF | dict(R_1=4.33e-7, R_2=2.02, R_3=2.44e-12, S_1=0.0182, S_2=0.71, S_3=2.44e-12),
+    "SphericalRollerBearing": SKF
+    | dict(R_1=1.6e-6, R_2=5.84, R_3=2.81e-6, R_4=5.8, S_1=3.62e-3, S_2=508.0, S_3=8.8e-3, S_4=117.0, B=0.028, K_L=0.8),
+    "ThrustBallBearing": THRUST | dict(R_1=1.03e-6, S_1=0.016, K_Z=3.8),
+    "CylindricalRollerThrustBearing": THRUST | dict(R_1=2.25e-6, S_1=0.154, K_Z=4.4, B=0.013, K_L=0.43),
+    "PlainBearing": FRICTION | dict(r=0.03, b=0.05, psi=1e-3, F_r_0=100.0, mu_bl=0.1, C_trans=1.0),
     "NeedleBearing": BEARING | dict(d_m=0.044, f_0=7.0, f_1=2e-4),
     "LipSeal": FRICTION | dict(d_sh=0.14, c_sh=73.4),
     "Churning": FRICTION | dict(c=100.0, a=2.0, b=0.2),
@@ -285,7 +292,10 @@ def test_heat_flows_from_hot_to_cold(kind: str) -> None:
 #: Parts that rub in a lubricant, as the cold table takes them; a seal rubs the same at any temperature. The rollers of
 #: a cycloidal reducer are in mixed friction at any: test_cycloid.py asks that it stays between its ends.
 COLD = [(kind, {}) for kind in BRAKING if kind not in (*EXTRA_PARTS, "FanLoad", "CycloidalReducer")]
-COLD += [(k, {"mixed_friction": False}) for k in ("DeepGrooveBallBearing", "TaperedRollerBearing")]
+COLD += [
+    (k, {"mixed_friction": False})
+    for k in ("DeepGrooveBallBearing", "TaperedRollerBearing", "SphericalRollerBearing", "ThrustBallBearing")
+]
 #: Speeds [rad/s] and loads as factors of the nominal: forces [N], torques [N.m].
 SPEEDS, LOADS = (1.0, 30.0, 100.0, 300.0), (0.0, 0.5, 1.0, 2.0)
 
@@ -335,7 +345,9 @@ def test_colder_never_means_less_drag(kind: str, choices: dict) -> None:
         slack = 1e-9
         if kind in ("HelicalGearPair", "PlanetarySet"):
             cooling, slack = [T for T in cooling if oil_at(T)["nu"] > 1.2e-3], 3e-3
-        elif kind.endswith(("BallBearing", "RollerBearing")) and choices.get("mixed_friction", True):
+        elif kind == "PlainBearing":
+            cooling = [T for T in cooling if lubricated(flat, T, w, load)["part.solid"] < 1e-3]
+        elif kind.endswith(("BallBearing", "RollerBearing", "ThrustBearing")) and choices.get("mixed_friction", True):
             cooling = [T for T in cooling if boundary_share(w, oil_at(T)["nu"], EXAMPLES[kind]["d_m"]) < 1e-3]
         elif kind == "HarmonicMesh":
             cooling = [T for T in cooling if lubricated(flat, T, w, load)["part.Lambda"] > 5]
