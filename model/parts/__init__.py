@@ -29,7 +29,7 @@ from .journal import PlainBearing
 from .lubrication import Grease, OilBath
 from .motor import Motor
 from .rv import CycloidPinStage
-from .sealing import LipSeal
+from .sealing import LipSeal, OilLipSeal
 from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit, TurningFrame
 from .supports import ShaftSupport, TwoGearSupport
 from .thermal import (
@@ -76,6 +76,7 @@ PARTS: dict[str, type[Component]] = {
         NeedleBearing,
         PlainBearing,
         LipSeal,
+        OilLipSeal,
         Churning,
         GearChurning,
         GearWindage,

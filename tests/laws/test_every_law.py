@@ -83,6 +83,7 @@ OWN = {
     "load_variables.acb_rolling_variable": {"R_3": 2.44e-12},
     "load_variables.acb_sliding_variable": {"S_3": 2.44e-12},
     **{f"journal.{key}": {"r": 0.03, "b": 0.05} for key in ("petrov_torque", "film_torque", "solid_share")},
+    "sealing.oil_seal_torque": {"nu_40": 220e-6},
     "gear_churning.submerged_area": {"h": 0.04, "r": 0.08, "b": 0.024},
     "gear_churning.fast_share": {"w": 250.0, "r": 0.08, "b": 0.024},
     "gear_churning.gear_churning_torque": {"h": 0.04, "r": 0.08, "b": 0.024},

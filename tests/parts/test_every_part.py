@@ -83,6 +83,7 @@ EXAMPLES: dict[str, dict] = {
     "NeedleBearing": BEARING | dict(d_m=0.044, f_0=7.0, f_1=2e-4),
     "LipSeal": FRICTION | dict(d_sh=0.14, c_sh=73.4),
     "Churning": FRICTION | dict(c=100.0, a=2.0, b=0.2),
+    "OilLipSeal": FRICTION | dict(d_sh=0.14, nu_40=3.2438e-4),
     "GearChurning": FRICTION | WHEEL | dict(height=0.08),
     "GearWindage": FRICTION | WHEEL,
     "DrumChurning": FRICTION | dict(r=0.05, b=0.03, z=198.0, share_dip=0.4),
