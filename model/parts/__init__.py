@@ -12,6 +12,7 @@ from .bearings import (
     ThrustBallBearing,
 )
 from .churning import Churning, GearChurning, GearWindage
+from .clutch import Brake, CompliantShaft, FrictionClutch, OneWayClutch
 from .cycloid import CycloidalReducer, MalhotraReducer
 from .drum import BeltContact, BeltPull, DrumChurning, DrumCooling, DrumOil, WettedWall
 from .gears import HelicalGearPair, PlanetarySet
@@ -52,6 +53,10 @@ PARTS: dict[str, type[Component]] = {
         FanLoad,
         Inertia,
         LoadingClutch,
+        FrictionClutch,
+        OneWayClutch,
+        Brake,
+        CompliantShaft,
         TorqueSplit,
         TurningFrame,
         Efficiency,

@@ -52,6 +52,10 @@ EXAMPLES: dict[str, dict] = {
     "FanLoad": dict(k=0.1),
     "Inertia": dict(J=0.01),
     "LoadingClutch": {},
+    "FrictionClutch": {},
+    "OneWayClutch": dict(tau_max=300.0, tau_drag=0.5),
+    "Brake": FRICTION,
+    "CompliantShaft": dict(c=1e4, d=10.0),
     "TorqueSplit": dict(share=0.4),
     "Efficiency": {},
     "Motor": dict(P_N=2200.0, w_N=298.5, eta=0.82, speed_share=0.35, speed_exponent=1.5),
@@ -228,7 +232,7 @@ def at(flat, rng) -> dict[str, float]:
         if q.unit == "K":
             return rng.uniform(275.0, 390.0)
         if q.unit in ("rad/s", "N.m"):
-            return rng.choice([0.0, 1.0, -1.0]) * rng.uniform(0.0, 300.0)
+            return max(q.low, rng.choice([0.0, 1.0, -1.0]) * rng.uniform(0.0, 300.0))
         return q.nominal * rng.uniform(0.2, 2.0)
 
     x = [value(q) for q in flat.states]
@@ -272,6 +276,7 @@ def test_mechanical_loss_leaves_as_heat(kind: str) -> None:
         values = at(flat, rng)
         mechanical = sum(values[f"{k}.w"] * values[f"{k}.tau"] for k, p in part.ports.items() if isinstance(p, Flange))
         losses = [v for k, v in values.items() if k in LOSSES]
+        losses.append(values["gain"])  # of a spring
         assert mechanical == pytest.approx(sum(losses), rel=1e-9, abs=1e-9 * max(values["throughput"], 1.0))
 
 
