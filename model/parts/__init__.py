@@ -15,6 +15,7 @@ from .churning import Churning, GearChurning, GearWindage
 from .clutch import Brake, CompliantShaft, FrictionClutch, OneWayClutch
 from .cycloid import CycloidalReducer, MalhotraReducer
 from .drum import BeltContact, BeltPull, DrumChurning, DrumCooling, DrumOil, WettedWall
+from .fan import ShaftFan
 from .gears import HelicalGearPair, PlanetarySet
 from .grey import Cooler, FlowConductor, GreyBearing, GreyTeeth, OilJet, Thermostat
 from .harmonic import HarmonicContact, HarmonicMesh
@@ -51,6 +52,7 @@ PARTS: dict[str, type[Component]] = {
         ShaftEnd,
         FixedFlange,
         FanLoad,
+        ShaftFan,
         Inertia,
         LoadingClutch,
         FrictionClutch,

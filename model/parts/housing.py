@@ -151,7 +151,7 @@ class WallCooling(Component):
 
     def radiation(self) -> Num:
         """Heat flow rate by radiation [W]."""
-        return radiated(self.surface.T, self.air.T, self.size.A, self.emissivity)
+        return radiated(self.surface.T, self.air.T_radiant, self.size.A, self.emissivity)
 
     def equations(self) -> Iterator[Equation]:
         """Convection and radiation side by side."""
@@ -190,7 +190,7 @@ class LinearWallCooling(WallCooling):
 
     def radiation(self) -> Num:
         """Linear in the temperature difference."""
-        return self.h_radiation * self.size.A * (self.surface.T - self.air.T)
+        return self.h_radiation * self.size.A * (self.surface.T - self.air.T_radiant)
 
     def equations(self) -> Iterator[Equation]:
         """Both coefficients do without the temperatures of the moment."""

@@ -29,11 +29,15 @@ class HeatPort(Port):
 
 
 class AirPort(HeatPort):
-    """A heat port to moving air: its temperature and speed are those far from the surface."""
+    """A heat port to moving air: its temperature and speed are those far from the surface.
+
+    What a surface radiates to has a temperature of its own: walls and sky are not always as warm as the air.
+    """
 
     source = "the air of a Room"
 
     v = Potential("m/s", "speed of the air", nominal=1.0)
+    T_radiant = Potential("K", "temperature of what the surface radiates to", nominal=300.0)
 
 
 class Flange(Port):

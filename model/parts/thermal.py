@@ -116,7 +116,10 @@ class CylinderWall(Conductor):
 
 
 class Room(Component):
-    """The surroundings: air of a given temperature and speed, and a floor of the same temperature."""
+    """The surroundings: air of a given temperature and speed, and a floor of the same temperature.
+
+    Walls and sky may be warmer or colder than the air, by `dT_radiant`: the sun and a furnace are, and a clear night.
+    """
 
     role: ClassVar[str] = "room"
 
@@ -126,12 +129,19 @@ class Room(Component):
     T = Input("K", "temperature of the room", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
     air_speed = Input("m/s", "speed of the air along the housing", at_least=0.0)
     k_air = Parameter("1", "factor on the speed of the air, 1 for the speed as given", default=1.0, at_least=0.0)
+    dT_radiant = Parameter("K (difference)", "how much warmer than the air it radiates; may be left out", 10.0)
     Q_flow = Output("W", "heat flow rate into the room", nominal=100.0)
+
+    def has(self, name: str) -> bool:
+        """Radiation has a temperature of its own where it is given."""
+        return name != "dT_radiant" or "dT_radiant" in self.told
 
     def equations(self) -> Iterator[Equation]:
         """The room keeps its temperature whatever it takes."""
         yield equation("air temperature", self.air.T, self.T)
         yield equation("air speed", self.air.v, self.k_air * self.air_speed)
+        T_radiant = self.T + self.dT_radiant if self.has("dT_radiant") else self.T
+        yield equation("radiant temperature", self.air.T_radiant, T_radiant)
         yield equation("floor temperature", self.floor.T, self.T)
         yield equation("heat to the room", self.Q_flow, self.air.Q_flow + self.floor.Q_flow)
 
@@ -193,7 +203,7 @@ class SurfaceCooling(Component):
         T, T_air = self.surface.T, self.air.T
         yield equation("heat transfer coefficient", self.h, mixed(self.natural(), self.forced((T + T_air) / 2)))
         yield equation("convection", self.Q_flow_convection, self.h * self.convecting_area() * (T - T_air))
-        yield equation("radiation", self.Q_flow_radiation, radiated(T, T_air, self.A, self.emissivity))
+        yield equation("radiation", self.Q_flow_radiation, radiated(T, self.air.T_radiant, self.A, self.emissivity))
         yield equation("leaves the surface", self.surface.Q_flow, self.Q_flow_convection + self.Q_flow_radiation)
         yield equation("enters the room", self.air.Q_flow, -self.surface.Q_flow)
 
