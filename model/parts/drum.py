@@ -152,7 +152,7 @@ class DrumCooling(CylinderCooling):
 
     def forced(self, T_film: Num) -> Num:
         """Rotation and moving air side by side; ends like the shell."""
-        return mixed(super().forced(T_film), forced_rotating_cylinder(self.shaft.w, T_film, self.D))
+        return mixed(super().forced(T_film), forced_rotating_cylinder(self.shaft.w, T_film, self.D, p=self.air.p))
 
     def equations(self) -> Iterator[Equation]:
         """Those of a cylinder, or the printed formula."""

@@ -41,5 +41,6 @@ class ShaftFan(Component):
         yield equation("speed of the air", self.v, moved)
         yield equation("speed told", self.air.v, self.v)
         yield equation("temperature told", self.air.T, self.room.T)
+        yield equation("pressure told", self.air.p, self.room.p)
         yield equation("radiant temperature told", self.air.T_radiant, self.room.T_radiant)
         yield equation("heat passes on", self.room.Q_flow, -self.air.Q_flow - self.P_loss)

@@ -168,8 +168,8 @@ class FlatWallCooling(WallCooling):
 
     def coefficient(self) -> Num:
         """Plate along the air."""
-        T, T_air, L = self.surface.T, self.air.T, self.size.L
-        return mixed(natural_vertical_plate(T, T_air, L), forced_plate(self.air.v, (T + T_air) / 2, L))
+        T, T_air, L, p = self.surface.T, self.air.T, self.size.L, self.air.p
+        return mixed(natural_vertical_plate(T, T_air, L, p=p), forced_plate(self.air.v, (T + T_air) / 2, L, p=p))
 
 
 class ShellCooling(WallCooling):
@@ -177,8 +177,10 @@ class ShellCooling(WallCooling):
 
     def coefficient(self) -> Num:
         """Cylinder across the air."""
-        T, T_air, D = self.surface.T, self.air.T, self.size.L
-        return mixed(natural_horizontal_cylinder(T, T_air, D), forced_cylinder(self.air.v, (T + T_air) / 2, D))
+        T, T_air, D, p = self.surface.T, self.air.T, self.size.L, self.air.p
+        return mixed(
+            natural_horizontal_cylinder(T, T_air, D, p=p), forced_cylinder(self.air.v, (T + T_air) / 2, D, p=p)
+        )
 
 
 class LinearWallCooling(WallCooling):

@@ -37,6 +37,7 @@ class AirPort(HeatPort):
     source = "the air of a Room"
 
     v = Potential("m/s", "speed of the air", nominal=1.0)
+    p = Potential("Pa", "pressure of the air", nominal=1e5)
     T_radiant = Potential("K", "temperature of what the surface radiates to", nominal=300.0)
 
 

@@ -216,7 +216,7 @@ CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil
 PRINTED_DRUM = {"coefficient": "source", "P_N": 2200.0, "psi_1": 0.5, "psi_2": 0.9, "A_belt": 0.3}
 CASES += [("DrumCooling", PRINTED_DRUM)]
 CASES += [("Thermostat", {"relay": False})]
-CASES += [("OilBath", {"level": 0.05}), ("Room", {"dT_radiant": -15.0})]
+CASES += [("OilBath", {"level": 0.05}), ("Room", {"dT_radiant": -15.0, "altitude": 800.0})]
 CASES += [(kind, {"oil_bath": False}) for kind in ("TaperedRollerBearing", "CylindricalRollerBearing")]
 _flat: dict = {}
 

@@ -1,8 +1,9 @@
-"""What a housing stands in: radiation to walls that are not as warm as the air, and a fan on the shaft."""
+"""What a housing stands in: radiation to walls that are not as warm as the air, thin air, a fan."""
 
 import pytest
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.flatten import flatten
+from gearheat.model.laws.convection import air_pressure
 from gearheat.model.laws.radiation import SIGMA
 from gearheat.model.parts import PARTS
 from gearheat.model.run.rows import evaluate_at
@@ -13,7 +14,7 @@ BOX = dict(A=0.5, emissivity=0.9, height=0.3, length=0.4, width=0.2, share_top=0
 
 def outputs(fan: bool = False, **given: float) -> dict[str, float]:
     """A box at 330 K in a room at 300 K: its outputs and those of the room, at given inputs and room parameters."""
-    room = {k: given.pop(k) for k in ("dT_radiant",) if k in given}
+    room = {k: given.pop(k) for k in ("dT_radiant", "altitude") if k in given}
     parts = [PARTS["HeatCapacity"]("body", C=1e4), PARTS["BoxCooling"]("box", **BOX), PARTS["Room"]("room", **room)]
     nets = [("body.heat", "box.surface")]
     if fan:
@@ -33,6 +34,15 @@ def test_a_surface_radiates_to_what_stands_around_it(dT: float) -> None:
     assert found["box.Q_flow_convection"] == plain["box.Q_flow_convection"]
     radiated = SIGMA * 0.9 * 0.5 * (330.0**4 - (300.0 + dT) ** 4)
     assert found["box.Q_flow_radiation"] == pytest.approx(radiated, rel=1e-12)
+
+
+def test_thin_air_cools_less() -> None:
+    """Powers of the density: free convection 1/2 to 2/3, forced 1/2 (laminar) to 4/5 (turbulent)."""
+    thinner = air_pressure(3000.0) / air_pressure(0.0)
+    for speed, most in ((0.0, 2 / 3), (20.0, 4 / 5)):
+        sea, high = (outputs(**{"altitude": h, "room.air_speed": speed})["box.h"] for h in (0.0, 3000.0))
+        assert thinner**most < high / sea < thinner**0.45
+    assert outputs(altitude=0.0) == outputs()
 
 
 @pytest.mark.parametrize("w", [-150.0, 150.0])
