@@ -65,7 +65,8 @@ class Component:
         self.choices = {k: values.pop(k, d.default) for k, d in declared(cls, Choice).items()}
         self.told = frozenset(values)
         self.ports = {k: d.bound(f"{name}.{k}") for k, d in declared(cls, Port).items() if self.has(k)}
-        parameters: dict[str, Parameter] = {k: d for k, d in declared(cls, Parameter).items() if self.has(k)}
+        possible: dict[str, Parameter] = {k: d for k, d in declared(cls, Parameter).items() if self.has(k)}
+        parameters = {k: d for k, d in possible.items() if k in self.told or not d.optional}
         self.derived = {k: d for k, d in parameters.items() if d.derived is not None and k not in values}
         self.parameters = {k: d for k, d in parameters.items() if k not in self.derived}
         self.states: dict[str, State] = {k: d for k, d in declared(cls, State).items() if self.has(k)}

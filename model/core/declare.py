@@ -77,12 +77,13 @@ class Parameter(Declaration):
 
     `default` is only for numerics, never for physics. `derived` makes of the component an expression in its other
     parameters (a contact ratio from the geometry), which holds wherever no value is given. `whole` asks for a whole
-    number.
+    number. What is `optional` is no part of the model where no value is given.
     """
 
     default: float | None = None
     derived: Callable[[Any], Any] | None = None
     whole: bool = False
+    optional: bool = False
 
 
 @dataclass(eq=False)

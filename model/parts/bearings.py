@@ -8,6 +8,7 @@ from typing import ClassVar
 from ..core.component import Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.cylindrical import crb_rolling_variable, crb_sliding_variable
+from ..laws.gear_churning import immersion
 from ..laws.load_variables import (
     acb_rolling_variable,
     acb_sliding_variable,
@@ -38,7 +39,7 @@ from ..laws.rolling import (
 )
 from ..laws.smooth import Num
 from .friction import Friction
-from .ports import BearingLoad, Lubricant
+from .ports import BearingLoad, Lubricant, Sump
 
 
 class RollingBearing(Friction):
@@ -61,6 +62,8 @@ class RollingBearing(Friction):
 class SkfBearing(RollingBearing):
     """Rolling and sliding moment with shear heating, starvation and mixed friction, and a drag moment."""
 
+    sump = Sump()
+
     d = Parameter("m", "bore diameter", nominal=0.1, above=0.0)
     D = Parameter("m", "outside diameter", nominal=0.1, above=0.0)
     d_m = Parameter("m", "mean diameter, (d + D)/2", nominal=0.1, above=0.0, derived=lambda p: 0.5 * (p.d + p.D))
@@ -73,6 +76,12 @@ class SkfBearing(RollingBearing):
     mu_bl = Parameter("1", "sliding friction of the boundary film", nominal=0.1, at_least=0.0, at_most=1.0)
     mu_EHL = Parameter("1", "sliding friction of the full film", nominal=0.1, at_least=0.0, at_most=1.0)
     H = Parameter("m", "oil level above the lowest point of the outer raceway", nominal=0.01, at_least=0.0)
+    height = Parameter(
+        "m",
+        "height of the axis above the datum of the housing, whose oil level takes the place of H",
+        0.1,
+        optional=True,
+    )
     mixed_friction = Choice((True, False), "whether thin films raise the sliding friction", default=True)
     oil_bath = Choice((True, False), "whether the bearing stands in oil, and so drags", default=True)
     tau_rr = Output("N.m", "rolling moment of one bearing")
@@ -84,8 +93,20 @@ class SkfBearing(RollingBearing):
         raise AttributeError(f"{type(self).__name__} has no geometric variables")
 
     def has(self, name: str) -> bool:
-        """The oil level counts in an oil bath, boundary friction where films may be thin."""
-        return bool({"H": self.oil_bath, "V_M": self.oil_bath, "mu_bl": self.mixed_friction}.get(name, True))
+        """The oil level counts in an oil bath, H or that of the housing; boundary friction where films may be thin."""
+        own, of_housing = self.oil_bath and not self.dips(), self.oil_bath and self.dips()
+        counts = {"H": own, "V_M": own, "height": of_housing, "sump": of_housing, "mu_bl": self.mixed_friction}
+        return bool(counts.get(name, True))
+
+    def dips(self) -> bool:
+        """Whether the oil level of the housing says how deep the bearing dips."""
+        return "height" in self.told
+
+    def level(self) -> Num:
+        """Oil level above the lowest point of the outer raceway [m]; rolling elements are 0.3 (D - d) thick."""
+        if not self.dips():
+            return self.H
+        return immersion(self.sump.level, self.height, self.d_m / 2 + 0.15 * (self.D - self.d))
 
     def relations(self) -> Iterator[Related]:
         """The rings lie inside each other, the rolling elements between them, and the oil not above the bearing."""
@@ -93,7 +114,7 @@ class SkfBearing(RollingBearing):
         yield self.relation("D is larger than d", "D / d", self.D / self.d, 1.02, remedy=remedy)
         middle = (self.d_m - self.d) / (self.D - self.d)
         yield self.relation("d_m lies between d and D", "(d_m - d) / (D - d)", middle, 0.45, 0.55, remedy=remedy)
-        if self.oil_bath:
+        if self.has("H"):
             remedy = "Give the oil level above the lowest point of the outer raceway."
             yield self.relation("H is below D", "H / D", self.H / self.D, 0.0, 1.0, remedy=remedy)
 
@@ -140,7 +161,9 @@ class RollerBearing(SkfBearing):
     def drag(self) -> Num:
         """Drag of rollers."""
         w, nu = self.shaft.w, self.lubricant.nu
-        return drag_torque_roller(w, nu, self.d, self.D, self.B, self.H, self.V_M, self.K_Z, self.K_L)
+        H = self.level()
+        V_M = drag_loss_factor(H / self.d_m, roller=True) if self.dips() else self.V_M
+        return drag_torque_roller(w, nu, self.d, self.D, self.B, H, V_M, self.K_Z, self.K_L)
 
 
 class TaperedRollerBearing(RollerBearing):
@@ -182,7 +205,9 @@ class BallBearing(SkfBearing):
 
     def drag(self) -> Num:
         """Drag of balls."""
-        return drag_torque_ball(self.shaft.w, self.lubricant.nu, self.d, self.D, self.H, self.V_M, self.K_Z)
+        H = self.level()
+        V_M = drag_loss_factor(H / self.d_m) if self.dips() else self.V_M
+        return drag_torque_ball(self.shaft.w, self.lubricant.nu, self.d, self.D, H, V_M, self.K_Z)
 
 
 class DeepGrooveBallBearing(BallBearing):

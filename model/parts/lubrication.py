@@ -73,12 +73,12 @@ class OilBath(LubricantProperties):
     V = Parameter("m3", "volume of oil at 15 degC", nominal=1e-3, above=0.0)
     c_p = Parameter("J/(kg.K)", "specific heat", nominal=2000.0, above=0.0)
     T_pour = Parameter("K", "pour point, below it the oil does not flow; 0 K: not known", default=0.0, at_least=0.0)
-    level = Parameter("m", "height of the oil's surface at rest above the datum of the housing; may be left out", 0.1)
+    level = Parameter("m", "height of the oil's surface at rest above the datum of the housing", 0.1, optional=True)
     Q_flow_external = Input("W", "heat flow rate from outside the model, e.g. a cooler (negative)", nominal=100.0)
 
     def has(self, name: str) -> bool:
-        """The level counts, and is told, where it is given."""
-        return name not in ("level", "sump") or "level" in self.told
+        """The level is told where it is given."""
+        return name != "sump" or "level" in self.told
 
     def viscosity(self, T: Num) -> Num:
         """Of an oil that flows."""

@@ -131,21 +131,17 @@ class Room(Component):
     T = Input("K", "temperature of the room", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
     air_speed = Input("m/s", "speed of the air along the housing", at_least=0.0)
     k_air = Parameter("1", "factor on the speed of the air, 1 for the speed as given", default=1.0, at_least=0.0)
-    altitude = Parameter("m", "height above sea level, where the air is thinner; may be left out", 500.0)
-    dT_radiant = Parameter("K (difference)", "how much warmer than the air it radiates; may be left out", 10.0)
+    altitude = Parameter("m", "height above sea level, where the air is thinner", 500.0, optional=True)
+    dT_radiant = Parameter("K (difference)", "how much warmer than the air it radiates", 10.0, optional=True)
     Q_flow = Output("W", "heat flow rate into the room", nominal=100.0)
-
-    def has(self, name: str) -> bool:
-        """Altitude, and a temperature for radiation, count where they are given."""
-        return name not in ("altitude", "dT_radiant") or name in self.told
 
     def equations(self) -> Iterator[Equation]:
         """The room keeps its temperature whatever it takes."""
         yield equation("air temperature", self.air.T, self.T)
         yield equation("air speed", self.air.v, self.k_air * self.air_speed)
-        p = air_pressure(self.altitude) if self.has("altitude") else SEA_LEVEL
+        p = air_pressure(self.altitude) if "altitude" in self.parameters else SEA_LEVEL
         yield equation("air pressure", self.air.p, p)
-        T_radiant = self.T + self.dT_radiant if self.has("dT_radiant") else self.T
+        T_radiant = self.T + self.dT_radiant if "dT_radiant" in self.parameters else self.T
         yield equation("radiant temperature", self.air.T_radiant, T_radiant)
         yield equation("floor temperature", self.floor.T, self.T)
         yield equation("heat to the room", self.Q_flow, self.air.Q_flow + self.floor.Q_flow)

@@ -213,6 +213,7 @@ CASES += [("PlanetarySet", {"line_load": "F_bt/b"}), ("HelicalGearPair", {"line_
 CASES += [(k, {"film": f}) for k in ("HarmonicMesh", "HarmonicContact") for f in ("moes", "dowson_higginson_printed")]
 CASES += [("CycloidPinStage", {"pin": p, "disc_torque": t}) for p in ("held", "rolling") for t in ("output", "statics")]
 CASES += [("DeepGrooveBallBearing", {k: False}) for k in ("mixed_friction", "oil_bath")]
+CASES += [(kind, {"height": 0.1}) for kind in ("DeepGrooveBallBearing", "TaperedRollerBearing")]
 PRINTED_DRUM = {"coefficient": "source", "P_N": 2200.0, "psi_1": 0.5, "psi_2": 0.9, "A_belt": 0.3}
 CASES += [("DrumCooling", PRINTED_DRUM)]
 CASES += [("Thermostat", {"relay": False})]

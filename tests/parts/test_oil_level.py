@@ -67,3 +67,26 @@ def test_depth_is_smooth_at_the_surface_and_when_submerged() -> None:
     values = [float(slope(x / 5e4)) for x in (*range(-4300, -3700), *range(3700, 5000))]
     assert max(abs(b - a) for a, b in itertools.pairwise(values[:600])) < 0.02
     assert min(values) > 0 and max(values) <= 1 + 1e-9
+
+
+def drag(own: dict[str, float], nets: tuple[tuple[str, ...], ...] = ()) -> float:
+    """Friction torque of a bearing on the output shaft with its axis at the origin of heights, dipping by 20 mm."""
+    spec = load("helical_two_stage").spec.with_values({"oil.level": 0.02 - 0.5 * 0.0775 - 0.15 * 0.045})
+    values = {k: v for k, v in spec.part("output_bearing_a").values.items() if k != "oil_bath"} | own
+    nets = (("bath.shaft", "output.flange"), ("bath.inner", "bath.outer", "oil.heat"), *nets)
+    nets += (("bath.lubricant", "oil.lubricant"), ("bath.load", "output_support.load_a"))
+    flat = flatten(assemble(spec.with_parts((PartSpec("bath", "DeepGrooveBallBearing", values),), nets)))
+    y = evaluate_at(flat, flat.starts("state"), [100.0 for _ in flat.inputs], flat.starts("parameter"))["y"]
+    return float(y[[q.name for q in flat.outputs].index("bath.tau_loss")])
+
+
+def test_a_bearing_dips_by_the_level_of_its_housing() -> None:
+    """SKF 6211: d_m = 77.5 mm, balls of 0.3 (D - d) = 13.5 mm."""
+    of_housing = drag({"height": 0.0}, (("bath.sump", "oil.sump"),))
+    assert of_housing == pytest.approx(drag({"H": 0.02}), rel=1e-4)
+    assert of_housing > drag({"H": 0.0})
+
+
+def test_a_bearing_that_knows_its_height_needs_the_level() -> None:
+    with pytest.raises(StructureError, match=r"bath\.sump.*Connect it to the sump of an OilBath with a level"):
+        drag({"height": 0.0})
