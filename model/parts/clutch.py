@@ -22,7 +22,7 @@ class Coupling(Component):
     heat = HeatPort("the body that takes the heat of the slip")
 
     tau = Output("N.m", "torque passed from a to b", nominal=100.0)
-    slip = Output("rad/s", "speed of a over that of b", nominal=10.0)
+    slip = Output("rad/s", "speed of a over that of b", nominal=10.0, guess=0.0)
     P_loss = Output("W", "power of the slip", nominal=100.0, at_least=0.0)
 
     def passed(self) -> Num:
@@ -46,7 +46,7 @@ class Coupling(Component):
 class FrictionClutch(Coupling):
     """Friction clutch: slips at its torque capacity and holds below it, with a creep below `w_hold`.
 
-    Its halves need speeds of their own: an Inertia or a given speed on either side.
+    Where it slips, both sides need a speed of their own: an Inertia, or a speed given.
     """
 
     tau_max = Input("N.m", "torque capacity; 0 where it is open", 100.0, at_least=0.0)

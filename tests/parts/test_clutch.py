@@ -9,6 +9,7 @@ from gearheat.model.parts import PARTS
 from gearheat.model.run.result import Result
 from gearheat.model.run.schedule import stepped
 from gearheat.model.run.simulate import simulate
+from gearheat.model.run.steady import steady
 
 
 def run(coupling: Component, phases: list, start: dict[str, float] | None = None) -> Result:
@@ -75,3 +76,20 @@ def test_a_brake_stops_a_shaft_and_keeps_its_energy_as_heat() -> None:
     assert found["rotor.w"] == pytest.approx([25.0, 0.0], abs=1e-3)
     supplied = 5.0 * 100.0**2 * 0.1 / (2 * 15.0)  # by the motor while it slows down
     assert 500.0 * (found["body.T"][1] - 298.15) == pytest.approx(500.0 + supplied, rel=1e-3)
+
+
+@pytest.mark.parametrize("kind", ["FrictionClutch", "OneWayClutch"])
+def test_a_clutch_that_holds_has_a_steady_state(kind: str) -> None:
+    values = dict(tau_max=50.0, tau_drag=0.1) if kind == "OneWayClutch" else {}
+    parts = (
+        PARTS["ShaftEnd"]("motor", given=("w",)),
+        PARTS[kind]("coupling", **values),
+        PARTS["ShaftEnd"]("load", given=("tau",)),
+        PARTS["PrescribedTemperature"]("body"),
+    )
+    nets = (("motor.flange", "coupling.a"), ("coupling.b", "load.flange"), ("coupling.heat", "body.heat"))
+    flat = flatten(Assembly("drive", "", parts, nets))
+    given = {"motor.w": 100.0, "load.tau": -20.0} | ({} if values else {"coupling.tau_max": 50.0})
+    found = steady(flat, given)
+    assert found["load.w"][0] == pytest.approx(100.0, abs=0.01)
+    assert found["motor.tau"][0] == pytest.approx(20.0, rel=1e-9)
