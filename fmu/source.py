@@ -11,7 +11,7 @@ from gearheat.model.core.flat import FlatModel
 from gearheat.model.run import newton
 from gearheat.model.run.algebra import GUESSES
 
-from . import emit
+from . import emit, fmi3_source
 from .description import TOLERANCE
 from .equations import Equations
 from .rosenbrock import RODAS3
@@ -21,15 +21,22 @@ from .variables import Table
 _HEADERS = ("fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h")
 _WRAPPER = (
     "instance.h",
+    "fmi2_messages.c",
     "messages.c",
     "newton.c",
     "evaluate.c",
     "trial.c",
     "solver.c",
+    "fmi2_modes.c",
+    "fmi2_platform.c",
     "common.c",
+    "fmi2_types.c",
     "states.c",
     "derivatives.c",
+    "fmi2_slopes.c",
     "cosimulation.c",
+    "fmi2_status.c",
+    "fmi2_events.c",
     "exchange.c",
 )
 
@@ -39,17 +46,22 @@ _NOTICE = "Copyright (c) 2026, the gearheat developers. SPDX-License-Identifier:
 GUID_MARK = "@GUID@"
 
 
-def source(flat: FlatModel, model: Equations, table: Table) -> str:
+def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2) -> str:
     """The whole C text, with GUID_MARK in place of the identification.
 
     Args:
         flat: the model, for its name and values
         model: its equations
         table: its variables
+        fmi: version of the standard, 2 or 3; with 3 the compiler needs the standard's headers beside the text
     """
-    head = f"/* {_comment(flat.name)}: FMI 2.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
-    generated = "\n".join([_sizes(flat, model, table), _tables(flat, table), *map(emit.function, model.functions)])
-    return "\n".join([head, _fmi_headers(), generated, *map(_wrapper_file, _WRAPPER)])
+    head = f"/* {_comment(flat.name)}: FMI {fmi}.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
+    functions = model.functions if fmi == 2 else (*model.functions, *model.adjoint_functions)
+    generated = "\n".join([_sizes(flat, model, table), _tables(flat, table), *map(emit.function, functions)])
+    if fmi == 2:
+        return "\n".join([head, _fmi_headers(), generated, *map(_wrapper_file, _WRAPPER)])
+    wrapper = [fmi3_source.in_words_of_3(_wrapper_file(name)) for name in fmi3_source.WRAPPER]
+    return "\n".join([head, '#include "fmi3Functions.h"\n', generated, *wrapper])
 
 
 def _fmi_headers() -> str:

@@ -1,10 +1,3 @@
-/* Functions both interfaces share: life cycle, logging, values. */
-
-#define GETTABLE (INITIALIZATION | EVENT | CONTINUOUS_TIME | STEP_COMPLETE | STEP_FAILED | TERMINATED)
-#define SETTABLE (INSTANTIATED | INITIALIZATION | EVENT | CONTINUOUS_TIME | STEP_COMPLETE | STEP_FAILED)
-
-const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
-
 const char *fmi2GetVersion(void) { return fmi2Version; }
 
 /* The state of a fresh instance. */
@@ -241,19 +234,3 @@ static fmi2Status no_variables(fmi2Component c, size_t n, int modes, const char 
     if (!allowed(c, modes, function)) return fmi2Error;
     return n == 0 ? fmi2OK : refuse(c, "%s: unknown value reference; all variables are Real.", function);
 }
-
-#define NO_VARIABLES(TYPE) \
-    fmi2Status fmi2Get##TYPE(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2##TYPE value[]) \
-    { \
-        (void)r, (void)value; \
-        return no_variables(c, n, GETTABLE, "fmi2Get" #TYPE); \
-    } \
-    fmi2Status fmi2Set##TYPE(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2##TYPE value[]) \
-    { \
-        (void)r, (void)value; \
-        return no_variables(c, n, SETTABLE & ~CONTINUOUS_TIME, "fmi2Set" #TYPE); \
-    }
-
-NO_VARIABLES(Integer)
-NO_VARIABLES(Boolean)
-NO_VARIABLES(String)
