@@ -122,28 +122,41 @@ def description(
         with_sources: whether the FMU holds its sources
     """
     dependent = dependent or dependencies(model, table)
-    root = ET.Element(
-        "fmiModelDescription",
-        fmiVersion="2.0",
-        modelName=flat.name,
-        guid=guid,
-        description="; ".join(filter(None, (flat.doc, *flat.joined))),
-        generationTool=tool(),
-        variableNamingConvention="structured",
-        numberOfEventIndicators="0",
-    )
+    named = {"fmiVersion": "2.0", "modelName": flat.name, "guid": guid}
+    root = ET.Element("fmiModelDescription", {**named, **origin(flat), "numberOfEventIndicators": "0"})
     if licence:
         root.set("license", licence)
     _interfaces(root, identifier(flat.name), with_sources)
-    _unit_definitions(root, table)
-    categories = ET.SubElement(root, "LogCategories")
-    for name, text in LOG_CATEGORIES.items():
-        ET.SubElement(categories, "Category", name=name, description=text)
-    ET.SubElement(root, "DefaultExperiment", {**EXPERIMENT, "tolerance": repr(TOLERANCE)})
+    circumstances(root, {v.quantity.unit for v in table})
     variables = ET.SubElement(root, "ModelVariables")
     for variable in table:
         _scalar_variable(variables, variable)
     _model_structure(root, table, dependent)
+    return xml(root)
+
+
+def origin(flat: FlatModel) -> dict[str, str]:
+    """The attributes that say what the model is and where its description is from."""
+    told = {"description": "; ".join(filter(None, (flat.doc, *flat.joined))), "generationTool": tool()}
+    return told | {"variableNamingConvention": "structured"}
+
+
+def circumstances(root: ET.Element, used: Iterable[str]) -> None:
+    """Units, log categories and the experiment an importer runs when nothing is asked.
+
+    Args:
+        root: the description, where they are added
+        used: the units of the variables
+    """
+    _unit_definitions(root, used)
+    categories = ET.SubElement(root, "LogCategories")
+    for name, text in LOG_CATEGORIES.items():
+        ET.SubElement(categories, "Category", name=name, description=text)
+    ET.SubElement(root, "DefaultExperiment", {**EXPERIMENT, "tolerance": repr(TOLERANCE)})
+
+
+def xml(root: ET.Element) -> bytes:
+    """The text of a file with one element for people to read."""
     ET.indent(root)
     text = ET.tostring(root, encoding="unicode")
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
@@ -157,9 +170,9 @@ def _interfaces(root: ET.Element, name: str, with_sources: bool) -> None:
         ET.SubElement(ET.SubElement(interface, "SourceFiles"), "File", name="all.c")
 
 
-def _unit_definitions(root: ET.Element, table: Table) -> None:
+def _unit_definitions(root: ET.Element, used: Iterable[str]) -> None:
     definitions = ET.SubElement(root, "UnitDefinitions")
-    for name in sorted({units.fmi_unit(v.quantity.unit) for v in table}):
+    for name in sorted({units.fmi_unit(unit) for unit in used}):
         defined = units.unit(name)
         element = ET.SubElement(definitions, "Unit", name=name)
         if defined.exponents is not None:
@@ -173,34 +186,40 @@ def _unit_definitions(root: ET.Element, table: Table) -> None:
 
 
 def _scalar_variable(variables: ET.Element, variable: Variable) -> None:
-    q = variable.quantity
-    element = ET.SubElement(
-        variables,
-        "ScalarVariable",
-        name=variable.name,
-        valueReference=str(variable.reference),
-        description=_meaning(q),
-        causality=variable.causality,
-        variability=variable.variability,
-    )
-    if variable.initial:
-        element.set("initial", variable.initial)
-    unit = units.fmi_unit(q.unit)
-    real = ET.SubElement(element, "Real", unit=unit)
-    if units.is_difference(q.unit):
-        real.set("relativeQuantity", "true")
-    elif (shown := units.unit(unit).display(abs(variable.start or q.nominal))) is not None:
-        real.set("displayUnit", shown.name)
-    low, high = variable.bounds
-    for key, value in (("min", low), ("max", high)):
-        if math.isfinite(value):
-            real.set(key, repr(value))
-    if math.isfinite(q.nominal) and q.nominal > 0:
-        real.set("nominal", repr(float(q.nominal)))
-    if variable.start is not None:
-        real.set("start", repr(float(variable.start)))
+    element = ET.SubElement(variables, "ScalarVariable", identity(variable))
+    real = ET.SubElement(element, "Real", numbers(variable))
     if variable.state is not None:
         real.set("derivative", str(variable.state + 1))
+
+
+def identity(variable: Variable) -> dict[str, str]:
+    """The attributes that say what a variable is."""
+    told = {
+        "name": variable.name,
+        "valueReference": str(variable.reference),
+        "description": _meaning(variable.quantity),
+        "causality": variable.causality,
+        "variability": variable.variability,
+    }
+    return told | ({"initial": variable.initial} if variable.initial else {})
+
+
+def numbers(variable: Variable) -> dict[str, str]:
+    """The attributes of a real number: unit, range, typical size and start value."""
+    q = variable.quantity
+    unit = units.fmi_unit(q.unit)
+    told = {"unit": unit}
+    if units.is_difference(q.unit):
+        told["relativeQuantity"] = "true"
+    elif (shown := units.unit(unit).display(abs(variable.start or q.nominal))) is not None:
+        told["displayUnit"] = shown.name
+    low, high = variable.bounds
+    told |= {key: repr(value) for key, value in (("min", low), ("max", high)) if math.isfinite(value)}
+    if math.isfinite(q.nominal) and q.nominal > 0:
+        told["nominal"] = repr(float(q.nominal))
+    if variable.start is not None:
+        told["start"] = repr(float(variable.start))
+    return told
 
 
 def _meaning(q: Quantity) -> str:
