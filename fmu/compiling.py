@@ -53,6 +53,13 @@ PLATFORMS_3 = {
     )
 }
 
+#: What the names of FMI 2.0 mean in 3.0, which names processors.
+_NAMES_IN_3 = {
+    "linux64": ("x86_64-linux",),
+    "win64": ("x86_64-windows",),
+    "darwin64": ("x86_64-darwin", "aarch64-darwin"),
+}
+
 #: Any change makes the compiler rebuild its run-time libraries, which takes minutes for some targets.
 FLAGS = ("-g0", "-s", "-shared", "-fPIC", "-fvisibility=hidden", "-fno-sanitize=all", "-ffp-contract=off", "-std=c99")
 
@@ -75,7 +82,7 @@ def platforms(choice: str, fmi: int = 2) -> tuple[Platform, ...]:
 
     Args:
         choice: in words
-        fmi: version of the standard, 2 or 3, whose names are meant
+        fmi: version of the standard, 2 or 3, whose names are meant; 3 takes the names of 2 as well
 
     Raises:
         FmuError: unknown platform
@@ -84,6 +91,8 @@ def platforms(choice: str, fmi: int = 2) -> tuple[Platform, ...]:
     if choice == "all":
         return tuple(names_of.values())
     names = [own.name if name.strip() == "host" else name.strip() for name in choice.split(",")]
+    if fmi == 3:
+        names = [of_3 for name in names for of_3 in _NAMES_IN_3.get(name, (name,))]
     known = ("host", "all", *names_of)
     unknown = [n for n in names if n not in names_of]
     if unknown:

@@ -120,7 +120,10 @@ def export(
 def _of_fmi_3(name: str, variables: Table, with_sources: bool) -> dict[str, bytes]:
     """The files that FMI 3.0 has besides, or in another place."""
     built = {"sources/buildDescription.xml": fmi3_description.build_description(name)} if with_sources else {}
-    return {"terminalsAndIcons/terminalsAndIcons.xml": terminals(variables), "terminalsAndIcons/icon.png": icon()} | built
+    return {
+        "terminalsAndIcons/terminalsAndIcons.xml": terminals(variables),
+        "terminalsAndIcons/icon.png": icon(),
+    } | built
 
 
 def _made(path: Path, content: bytes) -> None:

@@ -149,6 +149,7 @@ def export(
             help="speed: speed and torque of the driving shaft are inputs; torque: the torques of all shaft ends are."
         ),
     ] = "speed",
+    fmi: Annotated[Literal["2", "3"], typer.Option(help="Version of the standard: FMI 2.0 or 3.0.")] = "2",
     platform: Annotated[str, typer.Option(help='"host", "all" or names such as linux64,win64.')] = "host,win64",
     license_: Annotated[str, typer.Option("--license", help="Licence under which you give it away.")] = "",
     sources: Annotated[bool, typer.Option("--sources/--no-sources", help="With its C source.")] = True,
@@ -161,7 +162,7 @@ def export(
     ] = None,
     json: Json = None,
 ) -> None:
-    """Write the rig as an FMU for FMI 2.0."""
+    """Write the rig as an FMU for FMI 2.0 or 3.0."""
     from . import exporting
 
     exporting.export_command(
@@ -176,6 +177,7 @@ def export(
         licence=license_,
         with_sources=sources,
         with_origins=origins,
+        fmi=int(fmi),
     )
 
 

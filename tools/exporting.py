@@ -46,10 +46,11 @@ def export_command(
     licence: str = "",
     with_sources: bool = True,
     with_origins: bool = True,
+    fmi: int = 2,
 ) -> None:
     """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
     writable(out, file_of(json))
-    chosen = platforms(platform)
+    chosen = platforms(platform, fmi)
     scenario = load(rig)
     drive: Drive | None = driven_at(scenario, shaft, given) if shaft is not None or given == "torque" else None
     setting = adjusted(scenario, assignments, drive=drive)
@@ -59,6 +60,7 @@ def export_command(
     duty = reference_duty(flat, start, setting.shaft_paths())
     told: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
     options: dict[str, Any] = {"platform": platform, "start": start, "licence": licence, "with_sources": with_sources}
+    options["fmi"] = fmi
     write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, start), **told, **options)
     kept = effective(flat, start)
     named = {q.name for q in kept.parameters}
@@ -67,6 +69,7 @@ def export_command(
         "schema": "gearheat.export/1",
         "rig": scenario.name,
         "fmu": str(out),
+        "fmi": f"{fmi}.0",
         "sha256": hashlib.sha256(out.read_bytes()).hexdigest(),
         "platforms": [p.name for p in chosen],
         "inputs": [q.name for q in flat.inputs],
