@@ -116,7 +116,7 @@ def _differences(root: ET.Element) -> frozenset[str]:
 
 
 def _reals(root: ET.Element, group: str, of_2: str, of_3: str) -> Iterator[tuple[ET.Element, ET.Element]]:
-    """Elements of a group that are real numbers, and where their attributes are: in FMI 2.0 in an element of its own."""
+    """Elements of a group that are real numbers, and the element with their attributes, which 2.0 puts inside."""
     for element in root.iterfind(f"{group}/{of_2}"):
         if (real := element.find("Real")) is not None:
             yield element, real
