@@ -294,6 +294,16 @@ def test_for_another_machine_the_reference_is_made_all_the_same(gearheat, tmp_pa
     assert "reference run" not in held(path, "documentation/index.html")
 
 
+def test_of_fmi_3_on_another_processor(gearheat, tmp_path, monkeypatch):
+    monkeypatch.setattr("gearheat.fmu.export.binary", lambda source, platform, **options: b"for another machine")
+    path = tmp_path / "rig.fmu"
+    found = gearheat("export", "planetary", "-o", path, "--fmi", 3, "--platform", "aarch64-linux", "--json", "-").json
+    assert (found["fmi"], found["platforms"]) == ("3.0", ["aarch64-linux"])
+    assert validate_fmu(str(path)) == []
+    assert 'Terminal name="carrier"' in held(path, "terminalsAndIcons/terminalsAndIcons.xml")
+    assert held(path, "binaries/aarch64-linux/planetary.so") == "for another machine"
+
+
 def test_the_sentence_for_people(gearheat, tmp_path):
     answer = gearheat("export", "--platform", "host", "planetary", "-o", tmp_path / "rig.fmu", "--extras", tmp_path)
     assert answer.code == 0, answer.err
