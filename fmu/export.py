@@ -101,14 +101,14 @@ def export(
     idle = tuple(q.name for q in flat.parameters if q.name not in held)
     about = About(sources or {}, uncertainties or {}, picture, idle)
     code, told = _code(kept, variables, fmi, licence=licence, with_sources=with_sources)
-    headers = fmi3_source.headers() if fmi == 3 else {}
+    headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
     content = {
         "modelDescription.xml": told,
         _PAGE: documentation(kept, variables, about, fmi=fmi).encode(),
         **({"sources/all.c": code.encode()} if with_sources else {}),
         **_extra(kept, variables, about),
         **(_of_fmi_3(flat.name, variables, with_sources) if fmi == 3 else {"model.png": icon()}),
-        **{f"binaries/{p.name}/{identifier(flat.name)}{p.suffix}": binary(code, p, headers=headers) for p in chosen},
+        **{f"binaries/{p.name}/{identifier(flat.name)}{p.suffix}": binary(built, p, headers=headers) for p in chosen},
     }
     _made(path, archive(content))
     if verify is not None:

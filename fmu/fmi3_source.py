@@ -5,6 +5,9 @@ from __future__ import annotations
 import re
 from importlib.resources import files
 
+#: Before the source of a shared library, whose functions have the names of the standard.
+OF_LIBRARY = "#define FMI3_OVERRIDE_FUNCTION_PREFIX\n"
+
 #: The standard's headers; an importer that compiles the source brings its own.
 _HEADERS = ("fmi3PlatformTypes.h", "fmi3FunctionTypes.h", "fmi3Functions.h")
 
@@ -69,6 +72,16 @@ def headers() -> dict[str, str]:
     """Name and text of the standard's headers, unmodified."""
     folder = files("fmpy") / "c-code"
     return {name: (folder / name).read_text(encoding="utf-8") for name in _HEADERS}
+
+
+def included(name: str) -> str:
+    """The beginning of the source: the standard's header, with names that no other FMU in a program has.
+
+    Args:
+        name: of the model, as an identifier
+    """
+    prefix = f"#ifndef FMI3_FUNCTION_PREFIX\n#define FMI3_FUNCTION_PREFIX {name}_\n#endif\n"
+    return f'{prefix}#include "fmi3Functions.h"\n'
 
 
 def in_words_of_3(text: str) -> str:

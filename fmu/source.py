@@ -12,7 +12,7 @@ from gearheat.model.run import newton
 from gearheat.model.run.algebra import GUESSES
 
 from . import emit, fmi3_source
-from .description import TOLERANCE
+from .description import TOLERANCE, identifier
 from .equations import Equations
 from .rosenbrock import RODAS3
 from .units import fmi_unit
@@ -42,6 +42,19 @@ _WRAPPER = (
 
 _NOTICE = "Copyright (c) 2026, the gearheat developers. SPDX-License-Identifier: BSD-3-Clause"
 
+#: FMPy's copy of the header lacks what the standard's has: names that begin with FMI2_FUNCTION_PREFIX, so that several
+#: FMUs can be linked into one program.
+_NAME = "\n#define fmi2FullName(name) name\n"
+_PREFIXED_NAME = """
+#if defined(FMI2_FUNCTION_PREFIX) && !defined(FMI2_OVERRIDE_FUNCTION_PREFIX)
+#define fmi2Paste(a,b) a ## b
+#define fmi2PasteB(a,b) fmi2Paste(a,b)
+#define fmi2FullName(name) fmi2PasteB(FMI2_FUNCTION_PREFIX, name)
+#else
+#define fmi2FullName(name) name
+#endif
+"""
+
 #: Where the identification goes; it is the hash of everything else.
 GUID_MARK = "@GUID@"
 
@@ -61,14 +74,15 @@ def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2) -> str
     if fmi == 2:
         return "\n".join([head, _fmi_headers(), generated, *map(_wrapper_file, _WRAPPER)])
     wrapper = [fmi3_source.in_words_of_3(_wrapper_file(name)) for name in fmi3_source.WRAPPER]
-    return "\n".join([head, '#include "fmi3Functions.h"\n', generated, *wrapper])
+    return "\n".join([head, fmi3_source.included(identifier(flat.name)), generated, *wrapper])
 
 
 def _fmi_headers() -> str:
     """The standard's headers, without their includes of each other."""
     folder = files("fmpy") / "c-code"
     texts = [(folder / name).read_text(encoding="utf-8") for name in _HEADERS]
-    return "\n".join(re.sub(r'#include "fmi2\w+\.h"\n', "", text.replace("\r\n", "\n")) for text in texts)
+    whole = "\n".join(re.sub(r'#include "fmi2\w+\.h"\n', "", text.replace("\r\n", "\n")) for text in texts)
+    return whole.replace(_NAME, _PREFIXED_NAME)
 
 
 def _wrapper_file(name: str) -> str:
