@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
@@ -127,7 +127,7 @@ def description(
     if licence:
         root.set("license", licence)
     _interfaces(root, identifier(flat.name), with_sources)
-    circumstances(root, {v.quantity.unit for v in table})
+    circumstances(root, {v.quantity.unit for v in table}, _types)
     variables = ET.SubElement(root, "ModelVariables")
     for variable in table:
         _scalar_variable(variables, variable)
@@ -141,14 +141,18 @@ def origin(flat: FlatModel) -> dict[str, str]:
     return told | {"variableNamingConvention": "structured"}
 
 
-def circumstances(root: ET.Element, used: Iterable[str]) -> None:
-    """Units, log categories and the experiment an importer runs when nothing is asked.
+def circumstances(root: ET.Element, used: Iterable[str], types: Callable[[ET.Element, list[str]], None]) -> None:
+    """Units, types, log categories and the experiment an importer runs when nothing is asked.
 
     Args:
         root: the description, where they are added
         used: the units of the variables
+        types: adds the types of variables of some units, by these units
     """
+    used = set(used)
     _unit_definitions(root, used)
+    if measured := sorted(used & units.QUANTITIES.keys()):
+        types(ET.SubElement(root, "TypeDefinitions"), measured)
     categories = ET.SubElement(root, "LogCategories")
     for name, text in LOG_CATEGORIES.items():
         ET.SubElement(categories, "Category", name=name, description=text)
@@ -160,6 +164,19 @@ def xml(root: ET.Element) -> bytes:
     ET.indent(root)
     text = ET.tostring(root, encoding="unicode")
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
+
+
+def _types(definitions: ET.Element, measured: list[str]) -> None:
+    for unit in measured:
+        told = type_of(unit)
+        ET.SubElement(ET.SubElement(definitions, "SimpleType", name=told.pop("name")), "Real", told)
+
+
+def type_of(unit: str) -> dict[str, str]:
+    """The attributes of the type of variables of a unit."""
+    quantity = units.QUANTITIES[unit]
+    told = {"name": quantity, "quantity": quantity, "unit": units.fmi_unit(unit)}
+    return told | ({"relativeQuantity": "true"} if units.is_difference(unit) else {})
 
 
 def _interfaces(root: ET.Element, name: str, with_sources: bool) -> None:
@@ -208,7 +225,8 @@ def numbers(variable: Variable) -> dict[str, str]:
     """The attributes of a real number: unit, range, typical size and start value."""
     q = variable.quantity
     unit = units.fmi_unit(q.unit)
-    told = {"unit": unit}
+    told = {"declaredType": units.QUANTITIES[q.unit]} if q.unit in units.QUANTITIES else {}
+    told["unit"] = unit
     if units.is_difference(q.unit):
         told["relativeQuantity"] = "true"
     elif (shown := units.unit(unit).display(abs(variable.start or q.nominal))) is not None:

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from gearheat.model.core.flat import FlatModel
 
-from .description import Dependencies, circumstances, identifier, identity, numbers, origin, xml
+from .description import Dependencies, circumstances, identifier, identity, numbers, origin, type_of, xml
 from .variables import Table, Variable
 
 _CAPABILITIES = {
@@ -45,7 +45,7 @@ def description(flat: FlatModel, table: Table, token: str, dependent: Dependenci
     own = {"modelIdentifier": identifier(flat.name), **_CAPABILITIES}
     ET.SubElement(root, "ModelExchange", {**own, **_MODEL_EXCHANGE})
     ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
-    circumstances(root, {"s", *(v.quantity.unit for v in table)})
+    circumstances(root, {"s", *(v.quantity.unit for v in table)}, _types)
     variables = ET.SubElement(root, "ModelVariables")
     for variable in table:
         element = ET.SubElement(variables, "Float64", {**identity(variable), **numbers(variable)})
@@ -54,6 +54,11 @@ def description(flat: FlatModel, table: Table, token: str, dependent: Dependenci
     _time(variables, table)
     _model_structure(root, table, dependent)
     return xml(root)
+
+
+def _types(definitions: ET.Element, measured: list[str]) -> None:
+    for unit in measured:
+        ET.SubElement(definitions, "Float64Type", type_of(unit))
 
 
 def _time(variables: ET.Element, table: Table) -> None:

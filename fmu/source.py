@@ -124,7 +124,7 @@ def _tables(flat: FlatModel, table: Table) -> str:
     checks, relations = flat.checks, flat.relations
     strings = {
         "model_names": [v.name for v in table],
-        "model_units": [fmi_unit(v.quantity.unit) for v in table],
+        "model_units": ["" if v.quantity.unit == "1" else f" {fmi_unit(v.quantity.unit)}" for v in table],
         "model_ranges": [v.range_text for v in table],
         "model_blocks": flat.residual_names,
         "model_checks": [

@@ -115,7 +115,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c)
         return refuse(m, "fmi2ExitInitializationMode: the equation \"%s\" has no solution. Check start values, inputs and "
                       "parameters.", block);
     if ((r = wrong_result(m)) != N_VARIABLES)
-        return refuse(m, "fmi2ExitInitializationMode: %s is %.10g %s, but must be %s. Check start values, inputs and "
+        return refuse(m, "fmi2ExitInitializationMode: %s is %.10g%s, but must be %s. Check start values, inputs and "
                       "parameters.", model_names[r], value_of(m, r), model_units[r], model_ranges[r]);
     accept_algebra(m);
     m->s.mode = m->s.type == fmi2ModelExchange ? EVENT : STEP_COMPLETE;
@@ -192,7 +192,7 @@ static void tell_kept(Instance *m, fmi2ValueReference r, double value)
 {
     if (m->kept[r - FIRST_U]) return;
     m->kept[r - FIRST_U] = 1;
-    warn(m, "fmi2SetReal: %s = %.10g %s is out of range. It must be %s %s; until then it stays at %.10g %s.",
+    warn(m, "fmi2SetReal: %s = %.10g%s is out of range. It must be %s%s; until then it stays at %.10g%s.",
          model_names[r], value, model_units[r], model_ranges[r], model_units[r], *stored(m, r), model_units[r]);
 }
 

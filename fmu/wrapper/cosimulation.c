@@ -53,14 +53,14 @@ static fmi2Status stuck(const Instance *m, double time, double step, const Advan
                        "Nothing has changed; check speeds, torques and temperatures.", time, time + step, w->block,
                        e->accepted ? "end" : "begin");
     if (e->accepted == 0)
-        return refuse(m, "fmi2DoStep: no step from %.10g s: %s becomes infinite or leaves its range (%s %s). Nothing "
+        return refuse(m, "fmi2DoStep: no step from %.10g s: %s becomes infinite or leaves its range (%s%s). Nothing "
                       "has changed; check the inputs.", time, name, model_ranges[FIRST_X + w->worst],
                       model_units[FIRST_X + w->worst]);
     if (e->accepted + e->rejected >= MAX_STEPS)
         return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %ld internal steps lead to %.10g s only, "
                        "limited by %s. Nothing has changed; retry with a shorter step.", time, time + step,
                        e->accepted + e->rejected, time + w->reached, name);
-    return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s becomes infinite or leaves its range (%s %s) "
+    return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s becomes infinite or leaves its range (%s%s) "
                    "behind %.10g s. Nothing has changed; retry with a shorter step.", time, time + step, name,
                    model_ranges[FIRST_X + w->worst], model_units[FIRST_X + w->worst], time + w->reached);
 }
@@ -80,7 +80,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
                       "since. Take a shorter step, or other inputs.", step, time, m->refused_by);
     if ((r = input_astray(m, step)) != N_VARIABLES) {
         remember_refusal(m, step, model_names[r]);
-        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: its slope leads %s out of its range (%s %s). "
+        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: its slope leads %s out of its range (%s%s). "
                        "Nothing has changed; retry with a shorter step.", time, time + step, model_names[r],
                        model_ranges[r], model_units[r]);
     }
@@ -104,7 +104,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
         m->s = before;
         changed(m);
         remember_refusal(m, step, model_names[r]);
-        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s would be %.10g %s, but must be %s. "
+        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s would be %.10g%s, but must be %s. "
                        "Nothing has changed; check the inputs.", time, time + step, model_names[r], value,
                        model_units[r], model_ranges[r]);
     }
