@@ -7,12 +7,14 @@ import re
 import xml.etree.ElementTree as ET
 from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import casadi as ca
 import numpy as np
 from gearheat.model.core.flat import FlatModel, Quantity
+from gearheat.model.errors import FmuError
 
 from . import units
 from .equations import Equations
@@ -58,6 +60,43 @@ def tool() -> str:
         return f"gearheat {version('gearheat')}"
     except PackageNotFoundError:
         return "gearheat"
+
+
+@dataclass(frozen=True)
+class Owner:
+    """What an FMU's owner says of it; nothing is told of what is empty.
+
+    Attributes:
+        author: name and organisation
+        version: of the model
+        licence: under which it is given away
+        made: date and time in the form of XML, "2026-01-31T12:00:00Z"; with one, the same model gives other bytes
+
+    Raises:
+        FmuError: the date is none
+    """
+
+    author: str = ""
+    version: str = ""
+    licence: str = ""
+    made: str = ""
+
+    def __post_init__(self) -> None:
+        if self.made and not _is_moment(self.made):
+            raise FmuError(f'the date "{self.made}" is no date with a time. Write it as 2026-01-31T12:00:00Z.')
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """The attributes of the description."""
+        told = {"author": self.author, "version": self.version, "license": self.licence}
+        return {name: text for name, text in {**told, "generationDateAndTime": self.made}.items() if text}
+
+
+def _is_moment(text: str) -> bool:
+    try:
+        return datetime.fromisoformat(text).tzinfo is not None and "T" in text
+    except ValueError:
+        return False
 
 
 @dataclass(frozen=True)
@@ -107,7 +146,7 @@ def description(
     guid: str,
     dependent: Dependencies | None = None,
     *,
-    licence: str = "",
+    owner: Owner = Owner(),
     with_sources: bool = True,
 ) -> bytes:
     """modelDescription.xml.
@@ -118,14 +157,13 @@ def description(
         table: its variables
         guid: unique identification, "" while it is still to be computed
         dependent: the result of `dependencies`, computed when not given
-        licence: under which its owner gives it away; none is told where it is empty
+        owner: what its owner says of it
         with_sources: whether the FMU holds its sources
     """
     dependent = dependent or dependencies(model, table)
     named = {"fmiVersion": "2.0", "modelName": flat.name, "guid": guid}
-    root = ET.Element("fmiModelDescription", {**named, **origin(flat), "numberOfEventIndicators": "0"})
-    if licence:
-        root.set("license", licence)
+    told = {**origin(flat), "numberOfEventIndicators": "0", **owner.attributes}
+    root = ET.Element("fmiModelDescription", {**named, **told})
     _interfaces(root, identifier(flat.name), with_sources)
     circumstances(root, {v.quantity.unit for v in table}, _types)
     variables = ET.SubElement(root, "ModelVariables")

@@ -31,13 +31,12 @@ import uuid
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from gearheat.model.core.flat import FlatModel
 
 from . import fmi3_description, fmi3_source
 from .compiling import binary, platforms, store
-from .description import dependencies, description, identifier
+from .description import Owner, dependencies, description, identifier
 from .documentation import About, documentation
 from .effective import effective
 from .equations import equations
@@ -65,7 +64,7 @@ def export(
     uncertainties: Mapping[str, float] | None = None,
     picture: str = "",
     verify: Callable[[Path], Sequence[Check]] | None = None,
-    licence: str = "",
+    owner: Owner = Owner(),
     with_sources: bool = True,
     fmi: int = 2,
 ) -> Path:
@@ -85,7 +84,7 @@ def export(
         uncertainties: parameter -> standard uncertainty of its value, in the unit of the value
         picture: the model drawn as SVG, for the documentation
         verify: called with the finished file; the checks and results it gives are written into the documentation
-        licence: under which its owner gives it away; none is told where it is empty
+        owner: author, version, licence and date that its owner gives
         with_sources: whether it holds its C source
         fmi: version of the standard, 2 or 3
 
@@ -100,7 +99,7 @@ def export(
     held = {q.name for q in kept.parameters}
     idle = tuple(q.name for q in flat.parameters if q.name not in held)
     about = About(sources or {}, uncertainties or {}, picture, idle)
-    code, told = _code(kept, variables, fmi, licence=licence, with_sources=with_sources)
+    code, told = _code(kept, variables, fmi, owner=owner, with_sources=with_sources)
     headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
     content = {
         "modelDescription.xml": told,
@@ -140,16 +139,15 @@ def _exported(flat: FlatModel, start: Mapping[str, float]) -> tuple[FlatModel, T
 
 
 def _code(
-    flat: FlatModel, variables: Table, fmi: int = 2, *, licence: str = "", with_sources: bool = True
+    flat: FlatModel, variables: Table, fmi: int = 2, *, owner: Owner = Owner(), with_sources: bool = True
 ) -> tuple[str, bytes]:
     """The C source and the description, with the identification that follows from both."""
     model = equations(flat)
     code, dependent = source(flat, model, variables, fmi), dependencies(model, variables)
     if fmi == 3:
-        without_guid = fmi3_description.description(flat, variables, GUID_MARK, dependent, licence=licence)
+        without_guid = fmi3_description.description(flat, variables, GUID_MARK, dependent, owner)
     else:
-        told: dict[str, Any] = {"licence": licence, "with_sources": with_sources}
-        without_guid = description(flat, model, variables, GUID_MARK, dependent, **told)
+        without_guid = description(flat, model, variables, GUID_MARK, dependent, owner=owner, with_sources=with_sources)
     guid = _guid(code.encode() + without_guid)
     return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode())
 

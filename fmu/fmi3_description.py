@@ -7,7 +7,7 @@ from collections.abc import Iterable
 
 from gearheat.model.core.flat import FlatModel
 
-from .description import Dependencies, circumstances, identifier, identity, numbers, origin, type_of, xml
+from .description import Dependencies, Owner, circumstances, identifier, identity, numbers, origin, type_of, xml
 from .variables import Table, Variable
 
 _CAPABILITIES = {
@@ -28,7 +28,7 @@ _CO_SIMULATION = {
 }
 
 
-def description(flat: FlatModel, table: Table, token: str, dependent: Dependencies, *, licence: str = "") -> bytes:
+def description(flat: FlatModel, table: Table, token: str, dependent: Dependencies, owner: Owner = Owner()) -> bytes:
     """modelDescription.xml.
 
     Args:
@@ -36,12 +36,10 @@ def description(flat: FlatModel, table: Table, token: str, dependent: Dependenci
         table: its variables; behind them stands the independent variable that FMI 3.0 asks for
         token: unique identification
         dependent: what outputs and derivatives depend on
-        licence: under which its owner gives it away; none is told where it is empty
+        owner: what its owner says of it
     """
     named = {"fmiVersion": "3.0", "modelName": flat.name, "instantiationToken": token}
-    root = ET.Element("fmiModelDescription", {**named, **origin(flat)})
-    if licence:
-        root.set("license", licence)
+    root = ET.Element("fmiModelDescription", {**named, **origin(flat), **owner.attributes})
     own = {"modelIdentifier": identifier(flat.name), **_CAPABILITIES}
     ET.SubElement(root, "ModelExchange", {**own, **_MODEL_EXCHANGE})
     ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})

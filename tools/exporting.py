@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..fmu.compiling import platforms
+from ..fmu.description import Owner
 from ..fmu.effective import effective
 from ..fmu.export import export
 from ..model.core.flat import FlatModel
@@ -43,7 +44,7 @@ def export_command(
     extras: Path | None,
     json: str | None,
     *,
-    licence: str = "",
+    owner: Owner = Owner(),
     with_sources: bool = True,
     with_origins: bool = True,
     fmi: int = 2,
@@ -59,8 +60,8 @@ def export_command(
     beside = folder(extras) if extras is not None else None
     duty = reference_duty(flat, start, setting.shaft_paths())
     told: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
-    options: dict[str, Any] = {"platform": platform, "start": start, "licence": licence, "with_sources": with_sources}
-    options["fmi"] = fmi
+    options: dict[str, Any] = {"platform": platform, "start": start, "owner": owner, "fmi": fmi}
+    options["with_sources"] = with_sources
     write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, start), **told, **options)
     kept = effective(flat, start)
     named = {q.name for q in kept.parameters}

@@ -337,6 +337,8 @@ def test_a_machine_listed_part_by_part(gearheat, tmp_path, elsewhere):
     [
         (("--drive", "snu"), 'Did you mean "sun"'),
         (("--platform", "linux46"), 'Did you mean "linux64"'),
+        (("--fmi", "3", "--platform", "win32"), 'platform "win32" is unknown'),
+        (("--date", "yesterday"), 'the date "yesterday" is no date'),
         (("--set", "carrier.w=100 rpm", "--given", "torque"), "follows from what drives the rig"),
         (("--extras", "/dev/null/more"), "cannot be written"),
         (("--set", "oil.nu_40=-1 mm2/s"), "out of range"),
@@ -352,11 +354,14 @@ def test_what_is_wrong_is_told_before_anything_is_written(gearheat, tmp_path, op
 def test_what_a_company_may_keep_to_itself(gearheat, tmp_path):
     path = tmp_path / "own.fmu"
     keep = ("--license", "Example Ltd, all rights reserved", "--no-sources", "--no-parameters-source")
-    found = gearheat("export", "helical_two_stage", "-o", path, *keep, "--json", "-").json
+    say = ("--author", "A. Maker, Example Ltd", "--model-version", "1.2", "--date", "2026-01-31T12:00:00Z")
+    found = gearheat("export", "helical_two_stage", "-o", path, *keep, *say, "--json", "-").json
     assert found["platforms"] == list(dict.fromkeys([compiling.host_platform().name, "win64"]))
     with zipfile.ZipFile(path) as file:
         description = file.read("modelDescription.xml").decode()
         assert 'license="Example Ltd, all rights reserved"' in description
+        told = 'author="A. Maker, Example Ltd" version="1.2"', 'generationDateAndTime="2026-01-31T12:00:00Z"'
+        assert all(text in description for text in told)
         assert "SourceFiles" not in description
         assert not [name for name in file.namelist() if name.startswith("sources/")]
         for name in (n for n in file.namelist() if n.endswith((".xml", ".html", ".ssv"))):
@@ -369,5 +374,6 @@ def test_no_licence_is_told_that_was_not_given(gearheat, tmp_path):
     path = tmp_path / "rig.fmu"
     gearheat("export", "--platform", "host", "helical_two_stage", "-o", path)
     with zipfile.ZipFile(path) as file:
-        assert "license=" not in file.read("modelDescription.xml").decode()
+        description = file.read("modelDescription.xml").decode()
+        assert not [name for name in ("license=", "author=", "generationDateAndTime=") if name in description]
         assert "assumed: standard module" in file.read("documentation/index.html").decode()
