@@ -12,12 +12,13 @@ from typing import Any
 import numpy as np
 import pytest
 from gearheat.model.core.flatten import flatten
+from gearheat.model.errors import DataError
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.schedule import stepped
 from gearheat.model.run.simulate import simulate as run_model
 from gearheat.scenarios.load import load
 from gearheat.tools.challenge import cases, foreign, forms, own, practice, rig, scoring
-from gearheat.tools.challenge.answers import Answer, Hypothesis, read_answer
+from gearheat.tools.challenge.answers import Answer, Hypothesis, ask_command, read_answer
 from gearheat.tools.challenge.bench import run, tasks
 from gearheat.tools.challenge.classes import merged_all
 from gearheat.tools.challenge.command import show
@@ -391,3 +392,12 @@ def test_report_counts(capsys: pytest.CaptureFixture[str]) -> None:
     printed = capsys.readouterr().out
     assert all(m["name"] in printed for m in found["metrics"])
     assert "0.33" in printed and "missed" in printed  # exact name: one of three
+
+
+def test_a_question_is_a_process_of_its_own(tmp_path) -> None:
+    """What the command refuses is the command's word, not that of a program which does not begin."""
+    data = tmp_path / "DATA.csv"
+    data.write_text("n_carrier_rpm\n100\n", encoding="utf-8")
+    with pytest.raises(DataError, match=r"ended with code 2: (?!.*(Import|Attribute)Error)"):
+        ask_command({"data": data}, tmp_path)
+    assert float((tmp_path / "SECONDS").read_text(encoding="utf-8")) > 0

@@ -35,7 +35,8 @@ def test_a_walk_beside_its_own_scatter() -> None:
     V = fit.views(None)[0].white.L @ fit.views(None)[0].white.L.T
     C = own @ own.T
     seen = np.array([extra._log(V + s**2 * C, residual) for s in extra.SIZES])
-    found = extra._anew(fit, V, residual, C, seen)
+    found, noise = extra._anew(fit, V, residual, C, extra.SIZES[int(np.argmax(seen))])
+    assert abs(noise.scales[0]) < 0.3
     assert found.max() > seen.max() + 5
     best = extra.SIZES[int(np.argmax(found))]
     assert best in (1.0, 2.0)

@@ -129,8 +129,8 @@ class _Chances:
         low, high = np.quantile(found.drawn, np.clip([1 - share - spread, 1 - share + spread], 0, 1))
         #: Sources of error: which hypotheses share one, and the standard error of their log evidence.
         self.sources = [(np.array([not h.causes for h in found.hypotheses]), 0.5 * float(high - low))]
-        for fit in {id(h.fit): h.fit for h in found.hypotheses}.values():
-            own = np.array([h.fit is fit for h in found.hypotheses])
+        for look in {id(h.fit.look): h.fit.look for h in found.hypotheses}.values():
+            own = np.array([h.fit.look is look for h in found.hypotheses])
             self.sources.append((own, found.hypotheses[int(np.argmax(own))].error))
 
     def of(self, mine: np.ndarray) -> Chance:

@@ -152,7 +152,7 @@ def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estima
     low, value, high = (float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975))
     size_of = next(f.cause.size for f in found.formulas if f.cause.id == cause)
     sd = size_of.sd
-    doc = f"standard deviation of: {size_of.doc}"
+    doc = size_of.doc if "standard deviation" in size_of.doc else f"standard deviation of: {size_of.doc}"
     return (Estimate(size_of.name, sd * value, (sd * low, sd * high), size_of.unit, doc, ""),)
 
 

@@ -31,10 +31,10 @@ def predictions(setting: Setting, found: Found, points: Campaign) -> tuple[np.nd
     o = _observed(setting, found, points)
     nominal = _predicted(found.problem, found.null, o)
     weights: dict[int, float] = {}
-    fits = {id(h.fit): h.fit for h in found.hypotheses}
+    fits = {id(h.fit.look): h.fit for h in reversed(found.hypotheses)}
     for h, p in zip(found.hypotheses, found.probabilities, strict=True):
-        weights[id(h.fit)] = weights.get(id(h.fit), 0.0) + float(p)
-    counted = {key: w for key, w in weights.items() if w > COUNTS} or {id(found.hypotheses[0].fit): 1.0}
+        weights[id(h.fit.look)] = weights.get(id(h.fit.look), 0.0) + float(p)
+    counted = {key: w for key, w in weights.items() if w > COUNTS} or {id(found.hypotheses[0].fit.look): 1.0}
     tables = np.array([_predicted(found.problem, fits[key], o) for key in counted])
     w = np.array(list(counted.values()))[:, None, None] * np.isfinite(tables)
     total = w.sum(axis=0)

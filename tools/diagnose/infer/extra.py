@@ -13,7 +13,7 @@ from ..model.formula import Formula
 from ..model.noise import per_group, walk
 from .evidence import White
 from .fit import Fit
-from .problem import Acting, Problem
+from .problem import Acting, Noise, Problem
 
 #: Standard deviations of a spread, in half widths of the cause's prior.
 SIZES = (0.25, 0.5, 1.0, 2.0, 4.0)
@@ -42,8 +42,8 @@ class Extra:
     covariance: np.ndarray
 
 
-def extras(problem: Problem, fit: Fit, spreads: Sequence[Formula]) -> Iterator[tuple[Extra, float]]:
-    """Each extra with the log of what it adds to the evidence, its own prior apart."""
+def extras(problem: Problem, fit: Fit, spreads: Sequence[Formula]) -> Iterator[tuple[Extra, float, Noise]]:
+    """Each extra with the log of what it adds to the evidence, its own prior apart, and the scatter beside it."""
     views = fit.views(problem)
     without = views[0].white.log_density(views[0].e)
     r = views[0].white.L @ views[0].e
@@ -64,28 +64,32 @@ def extras(problem: Problem, fit: Fit, spreads: Sequence[Formula]) -> Iterator[t
             found.append((formula, C, logsumexp(each, axis=0) - np.log(len(views))))
     least = max((logs.max() for _, _, logs in found), default=0.0) - NEAR
     for formula, C, seen in found:
-        swallowed = len(views) > 1 and seen.max() > least
-        logs = np.maximum(seen, _anew(fit, scatters[0], r, C, seen) - without) if swallowed else seen
+        logs, noise = seen, fit.noise
+        if len(views) > 1 and seen.max() > least:
+            anew, beside = _anew(fit, scatters[0], r, C, SIZES[int(np.argmax(seen))])
+            if anew.max() - without > seen.max():
+                logs, noise = anew - without, beside
         best = SIZES[int(np.argmax(logs))]
         gain = float(logsumexp(logs) - np.log(len(SIZES)) + np.log(formula.form.weight))
-        yield Extra(formula.cause.id, formula.form.name, best, (), best**2 * C), gain
-    yield from _remainders(problem, scatters[0], r, without)
+        yield Extra(formula.cause.id, formula.form.name, best, (), best**2 * C), gain, noise
+    for extra, gain in _remainders(problem, scatters[0], r, without):
+        yield extra, gain, fit.noise
 
 
-def _anew(fit: Fit, V: np.ndarray, r: np.ndarray, C: np.ndarray, seen: np.ndarray) -> np.ndarray:
-    """Log density at each size with the scatter fitted anew: what the spread explains is no scatter.
+def _anew(fit: Fit, V: np.ndarray, r: np.ndarray, C: np.ndarray, size: float) -> tuple[np.ndarray, Noise]:
+    """Log density at each size with the scatter fitted anew, and that scatter: what a spread explains is none.
 
     Args:
         fit: the hypothesis, whose scales have grown
         V: covariance of the residual r without the spread (M, M)
         r: residual (M,)
         C: covariance of the spread at size 1 (M, M)
-        seen: log density at each size with the scatter as it was, where it is largest
+        size: at which the scatter is fitted
     """
     known = V - fit.noise.covariance
-    noise = fit.noise.fitted(r, known + SIZES[int(np.argmax(seen))] ** 2 * C)
+    noise = fit.noise.fitted(r, known + size**2 * C)
     V, prior = known + noise.covariance, noise.log_prior - fit.noise.log_prior
-    return np.array([_log(V + size**2 * C, r) + prior for size in SIZES])
+    return np.array([_log(V + size**2 * C, r) + prior for size in SIZES]), noise
 
 
 def _columns(problem: Problem, formula: Formula, effect: np.ndarray) -> np.ndarray | None:

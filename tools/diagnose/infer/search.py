@@ -343,15 +343,16 @@ class Search:
         for h in base:
             if h.causes and h.log_joint < best - 1.5 * BEHIND:
                 continue
-            for extra, gain in extras(self.problem, h.fit, self.spreads):
+            for extra, gain, noise in extras(self.problem, h.fit, self.spreads):
+                beside = replace(h, fit=h.fit if noise is h.fit.noise else replace(h.fit, noise=noise), extra=extra)
                 if extra.cause is None:
                     log = h.log_joint + gain + np.log(OUTSIDE)
-                    found.append(replace(h, log_joint=float(log), extra=extra))
+                    found.append(replace(beside, log_joint=float(log)))
                 else:
                     new = extra.cause not in h.causes
                     causes = (*h.causes, extra.cause) if new else h.causes
                     log = h.log_joint + gain + (self._added(h.causes, extra.cause) if new else 0.0)
-                    found.append(replace(h, causes=causes, log_joint=float(log), extra=extra))
+                    found.append(replace(beside, causes=causes, log_joint=float(log)))
         return found
 
     def _added(self, causes: Sequence[str], more: str) -> float:
