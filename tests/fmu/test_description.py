@@ -13,14 +13,17 @@ import pytest
 from fmpy.validation import validate_fmu
 from fmu_in_c import planetary
 from gearheat.fmu import units
-from gearheat.fmu.description import description, identifier
+from gearheat.fmu.description import description, identifier, identity, numbers
 from gearheat.fmu.equations import equations
 from gearheat.fmu.export import export
 from gearheat.fmu.source import source
 from gearheat.fmu.variables import per_second, table
+from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import FmuError
+from gearheat.model.machines.spec import assemble
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.units import in_unit
+from gearheat.scenarios.load import list_rigs, load
 
 
 @pytest.fixture(scope="module")
@@ -147,6 +150,23 @@ def test_same_model_same_bytes(models: SimpleNamespace, rc_fmu: Path, tmp_path: 
     guids = {fmpy.read_model_description(str(p)).guid for p in (rc_fmu, again, other)}
     assert len(guids) == 2
     assert {i.date_time[0] for i in zipfile.ZipFile(again).infolist()} == {1980}
+
+
+@pytest.mark.parametrize("rig", list_rigs())
+def test_what_a_user_reads_of_every_variable_of_every_rig(rig: str) -> None:
+    """A description of its own, a unit that is understood, the unit people use, a start inside the range."""
+    variables = list(table(flatten(assemble(load(rig).spec))))
+    told = Counter(identity(v)["description"] for v in variables)
+    assert [text for text, n in told.items() if n > 1 or not text] == []
+    for v in variables:
+        attributes = numbers(v)
+        unit = units.unit(attributes["unit"])
+        assert unit.exponents is not None, v.name
+        if unit.name in ("K", "rad/s", "rad", "m", "m2/s") and "relativeQuantity" not in attributes:
+            assert attributes["displayUnit"] in {d.name for d in unit.shown}, v.name
+        start = float(attributes.get("start", "nan"))
+        assert not start < float(attributes.get("min", "-inf")), v.name
+        assert not start > float(attributes.get("max", "inf")), v.name
 
 
 def test_types_say_what_is_measured(described: SimpleNamespace) -> None:
