@@ -18,6 +18,7 @@ static void start(Instance *m)
     memset(m->warned, 0, sizeof m->warned);
     memset(m->kept, 0, sizeof m->kept);
     m->refused_step = NAN;
+    m->order_told = 0;
     m->outputs_wanted = 1;
 }
 
