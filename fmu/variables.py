@@ -143,13 +143,17 @@ def _started(flat: FlatModel, start: dict[str, float]) -> tuple[Group, Group, Gr
         what = "is calculated by the model" if name in flat.index else f"is unknown.{suggestion(name, settable)}"
         told = follows(flat, name) if name in flat.derived else f'"{name}" {what}'
         problems.append(f"{flat.name}: start value {told}")
-    groups = [tuple(replace(q, start=_tidy(float(start.get(q.name, q.start)))) for q in group) for group in groups]
+    groups = [tuple(replace(q, start=tidy(float(start.get(q.name, q.start)))) for q in group) for group in groups]
     problems += [f"{flat.name}: start value {p}" for group in groups for q in group if (p := q.problem(q.start))]
     return (*groups[0], *_audit_states(flat)), groups[1], groups[2], problems
 
 
-def _tidy(value: float) -> float:
-    """A value without the round-off of the conversion from its unit where that shows, as in 234.14999999999998."""
+def tidy(value: float) -> float:
+    """A value without the round-off of the conversion from its unit where that shows, as in 234.14999999999998.
+
+    Args:
+        value: a start value, SI
+    """
     rounded = float(f"{value:.15g}")
     return rounded if len(repr(rounded)) < len(repr(value)) - 2 else value
 
