@@ -19,12 +19,13 @@
     uncertainties = { V = "0.1 l" }       # one standard deviation, where it is known
 
     [part.cooler]                         # a part of one's own has a type; a "network" has no others
-    type = "ThermalConductor"
+    type = "ThermalConductor"             # or "my_module:MyClass", see `own_parts`
 
     [connect]                             # nets of one's own: name = ports that meet
     cooler_in = ["oil.heat", "cooler.a"]
 
     [template.bearing]                    # what parts with use = "bearing" share; "x_{a,b}" names two parts: `repeats`
+    [assembly.shaft]                      # parts and nets that are met by a few ports, for use = "shaft": `assemblies`
 
     [sensors]                             # column of a measured table = path in the model
     T_oil_C = "oil.T"
@@ -61,9 +62,11 @@ from ..model.machines import cycloidal, drum_motor, harmonic, planetary, rv_stag
 from ..model.machines.spec import PartSpec, Spec, assemble
 from ..model.parts import PARTS
 from ..model.units import to_si
+from .assemblies import assembled
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
 from .instruments import Instrument, instruments
+from .own_parts import own_type
 from .protocol import Driven, Protocol
 from .repeats import expanded
 from .scenario import Erratum, Scenario
@@ -132,9 +135,10 @@ class _Loader:
         self.file = path.name
         self.name = path.resolve().parent.name if path.name == "rig.toml" else path.stem
         self.table: RigTable
-        whole, repeated = expanded(self.file, raw)
+        plain, folded = assembled(self.file, raw)
+        whole, repeated = expanded(self.file, plain)
         self.table, self.problems = validate(self.file, whole)
-        self.problems += repeated
+        self.problems += folded + repeated
         if self.table.kind not in LAYOUTS and (self.table.kind or not self.problems):
             close = suggestion(self.table.kind, LAYOUTS) or f" Kinds: {', '.join(LAYOUTS)}."
             self.problems.append(f'{self.file}: unknown kind "{self.table.kind}".{close}')
@@ -143,6 +147,7 @@ class _Loader:
         if self.table.kind not in LAYOUTS or not self.table.part:  # without them nothing else can be judged
             raise ScenarioError(self.problems)
         self.layout, self.connections = LAYOUTS[self.table.kind]
+        self.known = {**known, **self._own_types()}
         self.types = self._types()
         self.value_sources: dict[str, str] = {}
 
@@ -159,14 +164,27 @@ class _Loader:
                 )
             elif not kind:
                 self.problems.append(f'{where}: "type" is missing. Give one of: {", ".join(self.known)}.')
-            elif kind not in self.known:
+            elif kind not in self.known and ":" not in kind:  # a wrong class of one's own is said already
                 close = suggestion(kind, self.known) or f" Types: {', '.join(self.known)}."
                 self.problems.append(f'{where}: there is no part type "{kind}".{close}')
             elif not name.isidentifier():
                 self.problems.append(f"{where}: the name of a part is one word of letters, digits and _. Rename it.")
-            else:
+            elif kind in self.known:
                 types[name] = self.known[kind]
         return types
+
+    def _own_types(self) -> dict[str, type[Component]]:
+        """The classes of one's own that the parts name, by what they are called there and by their names."""
+        found: dict[str, type[Component]] = {}
+        for kind in dict.fromkeys(str(table.get("type", "")) for table in self.table.part.values()):
+            if ":" in kind:
+                try:
+                    cls = own_type(kind, {**self.known, **found})
+                except ScenarioError as error:
+                    self.problems += [f"{self.file}: {problem}" for problem in error.problems]
+                else:
+                    found |= {kind: cls, cls.__name__: cls}
+        return found
 
     def scenario(self) -> Scenario:
         """All of the file, or all of its problems."""

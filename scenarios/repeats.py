@@ -50,6 +50,17 @@ def meant(text: str) -> list[str]:
     return [whole for word in found for whole in meant(_BRACES.sub(word, text, count=1))]
 
 
+def joined(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+    """The table of a part over that which it builds on.
+
+    Args:
+        base: keys and values
+        own: those that go before them
+    """
+    both = [key for key in ADDED if isinstance(base.get(key), Mapping) and isinstance(own.get(key), Mapping)]
+    return {**base, **own, **{key: {**base[key], **own[key]} for key in both}}
+
+
 def expanded(file: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
     """A rig file without templates and braces, and all that is wrong with these.
 
@@ -74,10 +85,10 @@ def expanded(file: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[st
                 if name in found["part"]:
                     problems.append(f'{file} [part.{written}]: there is a part "{name}" already. Rename one.')
                 found["part"][name] = whole
-    if isinstance(nets := raw.get("connect"), Mapping):
-        found["connect"] = {name: ports for written, own in nets.items() for name, ports in _nets(written, own)}
+    if isinstance(connect := raw.get("connect"), Mapping):
+        found["connect"] = {name: ports for written, own in connect.items() for name, ports in nets(written, own)}
     if isinstance(losses := raw.get("losses"), Mapping):
-        found["losses"] = {column: _flat(paths) for column, paths in losses.items()}
+        found["losses"] = {column: flat(paths) for column, paths in losses.items()}
     return found, problems
 
 
@@ -90,21 +101,29 @@ def _used(where: str, table: Any, templates: Mapping[str, Any], problems: list[s
         close = suggestion(str(name), templates) or f" Templates: {', '.join(templates) or 'none'}."
         problems.append(f'{where}: there is no template "{name}".{close}')
         return own
-    base = templates[name]
-    both = [key for key in ADDED if isinstance(base.get(key), Mapping) and isinstance(own.get(key), Mapping)]
-    return {**base, **own, **{key: {**base[key], **own[key]} for key in both}}
+    return joined(templates[name], own)
 
 
-def _flat(texts: Any) -> Any:
+def flat(texts: Any) -> Any:
+    """A list of texts with all that each stands for; what is no list stays.
+
+    Args:
+        texts: as TOML has them
+    """
     if not isinstance(texts, list):
         return texts
     return [name for text in texts for name in (meant(text) if isinstance(text, str) else [text])]
 
 
-def _nets(written: str, ports: Any) -> list[tuple[str, Any]]:
-    """The nets that a name in braces stands for: ports with as many options go with it one by one."""
+def nets(written: str, ports: Any) -> list[tuple[str, Any]]:
+    """The nets that a name in braces stands for: ports with as many options go with it one by one.
+
+    Args:
+        written: name of the net
+        ports: that meet
+    """
     if not (own := options(written)):
-        return [(written, _flat(ports))]
+        return [(written, flat(ports))]
     found = []
     for k, word in enumerate(own):
         mine = ports
@@ -115,5 +134,5 @@ def _nets(written: str, ports: Any) -> list[tuple[str, Any]]:
                 else port
                 for port in ports
             ]
-        found += _nets(_BRACES.sub(word, written, count=1), mine)
+        found += nets(_BRACES.sub(word, written, count=1), mine)
     return found

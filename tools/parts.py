@@ -226,6 +226,7 @@ def schema() -> dict[str, Any]:
     named = {"type": "object", "not": {"required": ["type"]}, "description": "a part of the machine named by `kind`"}
     found["properties"]["part"]["additionalProperties"] = {"anyOf": [*own, named]}
     found["properties"]["template"] = {"type": "object", "description": "values that parts share by use = NAME"}
+    found["properties"]["assembly"] = {"type": "object", "description": "parts and nets that use = NAME stands for"}
     found["properties"]["sensors"]["additionalProperties"] = {
         "anyOf": [{"type": "string"}, found["properties"]["sensors"]["additionalProperties"]]
     }
@@ -236,7 +237,10 @@ def _part_schema(kind: str) -> dict[str, Any]:
     cls = PARTS[kind]
     properties: dict[str, Any] = {
         "type": {"const": kind, "description": _doc(cls)},
-        "use": {"type": "string", "description": "template whose values the part has"},
+        "use": {
+            "type": "string",
+            "description": "template of its values, or assembly in its place",
+        },
     }
     for key, d in settable(cls).items():
         about = ", ".join(filter(None, (d.doc, _range(d.quantity(key)), shown(d.unit) if d.unit != "1" else "")))

@@ -1,0 +1,46 @@
+"""Part types of one's own: `type = "my_package.parts:Cooler"` in a rig file is a class of an importable module.
+
+Modules are looked for where Python looks, among what is installed and on PYTHONPATH, never beside the rig file: a rig
+file of somebody else brings no code of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from importlib import import_module
+
+from ..model.core.component import Component
+from ..model.errors import ScenarioError, suggestion
+
+
+def own_type(kind: str, known: Mapping[str, type[Component]]) -> type[Component]:
+    """The class that "module:Class" names.
+
+    Args:
+        kind: as the rig file has it
+        known: the classes of the project, by name
+
+    Raises:
+        ScenarioError: there is no such module or class, it fails, it is no part, or a part type has its name
+    """
+    module_name, _, name = kind.partition(":")
+    if not all(word.isidentifier() for word in module_name.split(".")):
+        raise ScenarioError(f'type "{kind}": names no module. Give module:Class.')
+    try:
+        module = import_module(module_name)
+    except ImportError as error:
+        raise ScenarioError(
+            f'type "{kind}": {error}. Install the package that has it, or put its folder on PYTHONPATH.'
+        ) from None
+    except Exception as error:  # a user's module may fail in any way
+        raise ScenarioError(f'type "{kind}": {module_name} fails: {type(error).__name__}: {error}.') from error
+    cls = getattr(module, name, None)
+    if not (isinstance(cls, type) and issubclass(cls, Component)):
+        parts = [n for n, c in vars(module).items() if isinstance(c, type) and issubclass(c, Component)]
+        close = suggestion(name, parts) or f" Its parts: {', '.join(parts) or 'none'}."
+        raise ScenarioError(f'type "{kind}": {module_name} has no part "{name}".{close}')
+    if known.get(cls.__name__, cls) is not cls:
+        raise ScenarioError(
+            f'type "{kind}": there is a part type "{cls.__name__}" already. Give the class another name.'
+        )
+    return cls
