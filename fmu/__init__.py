@@ -1,1 +1,1 @@
-"""A flat model as an FMI 2.0 FMU, and playing one."""
+"""A flat model as an FMU of FMI 2.0 or 3.0, and playing one."""

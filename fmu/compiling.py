@@ -8,9 +8,11 @@ import platform as host
 import subprocess
 import sys
 import tempfile
+from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib.metadata import version
 from pathlib import Path
+from types import MappingProxyType
 
 from gearheat.model.errors import FmuError, suggestion
 from gearheat.model.files import replacing
@@ -18,7 +20,7 @@ from gearheat.model.files import replacing
 
 @dataclass(frozen=True)
 class Platform:
-    """A platform of FMI 2.0: folder and file ending of its binary, and the compiler's targets (several are joined)."""
+    """A platform of FMI: folder and file ending of its binary, and the compiler's targets (several are joined)."""
 
     name: str
     suffix: str
@@ -27,14 +29,35 @@ class Platform:
 
 #: An old C library of Linux by name: newer ones would bind exp, log and pow to versions a user may not have. An old
 #: macOS by name: without it the library asks for the newest the compiler knows.
+_LINUX, _LINUX_ARM = "x86_64-linux-gnu.2.17", "aarch64-linux-gnu.2.17"
+_MAC, _MAC_ARM = "x86_64-macos.11.0", "aarch64-macos.11.0"
+
+#: The platforms of FMI 2.0, and those of 3.0, by name.
 PLATFORMS = {
     p.name: p
     for p in (
-        Platform("linux64", ".so", ("x86_64-linux-gnu.2.17",)),
+        Platform("linux64", ".so", (_LINUX,)),
         Platform("win64", ".dll", ("x86_64-windows-gnu",)),
         Platform("win32", ".dll", ("x86-windows-gnu",)),
-        Platform("darwin64", ".dylib", ("x86_64-macos.11.0", "aarch64-macos.11.0")),
+        Platform("darwin64", ".dylib", (_MAC, _MAC_ARM)),
     )
+}
+PLATFORMS_3 = {
+    p.name: p
+    for p in (
+        Platform("x86_64-linux", ".so", (_LINUX,)),
+        Platform("aarch64-linux", ".so", (_LINUX_ARM,)),
+        Platform("x86_64-windows", ".dll", ("x86_64-windows-gnu",)),
+        Platform("x86_64-darwin", ".dylib", (_MAC,)),
+        Platform("aarch64-darwin", ".dylib", (_MAC_ARM,)),
+    )
+}
+
+#: What the names of FMI 2.0 mean in 3.0, which names processors.
+_NAMES_IN_3 = {
+    "linux64": ("x86_64-linux",),
+    "win64": ("x86_64-windows",),
+    "darwin64": ("x86_64-darwin", "aarch64-darwin"),
 }
 
 #: Any change makes the compiler rebuild its run-time libraries, which takes minutes for some targets.
@@ -44,24 +67,37 @@ FLAGS = ("-g0", "-s", "-shared", "-fPIC", "-fvisibility=hidden", "-fno-sanitize=
 def host_platform() -> Platform:
     """The platform this program runs on."""
     if host.system() == "Linux" and host.machine() == "aarch64":
-        return Platform("linux64", ".so", ("aarch64-linux-gnu.2.17",))
+        return Platform("linux64", ".so", (_LINUX_ARM,))
     return PLATFORMS[{"Windows": "win64", "Darwin": "darwin64"}.get(host.system(), "linux64")]
 
 
-def platforms(choice: str) -> tuple[Platform, ...]:
+def _host_of_3() -> Platform:
+    system = {"Windows": "windows", "Darwin": "darwin"}.get(host.system(), "linux")
+    arm = host.machine().lower() in ("aarch64", "arm64")
+    return PLATFORMS_3.get(f"{'aarch64' if arm else 'x86_64'}-{system}", PLATFORMS_3[f"x86_64-{system}"])
+
+
+def platforms(choice: str, fmi: int = 2) -> tuple[Platform, ...]:
     """The platforms meant by "host", "all", or names separated by commas.
+
+    Args:
+        choice: in words
+        fmi: version of the standard, 2 or 3, whose names are meant; 3 takes the names of 2 as well
 
     Raises:
         FmuError: unknown platform
     """
+    names_of, own = (PLATFORMS, host_platform()) if fmi == 2 else (PLATFORMS_3, _host_of_3())
     if choice == "all":
-        return tuple(PLATFORMS.values())
-    names = [host_platform().name if name.strip() == "host" else name.strip() for name in choice.split(",")]
-    known = ("host", "all", *PLATFORMS)
-    unknown = [n for n in names if n not in PLATFORMS]
+        return tuple(names_of.values())
+    names = [own.name if name.strip() == "host" else name.strip() for name in choice.split(",")]
+    if fmi == 3:
+        names = [of_3 for name in names for of_3 in _NAMES_IN_3.get(name, (name,))]
+    known = ("host", "all", *names_of)
+    unknown = [n for n in names if n not in names_of]
     if unknown:
         raise FmuError(f'platform "{n}" is unknown.{suggestion(n, known)} Known: {", ".join(known)}.' for n in unknown)
-    return tuple(PLATFORMS[n] for n in dict.fromkeys(names))
+    return tuple(names_of[n] for n in dict.fromkeys(names))
 
 
 def cache_folder() -> Path:
@@ -75,26 +111,30 @@ def cache_folder() -> Path:
     return Path.home() / ".cache" / "gearheat"
 
 
-def binary(source: str, platform: Platform, *, optimise: str = "-O2") -> bytes:
+def binary(
+    source: str, platform: Platform, *, optimise: str = "-O2", headers: Mapping[str, str] = MappingProxyType({})
+) -> bytes:
     """The shared library of a C source; the same source is compiled once only.
 
     Args:
         source: the C text
         platform: the platform of FMI to compile for
         optimise: option of the compiler
+        headers: name -> text of files beside the source
 
     Raises:
         FmuError: the compiler is missing or fails, or the cache cannot be written
     """
     key = hashlib.sha256()
-    for part in (source, platform.name, *platform.targets, optimise, *FLAGS, version("ziglang")):
+    for part in (source, *headers.values(), platform.name, *platform.targets, optimise, *FLAGS, version("ziglang")):
         key.update(part.encode() + b"\0")
     stored = cache_folder() / "binaries" / f"{key.hexdigest()}{platform.suffix}"
     try:
         return stored.read_bytes()
     except OSError:
         pass
-    made = _join([_compile(source, target, optimise) for target in platform.targets])
+    files = {"all.c": source, **headers}
+    made = _join([_compile(files, target, optimise) for target in platform.targets])
     store(stored, made)
     return made
 
@@ -119,13 +159,14 @@ def store(path: Path, content: bytes) -> None:
         ) from error
 
 
-def _compile(source: str, target: str, optimise: str) -> bytes:
+def _compile(files: Mapping[str, str], target: str, optimise: str) -> bytes:
     environment = dict(os.environ)
     for variable, folder in (("ZIG_GLOBAL_CACHE_DIR", "global"), ("ZIG_LOCAL_CACHE_DIR", "local")):
         environment.setdefault(variable, str(cache_folder() / "zig" / folder))
     with tempfile.TemporaryDirectory() as folder:
         made = Path(folder) / "library"
-        Path(folder, "all.c").write_text(source, encoding="utf-8")
+        for name, text in files.items():
+            Path(folder, name).write_text(text, encoding="utf-8")
         compiler = [sys.executable, "-m", "ziglang", "cc", "-target", target, optimise, *FLAGS]
         command = [*compiler, "-o", made.name, "all.c", "-lm"]
         try:

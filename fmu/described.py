@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import xml.etree.ElementTree as ET
 import zipfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -39,7 +39,7 @@ class Described:
         found = {}
         for name, v in self.variables.items():
             own = {v.causality, "start"} if settable(v) else {v.causality}
-            if v.type == "Real" and own & set(kinds):
+            if is_real(v) and own & set(kinds):
                 found[name] = self._quantity(v)
         return found
 
@@ -51,6 +51,11 @@ class Described:
         return Quantity(v.name, f"{unit}{mark}", v.description or "", low=low, high=high)
 
 
+def is_real(v: Any) -> bool:
+    """Whether a variable is one real number."""
+    return v.type in ("Real", "Float64") and not v.dimensions
+
+
 def settable(v: Any) -> bool:
     """Whether a variable takes a start value."""
     return v.variability != "constant" and (v.causality == "input" or v.initial in ("exact", "approx"))
@@ -60,57 +65,67 @@ def described(path: Path) -> Described:
     """The description of an FMU that this machine can play.
 
     Raises:
-        FmuError: the file is no FMU for FMI 2.0 co-simulation, holds no binary for this machine, or what cannot be
-            unpacked safely
+        FmuError: the file is no FMU for co-simulation of FMI 2.0 or 3.0, holds no binary for this machine, or what
+            cannot be unpacked safely
     """
     try:
         with zipfile.ZipFile(reading(path)) as file:
             check(path, file)
             root = ET.fromstring(file.read("modelDescription.xml"))
-        if (version := root.get("fmiVersion")) != "2.0":
-            raise FmuError(f"{path}: this FMU is for FMI {version}. Only FMI 2.0 for co-simulation can be played.")
+            folders = {name.split("/")[1] for name in file.namelist() if name.startswith("binaries/")}
+        version = root.get("fmiVersion", "")
+        if version != "2.0" and not version.startswith("3."):
+            raise FmuError(
+                f"{path}: this FMU is for FMI {version}. Only co-simulation of FMI 2.0 and 3.0 can be played."
+            )
         description = fmpy.read_model_description(str(path), validate=False)
-        held = fmpy.supported_platforms(str(path))
+        of_2 = version == "2.0"
+        own, held = (fmpy.platform, fmpy.supported_platforms(str(path))) if of_2 else (fmpy.platform_tuple, folders)
     except FmuError:
         raise
     except FileNotFoundError:
         raise FmuError(f"{path}: there is no such file.") from None
     except Exception as error:  # zip, XML and FMPy errors alike: the file is no FMU
         raise FmuError(f"{path}: this file is no FMU ({error}).") from error
-    if problem := _unplayable(description, held):
+    if problem := _unplayable(description, own, sorted(held)):
         raise FmuError(f"{path}: {problem}")
     return Described(path, description, {v.name: v for v in description.modelVariables}, _differences(root))
 
 
-def _unplayable(description: Any, held: list[str]) -> str:
-    """Why an FMU cannot be played; "" if it can."""
+def _unplayable(description: Any, here: str, held: Sequence[str]) -> str:
+    """Why an FMU cannot be played on the platform `here`; "" if it can."""
     simulation = description.coSimulation
     if simulation is None:
-        return "this FMU is for model exchange alone. Only FMI 2.0 for co-simulation can be played."
+        return "this FMU has no co-simulation. Only co-simulation of FMI 2.0 and 3.0 can be played."
     if simulation.needsExecutionTool:
         tool = description.generationTool or "the tool that made it"
         return f"this FMU runs only beside {tool}. Export it as one that stands alone."
-    if fmpy.platform not in held:
+    if here not in held:
         binaries = ", ".join(p for p in held if p != "c-code") or "no platform"
         own = (description.generationTool or "").startswith("gearheat")
-        remedy = f"Export it with --platform {fmpy.platform}." if own else "Ask its maker for one."
-        return f"this FMU holds binaries for {binaries}, none for this machine ({fmpy.platform}).\n{remedy}"
+        remedy = f"Export it with --platform {here}." if own else "Ask its maker for one."
+        return f"this FMU holds binaries for {binaries}, none for this machine ({here}).\n{remedy}"
     return ""
 
 
 def _differences(root: ET.Element) -> frozenset[str]:
     """Names of the variables that are marked as relative quantities, or whose type is; FMPy passes the mark over."""
-    types = {t.get("name") for t in root.iterfind("TypeDefinitions/SimpleType") if _is_relative(t)}
-    return frozenset(
-        str(v.get("name"))
-        for v in root.iterfind("ModelVariables/ScalarVariable")
-        if _is_relative(v) or ((real := v.find("Real")) is not None and real.get("declaredType") in types)
-    )
+    types = {t.get("name") for t, real in _reals(root, "TypeDefinitions", "SimpleType", "Float64Type") if _marked(real)}
+    variables = _reals(root, "ModelVariables", "ScalarVariable", "Float64")
+    return frozenset(str(v.get("name")) for v, r in variables if _marked(r) or r.get("declaredType") in types)
 
 
-def _is_relative(element: ET.Element) -> bool:
-    real = element.find("Real")
-    return real is not None and real.get("relativeQuantity") in ("true", "1")
+def _reals(root: ET.Element, group: str, of_2: str, of_3: str) -> Iterator[tuple[ET.Element, ET.Element]]:
+    """Elements of a group that are real numbers, and the element with their attributes, which 2.0 puts inside."""
+    for element in root.iterfind(f"{group}/{of_2}"):
+        if (real := element.find("Real")) is not None:
+            yield element, real
+    for element in root.iterfind(f"{group}/{of_3}"):
+        yield element, element
+
+
+def _marked(real: ET.Element) -> bool:
+    return real.get("relativeQuantity") in ("true", "1")
 
 
 def _bound(v: Any, declared: Any, key: str, otherwise: float) -> float:

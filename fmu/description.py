@@ -5,14 +5,16 @@ from __future__ import annotations
 import math
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
+from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 import casadi as ca
 import numpy as np
 from gearheat.model.core.flat import FlatModel, Quantity
+from gearheat.model.errors import FmuError
 
 from . import units
 from .equations import Equations
@@ -58,6 +60,43 @@ def tool() -> str:
         return f"gearheat {version('gearheat')}"
     except PackageNotFoundError:
         return "gearheat"
+
+
+@dataclass(frozen=True)
+class Owner:
+    """What an FMU's owner says of it; nothing is told of what is empty.
+
+    Attributes:
+        author: name and organisation
+        version: of the model
+        licence: under which it is given away
+        made: date and time in the form of XML, "2026-01-31T12:00:00Z"; with one, the same model gives other bytes
+
+    Raises:
+        FmuError: the date is none
+    """
+
+    author: str = ""
+    version: str = ""
+    licence: str = ""
+    made: str = ""
+
+    def __post_init__(self) -> None:
+        if self.made and not _is_moment(self.made):
+            raise FmuError(f'the date "{self.made}" is no date with a time. Write it as 2026-01-31T12:00:00Z.')
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """The attributes of the description."""
+        told = {"author": self.author, "version": self.version, "license": self.licence}
+        return {name: text for name, text in {**told, "generationDateAndTime": self.made}.items() if text}
+
+
+def _is_moment(text: str) -> bool:
+    try:
+        return datetime.fromisoformat(text).tzinfo is not None and "T" in text
+    except ValueError:
+        return False
 
 
 @dataclass(frozen=True)
@@ -107,7 +146,7 @@ def description(
     guid: str,
     dependent: Dependencies | None = None,
     *,
-    licence: str = "",
+    owner: Owner = Owner(),
     with_sources: bool = True,
 ) -> bytes:
     """modelDescription.xml.
@@ -118,35 +157,64 @@ def description(
         table: its variables
         guid: unique identification, "" while it is still to be computed
         dependent: the result of `dependencies`, computed when not given
-        licence: under which its owner gives it away; none is told where it is empty
+        owner: what its owner says of it
         with_sources: whether the FMU holds its sources
     """
     dependent = dependent or dependencies(model, table)
-    root = ET.Element(
-        "fmiModelDescription",
-        fmiVersion="2.0",
-        modelName=flat.name,
-        guid=guid,
-        description="; ".join(filter(None, (flat.doc, *flat.joined))),
-        generationTool=tool(),
-        variableNamingConvention="structured",
-        numberOfEventIndicators="0",
-    )
-    if licence:
-        root.set("license", licence)
+    named = {"fmiVersion": "2.0", "modelName": flat.name, "guid": guid}
+    told = {**origin(flat), "numberOfEventIndicators": "0", **owner.attributes}
+    root = ET.Element("fmiModelDescription", {**named, **told})
     _interfaces(root, identifier(flat.name), with_sources)
-    _unit_definitions(root, table)
-    categories = ET.SubElement(root, "LogCategories")
-    for name, text in LOG_CATEGORIES.items():
-        ET.SubElement(categories, "Category", name=name, description=text)
-    ET.SubElement(root, "DefaultExperiment", {**EXPERIMENT, "tolerance": repr(TOLERANCE)})
+    circumstances(root, {v.quantity.unit for v in table}, _types)
     variables = ET.SubElement(root, "ModelVariables")
     for variable in table:
         _scalar_variable(variables, variable)
     _model_structure(root, table, dependent)
+    return xml(root)
+
+
+def origin(flat: FlatModel) -> dict[str, str]:
+    """The attributes that say what the model is and where its description is from."""
+    told = {"description": "; ".join(filter(None, (flat.doc, *flat.joined))), "generationTool": tool()}
+    return told | {"variableNamingConvention": "structured"}
+
+
+def circumstances(root: ET.Element, used: Iterable[str], types: Callable[[ET.Element, list[str]], None]) -> None:
+    """Units, types, log categories and the experiment an importer runs when nothing is asked.
+
+    Args:
+        root: the description, where they are added
+        used: the units of the variables
+        types: adds the types of variables of some units, by these units
+    """
+    used = set(used)
+    _unit_definitions(root, used)
+    if measured := sorted(used & units.QUANTITIES.keys()):
+        types(ET.SubElement(root, "TypeDefinitions"), measured)
+    categories = ET.SubElement(root, "LogCategories")
+    for name, text in LOG_CATEGORIES.items():
+        ET.SubElement(categories, "Category", name=name, description=text)
+    ET.SubElement(root, "DefaultExperiment", {**EXPERIMENT, "tolerance": repr(TOLERANCE)})
+
+
+def xml(root: ET.Element) -> bytes:
+    """The text of a file with one element for people to read."""
     ET.indent(root)
     text = ET.tostring(root, encoding="unicode")
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
+
+
+def _types(definitions: ET.Element, measured: list[str]) -> None:
+    for unit in measured:
+        told = type_of(unit)
+        ET.SubElement(ET.SubElement(definitions, "SimpleType", name=told.pop("name")), "Real", told)
+
+
+def type_of(unit: str) -> dict[str, str]:
+    """The attributes of the type of variables of a unit."""
+    quantity = units.QUANTITIES[unit]
+    told = {"name": quantity, "quantity": quantity, "unit": units.fmi_unit(unit)}
+    return told | ({"relativeQuantity": "true"} if units.is_difference(unit) else {})
 
 
 def _interfaces(root: ET.Element, name: str, with_sources: bool) -> None:
@@ -157,9 +225,9 @@ def _interfaces(root: ET.Element, name: str, with_sources: bool) -> None:
         ET.SubElement(ET.SubElement(interface, "SourceFiles"), "File", name="all.c")
 
 
-def _unit_definitions(root: ET.Element, table: Table) -> None:
+def _unit_definitions(root: ET.Element, used: Iterable[str]) -> None:
     definitions = ET.SubElement(root, "UnitDefinitions")
-    for name in sorted({units.fmi_unit(v.quantity.unit) for v in table}):
+    for name in sorted({units.fmi_unit(unit) for unit in used}):
         defined = units.unit(name)
         element = ET.SubElement(definitions, "Unit", name=name)
         if defined.exponents is not None:
@@ -173,34 +241,41 @@ def _unit_definitions(root: ET.Element, table: Table) -> None:
 
 
 def _scalar_variable(variables: ET.Element, variable: Variable) -> None:
-    q = variable.quantity
-    element = ET.SubElement(
-        variables,
-        "ScalarVariable",
-        name=variable.name,
-        valueReference=str(variable.reference),
-        description=_meaning(q),
-        causality=variable.causality,
-        variability=variable.variability,
-    )
-    if variable.initial:
-        element.set("initial", variable.initial)
-    unit = units.fmi_unit(q.unit)
-    real = ET.SubElement(element, "Real", unit=unit)
-    if units.is_difference(q.unit):
-        real.set("relativeQuantity", "true")
-    elif (shown := units.unit(unit).display(abs(variable.start or q.nominal))) is not None:
-        real.set("displayUnit", shown.name)
-    low, high = variable.bounds
-    for key, value in (("min", low), ("max", high)):
-        if math.isfinite(value):
-            real.set(key, repr(value))
-    if math.isfinite(q.nominal) and q.nominal > 0:
-        real.set("nominal", repr(float(q.nominal)))
-    if variable.start is not None:
-        real.set("start", repr(float(variable.start)))
+    element = ET.SubElement(variables, "ScalarVariable", identity(variable))
+    real = ET.SubElement(element, "Real", numbers(variable))
     if variable.state is not None:
         real.set("derivative", str(variable.state + 1))
+
+
+def identity(variable: Variable) -> dict[str, str]:
+    """The attributes that say what a variable is."""
+    told = {
+        "name": variable.name,
+        "valueReference": str(variable.reference),
+        "description": _meaning(variable.quantity),
+        "causality": variable.causality,
+        "variability": variable.variability,
+    }
+    return told | ({"initial": variable.initial} if variable.initial else {})
+
+
+def numbers(variable: Variable) -> dict[str, str]:
+    """The attributes of a real number: unit, range, typical size and start value."""
+    q = variable.quantity
+    unit = units.fmi_unit(q.unit)
+    told = {"declaredType": units.QUANTITIES[q.unit]} if q.unit in units.QUANTITIES else {}
+    told["unit"] = unit
+    if units.is_difference(q.unit):
+        told["relativeQuantity"] = "true"
+    elif (shown := units.unit(unit).display(abs(variable.start or q.nominal))) is not None:
+        told["displayUnit"] = shown.name
+    low, high = variable.bounds
+    told |= {key: repr(value) for key, value in (("min", low), ("max", high)) if math.isfinite(value)}
+    if math.isfinite(q.nominal) and q.nominal > 0:
+        told["nominal"] = repr(float(q.nominal))
+    if variable.start is not None:
+        told["start"] = repr(float(variable.start))
+    return told
 
 
 def _meaning(q: Quantity) -> str:

@@ -57,6 +57,25 @@ one it is held. Slopes pay: the error of long steps falls by orders of magnitude
 </ul>
 """
 
+_USE_3 = f"""
+<p>The FMU serves FMI 3.0 co-simulation and model exchange on every platform whose binary it holds.
+<code>sources/all.c</code> compiles with any C99 compiler, the C library and the headers of the standard.</p>
+<ul>
+<li>Set inputs, parameters and states in any order before initialization ends. Inputs and parameters may change later.
+A value that is not finite or out of its range is refused, and the message names the variable.</li>
+<li>Any communication step is allowed; the error is controlled inside: one internal step may be wrong by the tolerance
+times the nominal of a state. The tolerance is {TOLERANCE:g} unless <code>fmi3EnterInitializationMode</code> gives
+one.</li>
+<li>Inputs are held over a communication step. Event mode may be used in co-simulation and brings nothing that a value
+set in step mode does not. No step ends early.</li>
+<li>A step that cannot be computed is refused and changes nothing: <code>fmi3Discard</code> if a shorter one would do,
+<code>fmi3Error</code> if none would.</li>
+<li>States can be saved, restored and serialized; directional and adjoint derivatives of outputs and derivatives are
+exact. <code>terminalsAndIcons/terminalsAndIcons.xml</code> says which variables belong to a shaft end or a heat
+port.</li>
+</ul>
+"""
+
 _AUDIT = f"""
 <p>The energy of each run can be audited: <code>{SUPPLIED}</code> is the integral of the power across the boundary,
 <code>{STORED}</code> the energy of the states, and both grow by the same amount; judge a difference by
@@ -74,7 +93,7 @@ with FMPy and with an importer in C, in all call orders, with saved states, and 
 
 
 def documentation(
-    flat: FlatModel, table: Table, about: About | None = None, checks: Sequence[tuple[str, str]] = ()
+    flat: FlatModel, table: Table, about: About | None = None, checks: Sequence[tuple[str, str]] = (), *, fmi: int = 2
 ) -> str:
     """The page of an FMU.
 
@@ -83,6 +102,7 @@ def documentation(
         table: its variables
         about: what else is known of it
         checks: what was checked with this very FMU, and the result
+        fmi: version of the standard it serves, 2 or 3
     """
     about = about or About()
     implicit = f"<p><code>{IMPLICIT}</code> is what the implicit equations leave, in units of their typical size.</p>"
@@ -93,7 +113,7 @@ def documentation(
         f"<style>{_STYLE}</style></head><body>\n<h1>{escape(flat.name)}</h1>\n<p>{escape(flat.doc)}</p>",
         f"<p>Made by {escape(tool())}.</p>",
         f"<h2>Network</h2>\n<figure>{about.picture}</figure>" if about.picture else "",
-        f"<h2>Use</h2>{_USE}\n<h2>Energy and validity</h2>{_AUDIT}",
+        f"<h2>Use</h2>{_USE if fmi == 2 else _USE_3}\n<h2>Energy and validity</h2>{_AUDIT}",
         implicit if flat.residual_names else "",
         *(_variables(title, table.of(kind)) for title, kind in _GROUPS),
         _parameters(table.of("parameter"), about),

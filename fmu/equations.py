@@ -8,6 +8,7 @@ from itertools import pairwise
 from typing import Any
 
 import casadi as ca
+import numpy as np
 from gearheat.model.core.eliminate import Factors
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.errors import FmuError
@@ -117,6 +118,29 @@ class Equations:
         return _function("constants_directional", [self.p, p_dot], [dot], ["p", "p_dot"], ["c_dot"])
 
     @cached_property
+    def adjoint(self) -> Any:
+        """(x, z, u, p, c, y_bar, dx_bar) -> (x_bar, u_bar, p_bar, c_bar): the transposed of `directional`."""
+        found, c, _, _ = self._hoisted
+        given = {"x": self.x, "u": self.u, "p": self.p, "c": c}
+        bars = {name: ca.SX.sym(name, found[result].shape[0]) for name, result in (("y_bar", "y"), ("dx_bar", "ode"))}
+        moved, whole, residual = ca.vertcat(*given.values()), ca.vertcat(found["y"], found["ode"]), found["residual"]
+        bar = ca.vertcat(*bars.values())
+        r_bar = -Factors(ca.jacobian(residual, self.z).T).solve(ca.jtimes(whole, self.z, bar, True))
+        both = ca.jtimes(ca.vertcat(whole, residual), moved, ca.vertcat(bar, r_bar), True)
+        sizes = np.cumsum([0, *(v.shape[0] for v in given.values())]).tolist()
+        point = {"x": self.x, "z": self.z, "u": self.u, "p": self.p, "c": c} | bars
+        results = [both[a:b] for a, b in pairwise(sizes)]
+        return _function("adjoint", list(point.values()), results, list(point), [f"{name}_bar" for name in given])
+
+    @cached_property
+    def constants_adjoint(self) -> Any:
+        """(p, c_bar) -> p_bar: the transposed of `constants_directional`."""
+        _, _, values, _ = self._hoisted
+        c_bar = ca.SX.sym("c_bar", values.shape[0])
+        bar = ca.jtimes(values, self.p, c_bar, True)
+        return _function("constants_adjoint", [self.p, c_bar], [bar], ["p", "c_bar"], ["p_bar"])
+
+    @cached_property
     def relations(self) -> Any:
         """(p) -> the values by which the relations between parameters are told."""
         return _function("relations_of", [self.p], [self.related], ["p"], ["related"])
@@ -126,6 +150,11 @@ class Equations:
         """All functions the C code needs."""
         own = (self.constants, self.step, self.algebra, self.outputs, self.rates, self.arguments)
         return (*own, self.directional, self.constants_directional, self.relations)
+
+    @property
+    def adjoint_functions(self) -> tuple[Any, ...]:
+        """Those that FMI 3.0 needs besides."""
+        return (self.adjoint, self.constants_adjoint)
 
 
 def _function(name: str, inputs: list[Any], outputs: list[Any], names_in: list[str], names_out: list[str]) -> Any:

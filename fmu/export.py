@@ -1,4 +1,4 @@
-"""Export of a flat model as an FMU for FMI 2.0 ModelExchange and CoSimulation.
+"""Export of a flat model as an FMU for ModelExchange and CoSimulation of FMI 2.0 or 3.0.
 
 Any flat model will do: of a rig, of parts and nets, or written by hand like this capacitor behind a resistor, where
 `Quantity` names, explains and bounds each number of the model:
@@ -31,12 +31,12 @@ import uuid
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 from gearheat.model.core.flat import FlatModel
 
+from . import fmi3_description, fmi3_source
 from .compiling import binary, platforms, store
-from .description import dependencies, description, identifier
+from .description import Owner, dependencies, description, identifier
 from .documentation import About, documentation
 from .effective import effective
 from .equations import equations
@@ -44,6 +44,7 @@ from .icon import icon
 from .parameter_set import parameter_set
 from .related import related
 from .source import GUID_MARK, source
+from .terminals import terminals
 from .unpacking import remember
 from .variables import Table, table
 
@@ -63,8 +64,9 @@ def export(
     uncertainties: Mapping[str, float] | None = None,
     picture: str = "",
     verify: Callable[[Path], Sequence[Check]] | None = None,
-    licence: str = "",
+    owner: Owner = Owner(),
     with_sources: bool = True,
+    fmi: int = 2,
 ) -> Path:
     """Write a model as an FMU that serves co-simulation and model exchange. The same model gives the same bytes.
 
@@ -75,14 +77,16 @@ def export(
     Args:
         flat: the model
         path: file to write, usually ending in .fmu; its folder is made if need be
-        platform: "host", "all", or names such as "linux64,win64" whose binaries the FMU shall hold
+        platform: "host", "all", or names such as "linux64,win64" (FMI 3.0: "x86_64-linux,aarch64-darwin") whose
+            binaries the FMU shall hold
         start: start values (SI) of inputs, parameters and states that replace those of the model
         sources: parameter -> where its value is from: a citation, or "assumed: ...", "inferred: ...", "calibrated: ..."
         uncertainties: parameter -> standard uncertainty of its value, in the unit of the value
         picture: the model drawn as SVG, for the documentation
         verify: called with the finished file; the checks and results it gives are written into the documentation
-        licence: under which its owner gives it away; none is told where it is empty
+        owner: author, version, licence and date that its owner gives
         with_sources: whether it holds its C source
+        fmi: version of the standard, 2 or 3
 
     Returns:
         the path
@@ -90,25 +94,35 @@ def export(
     Raises:
         FmuError: a start value is wrong, the compiler fails, or the file cannot be written
     """
-    path, chosen = Path(path), platforms(platform)
+    path, chosen = Path(path), platforms(platform, fmi)
     kept, variables = _exported(flat, dict(start or {}))
     held = {q.name for q in kept.parameters}
     idle = tuple(q.name for q in flat.parameters if q.name not in held)
     about = About(sources or {}, uncertainties or {}, picture, idle)
-    code, told = _code(kept, variables, licence=licence, with_sources=with_sources)
+    code, told = _code(kept, variables, fmi, owner=owner, with_sources=with_sources)
+    headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
     content = {
         "modelDescription.xml": told,
-        "model.png": icon(),
-        _PAGE: documentation(kept, variables, about).encode(),
+        _PAGE: documentation(kept, variables, about, fmi=fmi).encode(),
         **({"sources/all.c": code.encode()} if with_sources else {}),
         **_extra(kept, variables, about),
-        **{f"binaries/{p.name}/{identifier(flat.name)}{p.suffix}": binary(code, p) for p in chosen},
+        **(_of_fmi_3(flat.name, variables, with_sources) if fmi == 3 else {"model.png": icon()}),
+        **{f"binaries/{p.name}/{identifier(flat.name)}{p.suffix}": binary(built, p, headers=headers) for p in chosen},
     }
     _made(path, archive(content))
     if verify is not None:
-        checked = documentation(kept, variables, about, verify(path))
+        checked = documentation(kept, variables, about, verify(path), fmi=fmi)
         _made(path, archive({**content, _PAGE: checked.encode()}))
     return path
+
+
+def _of_fmi_3(name: str, variables: Table, with_sources: bool) -> dict[str, bytes]:
+    """The files that FMI 3.0 has besides, or in another place."""
+    built = {"sources/buildDescription.xml": fmi3_description.build_description(name)} if with_sources else {}
+    return {
+        "terminalsAndIcons/terminalsAndIcons.xml": terminals(variables),
+        "terminalsAndIcons/icon.png": icon(),
+    } | built
 
 
 def _made(path: Path, content: bytes) -> None:
@@ -124,11 +138,16 @@ def _exported(flat: FlatModel, start: Mapping[str, float]) -> tuple[FlatModel, T
     return kept, table(kept, {name: value for name, value in start.items() if name in known})
 
 
-def _code(flat: FlatModel, variables: Table, **told: Any) -> tuple[str, bytes]:
+def _code(
+    flat: FlatModel, variables: Table, fmi: int = 2, *, owner: Owner = Owner(), with_sources: bool = True
+) -> tuple[str, bytes]:
     """The C source and the description, with the identification that follows from both."""
     model = equations(flat)
-    code = source(flat, model, variables)
-    without_guid = description(flat, model, variables, GUID_MARK, dependencies(model, variables), **told)
+    code, dependent = source(flat, model, variables, fmi), dependencies(model, variables)
+    if fmi == 3:
+        without_guid = fmi3_description.description(flat, variables, GUID_MARK, dependent, owner)
+    else:
+        without_guid = description(flat, model, variables, GUID_MARK, dependent, owner=owner, with_sources=with_sources)
     guid = _guid(code.encode() + without_guid)
     return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode())
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import ctypes
 import shutil
 import tempfile
 import zipfile
@@ -10,15 +9,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Any, Self
+from typing import Self
 
-import fmpy
 import numpy as np
-from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from gearheat.model.errors import FmuError, suggestion
 
-from .described import Described, described, settable
+from .described import Described, described, is_real, settable
 from .grid import Grid, Inputs, grid
+from .slave import Slave, Slave2, Slave3
 
 
 @dataclass(frozen=True)
@@ -87,9 +85,8 @@ class Player:
             fmu: the file, or its description where that has been read
 
         Raises:
-            FmuError: the file is no FMU for FMI 2.0 co-simulation, or holds no binary for this machine
+            FmuError: the file is no FMU for co-simulation of FMI 2.0 or 3.0, or holds no binary for this machine
         """
-        self._messages: list[str] = []
         self.described = fmu if isinstance(fmu, Described) else described(Path(fmu))
         self._path = self.described.path
         self._description = self.described.description
@@ -98,7 +95,8 @@ class Player:
         try:
             with zipfile.ZipFile(self._path) as file:
                 file.extractall(self._folder)
-            self._slave, self._fresh = self._instance(), True
+            self._slave: Slave | None = self._instance()
+            self._fresh = True
         except BaseException:
             shutil.rmtree(self._folder, ignore_errors=True)
             raise
@@ -112,7 +110,7 @@ class Player:
     def close(self) -> None:
         """Free the instance and forget the extracted files."""
         if self._slave is not None:
-            self._slave.freeInstance()
+            self._slave.free()
             self._slave = None
             shutil.rmtree(self._folder, ignore_errors=True)
 
@@ -149,51 +147,28 @@ class Player:
         self._check(inputs, dict(start or {}))
         points = grid(inputs, begin, stop, step, output_times)
         self._check_steps(points, step)
-        self._initialise(dict(start or {}), points, tolerance)
-        values = self._walk(points, [self._variables[name].valueReference for name in columns])
+        slave = self._initialise(dict(start or {}), points, tolerance)
+        values = self._walk(slave, points, [self._variables[name].valueReference for name in columns])
         return Played(points.row_time, tuple(columns), values)
 
-    def _instance(self) -> Any:
-        simulation = self._description.coSimulation
-        self._callbacks = fmi2CallbackFunctions()
-        self._callbacks.logger = fmi2CallbackLoggerTYPE(self._heard)
-        self._callbacks.allocateMemory = fmpy.fmi2.defaultCallbacks.allocateMemory
-        self._callbacks.freeMemory = fmpy.fmi2.defaultCallbacks.freeMemory
-        try:
-            slave = FMU2Slave(
-                guid=self._description.guid,
-                unzipDirectory=self._folder,
-                modelIdentifier=simulation.modelIdentifier,
-                instanceName=self._description.modelName,
-            )
-            slave.instantiate(callbacks=self._callbacks)
-        except Exception as error:  # FMPy raises bare Exception
-            raise FmuError(f"{self._path.name} cannot be loaded: {self._said() or error}") from error
-        return slave
-
-    def _heard(self, _: object, __: bytes, status: int, ___: bytes, message: bytes | None) -> None:
-        if status > 1 and message:
-            self._messages.append(message.decode("utf-8", "replace"))
-
-    def _said(self) -> str:
-        said = " ".join(self._messages[-2:])
-        self._messages.clear()
-        return said
+    def _instance(self) -> Slave:
+        kind = Slave2 if self._description.fmiVersion == "2.0" else Slave3
+        return kind(self._path, self._description, self._folder)
 
     def _recorded(self, record: Sequence[str] | None) -> list[str]:
         known = self._variables
         if record is None:
-            return [n for n, v in known.items() if v.causality in ("output", "input") and v.type == "Real"]
+            return [n for n, v in known.items() if v.causality in ("output", "input") and is_real(v)]
         problems = [f'unknown variable "{n}".{suggestion(n, known)}' for n in record if n not in known]
-        others = [known[n] for n in record if n in known and known[n].type != "Real"]
-        problems += [f'"{v.name}" is of type {v.type}. Only variables of type Real are recorded.' for v in others]
+        others = [known[n] for n in record if n in known and not is_real(known[n])]
+        problems += [f'"{v.name}" is of type {v.type}. Only scalar real variables are recorded.' for v in others]
         if problems:
             raise FmuError(f"{self._path.name}: {problem}" for problem in problems)
         return list(record)
 
     def _check(self, inputs: Inputs, start: Mapping[str, float]) -> None:
         """All names of inputs and start values at once."""
-        real = {n: v for n, v in self._variables.items() if v.type == "Real"}
+        real = {n: v for n, v in self._variables.items() if is_real(v)}
         known = {n for n, v in real.items() if v.causality == "input"}
         possible_start = {n for n, v in real.items() if settable(v)}
         problems = []
@@ -202,7 +177,7 @@ class Player:
             for name in sorted(set(given) - possible):
                 why = reason if name in self._variables else f"is unknown.{suggestion(name, possible)}"
                 if name in self._variables and name not in real:
-                    why = f"is of type {self._variables[name].type}. Only variables of type Real can be given."
+                    why = f"is of type {self._variables[name].type}. Only scalar real variables can be given."
                 problems.append(f'{self._path.name}: {what} "{name}" {why}')
         if problems:
             raise FmuError(problems)
@@ -218,57 +193,44 @@ class Player:
             f"not {step:g} s long. Choose a step of which all times of the duty are multiples."
         )
 
-    def _function(self, name: str, *types: Any) -> Any:
-        """A function of the library that takes addresses, so a step makes no Python objects; raises when refused."""
-        raw = self._slave.dll[name]
-        raw.argtypes, raw.restype = [ctypes.c_void_p, *types], ctypes.c_int
-        component = self._slave.component
+    def _initialise(self, start: Mapping[str, float], points: Grid, tolerance: float | None) -> Slave:
+        """The instance in step mode, at the first point."""
+        slave = self._renewed()
+        self._set(slave, list(start), np.array(list(start.values()), dtype=float))
+        slave.begin(tolerance, points.time[0], points.time[-1])
+        self._set(slave, points.names, points.value[0])
+        slave.initialized()
+        return slave
 
-        def call(*arguments: Any) -> None:
-            if raw(component, *arguments) > 1:
-                raise FmuError(f"{self._path.name}: {self._said() or name + ' failed.'}")
-
-        return call
-
-    def _initialise(self, start: Mapping[str, float], points: Grid, tolerance: float | None) -> None:
-        self._messages.clear()
-        self._renew()
-        references = [self._variables[n].valueReference for n in start]
-        self._set_real = self._function("fmi2SetReal", ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
-        self._set(references, np.array(list(start.values()), dtype=float))
-        setup = self._function("fmi2SetupExperiment", *_SETUP)
-        setup(tolerance is not None, tolerance or 0.0, points.time[0], 1, points.time[-1])
-        self._function("fmi2EnterInitializationMode")()
-        self._set([self._variables[n].valueReference for n in points.names], points.value[0])
-        self._function("fmi2ExitInitializationMode")()
-
-    def _renew(self) -> None:
+    def _renewed(self) -> Slave:
         """An instance as new: reset, or where an FMU cannot do that, another one."""
+        slave = self._slave
+        if slave is None:
+            raise FmuError(f"{self._path.name}: the player is closed.")
+        slave.said()
         if not self._fresh:
             try:
-                self._function("fmi2Reset")()
+                slave.reset()
             except FmuError:
-                self._slave.freeInstance()
-                self._slave = self._instance()
+                slave.free()
+                self._slave = slave = self._instance()
         self._fresh = False
+        return slave
 
-    def _set(self, references: list[int], values: np.ndarray) -> None:
-        if references:
-            self._set_real(np.array(references, dtype=np.uint32).ctypes.data, len(references), values.ctypes.data)
+    def _set(self, slave: Slave, names: Sequence[str], values: np.ndarray) -> None:
+        if names:
+            references = np.array([self._variables[n].valueReference for n in names], dtype=np.uint32)
+            slave.set(references.ctypes.data, len(names), values.ctypes.data)
 
-    def _walk(self, points: Grid, recorded: list[int]) -> np.ndarray:
+    def _walk(self, slave: Slave, points: Grid, recorded: list[int]) -> np.ndarray:
         """Step from communication point to communication point, and read the rows."""
-        do_step = self._function("fmi2DoStep", ctypes.c_double, ctypes.c_double, ctypes.c_int)
-        get = self._function("fmi2GetReal", ctypes.c_void_p, ctypes.c_size_t, ctypes.c_void_p)
+        do_step, get, set_values, set_slopes = slave.step, slave.get, slave.set, slave.slopes
         known = np.array([self._variables[n].valueReference for n in points.names], dtype=np.uint32)
         wanted, order = np.array(recorded, dtype=np.uint32), np.ones(len(known), dtype=np.int32)
         rows = np.empty((len(points.row_time), len(recorded)))
         inputs, outputs, n, m = known.ctypes.data, wanted.ctypes.data, len(known), len(recorded)
         value, slope, row = points.value.ctypes.data, points.slope.ctypes.data, rows.ctypes.data
-        sloped = bool(self._description.coSimulation.canInterpolateInputs) and n > 0
-        if sloped:
-            set_slope = self._function("fmi2SetRealInputDerivatives", *[ctypes.c_void_p, ctypes.c_size_t], *_TWO)
-        turns = np.append(True, (np.diff(points.slope, axis=0) != 0).any(axis=1)).tolist() if sloped else []
+        turns = np.append(True, (np.diff(points.slope, axis=0) != 0).any(axis=1)).tolist()
         time, steps = points.time.tolist(), np.diff(points.time).tolist()
         before, after = points.rows_before.tolist(), points.rows_after.tolist()
         last = len(steps)
@@ -279,15 +241,11 @@ class Player:
             if k == last:
                 break
             if n:
-                self._set_real(inputs, n, value + 8 * n * k)
-                if sloped and turns[k]:
-                    set_slope(inputs, n, order.ctypes.data, slope + 8 * n * k)
+                set_values(inputs, n, value + 8 * n * k)
+                if set_slopes is not None and turns[k]:
+                    set_slopes(inputs, n, order.ctypes.data, slope + 8 * n * k)
             for _ in range(after[k]):
                 get(outputs, m, row)
                 row += 8 * m
-            do_step(time[k], steps[k], 1)
+            do_step(time[k], steps[k])
         return rows
-
-
-_SETUP = [ctypes.c_int, ctypes.c_double, ctypes.c_double, ctypes.c_int, ctypes.c_double]
-_TWO = [ctypes.c_void_p, ctypes.c_void_p]

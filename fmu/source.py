@@ -11,8 +11,8 @@ from gearheat.model.core.flat import FlatModel
 from gearheat.model.run import newton
 from gearheat.model.run.algebra import GUESSES
 
-from . import emit
-from .description import TOLERANCE
+from . import emit, fmi3_source
+from .description import TOLERANCE, identifier
 from .equations import Equations
 from .rosenbrock import RODAS3
 from .units import fmi_unit
@@ -21,42 +21,68 @@ from .variables import Table
 _HEADERS = ("fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h")
 _WRAPPER = (
     "instance.h",
+    "fmi2_messages.c",
     "messages.c",
     "newton.c",
     "evaluate.c",
     "trial.c",
     "solver.c",
+    "fmi2_modes.c",
+    "fmi2_platform.c",
     "common.c",
+    "fmi2_types.c",
     "states.c",
     "derivatives.c",
+    "fmi2_slopes.c",
     "cosimulation.c",
+    "fmi2_status.c",
+    "fmi2_events.c",
     "exchange.c",
 )
 
 _NOTICE = "Copyright (c) 2026, the gearheat developers. SPDX-License-Identifier: BSD-3-Clause"
 
+#: FMPy's copy of the header lacks what the standard's has: names that begin with FMI2_FUNCTION_PREFIX, so that several
+#: FMUs can be linked into one program.
+_NAME = "\n#define fmi2FullName(name) name\n"
+_PREFIXED_NAME = """
+#if defined(FMI2_FUNCTION_PREFIX) && !defined(FMI2_OVERRIDE_FUNCTION_PREFIX)
+#define fmi2Paste(a,b) a ## b
+#define fmi2PasteB(a,b) fmi2Paste(a,b)
+#define fmi2FullName(name) fmi2PasteB(FMI2_FUNCTION_PREFIX, name)
+#else
+#define fmi2FullName(name) name
+#endif
+"""
+
 #: Where the identification goes; it is the hash of everything else.
 GUID_MARK = "@GUID@"
 
 
-def source(flat: FlatModel, model: Equations, table: Table) -> str:
+def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2) -> str:
     """The whole C text, with GUID_MARK in place of the identification.
 
     Args:
         flat: the model, for its name and values
         model: its equations
         table: its variables
+        fmi: version of the standard, 2 or 3; with 3 the compiler needs the standard's headers beside the text
     """
-    head = f"/* {_comment(flat.name)}: FMI 2.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
-    generated = "\n".join([_sizes(flat, model, table), _tables(flat, table), *map(emit.function, model.functions)])
-    return "\n".join([head, _fmi_headers(), generated, *map(_wrapper_file, _WRAPPER)])
+    head = f"/* {_comment(flat.name)}: FMI {fmi}.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
+    functions = model.functions if fmi == 2 else (*model.functions, *model.adjoint_functions)
+    generated = "\n".join([_sizes(flat, model, table), _tables(flat, table), *map(emit.function, functions)])
+    if fmi == 2:
+        return "\n".join([head, _fmi_headers(), generated, *map(_wrapper_file, _WRAPPER)])
+    wrapper = [fmi3_source.in_words_of_3(_wrapper_file(name)) for name in fmi3_source.WRAPPER]
+    return "\n".join([head, fmi3_source.included(identifier(flat.name)), generated, *wrapper])
 
 
 def _fmi_headers() -> str:
     """The standard's headers, without their includes of each other."""
     folder = files("fmpy") / "c-code"
     texts = [(folder / name).read_text(encoding="utf-8") for name in _HEADERS]
-    return "\n".join(re.sub(r'#include "fmi2\w+\.h"\n', "", text.replace("\r\n", "\n")) for text in texts)
+    whole = "\n".join(re.sub(r'#include "fmi2\w+\.h"\n', "", text.replace("\r\n", "\n")) for text in texts)
+    return whole.replace(_NAME, _PREFIXED_NAME)
 
 
 def _wrapper_file(name: str) -> str:
@@ -98,7 +124,7 @@ def _tables(flat: FlatModel, table: Table) -> str:
     checks, relations = flat.checks, flat.relations
     strings = {
         "model_names": [v.name for v in table],
-        "model_units": [fmi_unit(v.quantity.unit) for v in table],
+        "model_units": ["" if v.quantity.unit == "1" else f" {fmi_unit(v.quantity.unit)}" for v in table],
         "model_ranges": [v.range_text for v in table],
         "model_blocks": flat.residual_names,
         "model_checks": [

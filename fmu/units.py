@@ -54,6 +54,37 @@ SHOWN: Mapping[str, tuple[Display, ...]] = {
     "rad": (Display("deg", 57.29577951308232),),
     "Pa": (Display("MPa", 1e-6), Display("GPa", 1e-9, least=1e9)),
     "J": (Display("kJ", 1e-3),),
+    "W": (Display("kW", 1e-3, least=1e3),),
+}
+
+
+#: What is measured in a unit, for the types of an FMU; of some units several things are.
+QUANTITIES: Mapping[str, str] = {
+    "K": "ThermodynamicTemperature",
+    "K (difference)": "TemperatureDifference",
+    "W": "Power",
+    "J": "Energy",
+    "J/K": "HeatCapacity",
+    "J/(kg.K)": "SpecificHeatCapacity",
+    "W/K": "ThermalConductance",
+    "W/(m.K)": "ThermalConductivity",
+    "W/(m2.K)": "CoefficientOfHeatTransfer",
+    "rad/s": "AngularVelocity",
+    "rad": "Angle",
+    "N.m": "Torque",
+    "N": "Force",
+    "N.m.s/rad": "RotationalDampingConstant",
+    "kg.m2": "MomentOfInertia",
+    "kg": "Mass",
+    "kg/m3": "Density",
+    "m": "Length",
+    "m2": "Area",
+    "m3": "Volume",
+    "m/s": "Velocity",
+    "m2/s": "KinematicViscosity",
+    "Pa": "Pressure",
+    "Pa.s": "DynamicViscosity",
+    "s": "Time",
 }
 
 

@@ -43,17 +43,17 @@ class Variable:
 
     @property
     def causality(self) -> str:
-        """Causality in the sense of FMI 2.0."""
+        """Causality in the sense of FMI."""
         return {"state": "output", "derivative": "local"}.get(self.kind, self.kind)
 
     @property
     def variability(self) -> str:
-        """Variability in the sense of FMI 2.0."""
+        """Variability in the sense of FMI."""
         return "tunable" if self.kind == "parameter" else "continuous"
 
     @property
     def initial(self) -> str | None:
-        """How the initial value is found; None for an input, where FMI 2.0 forbids to say."""
+        """How the initial value is found; None for an input, where FMI forbids to say."""
         return {"state": "exact", "parameter": "exact", "input": None}.get(self.kind, "calculated")
 
     @property
@@ -143,9 +143,19 @@ def _started(flat: FlatModel, start: dict[str, float]) -> tuple[Group, Group, Gr
         what = "is calculated by the model" if name in flat.index else f"is unknown.{suggestion(name, settable)}"
         told = follows(flat, name) if name in flat.derived else f'"{name}" {what}'
         problems.append(f"{flat.name}: start value {told}")
-    groups = [tuple(replace(q, start=float(start.get(q.name, q.start))) for q in group) for group in groups]
+    groups = [tuple(replace(q, start=tidy(float(start.get(q.name, q.start)))) for q in group) for group in groups]
     problems += [f"{flat.name}: start value {p}" for group in groups for q in group if (p := q.problem(q.start))]
     return (*groups[0], *_audit_states(flat)), groups[1], groups[2], problems
+
+
+def tidy(value: float) -> float:
+    """A value without the round-off of the conversion from its unit where that shows, as in 234.14999999999998.
+
+    Args:
+        value: a start value, SI
+    """
+    rounded = float(f"{value:.15g}")
+    return rounded if len(repr(rounded)) < len(repr(value)) - 2 else value
 
 
 def _audit_states(flat: FlatModel) -> Group:

@@ -176,8 +176,12 @@ def export(
             help="speed: speed and torque of the driving shaft are inputs; torque: the torques of all shaft ends are."
         ),
     ] = "speed",
+    fmi: Annotated[Literal["2", "3"], typer.Option(help="Version of the standard: FMI 2.0 or 3.0.")] = "2",
     platform: Annotated[str, typer.Option(help='"host", "all" or names such as linux64,win64.')] = "host,win64",
     license_: Annotated[str, typer.Option("--license", help="Licence under which you give it away.")] = "",
+    author: Annotated[str, typer.Option(help="Who answers for it.")] = "",
+    of_version: Annotated[str, typer.Option("--model-version", help="Version you give the model.")] = "",
+    made: Annotated[str, typer.Option("--date", help="Date and time, 2026-01-31T12:00:00Z; none unless given.")] = "",
     sources: Annotated[bool, typer.Option("--sources/--no-sources", help="With its C source.")] = True,
     origins: Annotated[
         bool,
@@ -188,7 +192,8 @@ def export(
     ] = None,
     json: Json = None,
 ) -> None:
-    """Write the rig as an FMU for FMI 2.0."""
+    """Write the rig as an FMU for FMI 2.0 or 3.0."""
+    from ..fmu.description import Owner
     from . import exporting
 
     exporting.export_command(
@@ -200,9 +205,10 @@ def export(
         platform,
         extras,
         json,
-        licence=license_,
+        owner=Owner(author, of_version, license_, made),
         with_sources=sources,
         with_origins=origins,
+        fmi=int(fmi),
     )
 
 

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from ..fmu.compiling import platforms
+from ..fmu.description import Owner
 from ..fmu.effective import effective
 from ..fmu.export import export
 from ..model.core.flat import FlatModel
@@ -43,13 +44,14 @@ def export_command(
     extras: Path | None,
     json: str | None,
     *,
-    licence: str = "",
+    owner: Owner = Owner(),
     with_sources: bool = True,
     with_origins: bool = True,
+    fmi: int = 2,
 ) -> None:
     """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
     writable(out, file_of(json))
-    chosen = platforms(platform)
+    chosen = platforms(platform, fmi)
     scenario = load(rig)
     drive: Drive | None = driven_at(scenario, shaft, given) if shaft is not None or given == "torque" else None
     setting = adjusted(scenario, assignments, drive=drive)
@@ -58,7 +60,8 @@ def export_command(
     beside = folder(extras) if extras is not None else None
     duty = reference_duty(flat, start, setting.shaft_paths())
     told: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
-    options: dict[str, Any] = {"platform": platform, "start": start, "licence": licence, "with_sources": with_sources}
+    options: dict[str, Any] = {"platform": platform, "start": start, "owner": owner, "fmi": fmi}
+    options["with_sources"] = with_sources
     write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, start), **told, **options)
     kept = effective(flat, start)
     named = {q.name for q in kept.parameters}
@@ -68,6 +71,7 @@ def export_command(
         "schema": "gearheat.export/1",
         "rig": scenario.name,
         "fmu": str(out),
+        "fmi": f"{fmi}.0",
         "sha256": hashlib.sha256(out.read_bytes()).hexdigest(),
         "platforms": [p.name for p in chosen],
         "inputs": [q.name for q in flat.inputs],

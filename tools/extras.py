@@ -15,7 +15,7 @@ from ..fmu.export import export
 from ..fmu.parameter_set import parameter_set
 from ..fmu.play import Player
 from ..fmu.reference import write_reference
-from ..fmu.variables import STORED, SUPPLIED, THROUGHPUT
+from ..fmu.variables import STORED, SUPPLIED, THROUGHPUT, tidy
 from ..model.core.flat import FlatModel
 from ..model.errors import GearheatError
 from ..model.run.schedule import Schedule, stepped
@@ -131,7 +131,7 @@ def write_extras(
 def _set_of_rig(scenario: Scenario, flat: FlatModel, sources: Mapping[str, str] | None) -> bytes:
     return parameter_set(
         scenario.name,
-        flat.parameters,
+        [replace(q, start=tidy(q.start)) for q in flat.parameters],
         doc=scenario.doc,
         sources=sources,
         uncertainties=None if sources is None else scenario.uncertainties,

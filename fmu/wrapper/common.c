@@ -1,10 +1,3 @@
-/* Functions both interfaces share: life cycle, logging, values. */
-
-#define GETTABLE (INITIALIZATION | EVENT | CONTINUOUS_TIME | STEP_COMPLETE | STEP_FAILED | TERMINATED)
-#define SETTABLE (INSTANTIATED | INITIALIZATION | EVENT | CONTINUOUS_TIME | STEP_COMPLETE | STEP_FAILED)
-
-const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
-
 const char *fmi2GetVersion(void) { return fmi2Version; }
 
 /* The state of a fresh instance. */
@@ -25,6 +18,7 @@ static void start(Instance *m)
     memset(m->warned, 0, sizeof m->warned);
     memset(m->kept, 0, sizeof m->kept);
     m->refused_step = NAN;
+    m->order_told = 0;
     m->outputs_wanted = 1;
 }
 
@@ -122,7 +116,7 @@ fmi2Status fmi2ExitInitializationMode(fmi2Component c)
         return refuse(m, "fmi2ExitInitializationMode: the equation \"%s\" has no solution. Check start values, inputs and "
                       "parameters.", block);
     if ((r = wrong_result(m)) != N_VARIABLES)
-        return refuse(m, "fmi2ExitInitializationMode: %s is %.10g %s, but must be %s. Check start values, inputs and "
+        return refuse(m, "fmi2ExitInitializationMode: %s is %.10g%s, but must be %s. Check start values, inputs and "
                       "parameters.", model_names[r], value_of(m, r), model_units[r], model_ranges[r]);
     accept_algebra(m);
     m->s.mode = m->s.type == fmi2ModelExchange ? EVENT : STEP_COMPLETE;
@@ -199,7 +193,7 @@ static void tell_kept(Instance *m, fmi2ValueReference r, double value)
 {
     if (m->kept[r - FIRST_U]) return;
     m->kept[r - FIRST_U] = 1;
-    warn(m, "fmi2SetReal: %s = %.10g %s is out of range. It must be %s %s; until then it stays at %.10g %s.",
+    warn(m, "fmi2SetReal: %s = %.10g%s is out of range. It must be %s%s; until then it stays at %.10g%s.",
          model_names[r], value, model_units[r], model_ranges[r], model_units[r], *stored(m, r), model_units[r]);
 }
 
@@ -241,19 +235,3 @@ static fmi2Status no_variables(fmi2Component c, size_t n, int modes, const char 
     if (!allowed(c, modes, function)) return fmi2Error;
     return n == 0 ? fmi2OK : refuse(c, "%s: unknown value reference; all variables are Real.", function);
 }
-
-#define NO_VARIABLES(TYPE) \
-    fmi2Status fmi2Get##TYPE(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2##TYPE value[]) \
-    { \
-        (void)r, (void)value; \
-        return no_variables(c, n, GETTABLE, "fmi2Get" #TYPE); \
-    } \
-    fmi2Status fmi2Set##TYPE(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2##TYPE value[]) \
-    { \
-        (void)r, (void)value; \
-        return no_variables(c, n, SETTABLE & ~CONTINUOUS_TIME, "fmi2Set" #TYPE); \
-    }
-
-NO_VARIABLES(Integer)
-NO_VARIABLES(Boolean)
-NO_VARIABLES(String)

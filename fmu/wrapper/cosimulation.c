@@ -1,27 +1,3 @@
-/* Co-simulation: communication steps, input and output derivatives, status. */
-
-fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference r[], size_t n,
-                                       const fmi2Integer order[], const fmi2Real value[])
-{
-    static const char f[] = "fmi2SetRealInputDerivatives";
-    Instance *m = c;
-    size_t i;
-    if (!allowed_for(m, fmi2CoSimulation, INSTANTIATED | INITIALIZATION | STEP_COMPLETE | STEP_FAILED, f))
-        return fmi2Error;
-    if (missing(m, r, n, f) || missing(m, order, n, f) || missing(m, value, n, f)) return fmi2Error;
-    if (!known_references(m, r, n, f)) return fmi2Error;
-    for (i = 0; i < n; i++) {
-        if (r[i] < FIRST_U || r[i] >= FIRST_Y) return refuse(m, "%s: %s is no input.", f, model_names[r[i]]);
-        if (order[i] != 1)
-            return refuse(m, "%s: order %d of %s: only the first derivative can be set.", f, order[i],
-                          model_names[r[i]]);
-        if (!isfinite(value[i]))
-            return refuse(m, "%s: derivative %g of %s is not finite.", f, value[i], model_names[r[i]]);
-    }
-    for (i = 0; i < n; i++) m->s.slope[r[i] - FIRST_U] = value[i];
-    return fmi2OK;
-}
-
 /* Whether a step may begin at a time of the master's clock; ours follows as long as the difference is round-off. */
 static int timely(const Instance *m, double time, double step)
 {
@@ -77,14 +53,14 @@ static fmi2Status stuck(const Instance *m, double time, double step, const Advan
                        "Nothing has changed; check speeds, torques and temperatures.", time, time + step, w->block,
                        e->accepted ? "end" : "begin");
     if (e->accepted == 0)
-        return refuse(m, "fmi2DoStep: no step from %.10g s: %s becomes infinite or leaves its range (%s %s). Nothing "
+        return refuse(m, "fmi2DoStep: no step from %.10g s: %s becomes infinite or leaves its range (%s%s). Nothing "
                       "has changed; check the inputs.", time, name, model_ranges[FIRST_X + w->worst],
                       model_units[FIRST_X + w->worst]);
     if (e->accepted + e->rejected >= MAX_STEPS)
         return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %ld internal steps lead to %.10g s only, "
                        "limited by %s. Nothing has changed; retry with a shorter step.", time, time + step,
                        e->accepted + e->rejected, time + w->reached, name);
-    return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s becomes infinite or leaves its range (%s %s) "
+    return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s becomes infinite or leaves its range (%s%s) "
                    "behind %.10g s. Nothing has changed; retry with a shorter step.", time, time + step, name,
                    model_ranges[FIRST_X + w->worst], model_units[FIRST_X + w->worst], time + w->reached);
 }
@@ -104,7 +80,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
                       "since. Take a shorter step, or other inputs.", step, time, m->refused_by);
     if ((r = input_astray(m, step)) != N_VARIABLES) {
         remember_refusal(m, step, model_names[r]);
-        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: its slope leads %s out of its range (%s %s). "
+        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: its slope leads %s out of its range (%s%s). "
                        "Nothing has changed; retry with a shorter step.", time, time + step, model_names[r],
                        model_ranges[r], model_units[r]);
     }
@@ -128,7 +104,7 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
         m->s = before;
         changed(m);
         remember_refusal(m, step, model_names[r]);
-        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s would be %.10g %s, but must be %s. "
+        return discard(m, "fmi2DoStep: no step from %.10g s to %.10g s: %s would be %.10g%s, but must be %s. "
                        "Nothing has changed; check the inputs.", time, time + step, model_names[r], value,
                        model_units[r], model_ranges[r]);
     }
@@ -136,56 +112,4 @@ fmi2Status fmi2DoStep(fmi2Component c, fmi2Real time, fmi2Real step, fmi2Boolean
          w.effort.accepted, w.effort.rejected, m->s.h_last, model_names[FIRST_X + w.worst]);
     warn_validity(m);
     return fmi2OK;
-}
-
-fmi2Status fmi2CancelStep(fmi2Component c)
-{
-    if (!allowed_for(c, fmi2CoSimulation, 0, "fmi2CancelStep")) return fmi2Error;
-    return fmi2OK;
-}
-
-#define STATUS_MODES (STEP_COMPLETE | STEP_FAILED | TERMINATED)
-
-static fmi2Status no_status(fmi2Component c, const char *function)
-{
-    if (!allowed_for(c, fmi2CoSimulation, STATUS_MODES, function)) return fmi2Error;
-    return discard(c, "%s: steps are never pending.", function);
-}
-
-fmi2Status fmi2GetStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Status *value)
-{
-    (void)kind, (void)value;
-    return no_status(c, "fmi2GetStatus");
-}
-
-fmi2Status fmi2GetRealStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Real *value)
-{
-    Instance *m = c;
-    if (!allowed_for(m, fmi2CoSimulation, STATUS_MODES, "fmi2GetRealStatus")) return fmi2Error;
-    if (missing(m, value, 1, "fmi2GetRealStatus")) return fmi2Error;
-    if (kind != fmi2LastSuccessfulTime) return no_status(c, "fmi2GetRealStatus");
-    *value = m->s.time;
-    return fmi2OK;
-}
-
-fmi2Status fmi2GetIntegerStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Integer *value)
-{
-    (void)kind, (void)value;
-    return no_status(c, "fmi2GetIntegerStatus");
-}
-
-fmi2Status fmi2GetBooleanStatus(fmi2Component c, const fmi2StatusKind kind, fmi2Boolean *value)
-{
-    Instance *m = c;
-    if (!allowed_for(m, fmi2CoSimulation, STATUS_MODES, "fmi2GetBooleanStatus")) return fmi2Error;
-    if (missing(m, value, 1, "fmi2GetBooleanStatus")) return fmi2Error;
-    if (kind != fmi2Terminated) return no_status(c, "fmi2GetBooleanStatus");
-    *value = fmi2False; /* the model never ends a simulation */
-    return fmi2OK;
-}
-
-fmi2Status fmi2GetStringStatus(fmi2Component c, const fmi2StatusKind kind, fmi2String *value)
-{
-    (void)kind, (void)value;
-    return no_status(c, "fmi2GetStringStatus");
 }

@@ -106,7 +106,7 @@ static int in_range(fmi2ValueReference r, double value)
 static fmi2Status refuse_value(const Instance *m, const char *function, fmi2ValueReference r, double value)
 {
     if (!isfinite(value)) return refuse(m, "%s: %s = %g is not finite.", function, model_names[r], value);
-    return refuse(m, "%s: %s = %.10g %s is out of range. It must be %s %s.", function, model_names[r], value,
+    return refuse(m, "%s: %s = %.10g%s is out of range. It must be %s%s.", function, model_names[r], value,
                   model_units[r], model_ranges[r], model_units[r]);
 }
 

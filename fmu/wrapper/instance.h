@@ -72,6 +72,7 @@ typedef struct {
     double dx[AT_LEAST_1(NX)];
     unsigned char warned[AT_LEAST_1(NK)];
     unsigned char kept[AT_LEAST_1(NU)];    /* it was told that an input keeps its value */
+    int order_told;        /* that higher derivatives of inputs are ignored */
     int outputs_wanted;    /* outputs or derivatives have been read since the last step */
     double refused_step;   /* length of the last step that was refused, NAN when there is none; */
     uint64_t refused_from; /* where it began, as a hash; */

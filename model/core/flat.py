@@ -48,7 +48,8 @@ class Quantity:
         if (broken := self.bound(value)) is None:
             return None
         words, number = broken
-        return f"{self.name} = {value:g} {self.unit} is out of range. It must be {words} {number:g} {self.unit}."
+        unit = "" if self.unit == "1" else f" {self.unit}"
+        return f"{self.name} = {value:g}{unit} is out of range. It must be {words} {number:g}{unit}."
 
 
 @dataclass(frozen=True)

@@ -132,6 +132,12 @@ def heat_fmu(models: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory) 
     return export(models.heat, tmp_path_factory.mktemp("fmu") / "heat.fmu")
 
 
+@pytest.fixture(scope="session")
+def heat_fmu_3(models: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The same for FMI 3.0."""
+    return export(models.heat, tmp_path_factory.mktemp("fmu") / "heat3.fmu", fmi=3)
+
+
 class Opened:
     """One instance of an FMU through FMPy, with the messages it sent as (status, category, text)."""
 

@@ -101,6 +101,20 @@ def test_input_derivatives_carry_the_input_on(opened: Open, rc_fmu: Path) -> Non
         one.fmu.doStep(2.0 * k, 2.0)
     assert one.get("source.v")[0] == pytest.approx(7.0, rel=1e-14)
     assert one.get("capacitor.v")[0] == pytest.approx(1 + 6 - 6 + 6 * np.exp(-1.0), abs=1e-6)
-    assert "order 2" in one.refused(lambda: one.fmu.setRealInputDerivatives(source, [2], [1.0]))[1]
+    assert "order 0" in one.refused(lambda: one.fmu.setRealInputDerivatives(source, [0], [1.0]))[1]
     other = [one.refs["capacitor.v"]]
     assert "no input" in one.refused(lambda: one.fmu.setRealInputDerivatives(other, [1], [1.0]))[1]
+
+
+def test_a_second_derivative_of_an_input_is_ignored_with_one_warning(opened: Open, rc_fmu: Path) -> None:
+    one, other = (opened(rc_fmu).start(source__v=1.0) for _ in range(2))
+    source = [one.refs["source.v"]]
+    for k in range(3):
+        one.fmu.setRealInputDerivatives(source * 2, [1, 2], [1.0, 5.0])
+        other.fmu.setRealInputDerivatives(source, [1], [1.0])
+        for fmu in (one.fmu, other.fmu):
+            fmu.doStep(2.0 * k, 2.0)
+    assert one.everything() == other.everything()
+    ((status, _, text),) = one.messages
+    assert status == 1
+    assert "order 2 of source.v is ignored" in text

@@ -3,6 +3,7 @@
 import xml.etree.ElementTree as ET
 import zipfile
 from collections import Counter
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -12,13 +13,17 @@ import pytest
 from fmpy.validation import validate_fmu
 from fmu_in_c import planetary
 from gearheat.fmu import units
-from gearheat.fmu.description import description, identifier
+from gearheat.fmu.description import description, identifier, identity, numbers
 from gearheat.fmu.equations import equations
 from gearheat.fmu.export import export
+from gearheat.fmu.source import source
 from gearheat.fmu.variables import per_second, table
+from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import FmuError
+from gearheat.model.machines.spec import assemble
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.units import in_unit
+from gearheat.scenarios.load import list_rigs, load
 
 
 @pytest.fixture(scope="module")
@@ -147,15 +152,58 @@ def test_same_model_same_bytes(models: SimpleNamespace, rc_fmu: Path, tmp_path: 
     assert {i.date_time[0] for i in zipfile.ZipFile(again).infolist()} == {1980}
 
 
+@pytest.mark.parametrize("rig", list_rigs())
+def test_what_a_user_reads_of_every_variable_of_every_rig(rig: str) -> None:
+    """A description of its own, a unit that is understood, the unit people use, a start inside the range."""
+    variables = list(table(flatten(assemble(load(rig).spec))))
+    told = Counter(identity(v)["description"] for v in variables)
+    assert [text for text, n in told.items() if n > 1 or not text] == []
+    for v in variables:
+        attributes = numbers(v)
+        unit = units.unit(attributes["unit"])
+        assert unit.exponents is not None, v.name
+        if unit.name in ("K", "rad/s", "rad", "m", "m2/s") and "relativeQuantity" not in attributes:
+            assert attributes["displayUnit"] in {d.name for d in unit.shown}, v.name
+        start = float(attributes.get("start", "nan"))
+        assert not start < float(attributes.get("min", "-inf")), v.name
+        assert not start > float(attributes.get("max", "inf")), v.name
+
+
+def test_types_say_what_is_measured(described: SimpleNamespace) -> None:
+    quantities = {
+        name: described.by_name[name].declaredType.quantity for name in ("oil.T", "oil.dT", "shaft.w", "oil.C")
+    }
+    expected = ("ThermodynamicTemperature", "TemperatureDifference", "AngularVelocity", "HeatCapacity")
+    assert tuple(quantities.values()) == expected
+    assert described.by_name["validity.count"].declaredType is None
+
+
+def test_a_start_value_has_no_round_off_of_its_unit(models: SimpleNamespace) -> None:
+    start = {"resistor.R": 0.1 + 0.2, "capacitor.C": 250 * np.pi / 30, "capacitor.v": 1 / 3}
+    found = {v.name: v.start for v in table(models.rc, start)}
+    assert [found[name] for name in start] == [0.3, 250 * np.pi / 30, 1 / 3]
+
+
+def test_messages_tell_a_number_without_a_unit(models: SimpleNamespace) -> None:
+    """The unit of what has no dimension is "1", which would read as another number."""
+    plain = replace(models.rc, parameters=tuple(replace(q, unit="1") for q in models.rc.parameters))
+    rows = (
+        source(plain, equations(plain), table(plain)).partition("model_units[] = {\n")[2].partition("}")[0].split(",")
+    )
+    assert [row.strip() for row in rows[-6:-3]] == ['""', '""', '" V/s"']
+    assert plain.parameters[0].problem(-1.0) == "resistor.R = -1 is out of range. It must be above 0."
+
+
 def test_values_are_shown_in_the_units_of_their_size() -> None:
     sizes = {("m", 1e-6): "um", ("m", 0.1): "mm", ("m2/s", 1e-4): "mm2/s", ("m3", 1e-3): "l", ("rad", 0.2): "deg"}
-    sizes |= {("Pa", 2e11): "GPa", ("Pa", 1e6): "MPa", ("K", 300.0): "degC", ("rad/s", 100.0): "rpm"}
+    sizes |= {("Pa", 2e11): "GPa", ("Pa", 1e6): "MPa", ("K", 300.0): "degC", ("rad/s", 100.0): "rpm", ("W", 2e3): "kW"}
     for (unit, size), name in sizes.items():
         shown = units.unit(unit).display(size)
         assert shown is not None and shown.name == name, unit
         known = {"degC": size - 273.15, "rpm": size * 30 / np.pi}
         assert shown.factor * size + shown.offset == pytest.approx(known.get(name, in_unit(size, name)), rel=1e-12)
     assert units.unit("W/K").display(10.0) is None
+    assert units.unit("W").display(10.0) is None
 
 
 def test_no_two_variables_of_a_rig_are_described_alike() -> None:

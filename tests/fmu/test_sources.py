@@ -2,15 +2,17 @@
 
 import subprocess
 import sys
+import zipfile
 from pathlib import Path
 from types import SimpleNamespace
 
+import fmpy
 import numpy as np
 import pytest
 from fmu_in_c import LIBRARY, check, checks, gcc, library, numbers, planetary, told, unpacked
 from gearheat.fmu.compiling import FLAGS, host_platform
 from gearheat.model.errors import FmuError
-from gearheat.tools.c_importer import Compiler
+from gearheat.tools.c_importer import Compiler, includes
 
 MODELS = ("rc", "heat", "planetary")
 
@@ -77,3 +79,53 @@ def test_a_warning_would_be_told(tmp_path: Path) -> None:
     (tmp_path / "all.c").write_text("static int unused(int a) { return 1; }\n")
     with pytest.raises(FmuError, match="unused"):
         Compiler.zig()([tmp_path / "all.c"], (*LIBRARY, "-Wall", "-Wextra", "-Werror"), ".so")
+
+
+LINKED = """
+#include "fmi2Functions.h"
+#include "fmi3Functions.h"
+#include <stdio.h>
+#include <stdlib.h>
+extern fmi2InstantiateTYPE one_fmi2Instantiate, two_fmi2Instantiate;
+extern fmi2GetRealTYPE one_fmi2GetReal, two_fmi2GetReal;
+extern fmi2SetupExperimentTYPE one_fmi2SetupExperiment, two_fmi2SetupExperiment;
+extern fmi2EnterInitializationModeTYPE one_fmi2EnterInitializationMode, two_fmi2EnterInitializationMode;
+extern fmi3InstantiateCoSimulationTYPE shaft_and_heat_fmi3InstantiateCoSimulation;
+extern fmi3GetFloat64TYPE shaft_and_heat_fmi3GetFloat64;
+
+int main(int n, char **guid)
+{
+    fmi2CallbackFunctions callbacks = {NULL, calloc, free, NULL, NULL};
+    fmi2Component one = one_fmi2Instantiate("one", fmi2CoSimulation, guid[1], "", &callbacks, 0, 0);
+    fmi2Component two = two_fmi2Instantiate("two", fmi2CoSimulation, guid[2], "", &callbacks, 0, 0);
+    fmi3Instance three = shaft_and_heat_fmi3InstantiateCoSimulation("three", guid[3], "", 0, 0, 0, 0, NULL, 0, NULL,
+                                                                    NULL, NULL);
+    fmi2ValueReference r = 0;
+    double value[3];
+    if (n != 4 || !one || !two || !three) return 1;
+    one_fmi2SetupExperiment(one, 0, 0.0, 0.0, 0, 0.0), two_fmi2SetupExperiment(two, 0, 0.0, 0.0, 0, 0.0);
+    one_fmi2EnterInitializationMode(one), two_fmi2EnterInitializationMode(two);
+    if (one_fmi2GetReal(one, &r, 1, value) || two_fmi2GetReal(two, &r, 1, value + 1)) return 2;
+    if (shaft_and_heat_fmi3GetFloat64(three, &r, 1, value + 2, 1)) return 3;
+    printf("%g %g %g", value[0], value[1], value[2]);
+    return 0;
+}
+"""
+
+
+def test_the_sources_of_three_fmus_link_into_one_program(
+    rc_fmu: Path, heat_fmu: Path, heat_fmu_3: Path, tmp_path: Path
+) -> None:
+    """Two of FMI 2.0 with the prefix their user gives, one of 3.0 with its own name."""
+    sources, guids = [tmp_path / "main.c"], []
+    sources[0].write_text(LINKED)
+    for name, fmu in (("one_", rc_fmu), ("two_", heat_fmu), ("", heat_fmu_3)):
+        with zipfile.ZipFile(fmu) as file:
+            text = file.read("sources/all.c").decode()
+        sources.append(tmp_path / f"part{len(sources)}.c")
+        sources[-1].write_text((f"#define FMI2_FUNCTION_PREFIX {name}\n" if name else "") + text)
+        guids.append(fmpy.read_model_description(str(fmu)).guid)
+    made = tmp_path / "linked"
+    made.write_bytes(Compiler.zig().made(sources, ("-O0", *includes())))
+    made.chmod(0o755)
+    assert subprocess.run([made, *guids], capture_output=True, text=True, check=True).stdout == "1 293.15 293.15"

@@ -134,10 +134,10 @@ def test_friction_stays_between_its_ends_and_falls_with_the_film(models: dict) -
 @pytest.mark.parametrize(
     ("rig", "values", "words"),
     [
-        ("cycloidal_printed", {"eta": 1.2}, "eta = 1.2 1 is out of range"),
-        ("cycloidal_printed", {"eta": -0.1}, "eta = -0.1 1 is out of range"),
+        ("cycloidal_printed", {"eta": 1.2}, "eta = 1.2 is out of range"),
+        ("cycloidal_printed", {"eta": -0.1}, "eta = -0.1 is out of range"),
         ("cycloidal_printed", {"P_rated": 100.0}, "eta can be derived"),
-        ("cycloidal", {"z_2": 2.0, "z_1": 1.0}, "z_2 = 2 1 is out of range. It must be at least 3"),
+        ("cycloidal", {"z_2": 2.0, "z_1": 1.0}, "z_2 = 2 is out of range. It must be at least 3"),
         ("cycloidal", {"z_2": 14.5, "z_1": 13.5}, "z_2 is whole"),
         ("cycloidal", {"u": 8.5}, "u is whole"),
         ("cycloidal", {"z_1": 12.0}, "z_2 is z_1 + 1"),

@@ -294,6 +294,16 @@ def test_for_another_machine_the_reference_is_made_all_the_same(gearheat, tmp_pa
     assert "reference run" not in held(path, "documentation/index.html")
 
 
+def test_of_fmi_3_on_another_processor(gearheat, tmp_path, monkeypatch):
+    monkeypatch.setattr("gearheat.fmu.export.binary", lambda source, platform, **options: b"for another machine")
+    path = tmp_path / "rig.fmu"
+    found = gearheat("export", "planetary", "-o", path, "--fmi", 3, "--platform", "aarch64-linux", "--json", "-").json
+    assert (found["fmi"], found["platforms"]) == ("3.0", ["aarch64-linux"])
+    assert validate_fmu(str(path)) == []
+    assert 'Terminal name="carrier"' in held(path, "terminalsAndIcons/terminalsAndIcons.xml")
+    assert held(path, "binaries/aarch64-linux/planetary.so") == "for another machine"
+
+
 def test_the_sentence_for_people(gearheat, tmp_path):
     answer = gearheat("export", "--platform", "host", "planetary", "-o", tmp_path / "rig.fmu", "--extras", tmp_path)
     assert answer.code == 0, answer.err
@@ -327,6 +337,8 @@ def test_a_machine_listed_part_by_part(gearheat, tmp_path, elsewhere):
     [
         (("--drive", "snu"), 'Did you mean "sun"'),
         (("--platform", "linux46"), 'Did you mean "linux64"'),
+        (("--fmi", "3", "--platform", "win32"), 'platform "win32" is unknown'),
+        (("--date", "yesterday"), 'the date "yesterday" is no date'),
         (("--set", "carrier.w=100 rpm", "--given", "torque"), "follows from what drives the rig"),
         (("--extras", "/dev/null/more"), "cannot be written"),
         (("--set", "oil.nu_40=-1 mm2/s"), "out of range"),
@@ -342,13 +354,16 @@ def test_what_is_wrong_is_told_before_anything_is_written(gearheat, tmp_path, op
 def test_what_a_company_may_keep_to_itself(gearheat, tmp_path):
     path, extras = tmp_path / "own.fmu", tmp_path / "extras"
     keep = ("--license", "Example Ltd, all rights reserved", "--no-sources", "--no-parameters-source")
-    found = gearheat("export", "helical_two_stage", "-o", path, *keep, "--extras", extras, "--json", "-").json
+    say = ("--author", "A. Maker, Example Ltd", "--model-version", "1.2", "--date", "2026-01-31T12:00:00Z")
+    found = gearheat("export", "helical_two_stage", "-o", path, *keep, *say, "--extras", extras, "--json", "-").json
     beside = [place.read_text(encoding="utf-8") for place in sorted(extras.rglob("*.ssv"))]
     assert len(beside) > 20 and not any("provenance" in text for text in beside)
     assert found["platforms"] == list(dict.fromkeys([compiling.host_platform().name, "win64"]))
     with zipfile.ZipFile(path) as file:
         description = file.read("modelDescription.xml").decode()
         assert 'license="Example Ltd, all rights reserved"' in description
+        told = 'author="A. Maker, Example Ltd" version="1.2"', 'generationDateAndTime="2026-01-31T12:00:00Z"'
+        assert all(text in description for text in told)
         assert "SourceFiles" not in description
         assert not [name for name in file.namelist() if name.startswith("sources/")]
         for name in (n for n in file.namelist() if n.endswith((".xml", ".html", ".ssv"))):
@@ -361,5 +376,6 @@ def test_no_licence_is_told_that_was_not_given(gearheat, tmp_path):
     path = tmp_path / "rig.fmu"
     gearheat("export", "--platform", "host", "helical_two_stage", "-o", path)
     with zipfile.ZipFile(path) as file:
-        assert "license=" not in file.read("modelDescription.xml").decode()
+        description = file.read("modelDescription.xml").decode()
+        assert not [name for name in ("license=", "author=", "generationDateAndTime=") if name in description]
         assert "assumed: standard module" in file.read("documentation/index.html").decode()

@@ -116,11 +116,11 @@ def test_only_real_numbers_are_given_and_recorded(tank, arguments, told):
     ("change", "told"),
     [
         (('fmiVersion="2.0"', 'fmiVersion="1.0"'), "this FMU is for FMI 1.0"),
-        (('fmiVersion="2.0"', 'fmiVersion="3.0"'), "FMI 3.0"),
+        (('fmiVersion="2.0"', 'fmiVersion="4.0"'), "this FMU is for FMI 4.0"),
         (('tank" canHandleVariableCommunicationStepSize="false"', 'tank" needsExecutionTool="true"'), "Another tool"),
         (
             ("<CoSimulation", '<ModelExchange modelIdentifier="tank"/><!--'),
-            "for model exchange alone",
+            "has no co-simulation",
         ),
     ],
 )

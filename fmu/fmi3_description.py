@@ -1,0 +1,102 @@
+"""modelDescription.xml and sources/buildDescription.xml of an FMU for FMI 3.0, from its table of variables."""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Iterable
+
+from gearheat.model.core.flat import FlatModel
+
+from .description import Dependencies, Owner, circumstances, identifier, identity, numbers, origin, type_of, xml
+from .variables import Table, Variable
+
+_CAPABILITIES = {
+    "needsExecutionTool": "false",
+    "canBeInstantiatedOnlyOncePerProcess": "false",
+    "canGetAndSetFMUState": "true",
+    "canSerializeFMUState": "true",
+    "providesDirectionalDerivatives": "true",
+    "providesAdjointDerivatives": "true",
+}
+_MODEL_EXCHANGE = {"needsCompletedIntegratorStep": "false"}
+_CO_SIMULATION = {
+    "canHandleVariableCommunicationStepSize": "true",
+    "maxOutputDerivativeOrder": "1",
+    "providesIntermediateUpdate": "false",
+    "mightReturnEarlyFromDoStep": "false",
+    "hasEventMode": "true",
+}
+
+
+def description(flat: FlatModel, table: Table, token: str, dependent: Dependencies, owner: Owner = Owner()) -> bytes:
+    """modelDescription.xml.
+
+    Args:
+        flat: the model, for its name and meaning
+        table: its variables; behind them stands the independent variable that FMI 3.0 asks for
+        token: unique identification
+        dependent: what outputs and derivatives depend on
+        owner: what its owner says of it
+    """
+    named = {"fmiVersion": "3.0", "modelName": flat.name, "instantiationToken": token}
+    root = ET.Element("fmiModelDescription", {**named, **origin(flat), **owner.attributes})
+    own = {"modelIdentifier": identifier(flat.name), **_CAPABILITIES}
+    ET.SubElement(root, "ModelExchange", {**own, **_MODEL_EXCHANGE})
+    ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
+    circumstances(root, {"s", *(v.quantity.unit for v in table)}, _types)
+    variables = ET.SubElement(root, "ModelVariables")
+    for variable in table:
+        element = ET.SubElement(variables, "Float64", {**identity(variable), **numbers(variable)})
+        if variable.state is not None:
+            element.set("derivative", str(variable.state))
+    _time(variables, table)
+    _model_structure(root, table, dependent)
+    return xml(root)
+
+
+def _types(definitions: ET.Element, measured: list[str]) -> None:
+    for unit in measured:
+        ET.SubElement(definitions, "Float64Type", type_of(unit))
+
+
+def _time(variables: ET.Element, table: Table) -> None:
+    ET.SubElement(
+        variables,
+        "Float64",
+        name="time",
+        valueReference=str(len(table.variables)),
+        description="simulation time",
+        causality="independent",
+        variability="continuous",
+        unit="s",
+    )
+
+
+def _model_structure(root: ET.Element, table: Table, dependent: Dependencies) -> None:
+    structure = ET.SubElement(root, "ModelStructure")
+    names = {"output": "Output", "derivative": "ContinuousStateDerivative"}
+    for state in table.of("state"):
+        _unknown(structure, "Output", state, [state.reference])
+    unknown = (*table.of("output"), *table.of("derivative"))
+    for variable, on in zip(unknown, dependent.step, strict=True):
+        _unknown(structure, names[variable.kind], variable, on)
+    for variable, on in zip(unknown, dependent.initial, strict=True):
+        _unknown(structure, "InitialUnknown", variable, on)
+
+
+def _unknown(parent: ET.Element, name: str, variable: Variable, on: Iterable[int]) -> None:
+    known = " ".join(map(str, on))
+    ET.SubElement(parent, name, valueReference=str(variable.reference), dependencies=known)
+
+
+def build_description(name: str) -> bytes:
+    """buildDescription.xml: how the source becomes a library.
+
+    Args:
+        name: of the model
+    """
+    root = ET.Element("fmiBuildDescription", fmiVersion="3.0")
+    built = ET.SubElement(root, "BuildConfiguration", modelIdentifier=identifier(name))
+    ET.SubElement(ET.SubElement(built, "SourceFileSet", language="C99"), "SourceFile", name="all.c")
+    ET.SubElement(built, "Library", name="m", external="true", description="mathematics of the C library")
+    return xml(root)

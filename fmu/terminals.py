@@ -1,0 +1,74 @@
+"""terminalsAndIcons.xml of an FMU for FMI 3.0: the variables that belong together where two FMUs are joined.
+
+Terminals follow from names and units: `P.w` with `P.tau` is a shaft end, whose torque counts into the model; a
+temperature `P.T` with the heat flow rate `P.Q_flow_external` that may be given a heat port, and so is a given
+temperature with the heat flow rate `P.Q_flow` that follows, which counts out of the model.
+"""
+
+from __future__ import annotations
+
+import xml.etree.ElementTree as ET
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from .description import xml
+from .variables import Table, Variable
+
+
+@dataclass(frozen=True)
+class _Terminal:
+    """Two variables that are connected together: a potential and a flow with the names they have in any terminal.
+
+    Attributes:
+        kind: name of the kind of terminal, for importers that connect like with like
+        inflow: whether the flow counts into the model
+    """
+
+    name: str
+    kind: str
+    doc: str
+    potential: Variable
+    flow: Variable
+    members: tuple[str, str]
+    inflow: bool
+
+
+def terminals(table: Table) -> bytes:
+    """terminalsAndIcons.xml.
+
+    Args:
+        table: the variables of the FMU
+    """
+    root = ET.Element("fmiTerminalsAndIcons", fmiVersion="3.0")
+    drawn = ET.SubElement(root, "GraphicalRepresentation")
+    corners = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
+    ET.SubElement(drawn, "CoordinateSystem", {**corners, "suggestedScalingFactorTo_mm": "0.1"})
+    ET.SubElement(drawn, "Icon", corners)
+    if found := list(_found(table)):
+        parent = ET.SubElement(root, "Terminals")
+        for terminal in found:
+            _terminal(parent, terminal)
+    return xml(root)
+
+
+def _found(table: Table) -> Iterator[_Terminal]:
+    """The terminals in the order of their potentials."""
+    known = {(v.name, v.quantity.unit): v for v in table if v.kind in ("state", "input", "output")}
+    for (name, unit), v in known.items():
+        path, _, last = name.rpartition(".")
+        if (last, unit) == ("w", "rad/s") and (tau := known.get((f"{path}.tau", "N.m"))):
+            yield _Terminal(path, "org.gearheat.Flange", "shaft end", v, tau, ("w", "tau"), True)
+        if (last, unit) == ("T", "K"):
+            given, follows = (known.get((f"{path}.{flow}", "W")) for flow in ("Q_flow_external", "Q_flow"))
+            flow = follows if v.kind == "input" else given
+            if flow is not None:
+                yield _Terminal(path, "org.gearheat.HeatPort", "heat port", v, flow, ("T", "Q_flow"), v.kind != "input")
+
+
+def _terminal(parent: ET.Element, t: _Terminal) -> None:
+    told = {"name": t.name, "matchingRule": "plug", "terminalKind": t.kind, "description": f"{t.doc} {t.name}"}
+    element = ET.SubElement(parent, "Terminal", told)
+    kinds = "signal", "inflow" if t.inflow else "outflow"
+    for member, variable, kind in zip(t.members, (t.potential, t.flow), kinds, strict=True):
+        about = {"variableName": variable.name, "memberName": member, "variableKind": kind}
+        ET.SubElement(element, "TerminalMemberVariable", about)

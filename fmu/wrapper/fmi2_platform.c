@@ -1,0 +1,1 @@
+const char *fmi2GetTypesPlatform(void) { return fmi2TypesPlatform; }
