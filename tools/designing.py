@@ -65,14 +65,14 @@ def design_command(
         case = _case(scenario, free, targets, assignments)
         solution = least_change(case.flat, case.free, case.targets, case.values)
         found |= _solution(case, solution)
-        first = None if everything else first_of(case.setting, case.flat)
-        answer(found, json, lambda: _print_design(case.flat, found, first))
+        shown_first = None if everything else first_of(case.setting, case.flat)
+        answer(found, json, lambda: _print_design(case.flat, found, shown_first))
         return
     solved: list[tuple[tuple[float, ...], dict[str, Any]]] = []
     unsolved: list[dict[str, Any]] = []
-    first = _case(scenario, free, targets, assignments)
+    base = _case(scenario, free, targets, assignments)
     for name in names:
-        case = first.filled(part, name) or _case(scenario, free, targets, [*assignments, f"{part}={name}"])
+        case = base.filled(part, name) or _case(scenario, free, targets, [*assignments, f"{part}={name}"])
         try:
             search = least_change(case.flat, case.free, case.targets, case.values) if free else None
             solution = search or unchanged(case.flat, case.targets, case.values)

@@ -18,6 +18,8 @@ from .steady import steady
 
 #: A target is met within this share of its size.
 CLOSE = 1e-6
+#: What is said where nothing has to change.
+MET = "met already: nothing has to change"
 #: Problems of a search that a message tells.
 TOLD = 3
 
@@ -67,6 +69,8 @@ def least_change(
     if not problems:
         there = unchanged(flat, targets, values)
         missed = ", ".join(_missed(flat, t, there) for t in targets if not _met(flat, t, there))
+        if not missed:
+            return replace(there, notes=(MET,))
         raise ScenarioError(f"design: {missed}. Free more with --free: a parameter or an input that may change.")
     raise SolveError(list(dict.fromkeys(problems))[:TOLD])
 
@@ -140,7 +144,7 @@ def _solved(
                 problems += error.problems if aims else ()
                 continue
             if all(_met(flat, t, found) for t in targets):
-                yield found if aims else replace(found, notes=("met already: nothing has to change",))
+                yield found if aims else replace(found, notes=(MET,))
 
 
 def _size(flat: FlatModel, target: Target) -> float:
