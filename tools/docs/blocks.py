@@ -27,6 +27,8 @@ from pathlib import Path
 
 from typer.core import TyperGroup
 
+from ...scenarios.shipped import RIGS
+
 PAGES = Path(__file__).with_name("pages")
 FENCE = re.compile(r"^```(\w*) *(.*?)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?!\w)")
@@ -83,12 +85,13 @@ class Reader:
 
     Args:
         program: the command line
-        folder: to work in
+        folder: to work in, empty
         all_: whether blocks that take long are run as well
     """
 
     def __init__(self, program: TyperGroup, folder: Path, all_: bool = False) -> None:
         self.program, self.folder, self.all = program, folder, all_
+        (folder / RIGS.parent.name).symlink_to(RIGS.parent)  # paths as in a checkout
         self.names: dict[str, object] = {}
 
     def problems(self, page: Path) -> list[str]:
@@ -105,7 +108,8 @@ class Reader:
         if block.file:
             Path(block.file).write_text(block.text, encoding="utf-8")
         elif block.language == "python" and (self.all or not block.slow):
-            exec(compile(block.text, "page", "exec"), self.names)
+            with contextlib.redirect_stdout(io.StringIO()):
+                exec(compile(block.text, "page", "exec"), self.names)
         elif block.language in ("sh", "console") and not block.installs:
             return self._commands(block)
         return []
@@ -122,7 +126,7 @@ class Reader:
     def _commands(self, block: Block) -> Iterator[str]:
         for words, expected in block.commands():
             if block.slow and not self.all:
-                self.read(words[1:])
+                read(self.program, words[1:])
                 continue
             code, out = self._run(words)
             if code != 0:
@@ -132,11 +136,6 @@ class Reader:
                 now = max(near, key=lambda p: len(set(p.split()) & set(line.split())), default="nothing like it")
                 yield f"{shlex.join(words)} does not print {line!r} but {now!r}"
 
-    def read(self, arguments: list[str]) -> None:
-        """Read the options of a command without running it. Raises for wrong ones."""
-        name, *rest = arguments
-        self.program.commands[name].make_context(name, rest)
-
     def _run(self, words: list[str]) -> tuple[int, str]:
         if words[0] != "gearheat":
             path = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
@@ -144,6 +143,12 @@ class Reader:
             return run.returncode, run.stdout + run.stderr
         code, out, said = called(self.program, words[1:])
         return code, out + said
+
+
+def read(program: TyperGroup, arguments: list[str]) -> None:
+    """Read the options of a command without running it. Raises for wrong ones."""
+    name, *rest = arguments
+    program.commands[name].make_context(name, rest)
 
 
 def called(program: TyperGroup, arguments: list[str]) -> tuple[int, str, str]:
