@@ -8,7 +8,8 @@
 | any language, then a file name | the file is written |
 | `diff FILE` | lines with - and without a sign are looked for in the file; + replaces - |
 
-A block marked `slow` is run only when all are asked for; of its commands the options are read.
+A block marked `slow` is run only when all are asked for, one marked `read`, which lacks the reader's files, never; of their
+commands the options are read.
 """
 
 from __future__ import annotations
@@ -34,15 +35,16 @@ FENCE = re.compile(r"^```(\w*) *(.*?)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?!\w)")
 #: Languages that this project has no program for.
 SHOWN = {"", "matlab", "text"}
+MARKS = {"slow", "read"}
 
 
 @dataclass(frozen=True)
 class Block:
-    """A code block: its language, the file it is or changes, whether it takes long, its text and first line."""
+    """A code block: its language, the file it is or changes, its mark, its text and first line."""
 
     language: str
     file: str
-    slow: bool
+    mark: str
     text: str
     line: int
 
@@ -70,8 +72,8 @@ def blocks(text: str) -> list[Block]:
         if rest.startswith("{"):
             continue
         words = rest.split()
-        file = next((word for word in words if word != "slow"), "")
-        found.append(Block(language, file, "slow" in words, body, text.count("\n", 0, match.start()) + 1))
+        file, mark = (next((w for w in words if (w in MARKS) == marks), "") for marks in (False, True))
+        found.append(Block(language, file, mark, body, text.count("\n", 0, match.start()) + 1))
     return found
 
 
@@ -107,12 +109,15 @@ class Reader:
             return self._edit(block)
         if block.file:
             Path(block.file).write_text(block.text, encoding="utf-8")
-        elif block.language == "python" and (self.all or not block.slow):
+        elif block.language == "python" and self._runs(block):
             with contextlib.redirect_stdout(io.StringIO()):
                 exec(compile(block.text, "page", "exec"), self.names)
         elif block.language in ("sh", "console") and not block.installs:
             return self._commands(block)
         return []
+
+    def _runs(self, block: Block) -> bool:
+        return not block.mark or (self.all and block.mark == "slow")
 
     def _edit(self, block: Block) -> Iterator[str]:
         lines = block.text.splitlines(keepends=True)
@@ -125,7 +130,7 @@ class Reader:
 
     def _commands(self, block: Block) -> Iterator[str]:
         for words, expected in block.commands():
-            if block.slow and not self.all:
+            if not self._runs(block):
                 read(self.program, words[1:])
                 continue
             code, out = self._run(words)
