@@ -8,8 +8,8 @@
 | any language, then a file name | the file is written |
 | `diff FILE` | lines with - and without a sign are looked for in the file; + replaces - |
 
-A block marked `slow` is run only when all are asked for, one marked `read`, which lacks the reader's files, never; of their
-commands the options are read.
+A block marked `slow` is run only when all are asked for. One marked `read` needs files of the reader's own and is never
+run. Of their commands the options are read.
 """
 
 from __future__ import annotations
