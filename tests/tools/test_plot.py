@@ -47,7 +47,7 @@ def test_heat_paths_balance_and_begin_at_the_losses(rig):
         assert None in ends or ends[0] > ends[1]
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@pytest.mark.parametrize("kind", [".png", ".html"])
 def test_steady_draws_where_the_heat_goes(gearheat, tmp_path, kind):
     plot = tmp_path / f"heat{kind}"
     found = gearheat("steady", "planetary", "--plot", plot, "--json", "-").json
@@ -82,8 +82,7 @@ def test_a_sweep_over_two_is_a_map(gearheat, tmp_path):
     assert problems_of(text) == [] and "efficiency.eta" in text
 
 
-@pytest.mark.parametrize("kind", KINDS)
-@pytest.mark.parametrize("over", [1, 2])
+@pytest.mark.parametrize(("over", "kind"), [(1, ".svg"), (1, ".html"), (2, ".svg"), (2, ".png")])
 def test_lines_and_maps(tmp_path, kind, over):
     x, y = (v.ravel() for v in np.meshgrid(np.linspace(0, 40, 5), np.linspace(500, 1500, 4)))
     values = np.where(np.arange(20) == 7, np.nan, x + y / 100)
