@@ -45,9 +45,7 @@ class WormPair(Component):
     d_1 = Parameter("m", "mean diameter of the worm", nominal=0.05, above=0.0)
     alpha_n = Parameter("rad", "normal pressure angle", nominal=0.3, above=0.0, below=1.0)
     k_mu = Parameter("1", "factor on the tooth friction", at_least=0.0)
-    tau_width = Parameter(
-        "N.m", "torque below which the direction of load is blurred", default=0.1, above=0.0
-    )
+    tau_width = Parameter("N.m", "torque below which the direction of load is blurred", default=0.1, above=0.0)
     tau_loss = Output("N.m", "friction torque of the mesh, on the worm", nominal=1.0, at_least=0.0, guess=0.0)
     P_loss = Output("W", "mesh loss", nominal=100.0, at_least=0.0)
     mu = Output("1", "tooth friction coefficient", nominal=0.1)

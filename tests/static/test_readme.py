@@ -3,6 +3,7 @@
 import importlib
 import re
 import shlex
+import shutil
 import xml.etree.ElementTree as ET
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from gearheat.fmu.variables import table
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import StructureError
 from gearheat.tools.cli import app
-from gearheat.tools.docs.blocks import PAGES, SHOWN, Reader, blocks, missing, pages, same
+from gearheat.tools.docs.blocks import PAGES, SHOWN, Reader, blocks, missing, pages, read, same
 from small_parts import rc
 
 ROOT = Path(__file__).parents[2]
@@ -30,7 +31,6 @@ def name(page: Path) -> str:
 
 @pytest.mark.parametrize("page", EVERY, ids=name)
 def test_the_blocks_run_in_their_order(page: Path, tmp_path: Path) -> None:
-    (tmp_path / "scenarios").symlink_to(ROOT / "scenarios")  # paths as in a checkout
     assert not Reader(PROGRAM, tmp_path).problems(page)
 
 
@@ -49,13 +49,24 @@ def test_the_readme_is_short() -> None:
     assert len(README.read_text(encoding="utf-8").splitlines()) <= 150
 
 
+def test_from_nothing_to_a_diagnosis_takes_25_commands_and_60_lines() -> None:
+    tutorial = blocks((PAGES / "tutorials" / "own_gearbox.md").read_text(encoding="utf-8"))
+    commands = [command for block in tutorial if block.language in ("sh", "console") for command in block.commands()]
+    assert len(commands) <= 25
+    written = [
+        line for block in tutorial if block.language == "diff" for line in re.findall(r"^\+.*", block.text, re.M)
+    ]
+    card = next(block for block in tutorial if block.file == "card.toml")
+    assert 0 < len(written) + len(card.text.splitlines()) <= 60
+
+
 def test_the_blocks_that_install_name_commands_that_exist() -> None:
     installs = [block for block in blocks(README.read_text(encoding="utf-8")) if block.installs]
     assert len(installs) == 2
     for block in installs:
         for program, arguments in re.findall(r"\.venv/bin/(gearheat|python) (.*)", block.text):
             if program == "gearheat":
-                Reader(PROGRAM, ROOT).read(shlex.split(arguments))
+                read(PROGRAM, shlex.split(arguments))
             else:
                 assert importlib.util.find_spec(shlex.split(arguments)[1]) is not None
 
@@ -64,13 +75,15 @@ class TestReader:
     """A page that is not true is found."""
 
     def problems(self, folder: Path, text: str) -> list[str]:
-        page = folder / "page.md"
+        page, place = folder / "page.md", folder / "place"
         page.write_text(text, encoding="utf-8")
-        return Reader(PROGRAM, folder).problems(page)
+        shutil.rmtree(place, ignore_errors=True)
+        place.mkdir()
+        return Reader(PROGRAM, place).problems(page)
 
-    def test_a_wrong_option(self, tmp_path: Path) -> None:
+    def test_a_wrong_option(self) -> None:
         with pytest.raises(Exception, match="No such option"):
-            Reader(PROGRAM, tmp_path).read(["bench", "--quick"])
+            read(PROGRAM, ["bench", "--quick"])
 
     def test_a_command_that_fails_and_one_that_prints_something_else(self, tmp_path: Path) -> None:
         (failed,) = self.problems(tmp_path, "# A\n\n```sh\ngearheat steady planetry\n```\n")
@@ -81,7 +94,7 @@ class TestReader:
     def test_an_edit_of_what_is_not_there(self, tmp_path: Path) -> None:
         text = "```toml a.toml\na = 1\n```\n\n```diff a.toml\n-a = {}\n+a = 3\n```\n"
         assert not self.problems(tmp_path, text.format(1))
-        assert (tmp_path / "a.toml").read_text(encoding="utf-8") == "a = 3\n"
+        assert (tmp_path / "place" / "a.toml").read_text(encoding="utf-8") == "a = 3\n"
         (problem,) = self.problems(tmp_path, text.format(2))
         assert "0 times, not once" in problem
 

@@ -8,7 +8,8 @@
 | any language, then a file name | the file is written |
 | `diff FILE` | lines with - and without a sign are looked for in the file; + replaces - |
 
-A block marked `slow` is run only when all are asked for; of its commands the options are read.
+A block marked `slow` is run only when all are asked for. One marked `read` needs files of the reader's own and is never
+run. Of their commands the options are read.
 """
 
 from __future__ import annotations
@@ -27,20 +28,23 @@ from pathlib import Path
 
 from typer.core import TyperGroup
 
+from ...scenarios.shipped import RIGS
+
 PAGES = Path(__file__).with_name("pages")
 FENCE = re.compile(r"^```(\w*) *(.*?)\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?(?!\w)")
 #: Languages that this project has no program for.
 SHOWN = {"", "matlab", "text"}
+MARKS = {"slow", "read"}
 
 
 @dataclass(frozen=True)
 class Block:
-    """A code block: its language, the file it is or changes, whether it takes long, its text and first line."""
+    """A code block: its language, the file it is or changes, its mark, its text and first line."""
 
     language: str
     file: str
-    slow: bool
+    mark: str
     text: str
     line: int
 
@@ -68,8 +72,8 @@ def blocks(text: str) -> list[Block]:
         if rest.startswith("{"):
             continue
         words = rest.split()
-        file = next((word for word in words if word != "slow"), "")
-        found.append(Block(language, file, "slow" in words, body, text.count("\n", 0, match.start()) + 1))
+        file, mark = (next((w for w in words if (w in MARKS) == marks), "") for marks in (False, True))
+        found.append(Block(language, file, mark, body, text.count("\n", 0, match.start()) + 1))
     return found
 
 
@@ -83,12 +87,13 @@ class Reader:
 
     Args:
         program: the command line
-        folder: to work in
+        folder: to work in, empty
         all_: whether blocks that take long are run as well
     """
 
     def __init__(self, program: TyperGroup, folder: Path, all_: bool = False) -> None:
         self.program, self.folder, self.all = program, folder, all_
+        (folder / RIGS.parent.name).symlink_to(RIGS.parent)  # paths as in a checkout
         self.names: dict[str, object] = {}
 
     def problems(self, page: Path) -> list[str]:
@@ -104,11 +109,15 @@ class Reader:
             return self._edit(block)
         if block.file:
             Path(block.file).write_text(block.text, encoding="utf-8")
-        elif block.language == "python" and (self.all or not block.slow):
-            exec(compile(block.text, "page", "exec"), self.names)
+        elif block.language == "python" and self._runs(block):
+            with contextlib.redirect_stdout(io.StringIO()):
+                exec(compile(block.text, "page", "exec"), self.names)
         elif block.language in ("sh", "console") and not block.installs:
             return self._commands(block)
         return []
+
+    def _runs(self, block: Block) -> bool:
+        return not block.mark or (self.all and block.mark == "slow")
 
     def _edit(self, block: Block) -> Iterator[str]:
         lines = block.text.splitlines(keepends=True)
@@ -121,8 +130,8 @@ class Reader:
 
     def _commands(self, block: Block) -> Iterator[str]:
         for words, expected in block.commands():
-            if block.slow and not self.all:
-                self.read(words[1:])
+            if not self._runs(block):
+                read(self.program, words[1:])
                 continue
             code, out = self._run(words)
             if code != 0:
@@ -132,11 +141,6 @@ class Reader:
                 now = max(near, key=lambda p: len(set(p.split()) & set(line.split())), default="nothing like it")
                 yield f"{shlex.join(words)} does not print {line!r} but {now!r}"
 
-    def read(self, arguments: list[str]) -> None:
-        """Read the options of a command without running it. Raises for wrong ones."""
-        name, *rest = arguments
-        self.program.commands[name].make_context(name, rest)
-
     def _run(self, words: list[str]) -> tuple[int, str]:
         if words[0] != "gearheat":
             path = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
@@ -144,6 +148,12 @@ class Reader:
             return run.returncode, run.stdout + run.stderr
         code, out, said = called(self.program, words[1:])
         return code, out + said
+
+
+def read(program: TyperGroup, arguments: list[str]) -> None:
+    """Read the options of a command without running it. Raises for wrong ones."""
+    name, *rest = arguments
+    program.commands[name].make_context(name, rest)
 
 
 def called(program: TyperGroup, arguments: list[str]) -> tuple[int, str, str]:

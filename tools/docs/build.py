@@ -14,7 +14,7 @@ from typer.core import TyperGroup
 from ...model.errors import GearheatError
 from ..console import folder, note
 from . import commands, reference
-from .blocks import FENCE, PAGES, run_pages
+from .blocks import FENCE, MARKS, PAGES, run_pages
 
 #: Settings of Sphinx.
 SETTINGS = {
@@ -95,7 +95,7 @@ def captioned(text: str) -> str:
 
     def block(match: re.Match[str]) -> str:
         language, rest, body = match.groups()
-        file = " ".join(word for word in rest.split() if word != "slow")
+        file = " ".join(word for word in rest.split() if word not in MARKS)
         if not file or file.startswith("{"):
             return match[0] if not language else f"```{language}\n{body}```"
         return f"```{{code-block}} {language}\n:caption: {file}\n\n{body}```"
