@@ -93,7 +93,8 @@ def _line(name: str, d: Declaration) -> dict[str, Any]:
 
 
 def _parameter(name: str, d: Parameter) -> dict[str, Any]:
-    default = "follows from others" if d.derived else "" if d.default is None else text(d.default, d.unit)
+    left_out = "follows from others" if d.derived else "may be left out" if d.optional else ""
+    default = left_out if d.default is None else text(d.default, d.unit)
     return {**_line(name, d), "default": default}
 
 
@@ -126,7 +127,8 @@ def _example(kind: str) -> tuple[str, dict[str, Any], Mapping[str, str]]:
             found.append((scenario.name, dict(scenario.spec.part(name).values), scenario.entries.get(name, {})))
     if found:
         return next((e for e in found if e[2]), found[0])
-    needed = {k: d for k, d in declared(PARTS[kind], Parameter).items() if d.default is None and d.derived is None}
+    known: dict[str, Parameter] = declared(PARTS[kind], Parameter)
+    needed = {k: d for k, d in known.items() if d.default is None and d.derived is None and not d.optional}
     grown = {k: d.nominal * (1 + i / 2 if d.unit == "m" else 1) for i, (k, d) in enumerate(needed.items())}
     return "", grown | _typical().get(kind, {}), {}
 

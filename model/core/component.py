@@ -50,6 +50,7 @@ class Component:
     Attributes:
         role: what the part is to whoever looks for parts by what they do ("teeth", "bearing", "surface"); "" for none
         scale: parameters of which a common factor is one on what the part does: its loss, conductance or capacity
+        told: names of the values that it is constructed with
 
     Raises:
         ScenarioError: all missing, unknown and out-of-range values at once
@@ -62,8 +63,10 @@ class Component:
         self.name = name
         cls = type(self)
         self.choices = {k: values.pop(k, d.default) for k, d in declared(cls, Choice).items()}
-        self.ports = {k: d.bound(f"{name}.{k}") for k, d in declared(cls, Port).items()}
-        parameters: dict[str, Parameter] = {k: d for k, d in declared(cls, Parameter).items() if self.has(k)}
+        self.told = frozenset(values)
+        self.ports = {k: d.bound(f"{name}.{k}") for k, d in declared(cls, Port).items() if self.has(k)}
+        possible: dict[str, Parameter] = {k: d for k, d in declared(cls, Parameter).items() if self.has(k)}
+        parameters = {k: d for k, d in possible.items() if k in self.told or not d.optional}
         self.derived = {k: d for k, d in parameters.items() if d.derived is not None and k not in values}
         self.parameters = {k: d for k, d in parameters.items() if k not in self.derived}
         self.states: dict[str, State] = {k: d for k, d in declared(cls, State).items() if self.has(k)}
@@ -191,7 +194,7 @@ class Component:
         return ()
 
     def has(self, name: str) -> bool:
-        """Whether a declared state or parameter exists under the component's choices."""
+        """Whether a declared port, state or parameter exists under the component's choices and what it is `told`."""
         return True
 
     def der(self, state: str) -> Any:

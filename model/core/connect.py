@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ..errors import StructureError, suggestion
 from .component import Component
-from .declare import Port
+from .declare import Port, declared
 from .ports_check import open_ports
 
 Connection = tuple[str, ...]
@@ -72,16 +72,30 @@ def _problems(assembly: Assembly, ports: dict[str, Port]) -> list[str]:
         f'{assembly.name}: two parts are called "{n}". Rename one.'
         for n in sorted({n for n in names if names.count(n) > 1})
     ]
+    absent = _absent(assembly)
     for connection in assembly.connections:
         written = ", ".join(connection[:SHOWN]) + (", ..." if len(connection) > SHOWN else "")
-        problems += [f"{assembly.name}: connect [{written}] {p}" for p in _wrong(connection, ports)]
+        problems += [f"{assembly.name}: connect [{written}] {p}" for p in _wrong(connection, ports, absent)]
     return problems or _short_circuits(assembly)
 
 
-def _wrong(connection: Connection, ports: Mapping[str, Port]) -> Iterator[str]:
+def _absent(assembly: Assembly) -> dict[str, str]:
+    """Ports that a part of its type may have and this one has not: path -> what to do."""
+    return {
+        f"{part.name}.{key}": port.absent
+        for part in assembly.parts
+        for key, port in declared(type(part), Port).items()
+        if key not in part.ports
+    }
+
+
+def _wrong(connection: Connection, ports: Mapping[str, Port], absent: Mapping[str, str]) -> Iterator[str]:
     """What is wrong with one connection."""
     missing = [path for path in dict.fromkeys(connection) if path not in ports]
     for path in missing:
+        if path in absent:
+            yield f'names "{path}", which is not there under the values of its part. {absent[path]}'
+            continue
         owner = path.rpartition(".")[0]
         of_part = [known for known in ports if known.rpartition(".")[0] == owner]
         has = f" {owner} has {', '.join(of_part)}." if of_part else ""

@@ -77,12 +77,13 @@ class Parameter(Declaration):
 
     `default` is only for numerics, never for physics. `derived` makes of the component an expression in its other
     parameters (a contact ratio from the geometry), which holds wherever no value is given. `whole` asks for a whole
-    number.
+    number. What is `optional` is no part of the model where no value is given.
     """
 
     default: float | None = None
     derived: Callable[[Any], Any] | None = None
     whole: bool = False
+    optional: bool = False
 
 
 @dataclass(eq=False)
@@ -144,6 +145,7 @@ class Port:
     Attributes:
         must_meet: whether a port that meets no other is a fault; a part may say otherwise of its own
         missing: what is wrong then, or where the part needs what the port should bring
+        absent: what to do where the port is not there under the values of its part
         source: what to connect it to
         instead: what else to do where two things prescribe the same potential
         divides: what to put in where two ways between the same places leave open what flows on either
@@ -153,6 +155,7 @@ class Port:
     doc: str = ""
     must_meet: ClassVar[bool] = False
     missing: ClassVar[str] = "nothing says what it should read"
+    absent: ClassVar[str] = ""
     source: ClassVar[str] = "a port of its kind"
     instead: ClassVar[str] = ""
     divides: ClassVar[str] = ""
@@ -193,7 +196,7 @@ class Port:
 
 
 def declared(owner: type, kind: type) -> dict[str, Any]:
-    """All declarations of a kind on a class, base classes first, in the order written.
+    """All declarations of a kind on a class, base classes first, in the order written; a class may redeclare a name.
 
     Args:
         owner: class of a component or port
@@ -201,5 +204,5 @@ def declared(owner: type, kind: type) -> dict[str, Any]:
     """
     found: dict[str, Any] = {}
     for base in reversed(owner.__mro__):
-        found.update({name: d for name, d in vars(base).items() if isinstance(d, kind)})
-    return found
+        found.update(vars(base))
+    return {name: d for name, d in found.items() if isinstance(d, kind)}

@@ -14,6 +14,8 @@ from .smooth import Num, smooth_abs, smooth_power, smooth_sign
 GRAVITY = 9.80665
 #: Rounding of a temperature difference [K] and of an air speed [m/s].
 DT_WIDTH, V_WIDTH = 1e-2, 1e-3
+#: Pressure of the air at sea level [Pa].
+SEA_LEVEL = 101325.0
 
 
 @law(
@@ -22,7 +24,7 @@ DT_WIDTH, V_WIDTH = 1e-2, 1e-3
     valid="air, 170-1900 K, 2 %",
     ranges={"T_film": (170.0, 1900.0)},
 )
-def air_properties(T_film: Num, *, p: float = 101325.0) -> tuple[Num, Num, Num, Num]:
+def air_properties(T_film: Num, *, p: Num = SEA_LEVEL) -> tuple[Num, Num, Num, Num]:
     r"""Conductivity k [W/(m.K)], kinematic viscosity nu [m2/s], Prandtl number Pr [1] and expansion beta [1/K] of air.
 
     .. math:: \eta = 1.716 \cdot 10^{-5} \left(\frac{T}{273}\right)^{3/2} \frac{273 + 111}{T + 111},\quad
@@ -209,96 +211,124 @@ def mixed(h_natural: Num, h_forced: Num, *, width: float = 1e-3) -> Num:
     return smooth_power(h_natural**3 + h_forced**3, 1 / 3, width**3)
 
 
-def rayleigh(T_s: Num, T_f: Num, L: Num, *, dT_width: float = DT_WIDTH) -> tuple[Num, Num, Num]:
+def rayleigh(T_s: Num, T_f: Num, L: Num, *, p: Num = SEA_LEVEL, dT_width: float = DT_WIDTH) -> tuple[Num, Num, Num]:
     """Rayleigh number [1] of a surface in air, and Prandtl number [1] and conductivity [W/(m.K)] at film temperature.
 
     Args:
         T_s: temperature of the surface [K]
         T_f: temperature of the air [K]
         L: characteristic length [m]
+        p: pressure of the air [Pa]
         dT_width: rounding at equal temperatures [K]
     """
-    k, nu, Pr, beta = air_properties((T_s + T_f) / 2)
+    k, nu, Pr, beta = air_properties((T_s + T_f) / 2, p=p)
     return GRAVITY * beta * smooth_abs(T_s - T_f, dT_width) * L**3 * Pr / nu**2, Pr, k
 
 
-def natural_vertical_plate(T_s: Num, T_f: Num, height: Num, *, dT_width: float = DT_WIDTH) -> Num:
+def natural_vertical_plate(T_s: Num, T_f: Num, height: Num, *, p: Num = SEA_LEVEL, dT_width: float = DT_WIDTH) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a vertical plate in still air.
 
     Args:
         T_s: temperature of the plate [K]
         T_f: temperature of the air [K]
         height: height of the plate [m]
+        p: pressure of the air [Pa]
         dT_width: rounding at equal temperatures [K]
     """
-    Ra, Pr, k = rayleigh(T_s, T_f, height, dT_width=dT_width)
+    Ra, Pr, k = rayleigh(T_s, T_f, height, p=p, dT_width=dT_width)
     return nusselt_vertical_plate(Ra, Pr) * k / height
 
 
-def natural_horizontal_cylinder(T_s: Num, T_f: Num, D: Num, *, dT_width: float = DT_WIDTH) -> Num:
+def natural_horizontal_cylinder(T_s: Num, T_f: Num, D: Num, *, p: Num = SEA_LEVEL, dT_width: float = DT_WIDTH) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a horizontal cylinder in still air.
 
     Args:
         T_s: temperature of the cylinder [K]
         T_f: temperature of the air [K]
         D: diameter [m]
+        p: pressure of the air [Pa]
         dT_width: rounding at equal temperatures [K]
     """
-    Ra, Pr, k = rayleigh(T_s, T_f, D, dT_width=dT_width)
+    Ra, Pr, k = rayleigh(T_s, T_f, D, p=p, dT_width=dT_width)
     return nusselt_horizontal_cylinder(Ra, Pr) * k / D
 
 
-def natural_horizontal_up(T_s: Num, T_f: Num, L: Num, *, dT_width: float = DT_WIDTH, sign_width: float = 0.05) -> Num:
+def natural_horizontal_up(
+    T_s: Num, T_f: Num, L: Num, *, p: Num = SEA_LEVEL, dT_width: float = DT_WIDTH, sign_width: float = 0.05
+) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a horizontal plate that faces upwards in still air, hot or cold.
 
     Args:
         T_s: temperature of the plate [K]
         T_f: temperature of the air [K]
         L: area of the plate over its perimeter [m]
+        p: pressure of the air [Pa]
         dT_width: rounding of the Rayleigh number at equal temperatures [K]
         sign_width: temperature difference over which a hot plate's law turns into a cold one's [K]
     """
-    Ra, _, k = rayleigh(T_s, T_f, L, dT_width=dT_width)
+    Ra, _, k = rayleigh(T_s, T_f, L, p=p, dT_width=dT_width)
     hot = 0.5 * (1 + smooth_sign(T_s - T_f, sign_width))
     return (hot * nusselt_plate_unstable(Ra) + (1 - hot) * nusselt_plate_stable(Ra)) * k / L
 
 
-def natural_horizontal_down(T_s: Num, T_f: Num, L: Num, *, dT_width: float = DT_WIDTH, sign_width: float = 0.05) -> Num:
+def natural_horizontal_down(
+    T_s: Num, T_f: Num, L: Num, *, p: Num = SEA_LEVEL, dT_width: float = DT_WIDTH, sign_width: float = 0.05
+) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a horizontal plate that faces downwards in still air, hot or cold.
 
     Args:
         T_s: temperature of the plate [K]
         T_f: temperature of the air [K]
         L: area of the plate over its perimeter [m]
+        p: pressure of the air [Pa]
         dT_width: rounding of the Rayleigh number at equal temperatures [K]
         sign_width: temperature difference over which a cold plate's law turns into a hot one's [K]
     """
-    Ra, _, k = rayleigh(T_s, T_f, L, dT_width=dT_width)
+    Ra, _, k = rayleigh(T_s, T_f, L, p=p, dT_width=dT_width)
     cold = 0.5 * (1 - smooth_sign(T_s - T_f, sign_width))
     return (cold * nusselt_plate_unstable(Ra) + (1 - cold) * nusselt_plate_stable(Ra)) * k / L
 
 
-def forced_plate(v: Num, T_film: Num, L: Num, *, v_width: float = V_WIDTH) -> Num:
+def forced_plate(v: Num, T_film: Num, L: Num, *, p: Num = SEA_LEVEL, v_width: float = V_WIDTH) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a plate in moving air.
 
     Args:
         v: speed of the air along the plate, either direction [m/s]
         T_film: mean temperature of plate and air [K]
         L: length of the plate along the flow [m]
+        p: pressure of the air [Pa]
         v_width: rounding in still air [m/s]
     """
-    k, nu, Pr, _ = air_properties(T_film)
+    k, nu, Pr, _ = air_properties(T_film, p=p)
     return nusselt_forced_plate(smooth_abs(v, v_width) * L / nu, Pr) * k / L
 
 
-def forced_cylinder(v: Num, T_film: Num, D: Num, *, v_width: float = V_WIDTH) -> Num:
+def forced_cylinder(v: Num, T_film: Num, D: Num, *, p: Num = SEA_LEVEL, v_width: float = V_WIDTH) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a cylinder in moving air.
 
     Args:
         v: speed of the air across the cylinder, either direction [m/s]
         T_film: mean temperature of cylinder and air [K]
         D: diameter [m]
+        p: pressure of the air [Pa]
         v_width: rounding in still air [m/s]
     """
-    k, nu, Pr, _ = air_properties(T_film)
+    k, nu, Pr, _ = air_properties(T_film, p=p)
     return nusselt_forced_cylinder(smooth_abs(v, v_width) * D / nu, Pr) * k / D
+
+
+@law(
+    source="ISO2533",
+    where="barometric formula of the troposphere",
+    ranges={"altitude": (-500.0, 11000.0)},
+    verified=False,
+)
+def air_pressure(altitude: Num) -> Num:
+    r"""Pressure of the standard atmosphere [Pa].
+
+    .. math:: p = 101325 \left(1 - \frac{0.0065\,h}{288.15}\right)^{5.2559}
+
+    Args:
+        altitude: height above sea level [m]
+    """
+    return SEA_LEVEL * (1 - 0.0065 * altitude / 288.15) ** (GRAVITY / (0.0065 * 287.05))

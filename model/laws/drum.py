@@ -5,7 +5,7 @@ from __future__ import annotations
 import casadi as ca
 
 from ..sources import law
-from .convection import air_properties
+from .convection import SEA_LEVEL, air_properties
 from .smooth import SPEED_WIDTH, Num, smooth_abs, smooth_power
 
 #: Speed of a surface [m/s] below which churning is rounded.
@@ -33,16 +33,17 @@ def nusselt_rotating_cylinder(Re_w: Num, Pr: Num) -> Num:
     return 0.133 * Re_w ** (2 / 3) * Pr ** (1 / 3)
 
 
-def forced_rotating_cylinder(w: Num, T_film: Num, D: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+def forced_rotating_cylinder(w: Num, T_film: Num, D: Num, *, p: Num = SEA_LEVEL, w_width: float = SPEED_WIDTH) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a cylinder that turns in air at rest.
 
     Args:
         w: speed of the cylinder, either direction [rad/s]
         T_film: mean temperature of cylinder and air [K]
         D: diameter [m]
+        p: pressure of the air [Pa]
         w_width: rounding at rest [rad/s]
     """
-    k, nu, Pr, _ = air_properties(T_film)
+    k, nu, Pr, _ = air_properties(T_film, p=p)
     return nusselt_rotating_cylinder(smooth_abs(w, w_width) * D**2 / (2 * nu), Pr) * k / D
 
 

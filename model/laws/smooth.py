@@ -71,6 +71,16 @@ def smooth_magnitude(x: Num, width: float = SPEED_WIDTH) -> Num:
     return x * smooth_sign(x, width)
 
 
+def smooth_positive(x: Num, width: float = SPEED_WIDTH) -> Num:
+    """x where it is positive, next to nothing where it is not, in the unit of x: zero at x = 0, never against its sign.
+
+    Args:
+        x: any quantity
+        width: size of x over which the corner is rounded, in its unit
+    """
+    return x * (1 + smooth_sign(x, width)) / 2
+
+
 def smooth_power(x: Num, exponent: Num, width: float = SPEED_WIDTH) -> Num:
     """|x|^exponent as x^2 (x^2 + width^2)^(exponent/2 - 1): even, zero with zero slope at x = 0; exponent above 0.
 

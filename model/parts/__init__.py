@@ -1,11 +1,22 @@
 """Components: declarations followed by named equations. `PARTS` holds every type of the physics."""
 
 from ..core.component import Component
-from .bearings import CylindricalRollerBearing, DeepGrooveBallBearing, NeedleBearing, TaperedRollerBearing
+from .bearings import (
+    AngularContactBallBearing,
+    CylindricalRollerBearing,
+    CylindricalRollerThrustBearing,
+    DeepGrooveBallBearing,
+    NeedleBearing,
+    SphericalRollerBearing,
+    TaperedRollerBearing,
+    ThrustBallBearing,
+)
 from .bevel import BevelGearPair
-from .churning import Churning
+from .churning import Churning, GearChurning, GearWindage
+from .clutch import Brake, CompliantShaft, FrictionClutch, OneWayClutch
 from .cycloid import CycloidalReducer, MalhotraReducer
 from .drum import BeltContact, BeltPull, DrumChurning, DrumCooling, DrumOil, WettedWall
+from .fan import ShaftFan
 from .gears import HelicalGearPair, InternalGearPair
 from .grey import Cooler, FlowConductor, GreyBearing, GreyTeeth, OilJet, Thermostat
 from .harmonic import HarmonicContact, HarmonicMesh
@@ -17,11 +28,12 @@ from .housing import (
     RoundHousing,
     ShellCooling,
 )
+from .journal import PlainBearing
 from .lubrication import Grease, OilBath
 from .motor import Motor
 from .planetary import PlanetarySet
 from .rv import CycloidPinStage
-from .sealing import LipSeal
+from .sealing import LipSeal, OilLipSeal
 from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit, TurningFrame
 from .supports import ShaftSupport, TwoGearSupport
 from .thermal import (
@@ -43,8 +55,13 @@ PARTS: dict[str, type[Component]] = {
         ShaftEnd,
         FixedFlange,
         FanLoad,
+        ShaftFan,
         Inertia,
         LoadingClutch,
+        FrictionClutch,
+        OneWayClutch,
+        Brake,
+        CompliantShaft,
         TorqueSplit,
         TurningFrame,
         Efficiency,
@@ -65,9 +82,17 @@ PARTS: dict[str, type[Component]] = {
         TaperedRollerBearing,
         DeepGrooveBallBearing,
         CylindricalRollerBearing,
+        AngularContactBallBearing,
+        SphericalRollerBearing,
+        ThrustBallBearing,
+        CylindricalRollerThrustBearing,
         NeedleBearing,
+        PlainBearing,
         LipSeal,
+        OilLipSeal,
         Churning,
+        GearChurning,
+        GearWindage,
         DrumChurning,
         OilBath,
         DrumOil,

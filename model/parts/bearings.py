@@ -8,6 +8,17 @@ from typing import ClassVar
 from ..core.component import Equation, Related, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.cylindrical import crb_rolling_variable, crb_sliding_variable
+from ..laws.gear_churning import immersion
+from ..laws.load_variables import (
+    acb_rolling_variable,
+    acb_sliding_variable,
+    srb_rolling_variable,
+    srb_sliding_variable,
+    thrust_ball_rolling_variable,
+    thrust_ball_sliding_variable,
+    thrust_roller_rolling_variable,
+    thrust_roller_sliding_variable,
+)
 from ..laws.rolling import (
     boundary_share,
     dgb_rolling_variable,
@@ -28,7 +39,7 @@ from ..laws.rolling import (
 )
 from ..laws.smooth import Num
 from .friction import Friction
-from .ports import BearingLoad, Lubricant
+from .ports import BearingLoad, Lubricant, Sump
 
 
 class RollingBearing(Friction):
@@ -51,6 +62,8 @@ class RollingBearing(Friction):
 class SkfBearing(RollingBearing):
     """Rolling and sliding moment with shear heating, starvation and mixed friction, and a drag moment."""
 
+    sump = Sump()
+
     d = Parameter("m", "bore diameter", nominal=0.1, above=0.0)
     D = Parameter("m", "outside diameter", nominal=0.1, above=0.0)
     d_m = Parameter("m", "mean diameter, (d + D)/2", nominal=0.1, above=0.0, derived=lambda p: 0.5 * (p.d + p.D))
@@ -63,6 +76,12 @@ class SkfBearing(RollingBearing):
     mu_bl = Parameter("1", "sliding friction of the boundary film", nominal=0.1, at_least=0.0, at_most=1.0)
     mu_EHL = Parameter("1", "sliding friction of the full film", nominal=0.1, at_least=0.0, at_most=1.0)
     H = Parameter("m", "oil level above the lowest point of the outer raceway", nominal=0.01, at_least=0.0)
+    height = Parameter(
+        "m",
+        "height of the axis above the datum of the housing, whose oil level takes the place of H",
+        0.1,
+        optional=True,
+    )
     mixed_friction = Choice((True, False), "whether thin films raise the sliding friction", default=True)
     oil_bath = Choice((True, False), "whether the bearing stands in oil, and so drags", default=True)
     tau_rr = Output("N.m", "rolling moment of one bearing")
@@ -74,8 +93,20 @@ class SkfBearing(RollingBearing):
         raise AttributeError(f"{type(self).__name__} has no geometric variables")
 
     def has(self, name: str) -> bool:
-        """The oil level counts in an oil bath, boundary friction where films may be thin."""
-        return bool({"H": self.oil_bath, "V_M": self.oil_bath, "mu_bl": self.mixed_friction}.get(name, True))
+        """The oil level counts in an oil bath, H or that of the housing; boundary friction where films may be thin."""
+        own, of_housing = self.oil_bath and not self.dips(), self.oil_bath and self.dips()
+        counts = {"H": own, "V_M": own, "height": of_housing, "sump": of_housing, "mu_bl": self.mixed_friction}
+        return bool(counts.get(name, True))
+
+    def dips(self) -> bool:
+        """Whether the oil level of the housing says how deep the bearing dips."""
+        return "height" in self.told
+
+    def level(self) -> Num:
+        """Oil level above the lowest point of the outer raceway [m]; rolling elements are 0.3 (D - d) thick."""
+        if not self.dips():
+            return self.H
+        return immersion(self.sump.level, self.height, self.d_m / 2 + 0.15 * (self.D - self.d))
 
     def relations(self) -> Iterator[Related]:
         """The rings lie inside each other, the rolling elements between them, and the oil not above the bearing."""
@@ -83,7 +114,7 @@ class SkfBearing(RollingBearing):
         yield self.relation("D is larger than d", "D / d", self.D / self.d, 1.02, remedy=remedy)
         middle = (self.d_m - self.d) / (self.D - self.d)
         yield self.relation("d_m lies between d and D", "(d_m - d) / (D - d)", middle, 0.45, 0.55, remedy=remedy)
-        if self.oil_bath:
+        if self.has("H"):
             remedy = "Give the oil level above the lowest point of the outer raceway."
             yield self.relation("H is below D", "H / D", self.H / self.D, 0.0, 1.0, remedy=remedy)
 
@@ -130,7 +161,9 @@ class RollerBearing(SkfBearing):
     def drag(self) -> Num:
         """Drag of rollers."""
         w, nu = self.shaft.w, self.lubricant.nu
-        return drag_torque_roller(w, nu, self.d, self.D, self.B, self.H, self.V_M, self.K_Z, self.K_L)
+        H = self.level()
+        V_M = drag_loss_factor(H / self.d_m, roller=True) if self.dips() else self.V_M
+        return drag_torque_roller(w, nu, self.d, self.D, self.B, H, V_M, self.K_Z, self.K_L)
 
 
 class TaperedRollerBearing(RollerBearing):
@@ -159,10 +192,9 @@ class CylindricalRollerBearing(RollerBearing):
         return rolling, crb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2)
 
 
-class DeepGrooveBallBearing(SkfBearing):
-    """Deep groove ball bearing, single row."""
+class BallBearing(SkfBearing):
+    """Base of the ball bearings: their drag in an oil bath."""
 
-    C_0 = Parameter("N", "basic static load rating", nominal=1e4, above=0.0)
     V_M = Parameter(
         "1",
         "drag loss factor of the oil level",
@@ -173,13 +205,77 @@ class DeepGrooveBallBearing(SkfBearing):
 
     def drag(self) -> Num:
         """Drag of balls."""
-        return drag_torque_ball(self.shaft.w, self.lubricant.nu, self.d, self.D, self.H, self.V_M, self.K_Z)
+        H = self.level()
+        V_M = drag_loss_factor(H / self.d_m) if self.dips() else self.V_M
+        return drag_torque_ball(self.shaft.w, self.lubricant.nu, self.d, self.D, H, V_M, self.K_Z)
+
+
+class DeepGrooveBallBearing(BallBearing):
+    """Deep groove ball bearing, single row."""
+
+    C_0 = Parameter("N", "basic static load rating", nominal=1e4, above=0.0)
 
     def geometric_variables(self) -> tuple[Num, Num]:
         """Deep groove ball bearing."""
         F_r, F_a = self.loads()
         rolling = dgb_rolling_variable(F_r, F_a, self.d_m, self.R_1, self.R_2, self.C_0)
         return rolling, dgb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.C_0)
+
+
+class AngularContactBallBearing(BallBearing):
+    """Angular contact ball bearing, single or double row: fast balls press on its outer ring."""
+
+    R_3 = Parameter("1", "third rolling constant of the catalogue", nominal=1e-12, at_least=0.0)
+    S_3 = Parameter("1", "third sliding constant of the catalogue", nominal=1e-12, at_least=0.0)
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Angular contact ball bearing."""
+        (F_r, F_a), w = self.loads(), self.shaft.w
+        rolling = acb_rolling_variable(F_r, F_a, w, self.d_m, self.R_1, self.R_2, self.R_3)
+        return rolling, acb_sliding_variable(F_r, F_a, w, self.d_m, self.S_1, self.S_2, self.S_3)
+
+
+class SphericalRollerBearing(RollerBearing):
+    """Spherical roller bearing, double row."""
+
+    R_3 = Parameter("1", "third rolling constant of the catalogue", nominal=1e-6, above=0.0)
+    R_4 = Parameter("1", "fourth rolling constant of the catalogue", above=0.0)
+    S_3 = Parameter("1", "third sliding constant of the catalogue", nominal=1e-2, above=0.0)
+    S_4 = Parameter("1", "fourth sliding constant of the catalogue", nominal=100.0, above=0.0)
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Spherical roller bearing."""
+        F_r, F_a = self.loads()
+        rolling = srb_rolling_variable(F_r, F_a, self.d_m, self.R_1, self.R_2, self.R_3, self.R_4)
+        return rolling, srb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.S_3, self.S_4)
+
+
+class ThrustBallBearing(BallBearing):
+    """Thrust ball bearing, axial load only."""
+
+    def has(self, name: str) -> bool:
+        """It has one rolling and one sliding constant, and no radial load of its own."""
+        return super().has(name) and name not in ("R_2", "S_2", "F_r_0")
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Thrust ball bearing."""
+        F_a = self.F_a_0 + self.load.F_a
+        rolling = thrust_ball_rolling_variable(F_a, self.d_m, self.R_1)
+        return rolling, thrust_ball_sliding_variable(F_a, self.d_m, self.S_1)
+
+
+class CylindricalRollerThrustBearing(RollerBearing):
+    """Cylindrical roller thrust bearing, axial load only: its rollers slide at their ends."""
+
+    def has(self, name: str) -> bool:
+        """It has one rolling and one sliding constant, and no radial load of its own."""
+        return super().has(name) and name not in ("R_2", "S_2", "F_r_0")
+
+    def geometric_variables(self) -> tuple[Num, Num]:
+        """Cylindrical roller thrust bearing."""
+        F_a = self.F_a_0 + self.load.F_a
+        rolling = thrust_roller_rolling_variable(F_a, self.d_m, self.R_1)
+        return rolling, thrust_roller_sliding_variable(F_a, self.d_m, self.S_1)
 
 
 class NeedleBearing(RollingBearing):

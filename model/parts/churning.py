@@ -1,14 +1,17 @@
-"""Loss of gears and carriers that move oil, without load."""
+"""Loss of gears and carriers that move oil or air, without load."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import ClassVar
 
-from ..core.declare import Parameter
+from ..core.component import Equation, equation
+from ..core.declare import Output, Parameter
 from ..laws.churning import churning_torque
+from ..laws.gear_churning import gear_churning_torque, immersion, windage_torque
 from ..laws.smooth import Num
 from .friction import Friction
-from .ports import Lubricant
+from .ports import Lubricant, Sump
 
 
 class Churning(Friction):
@@ -25,3 +28,44 @@ class Churning(Friction):
     def torque(self) -> Num:
         """Churning torque [N.m]."""
         return churning_torque(self.shaft.w, self.lubricant.rho, self.lubricant.nu, self.c, self.a, self.b)
+
+
+class GearInFluid(Friction):
+    """Base of gears that oil or air brakes: what their drag takes from their geometry."""
+
+    role: ClassVar[str] = "churning"
+
+    r = Parameter("m", "pitch radius of the gear", nominal=0.1, above=0.0)
+    b = Parameter("m", "face width of the gear", nominal=0.05, above=0.0)
+    m_n = Parameter("m", "normal module of the gear", nominal=0.003, above=0.0)
+
+
+class GearChurning(GearInFluid):
+    """Churning of a gear that dips into the oil of its housing, from its geometry. Its `inner` body is the oil.
+
+    How deep it dips follows from the oil's level. Pitch surface and teeth churn; walls close to the gear are not seen.
+    """
+
+    lubricant = Lubricant()
+    sump = Sump()
+
+    height = Parameter("m", "height of the gear's axis above the datum of the housing", nominal=0.1)
+    h = Output("m", "depth by which the pitch circle dips", nominal=0.02, at_least=0.0)
+
+    def torque(self) -> Num:
+        """Churning torque of one gear [N.m]."""
+        oil, sump = self.lubricant, self.sump
+        return gear_churning_torque(self.shaft.w, oil.rho, oil.nu, self.h, sump.V, self.r, self.b, self.m_n)
+
+    def equations(self) -> Iterator[Equation]:
+        """The depth, then what every friction does."""
+        yield equation("depth", self.h, immersion(self.sump.level, self.height, self.r))
+        yield from super().equations()
+
+
+class GearWindage(GearInFluid):
+    """Windage of a gear that runs in air, free of the oil: of note at high pitch line speeds."""
+
+    def torque(self) -> Num:
+        """Windage torque of one gear [N.m]."""
+        return windage_torque(self.shaft.w, self.r, self.b, self.m_n)

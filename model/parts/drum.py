@@ -44,6 +44,10 @@ class DrumOil(OilBath):
         derived=lambda p: math.pi * p.r**2 * p.L * fill_volume_share(p.beta),
     )
 
+    def has(self, name: str) -> bool:
+        """What a drum wets takes the place of a height."""
+        return name != "sump"
+
     def equations(self) -> Iterator[Equation]:
         """An oil bath that tells its level."""
         yield from super().equations()
@@ -148,7 +152,7 @@ class DrumCooling(CylinderCooling):
 
     def forced(self, T_film: Num) -> Num:
         """Rotation and moving air side by side; ends like the shell."""
-        return mixed(super().forced(T_film), forced_rotating_cylinder(self.shaft.w, T_film, self.D))
+        return mixed(super().forced(T_film), forced_rotating_cylinder(self.shaft.w, T_film, self.D, p=self.air.p))
 
     def equations(self) -> Iterator[Equation]:
         """Those of a cylinder, or the printed formula."""

@@ -151,7 +151,7 @@ class WallCooling(Component):
 
     def radiation(self) -> Num:
         """Heat flow rate by radiation [W]."""
-        return radiated(self.surface.T, self.air.T, self.size.A, self.emissivity)
+        return radiated(self.surface.T, self.air.T_radiant, self.size.A, self.emissivity)
 
     def equations(self) -> Iterator[Equation]:
         """Convection and radiation side by side."""
@@ -168,8 +168,8 @@ class FlatWallCooling(WallCooling):
 
     def coefficient(self) -> Num:
         """Plate along the air."""
-        T, T_air, L = self.surface.T, self.air.T, self.size.L
-        return mixed(natural_vertical_plate(T, T_air, L), forced_plate(self.air.v, (T + T_air) / 2, L))
+        T, T_air, L, p = self.surface.T, self.air.T, self.size.L, self.air.p
+        return mixed(natural_vertical_plate(T, T_air, L, p=p), forced_plate(self.air.v, (T + T_air) / 2, L, p=p))
 
 
 class ShellCooling(WallCooling):
@@ -177,8 +177,10 @@ class ShellCooling(WallCooling):
 
     def coefficient(self) -> Num:
         """Cylinder across the air."""
-        T, T_air, D = self.surface.T, self.air.T, self.size.L
-        return mixed(natural_horizontal_cylinder(T, T_air, D), forced_cylinder(self.air.v, (T + T_air) / 2, D))
+        T, T_air, D, p = self.surface.T, self.air.T, self.size.L, self.air.p
+        return mixed(
+            natural_horizontal_cylinder(T, T_air, D, p=p), forced_cylinder(self.air.v, (T + T_air) / 2, D, p=p)
+        )
 
 
 class LinearWallCooling(WallCooling):
@@ -190,7 +192,7 @@ class LinearWallCooling(WallCooling):
 
     def radiation(self) -> Num:
         """Linear in the temperature difference."""
-        return self.h_radiation * self.size.A * (self.surface.T - self.air.T)
+        return self.h_radiation * self.size.A * (self.surface.T - self.air.T_radiant)
 
     def equations(self) -> Iterator[Equation]:
         """Both coefficients do without the temperatures of the moment."""

@@ -16,7 +16,7 @@ from ..laws.oil import (
     walther_constants,
 )
 from ..laws.smooth import Num
-from .ports import COLDEST, HOTTEST, HeatPort, Lubricant
+from .ports import COLDEST, HOTTEST, HeatPort, Lubricant, Sump
 
 
 class LubricantProperties(Component):
@@ -58,16 +58,27 @@ class LubricantProperties(Component):
 
 
 class OilBath(LubricantProperties):
-    """The oil of a gearbox: a body of one temperature that lubricates."""
+    """The oil of a gearbox: a body of one temperature that lubricates.
+
+    With a `level` it has a port `sump` that says how high the oil stands. Heights of a housing count from one datum,
+    its bottom or an axis, for the oil and for all that dips.
+    """
 
     role: ClassVar[str] = "bath"
     scale: ClassVar[tuple[str, ...]] = ("V",)
+
+    sump = Sump()
 
     T = State("K", "temperature of the oil", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
     V = Parameter("m3", "volume of oil at 15 degC", nominal=1e-3, above=0.0)
     c_p = Parameter("J/(kg.K)", "specific heat", nominal=2000.0, above=0.0)
     T_pour = Parameter("K", "pour point, below it the oil does not flow; 0 K: not known", default=0.0, at_least=0.0)
+    level = Parameter("m", "height of the oil's surface at rest above the datum of the housing", 0.1, optional=True)
     Q_flow_external = Input("W", "heat flow rate from outside the model, e.g. a cooler (negative)", nominal=100.0)
+
+    def has(self, name: str) -> bool:
+        """The level is told where it is given."""
+        return name != "sump" or "level" in self.told
 
     def viscosity(self, T: Num) -> Num:
         """Of an oil that flows."""
@@ -78,6 +89,9 @@ class OilBath(LubricantProperties):
         yield equation("one temperature", self.heat.T, self.T)
         C = self.V * self.rho_15 * self.c_p
         yield equation("storage", C * self.der("T"), self.heat.Q_flow + self.Q_flow_external)
+        if self.has("sump"):
+            yield equation("level read", self.sump.level, self.level)
+            yield equation("volume read", self.sump.V, self.V)
         yield from self.properties()
 
     def stored_energy(self) -> Num:

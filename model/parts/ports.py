@@ -1,4 +1,4 @@
-"""The ports of the parts: two that carry power, and six that carry information only."""
+"""The ports of the parts: two that carry power, the others carry information only."""
 
 from __future__ import annotations
 
@@ -29,11 +29,16 @@ class HeatPort(Port):
 
 
 class AirPort(HeatPort):
-    """A heat port to moving air: its temperature and speed are those far from the surface."""
+    """A heat port to moving air: its temperature and speed are those far from the surface.
+
+    What a surface radiates to has a temperature of its own: walls and sky are not always as warm as the air.
+    """
 
     source = "the air of a Room"
 
     v = Potential("m/s", "speed of the air", nominal=1.0)
+    p = Potential("Pa", "pressure of the air", nominal=1e5)
+    T_radiant = Potential("K", "temperature of what the surface radiates to", nominal=300.0)
 
 
 class Flange(Port):
@@ -108,6 +113,17 @@ class OilLevel(Port):
     source = "the level of a DrumOil"
 
     share = Potential("1", "share of the drum's inside that the oil wets", nominal=0.4)
+
+
+class Sump(Port):
+    """How high the oil of a housing stands, and how much of it there is: information, not power."""
+
+    missing = "nothing says how high the oil stands"
+    source = "the sump of an OilBath with a level"
+    absent = "Give the OilBath a level: the height of its surface above the datum of the housing."
+
+    level = Potential("m", "height of the oil's surface at rest above the datum of the housing", nominal=0.1)
+    V = Potential("m3", "volume of oil", nominal=1e-3)
 
 
 class Opening(Port):

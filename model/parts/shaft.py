@@ -89,7 +89,7 @@ class Inertia(Component):
 
     def has(self, name: str) -> bool:
         """Speed and inertia count where the inertia is dynamic."""
-        return bool(self.choices["dynamic"])
+        return name not in ("w", "J") or bool(self.choices["dynamic"])
 
     def equations(self) -> Iterator[Equation]:
         """Torque accelerates, or passes by."""

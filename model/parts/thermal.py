@@ -9,6 +9,8 @@ from ..core.component import Component, Equation, Related, equation
 from ..core.declare import Input, Output, Parameter, State
 from ..laws.conduction import cylinder_wall, fin_efficiency, plane_wall
 from ..laws.convection import (
+    SEA_LEVEL,
+    air_pressure,
     forced_cylinder,
     forced_plate,
     mixed,
@@ -116,7 +118,10 @@ class CylinderWall(Conductor):
 
 
 class Room(Component):
-    """The surroundings: air of a given temperature and speed, and a floor of the same temperature."""
+    """The surroundings: air of a given temperature and speed, and a floor of the same temperature.
+
+    Walls and sky may be warmer or colder than the air, by `dT_radiant`: the sun and a furnace are, and a clear night.
+    """
 
     role: ClassVar[str] = "room"
 
@@ -126,12 +131,18 @@ class Room(Component):
     T = Input("K", "temperature of the room", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
     air_speed = Input("m/s", "speed of the air along the housing", at_least=0.0)
     k_air = Parameter("1", "factor on the speed of the air, 1 for the speed as given", default=1.0, at_least=0.0)
+    altitude = Parameter("m", "height above sea level, where the air is thinner", 500.0, optional=True)
+    dT_radiant = Parameter("K (difference)", "how much warmer than the air it radiates", 10.0, optional=True)
     Q_flow = Output("W", "heat flow rate into the room", nominal=100.0)
 
     def equations(self) -> Iterator[Equation]:
         """The room keeps its temperature whatever it takes."""
         yield equation("air temperature", self.air.T, self.T)
         yield equation("air speed", self.air.v, self.k_air * self.air_speed)
+        p = air_pressure(self.altitude) if "altitude" in self.parameters else SEA_LEVEL
+        yield equation("air pressure", self.air.p, p)
+        T_radiant = self.T + self.dT_radiant if "dT_radiant" in self.parameters else self.T
+        yield equation("radiant temperature", self.air.T_radiant, T_radiant)
         yield equation("floor temperature", self.floor.T, self.T)
         yield equation("heat to the room", self.Q_flow, self.air.Q_flow + self.floor.Q_flow)
 
@@ -193,7 +204,7 @@ class SurfaceCooling(Component):
         T, T_air = self.surface.T, self.air.T
         yield equation("heat transfer coefficient", self.h, mixed(self.natural(), self.forced((T + T_air) / 2)))
         yield equation("convection", self.Q_flow_convection, self.h * self.convecting_area() * (T - T_air))
-        yield equation("radiation", self.Q_flow_radiation, radiated(T, T_air, self.A, self.emissivity))
+        yield equation("radiation", self.Q_flow_radiation, radiated(T, self.air.T_radiant, self.A, self.emissivity))
         yield equation("leaves the surface", self.surface.Q_flow, self.Q_flow_convection + self.Q_flow_radiation)
         yield equation("enters the room", self.air.Q_flow, -self.surface.Q_flow)
 
@@ -216,14 +227,16 @@ class BoxCooling(SurfaceCooling):
         """Mean of vertical, upward and downward faces by area."""
         T, T_air = self.surface.T, self.air.T
         L = self.length * self.width / (2 * (self.length + self.width))  # area over perimeter
-        upward = self.share_top * natural_horizontal_up(T, T_air, L)
-        downward = self.share_bottom * natural_horizontal_down(T, T_air, L)
-        vertical = (1 - self.share_top - self.share_bottom) * natural_vertical_plate(T, T_air, self.height)
+        upward = self.share_top * natural_horizontal_up(T, T_air, L, p=self.air.p)
+        downward = self.share_bottom * natural_horizontal_down(T, T_air, L, p=self.air.p)
+        vertical = (1 - self.share_top - self.share_bottom) * natural_vertical_plate(
+            T, T_air, self.height, p=self.air.p
+        )
         return vertical + upward + downward
 
     def forced(self, T_film: Num) -> Num:
         """Plates along the air."""
-        return forced_plate(self.air.v, T_film, self.length)
+        return forced_plate(self.air.v, T_film, self.length, p=self.air.p)
 
 
 class CylinderCooling(SurfaceCooling):
@@ -235,12 +248,18 @@ class CylinderCooling(SurfaceCooling):
     def natural(self) -> Num:
         """Mean of shell and end faces by area."""
         T, T_air = self.surface.T, self.air.T
-        shell, ends = natural_horizontal_cylinder(T, T_air, self.D), natural_vertical_plate(T, T_air, self.D)
+        shell, ends = (
+            natural_horizontal_cylinder(T, T_air, self.D, p=self.air.p),
+            natural_vertical_plate(T, T_air, self.D, p=self.air.p),
+        )
         return (1 - self.share_ends) * shell + self.share_ends * ends
 
     def forced(self, T_film: Num) -> Num:
         """Cylinder across the air, end faces along it."""
-        shell, ends = forced_cylinder(self.air.v, T_film, self.D), forced_plate(self.air.v, T_film, self.D)
+        shell, ends = (
+            forced_cylinder(self.air.v, T_film, self.D, p=self.air.p),
+            forced_plate(self.air.v, T_film, self.D, p=self.air.p),
+        )
         return (1 - self.share_ends) * shell + self.share_ends * ends
 
 

@@ -20,6 +20,7 @@ UNITS = {
     **dict.fromkeys(("k", "k_fin"), "W/(m.K)"),
     **dict.fromkeys(("d", "D", "d_m", "B", "d_sh"), "m"),
     **dict.fromkeys(("X_L", "s_p", "t_p", "R_1", "R_2", "S_1", "S_2", "Y", "K_Z", "K_L", "emissivity", "Pr"), "1"),
+    **dict.fromkeys(("R_3", "R_4", "S_3", "S_4"), "1"),
     **{"T_pour": "K", "alpha_T": "1/K", "c_p": "J/(kg.K)", "C_0": "N", "c_sh": "N.m/m2"},
 }
 LUBRICANT = {"nu_40", "nu_100", "rho_15", "alpha_T", "X_L", "s_p", "t_p"}

@@ -35,6 +35,9 @@ NOMINAL = {
     **{"F_r": 2000.0, "F_a": 1500.0, "R_1": 3.9e-7, "R_2": 1.7, "C_0": 64e3, "S_1": 3.2e-3, "S_2": 36.5, "Y": 1.4},
     **{"phi_bl": 0.3, "mu_bl": 0.1, "mu_EHL": 0.02, "mu_sl": 0.05, "B": 0.028, "H": 0.03, "V_M": 3e-4, "level": 0.4},
     **{"phi_ish": 0.9, "T_pour": 240.0, "f_0": 7.0, "f_1": 2e-4, "P_1": 5000.0, "d_sh": 0.085, "c_sh": 73.4, "c": 50.0},
+    **{"R_3": 2.8e-6, "R_4": 5.8, "S_3": 8.8e-3, "S_4": 117.0, "psi": 1e-3, "tau_0": 1.0, "C_trans": 1.0},
+    **{"altitude": 800.0},
+    **{"V": 2e-3, "depth": 0.25, "volume": 0.5, "Fr": 350.0, "width": 0.15},
     **{"T_film": 310.0, "Pr": 0.7, "Re": 5e4, "h_natural": 5.0, "h_forced": 7.0, "A": 0.6},
     **{"T_s": 340.0, "T_f": 300.0, "L": 0.3, "height": 0.3, "v": 1.5, "T_1": 340.0, "T_2": 300.0, "emissivity": 0.9},
     **{"K": 0.8125, "Zp": 40.0, "Zc": 39.0, "Rp": 0.064, "e": 0.0013, "r_rp": 0.003, "theta": 1.0, "kappa": 215.0},
@@ -87,6 +90,14 @@ OWN = {
     "pad.fill_volume_share": {"beta": 0.5},
     "churning.churning_loss": {"a": 2.5, "b": 0.3},
     "churning.churning_torque": {"a": 2.5, "b": 0.3},
+    "load_variables.acb_rolling_variable": {"R_3": 2.44e-12},
+    "load_variables.acb_sliding_variable": {"S_3": 2.44e-12},
+    **{f"journal.{key}": {"r": 0.03, "b": 0.05} for key in ("petrov_torque", "film_torque", "solid_share")},
+    "sealing.oil_seal_torque": {"nu_40": 220e-6},
+    "gear_churning.submerged_area": {"h": 0.04, "r": 0.08, "b": 0.024},
+    "gear_churning.fast_share": {"w": 250.0, "r": 0.08, "b": 0.024},
+    "gear_churning.gear_churning_torque": {"h": 0.04, "r": 0.08, "b": 0.024},
+    "gear_churning.windage_torque": {"r": 0.08, "b": 0.024},
     "film_line.moes_central": {"L": 10.0},
     "film_point.nijenbanning_central": {"L": 10.0, "D": 0.8},
     "film_point.hamrock_dowson_central": {"k": 1.5},
@@ -108,6 +119,7 @@ ZERO = {
 NOT_NEGATIVE = {"P_a", "h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c", "T_pour"}
 #: Torques and losses: magnitudes, never negative.
 MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.", "film_line.", "film_point.")
+MAGNITUDES += ("gear_churning.", "load_variables.", "journal.")
 MAGNITUDES += ("cycloid.", "iso14179_1.", "iso14179_2.")
 
 

@@ -1,0 +1,152 @@
+"""Churning of a gear that dips into oil, and windage of one in air, from their geometry.
+
+Heights and depths are those of the pitch circle: a gear of radius r dips by h = level - (height of its axis - r).
+"""
+
+from __future__ import annotations
+
+import math
+
+import casadi as ca
+
+from ..sources import law
+from .smooth import SPEED_WIDTH, Num, smooth_abs, smooth_cap, smooth_max, smooth_power
+
+#: Acceleration of gravity [m/s2].
+GRAVITY = 9.81
+
+#: Working depth of a tooth with its clearance, in modules, and the pressure angle: standard gears.
+TOOTH_HEIGHT, PRESSURE_ANGLE = 2.25, math.radians(20)
+
+
+def immersion(level: Num, height: Num, r: Num, *, rounding: float = 0.01) -> Num:
+    """Depth by which a gear dips [m]: above zero, and below its diameter, both smoothly.
+
+    Args:
+        level: height of the oil's surface above a datum [m]
+        height: height of the axis above the same datum [m]
+        r: pitch radius [m]
+        rounding: depth over radius at which a gear leaves the oil [1]
+    """
+    return smooth_cap(smooth_max(level - height + r, 0.0, rounding * r), 1.99 * r)
+
+
+@law(source="Changenet2007", where="submerged surface area", valid="standard teeth", verified=False)
+def submerged_area(h: Num, r: Num, b: Num) -> Num:
+    r"""Area of a gear in the oil [m2]: faces, cylinder and flanks of the teeth.
+
+    .. math:: S_m = r^2 (2 \theta - \sin 2 \theta) + 2 r b \theta + \frac{2 z \theta h_z b}{\pi \cos\alpha \cos\beta},
+        \quad \cos\theta = 1 - h/r
+
+    With z = 2 r cos(beta) / m_n and teeth 2.25 modules high at 20 deg, module and helix angle cancel.
+
+    Args:
+        h: depth by which the gear dips [m]
+        r: pitch radius [m]
+        b: face width [m]
+    """
+    theta = ca.acos(1 - h / r)
+    flanks = 4 * TOOTH_HEIGHT / (math.pi * math.cos(PRESSURE_ANGLE))
+    return r**2 * (2 * theta - ca.sin(2 * theta)) + (2 + flanks) * r * b * theta
+
+
+@law(source="Changenet2007", where="dimensionless torque at low speed", valid="gear away from walls", verified=False)
+def slow_churning(depth: Num, volume: Num, Fr: Num, Re: Num) -> Num:
+    r"""Dimensionless churning torque where the oil follows the gear [1].
+
+    .. math:: C_m = 1.366 \left(\frac{h}{D}\right)^{0.45} \left(\frac{V}{D^3}\right)^{0.1} Fr^{-0.6} Re^{-0.21}
+
+    Args:
+        depth: depth by which the gear dips over its pitch diameter [1]
+        volume: volume of oil over the cube of the pitch diameter [1]
+        Fr: Froude number w^2 r / g [1]
+        Re: Reynolds number w r^2 / nu [1]
+    """
+    return 1.366 * depth**0.45 * volume**0.1 * Fr**-0.6 * Re**-0.21
+
+
+@law(source="Changenet2007", where="dimensionless torque at high speed", valid="gear away from walls", verified=False)
+def fast_churning(depth: Num, volume: Num, Fr: Num, width: Num) -> Num:
+    r"""Dimensionless churning torque where the oil is thrown off; viscosity does not count [1].
+
+    .. math:: C_m = 3.644 \left(\frac{h}{D}\right)^{0.1} \left(\frac{V}{D^3}\right)^{-0.35} Fr^{-0.88}
+        \left(\frac{b}{D}\right)^{0.85}
+
+    Args:
+        depth: depth by which the gear dips over its pitch diameter [1]
+        volume: volume of oil over the cube of the pitch diameter [1]
+        Fr: Froude number w^2 r / g [1]
+        width: face width over pitch diameter [1]
+    """
+    return 3.644 * depth**0.1 * volume**-0.35 * Fr**-0.88 * width**0.85
+
+
+@law(source="Changenet2011", where="flow regimes by the centrifugal acceleration", verified=False)
+def fast_share(w: Num, r: Num, b: Num, m_n: Num, *, sharpness: int = 16) -> Num:
+    r"""Share of the regime of high speed [1], all but 0 below 750 m/s2 and 1 above 1250 m/s2.
+
+    .. math:: s = \frac{x^{16}}{1 + x^{16}},\quad x = \frac{\omega^2 (r b m_n)^{1/3}}{1000\,\mathrm{m/s^2}}
+
+    The source goes from one to the other in a straight line, with two corners.
+
+    Args:
+        w: speed of the gear, either direction [rad/s]
+        r: pitch radius [m]
+        b: face width [m]
+        m_n: normal module [m]
+        sharpness: of the change, even [1]
+    """
+    x = (w * w * (r * b * m_n) ** (1 / 3) / 1000) ** sharpness
+    return x / (1 + x)
+
+
+@law(
+    source="Changenet2007",
+    where="churning torque from submerged area and dimensionless torque",
+    valid="one gear of automotive size away from walls, dipping by no more than its radius",
+    ranges={"h / r": (0.0, 1.0)},
+    verified=False,
+)
+def gear_churning_torque(
+    w: Num, rho: Num, nu: Num, h: Num, V: Num, r: Num, b: Num, m_n: Num, *, w_width: float = SPEED_WIDTH
+) -> Num:
+    r"""Torque with which oil brakes a gear that dips into it [N.m], a magnitude, zero at standstill.
+
+    .. math:: \tau = \tfrac{1}{2} \rho \omega^2 S_m r^3 C_m
+
+    Near the surface, below a twentieth of the radius, it fades to that of a gear in air.
+
+    Args:
+        w: speed of the gear, either direction [rad/s]
+        rho: density of the oil [kg/m3]
+        nu: kinematic viscosity of the oil [m2/s]
+        h: depth by which the gear dips, see `immersion` [m]
+        V: volume of oil in the housing [m3]
+        r: pitch radius [m]
+        b: face width [m]
+        m_n: normal module [m]
+        w_width: rounding at standstill [rad/s]
+    """
+    speed, D = smooth_abs(w, w_width), 2 * r
+    Fr, Re = speed**2 * r / GRAVITY, speed * r**2 / nu
+    slow, fast = slow_churning(h / D, V / D**3, Fr, Re), fast_churning(h / D, V / D**3, Fr, b / D)
+    C_m = slow + (fast - slow) * fast_share(w, r, b, m_n)
+    wetted = h**2 / (h**2 + (0.01 * r) ** 2)  # a gear above the oil has none of it
+    return 0.5 * rho * w**2 * wetted * submerged_area(h, r, b) * r**3 * C_m
+
+
+@law(source="Maurer1994", where="windage torque of a gear in air", valid="air at sea level", verified=False)
+def windage_torque(w: Num, r: Num, b: Num, m_n: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+    r"""Torque with which air brakes a gear that runs free of oil [N.m], a magnitude, zero at standstill.
+
+    .. math:: \tau = 1.37 \cdot 10^{-9} v_t^{1.9} d^{1.6} b^{0.52} m_n^{0.69} \;[\mathrm{m/s, mm}]
+
+    Args:
+        w: speed of the gear, either direction [rad/s]
+        r: pitch radius [m]
+        b: face width [m]
+        m_n: normal module [m]
+        w_width: rounding at standstill [rad/s]
+    """
+    d_mm, b_mm, m_mm = 2e3 * r, 1e3 * b, 1e3 * m_n
+    return 1.37e-9 * smooth_power(w * r, 1.9, w_width * r) * d_mm**1.6 * b_mm**0.52 * m_mm**0.69

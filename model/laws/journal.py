@@ -1,0 +1,85 @@
+"""Plain journal bearings: friction of the oil film, and where the film begins to carry."""
+
+from __future__ import annotations
+
+import math
+
+import casadi as ca
+
+from ..sources import law
+from .smooth import SPEED_WIDTH, Num, smooth_abs, smooth_magnitude
+
+
+@law(
+    source="Hamrock2004",
+    where="Petrov's law",
+    valid="journal in the middle of its bearing, full of oil",
+    verified=False,
+)
+def petrov_torque(w: Num, eta_oil: Num, r: Num, b: Num, psi: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+    r"""Friction torque of an unloaded journal bearing [N.m].
+
+    .. math:: \tau_0 = \frac{2 \pi \eta \omega r^2 b}{\psi}
+
+    Args:
+        w: speed of the journal against the bearing, either direction [rad/s]
+        eta_oil: dynamic viscosity in the film [Pa.s]
+        r: radius of the journal [m]
+        b: width of the bearing [m]
+        psi: relative clearance, bearing less journal diameter over journal diameter [1]
+        w_width: rounding at standstill [rad/s]
+    """
+    return 2 * math.pi * eta_oil * smooth_abs(w, w_width) * r**2 * b / psi
+
+
+@law(
+    source="Vogelpohl1967",
+    where="friction coefficient 3 psi / sqrt(So) of the loaded bearing",
+    valid="laminar film, width about the diameter",
+    verified=False,
+)
+def film_torque(
+    tau_0: Num, F_r: Num, w: Num, eta_oil: Num, r: Num, b: Num, *, w_width: float = SPEED_WIDTH, F_width: float = 1.0
+) -> Num:
+    r"""Friction torque of the film of a journal bearing under load [N.m].
+
+    .. math:: \tau = \sqrt{\tau_0^2 + \left(\frac{3 \psi}{\sqrt{So}} F r\right)^2},\quad
+        \frac{3 \psi}{\sqrt{So}} F r = \sqrt{18 F \eta \omega r^3 b},\quad So = \frac{F \psi^2}{2 r b \eta \omega}
+
+    The source has one formula below So = 1 and the other above; together they meet both ends smoothly.
+
+    Args:
+        tau_0: torque without load, see `petrov_torque` [N.m]
+        F_r: radial load [N]
+        w: speed of the journal against the bearing, either direction [rad/s]
+        eta_oil: dynamic viscosity in the film [Pa.s]
+        r: radius of the journal [m]
+        b: width of the bearing [m]
+        w_width: rounding at standstill [rad/s]
+        F_width: rounding at zero load [N]
+    """
+    return ca.sqrt(tau_0**2 + 18 * smooth_magnitude(F_r, F_width) * eta_oil * smooth_abs(w, w_width) * r**3 * b)
+
+
+@law(source="Vogelpohl1967", where="transition speed", verified=False)
+def solid_share(
+    w: Num, F_r: Num, eta_oil: Num, r: Num, b: Num, C_trans: Num, *, w_width: float = SPEED_WIDTH, F_width: float = 1.0
+) -> Num:
+    r"""Share of the load that solids carry in mixed friction [1], 1 at rest and 1/e at the transition speed.
+
+    .. math:: s = e^{-(n/n_t)^2},\quad n_t = \frac{10^{-7} F}{C \eta V}\;[\mathrm{rpm}],\quad V = \pi r^2 b
+
+    The source has the speed; the form of the share is that of the Stribeck curve in control engineering.
+
+    Args:
+        w: speed of the journal against the bearing, either direction [rad/s]
+        F_r: radial load [N]
+        eta_oil: dynamic viscosity in the film [Pa.s]
+        r: radius of the journal [m]
+        b: width of the bearing [m]
+        C_trans: transition constant, about 1 for a good surface [1]
+        w_width: rounding at standstill [rad/s]
+        F_width: rounding at zero load [N]
+    """
+    n_t = 1e-7 * smooth_abs(F_r, F_width) / (C_trans * eta_oil * math.pi * r**2 * b)
+    return ca.exp(-((w * 30 / math.pi / n_t) ** 2))
