@@ -21,7 +21,7 @@ from .found import Found, Hypothesis
 from .gross import MOST as MOST_ASIDE
 from .gross import after_all, outliers
 from .prior import Prior
-from .problem import Aside, Problem
+from .problem import Acting, Aside, Problem
 
 #: Prior odds of a remainder beside a hypothesis.
 OUTSIDE = 0.06
@@ -30,6 +30,8 @@ OUTSIDE = 0.06
 WITHIN, SHARE, CAUSES, LEAST = 12.0, 0.35, 12, 4
 #: Further forms of those that fit well: at most so many, forms of one cause; how much more than it looks one may be.
 FURTHER, EACH, MORE = 8, 4, 4.0
+#: Forms of one side of a quantity that are fitted where the leader acts there.
+SAME = 6
 #: Pairs that look best, those fitted of them and of such as are grown from some singles, those fitted because they are
 #: like the best one, and how far behind the best hypothesis a pair may promise to be.
 COUPLES, PAIRS, GROWN, LIKE, BEHIND = 40, 5, 3, 4, 5.0
@@ -211,6 +213,31 @@ class Search:
                 if (more_fit := self._alone(int(k))) is not None:
                     lead = max(lead, more_fit.evidence + prior[k])
 
+    def _same_side(self, log_bf: np.ndarray) -> None:
+        """Where the leader acts on one side of a quantity, fits the best-looking forms of others from its threshold."""
+        value = self._value(log_bf)
+        worth = {k: fit.evidence + value[k] - log_bf[k] for k, fit in self._fits.items() if fit}
+        lead = max(worth, key=lambda k: worth[k])
+        sides = [f.form.regime.get("quantity") for f in self.formulas]
+        alike = [int(k) for k in np.argsort(-value) if sides[lead] and sides[k] == sides[lead] and k != lead][:SAME]
+        places = [[shape.name for shape in f.form.shapes] for f in self.formulas]
+        if not alike or "threshold" not in places[lead]:
+            return
+        at = self._fits[lead].look.acting[0].t[1 + places[lead].index("threshold")]  # type: ignore[union-attr]
+        moved = []
+        for k in alike:
+            t = np.r_[0.0, self.first.start(k).acting.t[1:]]
+            t[1 + places[k].index("threshold")] = at
+            moved.append(Acting(self.formulas[k], t))
+        look, null = self.null.look, self.null
+        effects = self.problem.tangents(look.z, look.acting, moved)
+        found = screen.judged(tuple(moved), np.array(alike), effects, null.views(self.problem))
+        for k in alike:
+            fits = [self._alone(k)]
+            with suppress(SolveError):
+                fits.append(joined(self.problem, null, [found.start(k)]))
+            self._fits[k] = max((f for f in fits if f), key=lambda fit: fit.evidence, default=None)
+
     def _singles(self) -> list[Hypothesis]:
         """Every cause alone: its leading forms fitted, the others as they look at first."""
         log_bf = self.first.by_form(len(self.formulas))
@@ -222,6 +249,7 @@ class Search:
             self._alone(int(k))
         if self.p_any < QUIET:
             self._further(log_bf)
+            self._same_side(log_bf)
         fits = {k: fit for k, fit in self._fits.items() if fit is not None}
         found = []
         for cause in dict.fromkeys(self.formulas[k].cause.id for k in fits):

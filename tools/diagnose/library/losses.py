@@ -168,7 +168,7 @@ def mesh_friction(at: Context, places: Sequence[Place]) -> Cause:
     return Cause(
         id="losses.mesh_friction",
         doc="A loss that grows with load: friction of the teeth, roughness, additives.",
-        size=at.power("loss of all teeth", 0.07, -0.3, 1.2),
+        size=at.power("loss of all teeth", 0.07, -0.6, 1.2),
         forms=Extras("mesh", at).losses(places, shapes, at.regimes(("w", "tau", "T", "order"))),
         exposes="points at small and at large load, at one speed",
         acts_on=at.first("torque"),
