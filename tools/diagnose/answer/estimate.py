@@ -205,9 +205,12 @@ def impact(
     own = np.concatenate([np.arange(begin, begin + a.formula.size) for begin, a in spans if a in moved])
     covariance = posterior(problem, h)[1][np.ix_(own, own)]
     found = {}
+    run = np.isfinite(change)  # without the cause the machine may run away at some points
     for name, weights in means.items():
+        if not (share := np.abs(weights[run]).sum() / np.abs(weights).sum()):
+            continue
         slope = weights @ fit.look.jacobian[problem.own][:, own]
-        value, sd = float(weights @ change), float(np.sqrt(slope @ covariance @ slope))
+        value, sd = float(weights[run] @ change[run] / share), float(np.sqrt(slope @ covariance @ slope))
         found[name] = Impact(value, (value - WIDE * sd, value + WIDE * sd))
     return found
 
