@@ -197,6 +197,7 @@ class _Loader:
             losses={column: tuple(summed) for column, summed in self.table.losses.items()},
             value_sources=self.value_sources,
             uncertainties={f"{name}.{key}": u for name, part in parts.items() for key, u in part.uncertainties.items()},
+            units={f"{name}.{key}": unit for name, part in parts.items() for key, unit in part.units.items()},
             overrides=tuple(o for part in parts.values() for o in part.overrides),
             entries={name: part.entries for name, part in parts.items() if part.entries},
             errata=tuple(Erratum(e.place, e.says, e.should_be, e.evidence) for e in self.table.errata),

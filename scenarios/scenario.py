@@ -38,6 +38,7 @@ class Scenario:
         losses: column of the losses table -> outputs that are summed
         value_sources: path -> where its value is from
         uncertainties: path -> standard uncertainty of its value in SI, where the rig states one
+        units: path -> unit in which its value is written
         overrides: values that stand in the place of their catalogue's
         entries: part -> kind of catalogue -> name of the entry it was filled from
         protocol: how measured tables of this rig are taken
@@ -56,6 +57,7 @@ class Scenario:
     losses: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     value_sources: Mapping[str, str] = field(default_factory=dict)
     uncertainties: Mapping[str, float] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
     overrides: tuple[Override, ...] = ()
     entries: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     errata: tuple[Erratum, ...] = ()

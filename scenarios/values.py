@@ -66,12 +66,14 @@ OTHERS = (1e-30, 1e30)
 class PartValues:
     """What the table of one part gives: SI values and choices, where each is from, and all that is wrong.
 
-    `uncertainties` holds the standard uncertainty of the values that state one, in the unit of the value.
+    `uncertainties` holds the standard uncertainty of the values that state one, in the unit of the value; `units` the
+    unit in which a value is written, for those that have one.
     """
 
     values: dict[str, Any] = field(default_factory=dict)
     sources: dict[str, str] = field(default_factory=dict)
     uncertainties: dict[str, float] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
     entries: dict[str, str] = field(default_factory=dict)
     overrides: list[Override] = field(default_factory=list)
     problems: list[str] = field(default_factory=list)
@@ -104,7 +106,7 @@ def in_range(where: str, raw: object, quantity: Quantity) -> float:
     unit = quantity.unit.removesuffix("(difference)").strip()
     if (broken := quantity.bound(value)) is not None:
         words, number = broken
-        theirs = spelled(split(raw)[1]) if isinstance(raw, str) and "(" not in quantity.unit else ""
+        theirs = unit_of(raw) if "(" not in quantity.unit else ""
         known = f"{in_unit(number, theirs):.6g} {theirs}" if theirs else f"{number:g} {unit}"
         raise ScenarioError(f"{name} = {written} is out of range. It must be {words} {known.removesuffix(' 1')}.")
     least, most = SENSIBLE.get(quantity.unit, OTHERS)
@@ -114,6 +116,15 @@ def in_range(where: str, raw: object, quantity: Quantity) -> float:
             " Check its unit and its exponent."
         )
     return value
+
+
+def unit_of(raw: object) -> str:
+    """The unit in which a value is written, "" without one.
+
+    Args:
+        raw: a number, or text with a unit ("62 mm")
+    """
+    return spelled(split(raw)[1]) if isinstance(raw, str) else ""
 
 
 def meant(key: str, known: Mapping[str, str]) -> str | None:
@@ -220,6 +231,8 @@ class _PartReader:
             entries = ", ".join(self.result.entries.values())
             self.result.overrides.append(Override(f"{self.name}.{key}", value, values[key], entries))
         values[key] = value
+        if unit := unit_of(raw):
+            self.result.units[key] = unit
         return True
 
     def _take_uncertainties(self, table: object) -> None:

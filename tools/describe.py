@@ -10,7 +10,7 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import SolveError
 from ..model.run.steady import steady
 from ..model.sources import LawInfo, sources
-from ..model.units import from_si, shown, text
+from ..model.units import from_si, in_unit, shown, text
 from ..scenarios.scenario import Scenario
 from .console import answer, say, table
 from .points import conditions, outside_of, tell_outside
@@ -18,9 +18,12 @@ from .rigs import load
 from .settings import flat_of
 from .unchecked import print_unchecked, unchecked
 
+#: SI units of what everyone reads in degC and rpm, however it is written.
+TEMPERATURE_AND_SPEED = ("K", "rad/s")
+
 
 def show_command(rig: str, errata: bool, json: str | None) -> None:
-    """Everything a rig file says, in SI where unit and value stand apart and as shown to a person otherwise."""
+    """Everything a rig file says, its parameters in the units of the file; in JSON in those of all commands, too."""
     scenario = load(rig)
     flat, types = flat_of(scenario), scenario.spec.types
     found = {
@@ -136,7 +139,10 @@ def _parameter(scenario: Scenario, flat: FlatModel, q: Quantity) -> dict[str, An
     own = q.name.rpartition(".")[0] + "."
     if follows := ", ".join(path.removeprefix(own) for path in flat.derived.get(q.name, ())):
         source = f"follows from {follows}"
-    return {**_line(q), "kind": kind, "uncertainty": known, "source": source}
+    unit = scenario.units.get(q.name, "") if q.unit not in TEMPERATURE_AND_SPEED else ""
+    written = [in_unit(v, unit) if unit and v is not None else v for v in (q.start, sd)]
+    as_written = {"value": written[0], "uncertainty": written[1], "unit": unit} if unit else None
+    return {**_line(q), "kind": kind, "uncertainty": known, "source": source, "written": as_written}
 
 
 def _doc(cls: type) -> str:
@@ -150,7 +156,7 @@ def _print(found: dict[str, Any]) -> None:
     valued = ("name", "value", "unit", "doc")
     table("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")))
     known = ("name", "value", "kind", "uncertainty", "unit", "doc", "source")
-    table("Parameters", known, _rows(found["parameters"], known))
+    table("Parameters", known, _rows([{**p, **(p["written"] or {})} for p in found["parameters"]], known))
     table("Choices", ("name", "value", "doc"), _rows(found["choices"], ("name", "value", "doc")))
     table("Inputs", (*valued, "source"), _rows(found["inputs"], (*valued, "source")))
     table("States (with start value)", valued, _rows(found["states"], valued))

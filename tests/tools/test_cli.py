@@ -154,6 +154,15 @@ def test_show_errata_prints_what_the_source_should_say(gearheat):
     assert "no corrections" in gearheat("show", "helical_two_stage", "--errata").out
 
 
+def test_show_has_the_units_of_the_rig_file(gearheat):
+    shown = {line["name"]: line for line in gearheat("show", "planetary", "--json", "-").json["parameters"]}
+    assert (shown["oil.V"]["value"], shown["oil.V"]["unit"]) == (pytest.approx(0.001), "m3")
+    assert shown["oil.V"]["written"] == {"value": pytest.approx(1.0), "uncertainty": None, "unit": "l"}
+    assert all(line["written"] is None for line in shown.values() if line["unit"] in ("degC", "rpm"))
+    lines = [line.split() for line in gearheat("show", "planetary").out.splitlines()]
+    assert next(line[1] for line in lines if line[:1] == ["oil.V"]) == "1"
+
+
 def test_steady_takes_values_with_units_and_closes_the_power_balance(gearheat):
     answer = gearheat(
         "steady", "planetary", "--json", "-",
