@@ -15,7 +15,7 @@ from ..diagnose.report.predictions import predictions_text
 from ..diagnose.report.screen import text
 from ..diagnose.request import Inputs, PlanInputs, PlanRequest, Request, read, read_plan
 from ..model.errors import DataError, GearheatError
-from .console import as_json, file_of, writable, write
+from .console import as_json, file_of, screen_width, writable, write
 
 #: Told of each stage and of the share of the work that is done.
 Progress = Callable[[str, float], None]
@@ -74,7 +74,12 @@ def diagnose_command(
     for path, content in made.items():
         if path is not None:
             write(path, content)
-    print(as_json(as_object(findings)) if outputs.json == "-" else text(findings, everything=everything), end="")
+    print(
+        as_json(as_object(findings))
+        if outputs.json == "-"
+        else text(findings, everything=everything, width=screen_width()),
+        end="",
+    )
 
 
 def _inference() -> Infer:
@@ -114,7 +119,7 @@ def plan_command(
         write(out, plans.picture(plan, PICTURES[out.suffix.lower()]))
     if (path := file_of(json)) is not None:
         write(path, found)
-    print(found if json == "-" else plans.text(plan, everything=everything), end="")
+    print(found if json == "-" else plans.text(plan, everything=everything, width=screen_width()), end="")
 
 
 def _planning() -> Find:

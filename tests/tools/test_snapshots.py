@@ -14,7 +14,9 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import fabricated_findings
 import pytest
+from gearheat.diagnose.report.screen import text
 from gearheat.tools import (
     console,
     describe,
@@ -32,6 +34,7 @@ from gearheat.tools import (
 )
 from gearheat.tools.compare import compare
 from gearheat.tools.console import cell, table
+from gearheat.tools.reference import command as reference
 from gearheat.tools.rivals import rivals
 
 FOLDER = Path(__file__).parent / "snapshots"
@@ -61,6 +64,7 @@ COMMANDS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
     "sweep": (sweep, ("sweep", "helical_two_stage", "--vary", "room.T=10..30 degC", "--grid", "3", "-o", "out.csv",
                       "--output", "oil.T,efficiency.eta,stage_1.P_loss")),
     "losses": (losses, ("losses", "helical_two_stage", "--temperature", "model")),
+    "losses_method": (reference, ("losses", "helical_two_stage", "--method", "iso14179-1")),
     "verify": (verify, ("verify", "fzg_four_square")),
 }  # fmt: skip
 #: What is round-off or depends on the machine, and what stands in its place.
@@ -121,6 +125,12 @@ def test_commands_print_what_they_did(gearheat, at_both, tmp_path, monkeypatch, 
 
 def test_a_comparison_prints_what_it_did(at_both, rows):
     at_both("compare", lambda: summary.show(compare(rows), rivals(rows, ["n_carrier_rpm", "T_carrier_Nm"])))
+
+
+@pytest.mark.parametrize("kind", ["clean", "explained", "ambiguous", "unexplained"])
+def test_a_diagnosis_prints_what_it_did(at_both, kind):
+    found = getattr(fabricated_findings, kind)()
+    at_both(f"diagnose_{kind}", lambda: print(text(found, everything=True, width=console.screen_width()), end=""))
 
 
 def test_one_row_of_many_numbers_goes_on_below(at_both):

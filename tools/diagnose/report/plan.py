@@ -135,26 +135,28 @@ def _classes(plan: Plan) -> dict[str, list[str]]:
     return found
 
 
-def text(plan: Plan, *, everything: bool = False) -> str:
+def text(plan: Plan, *, everything: bool = False, width: int | None = None) -> str:
     """The plan as text.
 
     Args:
         plan: the plan
         everything: all experiments, and all causes in the table of what the design tells
+        width: columns of the screen, None where there is none
     """
-    found = [paragraph("answer", sentence(plan))] if plan.verdict else []
+    found = [paragraph("answer", sentence(plan), width)] if plan.verdict else []
     if plan.now is not None:
-        found.append(drawn(_experiments(plan, everything)))
+        found.append(drawn(_experiments(plan, everything), width))
     for why, ids in _classes(plan).items():
-        found.append(paragraph("one answer", f"{names_of(ids)} ({why}). What would tell: {_exposes(plan, ids)}."))
+        line = f"{names_of(ids)} ({why}). What would tell: {_exposes(plan, ids)}."
+        found.append(paragraph("one answer", line, width))
     for c in (c for c in plan.causes if c.visible < plan.apart):
         size = phrases.with_unit(c.usual, c.unit)
         seen = phrases.number(c.visible, 2)
         line = f"{name_of(c.id)} of usual size ({c.size} {size}) would show at only {seen} standard deviations."
-        found.append(paragraph("faint", line))
+        found.append(paragraph("faint", line, width))
     if plan.isolability and (everything or plan.verdict is None):
-        found.append(drawn(isolability(plan.isolability)))
-    found += [paragraph("warning", w) for w in plan.warnings]
+        found.append(drawn(isolability(plan.isolability), width))
+    found += [paragraph("warning", w, width) for w in plan.warnings]
     return "\n".join(found) + "\n"
 
 

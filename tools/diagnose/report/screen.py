@@ -13,16 +13,18 @@ from . import phrases
 from .findings import Findings
 from .tables import Table, tables
 
-#: Width of the text, of tables, and of the words before each paragraph; warnings on the first screen.
+#: Width of the text at most, of tables where no screen limits them, of the words before each paragraph; warnings on
+#: the first screen.
 WIDTH, WIDE, LEFT, WARNINGS = 110, 150, 11, 3
 
 
-def text(findings: Findings, *, everything: bool = False) -> str:
+def text(findings: Findings, *, everything: bool = False, width: int | None = None) -> str:
     """The result as text.
 
     Args:
         findings: with their words
         everything: all tables and warnings, not the first screen alone
+        width: columns of the screen, None where there is none
     """
     said = findings.says
     lines = [("verdict", said.verdict), ("do now", said.do), ("size", said.size), ("how sure", said.sure)]
@@ -33,26 +35,50 @@ def text(findings: Findings, *, everything: bool = False) -> str:
     lines += [("warning", w) for w in shown]
     if more := len(findings.warnings) - len(shown):
         lines.append(("", f"{more} more warnings: --all"))
-    found = [paragraph(word, line) for word, line in lines if line]
+    found = [paragraph(word, line, width) for word, line in lines if line]
     if everything:
-        found += [drawn(t) for t in tables(findings)]
+        found += [drawn(t, width) for t in tables(findings)]
     return "\n".join(found) + "\n"
 
 
-def paragraph(word: str, line: str) -> str:
-    """A text with a word to its left."""
-    return textwrap.fill(line, WIDTH, initial_indent=f"{word:<{LEFT}}", subsequent_indent=" " * LEFT)
+def paragraph(word: str, line: str, width: int | None = None) -> str:
+    """A text with a word to its left.
+
+    Args:
+        word: to the left
+        line: the text
+        width: columns of the screen, None where there is none
+    """
+    return _filled(line, width, initial_indent=f"{word:<{LEFT}}", subsequent_indent=" " * LEFT)
 
 
-def drawn(table: Table) -> str:
-    """A table as text."""
+def drawn(table: Table, width: int | None = None) -> str:
+    """A table as text. No word or number is broken: where there is no room, the last columns are left out, and named.
+
+    Args:
+        table: the table
+        width: columns of the screen, None where there is none
+    """
+    words = [[cell.split() for cell in column] for column in zip(table.columns, *table.rows, strict=True)]
+    least = [max((len(word) for cell in column for word in cell), default=0) for column in words]
+    room = min(width or WIDE, WIDE)
+    kept = len(least)
+    while kept > 2 and sum(least[:kept]) + 3 * kept + 1 > room:
+        kept -= 1
     made = Drawn(title=table.title, title_justify="left", box=box.SIMPLE_HEAD)
-    for column in table.columns:
-        made.add_column(column, overflow="fold")
+    for column, cells, n in zip(table.columns[:kept], words, least, strict=False):
+        made.add_column(column, overflow="fold", min_width=n, no_wrap=all(len(cell) < 2 for cell in cells))
     for row in table.rows:
-        made.add_row(*row)
+        made.add_row(*row[:kept])
     out = io.StringIO()
-    Console(file=out, width=WIDE, markup=False, emoji=False, highlight=False).print(made)
+    Console(file=out, width=room, markup=False, emoji=False, highlight=False).print(made)
+    if left := ", ".join(table.columns[kept:]):
+        out.write(_filled(f"left out for want of room: {left}; widen the screen, or take --json", width) + "\n")
     if table.note:
-        out.write(textwrap.fill(table.note, WIDTH) + "\n")
+        out.write(_filled(table.note, width) + "\n")
     return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
+
+
+def _filled(line: str, width: int | None, **indents: str) -> str:
+    room = min(width or WIDTH, WIDTH)
+    return textwrap.fill(line, room, break_long_words=False, break_on_hyphens=False, **indents)
