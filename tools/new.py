@@ -174,7 +174,15 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
     ]
     gears = [{"x": x, "r": r} for x, r in zip(s.places, radii, strict=False)]
     support = ("", "ShaftSupport", "TwoGearSupport")[len(gears)]
-    return {"name": names[k], "support": support, "gears": gears, "span": s.span, "bearings": places, "d": s.d}
+    return {
+        "name": names[k],
+        "support": support,
+        "gears": gears,
+        "span": s.span,
+        "bearings": places,
+        "d": s.d,
+        "d_torsion": s.d_torsion,
+    }
 
 
 def _bodies(made: Unit) -> dict[str, float]:

@@ -44,11 +44,14 @@ RATINGS = {
 
 @dataclass(frozen=True)
 class Shaft:
-    """A shaft: torque, speed [1/s], diameter, places of its gears and bearing b, both bearings with their lives [h]."""
+    """A shaft: torque, speed [1/s], diameter of its larger seat and that by torsion, places of its gears and bearing b,
+    both bearings with their lives [h].
+    """
 
     T: float
     n: float
     d: float
+    d_torsion: float
     places: tuple[float, ...]
     span: float
     bearings: tuple[str, str]
@@ -170,7 +173,7 @@ def _shaft(stages: Sequence[Stage], k: int, span: float) -> Shaft:
     chosen = [_bearing(d, math.hypot(*F), F_a, n) for F, F_a in ((near, axial), (far, 0.0))]
     bore = max(si_of(catalogue("bearing")[name].values["d"]) for name, _ in chosen)
     (a, life_a), (b, life_b) = chosen
-    return Shaft(T, n, bore, tuple(x for _, x, _ in gears), span, (a, b), (life_a, life_b))
+    return Shaft(T, n, bore, d, tuple(x for _, x, _ in gears), span, (a, b), (life_a, life_b))
 
 
 def _bearing(d: float, F_r: float, F_a: float, n: float) -> tuple[str, float]:

@@ -49,7 +49,7 @@ def paragraph(word: str, line: str, width: int | None = None) -> str:
         line: the text
         width: columns of the screen, None where there is none
     """
-    return _filled(line, width, initial_indent=f"{word:<{LEFT}}", subsequent_indent=" " * LEFT)
+    return _filled(line, width, f"{word:<{LEFT}}", " " * LEFT)
 
 
 def drawn(table: Table, width: int | None = None) -> str:
@@ -79,6 +79,12 @@ def drawn(table: Table, width: int | None = None) -> str:
     return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
 
 
-def _filled(line: str, width: int | None, **indents: str) -> str:
-    room = min(width or WIDTH, WIDTH)
-    return textwrap.fill(line, room, break_long_words=False, break_on_hyphens=False, **indents)
+def _filled(line: str, width: int | None, first: str = "", rest: str = "") -> str:
+    return textwrap.fill(
+        line,
+        min(width or WIDTH, WIDTH),
+        initial_indent=first,
+        subsequent_indent=rest,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
