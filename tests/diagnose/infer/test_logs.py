@@ -36,13 +36,12 @@ class Farm:
         self.filter, self.knobs = filter_of(self.scenario, self.like)
         rng = np.random.default_rng(5)
         self.machines = [differing(self.knobs, rng, MACHINES) for _ in range(3)]
-        self.rng = rng
         past = [[self.log(m, q / 4, 10 * m + q) for q in range(PAST)] for m in range(3)]
         joined = [self.joined(logs, f"machine {m}") for m, logs in enumerate(past)]
         self.fleet: Fleet = fleet(self.scenario, joined[:1], joined[1:], self.like)
 
     def log(self, machine: int, year: float, seed: int, change: np.ndarray | float = 0.0) -> Log:
-        z = self.machines[machine] + differing(self.knobs, self.rng, YEARS)
+        z = self.machines[machine] + differing(self.knobs, np.random.default_rng([seed, machine]), YEARS)
         return made(self.filter, self.like, seed, year, N, z + change)
 
     def joined(self, logs: list[Log], name: str) -> Log:
