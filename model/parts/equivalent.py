@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol, runtime_checkable
 
 from ..core.component import Component
-from ..core.declare import Output, Parameter, Port, declared
 from ..laws.gears import (
     addendum_contact_ratio,
     base_diameter,
@@ -19,7 +17,7 @@ from ..laws.gears import (
     transverse_pressure_angle,
     working_pressure_angle,
 )
-from ..laws.smooth import Num
+from .gears import GearPair
 
 #: Parameters that tell the teeth of a pair but for their numbers.
 KEYS = ("m_n", "alpha_n", "beta", "b", "a_w", "x_1", "x_2", "Ra")
@@ -117,28 +115,13 @@ class CylindricalPair:
         return float(reduced_radius(rho_1, rho_2, self.beta_b))
 
 
-@runtime_checkable
-class TellsTeeth(Protocol):
-    """A part with gears that are not cylindrical."""
-
-    def teeth(self) -> tuple[Num, Num]:
-        """Numbers of teeth of the cylindrical gears that mesh as they do, negative for an internal gear [1]."""
-
-
 def pair_of(part: Component) -> CylindricalPair | None:
-    """The cylindrical gears that a part declares or tells; None where it is no pair of external gears.
-
-    A pair has the shafts `pinion` and `wheel`, the numbers of teeth `z_1` and `z_2`, the parameters `KEYS`, and shows
-    its tangential force `F_t`.
-    """
-    kind = type(part)
-    parameters, ports = declared(kind, Parameter).keys(), declared(kind, Port).keys()
-    if not ({"z_1", "z_2", *KEYS} <= parameters and {"pinion", "wheel"} <= ports and "F_t" in declared(kind, Output)):
+    """The cylindrical gears that mesh as a pair does; None where it is no pair of external gears."""
+    if not isinstance(part, GearPair):
         return None
     v = part.values
-    real = v["z_1"], v["z_2"]
-    z_1, z_2 = (part.number_at(z, v) for z in part.teeth()) if isinstance(part, TellsTeeth) else real
+    z_1, z_2 = (part.number_at(z, v) for z in part.teeth())
     if z_1 < 0 or z_2 < 0:
         return None
-    d_1, d_2 = (float(reference_diameter(v["m_n"], z, v["beta"])) for z in real)
+    d_1, d_2 = (float(reference_diameter(v["m_n"], z, v["beta"])) for z in (v["z_1"], v["z_2"]))
     return CylindricalPair(z_1=z_1, z_2=z_2, diameters=(d_1, d_2), **{key: v[key] for key in KEYS})
