@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from .answer.decide import Decision, decided
+from .answer.decide import Decision, calmed, decided
 from .answer.gain import Gain, gains
 from .infer.found import Found
 from .infer.search import searched
@@ -43,6 +43,7 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         request.causes,
         lambda stage, share: progress(stage, 0.05 + 0.75 * share),
     )
+    found = calmed(found)
     decision = decided(found)
     wrong = decision.verdict != "consistent"
     held: Sequence[Gain] = ()

@@ -7,19 +7,40 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from gearheat.diagnose.answer import estimate, gain
-from gearheat.diagnose.answer.decide import UNEXPLAINED, decided
+from gearheat.diagnose.answer.decide import UNEXPLAINED, calmed, decided
 from gearheat.diagnose.answer.design import of_search, ranked
 from gearheat.diagnose.answer.experiments import added, experiments
 from gearheat.diagnose.answer.predict import predictions
 from gearheat.diagnose.answer.quality import adequacy, scatters
 from gearheat.diagnose.answer.sets import Effects, alike
+from gearheat.diagnose.infer import gross
 from gearheat.diagnose.infer.found import Found
+from gearheat.diagnose.infer.problem import Aside
 from gearheat.diagnose.setting import Setting
 
 TRUE = "sensor.oil_temp.offset"
 #: What may be wrong, and by how much the oil thermometer is, as the fixtures have it [K].
 CAUSES = (TRUE, "cooling.air", "losses.churning", "sensor.oil_temp.drift")
 OFFSET = 3.0
+
+
+def test_calm_probabilities_keep_their_order_and_that_of_nothing(wrong: tuple[Setting, Found]) -> None:
+    found = wrong[1]
+    calm = calmed(found)
+    before, after = decided(found), decided(calm)
+    assert [j.causes for j in before.joints if j.causes] == [j.causes for j in after.joints if j.causes]
+    assert calm.probabilities.sum() == pytest.approx(1.0)
+    assert after.joints[0].chance.probability < before.joints[0].chance.probability
+    nothing = [not h.causes and h.extra is None for h in found.hypotheses]
+    assert calm.probabilities[nothing] == pytest.approx(found.probabilities[nothing])
+
+
+def test_few_readings_of_one_sensor_are_gross(wrong: tuple[Setting, Found], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(gross, "MOST", 0.5)
+    problem = wrong[1].problem
+    one, other = (np.flatnonzero(problem.data.kind == kind)[:3].tolist() for kind in (0, 1))
+    kept = gross.few(problem, [Aside(i) for i in [*one, *other[:1]]])
+    assert kept == {Aside(one[0]), Aside(one[1]), Aside(other[0])}
 
 
 def test_the_cause_is_named_and_all_agrees(wrong: tuple[Setting, Found]) -> None:

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from diagnose.hidden.maker import Case
-from gearheat.diagnose.answer.decide import decided
+from gearheat.diagnose.answer.decide import calmed, decided
 from gearheat.diagnose.answer.quality import gross_readings
 from gearheat.diagnose.infer.search import searched
 from gearheat.diagnose.report.compose import hypotheses
@@ -76,7 +76,7 @@ def score(case: Case, seed: int = 0) -> Score:
     inputs = read(Request(case.bench.rig, case.data, card=case.card, seed=seed))
     assert inputs.data is not None
     made = setting(inputs.scenario, inputs.card, inputs.data)
-    found = searched(made.problem, made.formulas, seed=seed)
+    found = calmed(searched(made.problem, made.formulas, seed=seed))
     decision = decided(found)
     seconds = time.process_time() - begin
     truth = case.truth["causes"]

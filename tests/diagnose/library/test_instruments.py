@@ -93,6 +93,14 @@ def test_a_probe_by_direction(planetary):
     assert wrong == pytest.approx([2, 0] * 3)
 
 
+def test_above_a_temperature_of_what_a_probe_measures(planetary):
+    cause = planetary.cause("sensor.wall_temp.offset")
+    here = row(planetary)
+    true = {"T_wall": np.array([300.0, 310.0, 320.0, 340.0, 350.0, 360.0])}
+    found = form_of(cause, "above a temperature").shown({"error": 2.0, "threshold": 330.0, "width": 1.0}, here, true)
+    assert as_array(found["T_wall"], 6) - true["T_wall"] == pytest.approx([0.0, 0.0, 0.0, 2.0, 2.0, 2.0], abs=1e-3)
+
+
 def test_on_one_side_of_a_speed(planetary):
     c = planetary
     cause = c.cause("sensor.wall_temp.offset")

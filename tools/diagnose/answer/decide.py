@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -22,9 +22,12 @@ SURE = 0.9
 ASKED = 3.0
 #: Probability of a member of a class that is named, as a share of its class.
 MEMBER = 0.02
+#: Exponent of the probabilities of answers against each other. Evidence of models that are only nearly true is too sure
+#: (Miller and Dunson, 2019); with this one 90 % sets hold the cause in nine of ten campaigns of known cause.
+CALM = 0.6
 #: A hypothesis and its probability; with the causes of it that count.
 Member = tuple[Hypothesis, float]
-_Shown = tuple[Hypothesis, tuple[str, ...], float]
+_Seen = tuple[Hypothesis, tuple[str, ...], float]
 #: A nuisance or tolerance whose prior is wider than this many standard deviations of the readings counts as fitted.
 FREE = 0.5
 
@@ -105,6 +108,30 @@ def decided(found: Found) -> Decision:
     return Decision(verdict, tuple(joints), tuple(answers), marginal, whole, leader, chances.p_any, adequacy)
 
 
+def calmed(found: Found) -> Found:
+    """The search with the probabilities of different answers drawn together; that of nothing stays."""
+    keys = _keys(found, _asked(found))
+    whole: dict[tuple[str, ...], float] = {}
+    for key, p in zip(keys, found.probabilities, strict=True):
+        whole[key] = whole.get(key, 0.0) + float(p)
+    nothing = whole.pop((), 0.0)
+    total = sum(p**CALM for p in whole.values())
+    share = {key: (1 - nothing) * p ** (CALM - 1) / total for key, p in whole.items() if p > 0} | {(): 1.0}
+    drawn = [share.get(key, 0.0) * p for key, p in zip(keys, found.probabilities, strict=True)]
+    return replace(found, probabilities=np.array(drawn))
+
+
+def _keys(found: Found, asked: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
+    """The answer that each hypothesis is part of: the classes of its causes that count."""
+    family = {f.cause.id: f.cause.family for f in found.formulas} | {UNEXPLAINED: UNEXPLAINED}
+    return [tuple(sorted(family[c] for c in _shown(h, own))) for h, own in zip(found.hypotheses, asked, strict=True)]
+
+
+def _shown(h: Hypothesis, asked: tuple[str, ...]) -> tuple[str, ...]:
+    """The causes that a hypothesis is shown with."""
+    return asked or ((UNEXPLAINED,) if beyond(h) else ())
+
+
 def beyond(h: Hypothesis) -> bool:
     """Whether a hypothesis holds a remainder that the library lacks."""
     return h.extra is not None and h.extra.cause is None
@@ -163,12 +190,12 @@ def _asked(found: Found) -> list[tuple[str, ...]]:
 def _joints(found: Found, asked: Sequence[tuple[str, ...]], chances: _Chances) -> list[Joint]:
     """Hypotheses added up, most probable first."""
     family = {f.cause.id: f.cause.family for f in found.formulas} | {UNEXPLAINED: UNEXPLAINED}
-    shown = [causes or ((UNEXPLAINED,) if beyond(h) else ()) for h, causes in zip(found.hypotheses, asked, strict=True)]
-    keys = [tuple(sorted(family[c] for c in causes)) for causes in shown]
+    shown = [_shown(h, causes) for h, causes in zip(found.hypotheses, asked, strict=True)]
+    keys = _keys(found, asked)
     joints = []
     for key in dict.fromkeys(keys):
         mine = np.array([k == key for k in keys])
-        members: list[_Shown] = [
+        members: list[_Seen] = [
             (found.hypotheses[i], shown[i], float(found.probabilities[i])) for i in np.flatnonzero(mine)
         ]
         whole = [m for m in members if set(m[0].causes) == set(m[1]) - {UNEXPLAINED}]
@@ -178,7 +205,7 @@ def _joints(found: Found, asked: Sequence[tuple[str, ...]], chances: _Chances) -
     return sorted(joints, key=lambda j: -j.chance.probability)
 
 
-def _class(cause: str, members: Sequence[_Shown], family: Mapping[str, str]) -> tuple[str, ...]:
+def _class(cause: str, members: Sequence[_Seen], family: Mapping[str, str]) -> tuple[str, ...]:
     """The members of a cause's class among some hypotheses, the cause first."""
     shares: dict[str, float] = {}
     for _, causes, p in members:

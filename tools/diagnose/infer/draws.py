@@ -38,11 +38,13 @@ def correction(problem: Problem, fit: Fit, seed: int) -> Correction:
     look, nz = fit.look, problem.nz
     if not look.acting:
         return Correction(0.0, 0.0)
-    precision = prior_precision(problem, look.acting)
-    J = White.of(fit.noise.covariance)(look.jacobian)
+    precision, scatter = prior_precision(problem, look.acting), fit.scatter(problem)
+    narrow = White.of(scatter)
+    J, e = narrow(look.jacobian), narrow(problem.measured - look.shown)
     covariance = np.linalg.inv(J.T @ J + np.diag(precision))
+    likely = look.x + covariance @ (J.T @ e - precision * look.x)
     own, known = covariance[nz:, nz:], look.jacobian[:, :nz]
-    white = White.of(fit.noise.covariance + known @ known.T)
+    white = White.of(scatter + known @ known.T)
 
     def log_joint(x: np.ndarray, shown: np.ndarray) -> float:
         if not np.isfinite(shown).all():
@@ -52,12 +54,12 @@ def correction(problem: Problem, fit: Fit, seed: int) -> Correction:
 
     root = np.linalg.cholesky(own)
     along = covariance[:, nz:] @ np.linalg.solve(own, root)
-    at_mode = log_joint(look.x, look.shown)
+    highest = log_joint(likely, look.shown + look.jacobian @ (likely - look.x))
     normal = norm.ppf(np.clip(qmc.Sobol(len(own), seed=seed).random(DRAWS), 1e-6, 1 - 1e-6))
     logs = []
     for u in WIDER * normal:
-        x = look.x + along @ u
-        log = log_joint(x, problem.shown(*fit.split(problem, x))) - at_mode
+        x = likely + along @ u
+        log = log_joint(x, problem.shown(*fit.split(problem, x))) - highest
         logs.append(log + 0.5 * (u / WIDER) @ (u / WIDER) + len(u) * np.log(WIDER))
     return smoothed(np.array(logs))
 

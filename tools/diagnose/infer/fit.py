@@ -87,17 +87,21 @@ class Fit:
         change = np.linalg.solve(J.T @ J + np.diag(vector.precision), J.T @ white(effect))
         return vector.split(np.clip(self.look.x - change, vector.low, vector.high))
 
+    def scatter(self, problem: Problem) -> np.ndarray:
+        """Covariance (M, M) of the readings' scatter and of what the forms leave of the causes' effects."""
+        V = self.noise.covariance
+        if self.form:
+            V = V + self.form**2 * _rough(problem, self.look, _Vector(problem, self.look.acting))
+        return V
+
     def linear(self, problem: Problem) -> tuple[White, np.ndarray]:
         """The linearised problem beside this hypothesis: whitening by all that is uncertain, and the residual in it.
 
         Nuisances, shapes and sizes of the hypothesis are uncertain by their priors, sizes by the widest.
         """
-        vector, J = _Vector(problem, self.look.acting), self.look.jacobian
-        wide = J / np.sqrt(vector.precision)
-        V = self.noise.covariance + wide @ wide.T
-        if self.form:
-            V = V + self.form**2 * _rough(problem, self.look, vector)
-        white = White.of(V)
+        J = self.look.jacobian
+        wide = J / np.sqrt(prior_precision(problem, self.look.acting))
+        white = White.of(self.scatter(problem) + wide @ wide.T)
         return white, white(problem.measured - self.look.shown + J @ self.look.x)
 
 

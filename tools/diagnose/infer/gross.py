@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections import Counter
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -18,8 +20,8 @@ HALF, LEAST = 0.6745, 0.2
 GIVEN = 0.9
 #: A reading that a hypothesis brings within this is none.
 FINE = 4.0
-#: Readings set aside at most, as a share of all.
-MOST = 0.05
+#: Readings set aside at most: as a share of all, and of one sensor of a campaign. More of one sensor have a cause.
+MOST, ALIKE = 0.05, 2
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,18 @@ def outliers(problem: Problem, fit: Fit) -> list[Suspect]:
             found.append(s)
             taken |= touched
     return found
+
+
+def few(problem: Problem, found: Iterable[Aside]) -> frozenset[Aside]:
+    """Those of readings, the grossest first, that are few enough to be gross."""
+    kept: list[Aside] = []
+    alike: Counter[tuple[int, str]] = Counter()
+    for aside in dict.fromkeys(found):
+        sensor = problem.source(aside)
+        alike[sensor] += 1
+        if alike[sensor] <= ALIKE and len(kept) < max(ALIKE, int(MOST * problem.m)):
+            kept.append(aside)
+    return frozenset(kept)
 
 
 def after_all(problem: Problem, fit: Fit) -> frozenset[Aside]:

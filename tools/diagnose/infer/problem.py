@@ -256,6 +256,13 @@ class Problem:
         sizes = [o.m for o in self.campaigns]
         return [(name, stacked(items, sizes)) for name, items in found.items()]
 
+    def source(self, aside: Aside) -> tuple[int, str]:
+        """Number of the campaign and the sensor that a reading is of."""
+        sizes = [o.campaign.n if aside.sensor else o.m for o in self.campaigns]
+        k = int(np.searchsorted(np.cumsum(sizes), aside.number, side="right"))
+        o, number = self.campaigns[k], aside.number - sum(sizes[:k])
+        return k, aside.sensor or o.read[o.kind[number]].name
+
     def touched(self, aside: Aside, look: Look) -> frozenset[int]:
         """The compared readings that a reading has to do with."""
         if not aside.sensor:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -18,8 +18,7 @@ from .draws import correction
 from .extra import extras
 from .fit import Fit, Start, fitted, joined
 from .found import Found, Hypothesis
-from .gross import MOST as MOST_ASIDE
-from .gross import after_all, outliers
+from .gross import after_all, few, outliers
 from .prior import Prior
 from .problem import Acting, Aside, Problem
 
@@ -70,25 +69,24 @@ def searched(
 
 
 def _leaders(found: Found) -> list[Fit]:
-    """The leading hypothesis, and the likeliest of its causes alone: a gross reading may be all the other explains."""
+    """The leading hypothesis, and each of its causes alone: a gross reading may be all that another explains."""
     top = found.hypotheses[0]
-    alone = [h.fit for h in found.hypotheses if len(h.causes) == 1 < len(top.causes) and h.causes[0] in top.causes]
-    return [top.fit, *alone[:1]]
+    alone = {h.causes[0]: h.fit for h in found.hypotheses if len(h.causes) == 1 and h.extra is None}
+    return [top.fit, *(alone[c] for c in top.causes if c in alone and len(top.causes) > 1)]
 
 
 def _aside(problem: Problem, fits: Sequence[Fit]) -> frozenset[Aside]:
     """The gross readings: those that the first hypothesis does not explain, and others that show beside one of them."""
     aside = problem.aside - after_all(problem, fits[0])
-    found = [s.aside for fit in fits for s in outliers(problem, fit)]
-    return aside | frozenset(found[: max(2, int(MOST_ASIDE * problem.m))])
+    return few(problem, [*sorted(aside), *(s.aside for fit in fits for s in outliers(problem, fit))])
 
 
 def _cleaned(problem: Problem, null: Fit) -> tuple[Problem, Fit]:
     """The problem without the gross readings that the null shows."""
-    for _ in range(max(2, int(MOST_ASIDE * problem.m))):
-        if not (found := outliers(problem, null)):
-            break
-        problem = problem.without(problem.aside | {found[0].aside})
+    taken: list[Aside] = []
+    while found := [s.aside for s in outliers(problem, null) if s.aside in few(problem, [*taken, s.aside])]:
+        taken.append(found[0])
+        problem = problem.without(frozenset(taken))
         null = fitted(problem, (), null.look.z)
     return problem, null
 
@@ -353,35 +351,44 @@ class Search:
         return found
 
     def _corrected(self, base: Sequence[Hypothesis]) -> list[Hypothesis]:
-        """The leading hypotheses with what importance sampling makes of their evidence."""
-        best = max(h.log_joint for h in base)
+        """The hypotheses, the leading ones with what importance sampling makes of their evidence.
 
-        def corrected(h: Hypothesis) -> Hypothesis:
-            if h.log_joint < best - NEAR:
-                return h
-            by = correction(self.problem, h.fit, self.seed)
-            return replace(h, log_joint=h.log_joint + by.log, error=by.error)
-
-        return [corrected(h) for h in base]
+        Those that lead once others are corrected are corrected, too.
+        """
+        found, done = list(base), set[int]()
+        while True:
+            best = max(h.log_joint for h in found)
+            near = [k for k, h in enumerate(found) if k not in done and h.log_joint >= best - NEAR]
+            if not near:
+                return found
+            for k in near:
+                by = correction(self.problem, found[k].fit, self.seed)
+                found[k] = replace(found[k], log_joint=found[k].log_joint + by.log, error=by.error)
+            done.update(near)
 
     def _beside(self, base: Sequence[Hypothesis]) -> list[Hypothesis]:
-        """The leading hypotheses with a spread of sizes or a remainder beside them."""
+        """The leading hypotheses with a spread of sizes or a remainder beside them, and such of fewer causes.
+
+        A scatter that is not yet there may have brought a cause that is not.
+        """
         best = max(h.log_joint for h in base)
-        found = []
-        for h in base:
-            if h.causes and h.log_joint < best - 1.5 * BEHIND:
-                continue
-            for extra, gain, noise in extras(self.problem, h.fit, self.spreads):
-                beside = replace(h, fit=h.fit if noise is h.fit.noise else replace(h.fit, noise=noise), extra=extra)
-                if extra.cause is None:
-                    log = h.log_joint + gain + np.log(OUTSIDE)
-                    found.append(replace(beside, log_joint=float(log)))
-                else:
-                    new = extra.cause not in h.causes
-                    causes = (*h.causes, extra.cause) if new else h.causes
-                    log = h.log_joint + gain + (self._added(h.causes, extra.cause) if new else 0.0)
-                    found.append(replace(beside, causes=causes, log_joint=float(log)))
-        return found
+        near = [h for h in base if not h.causes or h.log_joint >= best - 1.5 * BEHIND]
+        found = [more for h in near for more in self._with_extras(h)]
+        top, tried = max([*base, *found], key=lambda h: h.log_joint), {h.causes for h in near}
+        fewer = [h for h in base if h.causes not in tried and set(h.causes) < set(top.causes)]
+        return [*found, *(more for h in fewer for more in self._with_extras(h))]
+
+    def _with_extras(self, h: Hypothesis) -> Iterator[Hypothesis]:
+        """A hypothesis with each spread and remainder beside it."""
+        for extra, gain, noise in extras(self.problem, h.fit, self.spreads):
+            beside = replace(h, fit=h.fit if noise is h.fit.noise else replace(h.fit, noise=noise), extra=extra)
+            if extra.cause is None:
+                yield replace(beside, log_joint=float(h.log_joint + gain + np.log(OUTSIDE)))
+            else:
+                new = extra.cause not in h.causes
+                causes = (*h.causes, extra.cause) if new else h.causes
+                log = h.log_joint + gain + (self._added(h.causes, extra.cause) if new else 0.0)
+                yield replace(beside, causes=causes, log_joint=float(log))
 
     def _added(self, causes: Sequence[str], more: str) -> float:
         """Log prior of a hypothesis with one cause more over that without."""

@@ -183,9 +183,8 @@ def oil_wall(at: Context) -> Cause:
 
         return changed
 
-    walls = tuple(c for c in roles.oil_side if {roles.at(p, "body") for p in roles.bodies_of(c)} & set(roles.outside))
-    together = [(names, values(names)) for names in dict.fromkeys((walls, roles.oil_side)) if names]
-    single = [((name,), values((name,))) for name in roles.oil_side if (name,) != walls]
+    together = [(names, values(names)) for names in dict.fromkeys((roles.wetted, roles.oil_side)) if names]
+    single = [((name,), values((name,))) for name in roles.oil_side if (name,) != roles.wetted]
     return Cause(
         id="cooling.oil_wall",
         doc="Another conductance between oil and bodies: level, foam, deposits.",

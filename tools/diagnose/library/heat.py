@@ -41,7 +41,7 @@ def external_source(at: Context) -> Cause:
     extras = Extras("source", at)
     inside, outside = bodies(at.roles)
     shapes = (
-        Mostly("a", "1", "exponent of the speed", 0.0, 1.8),
+        Mostly("a", "1", "exponent of the speed", 0.0, 2.2),
         Shape("oil_share", "1", "share of the heat that goes into the oil", 0.0, 0.5, 0.1, 0.1),
         Shape("inner_share", "1", "share of the rest that enters by the shaft", 0.0, 1.0, 0.0, 0.4),
     )

@@ -22,6 +22,9 @@ from .roles import Place, Roles
 NO_LOAD = "no-load oil loss: churning, windage and oil level differ only in how the oil is reached"
 SHAFTS = "friction of shafts: preload and seal drag are the same torque to every steady instrument"
 TEETH, LIPS, MIST = oil_share(0.8, 0.15), oil_share(0.6, 0.25), oil_share(0.4, 0.25)
+WET = Shape(
+    "wet", "1", "relative change of the oil's conductance to the housing, over that of all losses", 0.0, 1.5, 0.3, 0.4
+)
 #: Shares of the forms of starved teeth: by exponents, below a film, above a speed.
 STARVED = (0.5, 0.42, 0.08)
 
@@ -73,12 +76,13 @@ def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
         Shape("a", "1", "exponent of the speed", 1.0, 2.5, 1.6, 0.4),
         Shape("b", "1", "exponent of the viscosity", 0.0, 0.6),
         TEETH,
+        *((WET,) if at.roles.wetted else ()),
     )
     yield Cause(
         id="losses.oil_level",
         doc="Oil level off its mark: a no-load loss that follows viscosity and, less, speed.",
         size=at.power("loss", 0.07, -0.15, 1.0),
-        forms=Extras("level", at).losses(places[:1], level),
+        forms=tuple(_wetting(form, at) for form in Extras("level", at).losses(places[:1], level)),
         exposes="the same point at two oil levels",
         like=NO_LOAD,
         acts_on=at.first("speed"),
@@ -93,6 +97,18 @@ def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
         like=NO_LOAD,
         acts_on=at.first("speed"),
     )
+
+
+def _wetting(form: Form, at: Context) -> Form:
+    """A loss with an oil level that wets more of the housing, too."""
+    loss, paths = form.values, at.roles.scaled(*at.roles.wetted)
+    assert loss is not None
+
+    def values(theta: Theta, row: Row) -> Values:
+        more = ca.exp(theta["wet"] * theta["P_ref"] / at.ranges.loss) if paths else 1.0
+        return {**loss(theta, row), **{path: row.base[path] * more for path in paths}}
+
+    return replace(form, values=values)
 
 
 def oil_viscosity(at: Context) -> Cause:

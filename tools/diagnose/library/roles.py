@@ -150,6 +150,12 @@ class Roles:
         """Heat ports of a conductor that meet no room and nothing that keeps its temperature."""
         return tuple(p for p in self.nets.ports(conductor, HeatPort) if not self.at(p, "room", "thermostat"))
 
+    @property
+    def wetted(self) -> tuple[str, ...]:
+        """Conductors between the oil and the housing."""
+        outside = set(self.outside)
+        return tuple(c for c in self.oil_side if {self.at(p, "body") for p in self.bodies_of(c)} & outside)
+
     def parts(self, role: str) -> tuple[str, ...]:
         """Names of all parts at the places of a role."""
         return tuple(name for place in self.places[role] for name in place.parts)

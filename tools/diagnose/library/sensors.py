@@ -1,8 +1,9 @@
 """Instruments that do not show what is: one set of errors for every kind of probe and transducer.
 
-An error is a size times a factor of the row: constant, in proportion to the reading, on one side of a speed or load,
-by direction, from a test on, moving steadily; or it is drawn anew with each mounting, or wanders from test to test.
-What drives the machine was truly the reading less the error, what is compared shows the true value plus the error.
+An error is a size times a factor of the row: constant, in proportion to the reading, on one side of a speed, a load or
+the probe's own temperature, by direction, from a test on, moving steadily; or it is drawn anew with each mounting, or
+wanders from test to test. What drives the machine was truly the reading less the error, what is compared shows the true
+value plus the error.
 """
 
 from __future__ import annotations
@@ -18,8 +19,10 @@ from .probes import heated, lag, position, swapped
 from .readings import one_of, wrong
 from .roles import Roles
 
-#: Share of the offsets that show on one side of a speed or load only.
-ONE_SIDE = 0.1
+#: Share of the offsets that show on one side of a speed, a load or what is read only, each.
+ONE_SIDE = 0.025
+#: A probe's reading that varies by less has no sides [K].
+LEAST_SPAN = 5.0
 #: Share of the errors of magnitudes that turn with the direction.
 TURNED = 0.3
 
@@ -187,8 +190,8 @@ class _Instruments:
     def causes(self) -> Iterator[Cause]:
         """All of them."""
         words, known = self.kind.words, self.at.ranges.known
-        sides = one_side(self.at)
-        general = Mode("", 1 - ONE_SIDE if sides else 1.0, _one)
+        sides = [*one_side(self.at), *(warm_or_cold(self.at, self.own) if self.kind.unit == "K" else [])]
+        general = Mode("", 1 - ONE_SIDE * len(sides), _one)
         doc = f"Offset: the {words} reads too high or too low."
         yield self.cause("offset", doc, self.size("reading less truth"), [general, *sides], self.kind.calibrate)
         yield self.gain()
@@ -256,20 +259,35 @@ def one_side(at: Context) -> list[Mode]:
     modes = []
     for quantity, word in (("speed", "speed"), ("torque", "load")):
         other = at.first(quantity)
-        if not other or not at.ranges.varies(other):
-            continue
-        low, high = at.ranges.low[other], at.ranges.high[other]
-        threshold = Shape("threshold", KINDS[quantity].unit, f"threshold of the {word}", low, high)
-        for side, name in ((1.0, "above"), (-1.0, "below")):
+        if other and at.ranges.varies(other):
+            modes += _sides(word, KINDS[quantity].unit, at.ranges.low[other], at.ranges.high[other], other)
+    return modes
 
-            def factor(
-                theta: Theta, row: Row, value: Num, o: str = other, s: float = side, width: float = USUAL * (high - low)
-            ) -> Num:
-                return step(s * (row.sensors[o] - theta["threshold"]) / (width * theta["width"]))
 
-            told = {"quantity": f"{word} {name}", "shape": "threshold"}
-            modes.append(Mode(f"{name} a {word}", 1.0, factor, (threshold, WIDTH), regime=told))
-    return [replace(mode, weight=ONE_SIDE / len(modes)) for mode in modes]
+def warm_or_cold(at: Context, own: Sequence[Sensor]) -> list[Mode]:
+    """Errors of probes above or below a temperature of what they measure.
+
+    Args:
+        at: what they are made for
+        own: the probes of one kind
+    """
+    low, high = (f(bound.get(s.name, 0.0) for s in own) for f, bound in ((min, at.ranges.low), (max, at.ranges.high)))
+    return _sides("temperature", "K", low, high) if high - low > LEAST_SPAN else []
+
+
+def _sides(word: str, unit: str, low: float, high: float, other: str = "") -> list[Mode]:
+    """Both sides of what another sensor shows, or of the value itself."""
+    threshold, width = Shape("threshold", unit, f"threshold of the {word}", low, high), USUAL * (high - low)
+
+    def mode(side: float, name: str) -> Mode:
+        def factor(theta: Theta, row: Row, value: Num) -> Num:
+            seen = row.sensors[other] if other else value
+            return step(side * (seen - theta["threshold"]) / (width * theta["width"]))
+
+        told = {"quantity": f"{word} {name}", "shape": "threshold"}
+        return Mode(f"{name} a {word}", ONE_SIDE, factor, (threshold, WIDTH), regime=told)
+
+    return [mode(1.0, "above"), mode(-1.0, "below")]
 
 
 def _one(theta: Theta, row: Row, value: Num) -> Num:
