@@ -154,7 +154,7 @@ def churning_in_thick_oil(churning: Num, friction: Num, *, sharpness: int = 16) 
         friction: drag area of a smooth disc that dips as deep, as far as the oil follows the gear [m2]
         sharpness: of the change; where churning is twice the friction it adds less than 1e-6 [1]
     """
-    return churning * (1 + (friction / churning) ** sharpness) ** (1 / sharpness)
+    return (churning**sharpness + friction**sharpness) ** (1 / sharpness)
 
 
 @law(
