@@ -45,12 +45,6 @@ use = "bearings"
 )
 
 
-INSIDE = """[assembly.bearings.part.c]
-use = "bearings"
-
-"""
-
-
 def folded() -> str:
     """The helical rig with its six bearings as three pairs."""
     text = re.sub(r'"(\w+_bearing)_a\.(shaft|inner|outer|lubricant)", "\1_b\.\2"', r'"\1.\2"', with_bearings(BEARINGS))
