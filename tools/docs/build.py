@@ -42,7 +42,7 @@ div.body td p, div.body th p { overflow-wrap: normal; }
 @media screen and (max-width: 875px) {
   div.document { display: flex; flex-direction: column; }
   div.document > * { flex: none; }
-  div.sphinxsidebar { order: 2; }
+  div.sphinxsidebar { order: 2; margin-top: 20px; }
 }
 """
 
