@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+from abc import ABC, abstractmethod
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -25,7 +26,7 @@ _VALUES = (_ADDRESS, _SIZE, _ADDRESS)
 Values = Callable[[int, int, int], None]
 
 
-class Slave:
+class Slave(ABC):
     """An instance whose functions make no Python objects and raise when they are refused.
 
     Attributes:
@@ -56,13 +57,13 @@ class Slave:
             raise FmuError(f"{self._name} cannot be loaded: {self.said() or error}") from error
         self._bind(description)
 
+    @abstractmethod
     def _opened(self, arguments: dict[str, Any]) -> Any:
         """The instance as FMPy has it."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _bind(self, description: Any) -> None:
         """Find the functions."""
-        raise NotImplementedError
 
     def said(self) -> str:
         """The last messages of the FMU, which are forgotten."""

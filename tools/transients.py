@@ -16,7 +16,7 @@ from ..model.run.simulate import simulate
 from ..model.units import from_si, shown, to_si
 from ..scenarios.duty import duty_names, read_duty
 from ..scenarios.scenario import Scenario
-from .console import answer, file_of, note, plottable, writable, write
+from .console import answer, file_of, note, plottable, say, writable, write
 from .playing import series
 from .points import outside_of, tell_outside
 from .rigs import load
@@ -49,7 +49,7 @@ def simulate_command(
     }
 
     def human() -> None:
-        print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s")
+        _print(found)
         tell_outside(found["outside"])
         print_unchecked(found["unchecked"])
 
@@ -122,7 +122,11 @@ def play_command(
         "plot": plot and str(plot),
         **_summary(played.time, columns, units),
     }
-    answer(found, json, lambda: print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s"))
+    answer(found, json, lambda: _print(found))
+
+
+def _print(found: Mapping[str, Any]) -> None:
+    say(f"{found['out']}: {found['rows']} rows to {found['stop_s']:g} s")
 
 
 def _at_room(told: Described, first: Mapping[str, float]) -> dict[str, float]:
