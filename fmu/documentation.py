@@ -117,6 +117,7 @@ def documentation(
         implicit if flat.residual_names else "",
         *(_variables(title, table.of(kind)) for title, kind in _GROUPS),
         _parameters(table.of("parameter"), about),
+        _choices(table.of("choice")),
         _laws(flat),
         _ranges(flat),
         _cited(flat, about),
@@ -163,6 +164,16 @@ def _parameters(variables: Sequence[Variable], about: About) -> str:
         names = ", ".join(f"<code>{escape(name)}</code>" for name in about.idle)
         shown += f"\n<p>Without effect on anything this FMU shows, and therefore no parameters of it: {names}.</p>"
     return shown
+
+
+def _choices(variables: Iterable[Variable]) -> str:
+    rows = [
+        (f"<code>{escape(v.name)}</code>", str(k), escape(item.name), escape(item.doc))
+        for v in variables
+        for k, item in enumerate(v.choice.items if v.choice else (), 1)
+    ]
+    told = [f"<p><code>{escape(v.name)}</code>: {escape(v.quantity.doc)}.</p>" for v in variables]
+    return _table("Choices", ("name", "value", "item", "meaning"), rows, before="\n".join(told))
 
 
 def _uncertainty(v: Variable, known: Mapping[str, float]) -> str:

@@ -29,12 +29,13 @@ import hashlib
 import io
 import uuid
 import zipfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from gearheat.model.core.flat import FlatModel
 
 from . import fmi3_description, fmi3_source
+from .choices import Choice, reduced, start_choice
 from .compiling import binary, platforms, store
 from .description import Owner, dependencies, description, identifier
 from .documentation import About, documentation
@@ -67,6 +68,9 @@ def export(
     owner: Owner = Owner(),
     with_sources: bool = True,
     fmi: int = 2,
+    choices: Sequence[Choice] = (),
+    room: str | None = None,
+    audit: bool = True,
 ) -> Path:
     """Write a model as an FMU that serves co-simulation and model exchange. The same model gives the same bytes.
 
@@ -87,6 +91,10 @@ def export(
         owner: author, version, licence and date that its owner gives
         with_sources: whether it holds its C source
         fmi: version of the standard, 2 or 3
+        choices: enumerations besides that how a run begins, such as the oils; values of parameters that the FMU does
+            not have go
+        room: name of the temperature of the room, which a run may begin at
+        audit: whether two states integrate the energy across the boundary
 
     Returns:
         the path
@@ -95,7 +103,7 @@ def export(
         FmuError: a start value is wrong, the compiler fails, or the file cannot be written
     """
     path, chosen = Path(path), platforms(platform, fmi)
-    kept, variables = _exported(flat, dict(start or {}))
+    kept, variables = _exported(flat, dict(start or {}), choices, room, audit)
     held = {q.name for q in kept.parameters}
     idle = tuple(q.name for q in flat.parameters if q.name not in held)
     about = About(sources or {}, uncertainties or {}, picture, idle)
@@ -130,19 +138,24 @@ def _made(path: Path, content: bytes) -> None:
     remember(content)
 
 
-def _exported(flat: FlatModel, start: Mapping[str, float]) -> tuple[FlatModel, Table]:
+def _exported(
+    flat: FlatModel, start: Mapping[str, float], choices: Iterable[Choice], room: str | None, audit: bool
+) -> tuple[FlatModel, Table]:
     """The model without idle parameters, and its variables with their start values."""
     table(flat, start)  # tells all that is wrong, also with parameters that are idle
     kept = effective(flat, start)
     known = {q.name for q in (*kept.states, *kept.inputs, *kept.parameters)}
-    return kept, table(kept, {name: value for name, value in start.items() if name in known})
+    own = {name: value for name, value in start.items() if name in known}
+    room = room if room in {q.name for q in (*kept.inputs, *kept.parameters)} else None
+    offered = (start_choice(room), *reduced(choices, kept))
+    return kept, table(kept, own, offered, audit=audit, room=room or "")
 
 
 def _code(
     flat: FlatModel, variables: Table, fmi: int = 2, *, owner: Owner = Owner(), with_sources: bool = True
 ) -> tuple[str, bytes]:
     """The C source and the description, with the identification that follows from both."""
-    model = equations(flat)
+    model = equations(flat, variables.audit)
     code, dependent = source(flat, model, variables, fmi), dependencies(model, variables)
     if fmi == 3:
         without_guid = fmi3_description.description(flat, variables, GUID_MARK, dependent, owner)

@@ -3,6 +3,7 @@
 static void refresh_constants(Instance *m)
 {
     if (m->constants_known) return;
+    use_choices(&m->s);
     model_constants(m->s.p, m->c);
     m->constants_known = 1;
     m->relations_hold = 0;
@@ -84,7 +85,8 @@ static double *stored(Instance *m, fmi2ValueReference r)
 {
     if (r < FIRST_U) return &m->s.x[r - FIRST_X];
     if (r < FIRST_Y) return &m->s.u[r - FIRST_U];
-    if (r >= FIRST_P && r < FIRST_DX) return &m->s.p[r - FIRST_P];
+    if (r >= FIRST_P && r < FIRST_DX) return &m->s.own[r - FIRST_P];
+    if (r >= FIRST_CHOICE) return &m->s.choice[r - FIRST_CHOICE];
     return NULL;
 }
 

@@ -1,0 +1,74 @@
+"""What an importer chooses by name: enumerations of an FMU, each item of which gives parameters other values."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass, field
+
+from gearheat.model.core.flat import FlatModel
+
+#: Name of the choice how a run begins, and what its items are called.
+START, GIVEN, ROOM, STEADY = "start", "given", "room", "steady"
+
+
+@dataclass(frozen=True)
+class Item:
+    """One item of a choice.
+
+    Attributes:
+        values: parameter -> its value (SI) with this item
+    """
+
+    name: str
+    doc: str
+    values: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Choice:
+    """An enumeration. Its first item leaves all as exported.
+
+    Attributes:
+        fixed: whether it counts at the start alone
+    """
+
+    name: str
+    doc: str
+    items: tuple[Item, ...]
+    fixed: bool = False
+
+    @property
+    def parameters(self) -> frozenset[str]:
+        """The parameters that its items give values to."""
+        return frozenset(name for item in self.items for name in item.values)
+
+
+def start_choice(room: str | None) -> Choice:
+    """How a run begins.
+
+    Args:
+        room: path of the temperature of the room; None where there is none
+    """
+    given = Item(GIVEN, "the start values of the states")
+    at_room = Item(ROOM, f"all temperatures as {room}, their start values do not count")
+    steady = Item(STEADY, "the steady state at the inputs and parameters at the end of initialization, sought from given")
+    doc = "how the run begins; it takes effect when initialization ends"
+    return Choice(START, doc, (given, *([at_room] if room else []), steady), fixed=True)
+
+
+def reduced(choices: Iterable[Choice], flat: FlatModel) -> Iterator[Choice]:
+    """The choices without values of parameters that a model does not have, and without those left without any.
+
+    Args:
+        choices: of the FMU
+        flat: the model
+    """
+    known = {q.name for q in flat.parameters}
+    for choice in choices:
+        items = (
+            Item(i.name, i.doc, {name: value for name, value in i.values.items() if name in known})
+            for i in choice.items
+        )
+        kept = Choice(choice.name, choice.doc, tuple(items), choice.fixed)
+        if kept.parameters:
+            yield kept
