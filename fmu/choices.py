@@ -51,7 +51,7 @@ def start_choice(room: str | None) -> Choice:
     """
     given = Item(GIVEN, "the start values of the states")
     at_room = Item(ROOM, f"all temperatures as {room}, their start values do not count")
-    steady = Item(STEADY, "the steady state at the inputs and parameters at the end of initialization, sought from given")
+    steady = Item(STEADY, "the steady state at the initial inputs, looked for from the given states")
     doc = "how the run begins; it takes effect when initialization ends"
     return Choice(START, doc, (given, *([at_room] if room else []), steady), fixed=True)
 

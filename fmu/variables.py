@@ -48,7 +48,9 @@ class Variable:
     @property
     def type(self) -> str:
         """Type in the sense of FMI 2.0: "Real", "Integer" or "Enumeration"."""
-        return "Enumeration" if self.choice else "Integer" if self.kind == "parameter" and self.quantity.whole else "Real"
+        if self.choice:
+            return "Enumeration"
+        return "Integer" if self.kind == "parameter" and self.quantity.whole else "Real"
 
     @property
     def causality(self) -> str:
@@ -224,13 +226,13 @@ def _doc(flat: FlatModel, q: Quantity) -> str:
 def _chosen(q: Quantity, choices: Iterable[Choice]) -> str:
     """What a parameter is; of one that a choice gives values also which counts."""
     by = [c.name for c in choices if q.name in c.parameters]
-    return f"{q.doc}; set by {by[0]} unless its value is another than its start value" if by else q.doc
+    return f"{q.doc}; {by[0]} sets it unless it differs from its start value" if by else q.doc
 
 
 def _of_choice(choice: Choice) -> Quantity:
     """The number of the item that is chosen."""
     given = sorted(choice.parameters)
-    doc = f"{choice.doc}; sets {', '.join(given)} where they have their start values" if given else choice.doc
+    doc = f"{choice.doc}; sets {', '.join(given)}, but for those that differ from their start values" if given else choice.doc
     return Quantity(choice.name, "1", doc, start=1.0, low=1.0, high=float(len(choice.items)), whole=True)
 
 
