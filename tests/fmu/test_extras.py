@@ -255,7 +255,8 @@ def test_every_parameter_of_an_fmu_moves_something(heat_fmu: Path) -> None:
     before = play(heat_fmu, duty, 60, 60).values
     for v in described:
         if v.causality == "parameter":
-            after = play(heat_fmu, duty, 60, 60, start={v.name: 1.01 * float(v.start)}).values
+            another = 2 if v.type == "Enumeration" else 1.01 * float(v.start)
+            after = play(heat_fmu, duty, 60, 60, start={v.name: another}).values
             assert (after != before).any(), v.name
 
 
