@@ -232,7 +232,11 @@ def _chosen(q: Quantity, choices: Iterable[Choice]) -> str:
 def _of_choice(choice: Choice) -> Quantity:
     """The number of the item that is chosen."""
     given = sorted(choice.parameters)
-    doc = f"{choice.doc}; sets {', '.join(given)}, but for those that differ from their start values" if given else choice.doc
+    doc = (
+        f"{choice.doc}; sets {', '.join(given)}, but for those that differ from their start values"
+        if given
+        else choice.doc
+    )
     return Quantity(choice.name, "1", doc, start=1.0, low=1.0, high=float(len(choice.items)), whole=True)
 
 
