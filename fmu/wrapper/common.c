@@ -13,6 +13,7 @@ static void start(Instance *m)
     for (i = 0; i < NU; i++) m->s.u[i] = model_start[FIRST_U + i];
     for (i = 0; i < NP; i++) m->s.own[i] = model_start[FIRST_P + i];
     for (i = 0; i < N_CHOICES; i++) m->s.choice[i] = model_start[FIRST_CHOICE + i];
+    use_choices(&m->s);
     m->constants_known = 0;
     changed(m);
     m->log_mask = m->log_mask_at_start;
@@ -233,9 +234,11 @@ static void put(Instance *m, fmi2ValueReference r, double value)
     }
     if (fabs(value - *place) > 1e-6 * (fabs(*place) + model_nominal[r]) || r >= FIRST_P)
         m->s.jumped = m->s.states_touched = 1;
-    if (r >= FIRST_P) m->constants_known = 0;
     *place = value;
     changed(m);
+    if (r < FIRST_P) return;
+    use_choices(&m->s);
+    m->constants_known = 0;
 }
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Real value[])

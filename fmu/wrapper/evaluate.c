@@ -3,7 +3,6 @@
 static void refresh_constants(Instance *m)
 {
     if (m->constants_known) return;
-    use_choices(&m->s);
     model_constants(m->s.p, m->c);
     m->constants_known = 1;
     m->relations_hold = 0;

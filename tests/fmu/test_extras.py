@@ -62,7 +62,8 @@ def structure_problems(content: bytes, known: set[str] | None = None) -> list[st
     problems += [f"{n}: no base unit" for n, u in units.items() if u.find(f"{{{SSC}}}BaseUnit") is None]
     for p in parameters:
         value, *rest = p
-        if p.tag != f"{{{SSV}}}Parameter" or value.tag != f"{{{SSV}}}Real" or len(rest) > 1:
+        kinds = {f"{{{SSV}}}Real", f"{{{SSV}}}Integer"}
+        if p.tag != f"{{{SSV}}}Parameter" or value.tag not in kinds or len(rest) > 1:
             problems.append(f"{p.get('name')}: {[child.tag for child in p]}")
         elif not np.isfinite(float(value.get("value", "nan"))) or value.get("unit", "1") not in units | {"1": None}:
             problems.append(f"{p.get('name')}: {value.attrib}")
