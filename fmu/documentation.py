@@ -76,11 +76,15 @@ port.</li>
 </ul>
 """
 
-_AUDIT = f"""
+_INTEGRATED = f"""
 <p>The energy of each run can be audited: <code>{SUPPLIED}</code> is the integral of the power across the boundary,
 <code>{STORED}</code> the energy of the states, and both grow by the same amount; judge a difference by
-<code>{THROUGHPUT}</code>. <code>{RESIDUAL}</code> is the violation of the balance by the equations themselves, and is
-zero but for round-off. <code>{VALIDITY}</code> counts the law arguments outside the range of their source; which they
+<code>{THROUGHPUT}</code>.</p>
+"""
+
+_BALANCE = f"""
+<p><code>{RESIDUAL}</code> is the violation of the balance of energy by the equations themselves, and is zero but for
+round-off. <code>{VALIDITY}</code> counts the law arguments outside the range of their source; which they
 are is told once each in the log category <code>logStatusWarning</code>.</p>
 """
 
@@ -113,7 +117,9 @@ def documentation(
         f"<style>{_STYLE}</style></head><body>\n<h1>{escape(flat.name)}</h1>\n<p>{escape(flat.doc)}</p>",
         f"<p>Made by {escape(tool())}.</p>",
         f"<h2>Network</h2>\n<figure>{about.picture}</figure>" if about.picture else "",
-        f"<h2>Use</h2>{_USE if fmi == 2 else _USE_3}\n<h2>Energy and validity</h2>{_AUDIT}",
+        f"<h2>Use</h2>{_USE if fmi == 2 else _USE_3}\n<h2>Energy and validity</h2>",
+        _INTEGRATED if table.audit else "",
+        _BALANCE,
         implicit if flat.residual_names else "",
         *(_variables(title, table.of(kind)) for title, kind in _GROUPS),
         _parameters(table.of("parameter"), about),

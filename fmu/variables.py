@@ -155,6 +155,7 @@ def table(
     variables += [Variable(len(variables) + i, "derivative", q, state=i) for i, q in enumerate(derivatives)]
     variables += [Variable(len(variables) + i, "choice", _of_choice(c), choice=c) for i, c in enumerate(chosen)]
     twice = sorted(name for name, count in Counter(v.name for v in variables).items() if count > 1)
+    problems += [f"{flat.name}: {problem}" for problem in _unfit(chosen, parameters)]
     problems += [f'{flat.name}: the name "{n}" appears twice.' for n in twice]
     if problems:
         raise FmuError(problems)
@@ -227,6 +228,16 @@ def _chosen(q: Quantity, choices: Iterable[Choice]) -> str:
     """What a parameter is; of one that a choice gives values also which counts."""
     by = [c.name for c in choices if q.name in c.parameters]
     return f"{q.doc}; {by[0]} sets it unless it differs from its start value" if by else q.doc
+
+
+def _unfit(choices: Iterable[Choice], parameters: Iterable[Quantity]) -> Iterator[str]:
+    """Values of items that are out of the range of their parameter."""
+    known = {q.name: q for q in parameters}
+    for choice in choices:
+        for item in choice.items:
+            for name, value in item.values.items():
+                if name in known and (problem := known[name].problem(value)):
+                    yield f'{choice.name}, item "{item.name}": {problem}'
 
 
 def _of_choice(choice: Choice) -> Quantity:

@@ -35,19 +35,18 @@ static const char *settle_down(Instance *m)
 static fmi2Status begin(Instance *m)
 {
     State before = m->s;
-    const char *astray;
+    const char *astray = NULL;
     int item = START < 0 ? 0 : (int)m->s.choice[START < 0 ? 0 : START], i;
     if (item == START_ROOM)
         for (i = 0; i < N_MODEL; i++)
             if (model_follows_room[i]) m->s.x[i] = *stored(m, ROOM_T);
     if (item == START_STEADY && (astray = settle_down(m)) != NULL) {
         m->s = before;
-        changed(m);
         warn(m, "fmi2ExitInitializationMode: there is no steady state at the initial inputs: %s does not settle. The run "
              "starts at the given states; check inputs and parameters, or choose another start.", astray);
-        return fmi2Warning;
+        item = 0;
     }
-    if (item == START_ROOM || item == START_STEADY) m->s.states_touched = 1;
     changed(m);
-    return fmi2OK;
+    m->s.states_touched |= item == START_ROOM || item == START_STEADY;
+    return astray ? fmi2Warning : fmi2OK;
 }

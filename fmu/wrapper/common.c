@@ -107,21 +107,31 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c)
     return fmi2OK;
 }
 
+static fmi2Status go_back(Instance *m, const State *to)
+{
+    m->s = *to;
+    changed(m);
+    return fmi2Error;
+}
+
 fmi2Status fmi2ExitInitializationMode(fmi2Component c)
 {
     Instance *m = c;
+    State before;
     fmi2Status status;
     const char *block;
     int r;
     if (!allowed(m, INITIALIZATION, "fmi2ExitInitializationMode")) return fmi2Error;
     if (!check_relations(m, "fmi2ExitInitializationMode")) return fmi2Error;
+    before = m->s;
     status = begin(m);
     if ((block = unsolved(m)) != NULL)
         return refuse(m, "fmi2ExitInitializationMode: the equation \"%s\" has no solution. Check start values, inputs and "
-                      "parameters.", block);
+                      "parameters.", block), go_back(m, &before);
     if ((r = wrong_result(m)) != N_VARIABLES)
         return refuse(m, "fmi2ExitInitializationMode: %s is %.10g%s, but must be %s. Check start values, inputs and "
-                      "parameters.", model_names[r], value_of(m, r), model_units[r], model_ranges[r]);
+                      "parameters.", model_names[r], value_of(m, r), model_units[r], model_ranges[r]),
+               go_back(m, &before);
     accept_algebra(m);
     m->s.mode = m->s.type == fmi2ModelExchange ? EVENT : STEP_COMPLETE;
     warn_validity(m);

@@ -194,6 +194,9 @@ def test_a_choice_that_moves_nothing_is_none(models: SimpleNamespace, tmp_path: 
     path = export(models.rc, tmp_path / "rc.fmu", choices=[idle])
     names = [v.name for v in fmpy.read_model_description(str(path)).modelVariables]
     assert "idle" not in names
+    wrong = Choice("wrong", "a choice", (Item("one", "own"), Item("two", "negative", {"resistor.R": -1.0})))
+    with pytest.raises(FmuError, match=r'wrong, item "two": resistor\.R = -1 ohm is out of range'):
+        export(models.rc, tmp_path / "rc.fmu", choices=[wrong])
     with Player(path) as player, pytest.raises(FmuError, match="unknown"):
         player.run({}, 1, 1, start={"idle": 1})
 
@@ -224,6 +227,7 @@ def test_without_audit_there_are_two_states_less_and_the_same_temperatures(
     described = fmpy.read_model_description(str(path))
     assert len(described.derivatives) == described.numberOfContinuousStates == len(models.heat.states)
     assert not any(v.name.startswith(("energy.supplied", "energy.throughput")) for v in described.modelVariables)
+    assert "energy.supplied" not in zipfile.ZipFile(path).read("documentation/index.html").decode()
     with_audit, without = (play(p, {}, 3600, 60, tolerance=1e-8) for p in (fmu_2, path))
     for name in (*TEMPERATURES, "shaft.w", "energy.stored", "energy.residual"):
         assert without[name] == pytest.approx(with_audit[name], rel=1e-7, abs=1e-6), name
