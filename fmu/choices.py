@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from gearheat.model.core.flat import FlatModel
 
@@ -30,12 +30,14 @@ class Choice:
 
     Attributes:
         fixed: whether it counts at the start alone
+        room: of a choice how a run begins, the input or parameter with the temperature of the room; "" where none is
     """
 
     name: str
     doc: str
     items: tuple[Item, ...]
     fixed: bool = False
+    room: str = ""
 
     @property
     def parameters(self) -> frozenset[str]:
@@ -43,21 +45,21 @@ class Choice:
         return frozenset(name for item in self.items for name in item.values)
 
 
-def start_choice(room: str | None) -> Choice:
+def start_choice(room: str | None = None) -> Choice:
     """How a run begins.
 
     Args:
-        room: path of the temperature of the room; None where there is none
+        room: the input or parameter with the temperature of the room; None where there is none
     """
     given = Item(GIVEN, "the start values of the states")
     at_room = Item(ROOM, f"all temperatures as {room}, their start values do not count")
     steady = Item(STEADY, "the steady state at the initial inputs, looked for from the given states")
     doc = "how the run begins; it takes effect when initialization ends"
-    return Choice(START, doc, (given, *([at_room] if room else []), steady), fixed=True)
+    return Choice(START, doc, (given, *([at_room] if room else []), steady), fixed=True, room=room or "")
 
 
 def reduced(choices: Iterable[Choice], flat: FlatModel) -> Iterator[Choice]:
-    """The choices without values of parameters that a model does not have, and without those left without any.
+    """The choices without values of parameters that a model does not have; those of parameters left without any go.
 
     Args:
         choices: of the FMU
@@ -69,6 +71,6 @@ def reduced(choices: Iterable[Choice], flat: FlatModel) -> Iterator[Choice]:
             Item(i.name, i.doc, {name: value for name, value in i.values.items() if name in known})
             for i in choice.items
         )
-        kept = Choice(choice.name, choice.doc, tuple(items), choice.fixed)
-        if kept.parameters:
+        kept = replace(choice, items=tuple(items))
+        if kept.parameters or not choice.parameters:
             yield kept

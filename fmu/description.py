@@ -230,7 +230,12 @@ def type_name(choice: Choice) -> str:
 
 
 def items(enumeration: ET.Element, choice: Choice) -> None:
-    """Add the items of a choice to the enumeration that is its type."""
+    """Add the items of a choice to its type.
+
+    Args:
+        enumeration: the type, where they are added
+        choice: what offers them
+    """
     for value, item in enumerate(choice.items, 1):
         ET.SubElement(enumeration, "Item", name=item.name, value=str(value), description=item.doc)
 

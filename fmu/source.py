@@ -192,10 +192,11 @@ def _presets(table: Table) -> list[_Preset]:
 def _beginnings(table: Table) -> dict[str, int]:
     """Where the choice how a run begins stands, and which of its items do what; -1 for what there is not."""
     found = [(k, v.choice) for k, v in enumerate(table.of("choice")) if v.choice and v.name == START]
-    items = [item.name for item in found[0][1].items] if found else []
+    place, choice = found[0] if found else (-1, None)
+    items = [item.name for item in choice.items] if choice else []
     numbers = {f"START_{name.upper()}": items.index(name) + 1 if name in items else -1 for name in (ROOM, STEADY)}
-    room = next((v.reference for v in table if v.name == table.room), -1)
-    return {"START": found[0][0] if found else -1, "ROOM_T": room, **numbers}
+    room = next((v.reference for v in table if choice and v.name == choice.room), -1)
+    return {"START": place, "ROOM_T": room, **numbers}
 
 
 def _array(kind: str, name: str, values: Iterable[str]) -> str:

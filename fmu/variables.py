@@ -103,12 +103,10 @@ class Table:
 
     Attributes:
         audit: whether there are audit states
-        room: name of the temperature of the room, "" where none is known
     """
 
     variables: tuple[Variable, ...]
     audit: bool = True
-    room: str = ""
 
     def of(self, kind: str) -> tuple[Variable, ...]:
         """The variables of one kind, in order."""
@@ -129,7 +127,6 @@ def table(
     choices: Iterable[Choice] = (),
     *,
     audit: bool = True,
-    room: str = "",
 ) -> Table:
     """The variables of the FMU of a flat model.
 
@@ -138,7 +135,6 @@ def table(
         start: start values (SI) that replace those of inputs, parameters and states
         choices: enumerations
         audit: whether the energy across the boundary is integrated
-        room: name of the temperature of the room, for the choice how a run begins
 
     Raises:
         FmuError: a start value is unknown, not settable, or out of its range; a name appears twice
@@ -155,11 +151,11 @@ def table(
     variables += [Variable(len(variables) + i, "derivative", q, state=i) for i, q in enumerate(derivatives)]
     variables += [Variable(len(variables) + i, "choice", _of_choice(c), choice=c) for i, c in enumerate(chosen)]
     twice = sorted(name for name, count in Counter(v.name for v in variables).items() if count > 1)
-    problems += [f"{flat.name}: {problem}" for problem in _unfit(chosen, parameters)]
+    problems += [f"{flat.name}: {problem}" for problem in _unfit(chosen, inputs, parameters)]
     problems += [f'{flat.name}: the name "{n}" appears twice.' for n in twice]
     if problems:
         raise FmuError(problems)
-    return Table(tuple(variables), audit, room)
+    return Table(tuple(variables), audit)
 
 
 def _inside(end: float, direction: float) -> float:
@@ -230,10 +226,12 @@ def _chosen(q: Quantity, choices: Iterable[Choice]) -> str:
     return f"{q.doc}; {by[0]} sets it unless it differs from its start value" if by else q.doc
 
 
-def _unfit(choices: Iterable[Choice], parameters: Iterable[Quantity]) -> Iterator[str]:
-    """Values of items that are out of the range of their parameter."""
-    known = {q.name: q for q in parameters}
+def _unfit(choices: Iterable[Choice], inputs: Group, parameters: Group) -> Iterator[str]:
+    """Values of items that are out of the range of their parameter, and rooms that no model knows."""
+    known, given = {q.name: q for q in parameters}, {q.name for q in (*inputs, *parameters)}
     for choice in choices:
+        if choice.room and choice.room not in given:
+            yield f'{choice.name}: "{choice.room}" is no input and no parameter.{suggestion(choice.room, given)}'
         for item in choice.items:
             for name, value in item.values.items():
                 if name in known and (problem := known[name].problem(value)):

@@ -72,7 +72,7 @@ def export_command(
     named = {q.name for q in kept.parameters}
     origins = sources_of(setting, kept) if with_origins else None
     written = [] if beside is None else write_extras(out, beside, setting, kept, duty, start, origins)
-    choices = (start_choice(setting.room), *reduced(oils(setting), kept))
+    choices = reduced(choices_of(setting), kept)
     found = {
         "schema": "gearheat.export/1",
         "rig": scenario.name,
@@ -109,13 +109,14 @@ def write_fmu(scenario: Scenario, flat: FlatModel, out: Path, **options: Any) ->
         options: of `gearheat.fmu.export.export`
     """
     known: dict[str, Any] = {"sources": sources_of(scenario, flat), "uncertainties": scenario.uncertainties}
-    known |= {"choices": oils(scenario), "room": scenario.room}
+    known["choices"] = choices_of(scenario)
     return export(flat, out, picture=network_svg(assemble(scenario.spec)), **{**known, **options})
 
 
-def oils(scenario: Scenario) -> tuple[Choice, ...]:
-    """For each part that holds oil, the oils of the catalogue that give it all that its own oil does."""
-    return tuple(_oil(scenario, part) for part, kinds in scenario.entries.items() if _OIL in kinds)
+def choices_of(scenario: Scenario) -> tuple[Choice, ...]:
+    """How a run begins; for each part that holds oil, the oils of the catalogue that give it all that its own does."""
+    room = scenario.room if scenario.room in scenario.driven_paths() else None
+    return (start_choice(room), *(_oil(scenario, part) for part, kinds in scenario.entries.items() if _OIL in kinds))
 
 
 def _oil(scenario: Scenario, part: str) -> Choice:

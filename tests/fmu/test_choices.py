@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 from fmpy.fmi2 import FMU2Model
 from fmpy.validation import validate_fmu
-from gearheat.fmu.choices import Choice, Item
+from gearheat.fmu.choices import Choice, Item, start_choice
 from gearheat.fmu.export import export
 from gearheat.fmu.play import Player, play
 from gearheat.model.core.flat import FlatModel
@@ -25,6 +25,7 @@ from gearheat.model.run.steady import steady
 
 Open = Callable[..., Any]
 THICK = {"oil.C": 4200.0, "oil.b_0": 0.05}
+BEGIN = start_choice("room.T")
 OIL = Choice("oil.oil", "the oil filled in", (Item("as exported", "own"), Item("thick", "more viscous", THICK)))
 HOT = {"governor.w": 220.0, "load.tau": 30.0, "room.T": 303.15}
 TEMPERATURES = ("oil.T", "gears.T", "cover.T", "housing.T")
@@ -42,13 +43,13 @@ EVENT_INFO = (
 @pytest.fixture(scope="module", params=[2, 3])
 def fmu(request: pytest.FixtureRequest, models: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("choices") / f"heat{request.param}.fmu"
-    return export(models.heat, path, fmi=request.param, choices=[OIL], room="room.T")
+    return export(models.heat, path, fmi=request.param, choices=[BEGIN, OIL])
 
 
 @pytest.fixture(scope="module")
 def fmu_2(models: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("choices") / "heat.fmu"
-    return export(models.heat, path, choices=[OIL], room="room.T")
+    return export(models.heat, path, choices=[BEGIN, OIL])
 
 
 def simulated(path: Path, kind: str, **start: float) -> Any:
@@ -134,7 +135,7 @@ def test_items_and_moments_that_do_not_fit_are_refused(opened: Open, fmu_2: Path
 
 def test_a_chosen_oil_is_the_fmu_exported_with_it(models: SimpleNamespace, fmu: Path, tmp_path: Path) -> None:
     fmi = 3 if fmu.stem.endswith("3") else 2
-    other = export(models.heat, tmp_path / "thick.fmu", fmi=fmi, start=THICK, choices=[OIL], room="room.T")
+    other = export(models.heat, tmp_path / "thick.fmu", fmi=fmi, start=THICK, choices=[BEGIN, OIL])
     for start in ({}, {"start": 3}, {"shaft.J": 0.2}):
         chosen = play(fmu, {}, 3600, 60, start={**start, "oil.oil": 2})
         exported = play(other, {}, 3600, 60, start=start)
@@ -222,7 +223,7 @@ def test_teeth_are_whole_numbers(models: SimpleNamespace, tmp_path: Path, fmi: i
 def test_without_audit_there_are_two_states_less_and_the_same_temperatures(
     models: SimpleNamespace, fmu_2: Path, tmp_path: Path
 ) -> None:
-    path = export(models.heat, tmp_path / "bare.fmu", audit=False, choices=[OIL], room="room.T")
+    path = export(models.heat, tmp_path / "bare.fmu", audit=False, choices=[BEGIN, OIL])
     assert validate_fmu(str(path)) == []
     described = fmpy.read_model_description(str(path))
     assert len(described.derivatives) == described.numberOfContinuousStates == len(models.heat.states)
