@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -164,7 +164,7 @@ def description(
     named = {"fmiVersion": "2.0", "modelName": flat.name, "guid": guid}
     told = {**origin(flat), "numberOfEventIndicators": "0", **owner.attributes}
     root = ET.Element("fmiModelDescription", {**named, **told})
-    _interfaces(root, identifier(flat.name), with_sources)
+    _interfaces(root, identifier(flat.name), with_sources, exchange=not table.of("deviation"))
     circumstances(root, {v.quantity.unit for v in table}, _types)
     variables = ET.SubElement(root, "ModelVariables")
     for variable in table:
@@ -217,11 +217,13 @@ def type_of(unit: str) -> dict[str, str]:
     return told | ({"relativeQuantity": "true"} if units.is_difference(unit) else {})
 
 
-def _interfaces(root: ET.Element, name: str, with_sources: bool) -> None:
+def _interfaces(root: ET.Element, name: str, with_sources: bool, exchange: bool) -> None:
+    """With standard deviations there is no model exchange: their sensitivities move with the solver inside."""
     own = {"modelIdentifier": name, **_CAPABILITIES}
-    exchange = ET.SubElement(root, "ModelExchange", {**own, "completedIntegratorStepNotNeeded": "true"})
-    simulation = ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
-    for interface in (exchange, simulation) if with_sources else ():
+    if exchange:
+        ET.SubElement(root, "ModelExchange", {**own, "completedIntegratorStepNotNeeded": "true"})
+    ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
+    for interface in list(root) if with_sources else ():
         ET.SubElement(ET.SubElement(interface, "SourceFiles"), "File", name="all.c")
 
 
@@ -293,9 +295,25 @@ def _model_structure(root: ET.Element, table: Table, dependent: Dependencies) ->
     by_kind: dict[str, ET.Element] = {"output": outputs, "derivative": ET.SubElement(structure, "Derivatives")}
     for variable, on in zip(unknown, dependent.step, strict=True):
         _unknown(by_kind[variable.kind], variable, on)
+    for variable, on in deviations(table, dependent.step):
+        _unknown(outputs, variable, on)
     initial = ET.SubElement(structure, "InitialUnknowns")
     for variable, on in zip(unknown, dependent.initial, strict=True):
         _unknown(initial, variable, on)
+    for variable, on in deviations(table, dependent.initial):
+        _unknown(initial, variable, on)
+
+
+def deviations(table: Table, dependent: Sequence[tuple[int, ...]]) -> Iterator[tuple[Variable, tuple[int, ...]]]:
+    """Standard deviations and what they depend on: that of an output what the output depends on, of a state nothing.
+
+    Args:
+        table: the variables
+        dependent: of each output
+    """
+    first, states = table.first("output"), len(table.of("state"))
+    for v in table.of("deviation"):
+        yield v, () if v.of is None or v.of < states else dependent[v.of - first]
 
 
 def _unknown(parent: ET.Element, variable: Variable, on: Iterable[int]) -> None:

@@ -39,8 +39,9 @@ from .compiling import binary, platforms, store
 from .description import Owner, dependencies, description, identifier
 from .documentation import About, documentation
 from .effective import effective
-from .equations import equations
+from .equations import Equations, equations
 from .icon import icon
+from .leading import Directions, Uncertain, leading
 from .parameter_set import parameter_set
 from .related import related
 from .source import GUID_MARK, source
@@ -67,6 +68,7 @@ def export(
     owner: Owner = Owner(),
     with_sources: bool = True,
     fmi: int = 2,
+    uncertain: Uncertain | None = None,
 ) -> Path:
     """Write a model as an FMU that serves co-simulation and model exchange. The same model gives the same bytes.
 
@@ -87,19 +89,24 @@ def export(
         owner: author, version, licence and date that its owner gives
         with_sources: whether it holds its C source
         fmi: version of the standard, 2 or 3
+        uncertain: what is uncertain, where states and outputs shall have standard deviations; such an FMU serves
+            co-simulation only
 
     Returns:
         the path
 
     Raises:
-        FmuError: a start value is wrong, the compiler fails, or the file cannot be written
+        FmuError: a start value is wrong, what is uncertain has no effect, the compiler fails, or the file cannot be
+            written
     """
     path, chosen = Path(path), platforms(platform, fmi)
-    kept, variables = _exported(flat, dict(start or {}))
+    kept, variables = _exported(flat, dict(start or {}), () if uncertain is None else uncertain.shown)
     held = {q.name for q in kept.parameters}
     idle = tuple(q.name for q in flat.parameters if q.name not in held)
-    about = About(sources or {}, uncertainties or {}, picture, idle)
-    code, told = _code(kept, variables, fmi, owner=owner, with_sources=with_sources)
+    model = equations(kept)
+    directions = None if uncertain is None else leading(kept, model, variables, uncertain.reasons)
+    about = About(sources or {}, uncertainties or {}, picture, idle, directions)
+    code, told = _code(kept, variables, model, fmi, owner=owner, with_sources=with_sources, directions=directions)
     headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
     content = {
         "modelDescription.xml": told,
@@ -130,20 +137,26 @@ def _made(path: Path, content: bytes) -> None:
     remember(content)
 
 
-def _exported(flat: FlatModel, start: Mapping[str, float]) -> tuple[FlatModel, Table]:
+def _exported(flat: FlatModel, start: Mapping[str, float], deviating: Sequence[str]) -> tuple[FlatModel, Table]:
     """The model without idle parameters, and its variables with their start values."""
-    table(flat, start)  # tells all that is wrong, also with parameters that are idle
+    table(flat, start, deviating)  # tells all that is wrong, also with parameters that are idle
     kept = effective(flat, start)
     known = {q.name for q in (*kept.states, *kept.inputs, *kept.parameters)}
-    return kept, table(kept, {name: value for name, value in start.items() if name in known})
+    return kept, table(kept, {name: value for name, value in start.items() if name in known}, deviating)
 
 
 def _code(
-    flat: FlatModel, variables: Table, fmi: int = 2, *, owner: Owner = Owner(), with_sources: bool = True
+    flat: FlatModel,
+    variables: Table,
+    model: Equations,
+    fmi: int,
+    *,
+    owner: Owner,
+    with_sources: bool,
+    directions: Directions | None,
 ) -> tuple[str, bytes]:
     """The C source and the description, with the identification that follows from both."""
-    model = equations(flat)
-    code, dependent = source(flat, model, variables, fmi), dependencies(model, variables)
+    code, dependent = source(flat, model, variables, fmi, directions), dependencies(model, variables)
     if fmi == 3:
         without_guid = fmi3_description.description(flat, variables, GUID_MARK, dependent, owner)
     else:

@@ -7,7 +7,18 @@ from collections.abc import Iterable
 
 from gearheat.model.core.flat import FlatModel
 
-from .description import Dependencies, Owner, circumstances, identifier, identity, numbers, origin, type_of, xml
+from .description import (
+    Dependencies,
+    Owner,
+    circumstances,
+    deviations,
+    identifier,
+    identity,
+    numbers,
+    origin,
+    type_of,
+    xml,
+)
 from .variables import Table, Variable
 
 _CAPABILITIES = {
@@ -41,7 +52,8 @@ def description(flat: FlatModel, table: Table, token: str, dependent: Dependenci
     named = {"fmiVersion": "3.0", "modelName": flat.name, "instantiationToken": token}
     root = ET.Element("fmiModelDescription", {**named, **origin(flat), **owner.attributes})
     own = {"modelIdentifier": identifier(flat.name), **_CAPABILITIES}
-    ET.SubElement(root, "ModelExchange", {**own, **_MODEL_EXCHANGE})
+    if not table.of("deviation"):
+        ET.SubElement(root, "ModelExchange", {**own, **_MODEL_EXCHANGE})
     ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
     circumstances(root, {"s", *(v.quantity.unit for v in table)}, _types)
     variables = ET.SubElement(root, "ModelVariables")
@@ -80,7 +92,11 @@ def _model_structure(root: ET.Element, table: Table, dependent: Dependencies) ->
     unknown = (*table.of("output"), *table.of("derivative"))
     for variable, on in zip(unknown, dependent.step, strict=True):
         _unknown(structure, names[variable.kind], variable, on)
+    for variable, on in deviations(table, dependent.step):
+        _unknown(structure, "Output", variable, on)
     for variable, on in zip(unknown, dependent.initial, strict=True):
+        _unknown(structure, "InitialUnknown", variable, on)
+    for variable, on in deviations(table, dependent.initial):
         _unknown(structure, "InitialUnknown", variable, on)
 
 

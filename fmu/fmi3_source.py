@@ -19,6 +19,7 @@ WRAPPER = (
     "newton.c",
     "evaluate.c",
     "trial.c",
+    "certain.c",
     "solver.c",
     "fmi3_modes.c",
     "common.c",

@@ -190,6 +190,9 @@ def export(
     extras: Annotated[
         Path | None, typer.Option(metavar="FOLDER", help="Write parameter sets (.ssv) and a reference result there.")
     ] = None,
+    uncertainty: Annotated[
+        bool, typer.Option("--uncertainty", help="With standard deviations, such as oil.T.sd; co-simulation only.")
+    ] = False,
     json: Json = None,
 ) -> None:
     """Write the rig as an FMU for FMI 2.0 or 3.0."""
@@ -209,6 +212,7 @@ def export(
         with_sources=sources,
         with_origins=origins,
         fmi=int(fmi),
+        uncertainty=uncertainty,
     )
 
 

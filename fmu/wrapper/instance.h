@@ -11,14 +11,15 @@
 
 #define AT_LEAST_1(n) ((n) > 0 ? (n) : 1)
 
-/* Value references: states, inputs, outputs, parameters, derivatives. */
+/* Value references: states, inputs, outputs, parameters, derivatives, standard deviations. */
 enum {
     FIRST_X = 0,
     FIRST_U = FIRST_X + NX,
     FIRST_Y = FIRST_U + NU,
     FIRST_P = FIRST_Y + NY,
     FIRST_DX = FIRST_P + NP,
-    N_VARIABLES = FIRST_DX + NX
+    FIRST_SD = FIRST_DX + NX,
+    N_VARIABLES = FIRST_SD + NSD
 };
 
 /* The last two states are the audit's; the error control looks at all but the last. */
@@ -53,6 +54,7 @@ typedef struct {
     double u[AT_LEAST_1(NU)];
     double slope[AT_LEAST_1(NU)];
     double p[AT_LEAST_1(NP)];
+    double s[AT_LEAST_1(ND * NS)];   /* sensitivities of the states, direction by direction */
 } State;
 
 typedef struct {
@@ -70,6 +72,11 @@ typedef struct {
     double z[AT_LEAST_1(NZ)];
     double y[AT_LEAST_1(NY)];
     double dx[AT_LEAST_1(NX)];
+    int directions_known;  /* p_dot and c_dot belong to s.p */
+    int deviations_known;  /* deviation belongs to s */
+    double p_dot[AT_LEAST_1(ND * NP)];
+    double c_dot[AT_LEAST_1(ND * NC)];
+    double deviation[AT_LEAST_1(NSD)];
     unsigned char warned[AT_LEAST_1(NK)];
     unsigned char kept[AT_LEAST_1(NU)];    /* it was told that an input keeps its value */
     int order_told;        /* that higher derivatives of inputs are ignored */
