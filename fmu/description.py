@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -288,32 +288,29 @@ def _meaning(q: Quantity) -> str:
 
 def _model_structure(root: ET.Element, table: Table, dependent: Dependencies) -> None:
     structure = ET.SubElement(root, "ModelStructure")
-    unknown = (*table.of("output"), *table.of("derivative"))
-    outputs = ET.SubElement(structure, "Outputs")
+    outputs, derivatives = ET.SubElement(structure, "Outputs"), ET.SubElement(structure, "Derivatives")
     for state in table.of("state"):
         _unknown(outputs, state, [state.reference])
-    by_kind: dict[str, ET.Element] = {"output": outputs, "derivative": ET.SubElement(structure, "Derivatives")}
-    for variable, on in zip(unknown, dependent.step, strict=True):
-        _unknown(by_kind[variable.kind], variable, on)
-    for variable, on in deviations(table, dependent.step):
-        _unknown(outputs, variable, on)
+    for variable, on in unknowns(table, dependent.step):
+        _unknown(derivatives if variable.kind == "derivative" else outputs, variable, on)
     initial = ET.SubElement(structure, "InitialUnknowns")
-    for variable, on in zip(unknown, dependent.initial, strict=True):
-        _unknown(initial, variable, on)
-    for variable, on in deviations(table, dependent.initial):
+    for variable, on in unknowns(table, dependent.initial):
         _unknown(initial, variable, on)
 
 
-def deviations(table: Table, dependent: Sequence[tuple[int, ...]]) -> Iterator[tuple[Variable, tuple[int, ...]]]:
-    """Standard deviations and what they depend on: that of an output what the output depends on, of a state nothing.
+def unknowns(table: Table, dependent: Sequence[tuple[int, ...]]) -> list[tuple[Variable, tuple[int, ...]]]:
+    """Outputs, derivatives and standard deviations with the value references they depend on, in their order.
+
+    The standard deviation of an output depends on what the output does, that of a state on the past alone.
 
     Args:
         table: the variables
-        dependent: of each output
+        dependent: of each output and derivative
     """
-    first, states = table.first("output"), len(table.of("state"))
-    for v in table.of("deviation"):
-        yield v, () if v.of is None or v.of < states else dependent[v.of - first]
+    own = (*table.of("output"), *table.of("derivative"))
+    on = {v.reference: references for v, references in zip(own, dependent, strict=True)}
+    deviations = [(v, on.get(v.of, ()) if v.of is not None else ()) for v in table.of("deviation")]
+    return [*((v, on[v.reference]) for v in own), *deviations]
 
 
 def _unknown(parent: ET.Element, variable: Variable, on: Iterable[int]) -> None:

@@ -157,12 +157,11 @@ def _deviations(directions: Directions | None) -> str:
         (escape(r.name), ", ".join(f"<code>{escape(path)}</code> {change:+.3g}" for path, change in r.changes.items()))
         for r in directions.reasons
     ]
-    left_out = (
-        ""
-        if directions.shortfall is None
-        else f" At no time of the default experiment a standard deviation comes out more than {directions.shortfall:.1%} "
-        "too small for what is left out."
-    )
+    short, left_out = directions.shortfall, ""
+    if short is not None:
+        left_out = (
+            f" For what is left out no deviation is ever more than {short:.1%} too small in the default experiment."
+        )
     kept = f"<p>Of {len(rows)} rows {directions.count} combinations are integrated, those that move most.{left_out}</p>"
     return _table("Uncertainty", ("reason", "change of the parameters (SI)"), rows, before=_DEVIATIONS + kept)
 

@@ -11,12 +11,12 @@ from .description import (
     Dependencies,
     Owner,
     circumstances,
-    deviations,
     identifier,
     identity,
     numbers,
     origin,
     type_of,
+    unknowns,
     xml,
 )
 from .variables import Table, Variable
@@ -86,17 +86,13 @@ def _time(variables: ET.Element, table: Table) -> None:
 
 def _model_structure(root: ET.Element, table: Table, dependent: Dependencies) -> None:
     structure = ET.SubElement(root, "ModelStructure")
-    names = {"output": "Output", "derivative": "ContinuousStateDerivative"}
     for state in table.of("state"):
         _unknown(structure, "Output", state, [state.reference])
-    unknown = (*table.of("output"), *table.of("derivative"))
-    for variable, on in zip(unknown, dependent.step, strict=True):
-        _unknown(structure, names[variable.kind], variable, on)
-    for variable, on in deviations(table, dependent.step):
-        _unknown(structure, "Output", variable, on)
-    for variable, on in zip(unknown, dependent.initial, strict=True):
-        _unknown(structure, "InitialUnknown", variable, on)
-    for variable, on in deviations(table, dependent.initial):
+    derivatives_last = sorted(unknowns(table, dependent.step), key=lambda pair: pair[0].kind == "derivative")
+    for variable, on in derivatives_last:
+        name = "ContinuousStateDerivative" if variable.kind == "derivative" else "Output"
+        _unknown(structure, name, variable, on)
+    for variable, on in unknowns(table, dependent.initial):
         _unknown(structure, "InitialUnknown", variable, on)
 
 

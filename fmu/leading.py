@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -15,7 +15,7 @@ from gearheat.model.run.simulate import simulate
 from .description import EXPERIMENT
 from .equations import Equations
 from .sensitivity import Sensitivities
-from .variables import Table
+from .variables import Table, Variable
 
 #: Share by which a standard deviation may come out too small for the directions left out.
 SHORTFALL = 0.01
@@ -105,14 +105,12 @@ def leading(flat: FlatModel, model: Equations, table: Table, reasons: tuple[Unce
     Raises:
         FmuError: none of it moves a parameter or a state of the model
     """
-    groups = (table.of("parameter"), table.of("state")[:-2])
-    reasons = tuple(r for r in reasons if any(r.changes.get(v.name) for group in groups for v in group))
+    parameters, states = table.of("parameter"), table.of("state")[:-2]
+    known = {v.name for v in (*parameters, *states)}
+    reasons = tuple(r for r in reasons if any(change and path in known for path, change in r.changes.items()))
     if not reasons:
-        raise FmuError(
-            f"{flat.name}: no parameter with an uncertainty has an effect: no standard deviations."
-        )
-    moved = [np.array([[r.changes.get(v.name, 0.0) for r in reasons] for v in group]) for group in groups]
-    full = Directions(*(m.reshape(-1, len(reasons)) for m in moved), reasons, None)
+        raise FmuError(f"{flat.name}: no parameter with an uncertainty has an effect: no standard deviations.")
+    full = Directions(_changes(parameters, reasons), _changes(states, reasons), reasons, None)
     try:
         slopes = _slopes(flat, model, table, full)
     except SolveError:
@@ -127,6 +125,12 @@ def leading(flat: FlatModel, model: Equations, table: Table, reasons: tuple[Unce
     return Directions(
         _rounded(full.parameters @ kept), _rounded(full.states @ kept), reasons, max(float(short[count - 1]), 0.0)
     )
+
+
+def _changes(variables: Sequence[Variable], reasons: Sequence[Uncertainty]) -> np.ndarray:
+    """Change of each variable for each reason (variables, reasons)."""
+    changes = [[r.changes.get(v.name, 0.0) for r in reasons] for v in variables]
+    return np.array(changes).reshape(len(variables), len(reasons))
 
 
 def _rounded(matrix: np.ndarray) -> np.ndarray:

@@ -45,7 +45,7 @@ def uncertain(scenario: Scenario, flat: FlatModel) -> Uncertain:
     found = reasons(scenario, flat)
     if not found:
         raise ScenarioError(
-            f"{scenario.name}: --uncertainty needs uncertain parameters, and the rig has none. State some in the parts,\n"
+            f"{scenario.name}: --uncertainty: no parameter of this rig is uncertain. State an uncertainty in a part,\n"
             'for example uncertainties = { G = "0.19 W/K" }.'
         )
     shown = [q.name for q in flat.states] + told(scenario)
