@@ -158,7 +158,14 @@ class Equations:
 
 
 def full(name: str, inputs: list[Any], outputs: list[Any], names_in: list[str], names_out: list[str]) -> Any:
-    """A CasADi function whose results are full, equal expressions computed once."""
+    """A CasADi function whose results are full, and equal expressions in them computed once.
+
+    Args:
+        name: of the function
+        inputs: SX symbols
+        outputs: SX expressions in them
+        names_in, names_out: names of both
+    """
     dense = [ca.densify(ca.SX(value)) for value in outputs]
     return ca.Function(name, inputs, dense, names_in, names_out, {"cse": True})
 
