@@ -308,7 +308,8 @@ def sweep(
     vary: Annotated[
         list[str],
         typer.Option(
-            help='NAME=LOW..HIGH, for example "carrier.tau=500..2700 N.m", or NAME~normal(MEAN, DEVIATION). Repeatable.'
+            help='NAME=LOW..HIGH, for example "carrier.tau=500..2700 N.m", NAME~normal(MEAN, DEVIATION),'
+            " or the word uncertainty: every uncertain parameter of the rig. Repeatable."
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="CSV or Parquet file to write.")],
