@@ -39,7 +39,7 @@ from .compiling import binary, platforms, store
 from .description import Owner, dependencies, description, identifier
 from .documentation import About, documentation
 from .effective import effective
-from .equations import Equations, equations
+from .equations import equations
 from .icon import icon
 from .leading import Directions, Uncertain, leading
 from .parameter_set import parameter_set
@@ -72,9 +72,8 @@ def export(
 ) -> Path:
     """Write a model as an FMU that serves co-simulation and model exchange. The same model gives the same bytes.
 
-    The FMU has the model's inputs, outputs and states under their paths, those of its parameters that have an effect
-    (see `effective`), the derivatives of the states, and an audit of the energy. Its solver is inside, and it needs no
-    file and no library but that of C.
+    It has the model's inputs, outputs and states under their paths, the parameters with an effect (see `effective`),
+    the states' derivatives and an audit of the energy. Its solver is inside; it needs no library but that of C.
 
     Args:
         flat: the model
@@ -89,24 +88,19 @@ def export(
         owner: author, version, licence and date that its owner gives
         with_sources: whether it holds its C source
         fmi: version of the standard, 2 or 3
-        uncertain: what is uncertain, where states and outputs shall have standard deviations; such an FMU serves
-            co-simulation only
+        uncertain: what makes standard deviations, where it shall have some; it then serves co-simulation only
 
     Returns:
         the path
 
     Raises:
-        FmuError: a start value is wrong, what is uncertain has no effect, the compiler fails, or the file cannot be
-            written
+        FmuError: a start value is wrong, nothing uncertain has an effect, the compiler or writing the file fails
     """
     path, chosen = Path(path), platforms(platform, fmi)
     kept, variables = _exported(flat, dict(start or {}), () if uncertain is None else uncertain.shown)
-    held = {q.name for q in kept.parameters}
-    idle = tuple(q.name for q in flat.parameters if q.name not in held)
-    model = equations(kept)
-    directions = None if uncertain is None else leading(kept, model, variables, uncertain.reasons)
+    idle = tuple(q.name for q in flat.parameters if q not in kept.parameters)
+    code, told, directions = _code(kept, variables, fmi, owner=owner, with_sources=with_sources, uncertain=uncertain)
     about = About(sources or {}, uncertainties or {}, picture, idle, directions)
-    code, told = _code(kept, variables, model, fmi, owner=owner, with_sources=with_sources, directions=directions)
     headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
     content = {
         "modelDescription.xml": told,
@@ -148,21 +142,22 @@ def _exported(flat: FlatModel, start: Mapping[str, float], deviating: Sequence[s
 def _code(
     flat: FlatModel,
     variables: Table,
-    model: Equations,
     fmi: int,
     *,
     owner: Owner,
     with_sources: bool,
-    directions: Directions | None,
-) -> tuple[str, bytes]:
-    """The C source and the description, with the identification that follows from both."""
+    uncertain: Uncertain | None,
+) -> tuple[str, bytes, Directions | None]:
+    """The C source and the description, with the identification that follows from both; directions of deviations."""
+    model = equations(flat)
+    directions = None if uncertain is None else leading(flat, model, variables, uncertain.reasons)
     code, dependent = source(flat, model, variables, fmi, directions), dependencies(model, variables)
     if fmi == 3:
         without_guid = fmi3_description.description(flat, variables, GUID_MARK, dependent, owner)
     else:
         without_guid = description(flat, model, variables, GUID_MARK, dependent, owner=owner, with_sources=with_sources)
     guid = _guid(code.encode() + without_guid)
-    return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode())
+    return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode()), directions
 
 
 def _extra(flat: FlatModel, variables: Table, about: About) -> dict[str, bytes]:

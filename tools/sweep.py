@@ -219,13 +219,23 @@ def planned(request: Request, scenario: Scenario | None = None) -> Plan:
     if request.grid is not None:
         values = sampling.gridded(axes, request.grid)
     else:
-        why = reasons(scenario, flat, names) if UNCERTAINTY in request.vary else ()
-        values = sampling.sampled((*axes, *shares(why)), request.sample or 0, request.method, request.seed)
-        more, drawn = sampled(why, flat, values[:, len(axes) :])
-        values, axes = np.column_stack([values[:, : len(axes)], drawn]), (*axes, *more)
+        axes, values = _sampled(request, scenario, flat, axes)
     job = _job(request, scenario, flat, tuple(axis.name for axis in axes))
-    pictured = _outputs(request) or told(scenario) or job.outputs[:MOST_PANELS]
-    return Plan(scenario.name, request.kind, axes, values, job, flat, unchecked(scenario, flat), pictured)
+    drawn = _outputs(request) or told(scenario) or job.outputs[:MOST_PANELS]
+    return Plan(scenario.name, request.kind, axes, values, job, flat, unchecked(scenario, flat), drawn)
+
+
+def _sampled(
+    request: Request, scenario: Scenario, flat: FlatModel, axes: tuple[sampling.Axis, ...]
+) -> tuple[tuple[sampling.Axis, ...], np.ndarray]:
+    """Axes and values of random rows, all uncertain parameters among them where they are asked for."""
+    drawn = partial(sampling.sampled, rows=request.sample or 0, method=request.method, seed=request.seed)
+    if UNCERTAINTY not in request.vary:
+        return axes, drawn(axes)
+    why = reasons(scenario, flat, [axis.name for axis in axes])
+    values = drawn((*axes, *shares(why)))
+    more, uncertain = sampled(why, flat, values[:, len(axes) :])
+    return (*axes, *more), np.column_stack([values[:, : len(axes)], uncertain])
 
 
 def _problems(request: Request) -> list[str]:

@@ -73,19 +73,19 @@ def sampled(found: Sequence[Uncertainty], flat: FlatModel, sizes: np.ndarray) ->
         an axis of each parameter, with its standard deviation, and the values (rows, parameters)
     """
     paths = list(dict.fromkeys(path for reason in found for path in reason.changes))
-    changes = np.array([[reason.changes.get(path, 0.0) for path in paths] for reason in found]).reshape(-1, len(paths))
+    changes = np.array([[reason.changes.get(path, 0.0) for path in paths] for reason in found])
     quantities = [flat.quantity(path) for path in paths]
     starts = np.array([q.start for q in quantities])
     scale = np.where(starts, starts, 1.0)
     moved = sizes @ (changes / scale)
     values = scale * np.where(starts, np.exp(moved), moved)
     ends = [Variable(0, "parameter", q).bounds for q in quantities]
-    deviations = np.hypot.reduce(changes, axis=0) if paths else []
+    deviations = np.hypot.reduce(changes, axis=0)
     axes = tuple(
         Axis(q.name, "lognormal" if q.start else "normal", q.start, float(sd))
         for q, sd in zip(quantities, deviations, strict=True)
     )
-    return axes, np.clip(values, *np.array(ends).reshape(-1, 2).T)
+    return axes, np.clip(values, *np.array(ends).T)
 
 
 def uncertain(scenario: Scenario, flat: FlatModel) -> Uncertain:
