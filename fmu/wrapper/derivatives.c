@@ -31,7 +31,7 @@ static int without_slope(const Instance *m, const fmi2ValueReference r[], size_t
 {
     size_t i;
     for (i = 0; i < n; i++)
-        if (r[i] >= FIRST_SD) {
+        if (NSD > 0 && r[i] >= FIRST_SD) {
             discard(m, "%s: of %s no derivative is known.", function, model_names[r[i]]);
             return 1;
         }

@@ -1,6 +1,7 @@
 """Standard deviations of an FMU: closed form, Monte Carlo, saved states, both versions, and what is refused."""
 
 import math
+import subprocess
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -11,6 +12,7 @@ import numpy as np
 import pytest
 from fmpy.fmi2 import FMU2Model
 from fmpy.validation import validate_fmu
+from fmu_in_c import gcc
 from gearheat.fmu.batch import Batch
 from gearheat.fmu.equations import equations
 from gearheat.fmu.export import export
@@ -157,6 +159,15 @@ def test_what_makes_no_deviation_is_refused(models: SimpleNamespace, tmp_path: P
     idle = (Uncertainty("nothing", {"resistor.R": 0.0, "sink.G": 1.0}),)
     with pytest.raises(FmuError, match="no parameter with an uncertainty has an effect"):
         export(models.rc, tmp_path / "rc.fmu", uncertain=Uncertain(idle, CIRCUIT.shown))
+
+
+def test_the_source_compiles_without_a_warning(machine: Path, tmp_path: Path) -> None:
+    if not (compiler := gcc()):
+        pytest.skip("there is no gcc")
+    with zipfile.ZipFile(machine) as file:
+        file.extract("sources/all.c", tmp_path)
+    options = ("-std=c99", "-O2", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-c", "-o", tmp_path / "all.o")
+    subprocess.run([*compiler.command, *options, tmp_path / "sources" / "all.c"], check=True)
 
 
 def test_the_page_says_what_the_deviations_contain(machine: Path) -> None:
