@@ -29,13 +29,14 @@ import hashlib
 import io
 import uuid
 import zipfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from gearheat.model.core.flat import FlatModel
 
 from . import fmi3_description, fmi3_source
-from .compiling import binary, platforms, store
+from .choices import Choice, reduced, start_choice
+from .compiling import Platform, binary, platforms, store
 from .description import Owner, dependencies, description, identifier
 from .documentation import About, documentation
 from .effective import effective
@@ -68,6 +69,8 @@ def export(
     owner: Owner = Owner(),
     with_sources: bool = True,
     fmi: int = 2,
+    choices: Sequence[Choice] = (start_choice(),),
+    audit: bool = True,
     uncertain: Uncertain | None = None,
 ) -> Path:
     """Write a model as an FMU that serves co-simulation and model exchange. The same model gives the same bytes.
@@ -88,6 +91,8 @@ def export(
         owner: author, version, licence and date that its owner gives
         with_sources: whether it holds its C source
         fmi: version of the standard, 2 or 3
+        choices: its enumerations: how a run begins, the oils; values of parameters that it does not have go
+        audit: whether two states integrate the energy across the boundary
         uncertain: what makes standard deviations, where it shall have some; it then serves co-simulation only
 
     Returns:
@@ -97,24 +102,32 @@ def export(
         FmuError: a start value is wrong, nothing uncertain has an effect, the compiler or writing the file fails
     """
     path, chosen = Path(path), platforms(platform, fmi)
-    kept, variables = _exported(flat, dict(start or {}), () if uncertain is None else uncertain.shown)
-    idle = tuple(q.name for q in flat.parameters if q not in kept.parameters)
+    deviating = () if uncertain is None else uncertain.shown
+    kept, variables = _exported(flat, dict(start or {}), choices, audit, deviating)
     code, told, directions = _code(kept, variables, fmi, owner=owner, with_sources=with_sources, uncertain=uncertain)
-    about = About(sources or {}, uncertainties or {}, picture, idle, directions)
-    headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
+    about = About(sources or {}, uncertainties or {}, picture, _idle(flat, kept), directions)
     content = {
         "modelDescription.xml": told,
         _PAGE: documentation(kept, variables, about, fmi=fmi).encode(),
         **({"sources/all.c": code.encode()} if with_sources else {}),
         **_extra(kept, variables, about),
         **(_of_fmi_3(flat.name, variables, with_sources) if fmi == 3 else {"model.png": icon()}),
-        **{f"binaries/{p.name}/{identifier(flat.name)}{p.suffix}": binary(built, p, headers=headers) for p in chosen},
+        **_binaries(flat.name, code, chosen, fmi),
     }
-    _made(path, archive(content))
+    _made(path, content)
     if verify is not None:
-        checked = documentation(kept, variables, about, verify(path), fmi=fmi)
-        _made(path, archive({**content, _PAGE: checked.encode()}))
+        _made(path, content | {_PAGE: documentation(kept, variables, about, verify(path), fmi=fmi).encode()})
     return path
+
+
+def _idle(flat: FlatModel, kept: FlatModel) -> tuple[str, ...]:
+    held = {q.name for q in kept.parameters}
+    return tuple(q.name for q in flat.parameters if q.name not in held)
+
+
+def _binaries(name: str, code: str, chosen: Sequence[Platform], fmi: int) -> dict[str, bytes]:
+    headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
+    return {f"binaries/{p.name}/{identifier(name)}{p.suffix}": binary(built, p, headers=headers) for p in chosen}
 
 
 def _of_fmi_3(name: str, variables: Table, with_sources: bool) -> dict[str, bytes]:
@@ -126,17 +139,21 @@ def _of_fmi_3(name: str, variables: Table, with_sources: bool) -> dict[str, byte
     } | built
 
 
-def _made(path: Path, content: bytes) -> None:
-    store(path, content)
-    remember(content)
+def _made(path: Path, content: Mapping[str, bytes]) -> None:
+    written = archive(content)
+    store(path, written)
+    remember(written)
 
 
-def _exported(flat: FlatModel, start: Mapping[str, float], deviating: Sequence[str]) -> tuple[FlatModel, Table]:
+def _exported(
+    flat: FlatModel, start: Mapping[str, float], choices: Iterable[Choice], audit: bool, deviating: Sequence[str]
+) -> tuple[FlatModel, Table]:
     """The model without idle parameters, and its variables with their start values."""
-    table(flat, start, deviating)  # tells all that is wrong, also with parameters that are idle
+    table(flat, start, deviating=deviating)  # tells all that is wrong, also with parameters that are idle
     kept = effective(flat, start)
     known = {q.name for q in (*kept.states, *kept.inputs, *kept.parameters)}
-    return kept, table(kept, {name: value for name, value in start.items() if name in known}, deviating)
+    own = {name: value for name, value in start.items() if name in known}
+    return kept, table(kept, own, reduced(choices, kept), deviating, audit=audit)
 
 
 def _code(
@@ -149,7 +166,7 @@ def _code(
     uncertain: Uncertain | None,
 ) -> tuple[str, bytes, Directions | None]:
     """The C source and the description, with the identification that follows from both; directions of deviations."""
-    model = equations(flat)
+    model = equations(flat, variables.audit)
     directions = None if uncertain is None else leading(flat, model, variables, uncertain.reasons)
     code, dependent = source(flat, model, variables, fmi, directions), dependencies(model, variables)
     if fmi == 3:

@@ -17,10 +17,12 @@ WRAPPER = (
     "fmi3_messages.c",
     "messages.c",
     "newton.c",
+    "choices.c",
     "evaluate.c",
     "trial.c",
     "certain.c",
     "solver.c",
+    "beginning.c",
     "fmi3_modes.c",
     "common.c",
     "states.c",
@@ -63,7 +65,6 @@ _WORDS = {
 }
 _SAID = {
     "wrong GUID": "wrong instantiation token",
-    "all variables are Real": "all variables are Float64",
     '"step complete"': '"step mode"',
     '"step failed"': '"step mode, the last step refused"',
 }

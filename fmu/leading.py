@@ -105,7 +105,7 @@ def leading(flat: FlatModel, model: Equations, table: Table, reasons: tuple[Unce
     Raises:
         FmuError: none of it moves a parameter or a state of the model
     """
-    parameters, states = table.of("parameter"), table.of("state")[:-2]
+    parameters, states = table.of("parameter"), table.of("state")[: len(flat.states)]
     known = {v.name for v in (*parameters, *states)}
     reasons = tuple(r for r in reasons if any(change and path in known for path, change in r.changes.items()))
     if not reasons:
@@ -143,12 +143,12 @@ def _slopes(flat: FlatModel, model: Equations, table: Table, full: Directions) -
     edges = np.append(0.0, stop * np.geomspace(_FIRST, 1.0, _INTERVALS))
     times = np.sort(np.append(edges, (edges[1:] + edges[:-1]) / 2))
     values = {v.name: v.start or 0.0 for kind in ("input", "parameter") for v in table.of(kind)}
-    states = {v.name: v.start or 0.0 for v in table.of("state")[:-2]}
+    states = {v.name: v.start or 0.0 for v in table.of("state")[: len(flat.states)]}
     u, p = (np.array([v.start or 0.0 for v in table.of(kind)]) for kind in ("input", "parameter"))
     run = simulate(flat, Schedule(np.array([0.0, stop]), {}), start=states, values=values, times=times)
     x = np.array([run[name] for name in states])
     z = algebra(flat).solve_rows(x, np.tile(u[:, None], len(times)), np.tile(p[:, None], len(times)), None)
-    x = np.vstack([x, np.zeros((2, len(times)))])
+    x = np.vstack([x, np.zeros((2 * table.audit, len(times)))])
     linear = Sensitivities(model, full.count, full.moving, shown(table))
     c = model.constants(p)
     p_dot, s = full.parameters, full.states

@@ -22,7 +22,7 @@ class Sensitivities:
     """The linear equations ds/dt = J s + F of the states' sensitivities along some directions.
 
     Attributes:
-        model: the equations; its last two states are the audit's and have no sensitivities
+        model: the equations; the states of its audit have no sensitivities
         directions: how many directions there are
         moving: positions of the parameters that some direction moves
         shown: positions, among the states and behind them the outputs, of what has a standard deviation
@@ -68,7 +68,7 @@ class Sensitivities:
 
     @property
     def _n(self) -> int:
-        return int(self.model.x.shape[0]) - 2
+        return int(self.model.x.shape[0]) - 2 * self.model.audit
 
     @cached_property
     def _dots(self) -> tuple[Any, Any, Any]:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..fmu.choices import Choice, Item, reduced, start_choice
 from ..fmu.compiling import platforms
 from ..fmu.description import Owner
 from ..fmu.effective import effective
@@ -19,6 +20,7 @@ from ..model.machines.spec import assemble
 from ..model.run.point import point
 from ..model.run.rows import evaluate_at
 from ..model.run.steady import steady
+from ..scenarios.entries import catalogue
 from ..scenarios.scenario import Scenario
 from .console import answer, file_of, folder, say, writable
 from .extras import checked, reference_duty, write_extras
@@ -31,6 +33,8 @@ from .unchecked import print_unchecked, unchecked
 
 #: Shares of the operating point's torques at which a machine on torques alone is looked for that holds its speed.
 _SHARES = (1.0, 0.75, 0.5, 0.25, 0.1, 0.0)
+#: Kind of catalogue that fills parts with oil.
+_OIL = "oil"
 #: Source of what no file gives.
 _DEFAULT = "inferred: follows from the other values, or a numerical default"
 
@@ -49,6 +53,7 @@ def export_command(
     with_sources: bool = True,
     with_origins: bool = True,
     fmi: int = 2,
+    audit: bool = True,
     uncertainty: bool = False,
 ) -> None:
     """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
@@ -67,12 +72,14 @@ def export_command(
     duty = reference_duty(flat, start, setting.shaft_paths())
     told: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
     options: dict[str, Any] = {"platform": platform, "start": start, "owner": owner, "fmi": fmi}
-    options |= {"with_sources": with_sources, "uncertain": uncertain(setting, flat) if uncertainty else None}
+    options |= {"with_sources": with_sources, "audit": audit}
+    options["uncertain"] = uncertain(setting, flat) if uncertainty else None
     write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, start), **told, **options)
     kept = effective(flat, start)
     named = {q.name for q in kept.parameters}
     origins = sources_of(setting, kept) if with_origins else None
     written = [] if beside is None else write_extras(out, beside, setting, kept, duty, start, origins)
+    choices = reduced(choices_of(setting), kept)
     found = {
         "schema": "gearheat.export/1",
         "rig": scenario.name,
@@ -84,6 +91,7 @@ def export_command(
         "outputs": [q.name for q in (*flat.states, *flat.outputs)],
         "deviations": [f"{name}.sd" for name in options["uncertain"].shown] if uncertainty else [],
         "parameters": [q.name for q in kept.parameters],
+        "choices": {c.name: [i.name for i in c.items] for c in choices},
         "without_effect": [q.name for q in flat.parameters if q.name not in named],
         "extras": [str(path) for path in written],
         "unchecked": unchecked(setting, flat),
@@ -108,8 +116,22 @@ def write_fmu(scenario: Scenario, flat: FlatModel, out: Path, **options: Any) ->
         out: file to write
         options: of `gearheat.fmu.export.export`
     """
-    known = {"sources": sources_of(scenario, flat), "uncertainties": scenario.uncertainties}
+    known: dict[str, Any] = {"sources": sources_of(scenario, flat), "uncertainties": scenario.uncertainties}
+    known["choices"] = choices_of(scenario)
     return export(flat, out, picture=network_svg(assemble(scenario.spec)), **{**known, **options})
+
+
+def choices_of(scenario: Scenario) -> tuple[Choice, ...]:
+    """How a run begins; for each part that holds oil, the oils of the catalogue that give it all that its own does."""
+    room = scenario.room if scenario.room in scenario.driven_paths() else None
+    return (start_choice(room), *(_oil(scenario, part) for part, kinds in scenario.entries.items() if _OIL in kinds))
+
+
+def _oil(scenario: Scenario, part: str) -> Choice:
+    known = catalogue(_OIL)
+    own = Item("as exported", "the start values of the parameters")
+    others = (Item(name, known[name].doc, scenario.entry_values(part, name)) for name in scenario.alternatives(part))
+    return Choice(f"{part}.{_OIL}", "the oil filled in", (own, *others))
 
 
 def sources_of(scenario: Scenario, flat: FlatModel) -> dict[str, str]:

@@ -40,7 +40,7 @@ static int without_slope(const Instance *m, const fmi2ValueReference r[], size_t
 
 static int is_calculated(fmi2ValueReference r)
 {
-    return r < FIRST_U || (r >= FIRST_Y && r < FIRST_P) || r >= FIRST_DX;
+    return r < FIRST_U || (r >= FIRST_Y && r < FIRST_P) || (r >= FIRST_DX && r < FIRST_CHOICE) || r >= FIRST_SD;
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown,
