@@ -194,6 +194,9 @@ def export(
     extras: Annotated[
         Path | None, typer.Option(metavar="FOLDER", help="Write parameter sets (.ssv) and a reference result there.")
     ] = None,
+    uncertainty: Annotated[
+        bool, typer.Option("--uncertainty", help="With standard deviations, such as oil.T.sd; co-simulation only.")
+    ] = False,
     json: Json = None,
 ) -> None:
     """Write the rig as an FMU for FMI 2.0 or 3.0."""
@@ -214,6 +217,7 @@ def export(
         with_origins=origins,
         fmi=int(fmi),
         audit=audit,
+        uncertainty=uncertainty,
     )
 
 
@@ -309,7 +313,8 @@ def sweep(
     vary: Annotated[
         list[str],
         typer.Option(
-            help='NAME=LOW..HIGH, for example "carrier.tau=500..2700 N.m", or NAME~normal(MEAN, DEVIATION). Repeatable.'
+            help='NAME=LOW..HIGH, for example "carrier.tau=500..2700 N.m", NAME~normal(MEAN, DEVIATION),'
+            " or the word uncertainty: every uncertain parameter of the rig. Repeatable."
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="CSV or Parquet file to write.")],
