@@ -102,17 +102,15 @@ def export(
         FmuError: a start value is wrong, nothing uncertain has an effect, the compiler or writing the file fails
     """
     path, chosen = Path(path), platforms(platform, fmi)
-    deviating = () if uncertain is None else uncertain.shown
-    kept, variables = _exported(flat, dict(start or {}), choices, audit, deviating)
+    kept, variables = _exported(flat, dict(start or {}), choices, audit, uncertain.shown if uncertain else ())
     code, told, directions = _code(kept, variables, fmi, owner=owner, with_sources=with_sources, uncertain=uncertain)
     about = About(sources or {}, uncertainties or {}, picture, _idle(flat, kept), directions)
     content = {
         "modelDescription.xml": told,
         _PAGE: documentation(kept, variables, about, fmi=fmi).encode(),
-        **({"sources/all.c": code.encode()} if with_sources else {}),
         **_extra(kept, variables, about),
         **(_of_fmi_3(flat.name, variables, with_sources) if fmi == 3 else {"model.png": icon()}),
-        **_binaries(flat.name, code, chosen, fmi),
+        **({"sources/all.c": code.encode()} if with_sources else {}) | _binaries(flat.name, code, chosen, fmi),
     }
     _made(path, content)
     if verify is not None:
