@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -370,5 +371,12 @@ for _panel, _commands in PANELS.items():
         app.command(_command.__name__.strip("_").replace("_", "-"), rich_help_panel=_panel)(_command)
 
 
-if __name__ == "__main__":
+def program() -> None:
+    """Run the command line. A named command stands alone: to read the options of all takes long."""
+    named = [command for command in app.registered_commands if sys.argv[1:2] == [command.name]]
+    app.registered_commands = named or app.registered_commands
     app()
+
+
+if __name__ == "__main__":
+    program()
