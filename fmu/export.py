@@ -73,7 +73,7 @@ def export(
     audit: bool = True,
     uncertain: Uncertain | None = None,
 ) -> Path:
-    """Write a model as an FMU that serves co-simulation and model exchange. The same model gives the same bytes.
+    """Write a model as an FMU that serves co-simulation and model exchange; the same model gives the same bytes.
 
     It has the model's inputs, outputs and states under their paths, the parameters with an effect (see `effective`),
     the states' derivatives and an audit of the energy. Its solver is inside; it needs no library but that of C.
@@ -81,8 +81,7 @@ def export(
     Args:
         flat: the model
         path: file to write, usually ending in .fmu; its folder is made if need be
-        platform: "host", "all", or names such as "linux64,win64" (FMI 3.0: "x86_64-linux,aarch64-darwin") whose
-            binaries the FMU shall hold
+        platform: of its binaries: "host", "all", or names as "linux64,win64" (FMI 3.0: "x86_64-linux,aarch64-darwin")
         start: start values (SI) of inputs, parameters and states that replace those of the model
         sources: parameter -> where its value is from: a citation, or "assumed: ...", "inferred: ...", "calibrated: ..."
         uncertainties: parameter -> standard uncertainty of its value, in the unit of the value
@@ -93,7 +92,7 @@ def export(
         fmi: version of the standard, 2 or 3
         choices: its enumerations: how a run begins, the oils; values of parameters that it does not have go
         audit: whether two states integrate the energy across the boundary
-        uncertain: what makes standard deviations, where it shall have some; it then serves co-simulation only
+        uncertain: what makes standard deviations, which co-simulation alone has
 
     Returns:
         the path

@@ -25,6 +25,7 @@ LEAST = 1e-300
 
 #: Kinds of variables in the order of their value references.
 KINDS = ("state", "input", "output", "parameter", "derivative", "choice", "deviation")
+_CALCULATED = ("output", "derivative", "deviation")
 
 
 @dataclass(frozen=True)
@@ -74,12 +75,12 @@ class Variable:
     @property
     def initial(self) -> str | None:
         """How the initial value is found; None for an input, where FMI forbids to say."""
-        return {"output": "calculated", "derivative": "calculated", "input": None}.get(self.kind, "exact")
+        return "calculated" if self.kind in _CALCULATED else None if self.kind == "input" else "exact"
 
     @property
     def start(self) -> float | None:
         """Start value, None where the FMU calculates it."""
-        return None if self.kind in ("output", "derivative", "deviation") else self.quantity.start
+        return None if self.kind in _CALCULATED else self.quantity.start
 
     @property
     def bounds(self) -> tuple[float, float]:

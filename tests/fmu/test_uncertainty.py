@@ -93,7 +93,7 @@ def test_monte_carlo(models: SimpleNamespace, machine: Path) -> None:
 def test_leading_directions_leave_little_out(models: SimpleNamespace) -> None:
     """Two reasons that act alike take one direction, which is as large as both."""
     alike = (Uncertainty("one", {"oil.b_0": 0.002}), Uncertainty("other", {"oil.b_0": 0.001}))
-    model, variables = equations(models.heat), table(models.heat, None, HEAT.shown)
+    model, variables = equations(models.heat), table(models.heat, deviating=HEAT.shown)
     found = leading(models.heat, model, variables, alike)
     assert found.count == 1 and found.shortfall is not None and found.shortfall <= SHORTFALL
     place = [q.name for q in models.heat.parameters].index("oil.b_0")
@@ -102,7 +102,7 @@ def test_leading_directions_leave_little_out(models: SimpleNamespace) -> None:
 
 def test_a_step_costs_less_than_three_plain_ones(models: SimpleNamespace) -> None:
     """Counted in operations: a sensitivity step beside each step of the solver."""
-    model, variables = equations(models.heat), table(models.heat, None, HEAT.shown)
+    model, variables = equations(models.heat), table(models.heat, deviating=HEAT.shown)
     found = leading(models.heat, model, variables, HEAT.reasons)
     added = Sensitivities(model, found.count, found.moving, shown(variables)).move
     assert added.n_instructions() < 2 * model.step.n_instructions()
@@ -125,6 +125,14 @@ def test_saved_states_carry_the_sensitivities(opened: Open, machine: Path) -> No
     assert one.start().get("oil.T.sd") == [0.0]
     for instance, kept in ((one, state), (one, again), (other, restored)):
         instance.fmu.freeFMUState(kept)
+
+
+def test_a_steady_start_has_the_deviations_of_rest(machine: Path) -> None:
+    names = [f"{name}.sd" for name in HEAT.shown]
+    steady, long = (
+        play(machine, {}, stop, stop, start={"start": item}, record=names) for stop, item in ((1.0, 2.0), (1e6, 1.0))
+    )
+    assert steady.values[0] == pytest.approx(long.values[-1], rel=1e-4)
 
 
 def test_both_versions_give_the_same_numbers(machine: Path, machine_3: Path) -> None:
