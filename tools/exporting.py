@@ -52,11 +52,7 @@ def export_command(
     """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
     writable(out, file_of(json))
     chosen = platforms(platform, fmi)
-    scenario = load(rig)
-    drive: Drive | None = driven_at(scenario, shaft, given) if shaft is not None or given == "torque" else None
-    setting = adjusted(scenario, assignments, drive=drive)
-    flat = flat_of(setting)
-    start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, assignments)
+    scenario, setting, flat, start = prepared(rig, assignments, shaft, given)
     beside = folder(extras) if extras is not None else None
     duty = reference_duty(flat, start, setting.shaft_paths())
     told: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
@@ -82,6 +78,25 @@ def export_command(
         "unchecked": unchecked(setting, flat),
     }
     answer(found, json, lambda: _print(found))
+
+
+def prepared(
+    rig: str, assignments: Sequence[str], shaft: str | None, given: str
+) -> tuple[Scenario, Scenario, FlatModel, dict[str, float]]:
+    """The rig, the rig as set and driven, its model, and start values that are not those of the model.
+
+    Args:
+        rig: name or file
+        assignments: texts "NAME=VALUE"
+        shaft: the shaft end that drives; as the names say, or the rig's own if None
+        given: "speed" or "torque"
+    """
+    scenario = load(rig)
+    drive: Drive | None = driven_at(scenario, shaft, given) if shaft is not None or given == "torque" else None
+    setting = adjusted(scenario, assignments, drive=drive)
+    flat = flat_of(setting)
+    start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, assignments)
+    return scenario, setting, flat, start
 
 
 def _print(found: Mapping[str, Any]) -> None:
