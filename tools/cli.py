@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
 
 from . import cli_contact, cli_developers, cli_diagnosis, cli_docs, cli_logs, cli_rigs, console
-from .cli_options import Everything, Jobs, Json, Plot, Rig, Set, Tests
+from .cli_options import Everything, Jobs, Json, Plot, Rig, Set, Ssp, Tests
 
 app = typer.Typer(
     name="gearheat",
@@ -190,36 +191,15 @@ def export(
     extras: Annotated[
         Path | None, typer.Option(metavar="FOLDER", help="Write parameter sets (.ssv) and a reference result there.")
     ] = None,
-    ssp: Annotated[
-        list[str] | None,
-        typer.Option(
-            metavar="NAME=PART,...",
-            help="Write a system of coupled FMUs (.ssp): these parts are one, again for more, the rest is gearbox.",
-        ),
-    ] = None,
+    ssp: Ssp = None,
     json: Json = None,
 ) -> None:
     """Write the rig as an FMU for FMI 2.0 or 3.0, or as a system of FMUs."""
     from ..fmu.description import Owner
     from . import exporting, systems
 
-    if ssp:
-        systems.system_command(
-            str(extended or rig),
-            out,
-            set_ or [],
-            drive,
-            given,
-            platform,
-            ssp,
-            [name for name, asked in (("--extras", extras), ("--fmi 3", fmi == "3")) if asked],
-            json,
-            owner=Owner(author, of_version, license_, made),
-            with_sources=sources,
-            with_origins=origins,
-        )
-        return
-    exporting.export_command(
+    command = partial(systems.system_command, ssp) if ssp else exporting.export_command
+    command(
         str(extended or rig),
         out,
         set_ or [],

@@ -27,22 +27,24 @@ from .settings import flat_of
 
 
 def system_command(
+    groups: Sequence[str],
     rig: str,
     out: Path,
     assignments: Sequence[str],
     shaft: str | None,
     given: str,
     platform: str,
-    groups: Sequence[str],
-    refused: Sequence[str],
+    extras: Path | None,
     json: str | None,
     *,
     owner: Owner,
     with_sources: bool,
     with_origins: bool,
+    fmi: int,
 ) -> None:
-    """Write a rig as a system of FMUs that are coupled; `refused` are options that do not go with it."""
+    """Write a rig as a system of coupled FMUs, with the options of the command `export`."""
     writable(out, file_of(json))
+    refused = [option for option, asked in (("--extras", extras is not None), ("--fmi 3", fmi == 3)) if asked]
     if refused:
         raise ScenarioError([f"{option} does not go with --ssp. Leave it out." for option in refused])
     platforms(platform)
