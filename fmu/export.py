@@ -41,8 +41,9 @@ from .documentation import About, documentation
 from .effective import effective
 from .equations import equations
 from .icon import icon
+from .metadata import metadata
 from .parameter_set import parameter_set
-from .related import related
+from .related import Related, related
 from .source import GUID_MARK, source
 from .terminals import terminals
 from .unpacking import remember
@@ -67,6 +68,7 @@ def export(
     owner: Owner = Owner(),
     with_sources: bool = True,
     fmi: int = 2,
+    others: Related = Related(),
 ) -> Path:
     """Write a model as an FMU that serves co-simulation and model exchange. The same model gives the same bytes.
 
@@ -87,6 +89,7 @@ def export(
         owner: author, version, licence and date that its owner gives
         with_sources: whether it holds its C source
         fmi: version of the standard, 2 or 3
+        others: further parameter sets, and a run that an importer can repeat
 
     Returns:
         the path
@@ -105,7 +108,7 @@ def export(
         "modelDescription.xml": told,
         _PAGE: documentation(kept, variables, about, fmi=fmi).encode(),
         **({"sources/all.c": code.encode()} if with_sources else {}),
-        **_extra(kept, variables, about),
+        **_extra(kept, variables, about, others),
         **(_of_fmi_3(flat.name, variables, with_sources) if fmi == 3 else {"model.png": icon()}),
         **{f"binaries/{p.name}/{identifier(flat.name)}{p.suffix}": binary(built, p, headers=headers) for p in chosen},
     }
@@ -152,13 +155,12 @@ def _code(
     return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode())
 
 
-def _extra(flat: FlatModel, variables: Table, about: About) -> dict[str, bytes]:
+def _extra(flat: FlatModel, variables: Table, about: About, others: Related) -> dict[str, bytes]:
     """What a receiver needs to judge the values."""
     parameters = [v.quantity for v in variables.of("parameter")]
-    doc = f"start values of {flat.name}"
-    return related(
-        parameter_set(flat.name, parameters, doc=doc, sources=about.sources, uncertainties=about.uncertainties)
-    )
+    doc, sources, sd = f"start values of {flat.name}", about.sources, about.uncertainties
+    values = parameter_set(flat.name, parameters, doc=doc, sources=sources, uncertainties=sd)
+    return related(values, metadata(flat, values, "parameters.ssv", sources, sd), others)
 
 
 def _guid(content: bytes) -> str:

@@ -13,6 +13,7 @@ from ..fmu.compiling import platforms
 from ..fmu.description import Owner
 from ..fmu.effective import effective
 from ..fmu.export import export
+from ..fmu.related import Related
 from ..model.core.flat import FlatModel
 from ..model.errors import SolveError
 from ..model.machines.spec import assemble
@@ -21,7 +22,7 @@ from ..model.run.rows import evaluate_at
 from ..model.run.steady import steady
 from ..scenarios.scenario import Scenario
 from .console import answer, file_of, folder, say, writable
-from .extras import checked, reference_duty, write_extras
+from .extras import checked, experiment, reference_duty, reference_run, sets_of_oils, write_extras
 from .network import network_svg
 from .rigs import load
 from .settings import Drive, adjusted, driven_at, flat_of
@@ -58,8 +59,9 @@ def export_command(
     told: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
     options: dict[str, Any] = {"platform": platform, "start": start, "owner": owner, "fmi": fmi}
     options["with_sources"] = with_sources
-    write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, start), **told, **options)
-    kept = effective(flat, start)
+    kept, run = effective(flat, start), reference_run(flat, duty, start)
+    options["others"] = Related(sets_of_oils(setting, kept, told=with_origins), experiment(flat, duty, run))
+    write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, run), **told, **options)
     named = {q.name for q in kept.parameters}
     origins = sources_of(setting, kept) if with_origins else None
     written = [] if beside is None else write_extras(out, beside, setting, kept, duty, start, origins)
