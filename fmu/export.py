@@ -35,7 +35,7 @@ from pathlib import Path
 from gearheat.model.core.flat import FlatModel
 
 from . import fmi3_description, fmi3_source
-from .compiling import binary, platforms, store
+from .compiling import Progress, binary, platforms, store, together
 from .description import Owner, dependencies, description, identifier
 from .documentation import About, documentation
 from .effective import effective
@@ -69,6 +69,7 @@ def export(
     with_sources: bool = True,
     fmi: int = 2,
     others: Related = Related(),
+    progress: Progress = lambda done, share: None,
 ) -> Path:
     """Write a model as an FMU that serves co-simulation and model exchange. The same model gives the same bytes.
 
@@ -90,6 +91,7 @@ def export(
         with_sources: whether it holds its C source
         fmi: version of the standard, 2 or 3
         others: further parameter sets, and a run that an importer can repeat
+        progress: told what is done, and how much of the compiling
 
     Returns:
         the path
@@ -104,13 +106,14 @@ def export(
     about = About(sources or {}, uncertainties or {}, picture, idle)
     code, told = _code(kept, variables, fmi, owner=owner, with_sources=with_sources)
     headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
+    libraries = together(lambda p: binary(built, p, headers=headers), chosen, progress)
     content = {
         "modelDescription.xml": told,
         _PAGE: documentation(kept, variables, about, fmi=fmi).encode(),
         **({"sources/all.c": code.encode()} if with_sources else {}),
         **_extra(kept, variables, about, others),
         **(_of_fmi_3(flat.name, variables, with_sources) if fmi == 3 else {"model.png": icon()}),
-        **{f"binaries/{p.name}/{identifier(flat.name)}{p.suffix}": binary(built, p, headers=headers) for p in chosen},
+        **{f"binaries/{p.name}/{identifier(flat.name)}{p.suffix}": libraries[p.name] for p in chosen},
     }
     _made(path, archive(content))
     if verify is not None:

@@ -21,7 +21,7 @@ from ..model.run.point import point
 from ..model.run.rows import evaluate_at
 from ..model.run.steady import steady
 from ..scenarios.scenario import Scenario
-from .console import answer, file_of, folder, say, writable
+from .console import answer, file_of, folder, progress_bar, say, writable
 from .extras import checked, experiment, reference_duty, reference_run, sets_of_oils, write_extras
 from .network import network_svg
 from .rigs import load
@@ -61,7 +61,8 @@ def export_command(
     options["with_sources"] = with_sources
     kept, run = effective(flat, start), reference_run(flat, duty, start)
     options["others"] = Related(sets_of_oils(setting, kept, told=with_origins), experiment(flat, duty, run))
-    write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, run), **told, **options)
+    with progress_bar() as options["progress"]:
+        write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, run), **told, **options)
     named = {q.name for q in kept.parameters}
     origins = sources_of(setting, kept) if with_origins else None
     written = [] if beside is None else write_extras(out, beside, setting, kept, duty, start, origins)

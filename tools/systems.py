@@ -21,7 +21,7 @@ from ..model.machines.apart import Pieces, apart
 from ..model.machines.spec import assemble
 from ..model.run.rows import evaluate_at
 from ..scenarios.scenario import Scenario
-from .console import answer, file_of, say, writable
+from .console import answer, file_of, progress_bar, say, writable
 from .exporting import prepared, write_fmu
 from .settings import flat_of
 
@@ -51,7 +51,8 @@ def system_command(
     _, setting, _, start = prepared(rig, assignments, shaft, given)
     taken = taken_apart(setting, groups_of(groups), start)
     told: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
-    found = write_system(setting, taken, out, platform=platform, owner=owner, with_sources=with_sources, **told)
+    with progress_bar() as told["progress"]:
+        found = write_system(setting, taken, out, platform=platform, owner=owner, with_sources=with_sources, **told)
 
     def human() -> None:
         say(f"{out}: {', '.join(found['fmus'])}")
