@@ -34,9 +34,10 @@ class Element:
 class System:
     """FMUs that are coupled.
 
+    Outputs stay those of the FMUs: some simulators know connections between elements alone.
+
     Attributes:
         inputs: of the system
-        outputs: of the system
         connections: from one end to the other; an end without an element is a connector of the system
         stop: of the default experiment [s]
     """
@@ -46,7 +47,6 @@ class System:
     elements: tuple[Element, ...]
     connections: tuple[tuple[End, End], ...]
     inputs: tuple[Quantity, ...]
-    outputs: tuple[Quantity, ...]
     stop: float
 
 
@@ -69,7 +69,8 @@ def structure(system: System) -> bytes:
     spaces = {"xmlns:ssd": SSD, "xmlns:ssc": SSC, "version": "1.0", "name": system.name, "generationTool": tool()}
     root = ET.Element("ssd:SystemStructureDescription", spaces)
     top = ET.SubElement(root, "ssd:System", name=system.name, description=system.doc)
-    _connectors(top, system.inputs, system.outputs)
+    if system.inputs:
+        _connectors(top, system.inputs, ())
     elements = ET.SubElement(top, "ssd:Elements")
     for element in system.elements:
         told = {"name": element.name, "description": element.doc, "source": _source(element)}

@@ -14,7 +14,7 @@ import numpy as np
 from ..fmu.compiling import platforms, store
 from ..fmu.description import EXPERIMENT, Owner
 from ..fmu.ssp import Element, End, System, ssp
-from ..model.core.flat import FlatModel, Quantity
+from ..model.core.flat import FlatModel
 from ..model.core.flatten import flatten
 from ..model.errors import ScenarioError
 from ..model.machines.apart import Pieces, apart
@@ -168,14 +168,10 @@ def _element(name: str, flat: FlatModel, pieces: Pieces, fmu: bytes) -> Element:
 
 
 def _system(setting: Scenario, taken: Taken, elements: Sequence[Element]) -> System:
-    """The system: inputs that several FMUs are given alike are its own, temperatures and speeds are its outputs."""
+    """The system: inputs that several FMUs are given alike are its own."""
     pieces = taken.pieces
     connections: list[tuple[End, End]] = [((j.giver, j.output), (j.taker, j.input)) for j in pieces.joints]
     connections += [((None, path), (name, path)) for path, names in pieces.shared.items() for name in names]
-    states: list[Quantity] = []
-    for name, flat in taken.flats.items():
-        states += flat.states
-        connections += [((name, q.name), (None, q.name)) for q in flat.states]
     inputs = tuple(taken.flats[names[0]].quantity(path) for path, names in pieces.shared.items())
     stop = float(EXPERIMENT["stopTime"])
-    return System(setting.name, setting.doc, tuple(elements), tuple(connections), inputs, tuple(states), stop)
+    return System(setting.name, setting.doc, tuple(elements), tuple(connections), inputs, stop)

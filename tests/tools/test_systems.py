@@ -56,7 +56,12 @@ def test_the_file_is_sound(system: Path) -> None:
     (experiment,) = etree.fromstring(content).findall("{*}DefaultExperiment")
     assert dict(experiment.attrib) == {"startTime": "0.0", "stopTime": "14400.0"}
     assert {u.name for u in read.units} == {"K", "W"}
-    assert {c.name for c in read.system.connectors} == {"oil.T", "room.T"}
+    assert {c.name for e in read.system.elements for c in e.connectors if c.kind == "output"} == {
+        "oil.T",
+        "oil.Q_flow",
+        "room.T",
+        "room.Q_flow",
+    }
 
 
 def test_all_fmus_start_where_the_rig_does() -> None:
