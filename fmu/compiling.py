@@ -35,7 +35,7 @@ class Platform:
 _LINUX, _LINUX_ARM = "x86_64-linux-gnu.2.17", "aarch64-linux-gnu.2.17"
 _MAC, _MAC_ARM = "x86_64-macos.11.0", "aarch64-macos.11.0"
 
-#: The platforms of FMI 2.0, and those of 3.0, by name.
+#: The platforms of FMI 2.0, with one that only 3.0 has a name for, and those of 3.0, by name.
 PLATFORMS = {
     p.name: p
     for p in (
@@ -43,6 +43,7 @@ PLATFORMS = {
         Platform("win64", ".dll", ("x86_64-windows-gnu",)),
         Platform("win32", ".dll", ("x86-windows-gnu",)),
         Platform("darwin64", ".dylib", (_MAC, _MAC_ARM)),
+        Platform("aarch64-linux", ".so", (_LINUX_ARM,)),
     )
 }
 PLATFORMS_3 = {

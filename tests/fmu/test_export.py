@@ -202,7 +202,7 @@ def test_a_source_that_does_not_compile() -> None:
 
 def test_platforms_by_name() -> None:
     assert [p.name for p in compiling.platforms("win64, linux64,win64")] == ["win64", "linux64"]
-    assert [p.name for p in compiling.platforms("all")] == ["linux64", "win64", "win32", "darwin64"]
+    assert [p.name for p in compiling.platforms("all")] == ["linux64", "win64", "win32", "darwin64", "aarch64-linux"]
     with pytest.raises(FmuError, match="Did you mean"):
         compiling.platforms("linux46")
 
