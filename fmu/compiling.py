@@ -75,7 +75,7 @@ _SYSTEM = tuple(f"-lapi-ms-win-crt-{name}-l1-1-0" for name in ("math", "heap", "
 #: Compilers that run at once, whoever asks.
 _AT_ONCE = threading.BoundedSemaphore(os.cpu_count() or 1)
 
-#: Told what is done, and how much of all.
+#: Told what long work has done or is at, and how much of all is done.
 Progress = Callable[[str, float], None]
 
 

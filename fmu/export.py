@@ -35,7 +35,7 @@ from pathlib import Path
 from gearheat.model.core.flat import FlatModel
 
 from . import fmi3_description, fmi3_source
-from .compiling import Progress, binary, platforms, store, together
+from .compiling import Platform, Progress, binary, platforms, store, together
 from .description import Owner, dependencies, description, identifier
 from .documentation import About, documentation
 from .effective import effective
@@ -105,21 +105,26 @@ def export(
     idle = tuple(q.name for q in flat.parameters if q.name not in held)
     about = About(sources or {}, uncertainties or {}, picture, idle)
     code, told = _code(kept, variables, fmi, owner=owner, with_sources=with_sources)
-    headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
-    libraries = together(lambda p: binary(built, p, headers=headers), chosen, progress)
     content = {
         "modelDescription.xml": told,
         _PAGE: documentation(kept, variables, about, fmi=fmi).encode(),
         **({"sources/all.c": code.encode()} if with_sources else {}),
         **_extra(kept, variables, about, others),
         **(_of_fmi_3(flat.name, variables, with_sources) if fmi == 3 else {"model.png": icon()}),
-        **{f"binaries/{p.name}/{identifier(flat.name)}{p.suffix}": libraries[p.name] for p in chosen},
+        **_binaries(flat.name, code, chosen, fmi, progress),
     }
     _made(path, archive(content))
     if verify is not None:
         checked = documentation(kept, variables, about, verify(path), fmi=fmi)
         _made(path, archive({**content, _PAGE: checked.encode()}))
     return path
+
+
+def _binaries(name: str, code: str, chosen: Sequence[Platform], fmi: int, progress: Progress) -> dict[str, bytes]:
+    """The libraries of the platforms by their places."""
+    headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
+    made = together(lambda platform: binary(built, platform, headers=headers), chosen, progress)
+    return {f"binaries/{p.name}/{identifier(name)}{p.suffix}": made[p.name] for p in chosen}
 
 
 def _of_fmi_3(name: str, variables: Table, with_sources: bool) -> dict[str, bytes]:

@@ -19,13 +19,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, ParamSpec
 
+from ..fmu.compiling import Progress
 from ..model.errors import DataError, GearheatError, ScenarioError
 from ..model.files import inputs_kept, place, replacing
 
 P = ParamSpec("P")
-
-#: Told the stage of long work, and its share that is done.
-Progress = Callable[[str, float], None]
 
 BAD_INPUT = 2
 INTERRUPTED = 130
