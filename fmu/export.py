@@ -93,9 +93,6 @@ def export(
         others: further parameter sets, and a run that an importer can repeat
         progress: told what is done, and how much of the compiling
 
-    Returns:
-        the path
-
     Raises:
         FmuError: a start value is wrong, the compiler fails, or the file cannot be written
     """

@@ -13,8 +13,9 @@ from ..diagnose.report.page import render
 from ..diagnose.report.predictions import predictions_text
 from ..diagnose.report.screen import text
 from ..diagnose.request import Inputs, PlanInputs, PlanRequest, Request, read, read_plan
+from ..fmu.compiling import Progress
 from ..model.errors import DataError, GearheatError
-from .console import Progress, as_json, file_of, progress_bar, screen_width, writable, write
+from .console import as_json, file_of, progress_bar, screen_width, writable, write
 
 #: What is read and a listener for progress -> what was found, with its words; the same of a plan.
 Infer = Callable[[Inputs, Progress], Findings]
