@@ -32,6 +32,16 @@ int __stdcall DllMainCRTStartup(void *library, unsigned long reason, void *reser
     return 1;
 }
 
+int __isnan(double x)
+{
+    return __builtin_isnan(x);
+}
+
+int __signbit(double x)
+{
+    return __builtin_signbit(x) != 0;
+}
+
 /* Touches every page of a large frame on the way down, as Windows asks for. */
 #ifdef _WIN64
 __asm__(".globl ___chkstk_ms\n"
