@@ -43,6 +43,11 @@ class Described:
                 found[name] = self._quantity(v)
         return found
 
+    def wholes(self) -> dict[str, dict[str, int]]:
+        """Variables that take whole numbers before the run, by name, each with the numbers of its items."""
+        found = {name: v.declaredType for name, v in self.variables.items() if is_whole(v) and settable(v)}
+        return {name: {i.name: int(i.value) for i in (t.items if t else None) or ()} for name, t in found.items()}
+
     def _quantity(self, v: Any) -> Quantity:
         declared = v.declaredType
         unit = v.unit or (declared.unit if declared is not None else None) or "1"
@@ -54,6 +59,11 @@ class Described:
 def is_real(v: Any) -> bool:
     """Whether a variable is one real number."""
     return v.type in ("Real", "Float64") and not v.dimensions
+
+
+def is_whole(v: Any) -> bool:
+    """Whether a variable is one whole number, or the number of an item."""
+    return v.type in ("Integer", "Int32", "Enumeration") and not v.dimensions
 
 
 def settable(v: Any) -> bool:

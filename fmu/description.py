@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -17,6 +17,7 @@ from gearheat.model.core.flat import FlatModel, Quantity
 from gearheat.model.errors import FmuError
 
 from . import units
+from .choices import Choice
 from .equations import Equations
 from .variables import Table, Variable
 
@@ -123,7 +124,14 @@ def dependencies(model: Equations, table: Table) -> Dependencies:
         found.append([tuple(first + j for j in np.flatnonzero(row).tolist()) for row in depends])
     x, u, p = found
     step = tuple(tuple(sorted(a + b)) for a, b in zip(x, u, strict=True))
+    p = [on + _chosen_by(on, table) for on in p]
     return Dependencies(step, tuple(tuple(sorted(a + b)) for a, b in zip(step, p, strict=True)))
+
+
+def _chosen_by(parameters: Iterable[int], table: Table) -> tuple[int, ...]:
+    """Value references of the choices that give values to any of some parameters."""
+    names = {table.variables[r].name for r in parameters}
+    return tuple(v.reference for v in table.of("choice") if v.choice and v.choice.parameters & names)
 
 
 def _pattern(values: Any, known: Any) -> np.ndarray:
@@ -165,7 +173,7 @@ def description(
     told = {**origin(flat), "numberOfEventIndicators": "0", **owner.attributes}
     root = ET.Element("fmiModelDescription", {**named, **told})
     _interfaces(root, identifier(flat.name), with_sources)
-    circumstances(root, {v.quantity.unit for v in table}, _types)
+    circumstances(root, table, _types)
     variables = ET.SubElement(root, "ModelVariables")
     for variable in table:
         _scalar_variable(variables, variable)
@@ -179,18 +187,22 @@ def origin(flat: FlatModel) -> dict[str, str]:
     return told | {"variableNamingConvention": "structured"}
 
 
-def circumstances(root: ET.Element, used: Iterable[str], types: Callable[[ET.Element, list[str]], None]) -> None:
+def circumstances(
+    root: ET.Element, table: Table, types: Callable[[ET.Element, list[str], Sequence[Choice]], None], *also: str
+) -> None:
     """Units, types, log categories and the experiment an importer runs when nothing is asked.
 
     Args:
         root: the description, where they are added
-        used: the units of the variables
-        types: adds the types of variables of some units, by these units
+        table: the variables
+        types: adds the types of variables of some units, by these units, and of choices
+        also: units used beside those of the variables
     """
-    used = set(used)
+    used = {*also, *(v.quantity.unit for v in table if v.type == "Real")}
     _unit_definitions(root, used)
-    if measured := sorted(used & units.QUANTITIES.keys()):
-        types(ET.SubElement(root, "TypeDefinitions"), measured)
+    measured, choices = sorted(used & units.QUANTITIES.keys()), [v.choice for v in table if v.choice]
+    if measured or choices:
+        types(ET.SubElement(root, "TypeDefinitions"), measured, choices)
     categories = ET.SubElement(root, "LogCategories")
     for name, text in LOG_CATEGORIES.items():
         ET.SubElement(categories, "Category", name=name, description=text)
@@ -204,10 +216,28 @@ def xml(root: ET.Element) -> bytes:
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
 
 
-def _types(definitions: ET.Element, measured: list[str]) -> None:
+def _types(definitions: ET.Element, measured: list[str], choices: Sequence[Choice]) -> None:
     for unit in measured:
         told = type_of(unit)
         ET.SubElement(ET.SubElement(definitions, "SimpleType", name=told.pop("name")), "Real", told)
+    for choice in choices:
+        items(ET.SubElement(ET.SubElement(definitions, "SimpleType", name=type_name(choice)), "Enumeration"), choice)
+
+
+def type_name(choice: Choice) -> str:
+    """Name of the type of a choice, which no variable may have."""
+    return f"{choice.name}.Choice"
+
+
+def items(enumeration: ET.Element, choice: Choice) -> None:
+    """Add the items of a choice to its type.
+
+    Args:
+        enumeration: the type, where they are added
+        choice: what offers them
+    """
+    for value, item in enumerate(choice.items, 1):
+        ET.SubElement(enumeration, "Item", name=item.name, value=str(value), description=item.doc)
 
 
 def type_of(unit: str) -> dict[str, str]:
@@ -242,7 +272,7 @@ def _unit_definitions(root: ET.Element, used: Iterable[str]) -> None:
 
 def _scalar_variable(variables: ET.Element, variable: Variable) -> None:
     element = ET.SubElement(variables, "ScalarVariable", identity(variable))
-    real = ET.SubElement(element, "Real", numbers(variable))
+    real = ET.SubElement(element, variable.type, values(variable))
     if variable.state is not None:
         real.set("derivative", str(variable.state + 1))
 
@@ -259,9 +289,14 @@ def identity(variable: Variable) -> dict[str, str]:
     return told | ({"initial": variable.initial} if variable.initial else {})
 
 
-def numbers(variable: Variable) -> dict[str, str]:
-    """The attributes of a real number: unit, range, typical size and start value."""
+def values(variable: Variable) -> dict[str, str]:
+    """The attributes that say which values a variable takes: unit, range, typical size and start value."""
     q = variable.quantity
+    if variable.choice:
+        return {"declaredType": type_name(variable.choice), "start": str(int(q.start))}
+    if variable.type == "Integer":
+        ends = (("min", math.ceil, variable.bounds[0]), ("max", math.floor, variable.bounds[1]))
+        return {key: str(whole(end)) for key, whole, end in ends if math.isfinite(end)} | {"start": str(int(q.start))}
     unit = units.fmi_unit(q.unit)
     told = {"declaredType": units.QUANTITIES[q.unit]} if q.unit in units.QUANTITIES else {}
     told["unit"] = unit

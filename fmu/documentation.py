@@ -76,11 +76,15 @@ port.</li>
 </ul>
 """
 
-_AUDIT = f"""
+_INTEGRATED = f"""
 <p>The energy of each run can be audited: <code>{SUPPLIED}</code> is the integral of the power across the boundary,
 <code>{STORED}</code> the energy of the states, and both grow by the same amount; judge a difference by
-<code>{THROUGHPUT}</code>. <code>{RESIDUAL}</code> is the violation of the balance by the equations themselves, and is
-zero but for round-off. <code>{VALIDITY}</code> counts the law arguments outside the range of their source; which they
+<code>{THROUGHPUT}</code>.</p>
+"""
+
+_BALANCE = f"""
+<p><code>{RESIDUAL}</code> is the violation of the balance of energy by the equations themselves, and is zero but for
+round-off. <code>{VALIDITY}</code> counts the law arguments outside the range of their source; which they
 are is told once each in the log category <code>logStatusWarning</code>.</p>
 """
 
@@ -113,10 +117,13 @@ def documentation(
         f"<style>{_STYLE}</style></head><body>\n<h1>{escape(flat.name)}</h1>\n<p>{escape(flat.doc)}</p>",
         f"<p>Made by {escape(tool())}.</p>",
         f"<h2>Network</h2>\n<figure>{about.picture}</figure>" if about.picture else "",
-        f"<h2>Use</h2>{_USE if fmi == 2 else _USE_3}\n<h2>Energy and validity</h2>{_AUDIT}",
+        f"<h2>Use</h2>{_USE if fmi == 2 else _USE_3}\n<h2>Energy and validity</h2>",
+        _INTEGRATED if table.audit else "",
+        _BALANCE,
         implicit if flat.residual_names else "",
         *(_variables(title, table.of(kind)) for title, kind in _GROUPS),
         _parameters(table.of("parameter"), about),
+        _choices(table.of("choice")),
         _laws(flat),
         _ranges(flat),
         _cited(flat, about),
@@ -163,6 +170,16 @@ def _parameters(variables: Sequence[Variable], about: About) -> str:
         names = ", ".join(f"<code>{escape(name)}</code>" for name in about.idle)
         shown += f"\n<p>Without effect on anything this FMU shows, and therefore no parameters of it: {names}.</p>"
     return shown
+
+
+def _choices(variables: Iterable[Variable]) -> str:
+    rows = [
+        (f"<code>{escape(v.name)}</code>", str(k), escape(item.name), escape(item.doc))
+        for v in variables
+        for k, item in enumerate(v.choice.items if v.choice else (), 1)
+    ]
+    told = [f"<p><code>{escape(v.name)}</code>: {escape(v.quantity.doc)}.</p>" for v in variables]
+    return _table("Choices", ("name", "value", "item", "meaning"), rows, before="\n".join(told))
 
 
 def _uncertainty(v: Variable, known: Mapping[str, float]) -> str:

@@ -25,6 +25,7 @@ class Equations:
         ode, residual, y: SX columns in the order of the variable table, functions of x, z, u, p
         checked: the law arguments with a range
         related: what the relations between parameters are told by, of p alone
+        audit: whether the last two states are those of the audit
     """
 
     x: Any
@@ -36,6 +37,7 @@ class Equations:
     y: Any
     checked: Any
     related: Any
+    audit: bool = True
 
     @cached_property
     def _hoisted(self) -> tuple[dict[str, Any], Any, Any, Any]:
@@ -43,7 +45,7 @@ class Equations:
         ode, residual, y, checked = ca.cse([self.ode, self.residual, self.y, self.checked])
         x_new, z_new, error, slope, h = rosenbrock.step(ode, residual, self.x, self.z, self.u)
         parts = {"ode": ode, "residual": residual, "jacobian": ca.densify(ca.jacobian(residual, self.z))[:], "y": y}
-        parts |= {"checked": checked, "x_new": x_new, "z_new": z_new, "error": error[:-1]}
+        parts |= {"checked": checked, "x_new": x_new, "z_new": z_new, "error": error[:-1] if self.audit else error}
         sizes = [0]
         for part in parts.values():
             sizes.append(sizes[-1] + part.shape[0])
@@ -162,8 +164,12 @@ def _function(name: str, inputs: list[Any], outputs: list[Any], names_in: list[s
     return ca.Function(name, inputs, dense, names_in, names_out, {"cse": True})
 
 
-def equations(flat: FlatModel) -> Equations:
+def equations(flat: FlatModel, audit: bool = True) -> Equations:
     """The model an FMU computes, from a flat model.
+
+    Args:
+        flat: the model
+        audit: whether the energy across the boundary is integrated, by two states behind the model's own
 
     Raises:
         FmuError: the stored energy depends on more than the states
@@ -175,15 +181,16 @@ def equations(flat: FlatModel) -> Equations:
     if flat.residual_names:
         outputs.append(ca.mmax(ca.fabs(ca.SX(flat.residual))))
     return Equations(
-        x=ca.vertcat(flat.x, ca.SX.sym("supplied"), ca.SX.sym("throughput")),
+        x=ca.vertcat(flat.x, *((ca.SX.sym("supplied"), ca.SX.sym("throughput")) if audit else ())),
         z=flat.z,
         u=flat.u,
         p=flat.p,
-        ode=ca.densify(ca.vertcat(flat.ode, flat.supply, flat.throughput)),
+        ode=ca.densify(ca.vertcat(flat.ode, *((flat.supply, flat.throughput) if audit else ()))),
         residual=ca.densify(flat.residual),
         y=ca.densify(ca.vertcat(*outputs)),
         checked=ca.densify(ca.vertcat(ca.SX(0, 1), flat.checked)),
         related=ca.densify(ca.vertcat(ca.SX(0, 1), flat.related)),
+        audit=audit,
     )
 
 

@@ -29,12 +29,13 @@ import hashlib
 import io
 import uuid
 import zipfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from gearheat.model.core.flat import FlatModel
 
 from . import fmi3_description, fmi3_source
+from .choices import Choice, reduced, start_choice
 from .compiling import Platform, Progress, binary, platforms, store, together
 from .description import Owner, dependencies, description, identifier
 from .documentation import About, documentation
@@ -68,6 +69,8 @@ def export(
     owner: Owner = Owner(),
     with_sources: bool = True,
     fmi: int = 2,
+    choices: Sequence[Choice] = (start_choice(),),
+    audit: bool = True,
     others: Related = Related(),
     progress: Progress = lambda done, share: None,
 ) -> Path:
@@ -90,6 +93,8 @@ def export(
         owner: author, version, licence and date that its owner gives
         with_sources: whether it holds its C source
         fmi: version of the standard, 2 or 3
+        choices: its enumerations: how a run begins, the oils; values of parameters that it does not have go
+        audit: whether two states integrate the energy across the boundary
         others: further parameter sets, and a run that an importer can repeat
         progress: told what is done, and how much of the compiling
 
@@ -97,10 +102,8 @@ def export(
         FmuError: a start value is wrong, the compiler fails, or the file cannot be written
     """
     path, chosen = Path(path), platforms(platform, fmi)
-    kept, variables = _exported(flat, dict(start or {}))
-    held = {q.name for q in kept.parameters}
-    idle = tuple(q.name for q in flat.parameters if q.name not in held)
-    about = About(sources or {}, uncertainties or {}, picture, idle)
+    kept, variables = _exported(flat, dict(start or {}), choices, audit)
+    about = About(sources or {}, uncertainties or {}, picture, _idle(flat, kept))
     code, told = _code(kept, variables, fmi, owner=owner, with_sources=with_sources)
     content = {
         "modelDescription.xml": told,
@@ -110,15 +113,18 @@ def export(
         **(_of_fmi_3(flat.name, variables, with_sources) if fmi == 3 else {"model.png": icon()}),
         **_binaries(flat.name, code, chosen, fmi, progress),
     }
-    _made(path, archive(content))
+    _made(path, content)
     if verify is not None:
-        checked = documentation(kept, variables, about, verify(path), fmi=fmi)
-        _made(path, archive({**content, _PAGE: checked.encode()}))
+        _made(path, content | {_PAGE: documentation(kept, variables, about, verify(path), fmi=fmi).encode()})
     return path
 
 
+def _idle(flat: FlatModel, kept: FlatModel) -> tuple[str, ...]:
+    held = {q.name for q in kept.parameters}
+    return tuple(q.name for q in flat.parameters if q.name not in held)
+
+
 def _binaries(name: str, code: str, chosen: Sequence[Platform], fmi: int, progress: Progress) -> dict[str, bytes]:
-    """The libraries of the platforms by their places."""
     headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
     made = together(lambda platform: binary(built, platform, headers=headers), chosen, progress)
     return {f"binaries/{p.name}/{identifier(name)}{p.suffix}": made[p.name] for p in chosen}
@@ -133,24 +139,28 @@ def _of_fmi_3(name: str, variables: Table, with_sources: bool) -> dict[str, byte
     } | built
 
 
-def _made(path: Path, content: bytes) -> None:
-    store(path, content)
-    remember(content)
+def _made(path: Path, content: Mapping[str, bytes]) -> None:
+    written = archive(content)
+    store(path, written)
+    remember(written)
 
 
-def _exported(flat: FlatModel, start: Mapping[str, float]) -> tuple[FlatModel, Table]:
+def _exported(
+    flat: FlatModel, start: Mapping[str, float], choices: Iterable[Choice], audit: bool
+) -> tuple[FlatModel, Table]:
     """The model without idle parameters, and its variables with their start values."""
     table(flat, start)  # tells all that is wrong, also with parameters that are idle
     kept = effective(flat, start)
     known = {q.name for q in (*kept.states, *kept.inputs, *kept.parameters)}
-    return kept, table(kept, {name: value for name, value in start.items() if name in known})
+    own = {name: value for name, value in start.items() if name in known}
+    return kept, table(kept, own, reduced(choices, kept), audit=audit)
 
 
 def _code(
     flat: FlatModel, variables: Table, fmi: int = 2, *, owner: Owner = Owner(), with_sources: bool = True
 ) -> tuple[str, bytes]:
     """The C source and the description, with the identification that follows from both."""
-    model = equations(flat)
+    model = equations(flat, variables.audit)
     code, dependent = source(flat, model, variables, fmi), dependencies(model, variables)
     if fmi == 3:
         without_guid = fmi3_description.description(flat, variables, GUID_MARK, dependent, owner)

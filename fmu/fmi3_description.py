@@ -3,11 +3,24 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from gearheat.model.core.flat import FlatModel
 
-from .description import Dependencies, Owner, circumstances, identifier, identity, numbers, origin, type_of, xml
+from .choices import Choice
+from .description import (
+    Dependencies,
+    Owner,
+    circumstances,
+    identifier,
+    identity,
+    items,
+    origin,
+    type_name,
+    type_of,
+    values,
+    xml,
+)
 from .variables import Table, Variable
 
 _CAPABILITIES = {
@@ -26,6 +39,8 @@ _CO_SIMULATION = {
     "mightReturnEarlyFromDoStep": "false",
     "hasEventMode": "true",
 }
+#: What the types of FMI 2.0 are called.
+_TYPES = {"Real": "Float64", "Integer": "Int32", "Enumeration": "Enumeration"}
 
 
 def description(flat: FlatModel, table: Table, token: str, dependent: Dependencies, owner: Owner = Owner()) -> bytes:
@@ -43,10 +58,10 @@ def description(flat: FlatModel, table: Table, token: str, dependent: Dependenci
     own = {"modelIdentifier": identifier(flat.name), **_CAPABILITIES}
     ET.SubElement(root, "ModelExchange", {**own, **_MODEL_EXCHANGE})
     ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
-    circumstances(root, {"s", *(v.quantity.unit for v in table)}, _types)
+    circumstances(root, table, _types, "s")
     variables = ET.SubElement(root, "ModelVariables")
     for variable in table:
-        element = ET.SubElement(variables, "Float64", {**identity(variable), **numbers(variable)})
+        element = ET.SubElement(variables, _TYPES[variable.type], {**identity(variable), **values(variable)})
         if variable.state is not None:
             element.set("derivative", str(variable.state))
     _time(variables, table)
@@ -54,9 +69,11 @@ def description(flat: FlatModel, table: Table, token: str, dependent: Dependenci
     return xml(root)
 
 
-def _types(definitions: ET.Element, measured: list[str]) -> None:
+def _types(definitions: ET.Element, measured: list[str], choices: Sequence[Choice]) -> None:
     for unit in measured:
         ET.SubElement(definitions, "Float64Type", type_of(unit))
+    for choice in choices:
+        items(ET.SubElement(definitions, "EnumerationType", name=type_name(choice)), choice)
 
 
 def _time(variables: ET.Element, table: Table) -> None:

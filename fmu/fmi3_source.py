@@ -17,9 +17,11 @@ WRAPPER = (
     "fmi3_messages.c",
     "messages.c",
     "newton.c",
+    "choices.c",
     "evaluate.c",
     "trial.c",
     "solver.c",
+    "beginning.c",
     "fmi3_modes.c",
     "common.c",
     "states.c",
@@ -62,7 +64,6 @@ _WORDS = {
 }
 _SAID = {
     "wrong GUID": "wrong instantiation token",
-    "all variables are Real": "all variables are Float64",
     '"step complete"': '"step mode"',
     '"step failed"': '"step mode, the last step refused"',
 }

@@ -60,10 +60,12 @@ def kind_of(source: str) -> str:
 
 def _parameter(parent: ET.Element, q: Quantity, source: str | None, uncertainty: float | None) -> None:
     element = ET.SubElement(parent, "ssv:Parameter", name=q.name, description=q.doc)
-    real = ET.SubElement(element, "ssv:Real", value=repr(float(q.start)))
     unit = units.fmi_unit(q.unit)
-    if units.unit(unit).exponents is not None:
-        real.set("unit", unit)
+    if q.whole:
+        ET.SubElement(element, "ssv:Integer", value=str(int(q.start)))
+    else:
+        known = {"unit": unit} if units.unit(unit).exponents is not None else {}
+        ET.SubElement(element, "ssv:Real", {"value": repr(float(q.start)), **known})
     said = {} if source is None else {"kind": kind_of(source), "source": source}
     if uncertainty is not None:
         said["standardUncertainty"] = repr(float(uncertainty))

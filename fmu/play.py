@@ -14,7 +14,7 @@ from typing import Self
 import numpy as np
 from gearheat.model.errors import FmuError, suggestion
 
-from .described import Described, described, is_real, settable
+from .described import Described, described, is_real, is_whole, settable
 from .grid import Grid, Inputs, grid
 from .slave import Slave, Slave2, Slave3
 
@@ -54,7 +54,7 @@ def play(
         stop: end of the run [s]
         step: communication step [s]
         begin: start of the run [s]
-        start: start values of inputs, parameters and states (SI)
+        start: start values of inputs, parameters and states (SI); the numbers of items that are chosen
         record: variables to record; all outputs and inputs when not given
         output_times: times of the rows [s]; every communication step when not given
         tolerance: relative, of the FMU's solver; its own when not given
@@ -134,7 +134,7 @@ class Player:
             stop: end of the run [s]
             step: communication step [s]
             begin: start of the run [s]
-            start: start values of inputs, parameters and states (SI)
+            start: start values of inputs, parameters and states (SI); the numbers of items that are chosen
             record: variables to record; all outputs and inputs when not given
             output_times: times of the rows, not decreasing; a row at a jump shows the inputs behind it, a time given
                 twice both sides. When not given: every communication step, and both sides of every jump
@@ -170,14 +170,14 @@ class Player:
         """All names of inputs and start values at once."""
         real = {n: v for n, v in self._variables.items() if is_real(v)}
         known = {n for n, v in real.items() if v.causality == "input"}
-        possible_start = {n for n, v in real.items() if settable(v)}
+        possible_start = {n for n, v in self._variables.items() if (n in real or is_whole(v)) and settable(v)}
         problems = []
         reasons = (("input", inputs, known, "is no input."), ("start value", start, possible_start, "is calculated."))
         for what, given, possible, reason in reasons:
             for name in sorted(set(given) - possible):
                 why = reason if name in self._variables else f"is unknown.{suggestion(name, possible)}"
                 if name in self._variables and name not in real:
-                    why = f"is of type {self._variables[name].type}. Only scalar real variables can be given."
+                    why = f"is of type {self._variables[name].type}. It cannot be given."
                 problems.append(f'{self._path.name}: {what} "{name}" {why}')
         if problems:
             raise FmuError(problems)
@@ -196,7 +196,7 @@ class Player:
     def _initialise(self, start: Mapping[str, float], points: Grid, tolerance: float | None) -> Slave:
         """The instance in step mode, at the first point."""
         slave = self._renewed()
-        self._set(slave, list(start), np.array(list(start.values()), dtype=float))
+        self._begin_with(slave, start)
         slave.begin(tolerance, points.time[0], points.time[-1])
         self._set(slave, points.names, points.value[0])
         slave.initialized()
@@ -221,6 +221,13 @@ class Player:
         if names:
             references = np.array([self._variables[n].valueReference for n in names], dtype=np.uint32)
             slave.set(references.ctypes.data, len(names), values.ctypes.data)
+
+    def _begin_with(self, slave: Slave, start: Mapping[str, float]) -> None:
+        """Set start values of any type."""
+        for kind in dict.fromkeys(self._variables[name].type for name in start):
+            names = [name for name in start if self._variables[name].type == kind]
+            references = np.array([self._variables[n].valueReference for n in names], dtype=np.uint32)
+            slave.put(kind, references, [start[n] for n in names])
 
     def _walk(self, slave: Slave, points: Grid, recorded: list[int]) -> np.ndarray:
         """Step from communication point to communication point, and read the rows."""

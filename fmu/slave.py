@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Callable
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
+from types import MappingProxyType
 from typing import Any
 
 import fmpy
+import numpy as np
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
 from gearheat.model.errors import FmuError
@@ -25,7 +28,7 @@ _VALUES = (_ADDRESS, _SIZE, _ADDRESS)
 Values = Callable[[int, int, int], None]
 
 
-class Slave:
+class Slave(ABC):
     """An instance whose functions make no Python objects and raise when they are refused.
 
     Attributes:
@@ -45,6 +48,10 @@ class Slave:
     reset: Callable[[], None]
     slopes: Callable[[int, int, int, int], None] | None = None
 
+    #: Type of a variable -> the function that sets it, and its numbers; whether it asks for their count twice.
+    _setters: Mapping[str, tuple[str, type]]
+    _counted: bool
+
     def __init__(self, path: Path, description: Any, folder: str) -> None:
         self._name = path.name
         self._messages: list[str] = []
@@ -56,13 +63,13 @@ class Slave:
             raise FmuError(f"{self._name} cannot be loaded: {self.said() or error}") from error
         self._bind(description)
 
+    @abstractmethod
     def _opened(self, arguments: dict[str, Any]) -> Any:
         """The instance as FMPy has it."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _bind(self, description: Any) -> None:
         """Find the functions."""
-        raise NotImplementedError
 
     def said(self) -> str:
         """The last messages of the FMU, which are forgotten."""
@@ -73,6 +80,20 @@ class Slave:
     def free(self) -> None:
         """End the instance."""
         self._fmu.freeInstance()
+
+    def put(self, kind: str, references: np.ndarray, values: Sequence[float]) -> None:
+        """Set variables of one type.
+
+        Args:
+            kind: the type
+            references: value references
+            values: their values
+        """
+        name, number = self._setters[kind]
+        held: np.ndarray = np.array(values, dtype=number)
+        n = len(references)
+        more = (_SIZE,) * self._counted
+        self._function(name, *_VALUES, *more)(references.ctypes.data, n, held.ctypes.data, *(n for _ in more))
 
     def _heard(self, status: int, message: bytes | None) -> None:
         if status > 1 and message:
@@ -92,6 +113,15 @@ class Slave:
 
 class Slave2(Slave):
     """An instance of FMI 2.0."""
+
+    _setters = MappingProxyType(
+        {
+            "Real": ("fmi2SetReal", np.float64),
+            "Integer": ("fmi2SetInteger", np.int32),
+            "Enumeration": ("fmi2SetInteger", np.int32),
+        }
+    )
+    _counted = False
 
     def _opened(self, arguments: dict[str, Any]) -> Any:
         self._callbacks = fmi2CallbackFunctions()
@@ -123,6 +153,15 @@ class Slave2(Slave):
 
 class Slave3(Slave):
     """An instance of FMI 3.0, without event mode and early return."""
+
+    _setters = MappingProxyType(
+        {
+            "Float64": ("fmi3SetFloat64", np.float64),
+            "Int32": ("fmi3SetInt32", np.int32),
+            "Enumeration": ("fmi3SetInt64", np.int64),
+        }
+    )
+    _counted = True
 
     def _opened(self, arguments: dict[str, Any]) -> Any:
         fmu = FMU3Slave(**arguments)

@@ -5,13 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Mapping
 from importlib.resources import files
-from typing import Any
+from typing import Any, NamedTuple
 
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.run import newton
 from gearheat.model.run.algebra import GUESSES
 
 from . import emit, fmi3_source
+from .choices import ROOM, START, STEADY
 from .description import TOLERANCE, identifier
 from .equations import Equations
 from .rosenbrock import RODAS3
@@ -24,9 +25,11 @@ _WRAPPER = (
     "fmi2_messages.c",
     "messages.c",
     "newton.c",
+    "choices.c",
     "evaluate.c",
     "trial.c",
     "solver.c",
+    "beginning.c",
     "fmi2_modes.c",
     "fmi2_platform.c",
     "common.c",
@@ -54,6 +57,9 @@ _PREFIXED_NAME = """
 #define fmi2FullName(name) name
 #endif
 """
+
+#: Types of variables, one bit each as instance.h has them.
+_TYPES = {"Real": 1, "Integer": 2, "Enumeration": 4}
 
 #: Where the identification goes; it is the hash of everything else.
 GUID_MARK = "@GUID@"
@@ -99,6 +105,10 @@ def _sizes(flat: FlatModel, model: Equations, table: Table) -> str:
         "NC": model.constants.numel_out(0),
         "NK": len(flat.checks),
         "NR": len(flat.relations),
+        "N_CHOICES": len(table.of("choice")),
+        "N_PRESETS": len(_presets(table)),
+        "AUDIT": int(table.audit),
+        **_beginnings(table),
         "ORDER": RODAS3.order,
         "TOLERANCE": TOLERANCE,
         "MODEL_NAME": _string(flat.name),
@@ -133,7 +143,16 @@ def _tables(flat: FlatModel, table: Table) -> str:
         "model_relations": [f'{r.component}: "{r.name}" does not hold: {r.value} is' for r in relations],
         "model_remedies": [f"expected {r.bounds}. {r.remedy}" for r in relations],
     }
+    presets = _presets(table)
+    whole = {
+        "model_type": [_TYPES[v.type] for v in table],
+        "model_preset_choice": [p.choice for p in presets],
+        "model_preset_item": [p.item for p in presets],
+        "model_preset_parameter": [p.parameter for p in presets],
+        "model_follows_room": [int(v.quantity.unit == "K") for v in table.of("state")],
+    }
     numbers = {
+        "model_preset_value": [p.value for p in presets],
         "model_start": [v.start or 0.0 for v in table],
         "model_low": [v.bounds[0] for v in table],
         "model_high": [v.bounds[1] for v in table],
@@ -146,8 +165,38 @@ def _tables(flat: FlatModel, table: Table) -> str:
         "model_relation_high": [r.high for r in relations],
     }
     texts = [_array("const char *const", name, map(_string, values)) for name, values in strings.items()]
+    texts += [_array("const int", name, map(str, values)) for name, values in whole.items()]
     texts += [_array("const double", name, map(emit.number, values)) for name, values in numbers.items()]
     return "\n".join(texts)
+
+
+class _Preset(NamedTuple):
+    """A value that an item of a choice gives a parameter: their positions, items count from 1."""
+
+    choice: int
+    item: int
+    parameter: int
+    value: float
+
+
+def _presets(table: Table) -> list[_Preset]:
+    place = {v.name: k for k, v in enumerate(table.of("parameter"))}
+    return [
+        _Preset(k, number, place[name], value)
+        for k, v in enumerate(table.of("choice"))
+        for number, item in enumerate(v.choice.items if v.choice else (), 1)
+        for name, value in item.values.items()
+    ]
+
+
+def _beginnings(table: Table) -> dict[str, int]:
+    """Where the choice how a run begins stands, and which of its items do what; -1 for what there is not."""
+    found = [(k, v.choice) for k, v in enumerate(table.of("choice")) if v.choice and v.name == START]
+    place, choice = found[0] if found else (-1, None)
+    items = [item.name for item in choice.items] if choice else []
+    numbers = {f"START_{name.upper()}": items.index(name) + 1 if name in items else -1 for name in (ROOM, STEADY)}
+    room = next((v.reference for v in table if choice and v.name == choice.room), -1)
+    return {"START": place, "ROOM_T": room, **numbers}
 
 
 def _array(kind: str, name: str, values: Iterable[str]) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import casadi as ca
@@ -12,6 +12,8 @@ import numpy as np
 from gearheat.model.core.flat import FlatModel, Quantity
 from gearheat.model.errors import FmuError, suggestion
 from gearheat.model.run.point import follows
+
+from .choices import Choice
 
 SUPPLIED, THROUGHPUT, STORED, RESIDUAL = "energy.supplied", "energy.throughput", "energy.stored", "energy.residual"
 VALIDITY, IMPLICIT = "validity.count", "implicit.residual"
@@ -27,14 +29,16 @@ class Variable:
     """One scalar variable of an FMU; `reference` is its value reference and its position in the description.
 
     Attributes:
-        kind: "state", "input", "output", "parameter" or "derivative"
+        kind: "state", "input", "output", "parameter", "derivative" or "choice"
         state: value reference of the state a derivative belongs to
+        choice: what an enumeration offers
     """
 
     reference: int
     kind: str
     quantity: Quantity
     state: int | None = None
+    choice: Choice | None = None
 
     @property
     def name(self) -> str:
@@ -42,19 +46,29 @@ class Variable:
         return self.quantity.name
 
     @property
+    def type(self) -> str:
+        """Type in the sense of FMI 2.0: "Real", "Integer" or "Enumeration"."""
+        if self.choice:
+            return "Enumeration"
+        return "Integer" if self.kind == "parameter" and self.quantity.whole else "Real"
+
+    @property
     def causality(self) -> str:
         """Causality in the sense of FMI."""
-        return {"state": "output", "derivative": "local"}.get(self.kind, self.kind)
+        return {"state": "output", "derivative": "local", "choice": "parameter"}.get(self.kind, self.kind)
 
     @property
     def variability(self) -> str:
         """Variability in the sense of FMI."""
-        return "tunable" if self.kind == "parameter" else "continuous"
+        if self.causality != "parameter":
+            return "continuous"
+        fixed = self.choice.fixed if self.choice else self.quantity.whole
+        return "fixed" if fixed else "tunable"
 
     @property
     def initial(self) -> str | None:
         """How the initial value is found; None for an input, where FMI forbids to say."""
-        return {"state": "exact", "parameter": "exact", "input": None}.get(self.kind, "calculated")
+        return {"output": "calculated", "derivative": "calculated", "input": None}.get(self.kind, "exact")
 
     @property
     def start(self) -> float | None:
@@ -82,12 +96,17 @@ class Variable:
 
 @dataclass(frozen=True)
 class Table:
-    """All variables of an FMU in the order of their value references: states, inputs, outputs, parameters, derivatives.
+    """All variables of an FMU in the order of their value references: states, inputs, outputs, parameters, derivatives,
+    choices.
 
     The two audit states stand behind the model's own, the audit outputs behind the model's own.
+
+    Attributes:
+        audit: whether there are audit states
     """
 
     variables: tuple[Variable, ...]
+    audit: bool = True
 
     def of(self, kind: str) -> tuple[Variable, ...]:
         """The variables of one kind, in order."""
@@ -98,32 +117,45 @@ class Table:
 
     def first(self, kind: str) -> int:
         """Value reference of the first variable of a kind (of the following one when there is none)."""
-        order = ("state", "input", "output", "parameter", "derivative")
+        order = ("state", "input", "output", "parameter", "derivative", "choice")
         return sum(len(self.of(k)) for k in order[: order.index(kind)])
 
 
-def table(flat: FlatModel, start: Mapping[str, float] | None = None) -> Table:
+def table(
+    flat: FlatModel,
+    start: Mapping[str, float] | None = None,
+    choices: Iterable[Choice] = (),
+    *,
+    audit: bool = True,
+) -> Table:
     """The variables of the FMU of a flat model.
 
     Args:
         flat: the model
         start: start values (SI) that replace those of inputs, parameters and states
+        choices: enumerations
+        audit: whether the energy across the boundary is integrated
 
     Raises:
         FmuError: a start value is unknown, not settable, or out of its range; a name appears twice
     """
     states, inputs, parameters, problems = _started(flat, dict(start or {}))
+    states += _audit_states(flat) if audit else ()
+    chosen = tuple(choices)
+    parameters = tuple(replace(q, doc=_chosen(q, chosen)) for q in parameters)
     derivatives = tuple(_derivative(q) for q in states)
     variables: list[Variable] = []
     groups = {"state": states, "input": inputs, "output": _outputs(flat), "parameter": parameters}
     for kind, group in groups.items():
         variables += [Variable(len(variables) + i, kind, q) for i, q in enumerate(group)]
     variables += [Variable(len(variables) + i, "derivative", q, state=i) for i, q in enumerate(derivatives)]
+    variables += [Variable(len(variables) + i, "choice", _of_choice(c), choice=c) for i, c in enumerate(chosen)]
     twice = sorted(name for name, count in Counter(v.name for v in variables).items() if count > 1)
+    problems += [f"{flat.name}: {problem}" for problem in _unfit(chosen, inputs, parameters)]
     problems += [f'{flat.name}: the name "{n}" appears twice.' for n in twice]
     if problems:
         raise FmuError(problems)
-    return Table(tuple(variables))
+    return Table(tuple(variables), audit)
 
 
 def _inside(end: float, direction: float) -> float:
@@ -135,7 +167,7 @@ Group = tuple[Quantity, ...]
 
 
 def _started(flat: FlatModel, start: dict[str, float]) -> tuple[Group, Group, Group, list[str]]:
-    """States with the audit states, inputs and parameters with their start values, and what is wrong with them."""
+    """States, inputs and parameters with their start values, and what is wrong with them."""
     groups = [flat.states, flat.inputs, flat.parameters]
     settable = {q.name for group in groups for q in group}
     problems = []
@@ -145,7 +177,7 @@ def _started(flat: FlatModel, start: dict[str, float]) -> tuple[Group, Group, Gr
         problems.append(f"{flat.name}: start value {told}")
     groups = [tuple(replace(q, start=tidy(float(start.get(q.name, q.start)))) for q in group) for group in groups]
     problems += [f"{flat.name}: start value {p}" for group in groups for q in group if (p := q.problem(q.start))]
-    return (*groups[0], *_audit_states(flat)), groups[1], groups[2], problems
+    return groups[0], groups[1], groups[2], problems
 
 
 def tidy(value: float) -> float:
@@ -186,6 +218,35 @@ def _doc(flat: FlatModel, q: Quantity) -> str:
     own = q.name.rpartition(".")[0] + "."
     known = ", ".join(path.removeprefix(own) for path in flat.derived.get(q.name, ()))
     return f"{q.doc}, follows from {known}" if known else q.doc
+
+
+def _chosen(q: Quantity, choices: Iterable[Choice]) -> str:
+    """What a parameter is; of one that a choice gives values also which counts."""
+    by = [c.name for c in choices if q.name in c.parameters]
+    return f"{q.doc}; {by[0]} sets it unless it differs from its start value" if by else q.doc
+
+
+def _unfit(choices: Iterable[Choice], inputs: Group, parameters: Group) -> Iterator[str]:
+    """Values of items that are out of the range of their parameter, and rooms that no model knows."""
+    known, given = {q.name: q for q in parameters}, {q.name for q in (*inputs, *parameters)}
+    for choice in choices:
+        if choice.room and choice.room not in given:
+            yield f'{choice.name}: "{choice.room}" is no input and no parameter.{suggestion(choice.room, given)}'
+        for item in choice.items:
+            for name, value in item.values.items():
+                if name in known and (problem := known[name].problem(value)):
+                    yield f'{choice.name}, item "{item.name}": {problem}'
+
+
+def _of_choice(choice: Choice) -> Quantity:
+    """The number of the item that is chosen."""
+    given = sorted(choice.parameters)
+    doc = (
+        f"{choice.doc}; sets {', '.join(given)}, but for those that differ from their start values"
+        if given
+        else choice.doc
+    )
+    return Quantity(choice.name, "1", doc, start=1.0, low=1.0, high=float(len(choice.items)), whole=True)
 
 
 def _derivative(q: Quantity) -> Quantity:

@@ -240,4 +240,4 @@ def _print_fmu(found: dict[str, Any]) -> None:
     body = list(bench_fmu.rows(found))
     for kind in ("steady", "warmup_330_min"):
         body.append((f"batch, {kind} rows per second and core", f"{found['batch'][kind]['rows_per_core_s']:.0f}"))
-    table("The FMU and its peers, one run", ("what", "value"), [list(row) for row in body])
+    table("The FMU and its peers, one run", ("what", "value"), [list(row) for row in body], wrapped=True)

@@ -122,7 +122,7 @@ def binary(root: ET.Element, folder: Path) -> Path:
 
 
 def facts(root: ET.Element, library: Path) -> str:
-    """What an importer in C has to know of an FMU: library, identification, then a line for each variable.
+    """What an importer in C has to know of an FMU: library, identification, then a line for each real number.
 
     A line reads: reference, kind, start, lowest, highest, nominal, swing of a test, name. Kinds are x for a state, d
     for its derivative, u, y and p; states and derivatives stand in the order of the model structure.
@@ -132,7 +132,8 @@ def facts(root: ET.Element, library: Path) -> str:
     states = [variables[int(_real(v).get("derivative", "0")) - 1] for v in rates]
     chosen = [("x", v) for v in states] + [("d", v) for v in rates]
     known = {v.get("name") for _, v in chosen}
-    chosen += [(_KINDS[v.get("causality", "")], v) for v in variables if v.get("name") not in known]
+    others = [v for v in variables if v.get("name") not in known and v.find("Real") is not None]
+    chosen += [(_KINDS[v.get("causality", "")], v) for v in others]
     lines = [f"library {library}", f"guid {root.get('guid')}"]
     for kind, variable in chosen:
         real = _real(variable)

@@ -184,6 +184,9 @@ def export(
     of_version: Annotated[str, typer.Option("--model-version", help="Version you give the model.")] = "",
     made: Annotated[str, typer.Option("--date", help="Date and time, 2026-01-31T12:00:00Z; none unless given.")] = "",
     sources: Annotated[bool, typer.Option("--sources/--no-sources", help="With its C source.")] = True,
+    audit: Annotated[
+        bool, typer.Option("--audit/--no-audit", help="With two states that integrate the energy across the boundary.")
+    ] = True,
     origins: Annotated[
         bool,
         typer.Option("--parameters-source/--no-parameters-source", help="Telling where values are from."),
@@ -212,6 +215,7 @@ def export(
         with_sources=sources,
         with_origins=origins,
         fmi=int(fmi),
+        audit=audit,
     )
 
 

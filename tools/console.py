@@ -22,6 +22,7 @@ from typing import Any, ParamSpec
 from ..fmu.compiling import Progress
 from ..model.errors import DataError, GearheatError, ScenarioError
 from ..model.files import inputs_kept, place, replacing
+from ..model.screen import fitting
 
 P = ParamSpec("P")
 
@@ -232,7 +233,7 @@ def table(
     screen = Console(width=width or screen_width() or 160, markup=False, emoji=False)
     widest = [max(len(text) for text in (name, *(row[i] for row in body))) for i, name in enumerate(columns)]
     least = [n if stiff else min(n, LEAST) for n, stiff in zip(widest, whole, strict=True)]
-    kept, *others = _fitting(least, whole, screen.width, repeated=words[0])
+    kept, *others = fitting(least, whole, screen.width, repeated=words[0])
     screen.print(title, style="italic")
     for group in (kept, *others):
         drawn = Table(box=box.SIMPLE_HEAD)
@@ -249,32 +250,6 @@ def table(
         screen.print(drawn)
     if left := [name for i, name in enumerate(columns) if not any(i in group for group in (kept, *others))]:
         say(f"left out for want of room: {', '.join(left)}; widen the screen, or take --json\n")
-
-
-def _fitting(widths: Sequence[int], whole: Sequence[bool], room: int, *, repeated: bool) -> list[list[int]]:
-    """Columns that fit beside each other: those of words go first, from the last on; numbers go on in further tables.
-
-    Args:
-        widths: of the columns at least
-        whole: which of them are numbers or names
-        room: of the screen
-        repeated: whether further tables begin with the first column
-    """
-
-    def size(kept: Sequence[int]) -> int:
-        return sum(widths[k] + 3 for k in kept) + 1  # what is drawn around a column
-
-    kept = list(range(len(widths)))
-    for i in (i for i in reversed(range(1, len(widths))) if not whole[i]):
-        if size(kept) <= room:
-            break
-        kept.remove(i)
-    groups: list[list[int]] = [[]]
-    for i in kept:
-        if groups[-1] and size([*groups[-1], i]) > room:
-            groups.append([0] if repeated else [])
-        groups[-1].append(i)
-    return groups
 
 
 def _is_number(text: str) -> bool:

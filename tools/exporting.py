@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ..fmu.choices import Choice, Item, reduced, start_choice
 from ..fmu.compiling import platforms
 from ..fmu.description import Owner
 from ..fmu.effective import effective
@@ -20,6 +21,7 @@ from ..model.machines.spec import assemble
 from ..model.run.point import point
 from ..model.run.rows import evaluate_at
 from ..model.run.steady import steady
+from ..scenarios.entries import catalogue
 from ..scenarios.scenario import Scenario
 from .console import answer, file_of, folder, progress_bar, say, writable
 from .extras import checked, experiment, reference_duty, reference_run, sets_of_oils, write_extras
@@ -31,6 +33,8 @@ from .unchecked import print_unchecked, unchecked
 
 #: Shares of the operating point's torques at which a machine on torques alone is looked for that holds its speed.
 _SHARES = (1.0, 0.75, 0.5, 0.25, 0.1, 0.0)
+#: Kind of catalogue that fills parts with oil.
+_OIL = "oil"
 #: Source of what no file gives.
 _DEFAULT = "inferred: follows from the other values, or a numerical default"
 
@@ -49,6 +53,7 @@ def export_command(
     with_sources: bool = True,
     with_origins: bool = True,
     fmi: int = 2,
+    audit: bool = True,
 ) -> None:
     """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
     writable(out, file_of(json))
@@ -58,7 +63,7 @@ def export_command(
     duty = reference_duty(flat, start, setting.shaft_paths())
     told: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
     options: dict[str, Any] = {"platform": platform, "start": start, "owner": owner, "fmi": fmi}
-    options["with_sources"] = with_sources
+    options |= {"with_sources": with_sources, "audit": audit}
     kept, run = effective(flat, start), reference_run(flat, duty, start)
     options["others"] = Related(sets_of_oils(setting, kept, told=with_origins), experiment(flat, duty, run))
     with progress_bar() as options["progress"]:
@@ -66,6 +71,7 @@ def export_command(
     named = {q.name for q in kept.parameters}
     origins = sources_of(setting, kept) if with_origins else None
     written = [] if beside is None else write_extras(out, beside, setting, kept, duty, start, origins)
+    choices = reduced(choices_of(setting), kept)
     found = {
         "schema": "gearheat.export/1",
         "rig": scenario.name,
@@ -76,6 +82,7 @@ def export_command(
         "inputs": [q.name for q in flat.inputs],
         "outputs": [q.name for q in (*flat.states, *flat.outputs)],
         "parameters": [q.name for q in kept.parameters],
+        "choices": {c.name: [i.name for i in c.items] for c in choices},
         "without_effect": [q.name for q in flat.parameters if q.name not in named],
         "extras": [str(path) for path in written],
         "unchecked": unchecked(setting, flat),
@@ -119,8 +126,22 @@ def write_fmu(scenario: Scenario, flat: FlatModel, out: Path, **options: Any) ->
         out: file to write
         options: of `gearheat.fmu.export.export`
     """
-    known = {"sources": sources_of(scenario, flat), "uncertainties": scenario.uncertainties}
+    known: dict[str, Any] = {"sources": sources_of(scenario, flat), "uncertainties": scenario.uncertainties}
+    known["choices"] = choices_of(scenario)
     return export(flat, out, picture=network_svg(assemble(scenario.spec)), **{**known, **options})
+
+
+def choices_of(scenario: Scenario) -> tuple[Choice, ...]:
+    """How a run begins; for each part that holds oil, the oils of the catalogue that give it all that its own does."""
+    room = scenario.room if scenario.room in scenario.driven_paths() else None
+    return (start_choice(room), *(_oil(scenario, part) for part, kinds in scenario.entries.items() if _OIL in kinds))
+
+
+def _oil(scenario: Scenario, part: str) -> Choice:
+    known = catalogue(_OIL)
+    own = Item("as exported", "the start values of the parameters")
+    others = (Item(name, known[name].doc, scenario.entry_values(part, name)) for name in scenario.alternatives(part))
+    return Choice(f"{part}.{_OIL}", "the oil filled in", (own, *others))
 
 
 def sources_of(scenario: Scenario, flat: FlatModel) -> dict[str, str]:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.ticker import MaxNLocator
 
 from ..diagnose.report.drawing import COLOURS, empty
 from .plotting import Picture
@@ -67,4 +68,6 @@ def _contours(panel: Axes, over: Sequence[Field], one: Field) -> None:
     elif np.ptp(values) <= 1e-9 * np.max(np.abs(values)):
         panel.text(0.5, 0.5, f"{values[0]:.4g} everywhere", transform=panel.transAxes, ha="center")
     else:
-        panel.clabel(panel.tricontour(x, y, values, levels=LEVELS, cmap="viridis"), fontsize=8)
+        low, high = values.min(), values.max()
+        levels = [v for v in MaxNLocator(LEVELS + 1, min_n_ticks=1).tick_values(low, high) if low < v < high]
+        panel.clabel(panel.tricontour(x, y, values, levels=levels, cmap="viridis"), fontsize=8)

@@ -290,11 +290,11 @@ def _print(case: MapCase, found: dict[str, Any]) -> None:
     rows = [(k, v["low"], v["high"], v["unit"]) for k, v in found["varied"].items()]
     console.table(f"{of}: {found['contacts']} {found['shape']} contacts", ("varied", "low", "high", "unit"), rows)
     for name in found["failed"]:
-        print(f"without a film: {name}")
+        console.say(f"without a film: {name}")
     for key, error in found["fit"].items():
         largest, rms = 100 * error["largest"], 100 * error["rms"]
-        print(f"law of {key}, {found['terms']} terms: error {largest:.2g} % at most, {rms:.2g} % rms")
-    print(f'{found["out"]}: film = "map:{found["out"]}" in a rig file')
+        console.say(f"law of {key}, {found['terms']} terms: error {largest:.2g} % at most, {rms:.2g} % rms")
+    console.say(f'{found["out"]}: film = "map:{found["out"]}" in a rig file')
 
 
 def _plot(case: MapCase, points: np.ndarray, kept: np.ndarray, suffix: str) -> str | bytes:

@@ -68,11 +68,12 @@ def _plain(r: Replayed) -> dict[str, Any]:
 
 def _show(found: Sequence[Replayed]) -> None:
     sensors = list(next(iter(found[0].free.values())))
-    rows = [[r.name, m, *(f"{e[s]:.2f}" for s in sensors)] for r in found for m, e in r.free.items()]
-    table("free run from the first sample of each stretch: RMSE [K]", ["log", "method", *sensors], rows)
     sensor = sensors[0]
-    rows = [[r.name, m, *(f"{v:.2f}" for v in e[sensor])] for r in found for m, e in r.ahead.items()]
-    table(f"{sensor}: RMSE [K] by hours ahead", ["log", "method", *(f"{h:g} h" for h in HOURS)], rows)
+    for r in found:
+        rows = [[m, *(f"{e[s]:.2f}" for s in sensors)] for m, e in r.free.items()]
+        table(f"{r.name}, free run from the first sample of each stretch: RMSE [K]", ["method", *sensors], rows)
+        rows = [[m, *(f"{v:.2f}" for v in e[sensor])] for m, e in r.ahead.items()]
+        table(f"{r.name}, {sensor}: RMSE [K] by hours ahead", ["method", *(f"{h:g} h" for h in HOURS)], rows)
 
 
 def _picture(r: Replayed, kind: str) -> bytes:

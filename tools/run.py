@@ -178,4 +178,5 @@ def _print(rows: Rows, comparison: Comparison | None, scores: Sequence[Score], r
     else:
         summary.show(comparison, scores)
     print_unchecked(result["unchecked"])
-    say(f"{len(rows)} readings; energy balance closed within {result['energy_residual_max']:.1e} of the throughput")
+    closed = f"energy balance closed within {result['energy_residual_max']:.1e} of the throughput"
+    say(f"{len(rows)} reading{'s' * (len(rows) > 1)}; {closed}")

@@ -41,6 +41,7 @@ def system_command(
     with_sources: bool,
     with_origins: bool,
     fmi: int,
+    audit: bool,
 ) -> None:
     """Write a rig as a system of coupled FMUs, with the options of the command `export`."""
     writable(out, file_of(json))
@@ -50,9 +51,10 @@ def system_command(
     platforms(platform)
     _, setting, _, start = prepared(rig, assignments, shaft, given)
     taken = taken_apart(setting, groups_of(groups), start)
-    told: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
-    with progress_bar() as told["progress"]:
-        found = write_system(setting, taken, out, platform=platform, owner=owner, with_sources=with_sources, **told)
+    options: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
+    options |= {"platform": platform, "owner": owner, "with_sources": with_sources, "audit": audit}
+    with progress_bar() as options["progress"]:
+        found = write_system(setting, taken, out, **options)
 
     def human() -> None:
         say(f"{out}: {', '.join(found['fmus'])}")
@@ -136,7 +138,9 @@ def write_system(setting: Scenario, taken: Taken, out: Path, **options: Any) -> 
     elements = []
     with tempfile.TemporaryDirectory() as folder:
         for name, flat in taken.flats.items():
-            piece = replace(setting, name=name, spec=taken.pieces.specs[name])
+            spec = taken.pieces.specs[name]
+            entries = {p.name: setting.entries[p.name] for p in spec.parts if p.name in setting.entries}
+            piece = replace(setting, name=name, spec=spec, entries=entries)
             fmu = write_fmu(piece, flat, Path(folder) / f"{name}.fmu", start=taken.starts[name], **options)
             elements.append(_element(name, flat, taken.pieces, fmu.read_bytes()))
     system = _system(setting, taken, elements)

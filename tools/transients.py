@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 
 from ..fmu.described import Described, described, settable
-from ..model.core.flat import FlatModel, Quantity
+from ..model.core.flat import FlatModel
 from ..model.errors import FmuError, ScenarioError
 from ..model.run.schedule import Schedule
 from ..model.run.simulate import simulate
 from ..model.units import from_si, shown, to_si
 from ..scenarios.duty import duty_names, read_duty
 from ..scenarios.scenario import Scenario
-from .console import answer, file_of, note, plottable, writable, write
+from .console import answer, file_of, note, plottable, say, writable, write
 from .playing import series
 from .points import outside_of, tell_outside
 from .rigs import load
@@ -49,7 +49,7 @@ def simulate_command(
     }
 
     def human() -> None:
-        print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s")
+        _print(found)
         tell_outside(found["outside"])
         print_unchecked(found["unchecked"])
 
@@ -106,7 +106,7 @@ def play_command(
         note(f"{fmu}: running native code of {made_by}")
     with Player(told) as player:
         schedule = read_duty(duty, told.quantities("input"))
-        start = _start(told.quantities("start"), told.quantities("output"), assignments, fmu)
+        start = _start(told, assignments)
         first = start | {name: float(values[0]) for name, values in schedule.values.items()}
         start = _at_room(told, first) | start
         inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
@@ -122,7 +122,11 @@ def play_command(
         "plot": plot and str(plot),
         **_summary(played.time, columns, units),
     }
-    answer(found, json, lambda: print(f"{out}: {found['rows']} rows to {found['stop_s']:g} s"))
+    answer(found, json, lambda: _print(found))
+
+
+def _print(found: Mapping[str, Any]) -> None:
+    say(f"{found['out']}: {found['rows']} rows to {found['stop_s']:g} s")
 
 
 def _at_room(told: Described, first: Mapping[str, float]) -> dict[str, float]:
@@ -140,27 +144,41 @@ def _at_room(told: Described, first: Mapping[str, float]) -> dict[str, float]:
     return {v.name: rooms[float(v.start)] for v in states}
 
 
-def _start(
-    known: Mapping[str, Quantity], shown: Mapping[str, Quantity], assignments: Sequence[str], fmu: Path
-) -> dict[str, float]:
+def _start(told: Described, assignments: Sequence[str]) -> dict[str, float]:
     """Start values from texts NAME=VALUE, in SI. Raises ScenarioError with all problems at once."""
     from ..model.errors import GearheatError, suggestion
 
+    known, shown, wholes = told.quantities("start"), told.quantities("output"), told.wholes()
     values: dict[str, float] = {}
     problems: list[str] = []
     for text in assignments:
         name, _, written = (part.strip() for part in text.partition("="))
-        if name not in known:
-            why = f" It is calculated: {shown[name].doc}." if name in shown else suggestion(name, known)
-            problems.append(f'{fmu.name}: "{name}" cannot be set.{why}')
-            continue
         try:
-            values[name] = to_si(written, known[name].unit, name=name)
+            if name in wholes:
+                values[name] = _whole(name, written, wholes[name])
+            elif name in known:
+                values[name] = to_si(written, known[name].unit, name=name)
+            else:
+                every = [*known, *wholes]
+                why = f" It is calculated: {shown[name].doc}." if name in shown else suggestion(name, every)
+                problems.append(f'{told.path.name}: "{name}" cannot be set.{why}')
         except GearheatError as error:
             problems += error.problems
     if problems:
         raise ScenarioError(problems)
     return values
+
+
+def _whole(name: str, written: str, items: Mapping[str, int]) -> int:
+    """A whole number, or that of an item by its name."""
+    if written in items:
+        return items[written]
+    if items:
+        raise ScenarioError(f'{name} = "{written}" is not known. Choose one of: {", ".join(items)}.')
+    try:
+        return int(written)
+    except ValueError:
+        raise ScenarioError(f'{name} = "{written}" is no whole number.') from None
 
 
 def _summary(time: np.ndarray, columns: Any, units: Any) -> dict[str, Any]:

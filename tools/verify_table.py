@@ -64,5 +64,5 @@ def _line(v: Verdict, why: str) -> list[Any]:
 
 def _group_line(name: str, members: Sequence[Verdict]) -> list[Any]:
     worst = max(members, key=lambda v: v.distance / (v.tolerance or 1.0))
-    model = f"within {worst.distance:.2g} {worst.unit}"
+    model = f"within {worst.distance:.2g} {worst.unit}".removesuffix(" 1")
     return [name, members[0].row.where, f"{len(members)} numbers", "", model, worst.allowed, worst.verdict]

@@ -11,7 +11,9 @@ static void start(Instance *m)
     for (i = 0; i < NX; i++) m->s.x[i] = model_start[FIRST_X + i];
     for (i = 0; i < NZ; i++) m->s.z[i] = model_z_start[i];
     for (i = 0; i < NU; i++) m->s.u[i] = model_start[FIRST_U + i];
-    for (i = 0; i < NP; i++) m->s.p[i] = model_start[FIRST_P + i];
+    for (i = 0; i < NP; i++) m->s.own[i] = model_start[FIRST_P + i];
+    for (i = 0; i < N_CHOICES; i++) m->s.choice[i] = model_start[FIRST_CHOICE + i];
+    use_choices(&m->s);
     m->constants_known = 0;
     changed(m);
     m->log_mask = m->log_mask_at_start;
@@ -105,23 +107,35 @@ fmi2Status fmi2EnterInitializationMode(fmi2Component c)
     return fmi2OK;
 }
 
+static fmi2Status go_back(Instance *m, const State *to)
+{
+    m->s = *to;
+    changed(m);
+    return fmi2Error;
+}
+
 fmi2Status fmi2ExitInitializationMode(fmi2Component c)
 {
     Instance *m = c;
+    State before;
+    fmi2Status status;
     const char *block;
     int r;
     if (!allowed(m, INITIALIZATION, "fmi2ExitInitializationMode")) return fmi2Error;
     if (!check_relations(m, "fmi2ExitInitializationMode")) return fmi2Error;
+    before = m->s;
+    status = begin(m);
     if ((block = unsolved(m)) != NULL)
         return refuse(m, "fmi2ExitInitializationMode: the equation \"%s\" has no solution. Check start values, inputs and "
-                      "parameters.", block);
+                      "parameters.", block), go_back(m, &before);
     if ((r = wrong_result(m)) != N_VARIABLES)
         return refuse(m, "fmi2ExitInitializationMode: %s is %.10g%s, but must be %s. Check start values, inputs and "
-                      "parameters.", model_names[r], value_of(m, r), model_units[r], model_ranges[r]);
+                      "parameters.", model_names[r], value_of(m, r), model_units[r], model_ranges[r]),
+               go_back(m, &before);
     accept_algebra(m);
     m->s.mode = m->s.type == fmi2ModelExchange ? EVENT : STEP_COMPLETE;
     warn_validity(m);
-    return fmi2OK;
+    return status;
 }
 
 fmi2Status fmi2Terminate(fmi2Component c)
@@ -140,15 +154,22 @@ fmi2Status fmi2Reset(fmi2Component c)
     return fmi2OK;
 }
 
-static int known_references(const Instance *m, const fmi2ValueReference r[], size_t n, const char *function)
+/* Whether all references are of variables of some types. */
+static int of_type(const Instance *m, const fmi2ValueReference r[], size_t n, int types, const char *function)
 {
     size_t i;
-    for (i = 0; i < n; i++)
-        if (r[i] >= N_VARIABLES) {
-            refuse(m, "%s: unknown value reference %u.", function, r[i]);
-            return 0;
-        }
+    for (i = 0; i < n; i++) {
+        if (r[i] >= N_VARIABLES) return refuse(m, "%s: unknown value reference %u.", function, r[i]), 0;
+        if (!(model_type[r[i]] & types))
+            return refuse(m, "%s: %s is %s.", function, model_names[r[i]], model_type[r[i]] == REAL_NUMBER ? "a real number"
+                          : model_type[r[i]] == WHOLE_NUMBER ? "a whole number" : "an enumeration"), 0;
+    }
     return 1;
+}
+
+static int known_references(const Instance *m, const fmi2ValueReference r[], size_t n, const char *function)
+{
+    return of_type(m, r, n, REAL_NUMBER, function);
 }
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, fmi2Real value[])
@@ -174,8 +195,10 @@ static int settable(fmi2ValueReference r)
 {
     if (r < FIRST_U) return INSTANTIATED | INITIALIZATION;
     if (r < FIRST_Y) return SETTABLE;
-    if (r >= FIRST_P && r < FIRST_DX) return SETTABLE & ~CONTINUOUS_TIME;
-    return 0;
+    if (r >= FIRST_DX && r < FIRST_CHOICE) return 0;
+    if (r < FIRST_P) return 0;
+    return model_type[r] == WHOLE_NUMBER || r == FIRST_CHOICE + START ? INSTANTIATED | INITIALIZATION
+                                                                      : SETTABLE & ~CONTINUOUS_TIME;
 }
 
 /* Masters fill inputs with zeros before they have values to pass on: some while they initialize, some until their first
@@ -197,6 +220,37 @@ static void tell_kept(Instance *m, fmi2ValueReference r, double value)
          model_names[r], value, model_units[r], model_ranges[r], model_units[r], *stored(m, r), model_units[r]);
 }
 
+/* Whether a variable may have a value now; says why not. */
+static int takes(const Instance *m, fmi2ValueReference r, double value, const char *function)
+{
+    if (settable(r) == 0)
+        refuse(m, "%s: %s is calculated and cannot be set.", function, model_names[r]);
+    else if (!(settable(r) & m->s.mode))
+        refuse(m, "%s: %s cannot be set in the mode \"%s\".", function, model_names[r], mode_name(m->s.mode));
+    else if (!in_range(r, value) && !stays(m, r, value))
+        refuse_value(m, function, r, value);
+    else
+        return 1;
+    return 0;
+}
+
+static void put(Instance *m, fmi2ValueReference r, double value)
+{
+    double *place = stored(m, r);
+    if (*place == value) return;
+    if (stays(m, r, value)) {
+        tell_kept(m, r, value);
+        return;
+    }
+    if (fabs(value - *place) > 1e-6 * (fabs(*place) + model_nominal[r]) || r >= FIRST_P)
+        m->s.jumped = m->s.states_touched = 1;
+    *place = value;
+    changed(m);
+    if (r < FIRST_P) return;
+    use_choices(&m->s);
+    m->constants_known = 0;
+}
+
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, const fmi2Real value[])
 {
     Instance *m = c;
@@ -204,34 +258,34 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference r[], size_t n, 
     if (!allowed(m, SETTABLE, "fmi2SetReal")) return fmi2Error;
     if (missing(m, r, n, "fmi2SetReal") || missing(m, value, n, "fmi2SetReal")) return fmi2Error;
     if (!known_references(m, r, n, "fmi2SetReal")) return fmi2Error;
-    for (i = 0; i < n; i++) {
-        if (settable(r[i]) == 0)
-            return refuse(m, "fmi2SetReal: %s is calculated and cannot be set.", model_names[r[i]]);
-        if (!(settable(r[i]) & m->s.mode))
-            return refuse(m, "fmi2SetReal: %s cannot be set in the mode \"%s\".", model_names[r[i]],
-                          mode_name(m->s.mode));
-        if (!in_range(r[i], value[i]) && !stays(m, r[i], value[i]))
-            return refuse_value(m, "fmi2SetReal", r[i], value[i]);
-    }
-    for (i = 0; i < n; i++) {
-        double *place = stored(m, r[i]);
-        if (*place == value[i]) continue;
-        if (stays(m, r[i], value[i])) {
-            tell_kept(m, r[i], value[i]);
-            continue;
-        }
-        if (fabs(value[i] - *place) > 1e-6 * (fabs(*place) + model_nominal[r[i]]) || r[i] >= FIRST_P)
-            m->s.jumped = m->s.states_touched = 1;
-        if (r[i] >= FIRST_P) m->constants_known = 0;
-        *place = value[i];
-        changed(m);
-    }
+    for (i = 0; i < n; i++)
+        if (!takes(m, r[i], value[i], "fmi2SetReal")) return fmi2Error;
+    for (i = 0; i < n; i++) put(m, r[i], value[i]);
     return fmi2OK;
 }
 
-/* All variables are real numbers. */
+/* Bodies of the functions for numbers that are whole; inside they are doubles. */
+#define GET_WHOLE(TYPES, FUNCTION) \
+    Instance *m = c; \
+    size_t i; \
+    if (!allowed(m, GETTABLE, FUNCTION) || missing(m, r, n, FUNCTION) || missing(m, value, n, FUNCTION)) return fmi2Error; \
+    if (!of_type(m, r, n, TYPES, FUNCTION)) return fmi2Error; \
+    for (i = 0; i < n; i++) value[i] = (int)*stored(m, r[i]); \
+    return fmi2OK;
+
+#define SET_WHOLE(TYPES, FUNCTION) \
+    Instance *m = c; \
+    size_t i; \
+    if (!allowed(m, SETTABLE & ~CONTINUOUS_TIME, FUNCTION)) return fmi2Error; \
+    if (missing(m, r, n, FUNCTION) || missing(m, value, n, FUNCTION)) return fmi2Error; \
+    if (!of_type(m, r, n, TYPES, FUNCTION)) return fmi2Error; \
+    for (i = 0; i < n; i++) \
+        if (!takes(m, r[i], (double)value[i], FUNCTION)) return fmi2Error; \
+    for (i = 0; i < n; i++) put(m, r[i], (double)value[i]); \
+    return fmi2OK;
+
 static fmi2Status no_variables(fmi2Component c, size_t n, int modes, const char *function)
 {
     if (!allowed(c, modes, function)) return fmi2Error;
-    return n == 0 ? fmi2OK : refuse(c, "%s: unknown value reference; all variables are Real.", function);
+    return n == 0 ? fmi2OK : refuse(c, "%s: unknown value reference; no variable is of this type.", function);
 }

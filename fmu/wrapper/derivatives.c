@@ -28,7 +28,7 @@ static double slope_of(const Direction *d, const Slopes *s, fmi2ValueReference r
 
 static int is_calculated(fmi2ValueReference r)
 {
-    return r < FIRST_U || (r >= FIRST_Y && r < FIRST_P) || r >= FIRST_DX;
+    return r < FIRST_U || (r >= FIRST_Y && r < FIRST_P) || (r >= FIRST_DX && r < FIRST_CHOICE);
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown,

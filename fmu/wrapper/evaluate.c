@@ -84,7 +84,8 @@ static double *stored(Instance *m, fmi2ValueReference r)
 {
     if (r < FIRST_U) return &m->s.x[r - FIRST_X];
     if (r < FIRST_Y) return &m->s.u[r - FIRST_U];
-    if (r >= FIRST_P && r < FIRST_DX) return &m->s.p[r - FIRST_P];
+    if (r >= FIRST_P && r < FIRST_DX) return &m->s.own[r - FIRST_P];
+    if (r >= FIRST_CHOICE) return &m->s.choice[r - FIRST_CHOICE];
     return NULL;
 }
 

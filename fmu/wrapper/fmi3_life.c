@@ -51,7 +51,7 @@ fmi3Status fmi3ExitInitializationMode(fmi3Instance c)
 {
     Instance *m = c;
     fmi3Status status = exit_initialization(m);
-    if (status == fmi3OK && m->callbacks.event_mode) m->s.mode = EVENT;
+    if (status <= fmi3Warning && m->callbacks.event_mode) m->s.mode = EVENT;
     return status;
 }
 

@@ -25,6 +25,22 @@ fmi3Status fmi3SetFloat64(fmi3Instance c, const fmi3ValueReference r[], size_t n
     return set_values(c, r, n, value);
 }
 
+#define WHOLE_VARIABLES(TYPE, TYPES) \
+    fmi3Status fmi3Get##TYPE(fmi3Instance c, const fmi3ValueReference r[], size_t n, fmi3##TYPE value[], size_t n_values) \
+    { \
+        if (!c || wrong_size(c, value, n_values, n, "fmi3Get" #TYPE)) return fmi3Error; \
+        GET_WHOLE(TYPES, "fmi3Get" #TYPE) \
+    } \
+    fmi3Status fmi3Set##TYPE(fmi3Instance c, const fmi3ValueReference r[], size_t n, const fmi3##TYPE value[], \
+                             size_t n_values) \
+    { \
+        if (!c || wrong_size(c, value, n_values, n, "fmi3Set" #TYPE)) return fmi3Error; \
+        SET_WHOLE(TYPES, "fmi3Set" #TYPE) \
+    }
+
+WHOLE_VARIABLES(Int32, WHOLE_NUMBER)
+WHOLE_VARIABLES(Int64, ENUMERATION)
+
 fmi3Status fmi3GetDirectionalDerivative(fmi3Instance c, const fmi3ValueReference unknown[], size_t n_unknown,
                                         const fmi3ValueReference known[], size_t n_known, const fmi3Float64 seed[],
                                         size_t n_seed, fmi3Float64 sensitivity[], size_t n_sensitivity)

@@ -11,18 +11,22 @@
 
 #define AT_LEAST_1(n) ((n) > 0 ? (n) : 1)
 
-/* Value references: states, inputs, outputs, parameters, derivatives. */
+/* Value references: states, inputs, outputs, parameters, derivatives, choices. */
 enum {
     FIRST_X = 0,
     FIRST_U = FIRST_X + NX,
     FIRST_Y = FIRST_U + NU,
     FIRST_P = FIRST_Y + NY,
     FIRST_DX = FIRST_P + NP,
-    N_VARIABLES = FIRST_DX + NX
+    FIRST_CHOICE = FIRST_DX + NX,
+    N_VARIABLES = FIRST_CHOICE + N_CHOICES
 };
 
-/* The last two states are the audit's; the error control looks at all but the last. */
-enum { SUPPLIED = NX - 2, THROUGHPUT = NX - 1, N_CONTROLLED = NX - 1 };
+/* Types of variables, one bit each, so that a function names those it takes by a mask. */
+enum { REAL_NUMBER = 1, WHOLE_NUMBER = 2, ENUMERATION = 4 };
+
+/* With an audit the last two states are its; the error control looks at all but the last. */
+enum { N_MODEL = NX - 2 * AUDIT, SUPPLIED = AUDIT ? NX - 2 : -1, THROUGHPUT = NX - 1, N_CONTROLLED = NX - AUDIT };
 
 /* The mode of an instance, one bit each, so that a function names the modes it is allowed in by a mask. */
 enum {
@@ -52,7 +56,9 @@ typedef struct {
     double z[AT_LEAST_1(NZ)];   /* algebraic variables at the last accepted step: where an iteration begins */
     double u[AT_LEAST_1(NU)];
     double slope[AT_LEAST_1(NU)];
-    double p[AT_LEAST_1(NP)];
+    double p[AT_LEAST_1(NP)];   /* in use, see choices.c */
+    double own[AT_LEAST_1(NP)]; /* as set */
+    double choice[AT_LEAST_1(N_CHOICES)];
 } State;
 
 typedef struct {

@@ -38,7 +38,7 @@ static double scale(const double *x, int i)
 static double trial(const Instance *m, const double *x, const double *z, const double *u, double h, double *x_new,
                     double *z_new, int *worst)
 {
-    double error[N_CONTROLLED], norm = 0.0;
+    double error[AT_LEAST_1(N_CONTROLLED)], norm = 0.0;
     int i;
     model_step(x, z, u, m->s.slope, m->s.p, m->c, &h, x_new, z_new, error);
     for (i = 0; i < NZ; i++)

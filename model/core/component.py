@@ -91,7 +91,8 @@ class Component:
             found.append(f'{where}: unknown key "{key}".{suggestion(key, (*settable, *self.choices))}')
         for key, d in self.parameters.items():
             if key not in self.values:
-                found.append(f"{where}: {key} is missing ({d.doc}). Give it in {d.unit}.")
+                remedy = "Give a number" if d.unit == "1" else f"Give it in {d.unit}"
+                found.append(f"{where}: {key} is missing ({d.doc}). {remedy}.")
         for key in self.values.keys() - self.derived.keys():
             value = self.values[key]
             if (problem := settable[key].quantity(f"{self.name}.{key}").problem(value)) is not None:

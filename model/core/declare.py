@@ -60,6 +60,7 @@ class Declaration:
             self.above is not None,
             self.below is not None,
             self.refusal,
+            getattr(self, "whole", False),
         )
 
 

@@ -19,7 +19,7 @@ from ..units import text
 class Quantity:
     """One scalar of a model: path, SI unit, meaning, typical size, value when nothing else is given, and range.
 
-    `refusal` says what a value outside the range means, see `Declaration`.
+    `refusal` says what a value outside the range means, see `Declaration`; `whole` that it is a number of things.
     """
 
     name: str
@@ -32,6 +32,7 @@ class Quantity:
     low_open: bool = False
     high_open: bool = False
     refusal: str = ""
+    whole: bool = False
 
     def bound(self, value: float) -> tuple[str, float] | None:
         """The bound that a value does not keep, in words and in SI, or None."""

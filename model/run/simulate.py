@@ -203,9 +203,9 @@ def _check_ranges(flat: FlatModel, grid: np.ndarray, path: np.ndarray) -> None:
         slack = 1e-6 * q.nominal
         wrong = np.flatnonzero((row < q.low - slack) | (row > q.high + slack))
         if wrong.size:
-            i = int(wrong[0])
+            i, unit = int(wrong[0]), "" if q.unit == "1" else f" {q.unit}"
             raise SolveError(
-                f"simulate: {q.name} leaves its range ({q.low:g} ... {q.high:g} {q.unit}) at {grid[i]:.6g} s: "
+                f"simulate: {q.name} leaves its range ({q.low:g} ... {q.high:g}{unit}) at {grid[i]:.6g} s: "
                 f"it has reached {text(row[i], q.unit)}.\n"
                 f"Check what drives {q.name.rpartition('.')[0]} before that time."
             )

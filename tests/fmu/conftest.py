@@ -143,7 +143,9 @@ class Opened:
 
     def __init__(self, path: Path, folder: Path, kind: type = FMU2Slave, logging: bool = False, **changed: str) -> None:
         self.description = fmpy.read_model_description(str(path))
-        self.refs = {v.name: v.valueReference for v in self.description.modelVariables}
+        variables = self.description.modelVariables
+        self.refs = {v.name: v.valueReference for v in variables if v.type == "Real"}
+        self.whole = {v.name: v.valueReference for v in variables if v.type != "Real"}
         self.messages: list[tuple[int, str, str]] = []
         fmpy.extract(str(path), str(folder))
         interface = self.description.coSimulation
@@ -164,8 +166,11 @@ class Opened:
         return self
 
     def set(self, **values: float) -> None:
-        if values:
-            self.fmu.setReal([self.refs[n.replace("__", ".")] for n in values], list(values.values()))
+        named = {n.replace("__", "."): v for n, v in values.items()}
+        if reals := {n: v for n, v in named.items() if n not in self.whole}:
+            self.fmu.setReal([self.refs[n] for n in reals], list(reals.values()))
+        if whole := {n: int(v) for n, v in named.items() if n in self.whole}:
+            self.fmu.setInteger([self.whole[n] for n in whole], list(whole.values()))
 
     def get(self, *names: str) -> list[float]:
         return list(self.fmu.getReal([self.refs[n] for n in names]))

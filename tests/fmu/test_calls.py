@@ -54,7 +54,8 @@ def test_unknown_and_calculated_references_are_refused(opened: Open, rc_fmu: Pat
     assert "unknown value reference 999" in one.refused(lambda: fmu.getReal([999]))[1]
     assert "unknown value reference 999" in one.refused(lambda: fmu.setReal([999], [1.0]))[1]
     assert "resistor.i is calculated" in one.refused(lambda: one.set(resistor__i=1.0))[1]
-    assert "all variables are Real" in one.refused(lambda: fmu.getInteger([0]))[1]
+    assert "capacitor.v is a real number" in one.refused(lambda: fmu.getInteger([0]))[1]
+    assert "no variable is of this type" in one.refused(lambda: fmu.getBoolean([0]))[1]
     assert fmu.getReal([]) == []
 
 

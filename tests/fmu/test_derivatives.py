@@ -51,7 +51,7 @@ def test_directional_derivatives_of_every_unknown(opened: Open, heat_fmu: Path, 
     structure = one.description
     unknown = [u.variable.name for u in (*structure.outputs, *structure.derivatives)]
     states = [u.variable.derivative.name for u in structure.derivatives]
-    parameters = [v.name for v in structure.modelVariables if v.causality == "parameter"]
+    parameters = [v.name for v in structure.modelVariables if v.causality == "parameter" and v.name in one.refs]
     for known in (*INPUTS, *states, *parameters):
         (value,) = truth.get(known)
         expected = differences(truth, unknown, known, 1e-5 * (abs(value) + 1))

@@ -13,7 +13,7 @@ import pytest
 from fmpy.validation import validate_fmu
 from fmu_in_c import planetary
 from gearheat.fmu import units
-from gearheat.fmu.description import description, identifier, identity, numbers
+from gearheat.fmu.description import description, identifier, identity, values
 from gearheat.fmu.equations import equations
 from gearheat.fmu.export import export
 from gearheat.fmu.source import source
@@ -59,7 +59,7 @@ def test_units_and_what_is_shown(described: SimpleNamespace) -> None:
 
 
 def test_a_number_of_the_description_reads_back_everywhere(heat_fmu: Path) -> None:
-    """std::stod and others refuse denormal numbers, so an end that is left open may not be written as one."""
+    """std::stod and others refuse denormal values, so an end that is left open may not be written as one."""
     root = ET.fromstring(zipfile.ZipFile(heat_fmu).read("modelDescription.xml"))
     low = [float(real.get("min", "-inf")) for real in root.iter("Real")]
     assert sum(0 < value < 1e-200 for value in low) > 5, "this model has open ends at zero"
@@ -159,8 +159,9 @@ def test_what_a_user_reads_of_every_variable_of_every_rig(rig: str) -> None:
     told = Counter(identity(v)["description"] for v in variables)
     assert [text for text, n in told.items() if n > 1 or not text] == []
     for v in variables:
-        attributes = numbers(v)
-        unit = units.unit(attributes["unit"])
+        attributes = values(v)
+        assert ("unit" in attributes) == (v.type == "Real"), v.name
+        unit = units.unit(attributes.get("unit", "1"))
         assert unit.exponents is not None, v.name
         if unit.name in ("K", "rad/s", "rad", "m", "m2/s") and "relativeQuantity" not in attributes:
             assert attributes["displayUnit"] in {d.name for d in unit.shown}, v.name

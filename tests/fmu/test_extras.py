@@ -65,7 +65,8 @@ def structure_problems(content: bytes, known: set[str] | None = None) -> list[st
     problems += [f"{n}: no base unit" for n, u in units.items() if u.find(f"{{{SSC}}}BaseUnit") is None]
     for p in parameters:
         value, *rest = p
-        if p.tag != f"{{{SSV}}}Parameter" or value.tag != f"{{{SSV}}}Real" or len(rest) > 1:
+        kinds = {f"{{{SSV}}}Real", f"{{{SSV}}}Integer"}
+        if p.tag != f"{{{SSV}}}Parameter" or value.tag not in kinds or len(rest) > 1:
             problems.append(f"{p.get('name')}: {[child.tag for child in p]}")
         elif not np.isfinite(float(value.get("value", "nan"))) or value.get("unit", "1") not in units | {"1": None}:
             problems.append(f"{p.get('name')}: {value.attrib}")
@@ -292,7 +293,8 @@ def test_every_parameter_of_an_fmu_moves_something(heat_fmu: Path) -> None:
     before = play(heat_fmu, duty, 60, 60).values
     for v in described:
         if v.causality == "parameter":
-            after = play(heat_fmu, duty, 60, 60, start={v.name: 1.01 * float(v.start)}).values
+            another = 2 if v.type == "Enumeration" else 1.01 * float(v.start)
+            after = play(heat_fmu, duty, 60, 60, start={v.name: another}).values
             assert (after != before).any(), v.name
 
 

@@ -76,8 +76,8 @@ PLANTED = {
         "fmi2OK with (nan|-nan|inf|-inf)",
     ),
     "keeps a part of what it refuses": (
-        "        if (settable(r[i]) == 0)\n",
-        "        if (r[i] < FIRST_U) m->s.x[r[i]] += 1;\n        if (settable(r[i]) == 0)\n",
+        'if (!takes(m, r[i], value[i], "fmi2SetReal"))',
+        'if ((r[i] < FIRST_U && (m->s.x[r[i]] += 1, 0)) || !takes(m, r[i], value[i], "fmi2SetReal"))',
         "but the state changed",
     ),
     "takes damaged states": (

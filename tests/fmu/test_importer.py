@@ -122,7 +122,8 @@ def test_derivatives_along_everything_in_every_mode_and_what_depends_on_what(
         found.setdefault(unknown, set()).add(known)
     described = fmpy.read_model_description(str(facts[model].parent / "model.fmu"))
     parameters = {v.name for v in described.modelVariables if v.causality == "parameter"}
-    listed = {u.variable.name: {v.name for v in u.dependencies} for u in described.initialUnknowns}
+    reals = {v.name for v in described.modelVariables if v.type == "Real"}
+    listed = {u.variable.name: {v.name for v in u.dependencies} & reals for u in described.initialUnknowns}
     while_stepping = {
         u.variable.name: {v.name for v in u.dependencies} for u in (*described.outputs, *described.derivatives)
     }

@@ -6,29 +6,19 @@ import re
 import tomllib
 
 import pytest
+from bearing_rig import BEARING, with_bearings
 from gearheat.model.core.connect import nets
 from gearheat.model.errors import ScenarioError
 from gearheat.model.machines.spec import assemble
 from gearheat.scenarios.assemblies import assembled
-from gearheat.scenarios.load import RIGS, load
+from gearheat.scenarios.load import load
 
-WHOLE = (RIGS / "helical_two_stage" / "rig.toml").read_text(encoding="utf-8")
-
-BEARINGS = """[assembly.bearings.part."{a,b}"]
-type = "DeepGrooveBallBearing"
+BEARINGS = (
+    f"""[assembly.bearings.part."{{a,b}}"]
 bearing = "SKF 6306"
-count = 1
-F_r_0 = "0 N"
-F_a_0 = "0 N"
-K_rs = 3e-8
-mu_bl = 0.12
-mu_EHL = 0.05
-oil_bath = false
-inner_share = 0.5
-source = "assumed: above the oil level"
-sources = { K_rs = "SKF2018, friction", mu_bl = "SKF2018, friction" }
-
-[assembly.bearings.connect]
+{BEARING}
+"""
+    + """[assembly.bearings.connect]
 "{shaft,inner,outer,lubricant}" = ["a.{shaft,inner,outer,lubricant}", "b.{shaft,inner,outer,lubricant}"]
 
 [assembly.bearings.ports]
@@ -52,20 +42,13 @@ use = "bearings"
 "{a,b}" = { bearing = "SKF 6211" }
 
 """
-
-
-INSIDE = """[assembly.bearings.part.c]
-use = "bearings"
-
-"""
+)
 
 
 def folded() -> str:
     """The helical rig with its six bearings as three pairs."""
-    text = re.sub(r"\[part\.\w+_bearing_[ab]\].*?(?=\n\[|\n# -)", "", WHOLE, flags=re.S)
-    text = re.sub(r'"(\w+_bearing)_a\.(shaft|inner|outer|lubricant)", "\1_b\.\2"', r'"\1.\2"', text)
-    text = re.sub(r'"(\w+_bearing)_([ab])\.load"', r'"\1.load_\2"', text)
-    return text.replace("[part.oil]", BEARINGS + "[part.oil]")
+    text = re.sub(r'"(\w+_bearing)_a\.(shaft|inner|outer|lubricant)", "\1_b\.\2"', r'"\1.\2"', with_bearings(BEARINGS))
+    return re.sub(r'"(\w+_bearing)_([ab])\.load"', r'"\1.load_\2"', text)
 
 
 def test_the_same_rig_of_assemblies(tmp_path):

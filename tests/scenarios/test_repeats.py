@@ -6,29 +6,14 @@ import re
 import tomllib
 
 import pytest
+from bearing_rig import BEARING, WHOLE, with_bearings
 from gearheat.model.errors import ScenarioError
-from gearheat.scenarios.load import RIGS, load
+from gearheat.scenarios.load import load
 from gearheat.scenarios.repeats import expanded, meant
 
-WHOLE = (RIGS / "helical_two_stage" / "rig.toml").read_text(encoding="utf-8")
-
-
-def shorter() -> str:
-    """The helical rig with one template for its six bearings, and braces in its nets."""
-    text = re.sub(r"\[part\.\w+_bearing_[ab]\].*?(?=\n\[|\n# -)", "", WHOLE, flags=re.S)
-    bearings = """[template.ball]
-type = "DeepGrooveBallBearing"
-count = 1
-F_r_0 = "0 N"
-F_a_0 = "0 N"
-K_rs = 3e-8
-mu_bl = 0.12
-mu_EHL = 0.05
-oil_bath = false
-inner_share = 0.5
-source = "assumed: above the oil level"
-sources = { K_rs = "SKF2018, friction", mu_bl = "SKF2018, friction" }
-
+BEARINGS = (
+    f"[template.ball]\n{BEARING}"
+    + """
 [part."input_bearing_{a,b}"]
 use = "ball"
 bearing = "SKF 6306"
@@ -43,7 +28,12 @@ use = "ball"
 bearing = "SKF 6211"
 
 """
-    text = re.sub(r"load_\w+_[ab] = .*\n", "", text)
+)
+
+
+def shorter() -> str:
+    """The helical rig with one template for its six bearings, and braces in its nets."""
+    text = re.sub(r"load_\w+_[ab] = .*\n", "", with_bearings(BEARINGS))
     loads = '"load_{input,middle,output}_{a,b}" = '
     loads += '["{input,middle,output}_support.load_{a,b}", "{input,middle,output}_bearing_{a,b}.load"]\n'
     for net, port in (("shafts_wall.a", "inner"), ("shafts_wall.b", "outer")):
@@ -51,7 +41,7 @@ bearing = "SKF 6211"
             pair = [f'"{shaft}_bearing_{end}.{port}"' for end in "ab"]
             text = re.sub(rf"{pair[0]}, {pair[1]},?", "", text)
         text = text.replace(f'"{net}",', f'"{net}", "{{input,middle,output}}_bearing_{{a,b}}.{port}",')
-    return text.replace("[part.oil]", bearings + "[part.oil]").replace("[connect]\n", "[connect]\n" + loads)
+    return text.replace("[connect]\n", "[connect]\n" + loads)
 
 
 def test_the_same_rig_with_fewer_lines(tmp_path):

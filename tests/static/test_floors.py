@@ -10,7 +10,7 @@ ROOT = Path(__file__).parents[2]
 #: Order of the floors, by the names under which they are installed below `gearheat`; those of one row stand side by
 #: side.
 ORDER = (
-    ("model.units", "model.errors", "model.files", "model.sources"),
+    ("model.units", "model.errors", "model.files", "model.screen", "model.sources"),
     ("model.laws",),
     ("model.core",),
     ("model.parts",),

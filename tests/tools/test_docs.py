@@ -18,6 +18,9 @@ def test_the_site_builds_and_has_a_page_for_every_part(gearheat, tmp_path: Path)
     assert "--power-flow" in commands
     tutorial = (tmp_path / "site" / "tutorials" / "own_gearbox.html").read_text(encoding="utf-8")
     assert '<span class="caption-text">card.toml</span>' in tutorial
+    for page in (tmp_path / "site").rglob("*.html"):
+        text = page.read_text(encoding="utf-8")
+        assert 'name="viewport"' in text and "/narrow.css" in text, f"{page.name} may be wider than its screen"
 
 
 def test_a_docstring_becomes_a_formula_and_a_list() -> None:

@@ -20,6 +20,7 @@ from gearheat.fmu.related import FOLDER, PARAMETERS
 from gearheat.model.errors import FmuError
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.rows import evaluate_at
+from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 from gearheat.scenarios.write import rig_text
 from gearheat.tools.network import network_svg
@@ -152,6 +153,18 @@ def test_what_is_set_stays_set(gearheat, tmp_path, elsewhere):
     assert float(start["carrier.tau"]) == 2500.0
 
 
+def test_an_oil_that_is_chosen_gives_the_steady_state_of_the_rig_with_it(exported):
+    path, found = exported["carrier-speed"]
+    assert found["choices"]["start"] == ["given", "room", "steady"]
+    item = found["choices"]["oil.oil"].index("PAGD") + 1
+    with Player(path) as player:
+        played = player.run({}, 60, 60, start={"start": 3, "oil.oil": item})
+    flat = flat_of(adjusted(load("planetary"), ["oil=PAGD"]))
+    expected = steady(flat, {})
+    for q in (*flat.states, flat.quantity("efficiency.P_loss")):
+        assert played[q.name] == pytest.approx(np.full(2, expected[q.name][0]), rel=1e-9), q.name
+
+
 def test_what_has_no_effect_is_no_parameter(exported):
     path, found = exported["carrier-speed"]
     assert set(found["without_effect"]) == {
@@ -159,7 +172,8 @@ def test_what_has_no_effect_is_no_parameter(exported):
         "churning.inner_share", "planet_bearing.inner_share", "planet_bearing.F_a_0",
     }  # fmt: skip
     described = fmpy.read_model_description(str(path)).modelVariables
-    parameters = {v.name: float(v.start) for v in described if v.causality == "parameter"}
+    parameters = {v.name: float(v.start) for v in described if v.causality == "parameter" and v.type != "Enumeration"}
+    assert set(found["choices"]) == {v.name for v in described if v.type == "Enumeration"}
     assert set(parameters) == set(found["parameters"])
     assert {"churning.a", "churning.b"} < set(parameters)
     still = set(parameters)

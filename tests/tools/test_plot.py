@@ -16,8 +16,8 @@ from gearheat.tools.heat_paths import heat_flows, heat_paths
 from gearheat.tools.plotting import plotted
 from gearheat.tools.points import conditions
 from gearheat.tools.rigs import load
-from gearheat.tools.sankey import placed
-from pages import problems_of
+from gearheat.tools.sankey import heat_picture, placed
+from pages import problems_of, words_that_collide
 
 KINDS = {".svg": b"<svg", ".png": b"\x89PNG", ".html": b"<!doctype html>"}
 
@@ -42,6 +42,7 @@ def test_heat_paths_balance_and_begin_at_the_losses(rig):
     assert made == pytest.approx(taken, rel=0.01)
     assert taken == pytest.approx(gone, rel=0.01)
     assert all(places[p.begins].column < places[p.ends].column for p in paths)
+    assert not words_that_collide(heat_picture(rig, paths, values).figure)
     for p in paths:  # heat goes from hot to cold
         ends = [values.get(f"{name}.T") for name in (p.begins, p.ends)]
         assert None in ends or ends[0] > ends[1]
@@ -100,6 +101,7 @@ def test_lines_and_maps(tmp_path, kind, over):
     if kind == ".svg":
         plotted(path, fields("rig", axes[:over], drawn))
         assert path.read_bytes() == before
+    assert not words_that_collide(fields("rig", axes[:over], drawn).figure)
 
 
 def test_a_picture_that_cannot_be_is_said_before_the_work(gearheat, tmp_path):

@@ -16,8 +16,10 @@ from typing import Any
 
 import fabricated_findings
 import pytest
+from fabricated_answers import ANSWERS
 from gearheat.diagnose.report.screen import text
 from gearheat.tools import (
+    cards,
     console,
     describe,
     designing,
@@ -63,6 +65,7 @@ COMMANDS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
     "map": (maps, ("map", "helical_two_stage", "-o", "map.csv", *RANGES)),
     "sweep": (sweep, ("sweep", "helical_two_stage", "--vary", "room.T=10..30 degC", "--grid", "3", "-o", "out.csv",
                       "--output", "oil.T,efficiency.eta,stage_1.P_loss")),
+    "card": (cards.console, ("card", "fzg_four_square")),
     "losses": (losses, ("losses", "helical_two_stage", "--temperature", "model")),
     "losses_method": (reference, ("losses", "helical_two_stage", "--method", "iso14179-1")),
     "verify": (verify, ("verify", "fzg_four_square")),
@@ -121,6 +124,16 @@ def test_commands_print_what_they_did(gearheat, at_both, tmp_path, monkeypatch, 
     done = gearheat(*arguments)
     assert done.code == 0, done.err
     at_both(name, answered[0])
+
+
+@pytest.mark.parametrize("name", ANSWERS)
+def test_costly_commands_print_a_made_up_result_as_they_did(at_both, name):
+    at_both(name, ANSWERS[name])
+
+
+def test_schema_says_what_to_do_with_it(at_both, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    at_both("schema", lambda: parts.schema_command(Path("rig.json")))
 
 
 def test_a_comparison_prints_what_it_did(at_both, rows):

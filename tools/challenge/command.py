@@ -17,7 +17,7 @@ from .scoring import Outcome, report
 from .sheets import SHEETS
 
 #: Columns of the table of cases.
-CASES = ("case", "kind", "S/N", "rival", "truth", "p", "answer", "p", "")
+CASES = ("case", "kind", "S/N", "rival", "truth (p)", "answer (p)", "remarks")
 
 
 def command(
@@ -84,21 +84,22 @@ def _folder(out: Path | None) -> Iterator[Path]:
 def show(found: Mapping[str, Any]) -> None:
     """Print the report as tables."""
     wrong = [_case(c) for c in found["cases"] if _missed(c)]
-    console.table("cases that are not as they should be", CASES, wrong)
-    head = ("metric", "value", "95 % interval", "cases", "must", "", "ambitious", "")
+    console.table("cases that are not as they should be", CASES, wrong, wrapped=True)
+    head = ("metric", "value", "95 % interval", "cases", "must", "ambitious")
     sheets = ", ".join(f"{count} {sheet}" for sheet, count in found["sheets"].items())
     kinds = ", ".join(f"{count} {kind}" for kind, count in found["kinds"].items())
     if len(found["sheets"]) > 1:
         by_sheet = [(m["name"], *(_value(f[i]) for f in found["by_sheet"].values())) for i, m in _all(found)]
         console.table("by sheet: value (cases)", ("metric", *found["sheets"]), by_sheet)
-    console.table(f"{sheets}, seed {found['seed']} ({kinds})", head, [_row(m) for m in found["metrics"]])
-    print(f"{found['by_name']} single causes lie 3 sigma or more from every rival; {found['by_set']} are told by a set")
+    console.table(f"{sheets}, seed {found['seed']} ({kinds})", head, [_row(m) for m in found["metrics"]], wrapped=True)
+    far = f"{found['by_name']} single causes lie 3 sigma or more from every rival"
+    console.say(f"{far}; {found['by_set']} are told by a set")
     seconds = found["seconds"]
     if seconds["median"] is not None:
-        print(f"processor time per case: median {seconds['median']:.1f} s, longest {seconds['longest']:.1f} s")
+        console.say(f"processor time per case: median {seconds['median']:.1f} s, longest {seconds['longest']:.1f} s")
     missing = sum(found["sheets"].values()) - found["answered"]
     if missing:
-        print(f"{missing} cases without an answer count as missed")
+        console.say(f"without an answer, counted as missed: {missing}")
 
 
 def _all(found: Mapping[str, Any]) -> Iterator[tuple[int, Mapping[str, Any]]]:
@@ -121,8 +122,8 @@ def _case(c: Mapping[str, Any]) -> tuple[str, ...]:
         "in the set" if c["covered"] else "",
     ]
     name = f"{c['sheet']} {c['case']}"
-    numbers = f"{c['snr']:.1f}", rival, c["truth"], f"{c['p_truth']:.2f}", c["top"], f"{c['p_top']:.2f}"
-    return name, c["kind"], *numbers, ", ".join(r for r in remarks if r)
+    named = f"{c['truth']} ({c['p_truth']:.2f})", f"{c['top']} ({c['p_top']:.2f})"
+    return name, c["kind"], f"{c['snr']:.1f}", rival, *named, ", ".join(r for r in remarks if r)
 
 
 def _value(m: Mapping[str, Any]) -> str:
@@ -130,13 +131,11 @@ def _value(m: Mapping[str, Any]) -> str:
 
 
 def _row(m: Mapping[str, Any]) -> tuple[str, ...]:
-    def bar(value: float | None) -> str:
-        return "" if value is None else f"{'<=' if m['at_most'] else '>='} {value:.2f}"
-
-    def met(reached: bool | None) -> str:
-        return "" if reached is None else "reached" if reached else "missed"
+    def bar(value: float | None, reached: bool | None) -> str:
+        met = "" if reached is None else " reached" if reached else " missed"
+        return "" if value is None else f"{'<=' if m['at_most'] else '>='} {value:.2f}{met}"
 
     value = "" if m["value"] is None else f"{m['value']:.2f}"
     interval = "" if m["interval"] is None else f"{m['interval'][0]:.2f} ... {m['interval'][1]:.2f}"
-    bars = (bar(m["must"]), met(m["must_met"]), bar(m["ambitious"]), met(m["ambitious_met"]))
+    bars = bar(m["must"], m["must_met"]), bar(m["ambitious"], m["ambitious_met"])
     return m["name"], value, interval, str(m["n"]), *bars

@@ -326,20 +326,21 @@ static fmi2Status status_or_other(One *one)
 {
     fmi2Status s;
     fmi2Real real;
-    fmi2Integer integer = 0;
+    fmi2Integer integer[2] = {(fmi2Integer)below(&r, 5), 1};
     fmi2Boolean boolean = 0;
     fmi2String text;
-    fmi2ValueReference refs[4] = {0, 1, 99999, below(&r, 1000)};
+    /* behind the real numbers stand those that are whole */
+    fmi2ValueReference refs[4] = {below(&r, 2) ? below(&r, 2) : (unsigned)m.n, 1, 99999, below(&r, 1000)};
     fmi2StatusKind kind = (fmi2StatusKind)((int)below(&r, 6) - 1);
     size_t n = below(&r, 3);
     switch (below(&r, 11)) {
     case 0: return m.f.GetStatus(one->c, kind, or_null(&s));
     case 1: return m.f.GetRealStatus(one->c, kind, or_null(&real));
-    case 2: return m.f.GetIntegerStatus(one->c, kind, or_null(&integer));
+    case 2: return m.f.GetIntegerStatus(one->c, kind, or_null(integer));
     case 3: return m.f.GetBooleanStatus(one->c, kind, or_null(&boolean));
     case 4: return m.f.GetStringStatus(one->c, kind, or_null(&text));
-    case 5: return m.f.GetInteger(one->c, refs, n, &integer);
-    case 6: return m.f.SetInteger(one->c, refs, n, &integer);
+    case 5: return m.f.GetInteger(one->c, refs, n, integer);
+    case 6: return m.f.SetInteger(one->c, refs, n, integer);
     case 7: return m.f.GetBoolean(one->c, refs, n, &boolean);
     case 8: return m.f.SetBoolean(one->c, refs, n, NULL);
     case 9: return m.f.GetString(one->c, NULL, n, &text);

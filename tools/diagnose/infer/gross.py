@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from .fit import Fit
+from .fit import Fit, fitted
 from .problem import Aside, Problem
 
 #: Standard deviations from what the others say beyond which a reading is gross, and so many times those which nine of
@@ -114,3 +114,19 @@ def distances(problem: Problem, fit: Fit) -> list[Suspect]:
             own = (c @ a) / np.sqrt(length) / np.sqrt(max(1 - (problem.FAR**2 - 1) * length, 1e-9))
         found.append(Suspect(aside, float(own)))
     return found
+
+
+def set_aside(problem: Problem, fits: Sequence[Fit]) -> frozenset[Aside]:
+    """The gross readings: those that the first hypothesis does not explain, and others that show beside one of them."""
+    aside = problem.aside - after_all(problem, fits[0])
+    return few(problem, [*sorted(aside), *(s.aside for fit in fits for s in outliers(problem, fit))])
+
+
+def cleaned(problem: Problem, null: Fit) -> tuple[Problem, Fit]:
+    """The problem without the gross readings that the null shows, and the null fitted without them."""
+    taken: list[Aside] = []
+    while found := [s.aside for s in outliers(problem, null) if s.aside in few(problem, [*taken, s.aside])]:
+        taken.append(found[0])
+        problem = problem.without(frozenset(taken))
+        null = fitted(problem, (), null.look.z)
+    return problem, null

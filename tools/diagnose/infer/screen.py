@@ -9,6 +9,7 @@ from itertools import product
 import numpy as np
 from scipy.special import logsumexp, ndtri
 
+from ..library.cause import Mostly
 from ..model.formula import Formula
 from .evidence import log_bayes_factors
 from .fit import Fit, Start, View, bounds
@@ -17,6 +18,8 @@ from .problem import Acting, Problem
 #: Samples of a form: one in the middle of its shapes, and so many more for the first shape and for each further one; of
 #: one with a threshold, of which each place may have a best fit of its own, so many places: of physics, of instruments.
 FIRST, FURTHER, MOST, THRESHOLDS = 3, 1, 6, (6, 8)
+#: Places of a shape that mostly stands at its bound: there, between, and at the other bound.
+MOSTLY = (0.0, 0.6, 0.8, 1.2)
 #: Sizes up to which causes that shorten dwells are judged: readings that end a dwell hardly follow its last minutes.
 PACES = (1.0, 2.5)
 #: How far behind the best candidate of a form a second one is tried.
@@ -105,6 +108,9 @@ def samples(formulas: Sequence[Formula], orders: np.ndarray) -> tuple[tuple[Acti
             points[:, shapes.index("threshold")] = places
         else:
             points = spread(min(1 + (FIRST + FURTHER * (d - 1) if d else 0), MOST), d)
+            for k_shape, shape in enumerate(formula.form.shapes):
+                if isinstance(shape, Mostly):
+                    points[:, k_shape] = np.resize(MOSTLY, len(points))
         sizes = PACES if formula.paced else (0.0,)
         for size, u in product(sizes, points):
             found.append(Acting(formula, np.r_[size, u]))

@@ -18,9 +18,9 @@ from .draws import correction
 from .extra import extras
 from .fit import Fit, Start, fitted, joined
 from .found import Found, Hypothesis
-from .gross import after_all, few, outliers
+from .gross import cleaned, set_aside
 from .prior import Prior
-from .problem import Acting, Aside, Problem
+from .problem import Acting, Problem
 
 #: Prior odds of a remainder beside a hypothesis.
 OUTSIDE = 0.06
@@ -52,18 +52,18 @@ def searched(
 ) -> Found:
     """A search in which gross readings are set aside; arguments as for `Search`."""
     progress("calibrating without a cause", 0.02)
-    problem, null = _cleaned(problem, fitted(problem, (), np.zeros(problem.nz)))
+    problem, null = cleaned(problem, fitted(problem, (), np.zeros(problem.nz)))
     progress("gross readings", 0.05)
     search = Search(problem, formulas, null, alpha, seed, most, progress)
     leaders = [search.leader()]
     for _ in range(LOOKS):
-        aside = _aside(problem, leaders)
+        aside = set_aside(problem, leaders)
         if aside != problem.aside:
             problem = problem.without(aside)
             search = Search(problem, formulas, fitted(problem, (), null.look.z), alpha, seed, most, progress)
         found = search.run()
         leaders = _leaders(found)
-        if _aside(problem, leaders) == problem.aside:
+        if set_aside(problem, leaders) == problem.aside:
             break
     return found
 
@@ -73,22 +73,6 @@ def _leaders(found: Found) -> list[Fit]:
     top = found.hypotheses[0]
     alone = {h.causes[0]: h.fit for h in found.hypotheses if len(h.causes) == 1 and h.extra is None}
     return [top.fit, *(alone[c] for c in top.causes if c in alone and len(top.causes) > 1)]
-
-
-def _aside(problem: Problem, fits: Sequence[Fit]) -> frozenset[Aside]:
-    """The gross readings: those that the first hypothesis does not explain, and others that show beside one of them."""
-    aside = problem.aside - after_all(problem, fits[0])
-    return few(problem, [*sorted(aside), *(s.aside for fit in fits for s in outliers(problem, fit))])
-
-
-def _cleaned(problem: Problem, null: Fit) -> tuple[Problem, Fit]:
-    """The problem without the gross readings that the null shows."""
-    taken: list[Aside] = []
-    while found := [s.aside for s in outliers(problem, null) if s.aside in few(problem, [*taken, s.aside])]:
-        taken.append(found[0])
-        problem = problem.without(frozenset(taken))
-        null = fitted(problem, (), null.look.z)
-    return problem, null
 
 
 class Search:

@@ -130,7 +130,7 @@ def foundation(at: Context) -> Cause:
 
 def contact(at: Context) -> Cause:
     """A resistance between bodies, most likely next to the outer surface."""
-    roles, ranges, limits = at.roles, at.ranges, at.regimes(("order",))
+    roles, ranges, limits = at.roles, at.ranges, at.regimes(("T", "order"))
     outer = {p for name in (*roles.surfaces, *roles.foundation) for p in roles.nets.met_by(name)}
     shape = Shape("e", "1", "change of its logarithm by as much rise more", -2.0, 1.2, 0.0, 0.8)
 
@@ -139,7 +139,7 @@ def contact(at: Context) -> Cause:
 
         def changed(theta: Theta, row: Row) -> Values:
             R = theta["R"] * ca.exp(theta["e"] * (row.rise / ranges.rise - 1))
-            R = R if limit is None else R * limit.share(theta, row)
+            R = R if limit is None else R * limit.share(theta, row) * limit.by_rise(theta, row, ranges)
             return {path: row.base[path] / smooth_abs(1 + R * G, 0.05) * smooth_abs(1.0, 0.05) for path in paths}
 
         words = (name if len(roles.contacts) > 1 else "", limit.name if limit else "")
@@ -157,7 +157,7 @@ def contact(at: Context) -> Cause:
             "resistance more than assumed, at the typical rise",
             0.1 / ranges.conductance,
             -min(0.9 / stiffest, 0.05 / ranges.conductance),
-            1.4 / ranges.conductance,
+            4.0 / ranges.conductance,
         ),
         forms=tuple(
             form(name, (SIDE if limit else 1 - SIDE * len(limits)) * weight / sum(weights), limit)

@@ -75,6 +75,14 @@ class Regime:
         """How much of the size acts in a row."""
         return since(theta, row) if self.quantity == "order" else 1.0
 
+    def by_rise(self, theta: Theta, row: Row, ranges: Ranges) -> Num:
+        """How much of the size acts by the oil's temperature, told from its rise over a room as it usually is."""
+        if self.quantity != "T":
+            return 1.0
+        oil, span = ranges.mid["T"] + row.rise - ranges.rise, ranges.high["T"] - ranges.low["T"]
+        side = 1.0 if self.above else -1.0
+        return step(side * (oil - theta["threshold"]) / (USUAL * span * theta["width"]))
+
     def limits(self, theta: Theta, ranges: Ranges) -> dict[str, Num]:
         """Values of an extra part by key."""
         if self.quantity == "order":

@@ -56,12 +56,16 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
 
 def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
     """What moves oil and air."""
-    if teeth := at.roles.places["teeth"]:  # what moves the oil keeps a share of the heat
-        places = [replace(place, inner=teeth[0].inner, outer=teeth[0].inner) for place in places]
+    if teeth := at.roles.places[
+        "teeth"
+    ]:  # what moves the oil keeps a share of the heat, the housing that it hits another
+        housing = [f"{name}.heat" for name in at.roles.outside] or [teeth[0].inner]
+        places = [replace(place, inner=teeth[0].inner, outer=housing[0]) for place in places]
     churning: tuple[Shape, ...] = (
         Shape("a", "1", "exponent of the speed", 1.2, 2.8, 2.0, 0.45),
         Shape("b", "1", "exponent of the viscosity", 0.0, 0.35),
         TEETH,
+        INNER_SHARE,
     )
     yield Cause(
         id="losses.churning",
@@ -76,6 +80,7 @@ def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
         Shape("a", "1", "exponent of the speed", 1.0, 2.5, 1.6, 0.4),
         Shape("b", "1", "exponent of the viscosity", 0.0, 0.6),
         TEETH,
+        INNER_SHARE,
         *((WET,) if at.roles.wetted else ()),
     )
     yield Cause(
@@ -87,7 +92,7 @@ def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
         like=NO_LOAD,
         acts_on=at.first("speed"),
     )
-    windage: tuple[Shape, ...] = (Shape("a", "1", "exponent of the speed", 2.6, 3.4, 3.0, 0.2), MIST)
+    windage: tuple[Shape, ...] = (Shape("a", "1", "exponent of the speed", 2.4, 3.4, 2.9, 0.2), MIST, INNER_SHARE)
     yield Cause(
         id="losses.windage",
         doc="A loss without load, steep in speed and without viscosity: air and mist are moved.",

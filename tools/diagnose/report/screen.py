@@ -9,6 +9,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table as Drawn
 
+from ...model.screen import fitting
 from . import phrases
 from .findings import Findings
 from .tables import Table, tables
@@ -53,7 +54,8 @@ def paragraph(word: str, line: str, width: int | None = None) -> str:
 
 
 def drawn(table: Table, width: int | None = None) -> str:
-    """A table as text. No word or number is broken: where there is no room, the last columns are left out, and named.
+    """A table as text. No word or number is broken: where there is no room, the last columns of sentences are left out,
+    and named; the others go on below.
 
     Args:
         table: the table
@@ -61,18 +63,19 @@ def drawn(table: Table, width: int | None = None) -> str:
     """
     words = [[cell.split() for cell in column] for column in zip(table.columns, *table.rows, strict=True)]
     least = [max((len(word) for cell in column for word in cell), default=0) for column in words]
-    room = min(width or WIDE, WIDE)
-    kept = len(least)
-    while kept > 2 and sum(least[:kept]) + 3 * kept + 1 > room:
-        kept -= 1
-    made = Drawn(title=table.title, title_justify="left", box=box.SIMPLE_HEAD)
-    for column, cells, n in zip(table.columns[:kept], words, least, strict=False):
-        made.add_column(column, overflow="fold", min_width=n, no_wrap=all(len(cell) < 2 for cell in cells))
-    for row in table.rows:
-        made.add_row(*row[:kept])
+    whole = [all(len(cell) < 2 for cell in cells) for cells in words]
     out = io.StringIO()
-    Console(file=out, width=room, markup=False, emoji=False, highlight=False).print(made)
-    if left := ", ".join(table.columns[kept:]):
+    screen = Console(file=out, width=min(width or WIDE, WIDE), markup=False, emoji=False, highlight=False)
+    groups = fitting(least, whole, screen.width, repeated=True)
+    for k, group in enumerate(groups):
+        made = Drawn(title=None if k else table.title, title_justify="left", box=box.SIMPLE_HEAD)
+        for i in group:
+            made.add_column(table.columns[i], overflow="fold", min_width=least[i], no_wrap=whole[i])
+        for row in table.rows:
+            made.add_row(*(row[i] for i in group))
+        screen.print(made)
+    shown = {i for group in groups for i in group}
+    if left := ", ".join(name for i, name in enumerate(table.columns) if i not in shown):
         out.write(_filled(f"left out for want of room: {left}; widen the screen, or take --json", width) + "\n")
     if table.note:
         out.write(_filled(table.note, width) + "\n")
