@@ -76,9 +76,8 @@ def export(
 ) -> Path:
     """Write a model as an FMU that serves co-simulation and model exchange. The same model gives the same bytes.
 
-    The FMU has the model's inputs, outputs and states under their paths, those of its parameters that have an effect
-    (see `effective`), the derivatives of the states, and an audit of the energy. Its solver is inside, and it needs no
-    file and no library but that of C.
+    It has the model's inputs, outputs and states under their paths, the parameters that have an effect (`effective`),
+    derivatives and an audit of the energy. Its solver is inside; it needs no file and no library but that of C.
 
     Args:
         flat: the model
@@ -111,8 +110,7 @@ def export(
         **({"sources/all.c": code.encode()} if with_sources else {}),
         **_extra(kept, variables, about, others),
         **(_of_fmi_3(flat.name, variables, with_sources) if fmi == 3 else {"model.png": icon()}),
-        **_binaries(flat.name, code, chosen, fmi, progress),
-    }
+    } | _binaries(flat.name, code, chosen, fmi, progress)
     _made(path, content)
     if verify is not None:
         _made(path, content | {_PAGE: documentation(kept, variables, about, verify(path), fmi=fmi).encode()})
