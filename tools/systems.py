@@ -139,7 +139,8 @@ def write_system(setting: Scenario, taken: Taken, out: Path, **options: Any) -> 
     with tempfile.TemporaryDirectory() as folder:
         for name, flat in taken.flats.items():
             spec = taken.pieces.specs[name]
-            entries = {p.name: setting.entries[p.name] for p in spec.parts if p.name in setting.entries}
+            own = {part.name for part in spec.parts if part in setting.spec.parts}  # no stand-ins for bodies elsewhere
+            entries = {part: kinds for part, kinds in setting.entries.items() if part in own}
             piece = replace(setting, name=name, spec=spec, entries=entries)
             fmu = write_fmu(piece, flat, Path(folder) / f"{name}.fmu", start=taken.starts[name], **options)
             elements.append(_element(name, flat, taken.pieces, fmu.read_bytes()))
