@@ -8,8 +8,11 @@ import platform as host
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
+from importlib import resources
 from importlib.metadata import version
 from pathlib import Path
 from types import MappingProxyType
@@ -32,7 +35,7 @@ class Platform:
 _LINUX, _LINUX_ARM = "x86_64-linux-gnu.2.17", "aarch64-linux-gnu.2.17"
 _MAC, _MAC_ARM = "x86_64-macos.11.0", "aarch64-macos.11.0"
 
-#: The platforms of FMI 2.0, and those of 3.0, by name.
+#: The platforms of FMI 2.0, with one that only 3.0 has a name for, and those of 3.0, by name.
 PLATFORMS = {
     p.name: p
     for p in (
@@ -40,6 +43,7 @@ PLATFORMS = {
         Platform("win64", ".dll", ("x86_64-windows-gnu",)),
         Platform("win32", ".dll", ("x86-windows-gnu",)),
         Platform("darwin64", ".dylib", (_MAC, _MAC_ARM)),
+        Platform("aarch64-linux", ".so", (_LINUX_ARM,)),
     )
 }
 PLATFORMS_3 = {
@@ -60,8 +64,19 @@ _NAMES_IN_3 = {
     "darwin64": ("x86_64-darwin", "aarch64-darwin"),
 }
 
-#: Any change makes the compiler rebuild its run-time libraries, which takes minutes for some targets.
-FLAGS = ("-g0", "-s", "-shared", "-fPIC", "-fvisibility=hidden", "-fno-sanitize=all", "-ffp-contract=off", "-std=c99")
+#: Any change makes the compiler rebuild its run-time libraries.
+CODE = ("-g0", "-fPIC", "-fvisibility=hidden", "-fno-sanitize=all", "-ffp-contract=off", "-std=c99")
+LINK = ("-s", "-shared")
+FLAGS = (*CODE, *LINK)
+#: The system's C library of Windows. What it lacks is in wrapper/windows.c; the compiler's own would have to be built
+#: first, from 400 files.
+_SYSTEM = tuple(f"-lapi-ms-win-crt-{name}-l1-1-0" for name in ("math", "heap", "stdio", "string", "private"))
+
+#: Compilers that run at once, whoever asks.
+_AT_ONCE = threading.BoundedSemaphore(os.cpu_count() or 1)
+
+#: Told what long work has done or is at, and how much of all is done.
+Progress = Callable[[str, float], None]
 
 
 def host_platform() -> Platform:
@@ -126,17 +141,38 @@ def binary(
         FmuError: the compiler is missing or fails, or the cache cannot be written
     """
     key = hashlib.sha256()
-    for part in (source, *headers.values(), platform.name, *platform.targets, optimise, *FLAGS, version("ziglang")):
+    named = (platform.name, *platform.targets, optimise, *FLAGS, *_SYSTEM, version("ziglang"))
+    for part in (source, *headers.values(), _windows(), *named):
         key.update(part.encode() + b"\0")
     stored = cache_folder() / "binaries" / f"{key.hexdigest()}{platform.suffix}"
     try:
         return stored.read_bytes()
     except OSError:
         pass
-    files = {"all.c": source, **headers}
-    made = _join([_compile(files, target, optimise) for target in platform.targets])
+    files = {"all.c": source, "windows.c": _windows(), **headers}
+    with ThreadPoolExecutor(len(platform.targets)) as pool:
+        made = _join(list(pool.map(lambda target: _compile(files, target, optimise), platform.targets)))
     store(stored, made)
     return made
+
+
+def together(build: Callable[[Platform], bytes], platforms: Sequence[Platform], progress: Progress) -> dict[str, bytes]:
+    """The binaries of several platforms by name, made side by side.
+
+    Args:
+        build: makes the binary of one platform
+        platforms: of which
+        progress: told after each
+    """
+    with ThreadPoolExecutor(len(platforms)) as pool:
+        jobs = {pool.submit(build, platform): platform.name for platform in platforms}
+        for number, job in enumerate(as_completed(jobs), 1):
+            progress(f"compiled for {jobs[job]}", number / len(jobs))
+    return {name: job.result() for job, name in jobs.items()}
+
+
+def _windows() -> str:
+    return (resources.files("gearheat.fmu") / "wrapper" / "windows.c").read_text(encoding="utf-8")
 
 
 def store(path: Path, content: bytes) -> None:
@@ -163,24 +199,32 @@ def _compile(files: Mapping[str, str], target: str, optimise: str) -> bytes:
     environment = dict(os.environ)
     for variable, folder in (("ZIG_GLOBAL_CACHE_DIR", "global"), ("ZIG_LOCAL_CACHE_DIR", "local")):
         environment.setdefault(variable, str(cache_folder() / "zig" / folder))
-    with tempfile.TemporaryDirectory() as folder:
-        made = Path(folder) / "library"
+    with tempfile.TemporaryDirectory() as folder, _AT_ONCE:
         for name, text in files.items():
             Path(folder, name).write_text(text, encoding="utf-8")
-        compiler = [sys.executable, "-m", "ziglang", "cc", "-target", target, optimise, *FLAGS]
-        command = [*compiler, "-o", made.name, "all.c", "-lm"]
-        try:
-            run = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
-        except OSError as error:
-            raise FmuError(
-                f"the compiler does not start ({error.strerror}). Install it: pip install ziglang"
-            ) from error
-        if run.returncode != 0 or not made.exists():
-            said = run.stderr.splitlines() or ["no message"]
-            first = next((line for line in said if "error" in line), said[0])
-            hint = " Install it: pip install ziglang" if "No module named" in run.stderr else ""
-            raise FmuError(f"compiling for {target} failed: {first[:300]}.{hint}")
-        return made.read_bytes()
+        for command in _commands(target, optimise):
+            _run([sys.executable, "-m", "ziglang", "cc", "-target", target, *command], target, folder, environment)
+        return Path(folder, "library").read_bytes()
+
+
+def _commands(target: str, optimise: str) -> list[list[str]]:
+    """What the compiler is asked for, one after the other."""
+    if "windows" not in target:
+        return [[optimise, *FLAGS, "-o", "library", "all.c", "-lm"]]
+    objects = [[optimise, *CODE, "-c", "-o", f"{name}.o", f"{name}.c"] for name in ("all", "windows")]
+    return [*objects, [*LINK, "-nostdlib", "-o", "library", "all.o", "windows.o", *_SYSTEM]]
+
+
+def _run(command: Sequence[str], target: str, folder: str, environment: Mapping[str, str]) -> None:
+    try:
+        run = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise FmuError(f"the compiler does not start ({error.strerror}). Install it: pip install ziglang") from error
+    if run.returncode != 0:
+        said = run.stderr.splitlines() or ["no message"]
+        first = next((line for line in said if "error" in line), said[0])
+        hint = " Install it: pip install ziglang" if "No module named" in run.stderr else ""
+        raise FmuError(f"compiling for {target} failed: {first[:300]}.{hint}")
 
 
 def _join(slices: list[bytes]) -> bytes:

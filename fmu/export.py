@@ -36,15 +36,16 @@ from gearheat.model.core.flat import FlatModel
 
 from . import fmi3_description, fmi3_source
 from .choices import Choice, reduced, start_choice
-from .compiling import Platform, binary, platforms, store
+from .compiling import Platform, Progress, binary, platforms, store, together
 from .description import Owner, dependencies, description, identifier
 from .documentation import About, documentation
 from .effective import effective
 from .equations import equations
 from .icon import icon
 from .leading import Directions, Uncertain, leading
+from .metadata import metadata
 from .parameter_set import parameter_set
-from .related import related
+from .related import Related, related
 from .source import GUID_MARK, source
 from .terminals import terminals
 from .unpacking import remember
@@ -72,11 +73,12 @@ def export(
     choices: Sequence[Choice] = (start_choice(),),
     audit: bool = True,
     uncertain: Uncertain | None = None,
+    others: Related = Related(),
+    progress: Progress = lambda done, share: None,
 ) -> Path:
     """Write a model as an FMU that serves co-simulation and model exchange; the same model gives the same bytes.
 
-    It has the model's inputs, outputs and states under their paths, the parameters with an effect (see `effective`),
-    the states' derivatives and an audit of the energy. Its solver is inside; it needs no library but that of C.
+    It holds its solver and needs no library but that of C. Parameters are those with an effect (see `effective`).
 
     Args:
         flat: the model
@@ -93,9 +95,8 @@ def export(
         choices: its enumerations: how a run begins, the oils; values of parameters that it does not have go
         audit: whether two states integrate the energy across the boundary
         uncertain: what makes standard deviations, which co-simulation alone has
-
-    Returns:
-        the path
+        others: further parameter sets, and a run that an importer can repeat
+        progress: told what is done, and how much of the compiling
 
     Raises:
         FmuError: a start value is wrong, nothing uncertain has an effect, the compiler or writing the file fails
@@ -107,9 +108,10 @@ def export(
     content = {
         "modelDescription.xml": told,
         _PAGE: documentation(kept, variables, about, fmi=fmi).encode(),
-        **_extra(kept, variables, about),
+        **_extra(kept, variables, about, others),
         **(_of_fmi_3(flat.name, variables, with_sources) if fmi == 3 else {"model.png": icon()}),
-        **({"sources/all.c": code.encode()} if with_sources else {}) | _binaries(flat.name, code, chosen, fmi),
+        **({"sources/all.c": code.encode()} if with_sources else {})
+        | _binaries(flat.name, code, chosen, fmi, progress),
     }
     _made(path, content)
     if verify is not None:
@@ -122,9 +124,10 @@ def _idle(flat: FlatModel, kept: FlatModel) -> tuple[str, ...]:
     return tuple(q.name for q in flat.parameters if q.name not in held)
 
 
-def _binaries(name: str, code: str, chosen: Sequence[Platform], fmi: int) -> dict[str, bytes]:
+def _binaries(name: str, code: str, chosen: Sequence[Platform], fmi: int, progress: Progress) -> dict[str, bytes]:
     headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
-    return {f"binaries/{p.name}/{identifier(name)}{p.suffix}": binary(built, p, headers=headers) for p in chosen}
+    made = together(lambda platform: binary(built, platform, headers=headers), chosen, progress)
+    return {f"binaries/{p.name}/{identifier(name)}{p.suffix}": made[p.name] for p in chosen}
 
 
 def _of_fmi_3(name: str, variables: Table, with_sources: bool) -> dict[str, bytes]:
@@ -174,13 +177,12 @@ def _code(
     return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode()), directions
 
 
-def _extra(flat: FlatModel, variables: Table, about: About) -> dict[str, bytes]:
+def _extra(flat: FlatModel, variables: Table, about: About, others: Related) -> dict[str, bytes]:
     """What a receiver needs to judge the values."""
     parameters = [v.quantity for v in variables.of("parameter")]
-    doc = f"start values of {flat.name}"
-    return related(
-        parameter_set(flat.name, parameters, doc=doc, sources=about.sources, uncertainties=about.uncertainties)
-    )
+    doc, sources, sd = f"start values of {flat.name}", about.sources, about.uncertainties
+    values = parameter_set(flat.name, parameters, doc=doc, sources=sources, uncertainties=sd)
+    return related(values, metadata(flat, values, "parameters.ssv", sources, sd), others)
 
 
 def _guid(content: bytes) -> str:

@@ -47,7 +47,7 @@ def parameter_set(
     parameters = ET.SubElement(root, "ssv:Parameters")
     for q in chosen:
         _parameter(parameters, q, (sources or {}).get(q.name), (uncertainties or {}).get(q.name))
-    _units(root, chosen)
+    define_units(root, "ssv:Units", chosen)
     ET.indent(root)
     return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'.encode()
 
@@ -74,13 +74,19 @@ def _parameter(parent: ET.Element, q: Quantity, source: str | None, uncertainty:
         ET.SubElement(annotation, "provenance", {"xmlns": PROVENANCE_SPACE, **said})
 
 
-def _units(root: ET.Element, quantities: Iterable[Quantity]) -> None:
-    """The units the values refer to; one that is not understood has no place here, and its values go without."""
+def define_units(root: ET.Element, tag: str, quantities: Iterable[Quantity]) -> None:
+    """Add the units that values refer to; one that is not understood has no place here, and its values go without.
+
+    Args:
+        root: of the file
+        tag: name of the element that holds units there
+        quantities: what has units
+    """
     defined = [units.unit(name) for name in sorted({units.fmi_unit(q.unit) for q in quantities})]
     known = [(unit, unit.exponents) for unit in defined if unit.exponents is not None]
     if not known:
         return
-    parent = ET.SubElement(root, "ssv:Units")
+    parent = ET.SubElement(root, tag)
     for unit, exponents in known:
         base = {name: str(exponent) for name, exponent in exponents.items()}
         if unit.factor != 1:

@@ -49,9 +49,8 @@ def write_reference(
         "RelTol": TOLERANCE,
         "OutputIntervalLength": float(step),
     }
-    names, time, values = _points(inputs, stop)
     texts = {
-        "_in.csv": _csv(names, time, values),
+        "_in.csv": stimuli(inputs, stop),
         "_ref.csv": _csv(played.names, played.time, played.values),
         "_ref.opt": "".join(f"{name}, {value!r}\n" for name, value in options.items()),
     }
@@ -59,6 +58,27 @@ def write_reference(
     for ending, text in texts.items():
         store(files[ending], text.encode())
     return files["_in.csv"], files["_ref.csv"], files["_ref.opt"]
+
+
+def stimuli(inputs: Inputs, stop: float) -> str:
+    """Inputs over time as CSV, both sides of every jump.
+
+    Args:
+        inputs: name -> (times [s], values), linear between the points, a time given twice is a jump
+        stop: end [s]
+    """
+    return _csv(*_points(inputs, stop))
+
+
+def results(names: Sequence[str], time: np.ndarray, values: np.ndarray) -> str:
+    """Results over time as CSV, to nine digits, which do not differ from one machine to another.
+
+    Args:
+        names: of the columns
+        time: of the rows [s]
+        values: one row a time, one column a name, SI
+    """
+    return _csv(names, time, values, "{:.9g}")
 
 
 def _points(inputs: Inputs, stop: float) -> tuple[tuple[str, ...], np.ndarray, np.ndarray]:
@@ -71,7 +91,7 @@ def _points(inputs: Inputs, stop: float) -> tuple[tuple[str, ...], np.ndarray, n
     return pieces.names, time[~same], values[~same]
 
 
-def _csv(names: Sequence[str], time: np.ndarray, values: np.ndarray) -> str:
+def _csv(names: Sequence[str], time: np.ndarray, values: np.ndarray, form: str = "{!r}") -> str:
     head = ",".join(f'"{name}"' for name in ("time", *names))
-    rows = [",".join(repr(float(v)) for v in (t, *row)) for t, row in zip(time, values, strict=True)]
+    rows = [",".join(form.format(float(v)) for v in (t, *row)) for t, row in zip(time, values, strict=True)]
     return "\n".join([head, *rows]) + "\n"

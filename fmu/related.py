@@ -1,12 +1,17 @@
 """Files under extra/ of an FMU: what a receiver needs to judge its values, listed as FMI-LS-REF says.
 
 FMI-LS-REF is the layered standard of FMI for files that belong to an FMU: a manifest in a folder of its own names each
-with its role. An importer that does not know it passes it over.
+with its role. An importer that does not know it passes it over. Experiments are in the format of the harmonized
+specification of the Modelica Association, metadata in SRMD of SSP Traceability.
 """
 
 from __future__ import annotations
 
 import xml.etree.ElementTree as ET
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from .description import xml
 
 FOLDER = "extra/org.fmi-standard.fmi-ls-ref"
 PARAMETERS = f"{FOLDER}/parameters.ssv"
@@ -19,31 +24,91 @@ _IDENTITY = {
     "fmi-ls:fmi-ls-version": "1.0.0-alpha.1",
     "fmi-ls:fmi-ls-description": "Layered Standard providing information on related files included in an FMU.",
 }
-_RELATED = (
-    (
-        "application/x-ssp-parameter-set",
-        "parameters.ssv",
-        "parameter",
-        "Start values of all parameters, with the source of each and its standard uncertainty where one is stated",
-    ),
-    (
-        "text/html",
-        "../../documentation/index.html",
-        "document",
-        "Purpose, variables, laws with their sources and validity, and how the FMU was verified",
-    ),
-)
+_SET = "application/x-ssp-parameter-set"
 
 
-def related(parameters: bytes) -> dict[str, bytes]:
+@dataclass(frozen=True)
+class Experiment:
+    """A run that an importer can repeat: what the inputs are over time, and what comes out.
+
+    Attributes:
+        stop: end of the run, which begins at 0 [s]
+        step: communication step [s]
+        tolerance: relative, of the FMU's solver
+        stimuli: the inputs as CSV
+        results: the outputs as CSV
+    """
+
+    name: str
+    doc: str
+    stop: float
+    step: float
+    tolerance: float
+    stimuli: str
+    results: str
+
+
+@dataclass(frozen=True)
+class Related:
+    """What goes with an FMU beside its own parameters.
+
+    Attributes:
+        sets: name -> parameter set (.ssv) of some of the parameters, an oil for example
+        experiment: a run to repeat
+    """
+
+    sets: Mapping[str, bytes] = field(default_factory=dict)
+    experiment: Experiment | None = None
+
+
+def related(parameters: bytes, metadata: bytes, others: Related = Related()) -> dict[str, bytes]:
     """Paths inside the FMU and content of the manifest and the files it lists.
 
     Args:
         parameters: the parameter set of the FMU's start values
+        metadata: SRMD of that set
+        others: what goes with it besides
     """
     root = ET.Element("fmiReferences", _IDENTITY)
-    for mime, source, role, doc in _RELATED:
-        ET.SubElement(root, "Related", {"type": mime, "source": source, "role": role, "description": doc})
-    ET.indent(root)
-    text = f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'
-    return {MANIFEST: text.encode(), PARAMETERS: parameters}
+    files: dict[str, bytes] = {}
+
+    def add(source: str, content: bytes, kind: str, role: str, doc: str) -> ET.Element:
+        files[f"{FOLDER}/{source}"] = content
+        return _listed(root, source, kind, role, doc)
+
+    add("parameters.ssv", parameters, _SET, "parameter", _VALUES)
+    for name, content in others.sets.items():
+        doc = f"Values of {name} in place of the start values"
+        entry = add(f"sets/{name.replace(' ', '_')}.ssv", content, _SET, "parameter", doc)
+        ET.SubElement(entry, "Label", name=f"variant:{name}")
+    if (run := others.experiment) is not None:
+        add("experiments.exp", _experiments(run), "application/x-ma-hs-experiments", "experiment/smoke-test", run.doc)
+        add("reference_in.csv", run.stimuli.encode(), "text/csv", "other", "Inputs of the experiment over time, SI")
+        add("reference_ref.csv", run.results.encode(), "text/csv", "result", "Results of the experiment, SI")
+    add("parameters.srmd", metadata, "application/x-srmd-meta-data", "meta-data", _ORIGIN)
+    _listed(root, "../../documentation/index.html", "text/html", "document", _PAGE)
+    return {MANIFEST: xml(root), **files}
+
+
+_VALUES = "Start values of all parameters, with the source of each and its standard uncertainty where one is stated"
+_ORIGIN = "Sources and standard uncertainties of the parameters, and the laws with their sources and validity"
+_PAGE = "Purpose, variables, laws with their sources and validity, and how the FMU was verified"
+
+
+def _listed(root: ET.Element, source: str, kind: str, role: str, doc: str) -> ET.Element:
+    return ET.SubElement(root, "Related", {"type": kind, "source": source, "role": role, "description": doc})
+
+
+def _experiments(run: Experiment) -> bytes:
+    root = ET.Element("Experiments", name=run.name, description=run.doc)
+    about = {"name": run.name, "description": run.doc, "tolerance": repr(run.tolerance)}
+    experiment = ET.SubElement(root, "Experiment", about)
+    times = {"startTime": "0.0", "stopTime": repr(run.stop), "stepSize": repr(run.step)}
+    ET.SubElement(experiment, "TransientSimulation", times)
+    for what, source in (
+        ("Parameters", "parameters.ssv"),
+        ("Stimuli", "reference_in.csv"),
+        ("References", "reference_ref.csv"),
+    ):
+        ET.SubElement(experiment, what, source=source)
+    return xml(root)

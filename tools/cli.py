@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import sys
+from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
 
 import typer
 
 from . import cli_contact, cli_developers, cli_diagnosis, cli_docs, cli_logs, cli_rigs, console
-from .cli_options import Everything, Jobs, Json, Plot, Rig, Set, Tests
+from .cli_options import Everything, Jobs, Json, Plot, Rig, Set, Ssp, Tests
 
 app = typer.Typer(
     name="gearheat",
@@ -197,13 +198,15 @@ def export(
     uncertainty: Annotated[
         bool, typer.Option("--uncertainty", help="With standard deviations, such as oil.T.sd; co-simulation only.")
     ] = False,
+    ssp: Ssp = None,
     json: Json = None,
 ) -> None:
-    """Write the rig as an FMU for FMI 2.0 or 3.0."""
+    """Write the rig as an FMU for FMI 2.0 or 3.0, or as a system of FMUs."""
     from ..fmu.description import Owner
-    from . import exporting
+    from . import exporting, systems
 
-    exporting.export_command(
+    command = partial(systems.system_command, ssp) if ssp else exporting.export_command
+    command(
         str(extended or rig),
         out,
         set_ or [],

@@ -33,3 +33,10 @@ Plot = Annotated[
 Jobs = Annotated[int, typer.Option("-j", "--jobs", min=0, help="How many to run at once; 0 for one per core.")]
 Tests = Annotated[str | None, typer.Option(help="Only these tests, for example 1,13,22-26.")]
 Everything = Annotated[bool, typer.Option("--all", help="Print everything, not the first screen alone.")]
+Ssp = Annotated[
+    list[str] | None,
+    typer.Option(
+        metavar="NAME=PART,...",
+        help="Write a system of coupled FMUs (.ssp): these parts are one, again for more, the rest is gearbox.",
+    ),
+]

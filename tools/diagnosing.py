@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, TypeVar
@@ -14,11 +13,10 @@ from ..diagnose.report.page import render
 from ..diagnose.report.predictions import predictions_text
 from ..diagnose.report.screen import text
 from ..diagnose.request import Inputs, PlanInputs, PlanRequest, Request, read, read_plan
+from ..fmu.compiling import Progress
 from ..model.errors import DataError, GearheatError
-from .console import as_json, file_of, screen_width, writable, write
+from .console import as_json, file_of, progress_bar, screen_width, writable, write
 
-#: Told of each stage and of the share of the work that is done.
-Progress = Callable[[str, float], None]
 #: What is read and a listener for progress -> what was found, with its words; the same of a plan.
 Infer = Callable[[Inputs, Progress], Findings]
 Find = Callable[[PlanInputs, Progress], plans.Plan]
@@ -160,16 +158,3 @@ def shared(read: Iterable[tuple[str, Path]], written: Mapping[str, Path]) -> lis
         if (other := taken.setdefault(path.resolve(), name)) != name:
             problems.append(f"{name} {path}: is the file of {other}, too. Give each its own.")
     return problems
-
-
-@contextmanager
-def progress_bar() -> Iterator[Progress]:
-    """A bar on stderr while work goes on; nothing where stderr is no terminal."""
-    from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
-
-    console = Console(stderr=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
-    with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
-        task = bar.add_task("", total=1.0)
-        yield lambda stage, share: bar.update(task, description=stage, completed=share)

@@ -14,6 +14,7 @@ from ..fmu.compiling import platforms
 from ..fmu.description import Owner
 from ..fmu.effective import effective
 from ..fmu.export import export
+from ..fmu.related import Related
 from ..model.core.flat import FlatModel
 from ..model.errors import ScenarioError, SolveError
 from ..model.machines.spec import assemble
@@ -22,8 +23,8 @@ from ..model.run.rows import evaluate_at
 from ..model.run.steady import steady
 from ..scenarios.entries import catalogue
 from ..scenarios.scenario import Scenario
-from .console import answer, file_of, folder, say, writable
-from .extras import checked, reference_duty, write_extras
+from .console import answer, file_of, folder, progress_bar, say, writable
+from .extras import checked, experiment, reference_duty, reference_run, sets_of_oils, write_extras
 from .network import network_svg
 from .rigs import load
 from .settings import Drive, adjusted, driven_at, flat_of
@@ -63,19 +64,17 @@ def export_command(
         )
     writable(out, file_of(json))
     chosen = platforms(platform, fmi)
-    scenario = load(rig)
-    drive: Drive | None = driven_at(scenario, shaft, given) if shaft is not None or given == "torque" else None
-    setting = adjusted(scenario, assignments, drive=drive)
-    flat = flat_of(setting)
-    start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, assignments)
+    scenario, setting, flat, start = prepared(rig, assignments, shaft, given)
     beside = folder(extras) if extras is not None else None
     duty = reference_duty(flat, start, setting.shaft_paths())
     told: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
     options: dict[str, Any] = {"platform": platform, "start": start, "owner": owner, "fmi": fmi}
     options |= {"with_sources": with_sources, "audit": audit}
     options["uncertain"] = uncertain(setting, flat) if uncertainty else None
-    write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, start), **told, **options)
-    kept = effective(flat, start)
+    kept, run = effective(flat, start), reference_run(flat, duty, start)
+    options["others"] = Related(sets_of_oils(setting, kept, told=with_origins), experiment(flat, duty, run))
+    with progress_bar() as options["progress"]:
+        write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, run), **told, **options)
     named = {q.name for q in kept.parameters}
     origins = sources_of(setting, kept) if with_origins else None
     written = [] if beside is None else write_extras(out, beside, setting, kept, duty, start, origins)
@@ -97,6 +96,25 @@ def export_command(
         "unchecked": unchecked(setting, flat),
     }
     answer(found, json, lambda: _print(found))
+
+
+def prepared(
+    rig: str, assignments: Sequence[str], shaft: str | None, given: str
+) -> tuple[Scenario, Scenario, FlatModel, dict[str, float]]:
+    """The rig, the rig as set and driven, its model, and start values that are not those of the model.
+
+    Args:
+        rig: name or file
+        assignments: texts "NAME=VALUE"
+        shaft: the shaft end that drives; as the names say, or the rig's own if None
+        given: "speed" or "torque"
+    """
+    scenario = load(rig)
+    drive: Drive | None = driven_at(scenario, shaft, given) if shaft is not None or given == "torque" else None
+    setting = adjusted(scenario, assignments, drive=drive)
+    flat = flat_of(setting)
+    start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, assignments)
+    return scenario, setting, flat, start
 
 
 def _print(found: Mapping[str, Any]) -> None:

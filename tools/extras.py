@@ -14,10 +14,12 @@ from ..fmu.compiling import store
 from ..fmu.export import export
 from ..fmu.parameter_set import parameter_set
 from ..fmu.play import Player
-from ..fmu.reference import write_reference
+from ..fmu.reference import TOLERANCE, results, stimuli, write_reference
+from ..fmu.related import Experiment
 from ..fmu.variables import STORED, SUPPLIED, THROUGHPUT, tidy
 from ..model.core.flat import FlatModel
 from ..model.errors import GearheatError
+from ..model.run.result import Result
 from ..model.run.schedule import Schedule, stepped
 from ..model.run.simulate import simulate
 from ..scenarios.entries import catalogue
@@ -51,22 +53,54 @@ def step_of(duty: Schedule) -> float:
     return STEP if duty.stop > 3600 else SHORT_STEP
 
 
-def checked(fmu: Path, flat: FlatModel, duty: Schedule, start: Mapping[str, float]) -> tuple[tuple[str, str], ...]:
-    """What was checked with this FMU, and the result: it is played over the reference duty and the model is integrated.
+def reference_run(flat: FlatModel, duty: Schedule, start: Mapping[str, float]) -> Result | GearheatError:
+    """The reference run of the model itself, or why there is none.
+
+    Args:
+        flat: the model
+        duty: of the reference result
+        start: start values that are not those of the model
+    """
+    states = {q.name: start[q.name] for q in flat.states if q.name in start}
+    times = np.unique(np.append(np.arange(duty.start, duty.stop, step_of(duty)), duty.stop))
+    try:
+        return simulate(flat, duty, start=states, times=times)
+    except GearheatError as error:
+        return error
+
+
+def experiment(flat: FlatModel, duty: Schedule, run: Result | GearheatError) -> Experiment | None:
+    """The reference run as an importer can repeat it: temperatures and speeds, by another method than the FMU's.
+
+    Args:
+        flat: the model
+        duty: of the reference result
+        run: of `reference_run`
+    """
+    if isinstance(run, GearheatError):
+        return None
+    names = [q.name for q in flat.states]
+    doc = f"{duty.stop:g} s with steps of the load, states as CVODES integrates the model that the FMU was made of"
+    values = np.stack([run[name] for name in names], axis=1)
+    inputs = stimuli(_inputs(duty), duty.stop)
+    return Experiment("reference", doc, duty.stop, step_of(duty), TOLERANCE, inputs, results(names, run.index, values))
+
+
+def checked(fmu: Path, flat: FlatModel, duty: Schedule, own: Result | GearheatError) -> tuple[tuple[str, str], ...]:
+    """What was checked with this FMU, and the result: it is played over the reference duty beside the model's own run.
 
     Results are bounds, the next power of ten above what was found, so that the same model gives the same text.
     """
     if not _plays_here(fmu):
         return ()
-    states = {q.name: start[q.name] for q in flat.states if q.name in start}
-    times = np.unique(np.append(np.arange(duty.start, duty.stop, step_of(duty)), duty.stop))
     try:
-        own = simulate(flat, duty, start=states, times=times)
+        if isinstance(own, GearheatError):
+            raise own
         with Player(fmu) as player:
-            inputs = {name: (duty.time, column) for name, column in duty.values.items()}
             audit = [name for name in (SUPPLIED, STORED, THROUGHPUT) if SUPPLIED in player.described.variables]
             names = [*(q.name for q in flat.states), *audit]
-            played = player.run(inputs, duty.stop, step_of(duty), record=names, output_times=times)
+            moments = np.unique(own.index)
+            played = player.run(_inputs(duty), duty.stop, step_of(duty), record=names, output_times=moments)
     except GearheatError as error:
         return (("reference run of this FMU against the model, integrated by another method", f"failed: {error}"),)
     rows = []
@@ -83,6 +117,10 @@ def checked(fmu: Path, flat: FlatModel, duty: Schedule, start: Mapping[str, floa
         *rows,
         ("energy in less energy stored over that run, relative to the throughput", f"below {_bound(residual)}"),
     )
+
+
+def _inputs(duty: Schedule) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    return {name: (duty.time, column) for name, column in duty.values.items()}
 
 
 def _plays_here(fmu: Path) -> bool:
@@ -120,14 +158,13 @@ def write_extras(
         NAME.ssv, oils/OIL.ssv for every oil that gives all the rig's oil has, NAME_in.csv, NAME_ref.csv, NAME_ref.opt
     """
     files = {folder / f"{fmu.stem}.ssv": _set_of_rig(scenario, flat, sources)}
-    for oil, content in _sets_of_oils(scenario, flat, told=sources is not None).items():
+    for oil, content in sets_of_oils(scenario, flat, told=sources is not None).items():
         files[folder / "oils" / f"{oil.replace(' ', '_')}.ssv"] = content
     for path, content in files.items():
         store(path, content)
-    inputs = {name: (duty.time, column) for name, column in duty.values.items()}
     with tempfile.TemporaryDirectory() as place:
         played = fmu if _plays_here(fmu) else export(flat, Path(place) / fmu.name, start=start)
-        reference = write_reference(played, inputs, duty.stop, step_of(duty), folder=folder)
+        reference = write_reference(played, _inputs(duty), duty.stop, step_of(duty), folder=folder)
     return [*files, *reference]
 
 
@@ -141,7 +178,7 @@ def _set_of_rig(scenario: Scenario, flat: FlatModel, sources: Mapping[str, str] 
     )
 
 
-def _sets_of_oils(scenario: Scenario, flat: FlatModel, *, told: bool) -> dict[str, bytes]:
+def sets_of_oils(scenario: Scenario, flat: FlatModel, *, told: bool) -> dict[str, bytes]:
     """A set for every oil of the catalogue that gives the oil baths all that oils can give this model.
 
     Args:

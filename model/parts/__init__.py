@@ -38,11 +38,13 @@ from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, Sha
 from .supports import ShaftSupport, TwoGearSupport
 from .thermal import (
     BoxCooling,
+    ClosedRoom,
     CylinderCooling,
     CylinderWall,
     FinnedBoxCooling,
     HeatCapacity,
     PlaneWall,
+    PrescribedHeatFlow,
     PrescribedTemperature,
     Room,
     ThermalConductor,
@@ -114,7 +116,9 @@ PARTS: dict[str, type[Component]] = {
         LinearFlatWallCooling,
         LinearShellCooling,
         Room,
+        ClosedRoom,
         PrescribedTemperature,
+        PrescribedHeatFlow,
         GreyTeeth,
         GreyBearing,
         FlowConductor,

@@ -151,6 +151,28 @@ class Room(Component):
         return (-self.Q_flow,)
 
 
+class ClosedRoom(Room):
+    """A room that warms: of a heat capacity, and cooled by what its floor is connected to."""
+
+    scale: ClassVar[tuple[str, ...]] = ("C",)
+
+    T = State("K", "temperature of the room", nominal=10.0, at_least=COLDEST, at_most=HOTTEST, start=298.15)
+    C = Parameter("J/K", "heat capacity of its air, walls and what stands in it", nominal=1e5, above=0.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """What the room takes warms it."""
+        yield from super().equations()
+        yield equation("storage", self.C * self.der("T"), self.Q_flow)
+
+    def stored_energy(self) -> Num:
+        """Energy above 0 degC [J]."""
+        return self.C * (self.T - 273.15)
+
+    def supplied_power(self) -> Iterable[Num]:
+        """None: what it takes stays in the model."""
+        return ()
+
+
 class PrescribedTemperature(Component):
     """Something that keeps its temperature whatever heat it takes or gives, e.g. a thermostat or cooling water."""
 
@@ -170,6 +192,24 @@ class PrescribedTemperature(Component):
     def supplied_power(self) -> Iterable[Num]:
         """What it takes, counted as supply."""
         return (-self.Q_flow,)
+
+
+class PrescribedHeatFlow(Component):
+    """Heat of a given rate, whatever the temperature: a heater, or what a model beside this one gives."""
+
+    role: ClassVar[str] = "heater"
+
+    heat = HeatPort()
+
+    Q_flow = Input("W", "heat flow rate it gives", nominal=100.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """The heat is given, the temperature follows."""
+        yield equation("heat given", self.heat.Q_flow, -self.Q_flow)
+
+    def supplied_power(self) -> Iterable[Num]:
+        """What it gives."""
+        return (self.Q_flow,)
 
 
 class SurfaceCooling(Component):

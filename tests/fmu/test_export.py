@@ -7,6 +7,7 @@ import resource
 import struct
 import subprocess
 import sys
+import threading
 import zipfile
 from collections.abc import Callable
 from pathlib import Path
@@ -200,9 +201,24 @@ def test_a_source_that_does_not_compile() -> None:
         compiling.binary("int wrong = ;", compiling.host_platform())
 
 
+def test_platforms_are_made_side_by_side_and_a_failure_is_told() -> None:
+    both, met = compiling.platforms("linux64,win64"), threading.Barrier(2, timeout=30)
+
+    def build(platform: compiling.Platform) -> bytes:
+        met.wait()  # none ends before the other has begun
+        return platform.name.encode()
+
+    told: list[tuple[str, float]] = []
+    made = compiling.together(build, both, lambda done, share: told.append((done, share)))
+    assert made == {"linux64": b"linux64", "win64": b"win64"}
+    assert [share for _, share in told] == [0.5, 1.0]
+    with pytest.raises(FmuError, match="compiling for x86_64-linux"):
+        compiling.together(lambda p: compiling.binary("int wrong = ;", p), both[:1], lambda done, share: None)
+
+
 def test_platforms_by_name() -> None:
     assert [p.name for p in compiling.platforms("win64, linux64,win64")] == ["win64", "linux64"]
-    assert [p.name for p in compiling.platforms("all")] == ["linux64", "win64", "win32", "darwin64"]
+    assert [p.name for p in compiling.platforms("all")] == ["linux64", "win64", "win32", "darwin64", "aarch64-linux"]
     with pytest.raises(FmuError, match="Did you mean"):
         compiling.platforms("linux46")
 

@@ -2,6 +2,7 @@
 
 import dataclasses
 import doctest
+import hashlib
 import re
 import xml.etree.ElementTree as ET
 import zipfile
@@ -18,9 +19,10 @@ import pytest
 from fmpy.validation import validate_fmu
 from gearheat.fmu.effective import effective
 from gearheat.fmu.export import export
+from gearheat.fmu.metadata import SRMD, STC
 from gearheat.fmu.parameter_set import PROVENANCE, PROVENANCE_SPACE, SSC, SSV, parameter_set
 from gearheat.fmu.play import play
-from gearheat.fmu.related import MANIFEST, PARAMETERS
+from gearheat.fmu.related import FOLDER, MANIFEST, PARAMETERS, Experiment, Related
 from gearheat.model.core.component import Component, equation
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.declare import Parameter, State
@@ -33,7 +35,8 @@ from gearheat.model.parts.shaft import Inertia, ShaftEnd
 from lxml import etree
 from small_parts import rc
 
-ROLES = {"model", "parameter", "document", "experiment", "result", "report", "meta-data", "other"}
+#: Some of the roles of FMI-LS-REF.
+ROLES = {"model", "parameter", "document", "experiment/smoke-test", "result", "report", "meta-data", "other"}
 
 
 def held(path: Path) -> dict[str, bytes]:
@@ -150,6 +153,40 @@ def test_the_manifest_lists_what_is_there(sourced: Path) -> None:
         for step in PurePosixPath(related.get("source", "")).parts:
             place = place.parent if step == ".." else place / step
         assert str(place) in content
+
+
+def test_the_metadata_tells_sources_uncertainties_and_laws(sourced: Path) -> None:
+    content = held(sourced)
+    root = ET.fromstring(content[f"{FOLDER}/parameters.srmd"])
+    assert root.tag == f"{{{SRMD}}}SimulationResourceMetaData"
+    assert bytes.fromhex(root.get("checksum", "")) == hashlib.sha3_256(content[PARAMETERS]).digest()
+    assert f"{FOLDER}/{root.get('data')}" == PARAMETERS
+    told = {
+        c.get("type"): {e.get("keyword"): e.text for e in c.iter(f"{{{STC}}}ClassificationEntry")}
+        for c in root.iter(f"{{{STC}}}Classification")
+    }
+    assert told["org.gearheat.source"] == SOURCES
+    assert told["org.gearheat.standard-uncertainty"] == {"resistor.R": "0.05 ohm"}
+
+
+def test_sets_and_an_experiment_are_listed_with_their_roles(models: SimpleNamespace, tmp_path: Path) -> None:
+    run = Experiment("run", "charging", 10.0, 1.0, 1e-8, '"time"\n0.0\n', '"time"\n0\n')
+    one = parameter_set("small one", [Quantity("capacitor.C", "F", "", start=2.0)])
+    path = export(models.rc, tmp_path / "rc.fmu", others=Related({"small one": one}, run))
+    content = held(path)
+    listed = {r.get("source"): r for r in ET.fromstring(content[MANIFEST])}
+    assert content[f"{FOLDER}/sets/small_one.ssv"] == one
+    assert [label.get("name") for label in listed["sets/small_one.ssv"]] == ["variant:small one"]
+    assert listed["experiments.exp"].get("type") == "application/x-ma-hs-experiments"
+    (experiment,) = ET.fromstring(content[f"{FOLDER}/experiments.exp"])
+    assert {child.tag: child.get("source") for child in experiment} == {
+        "TransientSimulation": None,
+        "Parameters": "parameters.ssv",
+        "Stimuli": "reference_in.csv",
+        "References": "reference_ref.csv",
+    }
+    assert all(f"{FOLDER}/{source}" in content for source in listed if not source.startswith(".."))
+    assert {r.get("role") for r in listed.values()} <= ROLES
 
 
 def test_the_page_says_it_to_people(sourced: Path) -> None:

@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 from binary_formats import Library, elf, pe, universal
 from fmu_in_c import HERE, checks, numbers, planetary, told
+from gearheat.fmu import compiling
 from gearheat.fmu.export import export
 from gearheat.tools.c_importer import Compiler, program, unpack
 
@@ -53,6 +54,39 @@ def test_macos_has_both_processors_and_needs_the_system_alone(models: SimpleName
         assert library.system <= (11, 0)
         assert library.needed == {"/usr/lib/libSystem.B.dylib"}
     assert libraries[1].signed, "macOS kills a program that loads unsigned code on this processor"
+
+
+#: What generated code may call, of one argument and of two.
+ONE = (
+    "fabs",
+    "sqrt",
+    "sin",
+    "cos",
+    "tan",
+    "asin",
+    "acos",
+    "atan",
+    "exp",
+    "log",
+    "floor",
+    "ceil",
+    "sinh",
+    "cosh",
+    "tanh",
+)
+ONE += ("asinh", "acosh", "atanh", "erf", "log1p", "expm1", "isnan", "isfinite")
+TWO = ("pow", "fmod", "atan2", "hypot", "fmin", "fmax", "copysign")
+
+
+@pytest.mark.parametrize("platform", ["win64", "win32"])
+def test_windows_has_all_the_mathematics(platform: str) -> None:
+    """What is taken from its C library is named one by one, as the compiler's own is not built."""
+    calls = " + ".join(["much[9]", *(f"{name}(x)" for name in ONE), *(f"{name}(x, y)" for name in TWO)])
+    body = f"double much[9999]; much[n] = x; return {calls};"
+    code = f"#include <math.h>\n__declspec(dllexport) double fmi2(double x, double y, int n) {{ {body} }}"
+    library = pe(compiling.binary(code, compiling.PLATFORMS[platform]))
+    assert library.exported == {"fmi2"}
+    assert all(name.startswith("api-ms-win-crt-") for name in library.needed)
 
 
 @cache

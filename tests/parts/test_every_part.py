@@ -118,7 +118,9 @@ EXAMPLES: dict[str, dict] = {
     "LinearFlatWallCooling": LINEAR,
     "LinearShellCooling": LINEAR | dict(k_air=0.0257, nu_air=1.511e-5, Pr_air=0.713),
     "Room": {},
+    "ClosedRoom": dict(C=2e5),
     "PrescribedTemperature": {},
+    "PrescribedHeatFlow": {},
     "GreyTeeth": GREY,
     "GreyBearing": GREY,
     "FlowConductor": dict(G_rest=100.0, G_ref=1000.0, e=0.3, w_ref=188.0, nu_ref=1.5e-4),
@@ -150,7 +152,7 @@ GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level", "BeltPull.load"} 
 }
 GIVES |= {"Thermostat.opening"}
 #: Heat ports at which a part gives the temperature: heat is pushed into them.
-TAKES = {"Room.air", "Room.floor", "PrescribedTemperature.heat", "ShaftFan.air"}
+TAKES = {"Room.air", "Room.floor", "ClosedRoom.air", "ClosedRoom.floor", "PrescribedTemperature.heat", "ShaftFan.air"}
 GIVES |= {"LoadingClutch.reading"}
 GIVES |= {f"PlanetarySet.{k}" for k in ("carrier_load", "sun_load", "planet_load")}
 GIVES |= {f"HarmonicMesh.{k}" for k in ("wave_load", "shaft_load")}

@@ -16,7 +16,7 @@ from fmpy.util import read_csv
 from fmpy.validation import validate_fmu
 from gearheat.fmu import compiling
 from gearheat.fmu.play import Player
-from gearheat.fmu.related import PARAMETERS
+from gearheat.fmu.related import FOLDER, PARAMETERS
 from gearheat.model.errors import FmuError
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.rows import evaluate_at
@@ -285,6 +285,28 @@ def test_fmpy_reproduces_the_reference(exported, name):
     for name, within in (("oil.T", 1e-3), ("surface.T", 1e-3), ("sun.w", 1e-2)):
         at = np.interp(time, found["time"], found[name])
         assert at[count == 1] == pytest.approx(expected[name][first[count == 1]], abs=within), name
+
+
+def test_fmpy_repeats_the_experiment_that_is_inside(exported, tmp_path):
+    """Its results are those of the model, integrated by another method."""
+    path, _ = exported["carrier-speed"]
+    for name in ("reference_in.csv", "reference_ref.csv", "experiments.exp", "parameters.ssv"):
+        (tmp_path / name).write_text(held(path, f"{FOLDER}/{name}"), encoding="utf-8")
+    (experiment,) = ET.parse(tmp_path / "experiments.exp").getroot()
+    named = {child.tag: child.get("source") for child in experiment}
+    times = experiment.find("TransientSimulation")
+    given, expected = (read_csv(str(tmp_path / named[what])) for what in ("Stimuli", "References"))
+    found = fmpy.simulate_fmu(
+        str(path),
+        stop_time=float(times.get("stopTime")),
+        output_interval=float(times.get("stepSize")),
+        start_values=values((tmp_path / named["Parameters"]).read_bytes()),
+        input=given,
+        relative_tolerance=float(experiment.get("tolerance")),
+        output=[name for name in expected.dtype.names if name != "time"],
+    )
+    for name in expected.dtype.names[1:]:
+        assert np.interp(expected["time"], found["time"], found[name]) == pytest.approx(expected[name], abs=1e-3)
 
 
 def test_the_same_rig_gives_the_same_bytes_with_and_without_extras(exported, gearheat, tmp_path):

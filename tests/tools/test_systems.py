@@ -1,0 +1,105 @@
+"""`export --ssp`: the file is sound by SSP 1.0, and FMPy, which couples it, comes to what the whole rig does."""
+
+from __future__ import annotations
+
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+
+import fmpy
+import numpy as np
+import pytest
+from fmpy.ssp.simulation import simulate_ssp
+from fmpy.ssp.ssd import read_ssd
+from gearheat.model.errors import ScenarioError
+from gearheat.model.machines.spec import PartSpec, Spec
+from gearheat.model.run.schedule import stepped
+from gearheat.model.run.simulate import simulate
+from gearheat.scenarios.scenario import Scenario
+from gearheat.tools.settings import flat_of
+from gearheat.tools.systems import groups_of, taken_apart, write_system
+from lxml import etree
+
+GROUPS = groups_of(["cooler", "room = room, walls, outdoors"])
+PARTS = (
+    PartSpec("oil", "HeatCapacity", {"C": 5e3, "T": 340.0}),
+    PartSpec("cooler", "ThermalConductor", {"G": 8.0}),
+    PartSpec("shell", "CylinderCooling", {"A": 0.5, "emissivity": 0.9, "D": 0.3, "share_ends": 0.3}),
+    PartSpec("room", "ClosedRoom", {"C": 2e5, "T": 290.0}),
+    PartSpec("walls", "ThermalConductor", {"G": 60.0}),
+    PartSpec("outdoors", "PrescribedTemperature", {"T": 280.0}),
+)
+NETS = (
+    ("oil.heat", "shell.surface", "cooler.a"),
+    ("room.air", "shell.air"),
+    ("room.floor", "cooler.b", "walls.a"),
+    ("walls.b", "outdoors.heat"),
+)
+BLOCK = Scenario("block", "a warm block", "network", Path(), Spec("block", "a warm block", PARTS, NETS), {}, {})
+
+
+@pytest.fixture(scope="module")
+def system(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("ssp") / "block.ssp"
+    write_system(BLOCK, taken_apart(BLOCK, GROUPS, {}), path)
+    return path
+
+
+def test_the_file_is_sound(system: Path) -> None:
+    with zipfile.ZipFile(system) as file:
+        assert file.namelist()[0] == "SystemStructure.ssd"
+        assert set(file.namelist()[1:]) == {f"resources/{name}.fmu" for name in ("gearbox", "cooler", "room")}
+        content = file.read("SystemStructure.ssd")
+    schema = Path(fmpy.__file__).parent / "ssp" / "schema" / "SystemStructureDescription.xsd"
+    etree.XMLSchema(etree.parse(str(schema))).assertValid(etree.fromstring(content))
+    read = read_ssd(str(system))
+    (experiment,) = etree.fromstring(content).findall("{*}DefaultExperiment")
+    assert dict(experiment.attrib) == {"startTime": "0.0", "stopTime": "14400.0"}
+    assert {u.name for u in read.units} == {"K", "W"}
+    assert {c.name for e in read.system.elements for c in e.connectors if c.kind == "output"} == {
+        "oil.T",
+        "oil.Q_flow",
+        "room.T",
+        "room.Q_flow",
+    }
+
+
+def test_all_fmus_start_where_the_rig_does() -> None:
+    taken = taken_apart(BLOCK, GROUPS, {"oil.T": 350.0})
+    assert taken.starts["gearbox"]["oil.T"] == taken.starts["cooler"]["oil.T"] == 350.0
+    assert taken.starts["gearbox"]["cooler.Q_flow"] == pytest.approx(-8.0 * (350.0 - 290.0))
+    assert taken.starts["room"]["cooler.Q_flow"] == pytest.approx(8.0 * (350.0 - 290.0))
+    assert taken.starts["room"]["gearbox.Q_flow"] > 0
+
+
+def test_the_error_of_coupling_falls_with_the_step(system: Path) -> None:
+    whole, errors = flat_of(BLOCK), []
+    for step in (10.0, 5.0, 2.5):
+        coupled = simulate_ssp(str(system), stop_time=600.0, step_size=step)
+        duty = stepped([(600.0, {q.name: q.start for q in whole.inputs})])
+        alone = simulate(whole, duty, times=np.append(0.0, coupled["time"] + step))
+        errors.append(np.abs(coupled["gearbox.oil.T"] - alone["oil.T"][1:]).max())
+    orders = np.log2(np.array(errors[:-1]) / errors[1:])
+    assert orders == pytest.approx(1.0, abs=0.1)
+    assert errors[-1] < 0.3
+
+
+def test_inputs_of_several_fmus_are_those_of_the_system(tmp_path: Path) -> None:
+    path = tmp_path / "apart.ssp"
+    found = write_system(BLOCK, taken_apart(BLOCK, groups_of(["world=outdoors", "room=room,walls"]), {}), path)
+    assert found["inputs"] == ["outdoors.T"]
+    coupled = simulate_ssp(str(path), stop_time=60.0, step_size=10.0, input={"outdoors.T": lambda time: 270.0})
+    assert coupled["room.outdoors.T"][-1] == 270.0
+
+
+def test_what_does_not_work_is_told(gearheat, tmp_path: Path) -> None:
+    answer = gearheat("export", "planetary", "-o", tmp_path / "p.ssp", "--ssp", "foot", "--fmi", "3")
+    assert answer.code == 2
+    assert "--fmi 3 does not go with --ssp" in answer.err
+    answer = gearheat("export", "planetary", "-o", tmp_path / "p.ssp", "--ssp", "oil")
+    assert answer.code == 2
+    assert "Only nets of heat ports are cut" in answer.err
+    with pytest.raises(ScenarioError, match="named twice"):
+        groups_of(["room=room", "room=walls"])
+    with pytest.raises(ScenarioError, match="no part"):
+        taken_apart(replace(BLOCK, name="other"), {"a": ["b"]}, {})
