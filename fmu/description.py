@@ -172,7 +172,7 @@ def description(
     named = {"fmiVersion": "2.0", "modelName": flat.name, "guid": guid}
     told = {**origin(flat), "numberOfEventIndicators": "0", **owner.attributes}
     root = ET.Element("fmiModelDescription", {**named, **told})
-    _interfaces(root, identifier(flat.name), with_sources)
+    _interfaces(root, identifier(flat.name), with_sources, exchange=not table.of("deviation"))
     circumstances(root, table, _types)
     variables = ET.SubElement(root, "ModelVariables")
     for variable in table:
@@ -247,11 +247,13 @@ def type_of(unit: str) -> dict[str, str]:
     return told | ({"relativeQuantity": "true"} if units.is_difference(unit) else {})
 
 
-def _interfaces(root: ET.Element, name: str, with_sources: bool) -> None:
+def _interfaces(root: ET.Element, name: str, with_sources: bool, exchange: bool) -> None:
+    """With standard deviations there is no model exchange: their sensitivities move with the solver inside."""
     own = {"modelIdentifier": name, **_CAPABILITIES}
-    exchange = ET.SubElement(root, "ModelExchange", {**own, "completedIntegratorStepNotNeeded": "true"})
-    simulation = ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
-    for interface in (exchange, simulation) if with_sources else ():
+    if exchange:
+        ET.SubElement(root, "ModelExchange", {**own, "completedIntegratorStepNotNeeded": "true"})
+    ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
+    for interface in list(root) if with_sources else ():
         ET.SubElement(ET.SubElement(interface, "SourceFiles"), "File", name="all.c")
 
 
@@ -321,16 +323,29 @@ def _meaning(q: Quantity) -> str:
 
 def _model_structure(root: ET.Element, table: Table, dependent: Dependencies) -> None:
     structure = ET.SubElement(root, "ModelStructure")
-    unknown = (*table.of("output"), *table.of("derivative"))
-    outputs = ET.SubElement(structure, "Outputs")
+    outputs, derivatives = ET.SubElement(structure, "Outputs"), ET.SubElement(structure, "Derivatives")
     for state in table.of("state"):
         _unknown(outputs, state, [state.reference])
-    by_kind: dict[str, ET.Element] = {"output": outputs, "derivative": ET.SubElement(structure, "Derivatives")}
-    for variable, on in zip(unknown, dependent.step, strict=True):
-        _unknown(by_kind[variable.kind], variable, on)
+    for variable, on in unknowns(table, dependent.step):
+        _unknown(derivatives if variable.kind == "derivative" else outputs, variable, on)
     initial = ET.SubElement(structure, "InitialUnknowns")
-    for variable, on in zip(unknown, dependent.initial, strict=True):
+    for variable, on in unknowns(table, dependent.initial):
         _unknown(initial, variable, on)
+
+
+def unknowns(table: Table, dependent: Sequence[tuple[int, ...]]) -> list[tuple[Variable, tuple[int, ...]]]:
+    """Outputs, derivatives and standard deviations with the value references they depend on, in their order.
+
+    The standard deviation of an output depends on what the output does, that of a state on the past alone.
+
+    Args:
+        table: the variables
+        dependent: of each output and derivative
+    """
+    own = (*table.of("output"), *table.of("derivative"))
+    on = {v.reference: references for v, references in zip(own, dependent, strict=True)}
+    deviations = [(v, on.get(v.of, ()) if v.of is not None else ()) for v in table.of("deviation")]
+    return [*((v, on[v.reference]) for v in own), *deviations]
 
 
 def _unknown(parent: ET.Element, variable: Variable, on: Iterable[int]) -> None:

@@ -12,6 +12,7 @@ from gearheat.model.sources import sources
 from gearheat.model.units import text
 
 from .description import TOLERANCE, tool
+from .leading import Directions
 from .parameter_set import kind_of
 from .related import PARAMETERS
 from .variables import IMPLICIT, RESIDUAL, STORED, SUPPLIED, THROUGHPUT, VALIDITY, Table, Variable
@@ -26,12 +27,14 @@ class About:
         uncertainties: parameter -> standard uncertainty of its value, in the unit of the value
         picture: the model drawn, as SVG
         idle: parameters of the model that the FMU lacks because they have no effect
+        directions: of the standard deviations, where it has some
     """
 
     sources: Mapping[str, str] = field(default_factory=dict)
     uncertainties: Mapping[str, float] = field(default_factory=dict)
     picture: str = ""
     idle: tuple[str, ...] = ()
+    directions: Directions | None = None
 
 
 _STYLE = (
@@ -121,6 +124,7 @@ def documentation(
         _INTEGRATED if table.audit else "",
         _BALANCE,
         implicit if flat.residual_names else "",
+        _deviations(about.directions),
         *(_variables(title, table.of(kind)) for title, kind in _GROUPS),
         _parameters(table.of("parameter"), about),
         _choices(table.of("choice")),
@@ -133,7 +137,40 @@ def documentation(
     return "\n".join(part for part in parts if part)
 
 
-_GROUPS = (("Inputs", "input"), ("Outputs", "output"), ("States", "state"))
+_GROUPS = (
+    ("Inputs", "input"),
+    ("Outputs", "output"),
+    ("Standard deviations", "deviation"),
+    ("States", "state"),
+)
+
+_DEVIATIONS = """
+<p>A variable whose name ends in <code>.sd</code> is the standard deviation of the variable it is named after, due to
+the uncertain parameters of this table. The table gives what one standard deviation changes each parameter by. Rows are
+independent of each other; the parameters of a row change together. Parameters set to other values keep their relative
+uncertainty.</p>
+<p>Sensitivities along the run are integrated with the model, so what has happened before counts. Contained is what is
+linear in the parameters. Not contained are the uncertainty of inputs, of start temperatures without a row, of the laws'
+own form, and of parameters without a row, and the error of the solver. There is no model exchange and no derivative of
+a standard deviation.</p>
+"""
+
+
+def _deviations(directions: Directions | None) -> str:
+    """What the standard deviations contain and what not."""
+    if directions is None:
+        return ""
+    rows = [
+        (escape(r.name), ", ".join(f"<code>{escape(path)}</code> {change:+.3g}" for path, change in r.changes.items()))
+        for r in directions.reasons
+    ]
+    short, left_out = directions.shortfall, ""
+    if short is not None:
+        left_out = (
+            f" For what is left out no deviation is ever more than {short:.1%} too small in the default experiment."
+        )
+    kept = f"<p>Of {len(rows)} rows {directions.count} combinations are integrated, those that move most.{left_out}</p>"
+    return _table("Uncertainty", ("reason", "change of the parameters (SI)"), rows, before=_DEVIATIONS + kept)
 
 
 def _cells(v: Variable) -> tuple[str, ...]:

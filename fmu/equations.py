@@ -40,7 +40,7 @@ class Equations:
     audit: bool = True
 
     @cached_property
-    def _hoisted(self) -> tuple[dict[str, Any], Any, Any, Any]:
+    def hoisted(self) -> tuple[dict[str, Any], Any, Any, Any]:
         """All results without what depends on parameters alone; that; the symbols it is put in; slope and h."""
         ode, residual, y, checked = ca.cse([self.ode, self.residual, self.y, self.checked])
         x_new, z_new, error, slope, h = rosenbrock.step(ode, residual, self.x, self.z, self.u)
@@ -57,23 +57,23 @@ class Equations:
 
     def _of_point(self, name: str, results: dict[str, str]) -> Any:
         """(x, z, u, p, c) -> some of the results, by the names they get."""
-        found, c, _, _ = self._hoisted
+        found, c, _, _ = self.hoisted
         point = [self.x, self.z, self.u, self.p, c]
-        return _function(name, point, [found[r] for r in results], ["x", "z", "u", "p", "c"], list(results.values()))
+        return full(name, point, [found[r] for r in results], ["x", "z", "u", "p", "c"], list(results.values()))
 
     @cached_property
     def constants(self) -> Any:
         """(p) -> c: everything that depends on parameters alone, computed once when they change."""
-        _, _, values, _ = self._hoisted
-        return _function("constants", [self.p], [values], ["p"], ["c"])
+        _, _, values, _ = self.hoisted
+        return full("constants", [self.p], [values], ["p"], ["c"])
 
     @cached_property
     def step(self) -> Any:
         """(x, z, u, slope, p, c, h) -> (x_new, z_new, error): one step of the solver; no error of the last state."""
-        found, c, _, (slope, h) = self._hoisted
+        found, c, _, (slope, h) = self.hoisted
         inputs = [self.x, self.z, self.u, slope, self.p, c, h]
         results = ["x_new", "z_new", "error"]
-        return _function("step", inputs, [found[r] for r in results], ["x", "z", "u", "slope", "p", "c", "h"], results)
+        return full("step", inputs, [found[r] for r in results], ["x", "z", "u", "slope", "p", "c", "h"], results)
 
     @cached_property
     def algebra(self) -> Any:
@@ -98,7 +98,7 @@ class Equations:
     @cached_property
     def directional(self) -> Any:
         """(x, z, u, p, c, x_dot, u_dot, p_dot, c_dot) -> (y_dot, dx_dot): derivative in a direction, z following."""
-        found, c, _, _ = self._hoisted
+        found, c, _, _ = self.hoisted
         given = {"x": self.x, "u": self.u, "p": self.p, "c": c}
         dots = {f"{name}_dot": ca.SX.sym(f"{name}_dot", v.shape[0]) for name, v in given.items()}
         moved = ca.vertcat(*given.values())
@@ -109,20 +109,20 @@ class Equations:
         both = ca.jtimes(whole, ca.vertcat(moved, self.z), ca.vertcat(*dots.values(), z_dot))
         ny = found["y"].shape[0]
         point = {"x": self.x, "z": self.z, "u": self.u, "p": self.p, "c": c} | dots
-        return _function("directional", list(point.values()), [both[:ny], both[ny:]], list(point), ["y_dot", "dx_dot"])
+        return full("directional", list(point.values()), [both[:ny], both[ny:]], list(point), ["y_dot", "dx_dot"])
 
     @cached_property
     def constants_directional(self) -> Any:
         """(p, p_dot) -> c_dot: how the hoisted constants change with the parameters."""
-        _, _, values, _ = self._hoisted
+        _, _, values, _ = self.hoisted
         p_dot = ca.SX.sym("p_dot", self.p.shape[0])
         dot = ca.jtimes(values, self.p, p_dot)
-        return _function("constants_directional", [self.p, p_dot], [dot], ["p", "p_dot"], ["c_dot"])
+        return full("constants_directional", [self.p, p_dot], [dot], ["p", "p_dot"], ["c_dot"])
 
     @cached_property
     def adjoint(self) -> Any:
         """(x, z, u, p, c, y_bar, dx_bar) -> (x_bar, u_bar, p_bar, c_bar): the transposed of `directional`."""
-        found, c, _, _ = self._hoisted
+        found, c, _, _ = self.hoisted
         given = {"x": self.x, "u": self.u, "p": self.p, "c": c}
         bars = {name: ca.SX.sym(name, found[result].shape[0]) for name, result in (("y_bar", "y"), ("dx_bar", "ode"))}
         moved, whole, residual = ca.vertcat(*given.values()), ca.vertcat(found["y"], found["ode"]), found["residual"]
@@ -132,20 +132,20 @@ class Equations:
         sizes = np.cumsum([0, *(v.shape[0] for v in given.values())]).tolist()
         point = {"x": self.x, "z": self.z, "u": self.u, "p": self.p, "c": c} | bars
         results = [both[a:b] for a, b in pairwise(sizes)]
-        return _function("adjoint", list(point.values()), results, list(point), [f"{name}_bar" for name in given])
+        return full("adjoint", list(point.values()), results, list(point), [f"{name}_bar" for name in given])
 
     @cached_property
     def constants_adjoint(self) -> Any:
         """(p, c_bar) -> p_bar: the transposed of `constants_directional`."""
-        _, _, values, _ = self._hoisted
+        _, _, values, _ = self.hoisted
         c_bar = ca.SX.sym("c_bar", values.shape[0])
         bar = ca.jtimes(values, self.p, c_bar, True)
-        return _function("constants_adjoint", [self.p, c_bar], [bar], ["p", "c_bar"], ["p_bar"])
+        return full("constants_adjoint", [self.p, c_bar], [bar], ["p", "c_bar"], ["p_bar"])
 
     @cached_property
     def relations(self) -> Any:
         """(p) -> the values by which the relations between parameters are told."""
-        return _function("relations_of", [self.p], [self.related], ["p"], ["related"])
+        return full("relations_of", [self.p], [self.related], ["p"], ["related"])
 
     @property
     def functions(self) -> tuple[Any, ...]:
@@ -159,7 +159,15 @@ class Equations:
         return (self.adjoint, self.constants_adjoint)
 
 
-def _function(name: str, inputs: list[Any], outputs: list[Any], names_in: list[str], names_out: list[str]) -> Any:
+def full(name: str, inputs: list[Any], outputs: list[Any], names_in: list[str], names_out: list[str]) -> Any:
+    """A CasADi function whose results are full, and equal expressions in them computed once.
+
+    Args:
+        name: of the function
+        inputs: SX symbols
+        outputs: SX expressions in them
+        names_in, names_out: names of both
+    """
     dense = [ca.densify(ca.SX(value)) for value in outputs]
     return ca.Function(name, inputs, dense, names_in, names_out, {"cse": True})
 

@@ -42,6 +42,7 @@ from .documentation import About, documentation
 from .effective import effective
 from .equations import equations
 from .icon import icon
+from .leading import Directions, Uncertain, leading
 from .metadata import metadata
 from .parameter_set import parameter_set
 from .related import Related, related
@@ -71,13 +72,14 @@ def export(
     fmi: int = 2,
     choices: Sequence[Choice] = (start_choice(),),
     audit: bool = True,
+    uncertain: Uncertain | None = None,
     others: Related = Related(),
     progress: Progress = lambda done, share: None,
 ) -> Path:
     """Write a model as an FMU that serves co-simulation and model exchange. The same model gives the same bytes.
 
-    It has the model's inputs, outputs and states under their paths, the parameters that have an effect (`effective`),
-    derivatives and an audit of the energy. Its solver is inside; it needs no file and no library but that of C.
+    It has the model's inputs, outputs and states under their paths, the parameters with an effect (see `effective`),
+    the states' derivatives and an audit of the energy. Its solver is inside; it needs no library but that of C.
 
     Args:
         flat: the model
@@ -94,16 +96,18 @@ def export(
         fmi: version of the standard, 2 or 3
         choices: its enumerations: how a run begins, the oils; values of parameters that it does not have go
         audit: whether two states integrate the energy across the boundary
+        uncertain: what makes standard deviations, where it shall have some; it then serves co-simulation only
         others: further parameter sets, and a run that an importer can repeat
         progress: told what is done, and how much of the compiling
 
     Raises:
-        FmuError: a start value is wrong, the compiler fails, or the file cannot be written
+        FmuError: a start value is wrong, nothing uncertain has an effect, the compiler or writing the file fails
     """
     path, chosen = Path(path), platforms(platform, fmi)
-    kept, variables = _exported(flat, dict(start or {}), choices, audit)
-    about = About(sources or {}, uncertainties or {}, picture, _idle(flat, kept))
-    code, told = _code(kept, variables, fmi, owner=owner, with_sources=with_sources)
+    deviating = () if uncertain is None else uncertain.shown
+    kept, variables = _exported(flat, dict(start or {}), choices, audit, deviating)
+    code, told, directions = _code(kept, variables, fmi, owner=owner, with_sources=with_sources, uncertain=uncertain)
+    about = About(sources or {}, uncertainties or {}, picture, _idle(flat, kept), directions)
     content = {
         "modelDescription.xml": told,
         _PAGE: documentation(kept, variables, about, fmi=fmi).encode(),
@@ -144,28 +148,35 @@ def _made(path: Path, content: Mapping[str, bytes]) -> None:
 
 
 def _exported(
-    flat: FlatModel, start: Mapping[str, float], choices: Iterable[Choice], audit: bool
+    flat: FlatModel, start: Mapping[str, float], choices: Iterable[Choice], audit: bool, deviating: Sequence[str]
 ) -> tuple[FlatModel, Table]:
     """The model without idle parameters, and its variables with their start values."""
-    table(flat, start)  # tells all that is wrong, also with parameters that are idle
+    table(flat, start, deviating=deviating)  # tells all that is wrong, also with parameters that are idle
     kept = effective(flat, start)
     known = {q.name for q in (*kept.states, *kept.inputs, *kept.parameters)}
     own = {name: value for name, value in start.items() if name in known}
-    return kept, table(kept, own, reduced(choices, kept), audit=audit)
+    return kept, table(kept, own, reduced(choices, kept), deviating, audit=audit)
 
 
 def _code(
-    flat: FlatModel, variables: Table, fmi: int = 2, *, owner: Owner = Owner(), with_sources: bool = True
-) -> tuple[str, bytes]:
-    """The C source and the description, with the identification that follows from both."""
+    flat: FlatModel,
+    variables: Table,
+    fmi: int,
+    *,
+    owner: Owner,
+    with_sources: bool,
+    uncertain: Uncertain | None,
+) -> tuple[str, bytes, Directions | None]:
+    """The C source and the description, with the identification that follows from both; directions of deviations."""
     model = equations(flat, variables.audit)
-    code, dependent = source(flat, model, variables, fmi), dependencies(model, variables)
+    directions = None if uncertain is None else leading(flat, model, variables, uncertain.reasons)
+    code, dependent = source(flat, model, variables, fmi, directions), dependencies(model, variables)
     if fmi == 3:
         without_guid = fmi3_description.description(flat, variables, GUID_MARK, dependent, owner)
     else:
         without_guid = description(flat, model, variables, GUID_MARK, dependent, owner=owner, with_sources=with_sources)
     guid = _guid(code.encode() + without_guid)
-    return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode())
+    return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode()), directions
 
 
 def _extra(flat: FlatModel, variables: Table, about: About, others: Related) -> dict[str, bytes]:

@@ -18,6 +18,7 @@ from .description import (
     origin,
     type_name,
     type_of,
+    unknowns,
     values,
     xml,
 )
@@ -56,7 +57,8 @@ def description(flat: FlatModel, table: Table, token: str, dependent: Dependenci
     named = {"fmiVersion": "3.0", "modelName": flat.name, "instantiationToken": token}
     root = ET.Element("fmiModelDescription", {**named, **origin(flat), **owner.attributes})
     own = {"modelIdentifier": identifier(flat.name), **_CAPABILITIES}
-    ET.SubElement(root, "ModelExchange", {**own, **_MODEL_EXCHANGE})
+    if not table.of("deviation"):
+        ET.SubElement(root, "ModelExchange", {**own, **_MODEL_EXCHANGE})
     ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
     circumstances(root, table, _types, "s")
     variables = ET.SubElement(root, "ModelVariables")
@@ -91,13 +93,13 @@ def _time(variables: ET.Element, table: Table) -> None:
 
 def _model_structure(root: ET.Element, table: Table, dependent: Dependencies) -> None:
     structure = ET.SubElement(root, "ModelStructure")
-    names = {"output": "Output", "derivative": "ContinuousStateDerivative"}
     for state in table.of("state"):
         _unknown(structure, "Output", state, [state.reference])
-    unknown = (*table.of("output"), *table.of("derivative"))
-    for variable, on in zip(unknown, dependent.step, strict=True):
-        _unknown(structure, names[variable.kind], variable, on)
-    for variable, on in zip(unknown, dependent.initial, strict=True):
+    derivatives_last = sorted(unknowns(table, dependent.step), key=lambda pair: pair[0].kind == "derivative")
+    for variable, on in derivatives_last:
+        name = "ContinuousStateDerivative" if variable.kind == "derivative" else "Output"
+        _unknown(structure, name, variable, on)
+    for variable, on in unknowns(table, dependent.initial):
         _unknown(structure, "InitialUnknown", variable, on)
 
 

@@ -20,6 +20,7 @@ WRAPPER = (
     "choices.c",
     "evaluate.c",
     "trial.c",
+    "certain.c",
     "solver.c",
     "beginning.c",
     "fmi3_modes.c",

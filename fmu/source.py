@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping
 from importlib.resources import files
 from typing import Any, NamedTuple
 
+import numpy as np
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.run import newton
 from gearheat.model.run.algebra import GUESSES
@@ -15,7 +16,9 @@ from . import emit, fmi3_source
 from .choices import ROOM, START, STEADY
 from .description import TOLERANCE, identifier
 from .equations import Equations
+from .leading import Directions, shown
 from .rosenbrock import RODAS3
+from .sensitivity import Sensitivities
 from .units import fmi_unit
 from .variables import Table
 
@@ -28,6 +31,7 @@ _WRAPPER = (
     "choices.c",
     "evaluate.c",
     "trial.c",
+    "certain.c",
     "solver.c",
     "beginning.c",
     "fmi2_modes.c",
@@ -65,7 +69,11 @@ _TYPES = {"Real": 1, "Integer": 2, "Enumeration": 4}
 GUID_MARK = "@GUID@"
 
 
-def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2) -> str:
+#: What stands in the place of another file where there are standard deviations.
+_UNCERTAIN = {"certain.c": "uncertain.c"}
+
+
+def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, directions: Directions | None = None) -> str:
     """The whole C text, with GUID_MARK in place of the identification.
 
     Args:
@@ -73,13 +81,18 @@ def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2) -> str
         model: its equations
         table: its variables
         fmi: version of the standard, 2 or 3; with 3 the compiler needs the standard's headers beside the text
+        directions: of the standard deviations, where it has some
     """
     head = f"/* {_comment(flat.name)}: FMI {fmi}.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
     functions = model.functions if fmi == 2 else (*model.functions, *model.adjoint_functions)
-    generated = "\n".join([_sizes(flat, model, table), _tables(flat, table), *map(emit.function, functions)])
+    if directions is not None:
+        functions += Sensitivities(model, directions.count, directions.moving, shown(table)).functions
+    tables = [_sizes(flat, model, table, directions), _tables(flat, table), _directions(directions)]
+    generated = "\n".join([*tables, *map(emit.function, functions)])
+    texts = [_wrapper_file(name, directions) for name in (_WRAPPER if fmi == 2 else fmi3_source.WRAPPER)]
     if fmi == 2:
-        return "\n".join([head, _fmi_headers(), generated, *map(_wrapper_file, _WRAPPER)])
-    wrapper = [fmi3_source.in_words_of_3(_wrapper_file(name)) for name in fmi3_source.WRAPPER]
+        return "\n".join([head, _fmi_headers(), generated, *texts])
+    wrapper = map(fmi3_source.in_words_of_3, texts)
     return "\n".join([head, fmi3_source.included(identifier(flat.name)), generated, *wrapper])
 
 
@@ -91,11 +104,12 @@ def _fmi_headers() -> str:
     return whole.replace(_NAME, _PREFIXED_NAME)
 
 
-def _wrapper_file(name: str) -> str:
+def _wrapper_file(name: str, directions: Directions | None) -> str:
+    name = name if directions is None else _UNCERTAIN.get(name, name)
     return (files("gearheat.fmu") / "wrapper" / name).read_text(encoding="utf-8")
 
 
-def _sizes(flat: FlatModel, model: Equations, table: Table) -> str:
+def _sizes(flat: FlatModel, model: Equations, table: Table, directions: Directions | None) -> str:
     sizes = {
         "NX": len(table.of("state")),
         "NZ": len(flat.algebraic),
@@ -105,6 +119,9 @@ def _sizes(flat: FlatModel, model: Equations, table: Table) -> str:
         "NC": model.constants.numel_out(0),
         "NK": len(flat.checks),
         "NR": len(flat.relations),
+        "NS": len(flat.states),
+        "ND": 0 if directions is None else directions.count,
+        "NSD": len(table.of("deviation")),
         "N_CHOICES": len(table.of("choice")),
         "N_PRESETS": len(_presets(table)),
         "AUDIT": int(table.audit),
@@ -168,6 +185,13 @@ def _tables(flat: FlatModel, table: Table) -> str:
     texts += [_array("const int", name, map(str, values)) for name, values in whole.items()]
     texts += [_array("const double", name, map(emit.number, values)) for name, values in numbers.items()]
     return "\n".join(texts)
+
+
+def _directions(directions: Directions | None) -> str:
+    """How states, and of an uncertain model parameters, move along the directions, one direction after the other."""
+    told = {} if directions is None else {"model_directions": directions.parameters}
+    told["model_state_directions"] = np.zeros((0, 0)) if directions is None else directions.states
+    return "\n".join(_array("const double", name, map(emit.number, m.T.ravel().tolist())) for name, m in told.items())
 
 
 class _Preset(NamedTuple):

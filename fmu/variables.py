@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import casadi as ca
@@ -23,15 +23,19 @@ VALIDITY, IMPLICIT = "validity.count", "implicit.residual"
 #: other readers of the description refuse.
 LEAST = 1e-300
 
+#: Kinds of variables in the order of their value references.
+KINDS = ("state", "input", "output", "parameter", "derivative", "choice", "deviation")
+
 
 @dataclass(frozen=True)
 class Variable:
     """One scalar variable of an FMU; `reference` is its value reference and its position in the description.
 
     Attributes:
-        kind: "state", "input", "output", "parameter", "derivative" or "choice"
+        kind: "state", "input", "output", "parameter", "derivative", "choice" or "deviation"
         state: value reference of the state a derivative belongs to
         choice: what an enumeration offers
+        of: value reference of the state or output a standard deviation belongs to
     """
 
     reference: int
@@ -39,6 +43,7 @@ class Variable:
     quantity: Quantity
     state: int | None = None
     choice: Choice | None = None
+    of: int | None = None
 
     @property
     def name(self) -> str:
@@ -55,7 +60,8 @@ class Variable:
     @property
     def causality(self) -> str:
         """Causality in the sense of FMI."""
-        return {"state": "output", "derivative": "local", "choice": "parameter"}.get(self.kind, self.kind)
+        own = {"state": "output", "derivative": "local", "choice": "parameter", "deviation": "output"}
+        return own.get(self.kind, self.kind)
 
     @property
     def variability(self) -> str:
@@ -73,7 +79,7 @@ class Variable:
     @property
     def start(self) -> float | None:
         """Start value, None where the FMU calculates it."""
-        return None if self.kind in ("output", "derivative") else self.quantity.start
+        return None if self.kind in ("output", "derivative", "deviation") else self.quantity.start
 
     @property
     def bounds(self) -> tuple[float, float]:
@@ -96,8 +102,7 @@ class Variable:
 
 @dataclass(frozen=True)
 class Table:
-    """All variables of an FMU in the order of their value references: states, inputs, outputs, parameters, derivatives,
-    choices.
+    """All variables of an FMU in the order of their value references, kind by kind as in `KINDS`.
 
     The two audit states stand behind the model's own, the audit outputs behind the model's own.
 
@@ -117,14 +122,14 @@ class Table:
 
     def first(self, kind: str) -> int:
         """Value reference of the first variable of a kind (of the following one when there is none)."""
-        order = ("state", "input", "output", "parameter", "derivative", "choice")
-        return sum(len(self.of(k)) for k in order[: order.index(kind)])
+        return sum(len(self.of(k)) for k in KINDS[: KINDS.index(kind)])
 
 
 def table(
     flat: FlatModel,
     start: Mapping[str, float] | None = None,
     choices: Iterable[Choice] = (),
+    deviating: Sequence[str] = (),
     *,
     audit: bool = True,
 ) -> Table:
@@ -134,10 +139,12 @@ def table(
         flat: the model
         start: start values (SI) that replace those of inputs, parameters and states
         choices: enumerations
+        deviating: states and outputs that have a standard deviation
         audit: whether the energy across the boundary is integrated
 
     Raises:
-        FmuError: a start value is unknown, not settable, or out of its range; a name appears twice
+        FmuError: a start value is unknown, not settable, or out of its range; a name appears twice; what shall have a
+            standard deviation is neither a state nor an output
     """
     states, inputs, parameters, problems = _started(flat, dict(start or {}))
     states += _audit_states(flat) if audit else ()
@@ -150,6 +157,12 @@ def table(
         variables += [Variable(len(variables) + i, kind, q) for i, q in enumerate(group)]
     variables += [Variable(len(variables) + i, "derivative", q, state=i) for i, q in enumerate(derivatives)]
     variables += [Variable(len(variables) + i, "choice", _of_choice(c), choice=c) for i, c in enumerate(chosen)]
+    own = {q.name for q in (*flat.states, *flat.outputs)}
+    known = {v.name: v for v in variables if v.name in own}
+    found = [known[name] for name in deviating if name in known]
+    missing = [name for name in deviating if name not in known]
+    problems += [f"{flat.name}: {name} is no state and no output.{suggestion(name, known)}" for name in missing]
+    variables += [_deviation(len(variables) + i, v) for i, v in enumerate(found)]
     twice = sorted(name for name, count in Counter(v.name for v in variables).items() if count > 1)
     problems += [f"{flat.name}: {problem}" for problem in _unfit(chosen, inputs, parameters)]
     problems += [f'{flat.name}: the name "{n}" appears twice.' for n in twice]
@@ -251,6 +264,13 @@ def _of_choice(choice: Choice) -> Quantity:
 
 def _derivative(q: Quantity) -> Quantity:
     return Quantity(f"der({q.name})", per_second(q.unit), f"time derivative of {q.name}", nominal=q.nominal)
+
+
+def _deviation(reference: int, of: Variable) -> Variable:
+    q = of.quantity
+    unit = f"{q.unit} (difference)" if q.unit == "K" else q.unit
+    own = Quantity(f"{q.name}.sd", unit, f"standard deviation of {q.name}", nominal=0.01 * q.nominal, low=0.0)
+    return Variable(reference, "deviation", own, of=of.reference)
 
 
 def per_second(unit: str) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import sys
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
@@ -195,6 +196,9 @@ def export(
         Path | None, typer.Option(metavar="FOLDER", help="Write parameter sets (.ssv) and a reference result there.")
     ] = None,
     ssp: Ssp = None,
+    uncertainty: Annotated[
+        bool, typer.Option("--uncertainty", help="With standard deviations, such as oil.T.sd; co-simulation only.")
+    ] = False,
     json: Json = None,
 ) -> None:
     """Write the rig as an FMU for FMI 2.0 or 3.0, or as a system of FMUs."""
@@ -216,6 +220,7 @@ def export(
         with_origins=origins,
         fmi=int(fmi),
         audit=audit,
+        uncertainty=uncertainty,
     )
 
 
@@ -311,7 +316,8 @@ def sweep(
     vary: Annotated[
         list[str],
         typer.Option(
-            help='NAME=LOW..HIGH, for example "carrier.tau=500..2700 N.m", or NAME~normal(MEAN, DEVIATION). Repeatable.'
+            help='NAME=LOW..HIGH, for example "carrier.tau=500..2700 N.m", NAME~normal(MEAN, DEVIATION),'
+            " or the word uncertainty: every uncertain parameter of the rig. Repeatable."
         ),
     ],
     out: Annotated[Path, typer.Option("-o", "--out", help="CSV or Parquet file to write.")],
@@ -368,5 +374,12 @@ for _panel, _commands in PANELS.items():
         app.command(_command.__name__.strip("_").replace("_", "-"), rich_help_panel=_panel)(_command)
 
 
-if __name__ == "__main__":
+def program() -> None:
+    """Run the command line. A named command stands alone: to read the options of all takes long."""
+    named = [command for command in app.registered_commands if sys.argv[1:2] == [command.name]]
+    app.registered_commands = named or app.registered_commands
     app()
+
+
+if __name__ == "__main__":
+    program()

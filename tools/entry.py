@@ -8,12 +8,9 @@ import sys
 def main() -> None:
     """Entry point of the program."""
     try:
-        from .cli import app
+        from .cli import program
 
-        # reading the options of all commands takes as long as a short command
-        named = [command for command in app.registered_commands if sys.argv[1:2] == [command.name]]
-        app.registered_commands = named or app.registered_commands
-        app()
+        program()
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         sys.exit(130)

@@ -16,7 +16,7 @@ from ..fmu.effective import effective
 from ..fmu.export import export
 from ..fmu.related import Related
 from ..model.core.flat import FlatModel
-from ..model.errors import SolveError
+from ..model.errors import ScenarioError, SolveError
 from ..model.machines.spec import assemble
 from ..model.run.point import point
 from ..model.run.rows import evaluate_at
@@ -29,6 +29,7 @@ from .network import network_svg
 from .rigs import load
 from .settings import Drive, adjusted, driven_at, flat_of
 from .transients import first_temperatures
+from .uncertainties import uncertain
 from .unchecked import print_unchecked, unchecked
 
 #: Shares of the operating point's torques at which a machine on torques alone is looked for that holds its speed.
@@ -54,8 +55,13 @@ def export_command(
     with_origins: bool = True,
     fmi: int = 2,
     audit: bool = True,
+    uncertainty: bool = False,
 ) -> None:
     """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
+    if uncertainty and not with_origins:
+        raise ScenarioError(
+            "--uncertainty tells how uncertain values are, which --no-parameters-source keeps back. Take one away."
+        )
     writable(out, file_of(json))
     chosen = platforms(platform, fmi)
     scenario, setting, flat, start = prepared(rig, assignments, shaft, given)
@@ -64,6 +70,7 @@ def export_command(
     told: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
     options: dict[str, Any] = {"platform": platform, "start": start, "owner": owner, "fmi": fmi}
     options |= {"with_sources": with_sources, "audit": audit}
+    options["uncertain"] = uncertain(setting, flat) if uncertainty else None
     kept, run = effective(flat, start), reference_run(flat, duty, start)
     options["others"] = Related(sets_of_oils(setting, kept, told=with_origins), experiment(flat, duty, run))
     with progress_bar() as options["progress"]:
@@ -81,6 +88,7 @@ def export_command(
         "platforms": [p.name for p in chosen],
         "inputs": [q.name for q in flat.inputs],
         "outputs": [q.name for q in (*flat.states, *flat.outputs)],
+        "deviations": [f"{name}.sd" for name in options["uncertain"].shown] if uncertainty else [],
         "parameters": [q.name for q in kept.parameters],
         "choices": {c.name: [i.name for i in c.items] for c in choices},
         "without_effect": [q.name for q in flat.parameters if q.name not in named],

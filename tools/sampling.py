@@ -37,10 +37,13 @@ class Written:
 
 @dataclass(frozen=True)
 class Axis:
-    """One quantity that is varied (SI): uniform from `first` to `second`, or normal with that mean and deviation."""
+    """One quantity that is varied (SI): uniform from `first` to `second`, or normal with that mean and deviation.
+
+    Of a lognormal one they are the median and, in its unit, what one standard deviation of the logarithm changes it by.
+    """
 
     name: str
-    kind: Literal["uniform", "normal"]
+    kind: Literal["uniform", "normal", "lognormal"]
     first: float
     second: float
 
@@ -50,7 +53,10 @@ class Axis:
             return np.asarray(self.first + share * (self.second - self.first))
         from scipy.special import ndtri
 
-        return np.asarray(self.first + self.second * ndtri(share))
+        change = self.second * ndtri(share)
+        if self.kind == "lognormal":
+            return np.asarray(self.first * np.exp(change / self.first))
+        return np.asarray(self.first + change)
 
 
 def read(texts: Sequence[str]) -> tuple[Written, ...]:
@@ -181,7 +187,9 @@ def described(axis: Axis, quantity: Quantity) -> dict[str, object]:
     """An axis for a summary, in the unit shown to a person."""
     first = from_si(axis.first, quantity.unit)
     second = from_si(axis.second, quantity.unit)
-    if axis.kind == "normal":
+    if axis.kind != "uniform":
         second -= from_si(0.0, quantity.unit)
-    words = ("low", "high") if axis.kind == "uniform" else ("mean", "deviation")
+    words = {"uniform": ("low", "high"), "normal": ("mean", "deviation"), "lognormal": ("median", "deviation")}[
+        axis.kind
+    ]
     return {"kind": axis.kind, words[0]: first, words[1]: second, "unit": shown(quantity.unit)}

@@ -29,6 +29,7 @@ from .settings import adjusted, flat_of
 from .sweep_file import SUFFIXES, Column, Store, parquet_missing, work_file, write_table
 from .sweep_rows import TELLING, Block, Job, clustered, dask_missing, local
 from .transients import first_temperatures
+from .uncertainties import UNCERTAINTY, reasons, sampled, shares
 from .unchecked import print_unchecked, unchecked
 
 #: Rows of a block: what an interruption may cost, and what a worker of a cluster gets at a time.
@@ -187,8 +188,9 @@ def planned(request: Request, scenario: Scenario | None = None) -> Plan:
     """
     written: tuple[sampling.Written, ...] = ()
     problems = _problems(request)
+    vary = [text for text in request.vary if text != UNCERTAINTY]
     try:
-        written = sampling.read(request.vary)
+        written = sampling.read(vary) if vary or not request.vary else ()
     except GearheatError as error:
         problems += error.problems
     names = [w.name for w in written]
@@ -217,10 +219,23 @@ def planned(request: Request, scenario: Scenario | None = None) -> Plan:
     if request.grid is not None:
         values = sampling.gridded(axes, request.grid)
     else:
-        values = sampling.sampled(axes, request.sample or 0, request.method, request.seed)
-    job = _job(request, scenario, flat, tuple(names))
+        axes, values = _sampled(request, scenario, flat, axes)
+    job = _job(request, scenario, flat, tuple(axis.name for axis in axes))
     drawn = _outputs(request) or told(scenario) or job.outputs[:MOST_PANELS]
     return Plan(scenario.name, request.kind, axes, values, job, flat, unchecked(scenario, flat), drawn)
+
+
+def _sampled(
+    request: Request, scenario: Scenario, flat: FlatModel, axes: tuple[sampling.Axis, ...]
+) -> tuple[tuple[sampling.Axis, ...], np.ndarray]:
+    """Axes and values of random rows, all uncertain parameters among them where they are asked for."""
+    drawn = partial(sampling.sampled, rows=request.sample or 0, method=request.method, seed=request.seed)
+    if UNCERTAINTY not in request.vary:
+        return axes, drawn(axes)
+    why = reasons(scenario, flat, [axis.name for axis in axes])
+    values = drawn((*axes, *shares(why)))
+    more, uncertain = sampled(why, flat, values[:, len(axes) :])
+    return (*axes, *more), np.column_stack([values[:, : len(axes)], uncertain])
 
 
 def _problems(request: Request) -> list[str]:
@@ -232,6 +247,9 @@ def _problems(request: Request) -> list[str]:
         found.append(parquet_missing())
     if request.scheduler is not None:
         found.append(dask_missing())
+    if UNCERTAINTY in request.vary:
+        options = {"--plot": request.plot, "--grid": request.grid}
+        found += [f"{name} does not go with --vary {UNCERTAINTY}. Leave it out." for name, v in options.items() if v]
     if request.plot is not None and len(request.vary) > MOST_DRAWN:
         found.append(f"--plot draws over one or two quantities; {len(request.vary)} are varied. Vary fewer.")
     if (request.sample is None) == (request.grid is None):

@@ -42,10 +42,12 @@ def system_command(
     with_origins: bool,
     fmi: int,
     audit: bool,
+    uncertainty: bool,
 ) -> None:
     """Write a rig as a system of coupled FMUs, with the options of the command `export`."""
     writable(out, file_of(json))
-    refused = [option for option, asked in (("--extras", extras is not None), ("--fmi 3", fmi == 3)) if asked]
+    options_asked = {"--extras": extras is not None, "--fmi 3": fmi == 3, "--uncertainty": uncertainty}
+    refused = [option for option, asked in options_asked.items() if asked]
     if refused:
         raise ScenarioError([f"{option} does not go with --ssp. Leave it out." for option in refused])
     platforms(platform)

@@ -20,6 +20,7 @@ static const char *settle_down(Instance *m)
         if (error <= 1.0) {
             for (i = 0, moved = 0.0; i < N_MODEL; i++)
                 moved = fmax(moved, fabs(x_new[i] - m->s.x[i]) / model_nominal[FIRST_X + i] * (LONG_STEP / size));
+            move_states(m, m->s.x, z, m->s.u, size, x_new, z_new);
             memcpy(m->s.x, x_new, sizeof m->s.x);
             memcpy(z, z_new, sizeof z);
         }
@@ -27,6 +28,7 @@ static const char *settle_down(Instance *m)
     }
     memcpy(before.z, z, sizeof z);
     memcpy(before.x, m->s.x, N_MODEL * sizeof *before.x);
+    memcpy(before.s, m->s.s, sizeof before.s);
     m->s = before;
     changed(m);
     return moved <= AT_REST ? unsolved(m) : model_names[FIRST_X + worst];

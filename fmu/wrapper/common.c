@@ -10,6 +10,7 @@ static void start(Instance *m)
     m->s.tolerance = TOLERANCE;
     for (i = 0; i < NX; i++) m->s.x[i] = model_start[FIRST_X + i];
     for (i = 0; i < NZ; i++) m->s.z[i] = model_z_start[i];
+    for (i = 0; i < ND * NS; i++) m->s.s[i] = model_state_directions[i];
     for (i = 0; i < NU; i++) m->s.u[i] = model_start[FIRST_U + i];
     for (i = 0; i < NP; i++) m->s.own[i] = model_start[FIRST_P + i];
     for (i = 0; i < N_CHOICES; i++) m->s.choice[i] = model_start[FIRST_CHOICE + i];
@@ -38,6 +39,8 @@ fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, f
     if (length == 0) return refuse(&untold, "fmi2Instantiate: the instance has no name."), NULL;
     if (type != fmi2ModelExchange && type != fmi2CoSimulation)
         return refuse(&untold, "fmi2Instantiate: unknown FMU type %d.", (int)type), NULL;
+    if (ND > 0 && type == fmi2ModelExchange)
+        return refuse(&untold, "fmi2Instantiate: an FMU with standard deviations serves co-simulation only."), NULL;
     if (!guid || strcmp(guid, MODEL_GUID) != 0)
         return refuse(&untold, "fmi2Instantiate: wrong GUID %.100s: this binary belongs to %s.",
                       guid ? guid : "(none)", MODEL_GUID), NULL;
@@ -195,7 +198,7 @@ static int settable(fmi2ValueReference r)
 {
     if (r < FIRST_U) return INSTANTIATED | INITIALIZATION;
     if (r < FIRST_Y) return SETTABLE;
-    if (r >= FIRST_DX && r < FIRST_CHOICE) return 0;
+    if ((r >= FIRST_DX && r < FIRST_CHOICE) || r >= FIRST_SD) return 0;
     if (r < FIRST_P) return 0;
     return model_type[r] == WHOLE_NUMBER || r == FIRST_CHOICE + START ? INSTANTIATED | INITIALIZATION
                                                                       : SETTABLE & ~CONTINUOUS_TIME;

@@ -26,9 +26,21 @@ static double slope_of(const Direction *d, const Slopes *s, fmi2ValueReference r
     return r < FIRST_P ? s->y[r - FIRST_Y] : s->dx[r - FIRST_DX];
 }
 
+/* Of a standard deviation no slope is known. */
+static int without_slope(const Instance *m, const fmi2ValueReference r[], size_t n, const char *function)
+{
+    size_t i;
+    for (i = 0; i < n; i++)
+        if (NSD > 0 && r[i] >= FIRST_SD) {
+            discard(m, "%s: of %s no derivative is known.", function, model_names[r[i]]);
+            return 1;
+        }
+    return 0;
+}
+
 static int is_calculated(fmi2ValueReference r)
 {
-    return r < FIRST_U || (r >= FIRST_Y && r < FIRST_P) || (r >= FIRST_DX && r < FIRST_CHOICE);
+    return r < FIRST_U || (r >= FIRST_Y && r < FIRST_P) || (r >= FIRST_DX && r < FIRST_CHOICE) || r >= FIRST_SD;
 }
 
 fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknown[], size_t n_unknown,
@@ -45,6 +57,7 @@ fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReferenc
     if (missing(m, unknown, n_unknown, f) || missing(m, d_unknown, n_unknown, f)) return fmi2Error;
     if (missing(m, known, n_known, f) || missing(m, d_known, n_known, f)) return fmi2Error;
     if (!known_references(m, unknown, n_unknown, f) || !known_references(m, known, n_known, f)) return fmi2Error;
+    if (without_slope(m, unknown, n_unknown, f)) return fmi2Discard;
     memset(&d, 0, sizeof d);
     for (i = 0; i < n_known; i++) {
         fmi2ValueReference r = known[i];
@@ -78,6 +91,7 @@ fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReferenc
     if (!allowed_for(m, fmi2CoSimulation, STEP_COMPLETE | STEP_FAILED | TERMINATED, f)) return fmi2Error;
     if (missing(m, r, n, f) || missing(m, order, n, f) || missing(m, value, n, f)) return fmi2Error;
     if (!known_references(m, r, n, f)) return fmi2Error;
+    if (without_slope(m, r, n, f)) return fmi2Discard;
     for (i = 0; i < n; i++) {
         if (r[i] >= FIRST_P || (r[i] >= FIRST_U && r[i] < FIRST_Y))
             return refuse(m, "%s: %s is no output.", f, model_names[r[i]]);

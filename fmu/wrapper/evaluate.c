@@ -5,7 +5,7 @@ static void refresh_constants(Instance *m)
     if (m->constants_known) return;
     model_constants(m->s.p, m->c);
     m->constants_known = 1;
-    m->relations_hold = 0;
+    m->relations_hold = m->directions_known = 0;
 }
 
 /* Solve the implicit equations where states, inputs or parameters have changed; NULL, or the name of the one without a
@@ -76,7 +76,7 @@ static void accept_algebra(Instance *m)
 /* Something the outputs depend on has changed. */
 static void changed(Instance *m)
 {
-    m->outputs_known = m->algebra_known = 0;
+    m->outputs_known = m->algebra_known = m->deviations_known = 0;
 }
 
 /* Where a value lies: NULL for a value the model calculates. */
@@ -85,14 +85,17 @@ static double *stored(Instance *m, fmi2ValueReference r)
     if (r < FIRST_U) return &m->s.x[r - FIRST_X];
     if (r < FIRST_Y) return &m->s.u[r - FIRST_U];
     if (r >= FIRST_P && r < FIRST_DX) return &m->s.own[r - FIRST_P];
-    if (r >= FIRST_CHOICE) return &m->s.choice[r - FIRST_CHOICE];
+    if (r >= FIRST_CHOICE && r < FIRST_SD) return &m->s.choice[r - FIRST_CHOICE];
     return NULL;
 }
+
+static double deviation_of(Instance *m, int i);
 
 static double value_of(Instance *m, fmi2ValueReference r)
 {
     const double *value = stored(m, r);
     if (value) return *value;
+    if (r >= FIRST_SD) return deviation_of(m, r - FIRST_SD);
     m->outputs_wanted = 1;
     refresh_outputs(m);
     return r < FIRST_P ? m->y[r - FIRST_Y] : m->dx[r - FIRST_DX];

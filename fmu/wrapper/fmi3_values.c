@@ -86,6 +86,7 @@ fmi3Status fmi3GetAdjointDerivative(fmi3Instance c, const fmi3ValueReference unk
     if (wrong_size(m, seed, n_seed, n_unknown, f)) return fmi3Error;
     if (wrong_size(m, sensitivity, n_sensitivity, n_known, f)) return fmi3Error;
     if (!known_references(m, unknown, n_unknown, f) || !known_references(m, known, n_known, f)) return fmi3Error;
+    if (without_slope(m, unknown, n_unknown, f)) return fmi3Discard;
     memset(&s, 0, sizeof s);
     for (i = 0; i < n_unknown; i++) {
         fmi3ValueReference r = unknown[i];

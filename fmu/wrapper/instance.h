@@ -11,7 +11,7 @@
 
 #define AT_LEAST_1(n) ((n) > 0 ? (n) : 1)
 
-/* Value references: states, inputs, outputs, parameters, derivatives, choices. */
+/* Value references: states, inputs, outputs, parameters, derivatives, choices, standard deviations. */
 enum {
     FIRST_X = 0,
     FIRST_U = FIRST_X + NX,
@@ -19,7 +19,8 @@ enum {
     FIRST_P = FIRST_Y + NY,
     FIRST_DX = FIRST_P + NP,
     FIRST_CHOICE = FIRST_DX + NX,
-    N_VARIABLES = FIRST_CHOICE + N_CHOICES
+    FIRST_SD = FIRST_CHOICE + N_CHOICES,
+    N_VARIABLES = FIRST_SD + NSD
 };
 
 /* Types of variables, one bit each, so that a function names those it takes by a mask. */
@@ -59,6 +60,7 @@ typedef struct {
     double p[AT_LEAST_1(NP)];   /* in use, see choices.c */
     double own[AT_LEAST_1(NP)]; /* as set */
     double choice[AT_LEAST_1(N_CHOICES)];
+    double s[AT_LEAST_1(ND * NS)];   /* sensitivities of the states, direction by direction */
 } State;
 
 typedef struct {
@@ -76,6 +78,11 @@ typedef struct {
     double z[AT_LEAST_1(NZ)];
     double y[AT_LEAST_1(NY)];
     double dx[AT_LEAST_1(NX)];
+    int directions_known;  /* p_dot and c_dot belong to s.p */
+    int deviations_known;  /* deviation belongs to s */
+    double p_dot[AT_LEAST_1(ND * NP)];
+    double c_dot[AT_LEAST_1(ND * NC)];
+    double deviation[AT_LEAST_1(NSD)];
     unsigned char warned[AT_LEAST_1(NK)];
     unsigned char kept[AT_LEAST_1(NU)];    /* it was told that an input keeps its value */
     int order_told;        /* that higher derivatives of inputs are ignored */

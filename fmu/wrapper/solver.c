@@ -21,6 +21,7 @@ static int advance(Instance *m, double length, Advance *w)
         double error = trial(m, x, z, u, size, x_new, z_new, &w->worst);
         h = next_size(&w->effort, error, size, h, length);
         if (error <= 1.0) {
+            move_states(m, x, z, u, size, x_new, z_new);
             t = last ? length : t + size;
             memcpy(x, x_new, sizeof x);
             memcpy(z, z_new, sizeof z);

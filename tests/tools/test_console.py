@@ -162,10 +162,10 @@ def test_a_full_disk_is_a_message(capsys):
 
 
 def test_ctrl_c_while_the_program_loads(monkeypatch, capsys):
-    def app():
+    def program():
         raise KeyboardInterrupt
 
-    monkeypatch.setitem(sys.modules, "gearheat.tools.cli", SimpleNamespace(app=app))
+    monkeypatch.setitem(sys.modules, "gearheat.tools.cli", SimpleNamespace(program=program))
     with pytest.raises(SystemExit) as ended:
         entry.main()
     assert ended.value.code == 130
