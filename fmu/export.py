@@ -104,8 +104,7 @@ def export(
         FmuError: a start value is wrong, nothing uncertain has an effect, the compiler or writing the file fails
     """
     path, chosen = Path(path), platforms(platform, fmi)
-    deviating = () if uncertain is None else uncertain.shown
-    kept, variables = _exported(flat, dict(start or {}), choices, audit, deviating)
+    kept, variables = _exported(flat, dict(start or {}), choices, audit, uncertain.shown if uncertain else ())
     code, told, directions = _code(kept, variables, fmi, owner=owner, with_sources=with_sources, uncertain=uncertain)
     about = About(sources or {}, uncertainties or {}, picture, _idle(flat, kept), directions)
     content = {
