@@ -84,8 +84,7 @@ def export(
     Args:
         flat: the model
         path: file to write, usually ending in .fmu; its folder is made if need be
-        platform: "host", "all", or names such as "linux64,win64" (FMI 3.0: "x86_64-linux,aarch64-darwin") whose
-            binaries the FMU shall hold
+        platform: "host", "all" or names of platforms, "linux64,win64" (FMI 3.0: "x86_64-linux"), to compile for
         start: start values (SI) of inputs, parameters and states that replace those of the model
         sources: parameter -> where its value is from: a citation, or "assumed: ...", "inferred: ...", "calibrated: ..."
         uncertainties: parameter -> standard uncertainty of its value, in the unit of the value
