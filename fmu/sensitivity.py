@@ -11,7 +11,7 @@ from gearheat.model.core.eliminate import Factors
 
 from .equations import Equations, full
 
-#: Diagonal coefficient of the L-stable method of two stages and order 2 (Hairer and Wanner 1996, section IV.6).
+#: Diagonal coefficient of the L-stable method of two stages, order 2 (Kennedy and Carpenter 2016, NASA/TM-2016-219173).
 GAMMA = 1 - 0.5**0.5
 
 _POINT = ["x", "z", "u", "p", "c", "p_dot", "c_dot"]
