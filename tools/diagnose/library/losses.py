@@ -56,9 +56,7 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
 
 def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
     """What moves oil and air."""
-    if teeth := at.roles.places[
-        "teeth"
-    ]:  # what moves the oil keeps a share of the heat, the housing that it hits another
+    if teeth := at.roles.places["teeth"]:  # what moves the oil keeps a share of the heat, and so does what the oil hits
         housing = [f"{name}.heat" for name in at.roles.outside] or [teeth[0].inner]
         places = [replace(place, inner=teeth[0].inner, outer=housing[0]) for place in places]
     churning: tuple[Shape, ...] = (
@@ -105,12 +103,13 @@ def no_load(at: Context, places: Sequence[Place]) -> Iterator[Cause]:
 
 
 def _wetting(form: Form, at: Context) -> Form:
-    """A loss with an oil level that wets more of the housing, too."""
+    """A loss with an oil level that wets more of the housing, too, where oil and housing meet."""
     loss, paths = form.values, at.roles.scaled(*at.roles.wetted)
-    assert loss is not None
+    if loss is None or not paths:
+        return form
 
     def values(theta: Theta, row: Row) -> Values:
-        more = ca.exp(theta["wet"] * theta["P_ref"] / at.ranges.loss) if paths else 1.0
+        more = ca.exp(theta["wet"] * theta["P_ref"] / at.ranges.loss)
         return {**loss(theta, row), **{path: row.base[path] * more for path in paths}}
 
     return replace(form, values=values)
