@@ -12,36 +12,20 @@ import pytest
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd
 from gearheat.model.errors import ScenarioError
-from gearheat.model.machines.spec import PartSpec, Spec
 from gearheat.model.run.schedule import stepped
 from gearheat.model.run.simulate import simulate
-from gearheat.scenarios.scenario import Scenario
 from gearheat.tools.settings import flat_of
 from gearheat.tools.systems import groups_of, taken_apart, write_system
+from importers import RIG
 from lxml import etree
 
 GROUPS = groups_of(["cooler", "room = room, walls, outdoors"])
-PARTS = (
-    PartSpec("oil", "HeatCapacity", {"C": 5e3, "T": 340.0}),
-    PartSpec("cooler", "ThermalConductor", {"G": 8.0}),
-    PartSpec("shell", "CylinderCooling", {"A": 0.5, "emissivity": 0.9, "D": 0.3, "share_ends": 0.3}),
-    PartSpec("room", "ClosedRoom", {"C": 2e5, "T": 290.0}),
-    PartSpec("walls", "ThermalConductor", {"G": 60.0}),
-    PartSpec("outdoors", "PrescribedTemperature", {"T": 280.0}),
-)
-NETS = (
-    ("oil.heat", "shell.surface", "cooler.a"),
-    ("room.air", "shell.air"),
-    ("room.floor", "cooler.b", "walls.a"),
-    ("walls.b", "outdoors.heat"),
-)
-BLOCK = Scenario("block", "a warm block", "network", Path(), Spec("block", "a warm block", PARTS, NETS), {}, {})
 
 
 @pytest.fixture(scope="module")
 def system(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("ssp") / "block.ssp"
-    write_system(BLOCK, taken_apart(BLOCK, GROUPS, {}), path)
+    write_system(RIG, taken_apart(RIG, GROUPS, {}), path)
     return path
 
 
@@ -65,7 +49,7 @@ def test_the_file_is_sound(system: Path) -> None:
 
 
 def test_all_fmus_start_where_the_rig_does() -> None:
-    taken = taken_apart(BLOCK, GROUPS, {"oil.T": 350.0})
+    taken = taken_apart(RIG, GROUPS, {"oil.T": 350.0})
     assert taken.starts["gearbox"]["oil.T"] == taken.starts["cooler"]["oil.T"] == 350.0
     assert taken.starts["gearbox"]["cooler.Q_flow"] == pytest.approx(-8.0 * (350.0 - 290.0))
     assert taken.starts["room"]["cooler.Q_flow"] == pytest.approx(8.0 * (350.0 - 290.0))
@@ -73,7 +57,7 @@ def test_all_fmus_start_where_the_rig_does() -> None:
 
 
 def test_the_error_of_coupling_falls_with_the_step(system: Path) -> None:
-    whole, errors = flat_of(BLOCK), []
+    whole, errors = flat_of(RIG), []
     for step in (10.0, 5.0, 2.5):
         coupled = simulate_ssp(str(system), stop_time=600.0, step_size=step)
         duty = stepped([(600.0, {q.name: q.start for q in whole.inputs})])
@@ -86,7 +70,7 @@ def test_the_error_of_coupling_falls_with_the_step(system: Path) -> None:
 
 def test_inputs_of_several_fmus_are_those_of_the_system(tmp_path: Path) -> None:
     path = tmp_path / "apart.ssp"
-    found = write_system(BLOCK, taken_apart(BLOCK, groups_of(["world=outdoors", "room=room,walls"]), {}), path)
+    found = write_system(RIG, taken_apart(RIG, groups_of(["world=outdoors", "room=room,walls"]), {}), path)
     assert found["inputs"] == ["outdoors.T"]
     coupled = simulate_ssp(str(path), stop_time=60.0, step_size=10.0, input={"outdoors.T": lambda time: 270.0})
     assert coupled["room.outdoors.T"][-1] == 270.0
@@ -102,4 +86,4 @@ def test_what_does_not_work_is_told(gearheat, tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match="named twice"):
         groups_of(["room=room", "room=walls"])
     with pytest.raises(ScenarioError, match="no part"):
-        taken_apart(replace(BLOCK, name="other"), {"a": ["b"]}, {})
+        taken_apart(replace(RIG, name="other"), {"a": ["b"]}, {})
