@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import sys
-from functools import partial
 from pathlib import Path
 from typing import Annotated, Literal
 
@@ -205,8 +204,7 @@ def export(
     from ..fmu.description import Owner
     from . import exporting, systems
 
-    command = partial(systems.system_command, ssp) if ssp else exporting.export_command
-    command(
+    asked = exporting.Asked(
         str(extended or rig),
         out,
         set_ or [],
@@ -222,6 +220,10 @@ def export(
         audit=audit,
         uncertainty=uncertainty,
     )
+    if ssp:
+        systems.system_command(ssp, asked)
+    else:
+        exporting.export_command(asked)
 
 
 @console.guarded

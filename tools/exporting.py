@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -40,62 +41,75 @@ _OIL = "oil"
 _DEFAULT = "inferred: follows from the other values, or a numerical default"
 
 
-def export_command(
-    rig: str,
-    out: Path,
-    assignments: Sequence[str],
-    shaft: str | None,
-    given: str,
-    platform: str,
-    extras: Path | None,
-    json: str | None,
-    *,
-    owner: Owner = Owner(),
-    with_sources: bool = True,
-    with_origins: bool = True,
-    fmi: int = 2,
-    audit: bool = True,
-    uncertainty: bool = False,
-) -> None:
+@dataclass(frozen=True)
+class Asked:
+    """What the command `export` is asked for; `drive` and `given` say which shaft end's speed or torque is given."""
+
+    rig: str
+    out: Path
+    assignments: Sequence[str]
+    drive: str | None
+    given: str
+    platform: str
+    extras: Path | None
+    json: str | None
+    owner: Owner
+    with_sources: bool
+    with_origins: bool
+    fmi: int
+    audit: bool
+    uncertainty: bool
+
+    def prepared(self) -> tuple[Scenario, Scenario, FlatModel, dict[str, float]]:
+        """The rig, the rig as set and driven, its model, and start values that are not those of the model."""
+        return prepared(self.rig, self.assignments, self.drive, self.given)
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Options of `fmu.export.export` that every FMU has alike."""
+        told: dict[str, Any] = {} if self.with_origins else {"sources": {}, "uncertainties": {}}
+        alike = {"owner": self.owner, "with_sources": self.with_sources, "audit": self.audit}
+        return told | alike | {"platform": self.platform}
+
+
+def export_command(asked: Asked) -> None:
     """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
-    if uncertainty and not with_origins:
+    if asked.uncertainty and not asked.with_origins:
         raise ScenarioError(
             "--uncertainty tells how uncertain values are, which --no-parameters-source keeps back. Take one away."
         )
-    writable(out, file_of(json))
-    chosen = platforms(platform, fmi)
-    scenario, setting, flat, start = prepared(rig, assignments, shaft, given)
-    beside = folder(extras) if extras is not None else None
+    writable(asked.out, file_of(asked.json))
+    chosen = platforms(asked.platform, asked.fmi)
+    scenario, setting, flat, start = asked.prepared()
+    beside = folder(asked.extras) if asked.extras is not None else None
     duty = reference_duty(flat, start, setting.shaft_paths())
-    told: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
-    options: dict[str, Any] = {"platform": platform, "start": start, "owner": owner, "fmi": fmi}
-    options |= {"with_sources": with_sources, "audit": audit}
-    options["uncertain"] = uncertain(setting, flat) if uncertainty else None
+    options = asked.options | {"start": start, "fmi": asked.fmi}
+    options["uncertain"] = uncertain(setting, flat) if asked.uncertainty else None
     kept, run = effective(flat, start), reference_run(flat, duty, start)
-    options["others"] = Related(sets_of_oils(setting, kept, told=with_origins), experiment(flat, duty, run))
+    options["others"] = Related(sets_of_oils(setting, kept, told=asked.with_origins), experiment(flat, duty, run))
     with progress_bar() as options["progress"]:
-        write_fmu(setting, flat, out, verify=lambda fmu: checked(fmu, flat, duty, run), **told, **options)
+        write_fmu(setting, flat, asked.out, verify=lambda fmu: checked(fmu, flat, duty, run), **options)
     named = {q.name for q in kept.parameters}
-    origins = sources_of(setting, kept) if with_origins else None
-    written = [] if beside is None else write_extras(out, beside, setting, kept, duty, start, origins)
+    origins = sources_of(setting, kept) if asked.with_origins else None
+    written = [] if beside is None else write_extras(asked.out, beside, setting, kept, duty, start, origins)
     choices = reduced(choices_of(setting), kept)
     found = {
         "schema": "gearheat.export/1",
         "rig": scenario.name,
-        "fmu": str(out),
-        "fmi": f"{fmi}.0",
-        "sha256": hashlib.sha256(out.read_bytes()).hexdigest(),
+        "fmu": str(asked.out),
+        "fmi": f"{asked.fmi}.0",
+        "sha256": hashlib.sha256(asked.out.read_bytes()).hexdigest(),
         "platforms": [p.name for p in chosen],
         "inputs": [q.name for q in flat.inputs],
         "outputs": [q.name for q in (*flat.states, *flat.outputs)],
-        "deviations": [f"{name}.sd" for name in options["uncertain"].shown] if uncertainty else [],
+        "deviations": [f"{name}.sd" for name in options["uncertain"].shown] if asked.uncertainty else [],
         "parameters": [q.name for q in kept.parameters],
         "choices": {c.name: [i.name for i in c.items] for c in choices},
         "without_effect": [q.name for q in flat.parameters if q.name not in named],
         "extras": [str(path) for path in written],
         "unchecked": unchecked(setting, flat),
     }
-    answer(found, json, lambda: _print(found))
+    answer(found, asked.json, lambda: _print(found))
 
 
 def prepared(

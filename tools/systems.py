@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from ..fmu.compiling import platforms, store
-from ..fmu.description import EXPERIMENT, Owner
+from ..fmu.description import EXPERIMENT
 from ..fmu.ssp import Element, End, System, ssp
 from ..model.core.flat import FlatModel
 from ..model.core.flatten import flatten
@@ -22,47 +22,29 @@ from ..model.machines.spec import assemble
 from ..model.run.rows import evaluate_at
 from ..scenarios.scenario import Scenario
 from .console import answer, file_of, progress_bar, say, writable
-from .exporting import prepared, write_fmu
+from .exporting import Asked, write_fmu
 from .settings import flat_of
 
 
-def system_command(
-    groups: Sequence[str],
-    rig: str,
-    out: Path,
-    assignments: Sequence[str],
-    shaft: str | None,
-    given: str,
-    platform: str,
-    extras: Path | None,
-    json: str | None,
-    *,
-    owner: Owner,
-    with_sources: bool,
-    with_origins: bool,
-    fmi: int,
-    audit: bool,
-    uncertainty: bool,
-) -> None:
+def system_command(groups: Sequence[str], asked: Asked) -> None:
     """Write a rig as a system of coupled FMUs, with the options of the command `export`."""
-    writable(out, file_of(json))
-    given_up = {"--extras": extras is not None, "--fmi 3": fmi == 3, "--uncertainty": uncertainty}
-    if refused := [option for option, asked in given_up.items() if asked]:
+    writable(asked.out, file_of(asked.json))
+    given_up = {"--extras": asked.extras is not None, "--fmi 3": asked.fmi == 3, "--uncertainty": asked.uncertainty}
+    if refused := [option for option, is_asked in given_up.items() if is_asked]:
         raise ScenarioError([f"{option} does not go with --ssp. Leave it out." for option in refused])
-    platforms(platform)
-    _, setting, _, start = prepared(rig, assignments, shaft, given)
+    platforms(asked.platform)
+    _, setting, _, start = asked.prepared()
     taken = taken_apart(setting, groups_of(groups), start)
-    options: dict[str, Any] = {} if with_origins else {"sources": {}, "uncertainties": {}}
-    options |= {"platform": platform, "owner": owner, "with_sources": with_sources, "audit": audit}
+    options = asked.options
     with progress_bar() as options["progress"]:
-        found = write_system(setting, taken, out, **options)
+        found = write_system(setting, taken, asked.out, **options)
 
     def human() -> None:
-        say(f"{out}: {', '.join(found['fmus'])}")
+        say(f"{asked.out}: {', '.join(found['fmus'])}")
         for connection in found["connections"]:
             say(f"  {connection}")
 
-    answer(found, json, human)
+    answer(found, asked.json, human)
 
 
 @dataclass(frozen=True)
