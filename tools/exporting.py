@@ -62,7 +62,13 @@ class Asked:
 
     def prepared(self) -> tuple[Scenario, Scenario, FlatModel, dict[str, float]]:
         """The rig, the rig as set and driven, its model, and start values that are not those of the model."""
-        return prepared(self.rig, self.assignments, self.drive, self.given)
+        scenario = load(self.rig)
+        asked = self.drive is not None or self.given == "torque"
+        drive: Drive | None = driven_at(scenario, self.drive, self.given) if asked else None
+        setting = adjusted(scenario, self.assignments, drive=drive)
+        flat = flat_of(setting)
+        start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, self.assignments)
+        return scenario, setting, flat, start
 
     @property
     def options(self) -> dict[str, Any]:
@@ -110,25 +116,6 @@ def export_command(asked: Asked) -> None:
         "unchecked": unchecked(setting, flat),
     }
     answer(found, asked.json, lambda: _print(found))
-
-
-def prepared(
-    rig: str, assignments: Sequence[str], shaft: str | None, given: str
-) -> tuple[Scenario, Scenario, FlatModel, dict[str, float]]:
-    """The rig, the rig as set and driven, its model, and start values that are not those of the model.
-
-    Args:
-        rig: name or file
-        assignments: texts "NAME=VALUE"
-        shaft: the shaft end that drives; as the names say, or the rig's own if None
-        given: "speed" or "torque"
-    """
-    scenario = load(rig)
-    drive: Drive | None = driven_at(scenario, shaft, given) if shaft is not None or given == "torque" else None
-    setting = adjusted(scenario, assignments, drive=drive)
-    flat = flat_of(setting)
-    start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, assignments)
-    return scenario, setting, flat, start
 
 
 def _print(found: Mapping[str, Any]) -> None:
