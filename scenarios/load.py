@@ -39,6 +39,9 @@
     [losses]                              # column of the losses table = outputs that are summed
     P_seal_W = ["carrier_seal.P_loss", "sun_seal.P_loss"]
 
+    [uncertainties.loss]                  # values that are uncertain together, beside those of single ones in their part:
+    "gears.k_mu" = 0.03                   # what each differs by at one standard deviation of one reason, which is
+    "cooling.A" = "-0.01 m2"              # independent of all others
     [campaign]                            # measured data; see `tables.CampaignTable`
     [[errata]]                            # where the source is wrong; see `tables.ErratumTable`
 
@@ -71,7 +74,7 @@ from .repeats import expanded
 from .scenario import Erratum, Scenario
 from .shipped import RIGS, list_rigs
 from .tables import RigTable, validate
-from .values import PartValues, in_range, part_values, readable, settable
+from .values import PartValues, deviation, in_range, part_values, readable, settable
 
 #: Kind of rig -> its fixed parts (name -> type) and connections.
 LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
@@ -181,7 +184,7 @@ class _Loader:
         given = self._drive()
         spec = self._spec(parts)
         sensors = self._sensors()
-        protocol, data = self._protocol(), self._data()
+        protocol, data, joint = self._protocol(), self._data(), self._joint_uncertainties()
         if self.problems:
             raise ScenarioError(self.problems)
         nets(assemble(spec))  # ports of different kinds that meet
@@ -197,6 +200,7 @@ class _Loader:
             losses={column: tuple(summed) for column, summed in self.table.losses.items()},
             value_sources=self.value_sources,
             uncertainties={f"{name}.{key}": u for name, part in parts.items() for key, u in part.uncertainties.items()},
+            joint_uncertainties=joint,
             units={f"{name}.{key}": unit for name, part in parts.items() for key, unit in part.units.items()},
             overrides=tuple(o for part in parts.values() for o in part.overrides),
             entries={name: part.entries for name, part in parts.items() if part.entries},
@@ -290,6 +294,21 @@ class _Loader:
         for column, path in ((column, path) for column, summed in self.table.losses.items() for path in summed):
             if path not in known:
                 self.problems.append(f'{self.file} [losses] {column}: there is no "{path}".{suggestion(path, known)}')
+        return found
+
+    def _joint_uncertainties(self) -> dict[str, dict[str, float]]:
+        """Reason -> path -> what a value changes by at one standard deviation."""
+        known = self._quantities(settable)
+        found: dict[str, dict[str, float]] = {name: {} for name in self.table.uncertainties}
+        for name, path, raw in ((n, *leaf) for n, table in self.table.uncertainties.items() for leaf in paths(table)):
+            where = f"{self.file} [uncertainties.{name}]"
+            if path not in known:
+                self.problems.append(f'{where}: there is no value "{path}".{suggestion(path, known)}')
+                continue
+            try:
+                found[name][path] = deviation(f"{where}: {path}", raw, known[path].unit)
+            except GearheatError as error:
+                self.problems += error.problems
         return found
 
     def _quantities(self, kind: Any) -> dict[str, Quantity]:

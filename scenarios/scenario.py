@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
+from math import hypot
 from pathlib import Path
 
 from ..model.core.declare import Given, Input, declared
@@ -38,6 +39,7 @@ class Scenario:
         losses: column of the losses table -> outputs that are summed
         value_sources: path -> where its value is from
         uncertainties: path -> standard uncertainty of its value in SI, where the rig states one
+        joint_uncertainties: reason -> path -> what its value changes by at one standard deviation of the reason, SI
         units: path -> unit in which its value is written
         overrides: values that stand in the place of their catalogue's
         entries: part -> kind of catalogue -> name of the entry it was filled from
@@ -57,6 +59,7 @@ class Scenario:
     losses: Mapping[str, tuple[str, ...]] = field(default_factory=dict)
     value_sources: Mapping[str, str] = field(default_factory=dict)
     uncertainties: Mapping[str, float] = field(default_factory=dict)
+    joint_uncertainties: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     overrides: tuple[Override, ...] = ()
     entries: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
@@ -74,6 +77,14 @@ class Scenario:
     def room(self) -> str | None:
         """Path of the temperature of the room, of the first where there are several, None where there is none."""
         return next((f"{name}.T" for name in self.spec.of_type("Room")), None)
+
+    @property
+    def standard_uncertainties(self) -> dict[str, float]:
+        """Path -> standard uncertainty of its value in SI by all reasons that the rig states."""
+        found = dict(self.uncertainties)
+        for path, change in (pair for changes in self.joint_uncertainties.values() for pair in changes.items()):
+            found[path] = hypot(found.get(path, 0.0), change)
+        return found
 
     def settable(self) -> dict[str, Quantity]:
         """All that may be given a value, by path: parameters, start values of states, inputs."""
@@ -117,6 +128,10 @@ class Scenario:
             operating_point={**self.operating_point, **moved},
             value_sources={**self.value_sources, **dict.fromkeys(values, source)},
             uncertainties={path: value for path, value in self.uncertainties.items() if path not in values},
+            joint_uncertainties={
+                reason: {path: change for path, change in changes.items() if path not in values}
+                for reason, changes in self.joint_uncertainties.items()
+            },
         )
 
     def driven(self, given: Mapping[str, Iterable[str]]) -> Scenario:

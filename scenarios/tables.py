@@ -79,6 +79,10 @@ class RigTable(Strict):
     )
     losses: dict[str, list[str]] = Field({}, description="column of the losses table -> outputs that are summed")
     campaign: CampaignTable | None = Field(None, description="measured data and how they were taken")
+    uncertainties: dict[str, dict[str, Any]] = Field(
+        {},
+        description="[uncertainties.NAME]: what values change by together at one standard deviation, with their units",
+    )
     errata: list[ErratumTable] = Field([], description="places where the source is wrong")
 
     @field_validator("sensors", mode="before")

@@ -89,6 +89,20 @@ def readable(cls: type[Component]) -> dict[str, Declaration]:
     return {k: d for kind in (Output, State, Input) for k, d in declared(cls, kind).items()}
 
 
+def deviation(name: str, raw: object, unit: str) -> float:
+    """What a value differs by, in SI: that of a temperature is a difference.
+
+    Args:
+        name: of the value, for messages
+        raw: a number, or text with a unit
+        unit: of the value
+
+    Raises:
+        ScenarioError: it is no number with a fitting unit
+    """
+    return to_si(raw, f"{unit} (difference)" if unit == "K" else unit, name=name)
+
+
 def in_range(where: str, raw: object, quantity: Quantity) -> float:
     """A value as a number in the quantity's SI unit.
 
@@ -248,9 +262,8 @@ class _PartReader:
                 close = suggestion(key, known) or f" Values: {', '.join(known)}."
                 problems.append(f"{name}: the part has no such value.{close}")
                 continue
-            unit = self.declarations[key].unit
             try:
-                value = to_si(raw, f"{unit} (difference)" if unit == "K" else unit, name=name)
+                value = deviation(name, raw, self.declarations[key].unit)
             except GearheatError as error:
                 problems.extend(error.problems)
                 continue

@@ -47,6 +47,9 @@ def _lines(scenario: Scenario) -> Iterator[str]:
     for instrument in scenario.instruments:
         yield from _table(f"sensors.{_key(instrument.name)}", _sensor(instrument, scenario.readable()))
     yield from _table("losses", scenario.losses)
+    for reason, changes in scenario.joint_uncertainties.items():
+        values = {path: _value(change, known[path].unit) for path, change in changes.items()}
+        yield from _table(f"{UNCERTAINTIES}.{_key(reason)}", values)
     if (protocol := scenario.protocol) is not None:
         about: dict[str, Any] = {"stop": f"{protocol.stop!r} s", "room": protocol.room, "oil": protocol.oil}
         about |= {"notes": list(protocol.notes)} if protocol.notes else {}

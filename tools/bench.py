@@ -20,8 +20,8 @@ from ..fmu.export import export
 from ..fmu.play import Player
 from ..model.core.flat import FlatModel
 from ..model.run.simulate import simulate
-from . import bench_fmu, campaign, throughput
-from .console import answer, note, table
+from . import bench_fmu, bench_uncertainty, campaign, throughput
+from .console import answer, note, say, table
 from .measured import measured_of
 from .rigs import load
 from .settings import flat_of
@@ -39,14 +39,34 @@ STEP = 60.0
 EVERY = 0.02
 
 
-def command(rig: str, tests: str | None, json: str | None, fmu: bool = False, contact: bool = False) -> None:
-    """Measure and print: the main job, with `fmu` the FMU against its peers and the batch, or the contact solver."""
+def command(
+    rig: str,
+    tests: str | None,
+    json: str | None,
+    fmu: bool = False,
+    contact: bool = False,
+    draws: int | None = None,
+) -> None:
+    """Measure and print: the main job, or one thing instead.
+
+    Args:
+        rig: name or path
+        tests: of the main job
+        json: file of the JSON object, "-" for stdout
+        fmu: the FMU against its peers, and the batch
+        contact: the contact solver
+        draws: rows drawn to compare the FMU's standard deviations with
+    """
     if contact:
         from .ehl import peer
 
         compared = {"schema": "gearheat.bench/1", **peer.measure()}
         title = "The contact solver and slippy, processor times of one core"
         answer(compared, json, lambda: table(title, ("what", "value"), peer.rows(compared)))
+        return
+    if draws is not None:
+        compared = {"schema": "gearheat.bench/1", **bench_uncertainty.measure(rig, draws)}
+        answer(compared, json, lambda: _print_uncertainty(compared))
         return
     if fmu:
         note("the FMU, its peers and the batch; this installs PythonFMU in an environment of its own")
@@ -241,3 +261,15 @@ def _print_fmu(found: dict[str, Any]) -> None:
     for kind in ("steady", "warmup_330_min"):
         body.append((f"batch, {kind} rows per second and core", f"{found['batch'][kind]['rows_per_core_s']:.0f}"))
     table("The FMU and its peers, one run", ("what", "value"), [list(row) for row in body], wrapped=True)
+
+
+def _print_uncertainty(found: dict[str, Any]) -> None:
+    title = f"{found['rig']}: standard deviations, the FMU's beside those of {found['draws']} draws, over four hours"
+    table(title, bench_uncertainty.HEAD, bench_uncertainty.rows(found))
+    if found["failed"]:
+        say(f"{found['failed']} of the draws have no result and are left out.")
+    cost = found["cost"]
+    say(
+        f"Four hours at 60 s from C, all outputs read: {cost['plain_rhs']:.0f} right-hand sides,"
+        f" {cost['uncertain_rhs']:.0f} with standard deviations, {cost['ratio']:.2f} times as much."
+    )

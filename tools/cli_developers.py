@@ -46,6 +46,10 @@ def bench(
     tests: Tests = None,
     fmu: Annotated[bool, typer.Option("--fmu", help="The FMU against its peers, and the batch, instead.")] = False,
     contact: Annotated[bool, typer.Option("--contact", help="The contact solver against slippy, instead.")] = False,
+    uncertainty: Annotated[
+        bool, typer.Option("--uncertainty", help="Standard deviations of the FMU beside Monte Carlo, instead.")
+    ] = False,
+    draws: Annotated[int, typer.Option(help="Rows that --uncertainty draws.")] = 10_000,
     json: Json = None,
 ) -> None:
     """Time and memory of the main job, beside SciPy's LSODA on the same equations."""
@@ -53,4 +57,4 @@ def bench(
         os.environ.setdefault("OMP_NUM_THREADS", "1")
     from . import bench
 
-    bench.command(rig, tests, json, fmu, contact)
+    bench.command(rig, tests, json, fmu, contact, draws if uncertainty else None)

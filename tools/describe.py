@@ -133,7 +133,7 @@ def _kind(scenario: Scenario, flat: FlatModel, path: str) -> str:
 
 def _parameter(scenario: Scenario, flat: FlatModel, q: Quantity) -> dict[str, Any]:
     """A parameter with its standard uncertainty, in the unit shown, where the rig states one."""
-    sd = scenario.uncertainties.get(q.name)
+    sd = scenario.standard_uncertainties.get(q.name)
     known = sd if sd is None or q.unit == "K" else from_si(sd, q.unit)  # degC and K have the same differences
     kind, source = _kind(scenario, flat, q.name), source_of(scenario, q.name)
     own = q.name.rpartition(".")[0] + "."

@@ -135,7 +135,7 @@ def write_fmu(scenario: Scenario, flat: FlatModel, out: Path, **options: Any) ->
         out: file to write
         options: of `gearheat.fmu.export.export`
     """
-    known: dict[str, Any] = {"sources": sources_of(scenario, flat), "uncertainties": scenario.uncertainties}
+    known: dict[str, Any] = {"sources": sources_of(scenario, flat), "uncertainties": scenario.standard_uncertainties}
     known["choices"] = choices_of(scenario)
     return export(flat, out, picture=network_svg(assemble(scenario.spec)), **{**known, **options})
 

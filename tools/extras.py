@@ -174,7 +174,7 @@ def _set_of_rig(scenario: Scenario, flat: FlatModel, sources: Mapping[str, str] 
         [replace(q, start=tidy(q.start)) for q in flat.parameters],
         doc=scenario.doc,
         sources=sources,
-        uncertainties=None if sources is None else scenario.uncertainties,
+        uncertainties=None if sources is None else scenario.standard_uncertainties,
     )
 
 

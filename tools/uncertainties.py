@@ -23,8 +23,8 @@ UNCERTAINTY = "uncertainty"
 def reasons(scenario: Scenario, flat: FlatModel, given: Collection[str] = ()) -> tuple[Uncertainty, ...]:
     """Why results of a rig are uncertain, each reason independent of the others.
 
-    A value with an uncertainty in the rig file stands for itself. All others differ by groups, as in a diagnosis before
-    it has seen data.
+    A value with an uncertainty in the rig file stands for itself, values that it states as uncertain together stand
+    together. All others differ by groups, as in a diagnosis before it has seen data.
 
     Args:
         scenario: the rig
@@ -34,9 +34,13 @@ def reasons(scenario: Scenario, flat: FlatModel, given: Collection[str] = ()) ->
     Raises:
         ScenarioError: nothing is uncertain
     """
-    stated = {path: sd for path, sd in scenario.uncertainties.items() if sd > 0}
+    alone = {path: {path: sd} for path, sd in scenario.uncertainties.items() if sd > 0}
+    stated = {path for path, sd in scenario.standard_uncertainties.items() if sd > 0}
     values = {q.name: q.start for q in (*flat.parameters, *flat.states) if q.name not in given}
-    found = [Uncertainty(path, {path: sd}) for path, sd in stated.items() if path in values]
+    found = []
+    for name, changes in (*alone.items(), *scenario.joint_uncertainties.items()):
+        if known := {path: change for path, change in changes.items() if path in values}:
+            found.append(Uncertainty(name, known))
     for group in nuisances(Roles.of(scenario.spec), {}, {}):
         paths = {path: share for path, share in group.paths.items() if path in values and path not in stated}
         changes = {path: share * group.sd * values[path] for path, share in paths.items()}

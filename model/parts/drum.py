@@ -64,7 +64,7 @@ class DrumChurning(Friction):
 
     r = Parameter("m", "pitch radius of what turns in the oil", nominal=0.05, above=0.0)
     b = Parameter("m", "width that dips", nominal=0.02, at_least=0.0)
-    z = Parameter("1", "sum of the teeth of both gears", nominal=100.0, above=0.0)
+    z = Parameter("1", "number of teeth of both gears together", nominal=100.0, above=0.0, whole=True)
     share_dip = Parameter("1", "wetted share of the drum at which it dips as the law means", above=0.0, at_most=1.0)
 
     def torque(self) -> Num:

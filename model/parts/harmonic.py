@@ -223,7 +223,7 @@ class HarmonicMesh(FlankFilm):
     z_2 = Parameter("1", "number of teeth of the circular spline", above=0.0, whole=True)
     m_n = Parameter("m", "module", nominal=1e-3, above=0.0)
     alpha = Parameter("rad", "pressure angle of the flanks", above=0.0, below=1.2)
-    pairs = Parameter("1", "number of pairs of teeth that share the load", nominal=10.0, above=0.0)
+    pairs = Parameter("1", "pairs of teeth that share the load on average", nominal=10.0, above=0.0)
     tau_width = Parameter("N.m", "torque below which the direction of load is blurred", default=0.1, above=0.0)
     eta_0 = Output("Pa.s", "dynamic viscosity of the oil", nominal=0.1)
     F_0 = Output("N", "load of a pair of teeth", nominal=100.0)

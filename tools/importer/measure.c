@@ -1,9 +1,11 @@
 /* measure COSTS                what the parts of an FMU cost, by the library of costs.c
+   measure COSTS FACTS          and what four hours in steps of a minute cost, all outputs read after each
    measure COSTS FACTS INPUT    and what calls of the FMU and a warm-up of 330 min in five stages of one input cost
 
    All costs are taken by turns and the least of many turns counts, so that a busy moment of the machine meets all of
-   them. Lines: `rhs S`, `step S`, `outputs S`, `call S` (four inputs, a step of 1 s, fifteen outputs), `warmup STEP S`
-   followed by the states at the ends of the stages, `state BYTES`, `instance BYTES` (where the system tells). */
+   them. Lines: `rhs S`, `step S`, `outputs S`; `run S`, the four hours; `call S` (four inputs, a step of 1 s, fifteen
+   outputs), `warmup STEP S` followed by the states at the ends of the stages, `state BYTES`, `instance BYTES` (where the
+   system tells). */
 
 #include <stdio.h>
 #include <stdlib.h>
@@ -14,6 +16,7 @@
 enum { TURNS = 15, TIMES = 10000, CALLS = 4000, STAGES = 5, MOST = 64, MANY = 2000, LENGTHS = 3 };
 static const double parts[STAGES] = {0.4, 0.6, 0.8, 1.0, 0.2}, lengths[LENGTHS] = {1.0, 10.0, 60.0};
 #define STAGE 3960.0
+#define RUN 14400.0
 
 static void keep_least(double *least, double seconds)
 {
@@ -47,6 +50,20 @@ static void call(const Fmu *m, double *least)
     }
     keep_least(least, (processor_now() - begun) / CALLS);
     m->f.FreeInstance(c);
+}
+
+static void run(const Fmu *m, double *least)
+{
+    double *y = malloc((size_t)m->ny * sizeof *y), t, begun;
+    fmi2Component c = ready(m, 0.0);
+    begun = processor_now();
+    for (t = 0.0; t < RUN; t += 60.0) {
+        MUST(m->f.DoStep(c, t, 60.0, fmi2True));
+        MUST(m->f.GetReal(c, m->refs + 2 * m->nx + m->nu, (size_t)m->ny, y));
+    }
+    keep_least(least, processor_now() - begun);
+    m->f.FreeInstance(c);
+    free(y);
 }
 
 static void warmup(const Fmu *m, int input, double step, double values[STAGES][MOST], double *least)
@@ -97,31 +114,34 @@ static void memory(const Fmu *m)
 int main(int n, char **arguments)
 {
     static double values[LENGTHS][STAGES][MOST];
-    double rhs = 0.0, step = 0.0, outputs = 0.0, calls = 0.0, run[LENGTHS] = {0.0};
+    double rhs = 0.0, step = 0.0, outputs = 0.0, hours = 0.0, calls = 0.0, stages[LENGTHS] = {0.0};
     void (*prepare)(void), *found;
     int turn, k, i, j, input = 0;
     Fmu m = {0};
-    if (n != 2 && n != 4) {
-        fprintf(stderr, "measure COSTS [FACTS INPUT]\n");
+    if (n < 2 || n > 4) {
+        fprintf(stderr, "measure COSTS [FACTS [INPUT]]\n");
         return 2;
     }
     found = function(arguments[1], "prepare");
     memcpy(&prepare, &found, sizeof found);
     prepare();
-    if (n == 4) load(&m, arguments[2], NULL), input = position(&m, arguments[3]);
+    if (n > 2) load(&m, arguments[2], NULL);
+    if (n > 3) input = position(&m, arguments[3]);
     for (turn = 0; turn < TURNS; turn++) {
         part(arguments[1], "rates", &rhs);
         part(arguments[1], "steps", &step);
         part(arguments[1], "outputs", &outputs);
-        if (n == 2) continue;
+        if (n == 3) run(&m, &hours);
+        if (n < 4) continue;
         call(&m, &calls);
-        for (k = 0; k < LENGTHS; k++) warmup(&m, input, lengths[k], values[k], &run[k]);
+        for (k = 0; k < LENGTHS; k++) warmup(&m, input, lengths[k], values[k], &stages[k]);
     }
     printf("rhs %.9g\nstep %.9g\noutputs %.9g\n", rhs, step, outputs);
-    if (n == 2) return 0;
+    if (n == 3) printf("run %.9g\n", hours);
+    if (n < 4) return 0;
     printf("call %.9g\n", calls);
     for (k = 0; k < LENGTHS; k++) {
-        printf("warmup %g %.9g", lengths[k], run[k]);
+        printf("warmup %g %.9g", lengths[k], stages[k]);
         for (j = 0; j < STAGES; j++)
             for (i = 0; i < m.nx; i++) printf(" %.17g", values[k][j][i]);
         printf("\n");

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from gearheat.diagnose.answer.estimate import posterior
 from gearheat.diagnose.infer import screen
 from gearheat.diagnose.infer.fit import fitted
 from gearheat.diagnose.infer.found import Found, Hypothesis
@@ -17,6 +18,8 @@ from gearheat.diagnose.report import compose_data, compose_pictures, compose_poi
 from gearheat.diagnose.request import Inputs, Request, read
 from gearheat.diagnose.setting import Setting, setting
 from gearheat.tools.rigs import load
+from gearheat.tools.settings import flat_of
+from gearheat.tools.uncertainties import reasons
 
 CASE = Path(__file__).parents[2] / "tools" / "practice" / "foreign_006"
 CAUSE = "losses.churning"
@@ -78,6 +81,22 @@ def test_the_extended_rig_has_the_calibrated_values_and_the_cause(made: Made, tm
         assert told.extended is not None
         if not told.path.endswith(".V"):  # litres
             assert rig.spec.part(part).values[key] == pytest.approx(told.extended, rel=1e-4)
+
+
+def test_the_extended_rig_says_how_uncertain_the_data_leave_it(made: Made, tmp_path: Path) -> None:
+    """Every parameter by the posterior: of a factor its logarithm's, of the cause its size's, whatever goes with it."""
+    (path := tmp_path / "extended.toml").write_text(compose_rig.rig_file(made.setting, made.found, made.h))
+    rig = load(path)
+    sd, problem = np.sqrt(np.diag(posterior(made.found.problem, made.h)[1])), made.found.problem
+    (acting,) = made.h.fit.look.acting
+    told = rig.standard_uncertainties
+    assert told["found_churning.P_ref"] == pytest.approx(acting.formula.cause.size.sd * sd[problem.nz], rel=1e-2)
+    k, mesh = next((k, n) for k, n in enumerate(problem.data.nuisances) if "gear_set.k_mu" in n.paths)
+    factor = rig.spec.part("gear_set").values["k_mu"] * mesh.paths["gear_set.k_mu"] * mesh.sd
+    assert told["gear_set.k_mu"] == pytest.approx(factor * sd[k], rel=1e-2)
+    assert sd[k] < 0.99, "the data tell something of it"
+    found = {reason.name: reason.changes for reason in reasons(rig, flat_of(rig))}
+    assert found.keys() >= rig.joint_uncertainties.keys() and "mesh friction" not in found
 
 
 def test_repeated_points_are_told_in_running_order(made: Made) -> None:

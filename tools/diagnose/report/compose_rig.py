@@ -7,19 +7,19 @@ from dataclasses import replace
 import numpy as np
 
 from ...model.units import from_si
-from ..infer.fit import Fit
+from ..answer.estimate import posterior
 from ..infer.found import Found, Hypothesis
 from ..library.cause import Cause, Form, Nuisance, Row, Size, Theta, Values
 from ..library.extra_parts import EXTRA_PARTS
 from ..setting import Setting
-from .extension import Applied, extended_rig
+from .extension import Applied, Extended, directions, extended
 from .findings import Calibrated
 
 
-def values(found: Found, fit: Fit) -> dict[str, float]:
-    """Values of the rig by path as a fit calibrates them [SI], those of added parts among them."""
+def values(found: Found, z: np.ndarray) -> dict[str, float]:
+    """Values of the rig by path as nuisances (n,) calibrate them [SI], those of added parts among them."""
     plant, told = found.problem.data.plant, dict[str, float]()
-    for nuisance, z in zip(found.problem.data.nuisances, fit.look.z, strict=False):
+    for nuisance, z in zip(found.problem.data.nuisances, z, strict=False):
         for path, exponent in nuisance.paths.items():
             before = told.get(path, float(plant.p[plant.place[path]]))
             told[path] = before * float(np.exp(exponent * nuisance.sd * z))
@@ -35,7 +35,7 @@ def calibrated(setting: Setting, found: Found, h: Hypothesis) -> tuple[Calibrate
         h: the hypothesis of the answer
     """
     known, told = setting.scenario.settable(), []
-    nominal, extended = values(found, found.null), values(found, h.fit)
+    nominal, extended = values(found, found.null.look.z), values(found, h.fit.look.z)
     for path, value in nominal.items():
         if path in known:
             unit = known[path].unit
@@ -47,7 +47,7 @@ def calibrated(setting: Setting, found: Found, h: Hypothesis) -> tuple[Calibrate
 
 
 def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
-    """The text of the rig file: calibrated, with the causes of a hypothesis.
+    """The text of the rig file: calibrated, with the causes of a hypothesis, and how uncertain the data leave both.
 
     Args:
         setting: the rig
@@ -60,14 +60,17 @@ def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
         known = scenario.settable()
         filled = {path: value for path, value in own.items() if path in known}
         scenario = scenario.with_values(filled, f"inferred: the oil of {data.name}")
-    calibrated_values = values(found, h.fit)
-    added = [_added(n, calibrated_values) for n in found.problem.data.nuisances if n.parts]
-    return extended_rig(scenario, calibrated_values, _causes(h), data.name, EXTRA_PARTS, len(oils), added)
 
+    def at(x: np.ndarray) -> Extended:
+        z, acting = h.fit.split(found.problem, x)
+        told = values(found, z)
+        added = [_added(n, told) for n in found.problem.data.nuisances if n.parts]
+        causes = [Applied(a.formula.cause, a.formula.form, a.formula.theta(a.t)) for a in acting]
+        return extended(scenario, told, causes, data.name, EXTRA_PARTS, len(oils), added)
 
-def _causes(h: Hypothesis) -> list[Applied]:
-    """The causes of a hypothesis as they were fitted; a spread of sizes as one."""
-    return [Applied(a.formula.cause, a.formula.form, a.formula.theta(a.t)) for a in h.fit.look.acting]
+    x = h.fit.look.x
+    uncertain = directions(lambda near: at(near).values, x, posterior(found.problem, h)[1])
+    return at(x).text(uncertain)
 
 
 def _added(nuisance: Nuisance, calibrated_values: dict[str, float]) -> Applied:

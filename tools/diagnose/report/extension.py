@@ -1,12 +1,12 @@
 """The extended model as a rig file: the rig as the data calibrate it, with what the causes change and add.
 
 Faults of instruments and of the procedure, and what differs from test to test, are no matter of the machine: they stand
-in comments above it.
+in comments above it. What the data leave uncertain of its values stands in tables of values that are uncertain together.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -22,6 +22,10 @@ from .names import name_of
 
 #: Names of the parts that causes add, here and in the extended rig: a found part can stand beside that of a new search.
 ADDED, FOUND = "extra_", "found_"
+
+
+#: Part of a standard deviation that its derivative is taken over; share of a value below which a change is left out.
+STEP, LITTLE = 0.05, 1e-5
 
 
 @dataclass(frozen=True)
@@ -51,7 +55,60 @@ class _Readings(dict[str, float]):
         return self.value
 
 
-def extended_rig(
+@dataclass(frozen=True)
+class Extended:
+    """A rig as the data calibrate it, with causes: what it is, and the words above its file."""
+
+    scenario: Scenario
+    head: tuple[str, ...]
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Numbers of its parts by path."""
+        known = self.scenario.settable()
+        own = ((f"{p.name}.{key}", value) for p in self.scenario.spec.parts for key, value in p.values.items())
+        return {path: float(value) for path, value in own if path in known}
+
+    def text(self, uncertain: Mapping[str, Mapping[str, float]]) -> str:
+        """The text of a rig file that every command reads.
+
+        Args:
+            uncertain: reason -> path -> what its value changes by at one standard deviation
+        """
+        told = replace(self.scenario, joint_uncertainties=uncertain)
+        return "\n".join(f"# {line}" for line in self.head) + "\n" + rig_text(told)
+
+
+def directions(
+    values: Callable[[np.ndarray], Mapping[str, float]], x: np.ndarray, covariance: np.ndarray
+) -> dict[str, dict[str, float]]:
+    """How values are uncertain together, to first order: independent directions, the largest relative one first.
+
+    Args:
+        values: of a rig by path, as they follow from fitted parameters (d,)
+        x: the parameters as found (d,)
+        covariance: theirs (d, d)
+
+    Returns:
+        name of a direction -> path -> change at one standard deviation [SI]
+    """
+    at, rows = values(x), []
+    for k, step in enumerate(STEP * np.sqrt(np.diag(covariance))):
+        ends = [values(x + sign * step * np.eye(len(x))[k]) for sign in (-1.0, 1.0)]
+        rows.append([(ends[1][path] - ends[0][path]) / (2 * step) for path in at])
+    scale = np.array([abs(value) or 1.0 for value in at.values()])
+    slopes = np.array(rows).T / scale[:, None]  # (values, d)
+    turned, sizes, _ = np.linalg.svd(slopes @ np.linalg.cholesky(covariance), full_matrices=False)
+    found = {}
+    for n, change in enumerate((turned * sizes).T, start=1):
+        change = change * np.sign(change[np.abs(change).argmax()])  # either sign would do
+        pairs = zip(at, change, change * scale, strict=True)
+        if moved := {path: float(f"{size:.6g}") for path, share, size in pairs if abs(share) > LITTLE}:
+            found[f"posterior_{n}"] = moved
+    return found
+
+
+def extended(
     scenario: Scenario,
     calibrated: Mapping[str, float],
     applied: Sequence[Applied],
@@ -59,8 +116,8 @@ def extended_rig(
     types: Mapping[str, type[Component]],
     oils: int = 1,
     also: Sequence[Applied] = (),
-) -> str:
-    """The text of a rig file that every command reads.
+) -> Extended:
+    """The rig with what the data say of it.
 
     Args:
         scenario: the rig
@@ -86,7 +143,7 @@ def extended_rig(
     doc = f"{rig.doc.rstrip('.')}; as diagnosed from {data}: {causes}."
     head = [f"Written by `gearheat diagnose` from {data}: {causes}.", *notes]
     clean = replace(rig, doc=doc, spec=replace(rig.spec, doc=doc), overrides=(), entries={})
-    return "\n".join(f"# {line}" for line in head) + "\n" + rig_text(clean)
+    return Extended(clean, tuple(head))
 
 
 def _added(
