@@ -39,9 +39,11 @@
     [losses]                              # column of the losses table = outputs that are summed
     P_seal_W = ["carrier_seal.P_loss", "sun_seal.P_loss"]
 
-    [uncertainties.loss]                  # values that are uncertain together, beside those of single ones in their part:
-    "gears.k_mu" = 0.03                   # what each differs by at one standard deviation of one reason, which is
+
+    [uncertainties.loss]                  # values that are uncertain together, beside the single ones of their parts:
+    "gears.k_mu" = 0.03                   # what each changes by at one standard deviation of one reason, which is
     "cooling.A" = "-0.01 m2"              # independent of all others
+
     [campaign]                            # measured data; see `tables.CampaignTable`
     [[errata]]                            # where the source is wrong; see `tables.ErratumTable`
 

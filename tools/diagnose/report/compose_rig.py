@@ -19,10 +19,10 @@ from .findings import Calibrated
 def values(found: Found, z: np.ndarray) -> dict[str, float]:
     """Values of the rig by path as nuisances (n,) calibrate them [SI], those of added parts among them."""
     plant, told = found.problem.data.plant, dict[str, float]()
-    for nuisance, z in zip(found.problem.data.nuisances, z, strict=False):
+    for nuisance, change in zip(found.problem.data.nuisances, z, strict=False):
         for path, exponent in nuisance.paths.items():
             before = told.get(path, float(plant.p[plant.place[path]]))
-            told[path] = before * float(np.exp(exponent * nuisance.sd * z))
+            told[path] = before * float(np.exp(exponent * nuisance.sd * change))
     return told
 
 

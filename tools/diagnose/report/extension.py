@@ -1,7 +1,7 @@
 """The extended model as a rig file: the rig as the data calibrate it, with what the causes change and add.
 
 Faults of instruments and of the procedure, and what differs from test to test, are no matter of the machine: they stand
-in comments above it. What the data leave uncertain of its values stands in tables of values that are uncertain together.
+in comments above it. How uncertain the data leave its values stands in tables of values that are uncertain together.
 """
 
 from __future__ import annotations
@@ -100,8 +100,8 @@ def directions(
     slopes = np.array(rows).T / scale[:, None]  # (values, d)
     turned, sizes, _ = np.linalg.svd(slopes @ np.linalg.cholesky(covariance), full_matrices=False)
     found = {}
-    for n, change in enumerate((turned * sizes).T, start=1):
-        change = change * np.sign(change[np.abs(change).argmax()])  # either sign would do
+    signs = np.sign(turned[np.abs(turned).argmax(axis=0), range(len(sizes))])  # either would do
+    for n, change in enumerate((signs * sizes * turned).T, start=1):
         pairs = zip(at, change, change * scale, strict=True)
         if moved := {path: float(f"{size:.6g}") for path, share, size in pairs if abs(share) > LITTLE}:
             found[f"posterior_{n}"] = moved
