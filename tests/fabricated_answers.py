@@ -91,6 +91,16 @@ def benched_fmu() -> None:
     bench._print_fmu({**found, "state_bytes": 2048.0, "batch": rates})
 
 
+def benched_uncertainty() -> None:
+    """Outputs of a temperature and of an efficiency, some rows without a result."""
+    one = {"name": "oil.T", "unit": "K", "fmu_sd": 1.25, "drawn_sd": 1.375, "worst_difference": -0.0225}
+    one |= {"worst_time_s": 300.0, "standard_error": 0.0075}
+    other = one | {"name": "efficiency.eta", "unit": "1", "fmu_sd": 0.0015, "worst_time_s": 14400.0}
+    cost = {"plain_rhs": 640.0, "uncertain_rhs": 1120.0, "ratio": 1.75}
+    found = {"rig": "mine", "draws": 10_000, "failed": 3, "outputs": [one, other], "cost": cost}
+    bench._print_uncertainty(found)
+
+
 #: Name of the file -> prints it.
 ANSWERS: dict[str, Callable[[], None]] = {
     "run": run_of_one_point,
@@ -102,4 +112,5 @@ ANSWERS: dict[str, Callable[[], None]] = {
     "challenge": challenged,
     "bench": benched,
     "bench_fmu": benched_fmu,
+    "bench_uncertainty": benched_uncertainty,
 }

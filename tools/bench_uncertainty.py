@@ -33,8 +33,8 @@ DURATION, EVERY, STEP = 14_400.0, 300.0, 60.0
 BLOCK = 1000
 #: Fewest draws that have a scatter, and a standard error of it.
 FEWEST = 10
-#: Of the table: the deviations are those at the end; the difference is the largest, relative to the draws' scatter.
-HEAD = ("output", "FMU", "draws", "unit", "largest difference [%]", "at [min]", "standard error of the draws [%]")
+#: Of the table: deviations at the end; the largest difference, relative to the draws' scatter; its standard error.
+HEAD = ("output", "FMU", "draws", "differ by [%]", "at [min]", "error of draws [%]")
 #: A scatter below this part of the nominal value is none.
 NOTHING = 1e-9
 
@@ -98,7 +98,7 @@ def _draws(
 def _compared(
     flat: FlatModel, shown: tuple[str, ...], told: np.ndarray, found: np.ndarray, times: np.ndarray
 ) -> list[dict[str, Any]]:
-    """Each output where the FMU (times, shown) differs most from the draws (rows, times, shown).
+    """Each output that scatters where the FMU (times, shown) differs most from the draws (rows, times, shown).
 
     The standard error of a scatter is that of its square, which the fourth moment tells, halved.
     """
@@ -121,6 +121,7 @@ def _compared(
             "standard_error": float(error[at, k]),
         }
         for k, (name, at) in enumerate(zip(shown, worst, strict=True))
+        if (scatter[:, k] > least[k]).any()
     ]
 
 
@@ -128,10 +129,9 @@ def rows(found: Mapping[str, Any]) -> list[tuple[object, ...]]:
     """The table, under `HEAD`."""
     return [
         (
-            o["name"],
+            f"{o['name']} [{o['unit']}]",
             o["fmu_sd"],
             o["drawn_sd"],
-            o["unit"].replace(" (difference)", ""),
             round(100 * o["worst_difference"], 1),
             round(o["worst_time_s"] / 60),
             round(100 * o["standard_error"], 1),

@@ -1,6 +1,9 @@
 from __future__ import annotations
 
+import json
+
 from gearheat.tools.bench import _imports, _integration
+from gearheat.tools.bench_uncertainty import measure
 
 
 def test_the_fmu_is_ten_times_faster_than_scipy_at_no_larger_error():
@@ -13,3 +16,19 @@ def test_the_fmu_is_ten_times_faster_than_scipy_at_no_larger_error():
 def test_what_the_help_imports_is_seen():
     assert _imports("typer")
     assert not _imports("casadi")
+
+
+def test_standard_deviations_stand_beside_draws():
+    """Five standard errors of the draws are allowed, and 3 % of what is not linear and left out."""
+    found = json.loads(json.dumps(measure("cycloidal_areas", 300)))
+    assert found["failed"] == 0 and len(found["outputs"]) >= 2
+    for told in found["outputs"]:
+        assert 0.02 < told["standard_error"] < 0.08, told
+        assert abs(told["worst_difference"]) < 5 * told["standard_error"] + 0.03, told
+        assert told["fmu_sd"] > 0 < told["drawn_sd"]
+    assert 1 < found["cost"]["ratio"] < 3
+
+
+def test_too_few_draws_are_refused(gearheat):
+    answer = gearheat("bench", "cycloidal_areas", "--uncertainty", "--draws", 2)
+    assert answer.code == 2 and "--draws 2" in answer.err and "at least 10" in answer.err
