@@ -21,6 +21,7 @@ from ..fmu.play import Player
 from ..model.core.flat import FlatModel
 from ..model.run.simulate import simulate
 from . import bench_fmu, bench_uncertainty, campaign, throughput
+from .bench_costs import rhs_s
 from .console import answer, note, say, table
 from .measured import measured_of
 from .rigs import load
@@ -39,46 +40,35 @@ STEP = 60.0
 EVERY = 0.02
 
 
-def command(
-    rig: str,
-    tests: str | None,
-    json: str | None,
-    fmu: bool = False,
-    contact: bool = False,
-    draws: int | None = None,
-) -> None:
-    """Measure and print: the main job, or one thing instead.
+def command(rig: str, tests: str | None, json: str | None, what: str = "job", draws: int = 10_000) -> None:
+    """Measure and print.
 
     Args:
         rig: name or path
         tests: of the main job
         json: file of the JSON object, "-" for stdout
-        fmu: the FMU against its peers, and the batch
-        contact: the contact solver
-        draws: rows drawn to compare the FMU's standard deviations with
+        what: "job", the main job; "fmu", the FMU against its peers, and the batch; "batch" alone; "uncertainty", the
+            FMU's standard deviations beside those of rows that are drawn; "contact", the contact solver
+        draws: rows that are drawn
     """
-    if contact:
-        from .ehl import peer
+    measures: dict[str, tuple[Callable[[], dict[str, Any]], Callable[[dict[str, Any]], None]]] = {
+        "job": (lambda: _job(rig, tests), _print),
+        "fmu": (lambda: _fmu(rig), _print_fmu),
+        "batch": (lambda: _batch(rig), _print_batch),
+        "uncertainty": (lambda: bench_uncertainty.measure(rig, draws), _print_uncertainty),
+        "contact": (_contact, _print_contact),
+    }
+    measure, show = measures[what]
+    found = {"schema": "gearheat.bench/1", **measure()}
+    answer(found, json, lambda: show(found))
 
-        compared = {"schema": "gearheat.bench/1", **peer.measure()}
-        title = "The contact solver and slippy, processor times of one core"
-        answer(compared, json, lambda: table(title, ("what", "value"), peer.rows(compared)))
-        return
-    if draws is not None:
-        compared = {"schema": "gearheat.bench/1", **bench_uncertainty.measure(rig, draws)}
-        answer(compared, json, lambda: _print_uncertainty(compared))
-        return
-    if fmu:
-        note("the FMU, its peers and the batch; this installs PythonFMU in an environment of its own")
-        measured = {"schema": "gearheat.bench/1", **bench_fmu.measure(rig), "batch": throughput.measure(rig)}
-        answer(measured, json, lambda: _print_fmu(measured))
-        return
+
+def _job(rig: str, tests: str | None) -> dict[str, Any]:
     note("gearheat --help")
     helped = min(_timed(lambda: _gearheat("--help"))[0] for _ in range(3))
     note(f"gearheat run {rig}, warm cache")
     job = _main_job(rig, tests)
-    found = {
-        "schema": "gearheat.bench/1",
+    return {
         "machine": {"cores": os.cpu_count(), "python": platform.python_version(), "system": platform.system()},
         "help_s": helped,
         "help_imports_casadi": _imports("casadi"),
@@ -86,7 +76,21 @@ def command(
         "run_peak_memory_MB": job[1],
         **_integration(rig, tests),
     }
-    answer(found, json, lambda: _print(found))
+
+
+def _fmu(rig: str) -> dict[str, Any]:
+    note("the FMU, its peers and the batch; this installs PythonFMU in an environment of its own")
+    return {**bench_fmu.measure(rig), "batch": throughput.measure(rig)}
+
+
+def _batch(rig: str) -> dict[str, Any]:
+    return {"rhs_s": rhs_s(flat_of(load(rig))), "batch": throughput.measure(rig, threads=(1,), swept=0)}
+
+
+def _contact() -> dict[str, Any]:
+    from .ehl import peer
+
+    return peer.measure()
 
 
 def _timed(work: Callable[[], Any], clock: Callable[[], float] = time.perf_counter) -> tuple[float, Any]:
@@ -257,10 +261,27 @@ def _print(found: dict[str, Any]) -> None:
 
 
 def _print_fmu(found: dict[str, Any]) -> None:
-    body = list(bench_fmu.rows(found))
-    for kind in ("steady", "warmup_330_min"):
-        body.append((f"batch, {kind} rows per second and core", f"{found['batch'][kind]['rows_per_core_s']:.0f}"))
+    body = [*bench_fmu.rows(found), *_batch_rows(found)]
     table("The FMU and its peers, one run", ("what", "value"), [list(row) for row in body], wrapped=True)
+
+
+def _print_batch(found: dict[str, Any]) -> None:
+    table(f"{found['batch']['rig']}: many rows in one call", ("what", "value"), _batch_rows(found), wrapped=True)
+
+
+def _batch_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
+    rates = {kind: found["batch"][kind]["rows_per_core_s"] for kind in ("steady", "warmup_330_min")}
+    return [
+        (f"batch, {kind} rows per second and core; right-hand sides each", f"{rate:.0f}; {each:.1f}")
+        for kind, rate in rates.items()
+        for each in (1 / (rate * found["rhs_s"]),)
+    ]
+
+
+def _print_contact(found: dict[str, Any]) -> None:
+    from .ehl import peer
+
+    table("The contact solver and slippy, processor times of one core", ("what", "value"), peer.rows(found))
 
 
 def _print_uncertainty(found: dict[str, Any]) -> None:

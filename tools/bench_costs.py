@@ -65,6 +65,14 @@ def run_in_rhs(fmu: Path, folder: Path) -> float:
     return found["run"] / found["rhs"]
 
 
+def rhs_s(flat: FlatModel) -> float:
+    """Seconds of a right-hand side of a model from C, its implicit equations solved from the last ones."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "all.c"
+        path.write_text(source(flat, equations(flat), table(flat)), encoding="utf-8")
+        return {words[0]: float(words[1]) for words in _measured(_costs(path))}["rhs"]
+
+
 def chain(n: int) -> Assembly:
     """n masses in a row, a conductor between neighbours."""
     masses = [PARTS["HeatCapacity"](f"m{k}", C=1000.0) for k in range(n)]
