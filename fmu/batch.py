@@ -196,7 +196,7 @@ class Batch:
         home = np.array([q.start for q in self.inputs])
         x, y = np.empty((n, len(self.states))), np.empty((n, len(self.outputs) + EXTRA))
         status, iterations = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
-        run = driver("batch_steady", self.steady_source)
+        run = driver("batch_steady", widened(self.steady_source, instructions()))
 
         def block(a: int, b: int) -> int:
             results = [address(array[a:]) for array in (x, y, status, iterations)]

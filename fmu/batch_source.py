@@ -24,7 +24,7 @@ METHOD = rosenbrock.RODAS4
 
 
 def steady_source(flat: FlatModel) -> str:
-    """The C text for steady states.
+    """The C text for steady states: rows side by side in lanes, and one by one what is unusual.
 
     The equations come in three stages, each computed when what it depends on changes: `fixed` (p) -> first part of c,
     `given` (u, p, first part) -> second part, and `rates`, `equations` (with the Jacobian's entries that are not zero),
@@ -57,8 +57,9 @@ def steady_source(flat: FlatModel) -> str:
     pattern = [
         _array("int", f"model_{name}", map(str, place)) for name, place in zip(("row", "column"), places, strict=True)
     ]
-    tables = [*_ranges(flat), *pattern]
-    return _text(sizes, ["batch.h"], [*tables, *map(emit.function, functions)], ["newton.c", "batch_steady.c"])
+    beside = [emit.function(f, "lanes_", "lanes") for f in functions if f.name() not in ("fixed", "rates")]
+    generated = [*_ranges(flat), *pattern, *map(emit.function, functions), *beside]
+    return _text(sizes, ["batch.h", "lanes.h"], generated, ["newton.c", "batch_steady.c", "batch_straight.c"])
 
 
 def warmup_source(flat: FlatModel, most_steps: int) -> str:

@@ -434,33 +434,3 @@ static int settle(Row *w, const double *from, double *z)
     evaluate(w, start, w->r, NULL);
     return all_finite(w->r, NW) ? ROW_NO_EQUILIBRIUM : ROW_NOT_FINITE;
 }
-
-/* Steady states of n rows. A stride of 0 says that all rows share one vector. x takes N numbers a row, y NYR. */
-BATCH_EXPORT int batch_steady(int64_t n, const double *u, int64_t u_stride, const double *p, int64_t p_stride,
-                              const double *start, int64_t start_stride, const double *home, double *x, double *y,
-                              int32_t *status, int32_t *iterations)
-{
-    Row *w = calloc(1, sizeof *w);
-    double z[W1];
-    int64_t row;
-    if (!w) return 0;
-    w->home = home;
-    for (row = 0; row < n; row++) {
-        double *out = y + row * NYR;
-        w->u = u + row * u_stride;
-        if (row == 0 || p_stride) {
-            w->p = p + row * p_stride;
-            model_fixed(w->p, w->c);
-        }
-        if (row == 0 || p_stride || u_stride) model_given(w->u, w->p, w->c, w->c + NK);
-        status[row] = settle(w, start + row * start_stride, z);
-        iterations[row] = w->steps;
-        memcpy(x + row * N, z, N * sizeof *z);
-        if (status[row] == ROW_OK) model_outputs(z, z + N, w->u, w->p, w->c, out);
-        if (status[row] == ROW_OK && all_finite(z, NW)) continue;
-        nothing(x + row * N, N);
-        nothing(out, NYR);
-    }
-    free(w);
-    return 1;
-}
