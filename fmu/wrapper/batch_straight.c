@@ -1,13 +1,21 @@
-/* Steady states of rows side by side, one in each lane: newton() where it goes straight. What is unusual in a row (an
-   equation or a step that does not come out at once, a way on which more than heat decides where the machine stays) leaves
-   it to settle(). Lanes know nothing of each other. */
+/* Steady states of rows side by side, one in each lane: newton() where it gets there. What is unusual in a row (implicit
+   equations that do not come out at once, a way on which more than heat decides where the machine stays) leaves it to
+   settle(). Lanes know nothing of each other. */
 
-enum { Z1 = AT_LEAST_1(NZ), INNER = NZ + N + 1 };
+enum { Z1 = AT_LEAST_1(NZ), INNER = 2 * NZ + N };
+
+/* What solves the linear equations of Newton's method: the algebraic variables follow from the states. */
+typedef struct {
+    lanes across[N1 * Z1];         /* states' rates by the algebraic variables */
+    lanes follows[Z1 * INNER];     /* behind NZ columns: what these follow by from the states, and from their equations */
+    lanes R[N1 * N1];              /* LU of the states' rates by the states, the algebraic variables following */
+} Factors;
 
 typedef struct {
     lanes u[AT_LEAST_1(NU)], p[AT_LEAST_1(NP)], c[AT_LEAST_1(NC)];
     lanes z[W1], d[W1], trial[W1], d_new[W1], r[W1], y[NYR];
-    lanes entries[AT_LEAST_1(NJ)], J[W1 * W1], inner[Z1 * INNER];
+    lanes entries[AT_LEAST_1(NJ)], J[W1 * W1];
+    Factors at, new;
     int32_t steps[LANES];
 } Side;
 
@@ -69,61 +77,70 @@ static lanes lanes_share(const lanes *w, const lanes *d)
     return least;
 }
 
-/* Newton's correction at z. The lanes where there is one and where heat alone keeps a machine there, see heat_holds: the
-   states' Jacobian with the algebraic variables following has no negative term off its diagonal, and negative pivots. */
-static lanes_bits lanes_correction(Side *s, const lanes *z, lanes *d)
+/* Factors of the Jacobian's entries. The lanes where there are any and where heat alone keeps a machine in its place, see
+   heat_holds: no negative term off the diagonal of R, and negative pivots. */
+static lanes_bits factor(Side *s, Factors *f)
 {
     lanes_bits sound;
-    lanes *R = s->J;
     int i, j, k;
-    lanes_equations(z, z + N, s->u, s->p, s->c, s->r, s->entries);
     memset(s->J, 0, sizeof s->J);
+    memset(f->follows, 0, sizeof f->follows);
     for (i = 0; i < NJ; i++) s->J[model_row[i] * NW + model_column[i]] = s->entries[i];
     for (i = 0; i < NZ; i++) {
-        const lanes *row = s->J + (N + i) * NW;
-        memcpy(s->inner + i * INNER, row + N, NZ * sizeof *row);
-        memcpy(s->inner + i * INNER + NZ, row, N * sizeof *row);
-        s->inner[i * INNER + NZ + N] = s->r[N + i];
+        lanes *row = f->follows + i * INNER;
+        memcpy(row, s->J + (N + i) * NW + N, NZ * sizeof *row);
+        memcpy(row + NZ, s->J + (N + i) * NW, N * sizeof *row);
+        row[NZ + N + i] = lanes_all(1.0);
     }
-    sound = eliminate(s->inner, NZ, N + 1);
-    for (i = 0; i < N; i++)
-        for (k = 0; k < NZ; k++) {
-            const lanes *follows = s->inner + k * INNER + NZ;
-            lanes f = R[i * NW + N + k];
-            for (j = 0; j < N; j++) R[i * NW + j] -= f * follows[j];
-            s->r[i] -= f * follows[N];
-        }
-    for (i = 0; i < N; i++)
+    sound = eliminate(f->follows, NZ, N + NZ);
+    for (i = 0; i < N; i++) {
+        memcpy(f->R + i * N, s->J + i * NW, N * sizeof *f->R);
+        memcpy(f->across + i * NZ, s->J + i * NW + N, NZ * sizeof *f->R);
+        for (k = 0; k < NZ; k++)
+            for (j = 0; j < N; j++) f->R[i * N + j] -= f->across[i * NZ + k] * f->follows[k * INNER + NZ + j];
         for (j = 0; j < N; j++)
-            if (i != j) sound &= ~lanes_where(R[i * NW + j] < 0.0);
+            if (i != j) sound &= ~lanes_where(f->R[i * N + j] < 0.0);
+    }
     for (k = 0; k < N; k++) {
-        lanes inverse = 1.0 / R[k * NW + k];
-        sound &= lanes_where(R[k * NW + k] < 0.0);
+        const lanes *top = f->R + k * N;
+        lanes inverse = 1.0 / top[k];
+        sound &= lanes_where(top[k] < 0.0);
         for (i = k + 1; i < N; i++) {
-            lanes f = R[i * NW + k] * inverse;
-            for (j = k + 1; j < N; j++) R[i * NW + j] -= f * R[k * NW + j];
-            s->r[i] -= f * s->r[k];
+            lanes *row = f->R + i * N;
+            row[k] *= inverse;
+            for (j = k + 1; j < N; j++) row[j] -= row[k] * top[j];
         }
     }
-    for (k = N - 1; k >= 0; k--) {
-        lanes sum = s->r[k];
-        for (j = k + 1; j < N; j++) sum += R[k * NW + j] * d[j];
-        d[k] = -sum / R[k * NW + k];
-    }
+    return sound;
+}
+
+/* Newton's correction for a residual. The lanes where there is one. */
+static lanes_bits lanes_correction(const Factors *f, const lanes *r, lanes *d)
+{
+    int i, j;
     for (i = 0; i < NZ; i++) {
-        const lanes *follows = s->inner + i * INNER + NZ;
-        lanes sum = follows[N];
-        for (j = 0; j < N; j++) sum += follows[j] * d[j];
-        d[N + i] = -sum;
+        d[N + i] = lanes_all(0.0);
+        for (j = 0; j < NZ; j++) d[N + i] -= f->follows[i * INNER + NZ + N + j] * r[N + j];
     }
-    return sound & lanes_finite(d, NW);
+    for (i = 0; i < N; i++) {
+        d[i] = -r[i];
+        for (j = 0; j < NZ; j++) d[i] -= f->across[i * NZ + j] * d[N + j];
+        for (j = 0; j < i; j++) d[i] -= f->R[i * N + j] * d[j];
+    }
+    for (i = N - 1; i >= 0; i--) {
+        for (j = i + 1; j < N; j++) d[i] -= f->R[i * N + j] * d[j];
+        d[i] /= f->R[i * N + i];
+    }
+    for (i = 0; i < NZ; i++)
+        for (j = 0; j < N; j++) d[N + i] -= f->follows[i * INNER + NZ + j] * d[j];
+    return lanes_finite(d, NW);
 }
 
 /* The algebraic variables at the start; the lanes where Newton's method finds them undamped. */
 static lanes_bits lanes_implicit(Side *s)
 {
     lanes_bits open = ~(lanes_bits){0}, found = {0};
-    lanes *z = s->z + N, length = lanes_all(INFINITY);
+    lanes *z = s->z + N, *rows = s->at.follows, length = lanes_all(INFINITY);
     int step, i;
     for (step = 0; step < MOST_NEWTON && NZ > 0 && lanes_any(open); step++) {
         lanes next;
@@ -131,10 +148,10 @@ static lanes_bits lanes_implicit(Side *s)
         lanes_algebra(s->z, z, s->u, s->p, s->c, s->r, s->J);
         for (i = 0; i < NZ * (NZ + 1); i++) {
             int row = i / (NZ + 1), column = i % (NZ + 1);
-            s->inner[i] = column < NZ ? s->J[row + column * NZ] : s->r[row];
+            rows[i] = column < NZ ? s->J[row + column * NZ] : s->r[row];
         }
-        open &= eliminate(s->inner, NZ, 1);
-        for (i = 0; i < NZ; i++) s->d[i] = -s->inner[i * (NZ + 1) + NZ];
+        open &= eliminate(rows, NZ, 1);
+        for (i = 0; i < NZ; i++) s->d[i] = -rows[i * (NZ + 1) + NZ];
         open &= lanes_finite(s->d, NZ);
         next = lanes_size(s->d, N, NZ);
         there = open & lanes_where(next <= CONVERGED);
@@ -147,18 +164,20 @@ static lanes_bits lanes_implicit(Side *s)
     return NZ > 0 ? found : open;
 }
 
-/* From the start to the equilibrium, to z: the lanes that get there straight. */
+/* From the start to the equilibrium, to z: the lanes that get there. */
 static lanes_bits straight(Side *s)
 {
     lanes_bits on = lanes_implicit(s), done = {0};
     lanes length, damping = lanes_all(1.0);
     int step, i;
     memset(s->steps, 0, sizeof s->steps);
-    on &= lanes_correction(s, s->z, s->d);
-    length = lanes_size(s->d, 0, NW);
+    lanes_equations(s->z, s->z + N, s->u, s->p, s->c, s->r, s->entries);
+    on &= factor(s, &s->at);
+    on &= lanes_correction(&s->at, s->r, s->d);
     for (step = 0; step < MOST_NEWTON; step++) {
-        lanes_bits there = on & lanes_where(length <= CONVERGED);
-        lanes next;
+        lanes_bits there, taken;
+        length = lanes_size(s->d, 0, NW);
+        there = on & lanes_where(length <= CONVERGED);
         for (i = 0; i < NW; i++) s->z[i] = lanes_select(there, s->z[i] + s->d[i], s->z[i]);
         done |= there;
         on &= ~there;
@@ -166,16 +185,20 @@ static lanes_bits straight(Side *s)
         damping = lanes_fmin(damping, lanes_share(s->z, s->d));
         if (step == 0) damping = lanes_select(lanes_where(length > NEAR), lanes_fmin(damping, lanes_all(0.5)), damping);
         for (i = 0; i < NW; i++) s->trial[i] = s->z[i] + damping * s->d[i];
-        on &= lanes_correction(s, s->trial, s->d_new);
-        next = lanes_size(s->d_new, 0, NW);
-        on &= lanes_where(next <= (1.0 - (1.0 - CONTRACTION) * damping) * length);
+        lanes_equations(s->trial, s->trial + N, s->u, s->p, s->c, s->r, s->entries);
+        taken = on & lanes_correction(&s->at, s->r, s->d_new);
+        taken &= lanes_where(lanes_size(s->d_new, 0, NW) <= (1.0 - (1.0 - CONTRACTION) * damping) * length);
+        on &= taken | (lanes_where(damping >= 2.0 * LEAST_STEP) & lanes_where(length > ROUND_OFF));
+        on &= factor(s, &s->new) | ~taken;
+        taken &= on & lanes_correction(&s->new, s->r, s->d_new);
+        for (i = 0; i < (int)(sizeof s->at / sizeof(lanes)); i++)
+            ((lanes *)&s->at)[i] = lanes_select(taken, ((lanes *)&s->new)[i], ((lanes *)&s->at)[i]);
         for (i = 0; i < NW; i++) {
-            s->z[i] = lanes_select(on, s->trial[i], s->z[i]);
-            s->d[i] = lanes_select(on, s->d_new[i], s->d[i]);
+            s->z[i] = lanes_select(taken, s->trial[i], s->z[i]);
+            s->d[i] = lanes_select(taken, s->d_new[i], s->d[i]);
         }
-        length = next;
-        damping = lanes_fmin(4.0 * damping, lanes_all(1.0));
-        for (i = 0; i < LANES; i++) s->steps[i] += on[i] != 0;
+        damping = lanes_select(taken, lanes_fmin(4.0 * damping, lanes_all(1.0)), 0.5 * damping);
+        for (i = 0; i < LANES; i++) s->steps[i] += taken[i] != 0;
     }
     return done;
 }
