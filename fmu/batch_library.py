@@ -28,8 +28,8 @@ _SIGNATURES = {
     "batch_warmup": [_COUNT, _POINTER, *[_POINTER, _COUNT] * 3, _COUNT, *[_POINTER] * 5],
 }
 #: Vector instructions beyond those every processor of a kind has -> rows side by side, the best first. They change how
-#: fast a warm-up is, not one bit of it.
-WIDER = {"avx512f": 8, "avx2": 4}
+#: fast a batch is, not one bit of it.
+WIDER = {"avx512f": 8, "avx2": 8}
 _LOADED: dict[tuple[str, str], Any] = {}
 _LOCK = threading.Lock()
 

@@ -224,10 +224,11 @@ def test_the_processor_leaves_the_bits_alone(heat: Batch, monkeypatch: pytest.Mo
         pytest.skip("this processor has the basic instructions alone")
     arrays = heat.vectors(spread(30, governor__w=(50, 300), load__tau=(-50, 50), housing__A=(0.2, 2)))
     duty = stepped([(600.0, {"room.T": (290.0, 300.0)}), (600.0, {"room.T": 280.0})])
-    own = heat.warmup(duty, *arrays, times=[300.0, 1200.0])
+    own, settled = heat.warmup(duty, *arrays, times=[300.0, 1200.0]), heat.steady(*arrays)
     for name in ("", *processor()):
         monkeypatch.setattr("gearheat.fmu.batch.instructions", lambda name=name: name)
         assert same(own, heat.warmup(duty, *arrays, times=[300.0, 1200.0]))
+        assert same(settled, heat.steady(*arrays))
 
 
 def test_a_start_where_the_model_has_no_value() -> None:
