@@ -23,7 +23,7 @@ from gearheat.model.errors import ScenarioError, suggestion
 from gearheat.model.run.audit import SLACK
 from gearheat.model.run.schedule import Schedule
 
-from .batch_library import Duty, address, driver, instructions, rows_from, shared, widened
+from .batch_library import BESIDE, Duty, address, driver, instructions, rows_from, shared, widened
 from .batch_relations import broken_relations, relations_source
 from .batch_source import EXTRA, steady_source, warmup_source
 from .grid import Grid, grid
@@ -196,7 +196,7 @@ class Batch:
         home = np.array([q.start for q in self.inputs])
         x, y = np.empty((n, len(self.states))), np.empty((n, len(self.outputs) + EXTRA))
         status, iterations = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
-        run = driver("batch_steady", widened(self.steady_source, instructions()))
+        run = driver("batch_steady", widened(self.steady_source, instructions(), BESIDE))
 
         def block(a: int, b: int) -> int:
             results = [address(array[a:]) for array in (x, y, status, iterations)]
@@ -241,7 +241,7 @@ class Batch:
         m = len(points.row_time)
         x, y, energy = np.empty((n, m, len(self.states))), np.empty((n, m, len(self.outputs))), np.empty((n, 4))
         status, steps = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
-        run = driver("batch_warmup", widened(self.warmup_source, instructions()))
+        run = driver("batch_warmup", widened(self.warmup_source, instructions(), BESIDE))
 
         def block(a: int, b: int) -> int:
             results = [address(array[a:]) for array in (x, y, energy, status, steps)]

@@ -27,9 +27,11 @@ _SIGNATURES = {
     "batch_relations": [_COUNT, _POINTER, _COUNT, _POINTER],
     "batch_warmup": [_COUNT, _POINTER, *[_POINTER, _COUNT] * 3, _COUNT, *[_POINTER] * 5],
 }
-#: Vector instructions beyond those every processor of a kind has -> rows side by side, the best first. They change how
+#: Vector instructions beyond those every processor has -> numbers of a vector, the best first. They change how
 #: fast a batch is, not one bit of it.
-WIDER = {"avx512f": 8, "avx2": 8}
+WIDER = {"avx512f": 8, "avx2": 4}
+#: Rows of a batch side by side with any of them: two vectors at once do not wait for each other.
+BESIDE = 8
 _LOADED: dict[tuple[str, str], Any] = {}
 _LOCK = threading.Lock()
 
@@ -53,17 +55,18 @@ def driver(name: str, source: str) -> Any:
 
 
 @cache
-def widened(source: str, instructions: str) -> str:
+def widened(source: str, instructions: str, beside: int = 0) -> str:
     """A C text of wrapper/lanes.h made for processors with one of `WIDER`; as it is without any.
 
     Args:
         source: the C text
         instructions: a key of `WIDER`, or nothing
+        beside: rows side by side, 4 or 8; as many as a vector has numbers when not given
     """
     if not instructions:
         return source
     push = f'#pragma clang attribute push(__attribute__((target("{instructions}"))), apply_to=function)'
-    return f"{push}\n#define LANES {WIDER[instructions]}\n{source}\n#pragma clang attribute pop\n"
+    return f"{push}\n#define LANES {beside or WIDER[instructions]}\n{source}\n#pragma clang attribute pop\n"
 
 
 def instructions() -> str:
