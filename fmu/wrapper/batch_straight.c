@@ -1,6 +1,6 @@
 /* Steady states of rows side by side, one in each lane: newton() where it gets there. What is unusual in a row (implicit
-   equations that do not come out at once, a way on which more than heat decides where the machine stays) leaves it to
-   settle(). Lanes know nothing of each other. */
+   equations that do not come out at once, a way on which a machine might not stay) leaves it to settle(). Lanes know
+   nothing of each other. */
 
 enum { Z1 = AT_LEAST_1(NZ), INNER = 2 * NZ + N };
 
@@ -14,8 +14,9 @@ typedef struct {
 typedef struct {
     lanes u[AT_LEAST_1(NU)], p[AT_LEAST_1(NP)], c[AT_LEAST_1(NC)];
     lanes z[W1], d[W1], trial[W1], d_new[W1], r[W1], y[NYR];
-    lanes entries[AT_LEAST_1(NJ)], J[W1 * W1];
+    lanes entries[AT_LEAST_1(NJ)], J[W1 * W1], M[N1 * N1];
     Factors at, new;
+    lanes_bits heat;               /* the last factors are of heat that flows through conductors, see heat_holds */
     int32_t steps[LANES];
 } Side;
 
@@ -77,8 +78,31 @@ static lanes lanes_share(const lanes *w, const lanes *d)
     return least;
 }
 
-/* Factors of the Jacobian's entries. The lanes where there are any and where heat alone keeps a machine in its place, see
-   heat_holds: no negative term off the diagonal of R, and negative pivots. */
+/* Whether a machine stays: the states' rates by the states, all but the diagonal in magnitude, have negative pivots. The
+   eigenvalues then are to the left of zero, by Gershgorin's circles in suitable units. */
+static lanes_bits stays(Side *s, const lanes *R)
+{
+    lanes_bits sound = ~(lanes_bits){0};
+    int i, j, k;
+    s->heat = sound;
+    for (i = 0; i < N; i++)
+        for (j = 0; j < N; j++) {
+            s->M[i * N + j] = i == j ? R[i * N + j] : lanes_fabs(R[i * N + j]);
+            if (i != j) s->heat &= ~lanes_where(R[i * N + j] < 0.0);
+        }
+    for (k = 0; k < N; k++) {
+        const lanes *top = s->M + k * N;
+        lanes inverse = 1.0 / top[k];
+        sound &= lanes_where(top[k] < 0.0);
+        for (i = k + 1; i < N; i++) {
+            lanes f = s->M[i * N + k] * inverse;
+            for (j = k + 1; j < N; j++) s->M[i * N + j] -= f * top[j];
+        }
+    }
+    return sound;
+}
+
+/* Factors of the Jacobian's entries. The lanes where there are any and where a machine stays. */
 static lanes_bits factor(Side *s, Factors *f)
 {
     lanes_bits sound;
@@ -98,13 +122,11 @@ static lanes_bits factor(Side *s, Factors *f)
         memcpy(f->across + i * NZ, s->J + i * NW + N, NZ * sizeof *f->R);
         for (k = 0; k < NZ; k++)
             for (j = 0; j < N; j++) f->R[i * N + j] -= f->across[i * NZ + k] * f->follows[k * INNER + NZ + j];
-        for (j = 0; j < N; j++)
-            if (i != j) sound &= ~lanes_where(f->R[i * N + j] < 0.0);
     }
+    sound &= stays(s, f->R);
     for (k = 0; k < N; k++) {
         const lanes *top = f->R + k * N;
         lanes inverse = 1.0 / top[k];
-        sound &= lanes_where(top[k] < 0.0);
         for (i = k + 1; i < N; i++) {
             lanes *row = f->R + i * N;
             row[k] *= inverse;
@@ -164,15 +186,31 @@ static lanes_bits lanes_implicit(Side *s)
     return NZ > 0 ? found : open;
 }
 
+/* Whether nothing between a start and an equilibrium would run away. */
+static lanes_bits lanes_between(Side *s, const lanes *start)
+{
+    lanes_bits sound = ~(lanes_bits){0};
+    int quarter, i;
+    for (quarter = 1; quarter < 4; quarter++) {
+        for (i = 0; i < NW; i++) s->trial[i] = start[i] + 0.25 * quarter * (s->z[i] - start[i]);
+        lanes_equations(s->trial, s->trial + N, s->u, s->p, s->c, s->r, s->entries);
+        sound &= factor(s, &s->new);
+    }
+    return sound;
+}
+
 /* From the start to the equilibrium, to z: the lanes that get there. */
 static lanes_bits straight(Side *s)
 {
-    lanes_bits on = lanes_implicit(s), done = {0};
+    lanes_bits on = lanes_implicit(s), done = {0}, heat;
+    lanes start[W1];
     lanes length, damping = lanes_all(1.0);
     int step, i;
     memset(s->steps, 0, sizeof s->steps);
+    memcpy(start, s->z, sizeof start);
     lanes_equations(s->z, s->z + N, s->u, s->p, s->c, s->r, s->entries);
     on &= factor(s, &s->at);
+    heat = s->heat;
     on &= lanes_correction(&s->at, s->r, s->d);
     for (step = 0; step < MOST_NEWTON; step++) {
         lanes_bits there, taken;
@@ -190,6 +228,7 @@ static lanes_bits straight(Side *s)
         taken &= lanes_where(lanes_size(s->d_new, 0, NW) <= (1.0 - (1.0 - CONTRACTION) * damping) * length);
         on &= taken | (lanes_where(damping >= 2.0 * LEAST_STEP) & lanes_where(length > ROUND_OFF));
         on &= factor(s, &s->new) | ~taken;
+        heat &= s->heat | ~taken;
         taken &= on & lanes_correction(&s->new, s->r, s->d_new);
         for (i = 0; i < (int)(sizeof s->at / sizeof(lanes)); i++)
             ((lanes *)&s->at)[i] = lanes_select(taken, ((lanes *)&s->new)[i], ((lanes *)&s->at)[i]);
@@ -200,7 +239,7 @@ static lanes_bits straight(Side *s)
         damping = lanes_select(taken, lanes_fmin(4.0 * damping, lanes_all(1.0)), 0.5 * damping);
         for (i = 0; i < LANES; i++) s->steps[i] += taken[i] != 0;
     }
-    return done;
+    return lanes_any(done & ~heat) ? done & (heat | lanes_between(s, start)) : done;
 }
 
 static void put(lanes *to, int lane, const double *from, int n)
