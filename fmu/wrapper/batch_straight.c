@@ -78,8 +78,8 @@ static lanes lanes_share(const lanes *w, const lanes *d)
     return least;
 }
 
-/* Whether a machine stays: the states' rates by the states, all but the diagonal in magnitude, have negative pivots. The
-   eigenvalues then are to the left of zero, by Gershgorin's circles in suitable units. */
+/* Whether a machine stays: R, with what is off its diagonal in magnitude, has negative pivots. There are units then in which
+   Gershgorin's circles of R lie left of zero. */
 static lanes_bits stays(Side *s, const lanes *R)
 {
     lanes_bits sound = ~(lanes_bits){0};
