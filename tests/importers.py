@@ -74,8 +74,8 @@ class Row:
     def text(self) -> str:
         """As the page has it: the error as the next power of ten above it."""
         bound = f"below 1e{math.floor(math.log10(max(self.error, 1e-12))) + 1} K"
-        program = PROGRAMS.get(self.importer)
-        known = _version(program) if program else version(PACKAGES[self.importer])
+        package = PACKAGES.get(self.importer)
+        known = version(package) if package else _version(PROGRAMS[self.importer])
         return f"| {self.importer} | {known} | {self.interface} | {bound} |"
 
 
@@ -161,17 +161,17 @@ def _version(program: tuple[str, str]) -> str:
 
 
 def _by_fmusim(fmu: Path, kind: str, out: Path) -> Path:
-    options = {"interface-type": KINDS[kind], "solver": "cvode", "tolerance": 1e-6, "output-file": out}
-    times = {"stop-time": HOURS, "output-interval": STEP}
-    told = [text for name, value in (options | times).items() for text in (f"--{name}", str(value))]
-    subprocess.run(["fmusim", *told, str(fmu)], check=True, capture_output=True)
+    options = f"--interface-type {KINDS[kind]} --stop-time {HOURS} --output-interval {STEP} --tolerance 1e-6"
+    words = [*options.split(), "--solver", "cvode", "--output-file", str(out), str(fmu)]
+    subprocess.run(["fmusim", *words], check=True, capture_output=True)
     return out
 
 
 def _by_checker(fmu: Path, kind: str, step: float, out: Path) -> Path:
-    """It has nothing to say of the file, nor of what the FMU answers."""
-    options = ["-k", KINDS[kind], "-h", str(step), "-n", str(round(HOURS / STEP)), "-s", str(HOURS), "-o", str(out)]
-    checked = subprocess.run(["fmuCheck.linux64", *options, str(fmu)], check=True, capture_output=True, text=True)
+    """It finds nothing wrong in the file, nor in what the FMU answers."""
+    options = f"-k {KINDS[kind]} -h {step} -n {HOURS / STEP:.0f} -s {HOURS}"
+    words = ["fmuCheck.linux64", *options.split(), "-o", str(out), str(fmu)]
+    checked = subprocess.run(words, check=True, capture_output=True, text=True)
     assert re.findall(r"(\d+) (?:warning|error)", checked.stderr, flags=re.IGNORECASE) == ["0"] * 3, checked.stderr
     return out
 
