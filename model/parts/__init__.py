@@ -31,6 +31,7 @@ from .housing import (
 from .journal import PlainBearing
 from .lubrication import Grease, OilBath
 from .motor import Motor
+from .oil_circuit import OilExchanger, OilFilter, OilNozzle, OilPump, OilSump
 from .planetary import PlanetarySet
 from .rv import CycloidPinStage
 from .sealing import LipSeal, OilLipSeal
@@ -99,6 +100,11 @@ PARTS: dict[str, type[Component]] = {
         OilBath,
         DrumOil,
         Grease,
+        OilSump,
+        OilPump,
+        OilFilter,
+        OilNozzle,
+        OilExchanger,
         HeatCapacity,
         ThermalConductor,
         PlaneWall,

@@ -64,6 +64,7 @@ NOMINAL = {
     **{"w_0": 0.64e-3, "r_convex": 0.0192194, "r_concave": 0.0192307, "E_eff": 230e9, "u_0": 0.03, "u_m": 0.03},
     **{"shaft_angle": 1.57, "d_e": 0.18, "delta": 1.2, "F_t": 5000.0, "away": 1.0, "m_x": 4e-3},
     **{"d_1": 0.05, "gamma": 0.2, "F_n": 5000.0, "drive": 1.0},
+    **{"m_flow": 0.2, "h_a": 1e5, "h_b": 6e4, "c_p": 2000.0, "dp": 2e5, "C_d": 0.6, "p_bypass": 3e5, "eta_m": 0.8},
     **{"g_V": 20.0, "g_E": 5.0, "rigid_isoviscous": 0.5, "rigid_piezoviscous": 0.4, "elastic_isoviscous": 0.3},
 }
 CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
@@ -100,6 +101,10 @@ OWN = {
     "gear_churning.fast_share": {"w": 250.0, "r": 0.08, "b": 0.024},
     "gear_churning.gear_churning_torque": {"h": 0.04, "r": 0.08, "b": 0.024},
     "gear_churning.windage_torque": {"r": 0.08, "b": 0.024},
+    "oil_circuit.stream_conductance": {"G": 300.0},
+    "oil_circuit.orifice_flow": {"d": 2e-3},
+    "oil_circuit.laminar_pressure": {"R": 8e9},
+    "oil_circuit.pump_loss_torque": {"D": 1.6e-6},
     "film_line.moes_central": {"L": 10.0},
     "film_point.nijenbanning_central": {"L": 10.0, "D": 0.8},
     "film_point.hamrock_dowson_central": {"k": 1.5},
