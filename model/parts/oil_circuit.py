@@ -62,8 +62,8 @@ class OilSump(OilBath):
             yield equation("outlet in the air", outlet.p, 0.0)
         yield equation("gain", self.m_flow_gain, inlet.m_flow + outlet.m_flow)
         h = self.c_p * (self.T - T_ZERO)
-        for port in (inlet, outlet):
-            yield equation(f"{port.name} carries", port.H_flow, carried_enthalpy(port.m_flow, port.h, h))
+        yield equation("carried in", inlet.H_flow, carried_enthalpy(inlet.m_flow, inlet.h, h))
+        yield equation("carried out", outlet.H_flow, carried_enthalpy(outlet.m_flow, outlet.h, h))
         yield from super().equations()
 
     def heating(self) -> Num:
