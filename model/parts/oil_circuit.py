@@ -111,6 +111,7 @@ class OilPump(OilLine):
     V_disp = Parameter("m3", "displacement per revolution", nominal=1e-5, above=0.0)
     eta_v = Parameter("1", "volumetric efficiency", above=0.0, at_most=1.0)
     eta_m = Parameter("1", "mechanical efficiency", above=0.0, at_most=1.0)
+    dp = Output("Pa", "pressure that it adds", nominal=1e5)
     P = Output("W", "power from the shaft into the oil", nominal=100.0)
 
     def resistance(self) -> Equation:
@@ -124,9 +125,10 @@ class OilPump(OilLine):
 
     def equations(self) -> Iterator[Equation]:
         """The torque of pressure and friction, then the flow."""
-        dp, D, w = self.b.p - self.a.p, self.V_disp / (2 * math.pi), self.shaft.w
-        friction = pump_loss_torque(dp, D, self.eta_m) * friction_sign(w)
-        yield equation("torque", self.shaft.tau, D * dp + friction)
+        D, w = self.V_disp / (2 * math.pi), self.shaft.w
+        friction = pump_loss_torque(self.dp, D, self.eta_m) * friction_sign(w)
+        yield equation("pressure", self.dp, self.b.p - self.a.p)
+        yield equation("torque", self.shaft.tau, D * self.dp + friction)
         yield equation("power", self.P, self.shaft.tau * w)
         yield from super().equations()
 
@@ -180,6 +182,7 @@ class OilExchanger(OilLine):
     G = Parameter("W/K", "conductance between oil and wall, heat transfer coefficient times area", 100.0, at_least=0.0)
     c_p = Parameter("J/(kg.K)", "specific heat of the oil, that of its sump", nominal=2000.0, above=0.0)
     Q_flow = Output("W", "heat flow rate from the oil to the wall", nominal=1000.0)
+    T_b = Output("K", "temperature of the oil at b", nominal=350.0)
 
     def has(self, name: str) -> bool:
         """It is open unless a thermostat opens it."""
@@ -195,5 +198,6 @@ class OilExchanger(OilLine):
         h_in = (self.a.h + self.b.h + smooth_sign(self.m_flow, M_WIDTH) * (self.a.h - self.b.h)) / 2
         dT = T_ZERO + h_in / self.c_p - self.wall.T
         yield equation("heat to the wall", self.Q_flow, stream_conductance(share * self.m_flow, self.c_p, self.G) * dT)
+        yield equation("temperature at b", self.T_b, T_ZERO + self.b.h / self.c_p)
         yield equation("enters the wall", self.wall.Q_flow, -self.Q_flow)
         yield from super().equations()

@@ -159,11 +159,13 @@ def test_steady_state_by_hand(scenario: Scenario, flat: FlatModel) -> None:
     lost = 1e5 * m / 0.2 * found["tank.nu"] / 1e-4  # the bypass of the filter begins to open
     pressure = (m_1 / (0.7 * math.pi * 1e-6)) ** 2 / (2 * rho) + lost / (1 + (lost / 3e5) ** 8) ** 0.125
     assert pytest.approx(pressure / 0.85 * 10e-6 * 1450 / 60, rel=1e-6) == P
+    assert found["pump.dp"] == pytest.approx(pressure, rel=1e-6)
     share = (1 + math.tanh(4 * (T_tank - 323.15) / 10 - 2)) / 2
     T_pumped, C = T_tank + P / (m * C_P), math.hypot(share * m, 1e-4) * C_P  # as it is rounded at rest
     assert oil["c_p"] == C_P
     assert pytest.approx(C * (1 - math.exp(-300 / C)) * (T_pumped - 293.15), rel=1e-6) == Q
     T_line, C = T_pumped - Q / (m * C_P), m_1 * C_P
+    assert found["cooler.T_b"] == pytest.approx(T_line, abs=1e-5)
     assert C * (1 - math.exp(-80 / C)) * (T_gear - T_line) == pytest.approx(2000, rel=1e-6)
     assert T_upper == pytest.approx(T_line + 2000 / C, rel=1e-6)
     assert pytest.approx(Q + 5 * (T_tank - 293.15), rel=1e-9) == 2000 + P
