@@ -37,14 +37,14 @@ class Box:
 
 
 def network_svg(assembly: Assembly) -> str:
-    """Shafts above, heat below, oil between: every net is a box with its parts, what connects nets lies between them."""
+    """Shafts above, heat below, oil between; a net is a box with its parts, what connects nets lies between them."""
     drawn, top, width = [], 0.0, 0.0
-    for kind in _COLOURS:
+    for kind, colours in _COLOURS.items():
         boxes = _boxes(assembly, kind)
         if not boxes:
             continue
         places, size = _placed(boxes)
-        drawn.append(f'<g transform="translate(0,{top:g})">{_drawn(boxes, places, *_COLOURS[kind])}</g>')
+        drawn.append(f'<g transform="translate(0,{top:g})">{_drawn(boxes, places, *colours)}</g>')
         top, width = top + size[1], max(width, size[0])
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {top:g}" width="{width:g}" role="img"'
     style = 'font-family="sans-serif" font-size="12" text-anchor="middle"'

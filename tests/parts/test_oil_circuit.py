@@ -20,6 +20,7 @@ from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 from gearheat.scenarios.scenario import Scenario
+from gearheat.tools.heat_paths import heat_flows, heat_paths
 
 RIG = """
 kind = "network"
@@ -205,6 +206,17 @@ def test_a_warm_up_from_the_cold_ends_at_the_steady_state(scenario: Scenario, fl
     assert run.audit.residual < 1e-6
     for name in cold:
         assert run[name][-1] == pytest.approx(float(rest[name][0]), abs=0.05)
+
+
+def test_the_circuit_is_one_place_among_the_paths_of_heat(scenario: Scenario) -> None:
+    machine = assemble(scenario.spec)
+    values = steady(flatten(machine, flows=heat_flows(machine)), scenario.operating_point).columns
+    paths = heat_paths(machine, {name: float(column[0]) for name, column in values.items()})
+    gives = {path.begins: path.Q_flow for path in paths if path.ends == "oil circuit"}
+    takes = {path.ends: path.Q_flow for path in paths if path.begins == "oil circuit"}
+    assert gives.keys() == {"gear", "pump"}
+    assert takes.keys() == {"tank", "cooler"}
+    assert sum(gives.values()) == pytest.approx(sum(takes.values()), rel=1e-9)
 
 
 def test_a_mesh_of_lines_backwards() -> None:
