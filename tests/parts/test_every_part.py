@@ -81,6 +81,10 @@ EXAMPLES: dict[str, dict] = {
     "TurningFrame": {},
     "ShaftSupport": SUPPORT,
     "TwoGearSupport": SUPPORT | dict(x_2=0.07, r_2=0.03, phi=2.5),
+    "PreloadedPair": dict(
+        arrangement="face-to-face", contact="rollers", F_set=500.0, T_set=293.15, k=1e8, span=0.2, d_m=0.1
+    )
+    | dict(alpha=0.25, alpha_s=1.2e-5, alpha_h=2.3e-5),
     "TaperedRollerBearing": SKF | dict(R_1=2.38e-6, R_2=10.9, S_1=0.014, S_2=2.0, Y=1.4, B=0.038, K_L=0.7),
     "DeepGrooveBallBearing": SKF | dict(R_1=3.9e-7, R_2=1.7, S_1=3.23e-3, S_2=36.5, C_0=64e3),
     "CylindricalRollerBearing": SKF | dict(R_1=1e-6, S_1=0.16, S_2=1.5e-3, B=0.038, K_L=0.65),
@@ -164,7 +168,7 @@ GIVES |= {"LoadingClutch.reading"}
 GIVES |= {f"PlanetarySet.{k}" for k in ("carrier_load", "sun_load", "planet_load")}
 GIVES |= {f"HarmonicMesh.{k}" for k in ("wave_load", "shaft_load")}
 GIVES |= {f"CycloidPinStage.{k}" for k in ("eccentric_load", "crank_load", "main_load")}
-GIVES |= {f"{s}.{k}" for s in ("ShaftSupport", "TwoGearSupport") for k in ("load_a", "load_b")}
+GIVES |= {f"{s}.{k}" for s in ("ShaftSupport", "TwoGearSupport", "PreloadedPair") for k in ("load_a", "load_b")}
 GIVES |= {f"RoundHousing.{k}" for k in ("flat_inside", "flat_outside", "cylinder_inside", "cylinder_outside")}
 #: Oil ports at which a part gives the pressure, or leaves it open: oil is pushed into them.
 PUSHED = {"OilSump.inlet", "OilSump.outlet", "OilFilter.a", "OilExchanger.a"}
@@ -245,6 +249,7 @@ CASES += [(kind, {"height": 0.1}) for kind in ("DeepGrooveBallBearing", "Tapered
 PRINTED_DRUM = {"coefficient": "source", "P_N": 2200.0, "psi_1": 0.5, "psi_2": 0.9, "A_belt": 0.3}
 CASES += [("DrumCooling", PRINTED_DRUM)]
 CASES += [("Thermostat", {"relay": False})]
+CASES += [("PreloadedPair", {"arrangement": "back-to-back", "contact": "balls"})]
 CASES += [("OilSump", {"runs_over": True}), ("OilExchanger", {"thermostat": True})]
 CASES += [("OilBath", {"level": 0.05}), ("Room", {"dT_radiant": -15.0, "altitude": 800.0})]
 CASES += [(kind, {"oil_bath": False}) for kind in ("TaperedRollerBearing", "CylindricalRollerBearing")]
