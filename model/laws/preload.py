@@ -42,8 +42,8 @@ def thermal_interference(
 
 
 @law(
-    source="Gearheat",
-    where="preload of an adjusted pair, linear in its interference",
+    source="SKF2018",
+    where="preload, as a force and as a distance",
     valid="stiffness constant about the preload as set",
     ranges={"dx": (-2e-4, 2e-4)},
     verified=False,
