@@ -1,7 +1,7 @@
 """The oil circuit: sumps, pump, filter, nozzles and cooler, joined by what flows and the enthalpy it carries.
 
-Enthalpy is c_p times the temperature above 0 degC. The power of the pump warms the oil in the pump: what the pressure
-makes of it on the way, 0.06 K per bar, is given off there at once. All flows of one circuit are of one oil.
+Enthalpy is c_p times the temperature above 0 degC. The whole power of the pump warms the oil in the pump; in truth a
+share of it, 0.06 K per bar, does so where the pressure falls. All flows of one circuit are of one oil.
 """
 
 from __future__ import annotations
