@@ -81,10 +81,8 @@ EXAMPLES: dict[str, dict] = {
     "TurningFrame": {},
     "ShaftSupport": SUPPORT,
     "TwoGearSupport": SUPPORT | dict(x_2=0.07, r_2=0.03, phi=2.5),
-    "PreloadedPair": dict(
-        arrangement="face-to-face", contact="rollers", F_set=500.0, T_set=293.15, k=1e8, span=0.2, d_m=0.1
-    )
-    | dict(alpha=0.25, alpha_s=1.2e-5, alpha_h=2.3e-5),
+    "PreloadedPair": dict(arrangement="face-to-face", contact="rollers", F_set=500.0, T_set=293.15, k=1e8, span=0.2)
+    | dict(d_m=0.1, alpha=0.25, alpha_s=1.2e-5, alpha_h=2.3e-5),
     "TaperedRollerBearing": SKF | dict(R_1=2.38e-6, R_2=10.9, S_1=0.014, S_2=2.0, Y=1.4, B=0.038, K_L=0.7),
     "DeepGrooveBallBearing": SKF | dict(R_1=3.9e-7, R_2=1.7, S_1=3.23e-3, S_2=36.5, C_0=64e3),
     "CylindricalRollerBearing": SKF | dict(R_1=1e-6, S_1=0.16, S_2=1.5e-3, B=0.038, K_L=0.65),
