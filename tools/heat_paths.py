@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from ..model.core.component import Component
 from ..model.core.connect import Assembly, nets
 from ..model.core.declare import Port
-from ..model.parts.ports import HeatPort
+from ..model.parts.ports import HeatPort, OilPort
 
 #: Flows below this share of the largest one are not told.
 LEAST = 1e-3
@@ -33,8 +33,13 @@ class Path:
 
 
 def heat_flows(assembly: Assembly) -> list[str]:
-    """Paths of the flows of all heat ports, as `flatten` takes them."""
-    return [f"{port.name}.Q_flow" for port in assembly.ports().values() if isinstance(port, HeatPort)]
+    """Paths of the flows of all ports that heat crosses, as `flatten` takes them."""
+    return [_flow(port) for port in assembly.ports().values() if isinstance(port, HeatPort | OilPort)]
+
+
+def _flow(port: Port) -> str:
+    """Path of the flow of a port that heat crosses, by itself or with oil."""
+    return f"{port.name}.{'H_flow' if isinstance(port, OilPort) else 'Q_flow'}"
 
 
 def heat_paths(assembly: Assembly, values: Mapping[str, float]) -> list[Path]:
@@ -42,7 +47,7 @@ def heat_paths(assembly: Assembly, values: Mapping[str, float]) -> list[Path]:
 
     Args:
         assembly: the machine
-        values: path -> value in SI: the flows of all heat ports, and the outputs of the parts
+        values: path -> value in SI: the flows of `heat_flows`, and the outputs of the parts
     """
     places = _places(assembly)
     every = [path for part in assembly.parts for path in _paths(part, places, values)]
@@ -58,8 +63,12 @@ class _Place:
     kept: bool
 
 
+#: All nets of oil ports together: what heat the oil takes along is told of the whole circuit.
+_CIRCUIT = _Place("oil circuit", False)
+
+
 def _places(assembly: Assembly) -> dict[str, _Place]:
-    """The place of each heat port."""
+    """The place of each port that heat crosses."""
     parts = {part.name: part for part in assembly.parts}
     found: dict[str, _Place] = {}
     for net in nets(assembly):
@@ -68,6 +77,8 @@ def _places(assembly: Assembly) -> dict[str, _Place]:
             rules = [part for part in owners if _rules(part)] or owners
             place = _Place(rules[0].name, _rules(rules[0]) and not rules[0].states)
             found |= {port.name: place for port in net}
+        elif isinstance(net[0], OilPort):
+            found |= {port.name: _CIRCUIT for port in net}
     return found
 
 
@@ -90,8 +101,11 @@ def _paths(part: Component, places: Mapping[str, _Place], values: Mapping[str, f
     for port in part.ports.values():
         if port.name in places:
             place = places[port.name]
-            flows[place] = flows.get(place, 0.0) + values[f"{port.name}.Q_flow"]
+            flows[place] = flows.get(place, 0.0) + values[_flow(port)]
     if _rules(part):
+        if (by_oil := flows.pop(_CIRCUIT, 0.0)) and (own := next(iter(flows), None)):
+            yield from _between(own.name, {_CIRCUIT: by_oil})
+            flows[own] += by_oil
         if part.states:  # what a body takes in without storing it leaves the model
             yield from _between(f"{part.name}: outside", flows)
         return

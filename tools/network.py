@@ -9,12 +9,13 @@ from html import escape
 from ..model.core.component import Component
 from ..model.core.connect import Assembly, nets
 from ..model.core.declare import Port
-from ..model.parts.ports import Flange, HeatPort
+from ..model.parts.ports import Flange, HeatPort, OilPort
 
 #: Width of a column and of a box in it, height of a line of text, space between boxes and at the edge.
 _COLUMN, _BOX, _LINE, _GAP = 152.0, 128.0, 15.0, 16.0
 
-_COLOURS = {HeatPort: ("#fdf0e7", "#c65a1e"), Flange: ("#eaf1f8", "#2f6597")}
+#: Fill and stroke of the nets of a kind of port, in the order in which they are drawn.
+_COLOURS = {Flange: ("#eaf1f8", "#2f6597"), OilPort: ("#f6f3e0", "#857400"), HeatPort: ("#fdf0e7", "#c65a1e")}
 
 
 @dataclass(frozen=True)
@@ -36,14 +37,14 @@ class Box:
 
 
 def network_svg(assembly: Assembly) -> str:
-    """Shafts above, heat below; every net of ports is a box with its parts, what connects nets lies between them."""
+    """Shafts above, heat below, oil between; a net is a box with its parts, what connects nets lies between them."""
     drawn, top, width = [], 0.0, 0.0
-    for kind in (Flange, HeatPort):
+    for kind, colours in _COLOURS.items():
         boxes = _boxes(assembly, kind)
         if not boxes:
             continue
         places, size = _placed(boxes)
-        drawn.append(f'<g transform="translate(0,{top:g})">{_drawn(boxes, places, *_COLOURS[kind])}</g>')
+        drawn.append(f'<g transform="translate(0,{top:g})">{_drawn(boxes, places, *colours)}</g>')
         top, width = top + size[1], max(width, size[0])
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {top:g}" width="{width:g}" role="img"'
     style = 'font-family="sans-serif" font-size="12" text-anchor="middle"'

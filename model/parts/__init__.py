@@ -31,7 +31,9 @@ from .housing import (
 from .journal import PlainBearing
 from .lubrication import Grease, OilBath
 from .motor import Motor
+from .oil_circuit import OilExchanger, OilFilter, OilNozzle, OilPump, OilSump
 from .planetary import PlanetarySet
+from .preload import PreloadedPair
 from .rv import CycloidPinStage
 from .sealing import LipSeal, OilLipSeal
 from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit, TurningFrame
@@ -81,6 +83,7 @@ PARTS: dict[str, type[Component]] = {
         BeltPull,
         ShaftSupport,
         TwoGearSupport,
+        PreloadedPair,
         TaperedRollerBearing,
         DeepGrooveBallBearing,
         CylindricalRollerBearing,
@@ -99,6 +102,11 @@ PARTS: dict[str, type[Component]] = {
         OilBath,
         DrumOil,
         Grease,
+        OilSump,
+        OilPump,
+        OilFilter,
+        OilNozzle,
+        OilExchanger,
         HeatCapacity,
         ThermalConductor,
         PlaneWall,

@@ -84,11 +84,15 @@ class OilBath(LubricantProperties):
         """Of an oil that flows."""
         return kinematic_viscosity(T, self.nu_40, self.nu_100, self.T_pour)
 
+    def heating(self) -> Num:
+        """Heat that enters [W]."""
+        return self.heat.Q_flow + self.Q_flow_external
+
     def equations(self) -> Iterator[Equation]:
         """Heat that enters warms the oil."""
         yield equation("one temperature", self.heat.T, self.T)
         C = self.V * self.rho_15 * self.c_p
-        yield equation("storage", C * self.der("T"), self.heat.Q_flow + self.Q_flow_external)
+        yield equation("storage", C * self.der("T"), self.heating())
         if self.has("sump"):
             yield equation("level read", self.sump.level, self.level)
             yield equation("volume read", self.sump.V, self.V)

@@ -1,4 +1,4 @@
-"""The ports of the parts: two that carry power, the others carry information only."""
+"""The ports of the parts: three that carry power, the others carry information only."""
 
 from __future__ import annotations
 
@@ -55,6 +55,28 @@ class Flange(Port):
     def power(self) -> Any:
         """Mechanical power into the owner [W]."""
         return self.w * self.tau
+
+
+class OilPort(Port):
+    """Where oil crosses a boundary and takes its enthalpy along. Positive flows enter the component that owns the port.
+
+    All oil that leaves a net has the enthalpy `h` of the mixture that enters it, whatever the directions.
+    """
+
+    must_meet = True
+    missing = "its oil comes from nowhere"
+    source = "the inlet or outlet of an OilSump, or a part of its circuit"
+    divides = "let one of two sumps run over (runs_over = true)"
+    levels = {"p": "an OilSump", "h": "an OilSump"}
+
+    p = Potential("Pa", "pressure above that of the air", nominal=1e5)
+    h = Potential("J/kg", "specific enthalpy of the mixture, above 0 degC", nominal=1e5)
+    m_flow = Flow("kg/s", "mass flow rate", nominal=0.1)
+    H_flow = Flow("W", "enthalpy flow rate", nominal=1e4)
+
+    def power(self) -> Any:
+        """Enthalpy flow rate into the owner [W]."""
+        return self.H_flow
 
 
 class BearingLoad(Port):

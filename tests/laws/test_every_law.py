@@ -64,6 +64,10 @@ NOMINAL = {
     **{"w_0": 0.64e-3, "r_convex": 0.0192194, "r_concave": 0.0192307, "E_eff": 230e9, "u_0": 0.03, "u_m": 0.03},
     **{"shaft_angle": 1.57, "d_e": 0.18, "delta": 1.2, "F_t": 5000.0, "away": 1.0, "m_x": 4e-3},
     **{"d_1": 0.05, "gamma": 0.2, "F_n": 5000.0, "drive": 1.0},
+    **{"m_flow": 0.2, "h_a": 1e5, "h_b": 6e4, "c_p": 2000.0, "dp": 2e5, "C_d": 0.6, "p_bypass": 3e5, "eta_m": 0.8},
+    **{"T_shaft": 350.0, "T_housing": 330.0, "T_set": 293.0},
+    **{"alpha_s": 12e-6, "alpha_h": 23e-6, "alpha": 0.25, "span": -0.2},
+    **{"F_set": 500.0, "dx": 1e-5, "F_0": 800.0, "F_own": 600.0, "F_other": 100.0},
     **{"g_V": 20.0, "g_E": 5.0, "rigid_isoviscous": 0.5, "rigid_piezoviscous": 0.4, "elastic_isoviscous": 0.3},
 }
 CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
@@ -100,6 +104,11 @@ OWN = {
     "gear_churning.fast_share": {"w": 250.0, "r": 0.08, "b": 0.024},
     "gear_churning.gear_churning_torque": {"h": 0.04, "r": 0.08, "b": 0.024},
     "gear_churning.windage_torque": {"r": 0.08, "b": 0.024},
+    "oil_circuit.stream_conductance": {"G": 300.0},
+    "oil_circuit.orifice_flow": {"d": 2e-3},
+    "oil_circuit.laminar_pressure": {"R": 8e9},
+    "oil_circuit.pump_loss_torque": {"D": 1.6e-6},
+    "preload.preload_force": {"k": 1e8},
     "film_line.moes_central": {"L": 10.0},
     "film_point.nijenbanning_central": {"L": 10.0, "D": 0.8},
     "film_point.hamrock_dowson_central": {"k": 1.5},
@@ -122,6 +131,7 @@ NOT_NEGATIVE = {"P_a", "h_natural", "h_forced", "H", "V_M", "level", "K_rs", "ph
 #: Torques and losses: magnitudes, never negative.
 MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.", "film_line.", "film_point.")
 MAGNITUDES += ("gear_churning.", "load_variables.", "journal.", "cycloid.", "iso14179_1.", "iso14179_2.")
+MAGNITUDES += ("preload.preload",)
 
 
 def every_function() -> dict[str, Callable[..., Any]]:
@@ -224,6 +234,7 @@ EXTREME = {
     **{"T": (100.0, *_ROOM), "T_film": _ROOM, "T_s": _ROOM, "T_f": _ROOM, "T_1": _ROOM, "T_2": _ROOM},
     **{"w": (-1000.0, 0.0, 1e-5, 1000.0), "v": (0.0, 100.0), "v_sum": (0.0, 200.0), "u_sum": (0.0, 200.0)},
     **{"F_r": (0.0, 1.0, 1e6), "F_a": (0.0, 1.0, 1e6), "P_1": (0.0, 1e6), "F_n_l": (0.0, 1e8), "P_a": (0.0, 1e9)},
+    **{"m_flow": (-10.0, 0.0, 10.0), "dp": (-1e7, 0.0, 1e7), "dx": (-1e-3, 1e-3), "F_own": (0.0, 1e6)},
     **{"nu": _OIL, "eta_oil": (1e-3, 2e4), "eta_0": (1e-3, 2e4), "s": (0.0, 1e9), "phi_ish": (0.0910, 1.0)},
     **{"H": (0.0, 0.2), "K_rs": (0.0, 6e-8), "nu_40": (32e-6, 680e-6), "slide_roll": (0.0, 2.0)},
     **{"Lambda": (0.0, 1e-6, 1e-3, 2.0, 1e3), "M": (1e-2, 1e6), "L": (1e-2, 100.0)},

@@ -81,6 +81,8 @@ EXAMPLES: dict[str, dict] = {
     "TurningFrame": {},
     "ShaftSupport": SUPPORT,
     "TwoGearSupport": SUPPORT | dict(x_2=0.07, r_2=0.03, phi=2.5),
+    "PreloadedPair": dict(arrangement="face-to-face", contact="rollers", F_set=500.0, T_set=293.15, k=1e8, span=0.2)
+    | dict(d_m=0.1, alpha=0.25, alpha_s=1.2e-5, alpha_h=2.3e-5),
     "TaperedRollerBearing": SKF | dict(R_1=2.38e-6, R_2=10.9, S_1=0.014, S_2=2.0, Y=1.4, B=0.038, K_L=0.7),
     "DeepGrooveBallBearing": SKF | dict(R_1=3.9e-7, R_2=1.7, S_1=3.23e-3, S_2=36.5, C_0=64e3),
     "CylindricalRollerBearing": SKF | dict(R_1=1e-6, S_1=0.16, S_2=1.5e-3, B=0.038, K_L=0.65),
@@ -100,6 +102,11 @@ EXAMPLES: dict[str, dict] = {
     "OilBath": OIL | dict(V=1e-3, c_p=2000.0),
     "DrumOil": OIL | dict(beta=0.7, r=0.15, L=0.25, c_p=2000.0),
     "Grease": OIL,
+    "OilSump": OIL | dict(V=1e-3, c_p=2000.0),
+    "OilPump": dict(V_disp=1e-5, eta_v=0.9, eta_m=0.8),
+    "OilFilter": dict(dp_ref=1e5, m_flow_ref=0.1, nu_ref=1e-4, p_bypass=3e5),
+    "OilNozzle": dict(d=2e-3, C_d=0.7),
+    "OilExchanger": dict(G=300.0, c_p=2000.0),
     "HeatCapacity": dict(C=3600.0),
     "ThermalConductor": dict(G=60.0),
     "PlaneWall": dict(k=50.0, A=0.4, d=0.01),
@@ -142,6 +149,8 @@ GIVES = {"DrumOil.heat", "DrumOil.lubricant", "DrumOil.level", "BeltPull.load"} 
     "HeatCapacity.heat",
     "OilBath.lubricant",
     "OilBath.sump",
+    "OilSump.heat",
+    "OilSump.lubricant",
     "Grease.lubricant",
     "HelicalGearPair.force",
     "InternalGearPair.force",
@@ -157,8 +166,10 @@ GIVES |= {"LoadingClutch.reading"}
 GIVES |= {f"PlanetarySet.{k}" for k in ("carrier_load", "sun_load", "planet_load")}
 GIVES |= {f"HarmonicMesh.{k}" for k in ("wave_load", "shaft_load")}
 GIVES |= {f"CycloidPinStage.{k}" for k in ("eccentric_load", "crank_load", "main_load")}
-GIVES |= {f"{s}.{k}" for s in ("ShaftSupport", "TwoGearSupport") for k in ("load_a", "load_b")}
+GIVES |= {f"{s}.{k}" for s in ("ShaftSupport", "TwoGearSupport", "PreloadedPair") for k in ("load_a", "load_b")}
 GIVES |= {f"RoundHousing.{k}" for k in ("flat_inside", "flat_outside", "cylinder_inside", "cylinder_outside")}
+#: Oil ports at which a part gives the pressure, or leaves it open: oil is pushed into them.
+PUSHED = {"OilSump.inlet", "OilSump.outlet", "OilFilter.a", "OilExchanger.a"}
 #: What is given at the flanges of a part with several of them; elsewhere the speed (a storage: the torque).
 GIVEN = {
     **{
@@ -187,12 +198,13 @@ def heater(port: Port, name: str) -> Component:
     return type(f"Heater{type(port).__name__}", (Component,), members)(name)
 
 
-def source(port: Port, name: str) -> Component:
-    """A part that gives the potentials of a port as inputs, and takes whatever flows."""
-    potentials = type(port).potentials()
+def source(port: Port, name: str, pushes: bool = False) -> Component:
+    """A part that gives the potentials of a port as inputs, and takes whatever flows; or pushes a mass flow."""
+    quantities = {**type(port).potentials(), **type(port).flows()}
+    known = ("m_flow", "h") if pushes else type(port).potentials()
     members: dict = {"port": type(port)(), "__doc__": "Gives the potentials of a port."}
-    members |= {k: Input(d.unit, d.doc, d.nominal, start=d.nominal) for k, d in potentials.items()}
-    members["equations"] = lambda self: (equation(k, getattr(self.port, k), self.symbols[k]) for k in potentials)
+    members |= {k: Input(d.unit, d.doc, d.nominal, start=d.nominal) for k, d in quantities.items() if k in known}
+    members["equations"] = lambda self: (equation(k, getattr(self.port, k), self.symbols[k]) for k in known)
     members["supplied_power"] = lambda self: (-self.port.power(),)
     return type(f"Fixed{type(port).__name__}", (Component,), members)(name)
 
@@ -214,7 +226,8 @@ def between_sources(kind: str, **choices):
             parts.append(PARTS["ShaftEnd"](key, given=given_here))
             nets.append((port.name, f"{key}.flange"))
         else:
-            parts.append((heater if f"{kind}.{key}" in TAKES else source)(port, key))
+            pushes = f"{kind}.{key}" in PUSHED and not (choices.get("runs_over") and key == "outlet")
+            parts.append(heater(port, key) if f"{kind}.{key}" in TAKES else source(port, key, pushes))
             nets.append((port.name, f"{key}.port"))
     return flatten(Assembly(kind, "", tuple(parts), tuple(nets)))
 
@@ -234,6 +247,8 @@ CASES += [(kind, {"height": 0.1}) for kind in ("DeepGrooveBallBearing", "Tapered
 PRINTED_DRUM = {"coefficient": "source", "P_N": 2200.0, "psi_1": 0.5, "psi_2": 0.9, "A_belt": 0.3}
 CASES += [("DrumCooling", PRINTED_DRUM)]
 CASES += [("Thermostat", {"relay": False})]
+CASES += [("PreloadedPair", {"arrangement": "back-to-back", "contact": "balls"})]
+CASES += [("OilSump", {"runs_over": True}), ("OilExchanger", {"thermostat": True})]
 CASES += [("OilBath", {"level": 0.05}), ("Room", {"dT_radiant": -15.0, "altitude": 800.0})]
 CASES += [(kind, {"oil_bath": False}) for kind in ("TaperedRollerBearing", "CylindricalRollerBearing")]
 _flat: dict = {}
@@ -254,6 +269,8 @@ def at(flat, rng) -> dict[str, float]:
             return rng.uniform(275.0, 390.0)
         if q.unit in ("rad/s", "N.m"):
             return max(q.low, rng.choice([0.0, 1.0, -1.0]) * rng.uniform(0.0, 300.0))
+        if q.unit == "kg/s":
+            return rng.choice([0.0, 1.0, -1.0]) * rng.uniform(0.0, 0.3)
         return q.nominal * rng.uniform(0.2, 2.0)
 
     x = [value(q) for q in flat.states]
