@@ -33,7 +33,7 @@ from .lubrication import Grease, OilBath
 from .motor import Motor
 from .planetary import PlanetarySet
 from .rv import CycloidPinStage
-from .sealing import LipSeal, OilLipSeal
+from .sealing import LabyrinthSeal, LipSeal, OilLipSeal
 from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit, TurningFrame
 from .supports import ShaftSupport, TwoGearSupport
 from .thermal import (
@@ -47,6 +47,7 @@ from .thermal import (
     PrescribedHeatFlow,
     PrescribedTemperature,
     Room,
+    Sun,
     ThermalConductor,
 )
 from .worm import WormPair
@@ -92,6 +93,7 @@ PARTS: dict[str, type[Component]] = {
         PlainBearing,
         LipSeal,
         OilLipSeal,
+        LabyrinthSeal,
         Churning,
         GearChurning,
         GearWindage,
@@ -119,6 +121,7 @@ PARTS: dict[str, type[Component]] = {
         ClosedRoom,
         PrescribedTemperature,
         PrescribedHeatFlow,
+        Sun,
         GreyTeeth,
         GreyBearing,
         FlowConductor,
