@@ -12,7 +12,7 @@ from .bearings import (
     ThrustBallBearing,
 )
 from .bevel import BevelGearPair
-from .churning import Churning, GearChurning, GearWindage
+from .churning import Churning, GearChurning, GearWindage, MeshSqueezing
 from .clutch import Brake, CompliantShaft, FrictionClutch, OneWayClutch
 from .cycloid import CycloidalReducer, MalhotraReducer
 from .drum import BeltContact, BeltPull, DrumChurning, DrumCooling, DrumOil, WettedWall
@@ -97,6 +97,7 @@ PARTS: dict[str, type[Component]] = {
         Churning,
         GearChurning,
         GearWindage,
+        MeshSqueezing,
         DrumChurning,
         OilBath,
         DrumOil,

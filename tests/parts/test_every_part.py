@@ -97,6 +97,7 @@ EXAMPLES: dict[str, dict] = {
     "LabyrinthSeal": FRICTION | dict(d=0.05, gap=3e-4, L=0.03, oil_share=0.1),
     "GearChurning": FRICTION | WHEEL | dict(height=0.08),
     "GearWindage": FRICTION | WHEEL,
+    "MeshSqueezing": FRICTION | WHEEL | dict(r_mate=0.16, fill=0.6, backlash=1e-4),
     "DrumChurning": FRICTION | dict(r=0.05, b=0.03, z=198.0, share_dip=0.4),
     "OilBath": OIL | dict(V=1e-3, c_p=2000.0),
     "DrumOil": OIL | dict(beta=0.7, r=0.15, L=0.25, c_p=2000.0),
