@@ -1,11 +1,15 @@
 """The command `docs`: the web site builds without a warning, and holds what the code declares."""
 
+import pkgutil
+import re
 from pathlib import Path
 
 import pytest
+from gearheat.model import laws as model_laws
 from gearheat.model.laws import rolling
 from gearheat.model.parts import PARTS
-from gearheat.tools.docs import markdown
+from gearheat.tools.docs import laws, markdown
+from gearheat.tools.docs.blocks import PAGES
 
 
 def test_the_site_builds_and_has_a_page_for_every_part(gearheat, tmp_path: Path) -> None:
@@ -28,3 +32,12 @@ def test_a_docstring_becomes_a_formula_and_a_list() -> None:
     assert "```{math}\n\\phi_{ish} = \\frac" in markdown.docstring(law)
     assert "- `d_m`: mean diameter, (d + D)/2 \\[m\\]\n" in markdown.arguments(law)
     assert markdown.words("a|b <c> `d|e`") == "a\\|b \\<c> `d\\|e`"
+
+
+def test_every_law_stands_once_among_the_equations() -> None:
+    text = laws.filled((PAGES / "theory" / "laws.md").read_text(encoding="utf-8"))
+    named = re.findall(r"^\*\*\[(\w+)\]\(\.\./generated/laws/(\w+)\.md#", text, re.MULTILINE)
+    modules = [module.name for module in pkgutil.iter_modules(model_laws.__path__)]
+    assert sorted(named) == sorted((law.__name__, module) for module in modules for law in laws.laws_of(module))
+    assert text.count("```{math}") >= len(named)
+    assert "{laws}" not in text

@@ -8,10 +8,11 @@ import pkgutil
 import re
 import shutil
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib.resources import files
 from itertools import groupby
 from pathlib import Path
+from typing import Any
 
 from ...diagnose.campaign.card import read_card
 from ...diagnose.campaign.read import read_campaign
@@ -32,6 +33,7 @@ from ...scenarios.shipped import FILES, RIGS, list_rigs
 from ...scenarios.tables import CampaignTable, ErratumTable, RigTable, SensorTable, Strict
 from ..cards import usual_priors
 from ..parts import described
+from .laws import facts, laws_of
 from .markdown import arguments, code, docstring, fenced, listing, table, words
 
 #: Where the pages of the contact solver and of the reference methods stand.
@@ -109,7 +111,7 @@ def _laws() -> Iterator[tuple[str, str]]:
     modules = {name: importlib.import_module(f"{laws.__name__}.{name}") for name in names}
     kept = []
     for name, module in modules.items():
-        own = [f for f in vars(module).values() if hasattr(f, "law") and f.__module__ == module.__name__]
+        own = list(laws_of(name))
         if not own:
             continue
         kept.append(name)
@@ -131,18 +133,9 @@ def _title(about: str) -> str:
     return re.split(r"\.(?: |$)|: ", about, maxsplit=1)[0]
 
 
-def _law(function: object, rows: int) -> str:
+def _law(function: Callable[..., Any], rows: int) -> str:
     law: LawInfo = function.law  # type: ignore[attr-defined]
-    ranges = "; ".join(f"{name} from {low:.4g} to {high:.4g}" for name, (low, high) in law.ranges.items())
-    facts = {
-        "Source": f"{law.source}, {law.where}",
-        "Valid": law.valid,
-        "Range, in SI": ranges,
-        "Compared": f"{rows} golden rows{'' if law.verified else ', none of them from print'}"
-        if rows
-        else "with no row",
-    }
-    told = "".join(f"- {key}: {words(value)}\n" for key, value in facts.items() if value)
+    told = "".join(f"- {key}: {words(value)}\n" for key, value in facts(law, rows).items() if value)
     return f"## {law.name}\n\n{docstring(function)}{arguments(function)}{told}\n"
 
 
