@@ -1,13 +1,13 @@
 """The command `docs`: the web site builds without a warning, and holds what the code declares."""
 
-import pkgutil
+import csv
 import re
 from pathlib import Path
 
 import pytest
-from gearheat.model import laws as model_laws
 from gearheat.model.laws import rolling
 from gearheat.model.parts import PARTS
+from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.docs import laws, markdown
 from gearheat.tools.docs.blocks import PAGES
 
@@ -37,7 +37,19 @@ def test_a_docstring_becomes_a_formula_and_a_list() -> None:
 def test_every_law_stands_once_among_the_equations() -> None:
     text = laws.filled((PAGES / "theory" / "laws.md").read_text(encoding="utf-8"))
     named = re.findall(r"^\*\*\[(\w+)\]\(\.\./generated/laws/(\w+)\.md#", text, re.MULTILINE)
-    modules = [module.name for module in pkgutil.iter_modules(model_laws.__path__)]
-    assert sorted(named) == sorted((law.__name__, module) for module in modules for law in laws.laws_of(module))
+    assert sorted(named) == sorted((law.__name__, name) for name in laws.law_modules() for law in laws.laws_of(name))
     assert text.count("```{math}") >= len(named)
     assert "{laws}" not in text
+
+
+def test_the_limits_tell_ranges_evidence_and_the_readings_there_are() -> None:
+    page = laws.filled((PAGES / "trust" / "limits.md").read_text(encoding="utf-8"))
+    assert "| [friction_schlenk](" in page
+    assert re.search(r"^\| \[Friction of contact seals\]\(\S+\) \| 2 \| 1 \| \d+ \| \d+ \|$", page, re.MULTILINE)
+    with (RIGS / "planetary" / "measured.csv").open(encoding="utf-8") as file:
+        readings = list(csv.DictReader(file))
+    told = re.findall(r"`(\w+)` (\S+) to (\S+) ", " ".join(page.split()))
+    assert len(told) == 4
+    for column, *ends in told:
+        values = [float(row[column]) for row in readings]
+        assert [float(end) for end in ends] == [round(min(values)), round(max(values))], column
