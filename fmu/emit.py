@@ -140,12 +140,12 @@ def function(f: Any, prefix: str = "model_", kind: str = "double", whole: int = 
     takes = [f"const {kind} *{f.name_in(i)}" for i in range(f.n_in())]
     gives = [f"{kind} *{f.name_out(i)}" for i in range(f.n_out())]
     arguments = [f.name_in(i) for i in range(f.n_in())] + [f.name_out(i) for i in range(f.n_out())]
-    shared = _shared_divisors(f)
-    lines = [line for k in range(f.n_instructions()) for line in _instruction(f, k, shared, kind)]
+    shared, powers = _shared_divisors(f), _neighbouring_powers(f)
+    lines = [line for k in range(f.n_instructions()) for line in _instruction(f, k, shared, powers, kind)]
     name, signature = f"{prefix}{f.name()}", ", ".join(takes + gives)
     if len(lines) > whole:
         return _in_pieces(name, signature, arguments, lines, kind, piece)
-    names = [f"a{i}" for i in range(f.sz_w())] + [name for name, first in shared.values() if first]
+    names = [f"a{i}" for i in range(f.sz_w())] + [name for name, first in (*shared.values(), *powers.values()) if first]
     used = {word for line in lines for word in line.reads}
     return _defined(f"{name}({signature})", kind, names, [a for a in arguments if a not in used], lines)
 
@@ -231,7 +231,37 @@ def _shared_divisors(f: Any) -> dict[int, tuple[str, bool]]:
     return {k: (f"r{i}", k == group[0]) for i, group in enumerate(groups) for k in group}
 
 
-def _instruction(f: Any, k: int, shared: Mapping[int, tuple[str, bool]], kind: str) -> list[_Line]:
+def _neighbouring_powers(f: Any) -> dict[int, tuple[str, bool]]:
+    """Power -> name of one of the same value with an exponent larger by 1, and whether it is that one.
+
+    The derivative of a power of less than 1 is a quotient of it, which costs a tenth of another power.
+    """
+    version: dict[int, int] = {}
+    constant: dict[int, float] = {}
+    known: dict[tuple[int, int], list[tuple[float, int]]] = {}
+    found: dict[int, tuple[str, bool]] = {}
+    for k in range(f.n_instructions()):
+        code = f.instruction_id(k)
+        if code == ca.OP_OUTPUT:
+            continue
+        if code == ca.OP_CONSTPOW:
+            base, at = f.instruction_input(k)
+            exponent, own = constant[at], known.setdefault((base, version[base]), [])
+            above = next((j for e, j in own if exponent < 0 and abs(e - exponent - 1) < 1e-12 and j not in found), None)
+            if above is not None:
+                found |= {above: (f"q{above}", True), k: (f"q{above}", False)}
+            own.append((exponent, k))
+        target = f.instruction_output(k)[0]
+        version[target] = k
+        constant.pop(target, None)
+        if code == ca.OP_CONST:
+            constant[target] = f.instruction_constant(k)
+    return found
+
+
+def _instruction(
+    f: Any, k: int, shared: Mapping[int, tuple[str, bool]], powers: Mapping[int, tuple[str, bool]], kind: str
+) -> list[_Line]:
     constant, texts = _TEXTS[kind]
     code, inputs, outputs = f.instruction_id(k), f.instruction_input(k), f.instruction_output(k)
     if code == ca.OP_OUTPUT:
@@ -250,4 +280,12 @@ def _instruction(f: Any, k: int, shared: Mapping[int, tuple[str, bool]], kind: s
         name, first = shared[k]
         reciprocal = [_Line(f"  {name}=1/{read[1]};", name, read[1:])] if first else []
         return [*reciprocal, _Line(f"  {target}={read[0]}*{name};", target, (read[0], name))]
-    return [_Line(f"  {target}={texts[code].format(*read)};", target, read)]
+    text = texts[code].format(*read)
+    if k in powers:
+        name, first = powers[k]
+        whole = [_Line(f"  {name}={text};", name, read)] if first else []
+        return [
+            *whole,
+            _Line(f"  {target}={name if first else f'{name}/{read[0]}'};", target, (name, *read[: not first])),
+        ]
+    return [_Line(f"  {target}={text};", target, read)]

@@ -90,7 +90,7 @@ def scale_sds(found: Found, h: Hypothesis) -> np.ndarray:
     """Standard deviations of the logarithms of the scales, by the information of the data and of the prior."""
     noise = h.fit.noise
     white, _ = h.fit.linear(found.problem)
-    inverse = white.back(np.eye(found.problem.m))
+    inverse = white.inverse
     _, loose = noise.parts
     weighted = [inverse @ C * np.exp(2 * s) for s, C in zip(noise.scales, loose, strict=True)]
     information = np.array([2 * float((W * W.T).sum()) for W in weighted])

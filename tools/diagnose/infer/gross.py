@@ -35,7 +35,7 @@ class Suspect:
 def suspects(problem: Problem, fit: Fit) -> list[Suspect]:
     """All readings by how far they lie from what the others say, the farthest first: compared and given ones."""
     white, e = fit.linear(problem)
-    inverse = white.back(np.eye(problem.m))
+    inverse = white.inverse
     a = inverse @ (white.L @ e)
     kinds = np.concatenate([1000 * k + o.kind for k, o in enumerate(problem.campaigns)])
     stands = _robust(a / np.sqrt(np.diag(inverse)), kinds)
@@ -98,7 +98,7 @@ def distances(problem: Problem, fit: Fit) -> list[Suspect]:
     """How far each reading that is set aside lies from what a hypothesis says of it."""
     white, e = fit.linear(problem)
     V, r = white.L @ white.L.T, white.L @ e
-    inverse = white.back(np.eye(problem.m))
+    inverse = white.inverse
     a = inverse @ r
     found = []
     for aside in sorted(problem.aside):

@@ -106,7 +106,7 @@ class Noise:
         def cost(scales: np.ndarray) -> tuple[float, np.ndarray]:
             weights = np.exp(2 * scales)
             white = White.of(base + sum(w * C for w, C in zip(weights, loose, strict=True)))
-            inverse = white.back(np.eye(len(residual)))
+            inverse = white.inverse
             a = inverse @ residual
             value = 0.5 * residual @ a + 0.5 * white.log_det
             slopes = [w * ((inverse * C).sum() - a @ C @ a) for w, C in zip(weights, loose, strict=True)]
@@ -140,7 +140,7 @@ class _Few:
         """Value and slopes."""
         w = np.repeat(np.exp(2 * scales) - self.least, self.counts)
         white = White.of(self.G + np.diag(1 / w))
-        S = white.back(np.eye(len(w)))
+        S = white.inverse
         along = S @ self.b
         value = self.rest + 0.5 * (white.log_det + np.log(w).sum() - self.b @ along)
         own = (1 - np.diag(S) / w - along**2 / w) / w

@@ -1,17 +1,19 @@
-"""CasADi functions compiled to C, and records of numbers and arrays as C reads them."""
+"""CasADi functions compiled to C for some rows side by side, and records of numbers and arrays as C reads them."""
 
 from __future__ import annotations
 
 import ctypes
 from collections.abc import Mapping, Sequence
 from functools import cache
+from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
-from ...fmu.batch_library import address, load
+from ...fmu import emit
+from ...fmu.batch_library import address, instructions, load, widened
 
 
 class Compiled:
@@ -19,22 +21,23 @@ class Compiled:
 
     Args:
         arguments: symbolic columns
-        results: name of a function -> expressions
+        results: name of a function -> one or two expressions
 
     Raises:
         FmuError: the compiler fails
     """
 
     def __init__(self, arguments: Sequence[Any], results: Mapping[str, Sequence[Any]]) -> None:
-        generator = ca.CodeGenerator("many", {"with_header": False, "casadi_int": "long long int"})
-        functions = [ca.Function(name, list(arguments), list(found), {"cse": True}) for name, found in results.items()]
-        for function in functions:
-            generator.add(function)
         #: Of each function and result: where its columns begin (columns + 1), and the row of each entry.
         self.patterns = {name: [_pattern(r) for r in found] for name, found in results.items()}
         self.shapes = {name: [r.shape for r in found] for name, found in results.items()}
-        self._library = load(f"#define GCC_HASCLASSVISIBILITY\n{generator.dump()}")
-        self.sizes = [max(getattr(f, f"sz_{kind}")() for f in functions) for kind in ("arg", "res", "iw", "w")]
+        names, texts = [f"i{k}" for k in range(len(arguments))], []
+        for name, found in results.items():
+            outputs = [ca.SX(r).nz[:] for r in found] + [ca.SX(0, 1)] * (2 - len(found))
+            function = ca.Function(name, list(arguments), outputs, names, ["first", "second"], {"cse": True})
+            texts.append(emit.function(function, "lanes_", "lanes"))
+            texts.append(f'__attribute__((visibility("default"))) void *const place_{name} = (void *)lanes_{name};')
+        self._library = _loaded("\n".join(texts))
 
     def dense(self, name: str, *entries: np.ndarray) -> list[np.ndarray]:
         """Results of a function as whole matrices (n, rows, columns), those of one column as (n, rows).
@@ -52,17 +55,24 @@ class Compiled:
 
     def place(self, name: str) -> int:
         """Where a function lies in memory."""
-        return ctypes.cast(getattr(self._library, name), ctypes.c_void_p).value or 0
+        return ctypes.c_void_p.in_dll(self._library, f"place_{name}").value or 0
 
 
 @cache
 def library() -> ctypes.CDLL:
     """The march through runs, compiled."""
-    found = load((Path(__file__).parent / "march.c").read_text(encoding="utf-8"))
+    found = _loaded((Path(__file__).parent / "march.c").read_text(encoding="utf-8"))
     pointer, count = ctypes.c_void_p, ctypes.c_int64
     found.march.argtypes = [*[pointer] * 3, *[count] * 2]
     found.many.argtypes = [*[pointer] * 2, count, *[pointer] * 4, count, pointer, count]
     return found
+
+
+def _loaded(text: str) -> ctypes.CDLL:
+    """A library whose text works on some rows side by side."""
+    above = [f"#include <{name}.h>" for name in ("math", "stdint", "stdlib", "string")]
+    lanes = (files("gearheat.fmu") / "wrapper" / "lanes.h").read_text(encoding="utf-8")
+    return load(widened("\n".join([*above, lanes, text]), instructions()))
 
 
 def record(**values: int | np.ndarray) -> Any:

@@ -7,6 +7,7 @@ long dwell: the last steps are Newton's. The march itself is in C.
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Collection
 from dataclasses import dataclass
 from typing import Any
 
@@ -70,7 +71,14 @@ class Marched:
 
 
 def march(
-    plant: Plant, phases: Phases, x0: np.ndarray, p: np.ndarray, pace: np.ndarray, *, turned: bool = False
+    plant: Plant,
+    phases: Phases,
+    x0: np.ndarray,
+    p: np.ndarray,
+    pace: np.ndarray,
+    *,
+    turned: bool = False,
+    wanted: Collection[int] | None = None,
 ) -> Marched:
     """Run all phases.
 
@@ -82,6 +90,7 @@ def march(
             path at each, which is the truth where the settings differ in what has no effect
         pace: share of each row's length that took place (N, H)
         turned: whether derivatives are computed
+        wanted: the knobs by which, all without; those by others hold what their readings alone say
     """
     n, given, height = len(x0), *phases.local0.shape[2:]
     reads = sum(map(len, phases.read))
@@ -91,13 +100,14 @@ def march(
         found["local"] = np.zeros((n, given, height, reads, len(plant.shown)))
         found["tried"] = np.zeros((n, len(p) - 1, height, len(plant.tried), reads, len(plant.shown)))
     result = record(**({"y": 0, "by": 0, "local": 0, "tried": 0} | found))
-    duty = _duty(phases, x0, p, pace)
+    chosen = range(len(plant.knobs)) if wanted is None else wanted
+    duty = _duty(phases, x0, p, pace, np.isin(np.arange(len(plant.knobs)), list(chosen)))
     places = [ctypes.byref(r) for r in (plant.record, duty, result)]
     shared(lambda begin, end: int(library().march(*places, begin, end)), n, n, 0 if n > 1 else 1)
     return Marched(found["y"], Slopes(found["by"], found["local"], found["tried"]) if turned else None)
 
 
-def _duty(phases: Phases, x0: np.ndarray, p: np.ndarray, pace: np.ndarray) -> Any:
+def _duty(phases: Phases, x0: np.ndarray, p: np.ndarray, pace: np.ndarray, wanted: np.ndarray) -> Any:
     ends = np.cumsum([0, *map(len, phases.steps)])
     read = np.full(ends[-1], -1, dtype=np.int64)
     after = [first + k for first, own in zip(ends[:-1], phases.read, strict=True) for k in own]
@@ -112,6 +122,7 @@ def _duty(phases: Phases, x0: np.ndarray, p: np.ndarray, pace: np.ndarray) -> An
         row=np.array(phases.row, dtype=np.int64),
         first=ends.astype(np.int64),
         read=read,
+        wanted=wanted.astype(np.int64),
         share=np.concatenate(phases.steps),
         length=phases.length,
         u0=phases.u0,

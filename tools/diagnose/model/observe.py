@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -245,13 +245,13 @@ class _Look:
         self.settings.append((alone, changed))
         return len(self.settings)
 
-    def _run(self, turned: bool) -> Marched:
+    def _run(self, turned: bool, wanted: Collection[int] = ()) -> Marched:
         """Logged courses show their own clock: they run at their full pace."""
-        found = self._paced(self.pace, turned)
+        found = self._paced(self.pace, turned, wanted)
         if not (along := self.o.along).any():
             return found
         if (self.pace != 1).any():
-            logged = self._paced(np.ones(self.n), turned)
+            logged = self._paced(np.ones(self.n), turned, wanted)
             found.y[:, along] = logged.y[:, along]
             if found.slopes is not None and logged.slopes is not None:
                 found.slopes.by[:, :, :, along] = logged.slopes.by[:, :, :, along]
@@ -261,7 +261,7 @@ class _Look:
             found.slopes.by[:, :, -1, along] = 0.0
         return found
 
-    def _paced(self, pace: np.ndarray, turned: bool) -> Marched:
+    def _paced(self, pace: np.ndarray, turned: bool, wanted: Collection[int]) -> Marched:
         o, plant = self.o, self.o.plant
         p = np.tile(o.p, (1 + len(self.settings), 1, 1))
         for path, value in self.values.items():
@@ -273,7 +273,7 @@ class _Look:
         phases, start = o.driven(truth)
         x0 = np.tile(plant.flat.starts("state"), (o.campaign.n_tests, 1))
         x0[:, [q.unit == "K" for q in plant.flat.states]] = start[:, None]
-        return march(plant, phases, x0, p[:, o.rows], pace[o.rows], turned=turned)
+        return march(plant, phases, x0, p[:, o.rows], pace[o.rows], turned=turned, wanted=wanted)
 
     def outputs(self) -> np.ndarray:
         """All that the plant shows at each place (p, shown)."""
@@ -349,7 +349,8 @@ class _Look:
 
     def _turned(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """What the plant shows (p, shown), by all directions (p, shown, d), by given readings (p, given, H, shown)."""
-        o, found = self.o, self._run(turned=True)
+        o, entries = self.o, sorted(self._entries(), key=lambda e: e[0])
+        found = self._run(turned=True, wanted={k for _, k, _ in entries})
         assert found.slopes is not None
         test = o.test
         local = found.slopes.local[test, :, :, o.reads]
@@ -358,7 +359,7 @@ class _Look:
         own = found.slopes.by[test, :, :, o.reads]  # p, H, knobs + 1, shown
         tried = found.slopes.tried[test, :, :, :, o.reads].swapaxes(1, 2)  # p, H, further settings, tried knobs, shown
         tried = tried.reshape(len(test), o.height, -1, found.y.shape[2])
-        all_by, entries = np.concatenate([own, by_truth, tried], axis=2), sorted(self._entries(), key=lambda e: e[0])
+        all_by = np.concatenate([own, by_truth, tried], axis=2)
         by = np.zeros((len(test), found.y.shape[2], self.d))
         if entries:
             places, first = np.unique([i for i, _, _ in entries], return_index=True)

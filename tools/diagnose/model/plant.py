@@ -119,7 +119,6 @@ class Plant:
             given=len(self.given),
             shown=len(self.shown),
             tried=len(self.tried),
-            **dict(zip(("n_arg", "n_res", "n_iw", "n_work"), compiled.sizes, strict=True)),
             most=max(len(entries) for entries in patterns),
             **{name: compiled.place(name) for name in compiled.patterns},
             **{f"pattern{k}": entries for k, entries in enumerate(patterns)},
