@@ -1,13 +1,17 @@
 """Importers and masters of others run our FMUs: the table of the page on FMUs, `python tests/importers.py` prints it.
 
-What is installed runs: FMPy always, the rest after `pip install "gearheat[importers]"`. The error of an FMU is that of
-its temperatures after four hours, of a coupled system after an hour, against the model integrated by CVODES.
+What is installed runs: FMPy always, other packages after `pip install "gearheat[importers]"`, programs that are on the
+PATH. The error of an FMU is that of its temperatures after four hours, of a coupled system after an hour, against the
+model integrated by CVODES.
 """
 
 from __future__ import annotations
 
 import ctypes
 import math
+import re
+import shutil
+import subprocess
 import sys
 import tempfile
 import zipfile
@@ -20,6 +24,7 @@ from typing import Any
 
 import fmpy
 from fmpy.ssp.simulation import simulate_ssp
+from fmpy.util import read_csv
 from gearheat.fmu.export import export
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
@@ -69,10 +74,17 @@ class Row:
     def text(self) -> str:
         """As the page has it: the error as the next power of ten above it."""
         bound = f"below 1e{math.floor(math.log10(max(self.error, 1e-12))) + 1} K"
-        return f"| {self.importer} | {version(PACKAGES[self.importer])} | {self.interface} | {bound} |"
+        package = PACKAGES.get(self.importer)
+        known = version(package) if package else _version(PROGRAMS[self.importer])
+        return f"| {self.importer} | {known} | {self.interface} | {bound} |"
 
 
 PACKAGES = {"FMPy": "FMPy", "fmpy.ssp": "FMPy", "libcosim": "libcosimpy", "ecos": "ecospy"}
+#: Executables, and the option by which each tells its version.
+PROGRAMS = {"fmusim": ("fmusim", "--version"), "FMI compliance checker": ("fmuCheck.linux64", "-v")}
+KINDS = {"CoSimulation": "cs", "ModelExchange": "me"}
+#: The checker takes explicit Euler steps in model exchange [s].
+EULER = 1.0
 
 
 def rows() -> Iterator[Row]:
@@ -93,6 +105,21 @@ def rows() -> Iterator[Row]:
                 version(PACKAGES[name])
                 yield Row(name, "FMI 2.0 CoSimulation", _apart(run(fmus[2]), exact))
                 yield Row(name, f"SSP 1.0, step {COUPLED:g} s", _apart(couple(system), whole))
+        yield from _programs(fmus, exact, folder)
+
+
+def _programs(fmus: Mapping[int, Path], exact: Mapping[str, float], folder: Path) -> Iterator[Row]:
+    """The rows of executables that are here."""
+    for kind in KINDS:
+        if shutil.which("fmusim"):
+            files = {fmi: _by_fmusim(fmu, kind, folder / f"{fmi}.csv") for fmi, fmu in fmus.items()}
+            assert files[2].read_bytes() == files[3].read_bytes()  # every output, to the 16 digits that it writes
+            for fmi, file in files.items():
+                yield Row("fmusim", f"FMI {fmi}.0 {kind}", _apart(_last_of(file), exact))
+    for kind, step in zip(KINDS, (STEP, EULER), strict=True):
+        if shutil.which("fmuCheck.linux64"):
+            file = _by_checker(fmus[2], kind, step, folder / "checked.csv")
+            yield Row("FMI compliance checker", f"FMI 2.0 {kind}, step {step:g} s", _apart(_last_of(file), exact))
 
 
 def _fmus(folder: Path) -> tuple[FlatModel, Mapping[int, Path]]:
@@ -121,6 +148,32 @@ def _by_fmpy(fmu: Path, kind: str) -> dict[str, float]:
         str(fmu), stop_time=HOURS, output_interval=STEP, fmi_type=kind, relative_tolerance=1e-6, output=["oil.T"]
     )
     return {"oil.T": float(found["oil.T"][-1])}
+
+
+def _last_of(file: Path) -> dict[str, float]:
+    return {"oil.T": float(read_csv(str(file))["oil.T"][-1])}
+
+
+def _version(program: tuple[str, str]) -> str:
+    """The first number that a program tells of itself."""
+    told = subprocess.run(program, capture_output=True, text=True, check=False)
+    return re.findall(r"\d+(?:\.\d+)+", told.stdout + told.stderr)[0]
+
+
+def _by_fmusim(fmu: Path, kind: str, out: Path) -> Path:
+    options = f"--interface-type {KINDS[kind]} --stop-time {HOURS} --output-interval {STEP} --tolerance 1e-6"
+    words = [*options.split(), "--solver", "cvode", "--output-file", str(out), str(fmu)]
+    subprocess.run(["fmusim", *words], check=True, capture_output=True)
+    return out
+
+
+def _by_checker(fmu: Path, kind: str, step: float, out: Path) -> Path:
+    """It finds nothing wrong in the file, nor in what the FMU answers."""
+    options = f"-k {KINDS[kind]} -h {step} -n {HOURS / STEP:.0f} -s {HOURS}"
+    words = ["fmuCheck.linux64", *options.split(), "-o", str(out), str(fmu)]
+    checked = subprocess.run(words, check=True, capture_output=True, text=True)
+    assert re.findall(r"(\d+) (?:warning|error)", checked.stderr, flags=re.IGNORECASE) == ["0"] * 3, checked.stderr
+    return out
 
 
 def _ssp_by_fmpy(system: Path) -> dict[str, float]:
