@@ -66,6 +66,7 @@ QUANTITIES: Mapping[str, str] = {
     "J": "Energy",
     "J/K": "HeatCapacity",
     "J/(kg.K)": "SpecificHeatCapacity",
+    "W/m2": "Irradiance",
     "W/K": "ThermalConductance",
     "W/(m.K)": "ThermalConductivity",
     "W/(m2.K)": "CoefficientOfHeatTransfer",

@@ -377,8 +377,8 @@ for _panel, _commands in PANELS.items():
 
 
 def program() -> None:
-    """Run the command line. A named command stands alone: to read the options of all takes long."""
-    named = [command for command in app.registered_commands if sys.argv[1:2] == [command.name]]
+    """Run the command line. A named command stands alone: to read all options takes long. `docs` runs others."""
+    named = [command for command in app.registered_commands if sys.argv[1:2] == [command.name] != ["docs"]]
     app.registered_commands = named or app.registered_commands
     app()
 

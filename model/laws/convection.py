@@ -16,6 +16,8 @@ GRAVITY = 9.80665
 DT_WIDTH, V_WIDTH = 1e-2, 1e-3
 #: Pressure of the air at sea level [Pa].
 SEA_LEVEL = 101325.0
+#: Gas constant of dry air [J/(kg.K)].
+R_AIR = 287.05
 
 
 @law(
@@ -39,7 +41,7 @@ def air_properties(T_film: Num, *, p: Num = SEA_LEVEL) -> tuple[Num, Num, Num, N
     growth = (T_film / 273) ** 1.5
     eta = 1.716e-5 * growth * (273 + 111) / (T_film + 111)
     k = 0.0241 * growth * (273 + 194) / (T_film + 194)
-    rho = p / (287.05 * T_film)
+    rho = p / (R_AIR * T_film)
     return k, eta / rho, 1007 * eta / k, 1 / T_film
 
 
@@ -331,4 +333,4 @@ def air_pressure(altitude: Num) -> Num:
     Args:
         altitude: height above sea level [m]
     """
-    return SEA_LEVEL * (1 - 0.0065 * altitude / 288.15) ** (GRAVITY / (0.0065 * 287.05))
+    return SEA_LEVEL * (1 - 0.0065 * altitude / 288.15) ** (GRAVITY / (0.0065 * R_AIR))

@@ -1,4 +1,4 @@
-"""Heat radiation between a housing and the room."""
+"""Heat radiation between a housing and the room, and that of the sun."""
 
 from __future__ import annotations
 
@@ -38,3 +38,17 @@ def radiation_coefficient(T_1: Num, T_2: Num, emissivity: Num) -> Num:
         emissivity: emissivity of the surface [1]
     """
     return SIGMA * emissivity * (T_1**2 + T_2**2) * (T_1 + T_2)
+
+
+@law(source="Holman2010", where="solar radiation, Example 8-20", valid="opaque surface", verified=False)
+def absorbed_sun(G: Num, A: Num, absorptivity: Num) -> Num:
+    r"""Heat flow rate [W] that a surface takes from the sun.
+
+    .. math:: \dot Q = \alpha_s G A
+
+    Args:
+        G: irradiance by sun and sky on a plane across the rays [W/m2]
+        A: area of the shadow that the surface casts on that plane [m2]
+        absorptivity: absorptivity of the surface for sunlight; not its emissivity, which is that of long waves [1]
+    """
+    return absorptivity * G * A

@@ -12,7 +12,7 @@ from .bearings import (
     ThrustBallBearing,
 )
 from .bevel import BevelGearPair
-from .churning import Churning, GearChurning, GearWindage
+from .churning import Churning, GearChurning, GearWindage, MeshSqueezing
 from .clutch import Brake, CompliantShaft, FrictionClutch, OneWayClutch
 from .cycloid import CycloidalReducer, MalhotraReducer
 from .drum import BeltContact, BeltPull, DrumChurning, DrumCooling, DrumOil, WettedWall
@@ -35,7 +35,7 @@ from .oil_circuit import OilExchanger, OilFilter, OilNozzle, OilPump, OilSump
 from .planetary import PlanetarySet
 from .preload import PreloadedPair
 from .rv import CycloidPinStage
-from .sealing import LipSeal, OilLipSeal
+from .sealing import LabyrinthSeal, LipSeal, OilLipSeal
 from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit, TurningFrame
 from .supports import ShaftSupport, TwoGearSupport
 from .thermal import (
@@ -49,6 +49,7 @@ from .thermal import (
     PrescribedHeatFlow,
     PrescribedTemperature,
     Room,
+    Sun,
     ThermalConductor,
 )
 from .worm import WormPair
@@ -95,9 +96,11 @@ PARTS: dict[str, type[Component]] = {
         PlainBearing,
         LipSeal,
         OilLipSeal,
+        LabyrinthSeal,
         Churning,
         GearChurning,
         GearWindage,
+        MeshSqueezing,
         DrumChurning,
         OilBath,
         DrumOil,
@@ -127,6 +130,7 @@ PARTS: dict[str, type[Component]] = {
         ClosedRoom,
         PrescribedTemperature,
         PrescribedHeatFlow,
+        Sun,
         GreyTeeth,
         GreyBearing,
         FlowConductor,

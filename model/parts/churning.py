@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import ClassVar
 
-from ..core.component import Equation, equation
+from ..core.component import Equation, Related, equation
 from ..core.declare import Output, Parameter
 from ..laws.churning import churning_torque
 from ..laws.gear_churning import gear_churning_torque, immersion, windage_torque
 from ..laws.smooth import Num
+from ..laws.squeezing import squeezing_torque
 from .friction import Friction
 from .ports import Lubricant, Sump
 
@@ -69,3 +70,33 @@ class GearWindage(GearInFluid):
     def torque(self) -> Num:
         """Windage torque of one gear [N.m]."""
         return windage_torque(self.shaft.w, self.r, self.b, self.m_n)
+
+
+class MeshSqueezing(GearInFluid):
+    """Oil that the teeth of a mesh squeeze out of each other's spaces, on the shaft of one of the two gears.
+
+    Its `inner` body is the oil. How full the spaces come into the mesh is given: all where the mesh is flooded, little
+    where oil is injected behind it.
+    """
+
+    lubricant = Lubricant()
+
+    r_mate = Parameter("m", "pitch radius of the mating gear, negative for a ring", nominal=0.1)
+    fill = Parameter("1", "share of the tooth spaces that is oil where they enter the mesh", at_least=0.0, at_most=1.0)
+    backlash = Parameter("m", "normal backlash", nominal=1e-4, default=0.0, at_least=0.0)
+
+    def relations(self) -> Iterator[Related]:
+        """Two gears mesh: outside each other, or the mate is a larger ring."""
+        yield self.relation(
+            "the mate is a gear or a larger ring",
+            "1 / r + 1 / r_mate, times r",
+            1 + self.r / self.r_mate,
+            1e-3,
+            100.0,
+            remedy="Give r_mate positive, or for a ring negative and larger than r.",
+        )
+
+    def torque(self) -> Num:
+        """Torque of one mesh [N.m]."""
+        oil, sizes = self.lubricant, (self.r, self.r_mate, self.b, self.m_n, self.backlash)
+        return squeezing_torque(self.shaft.w, oil.rho, oil.nu, self.fill, *sizes)

@@ -19,7 +19,7 @@ from ..laws.convection import (
     natural_horizontal_up,
     natural_vertical_plate,
 )
-from ..laws.radiation import radiated
+from ..laws.radiation import absorbed_sun, radiated
 from ..laws.smooth import Num
 from .ports import COLDEST, HOTTEST, AirPort, HeatPort
 
@@ -206,6 +206,31 @@ class PrescribedHeatFlow(Component):
     def equations(self) -> Iterator[Equation]:
         """The heat is given, the temperature follows."""
         yield equation("heat given", self.heat.Q_flow, -self.Q_flow)
+
+    def supplied_power(self) -> Iterable[Num]:
+        """What it gives."""
+        return (self.Q_flow,)
+
+
+class Sun(Component):
+    """The sun on a housing: heat into a surface, whatever its temperature; what the surface radiates is its cooling's.
+
+    The irradiance is an input, for a day's course. The sky that is colder than the air is the room's `dT_radiant`.
+    """
+
+    role: ClassVar[str] = "heater"
+
+    surface = HeatPort()
+
+    G = Input("W/m2", "irradiance by sun and sky on a plane across the rays", nominal=500.0, at_least=0.0)
+    A = Parameter("m2", "area of the shadow of the surface on a plane across the rays", nominal=0.1, at_least=0.0)
+    absorptivity = Parameter("1", "absorptivity of the surface for sunlight", at_least=0.0, at_most=1.0)
+    Q_flow = Output("W", "heat flow rate that the surface takes", nominal=100.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """What is absorbed enters the surface."""
+        yield equation("heat absorbed", self.Q_flow, absorbed_sun(self.G, self.A, self.absorptivity))
+        yield equation("heat given", self.surface.Q_flow, -self.Q_flow)
 
     def supplied_power(self) -> Iterable[Num]:
         """What it gives."""

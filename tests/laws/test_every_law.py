@@ -36,11 +36,12 @@ NOMINAL = {
     **{"phi_bl": 0.3, "mu_bl": 0.1, "mu_EHL": 0.02, "mu_sl": 0.05, "B": 0.028, "H": 0.03, "V_M": 3e-4, "level": 0.4},
     **{"phi_ish": 0.9, "T_pour": 240.0, "f_0": 7.0, "f_1": 2e-4, "P_1": 5000.0, "d_sh": 0.085, "c_sh": 73.4, "c": 50.0},
     **{"R_3": 2.8e-6, "R_4": 5.8, "S_3": 8.8e-3, "S_4": 117.0, "psi": 1e-3, "tau_0": 1.0, "C_trans": 1.0},
-    **{"altitude": 800.0},
+    **{"altitude": 800.0, "backlash": 1e-4},
     **{"churning": 2e-4, "friction": 1.5e-4},
     **{"V": 2e-3, "depth": 0.25, "volume": 0.5, "Fr": 350.0, "width": 0.15},
     **{"T_film": 310.0, "Pr": 0.7, "Re": 5e4, "h_natural": 5.0, "h_forced": 7.0, "A": 0.6},
     **{"T_s": 340.0, "T_f": 300.0, "L": 0.3, "height": 0.3, "v": 1.5, "T_1": 340.0, "T_2": 300.0, "emissivity": 0.9},
+    **{"absorptivity": 0.7, "gap": 3e-4, "gap_share": 0.01, "Ta": 80.0, "fill": 0.5, "r_mate": 0.1},
     **{"K": 0.8125, "Zp": 40.0, "Zc": 39.0, "Rp": 0.064, "e": 0.0013, "r_rp": 0.003, "theta": 1.0, "kappa": 215.0},
     **{"T_disc": 206.0, "w_crank": 61.0, "v_slide": 0.15, "v_contact": 0.08, "roll": 0.4, "w_l": 4e4, "E_eff": 230e9},
     **{"F": 4700.0, "F_N": 4065.0, "F_K": 4450.0, "R_0": 0.0475, "w_rel": 160.0, "w_disc": 11.4, "tau_loss": 2.3},
@@ -98,6 +99,10 @@ OWN = {
     "load_variables.acb_rolling_variable": {"R_3": 2.44e-12},
     "load_variables.acb_sliding_variable": {"S_3": 2.44e-12},
     **{f"journal.{key}": {"r": 0.03, "b": 0.05} for key in ("petrov_torque", "film_torque", "solid_share")},
+    "gap_seal.laminar_gap_torque": {"r": 0.025},
+    "gap_seal.gap_torque": {"r": 0.025},
+    "squeezing.squeezing_torque": {"r": 0.05, "b": 0.02, "m_n": 0.003},
+    "squeezing.pocket_closing": {"b": 0.02, "m_n": 0.003},
     "sealing.oil_seal_torque": {"nu_40": 220e-6},
     "gear_churning.submerged_area": {"h": 0.04, "r": 0.08, "b": 0.024},
     "gear_churning.disc_friction": {"h": 0.04, "r": 0.08},
@@ -128,10 +133,11 @@ ZERO = {
 }
 #: Arguments that may be zero but not negative.
 NOT_NEGATIVE = {"P_a", "h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c", "T_pour"}
+NOT_NEGATIVE |= {"fill", "backlash"}
 #: Torques and losses: magnitudes, never negative.
 MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.", "film_line.", "film_point.")
-MAGNITUDES += ("gear_churning.", "load_variables.", "journal.", "cycloid.", "iso14179_1.", "iso14179_2.")
-MAGNITUDES += ("preload.preload",)
+MAGNITUDES += ("gear_churning.", "load_variables.", "journal.", "gap_seal.", "squeezing.", "preload.preload")
+MAGNITUDES += ("cycloid.", "iso14179_1.", "iso14179_2.")
 
 
 def every_function() -> dict[str, Callable[..., Any]]:

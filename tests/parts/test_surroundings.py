@@ -1,4 +1,4 @@
-"""What a housing stands in: radiation to walls that are not as warm as the air, thin air, a fan."""
+"""What a housing stands in: radiation to walls that are not as warm as the air, sun, thin air, a fan."""
 
 import pytest
 from gearheat.model.core.connect import Assembly
@@ -34,6 +34,22 @@ def test_a_surface_radiates_to_what_stands_around_it(dT: float) -> None:
     assert found["box.Q_flow_convection"] == plain["box.Q_flow_convection"]
     radiated = SIGMA * 0.9 * 0.5 * (330.0**4 - (300.0 + dT) ** 4)
     assert found["box.Q_flow_radiation"] == pytest.approx(radiated, rel=1e-12)
+
+
+@pytest.mark.parametrize(("absorptivity", "emissivity", "T"), [(0.12, 0.9, 312.462), (0.96, 0.95, 377.746)])
+def test_a_plate_in_the_sun_rests_where_it_radiates_what_it_absorbs(absorptivity, emissivity, T) -> None:
+    """White paint and black lacquer at 700 W/m2 in a room of 298 K."""
+    parts = [PARTS["HeatCapacity"]("body", C=1e4), PARTS["BoxCooling"]("box", **BOX | {"emissivity": emissivity})]
+    parts += [PARTS["Sun"]("sun", A=0.5, absorptivity=absorptivity), PARTS["Room"]("room")]
+    flat = flatten(
+        Assembly("plate", "", tuple(parts), (("body.heat", "box.surface", "sun.surface"), ("room.air", "box.air")))
+    )
+    known = {"room.T": 298.0, "sun.G": 700.0}
+    found = evaluate_at(flat, [T], [known.get(q.name, 0.0) for q in flat.inputs], flat.starts("parameter"))
+    values = dict(zip([q.name for q in flat.outputs], found["y"].tolist(), strict=True))
+    assert values["sun.Q_flow"] == pytest.approx(700.0 * 0.5 * absorptivity)
+    assert values["box.Q_flow_radiation"] == pytest.approx(values["sun.Q_flow"], rel=1e-4)
+    assert float(found["ode"][0]) == pytest.approx(-values["box.Q_flow_convection"] / 1e4, rel=1e-3)
 
 
 def test_thin_air_cools_less() -> None:

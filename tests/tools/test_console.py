@@ -9,12 +9,13 @@ import sys
 import threading
 from pathlib import Path
 from types import SimpleNamespace
+from unittest import mock
 
 import numpy as np
 import pytest
 from gearheat.model.errors import DataError, SolveError
 from gearheat.model.files import reading
-from gearheat.tools import entry
+from gearheat.tools import cli, entry
 from gearheat.tools.console import as_json, cell, folder, guarded, table, writable, write
 
 
@@ -170,6 +171,16 @@ def test_ctrl_c_while_the_program_loads(monkeypatch, capsys):
         entry.main()
     assert ended.value.code == 130
     assert capsys.readouterr().err == "interrupted\n"
+
+
+@pytest.mark.parametrize(("name", "read"), [("steady", 1), ("docs", 3)])
+def test_a_named_command_stands_alone_unless_it_runs_others(monkeypatch, name: str, read: int):
+    asked = mock.Mock(registered_commands=[SimpleNamespace(name=each) for each in ("steady", "docs", "list")])
+    monkeypatch.setattr(cli, "app", asked)
+    monkeypatch.setattr(sys, "argv", ["gearheat", name])
+    cli.program()
+    asked.assert_called_once()
+    assert len(asked.registered_commands) == read
 
 
 def test_a_narrow_screen_never_breaks_a_number(capsys):

@@ -1,11 +1,15 @@
 """The command `docs`: the web site builds without a warning, and holds what the code declares."""
 
+import csv
+import re
 from pathlib import Path
 
 import pytest
 from gearheat.model.laws import rolling
 from gearheat.model.parts import PARTS
-from gearheat.tools.docs import markdown
+from gearheat.scenarios.shipped import RIGS
+from gearheat.tools.docs import laws, markdown
+from gearheat.tools.docs.blocks import PAGES
 
 
 def test_the_site_builds_and_has_a_page_for_every_part(gearheat, tmp_path: Path) -> None:
@@ -28,3 +32,24 @@ def test_a_docstring_becomes_a_formula_and_a_list() -> None:
     assert "```{math}\n\\phi_{ish} = \\frac" in markdown.docstring(law)
     assert "- `d_m`: mean diameter, (d + D)/2 \\[m\\]\n" in markdown.arguments(law)
     assert markdown.words("a|b <c> `d|e`") == "a\\|b \\<c> `d\\|e`"
+
+
+def test_every_law_stands_once_among_the_equations() -> None:
+    text = laws.filled((PAGES / "theory" / "laws.md").read_text(encoding="utf-8"))
+    named = re.findall(r"^\*\*\[(\w+)\]\(\.\./generated/laws/(\w+)\.md#", text, re.MULTILINE)
+    assert sorted(named) == sorted((law.__name__, name) for name in laws.law_modules() for law in laws.laws_of(name))
+    assert text.count("```{math}") >= len(named)
+    assert "{laws}" not in text
+
+
+def test_the_limits_tell_ranges_evidence_and_the_readings_there_are() -> None:
+    page = laws.filled((PAGES / "trust" / "limits.md").read_text(encoding="utf-8"))
+    assert "| [friction_schlenk](" in page
+    assert re.search(r"^\| \[Friction of contact seals\]\(\S+\) \| 2 \| 1 \| \d+ \| \d+ \|$", page, re.MULTILINE)
+    with (RIGS / "planetary" / "measured.csv").open(encoding="utf-8") as file:
+        readings = list(csv.DictReader(file))
+    told = re.findall(r"`(\w+)` (\S+) to (\S+) ", " ".join(page.split()))
+    assert len(told) == 4
+    for column, *ends in told:
+        values = [float(row[column]) for row in readings]
+        assert [float(end) for end in ends] == [round(min(values)), round(max(values))], column

@@ -15,6 +15,7 @@ from ...model.errors import GearheatError
 from ..console import folder, note
 from . import commands, reference
 from .blocks import FENCE, MARKS, PAGES, run_pages
+from .laws import filled
 
 #: Settings of Sphinx.
 SETTINGS = {
@@ -105,7 +106,7 @@ def gather(program: TyperGroup, source: Path) -> Path:
         (place / name).write_text(text, encoding="utf-8")
     reference.copy_pictures(place)
     for page in source.rglob("*.md"):
-        page.write_text(captioned(page.read_text(encoding="utf-8")), encoding="utf-8")
+        page.write_text(filled(captioned(page.read_text(encoding="utf-8"))), encoding="utf-8")
     return source
 
 

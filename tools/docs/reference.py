@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import importlib
 import inspect
-import pkgutil
-import re
 import shutil
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from importlib.resources import files
 from itertools import groupby
 from pathlib import Path
+from typing import Any
 
 from ...diagnose.campaign.card import read_card
 from ...diagnose.campaign.read import read_campaign
@@ -32,6 +31,7 @@ from ...scenarios.shipped import FILES, RIGS, list_rigs
 from ...scenarios.tables import CampaignTable, ErratumTable, RigTable, SensorTable, Strict
 from ..cards import usual_priors
 from ..parts import described
+from .laws import facts, law_modules, laws_of, title
 from .markdown import arguments, code, docstring, fenced, listing, table, words
 
 #: Where the pages of the contact solver and of the reference methods stand.
@@ -105,44 +105,23 @@ def _part(kind: str) -> str:
 
 def _laws() -> Iterator[tuple[str, str]]:
     rows = Counter(row.law for row in golden_rows())
-    names = [info.name for info in pkgutil.iter_modules(laws.__path__)]
-    modules = {name: importlib.import_module(f"{laws.__name__}.{name}") for name in names}
-    kept = []
-    for name, module in modules.items():
-        own = [f for f in vars(module).values() if hasattr(f, "law") and f.__module__ == module.__name__]
-        if not own:
-            continue
-        kept.append(name)
-        body = "".join(_law(f, rows[f"{name}.{f.__name__}"]) for f in own)
-        about = words(inspect.getdoc(module))
-        yield f"laws/{name}.md", f"# {_title(about)}\n\n{about}\n\n{body}"
-    titles = [f"- [{_title(words(inspect.getdoc(modules[name])))}]({name}.md)\n" for name in kept]
+    for name in law_modules():
+        body = "".join(_law(f, rows[f"{name}.{f.__name__}"]) for f in laws_of(name))
+        about = words(inspect.getdoc(importlib.import_module(f"{laws.__name__}.{name}")))
+        yield f"laws/{name}.md", f"# {title(name)}\n\n{about}\n\n{body}"
+    titles = [f"- [{title(name)}]({name}.md)\n" for name in law_modules()]
     cited = [(code(s.key), words(s.author), words(s.year), words(s.title), words(s.where)) for s in sources().values()]
     about = "Each law is one formula of one source. `gearheat verify` compares its golden rows.\n\n"
     yield (
         "laws/index.md",
         f"# Laws\n\n{about}{''.join(titles)}\n## Sources\n\n"
-        f"{table(('key', 'author', 'year', 'title', 'where'), cited)}{toctree(kept)}",
+        f"{table(('key', 'author', 'year', 'title', 'where'), cited)}{toctree(law_modules())}",
     )
 
 
-def _title(about: str) -> str:
-    """The first sentence, or what stands before its colon."""
-    return re.split(r"\.(?: |$)|: ", about, maxsplit=1)[0]
-
-
-def _law(function: object, rows: int) -> str:
+def _law(function: Callable[..., Any], rows: int) -> str:
     law: LawInfo = function.law  # type: ignore[attr-defined]
-    ranges = "; ".join(f"{name} from {low:.4g} to {high:.4g}" for name, (low, high) in law.ranges.items())
-    facts = {
-        "Source": f"{law.source}, {law.where}",
-        "Valid": law.valid,
-        "Range, in SI": ranges,
-        "Compared": f"{rows} golden rows{'' if law.verified else ', none of them from print'}"
-        if rows
-        else "with no row",
-    }
-    told = "".join(f"- {key}: {words(value)}\n" for key, value in facts.items() if value)
+    told = "".join(f"- {key}: {words(value)}\n" for key, value in facts(law, rows).items() if value)
     return f"## {law.name}\n\n{docstring(function)}{arguments(function)}{told}\n"
 
 

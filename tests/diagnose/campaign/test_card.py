@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 from pathlib import Path
 
@@ -60,10 +61,11 @@ def test_every_key_of_the_written_card_has_a_comment(rig):
     lines = as_toml(default_card(rig("planetary"), {})).splitlines()
     tables = ("", "protocol", "oil", "channels.T_oil", "sensors.T_oil")
     place = ""
-    for line in lines:
+    assert max(map(len, lines)) <= 80
+    for before, line in itertools.pairwise(lines):
         place = line[1:].split("]")[0] if line.startswith("[") else place
         if " = " in line and place in tables and not line.startswith("# "):
-            assert "  # " in line, line
+            assert "  # " in line or (before.startswith("# ") and " = ..." not in before), line
 
 
 def test_a_card_of_version_1(rig, card):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import textwrap
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -19,9 +20,12 @@ from .table import Sensor
 
 #: First lines of a card.
 HEAD = """\
-# Card of a campaign: how its tables are written, and what its instruments, days and model can be trusted to.
-# Every key may be left out; what stands here is what is taken then. Values with a unit stand in quotation marks.
+# Card of a campaign: how its tables are written, and what its instruments, days
+# and model can be trusted to. Every key may be left out; what stands here is
+# what is taken then. Values with a unit stand in quotation marks.
 """
+#: Columns of a card.
+WIDTH = 80
 
 
 def default_card(scenario: Scenario, prior_sd: Mapping[str, float]) -> Card:
@@ -69,18 +73,19 @@ def as_toml(card: Card) -> str:
 def _table(name: str, doc: str, model: Strict) -> Iterator[str]:
     """A table and the tables in it: first its plain keys."""
     if name:
-        yield from ("", f"[{name}]" + (f"  # {doc}" if doc else ""))
+        yield from ("", *_said(f"[{name}]", doc))
     inner: list[tuple[str, str, Any]] = []
     for key, field in type(model).model_fields.items():
         value, written = getattr(model, key), field.alias or key
+        doc = field.description or ""
         if field.exclude:
             continue
         if isinstance(value, BaseModel | Mapping):
-            inner.append((f"{name}.{written}".lstrip("."), field.description or "", value))
+            inner.append((f"{name}.{written}".lstrip("."), doc, value))
         elif value is None:
-            yield f"# {written} = ...  # {field.description}"
+            yield from _said(f"# {written} = ...", doc)
         else:
-            yield f"{written} = {json.dumps(value, ensure_ascii=False)}  # {field.description}"
+            yield from _said(f"{written} = {json.dumps(value, ensure_ascii=False)}", doc)
     for path, said, value in inner:
         yield from _table(path, said, value) if isinstance(value, Strict) else _mapping(path, said, value)
 
@@ -89,13 +94,23 @@ def _mapping(name: str, doc: str, entries: Mapping[str, Any]) -> Iterator[str]:
     """A table whose keys are names of the rig."""
     nested = {key: value for key, value in entries.items() if isinstance(value, Strict)}
     if not nested:
-        yield from ("", f"[{name}]  # {doc}")
+        yield from ("", *_said(f"[{name}]", doc))
     for key, value in entries.items():
         if key in nested:
             yield from _table(f"{name}.{_key(key)}", doc, value)
         else:
-            comment = f"  # {CONTEXT[key][0]}" if name == "columns" and key in CONTEXT else ""
-            yield f"{_key(key)} = {json.dumps(value, ensure_ascii=False)}{comment}"
+            said = CONTEXT[key][0] if name == "columns" and key in CONTEXT else ""
+            yield from _said(f"{_key(key)} = {json.dumps(value, ensure_ascii=False)}", said)
+
+
+def _said(line: str, doc: str) -> Iterator[str]:
+    """A line with its comment behind it, or above it where both are wider than a screen of 80 columns."""
+    one = f"{line}  # {doc}" if doc else line
+    if len(one) <= WIDTH:
+        yield one
+    else:
+        yield from textwrap.wrap(doc, WIDTH, initial_indent="# ", subsequent_indent="# ", break_long_words=False)
+        yield line
 
 
 def _key(key: str) -> str:

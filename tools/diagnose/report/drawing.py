@@ -51,7 +51,9 @@ def empty(width: float, height: float, rows: int, columns: int, **kwargs: Any) -
 
 
 def legend(figure: Figure, panel: Axes) -> None:
-    """One legend under all panels."""
+    """One legend under all panels, in as many columns as fit."""
     handles, labels = panel.get_legend_handles_labels()
+    fit = int(figure.get_figwidth() / (0.6 + 0.07 * max(map(len, labels), default=0)))  # inches at this size of type
+    columns = max(1, min(4 if len(labels) > 5 else 5, fit))
     with mpl.rc_context(STYLE):
-        figure.legend(handles, labels, loc="outside lower center", ncols=4 if len(labels) > 5 else 5, fontsize=9)
+        figure.legend(handles, labels, loc="outside lower center", ncols=columns, fontsize=9)
