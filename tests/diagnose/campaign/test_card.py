@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -14,7 +15,7 @@ from gearheat.diagnose.campaign.write import as_json, as_toml, default_card
 from gearheat.diagnose.library.nuisances import nuisances
 from gearheat.diagnose.library.roles import Roles
 from gearheat.model.errors import DataError
-from gearheat.scenarios.load import list_rigs
+from gearheat.scenarios.load import list_rigs, load
 from gearheat.tools.cards import usual_priors
 
 FIRST = {
@@ -85,6 +86,14 @@ def test_keys_of_version_1_that_nothing_reads_warn(card):
 def test_words_as_protocol(card):
     assert any("in words" in w for w in read_card(card({**FIRST, "protocol": "a stop, then 90 min"})).warnings)
     assert not read_card(card('protocol = "steady"\n', "card.toml")).warnings
+
+
+@pytest.mark.parametrize("name", list_rigs())
+def test_a_rig_without_sensors_has_those_of_its_ends_and_bodies(card, name):
+    bare = replace(load(name), instruments=())
+    sensors = sensors_of(bare, read_card(card({"schema": "gearheat.card/2"})))
+    assert {"speed", "torque"} <= {s.kind for s in sensors}
+    assert [s.name for s in sensors if s.kind == "ambient"]
 
 
 def test_without_a_card_there_is_a_warning():

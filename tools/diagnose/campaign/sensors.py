@@ -252,12 +252,13 @@ def instrument_of(path: str) -> Instrument:
 
 def default_instruments(scenario: Scenario) -> tuple[Instrument, ...]:
     """Sensors of a rig whose file declares none: its shaft ends, its oil, its bodies and its rooms."""
-    paths = []
+    paths, rooms = [], []
     for part in scenario.spec.parts:
         cls = scenario.spec.types[part.type]
+        if issubclass(cls, Room):
+            rooms.append(f"{part.name}.T")
         if issubclass(cls, ShaftEnd):
             paths += [f"{part.name}.w", f"{part.name}.tau"]
         elif issubclass(cls, Room) or "T" in declared(cls, State):
             paths.append(f"{part.name}.T")
-    rooms = [path for path in paths if issubclass(scenario.spec.types[scenario.spec.part(path[:-2]).type], Room)]
     return tuple(Instrument("T_amb", "T_amb_C", path) if rooms == [path] else instrument_of(path) for path in paths)
