@@ -23,6 +23,8 @@ ROUNDS, SETTLED = 4, 0.1
 LONGEST, LONGEST_SIZE, LONGEST_SHAPE, FAR = 1.5, 1.0, 0.8, 2.4
 #: A scale whose logarithm is beyond this has grown.
 GROWN = 0.2
+#: Share of the variance of what a form leaves that all channels have together; each has the rest for itself.
+TOGETHER = 0.5
 #: Standard deviations of what a form leaves of a true effect, as shares of it, and their probabilities.
 FORM = {0.01: 0.25, 0.03: 0.25, 0.06: 0.25, 0.12: 0.18, 0.24: 0.07}
 
@@ -135,10 +137,15 @@ def prior_precision(problem: Problem, acting: Sequence[Acting]) -> np.ndarray:
 
 
 def _rough(problem: Problem, look: Look, vector: _Vector) -> np.ndarray:
-    """Covariance of what forms leave of the effects of their causes, as a smooth share of them (M, M)."""
+    """Covariance of what forms leave of the effects of their causes, as a smooth share of them (M, M).
+
+    A form may bring a body more of its heat than it gets: that share differs from channel to channel.
+    """
+    sensor = problem.data.entries.sensor
+    alike = problem.alike * (TOGETHER + (1 - TOGETHER) * (sensor[:, None] == sensor))
     effects = (look.jacobian[:, vector.sizes] * look.x[vector.sizes])[problem.own]
     rough = np.zeros((problem.m, problem.m))
-    rough[problem.own, problem.own] = (effects @ effects.T) * problem.alike
+    rough[problem.own, problem.own] = (effects @ effects.T) * alike
     return rough
 
 

@@ -116,8 +116,8 @@ def per_group(effect: np.ndarray, groups: np.ndarray) -> np.ndarray:
 
 
 def walk(effect: np.ndarray, test: np.ndarray) -> np.ndarray:
-    """Effects (m, tests - 1) of the steps from each test to the next."""
-    return np.asarray(effect[:, None] * (test[:, None] > np.arange(int(test.max()))))
+    """Effects (m, tests) of the steps to each test, the first from where the instrument was adjusted."""
+    return np.asarray(effect[:, None] * (test[:, None] >= np.arange(int(test.max()) + 1)))
 
 
 def conditions(o: Observed) -> np.ndarray:
