@@ -41,7 +41,7 @@ def from_c(fmu: Path, folder: Path, speed: str, truth: np.ndarray, flat: FlatMod
     single = {words[0]: float(words[1]) for words in lines if words[0] != "warmup"}
     rhs = single["rhs"]
     found: dict[str, Any] = {"rhs_s": rhs, "step_rhs": single["step"] / rhs, "outputs_rhs": single["outputs"] / rhs}
-    found |= {"call_rhs": single["call"] / rhs, "state_bytes": single["state"]}
+    found |= {f"{name}_rhs": single[name] / rhs for name in ("call", "jump")} | {"state_bytes": single["state"]}
     found |= {"instance_bytes": single["instance"]} if "instance" in single else {}
     warm = [i for i, q in enumerate(flat.states) if q.unit == "K"]
     for words in (w for w in lines if w[0] == "warmup"):
