@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import casadi as ca
@@ -218,15 +218,9 @@ def _shared_divisors(f: Any) -> dict[int, tuple[str, bool]]:
     Only where several divide by the same value: derivatives repeat their function's divisors, and a division costs as
     much as several products.
     """
-    version: dict[int, int] = {}  # a work variable holds one value after another
-    users: dict[tuple[int, int], list[int]] = {}
-    for k in range(f.n_instructions()):
-        code = f.instruction_id(k)
-        if code == ca.OP_DIV:
-            divisor = f.instruction_input(k)[1]
-            users.setdefault((divisor, version[divisor]), []).append(k)
-        if code != ca.OP_OUTPUT:
-            version[f.instruction_output(k)[0]] = k
+    users: dict[int, list[int]] = {}
+    for k, (_, divisor) in _operands(f, ca.OP_DIV):
+        users.setdefault(divisor, []).append(k)
     groups = [group for group in users.values() if len(group) > 1]
     return {k: (f"r{i}", k == group[0]) for i, group in enumerate(groups) for k in group}
 
@@ -236,27 +230,26 @@ def _neighbouring_powers(f: Any) -> dict[int, tuple[str, bool]]:
 
     The derivative of a power of less than 1 is a quotient of it, which costs a tenth of another power.
     """
-    version: dict[int, int] = {}
-    constant: dict[int, float] = {}
-    known: dict[tuple[int, int], list[tuple[float, int]]] = {}
+    known: dict[int, list[tuple[float, int]]] = {}
     found: dict[int, tuple[str, bool]] = {}
+    for k, (base, at) in _operands(f, ca.OP_CONSTPOW):
+        exponent, own = f.instruction_constant(at), known.setdefault(base, [])
+        above = next((j for e, j in own if exponent < 0 and abs(e - exponent - 1) < 1e-12 and j not in found), None)
+        if above is not None:
+            found |= {above: (f"q{above}", True), k: (f"q{above}", False)}
+        own.append((exponent, k))
+    return found
+
+
+def _operands(f: Any, kind: int) -> Iterator[tuple[int, list[int]]]:
+    """Instructions of a kind, each with those that made its operands: a work variable holds one value after another."""
+    made: dict[int, int] = {}
     for k in range(f.n_instructions()):
         code = f.instruction_id(k)
-        if code == ca.OP_OUTPUT:
-            continue
-        if code == ca.OP_CONSTPOW:
-            base, at = f.instruction_input(k)
-            exponent, own = constant[at], known.setdefault((base, version[base]), [])
-            above = next((j for e, j in own if exponent < 0 and abs(e - exponent - 1) < 1e-12 and j not in found), None)
-            if above is not None:
-                found |= {above: (f"q{above}", True), k: (f"q{above}", False)}
-            own.append((exponent, k))
-        target = f.instruction_output(k)[0]
-        version[target] = k
-        constant.pop(target, None)
-        if code == ca.OP_CONST:
-            constant[target] = f.instruction_constant(k)
-    return found
+        if code == kind:
+            yield k, [made[v] for v in f.instruction_input(k)]
+        if code != ca.OP_OUTPUT:
+            made[f.instruction_output(k)[0]] = k
 
 
 def _instruction(
@@ -283,9 +276,7 @@ def _instruction(
     text = texts[code].format(*read)
     if k in powers:
         name, first = powers[k]
-        whole = [_Line(f"  {name}={text};", name, read)] if first else []
-        return [
-            *whole,
-            _Line(f"  {target}={name if first else f'{name}/{read[0]}'};", target, (name, *read[: not first])),
-        ]
+        if first:
+            return [_Line(f"  {name}={text};", name, read), _Line(f"  {target}={name};", target, (name,))]
+        text, read = f"{name}/{read[0]}", (name, read[0])
     return [_Line(f"  {target}={text};", target, read)]
