@@ -120,11 +120,10 @@ def _remainders(problem: Problem, V: np.ndarray, r: np.ndarray, without: float) 
         if g
     ]
     sd = o.entries.repeat
-    same = o.entries.sensor[:, None] == o.entries.sensor
     tests = o.campaign.test[o.row]
-    kernels = {"smooth in the conditions": problem.alike * same}
+    kernels = {"smooth in the conditions": problem.alike * problem.same}
     if np.bincount(o.campaign.test).max() > 1 or len(np.unique(tests)) < o.campaign.n:
-        kernels["from test to test"] = (tests[:, None] == tests) * same
+        kernels["from test to test"] = (tests[:, None] == tests) * problem.same
     found = []
     for group, (name, kernel) in product(groups, kernels.items()):
         mine = np.isin(o.entries.sensor, group) * sd

@@ -141,8 +141,7 @@ def _rough(problem: Problem, look: Look, vector: _Vector) -> np.ndarray:
 
     A form may bring a body more of its heat than it gets: that share differs from channel to channel.
     """
-    sensor = problem.data.entries.sensor
-    alike = problem.alike * (TOGETHER + (1 - TOGETHER) * (sensor[:, None] == sensor))
+    alike = problem.alike * (TOGETHER + (1 - TOGETHER) * problem.same)
     effects = (look.jacobian[:, vector.sizes] * look.x[vector.sizes])[problem.own]
     rough = np.zeros((problem.m, problem.m))
     rough[problem.own, problem.own] = (effects @ effects.T) * alike

@@ -194,6 +194,12 @@ class Problem:
         """Correlation (m, m) of what is smooth in the conditions of the data."""
         return alike(self.data)
 
+    @cached_property
+    def same(self) -> np.ndarray:
+        """Which readings of the data are of one channel (m, m)."""
+        sensor = self.data.entries.sensor
+        return np.asarray(sensor[:, None] == sensor)
+
     @property
     def m(self) -> int:
         """Number of readings."""
