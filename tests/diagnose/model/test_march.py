@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -134,6 +135,19 @@ def test_few_steps_are_enough(made, acting, monkeypatch) -> None:
     monkeypatch.setattr(duty, "DWELL", np.linspace(0, 1, 201)[1:] ** 2)
     monkeypatch.setattr(duty, "STOP", np.linspace(0, 1, 41)[1:] ** 2)
     assert found == pytest.approx(made().shown_by(Z, acting), abs=0.01)
+
+
+def test_an_early_reading_ends_its_dwell_and_leaves_the_stop_before_it(planetary) -> None:
+    plant, data, known = planetary
+    room = {s.name: np.full(data.n, 295.0) for s in data.given if s.kind == "ambient"}
+    steady_room = replace(data, values={**data.values, **room}, room_start=np.full(data.n_tests, np.nan))
+    first = np.r_[True, np.diff(data.test) > 0]
+    pace = np.where(first, 0.7, 0.4)
+    shorter = replace(steady_room, dwell=steady_room.dwell * pace)
+    early, stated = (Observed(plant, c, (FRICTION, BATH), {}, {"room.air_speed": 0.2}) for c in (steady_room, shorter))
+    found = early.shown_by(Z, [(known[2], np.array([3.0]))])
+    assert found == pytest.approx(stated.shown_by(Z, []), abs=1e-9)
+    assert np.abs(found - early.shown_by(Z, [])).max() > 1
 
 
 def test_only_a_run_without_a_solution_is_not_a_number(made) -> None:

@@ -24,6 +24,7 @@ typedef struct {
 typedef struct {
   whole n, S, H, F, K, R;
   const whole *row, *first, *read;            /* of each phase (F), (F + 1), of each step (K): number of the reading or -1 */
+  const whole *paced;                         /* whether its row's pace is that of a phase (F) */
   const whole *wanted;                        /* whether derivatives by a knob are (knobs) */
   const double *share;                        /* where each step ends (K) */
   const double *length, *u0, *u1, *p, *pace;  /* (n, F), (n, F, nu), (n, F, nu), (S, n, H, np), (n, H) */
@@ -212,7 +213,8 @@ static void stage(Runs *R, lanes time, double share, whole read, int kept) {
   const double ahead = R->now > R->before ? (share - R->now) / (R->now - R->before) : 0;
   lanes length = time;
   int left[LANES];
-  EACH length[l] *= R->duty->pace[R->run[l] * R->duty->H + R->duty->row[R->phase]];
+  if (R->duty->paced[R->phase])
+    EACH length[l] *= R->duty->pace[R->run[l] * R->duty->H + R->duty->row[R->phase]];
   memcpy(left, R->on, sizeof left);
   inputs(R, share);
   for (whole i = 0; i < P->nw; i++) {
@@ -367,7 +369,7 @@ static void back(Runs *R, const Found *found, const Stage *s, int k, whole from)
       EACH if (s->on[l] && part[l] != 0)
         added(R, l, found, s, j + (j >= P->knobs), part[l], R->mu + i * width, from, width);
     }
-  for (whole i = 0; i < P->nx; i++)
+  for (whole i = 0; i < P->nx && R->duty->paced[s->phase]; i++)
     EACH if (s->on[l]) added(R, l, found, s, P->knobs, s->time[l] * s->r[i][l], R->mu + i * width, from, width);
   for (whole setting = 1; setting < R->duty->S; setting++) tried(R, found, s, setting, from);
 }

@@ -88,7 +88,7 @@ def march(
         x0: temperatures and speeds at the start (N, nx)
         p: parameters of each row at each setting (S, N, H, np): the first is run; the derivatives are taken along its
             path at each, which is the truth where the settings differ in what has no effect
-        pace: share of each row's length that took place (N, H)
+        pace: share of each row's dwell that took place (N, H); a stop before it, which is not read, keeps its length
         turned: whether derivatives are computed
         wanted: the knobs by which, all without; those by others hold what their readings alone say
     """
@@ -122,6 +122,7 @@ def _duty(phases: Phases, x0: np.ndarray, p: np.ndarray, pace: np.ndarray, wante
         row=np.array(phases.row, dtype=np.int64),
         first=ends.astype(np.int64),
         read=read,
+        paced=np.array([len(own) > 0 for own in phases.read], dtype=np.int64),
         wanted=wanted.astype(np.int64),
         share=np.concatenate(phases.steps),
         length=phases.length,
