@@ -26,7 +26,7 @@ from .problem import Acting, Problem
 OUTSIDE = 0.06
 #: Causes fitted: within so many nats of the best or a share of it, as a first look is off by a share of what it finds;
 #: at most, and at least, so many.
-WITHIN, SHARE, CAUSES, LEAST = 12.0, 0.35, 12, 4
+WITHIN, SHARE, CAUSES, LEAST = 12.0, 0.7, 20, 4
 #: Further forms of those that fit well: at most so many, forms of one cause; how much more than it looks one may be.
 FURTHER, EACH, MORE = 8, 4, 4.0
 #: Forms of one side of a quantity that are fitted where the leader acts there.
