@@ -116,23 +116,37 @@ def _wetting(form: Form, at: Context) -> Form:
 
 
 def oil_viscosity(at: Context) -> Cause:
-    """Another oil."""
+    """Another oil: what it wets need not follow its viscosity as the laws of the parts say."""
     baths = at.roles.having("bath") or (at.roles.bath,)
 
+    def users(names: Sequence[str], *roles: str) -> tuple[str, ...]:
+        places = [place for role in roles for place in at.roles.places[role]]
+        fed = [place for place in places if at.roles.at(place.lubricant, "bath") in names]
+        return at.roles.scaled(*(part for place in fed for part in place.parts))
+
     def values(names: Sequence[str]) -> Changes:
+        beside = {"friction": users(names, "teeth"), "drag": users(names, "bearing", "seal")}
+        beside["stir"] = at.roles.scaled(*at.roles.oil_side) if at.roles.bath in names else ()
+
         def thicker(theta: Theta, row: Row) -> Values:
             sides = {"nu_40": 1 - theta["slope"] / 2, "nu_100": 1 + theta["slope"] / 2}
-            logs = {f"{bath}.{key}": theta["ln_factor"] * side for bath in names for key, side in sides.items()}
-            return {path: row.base[path] * ca.exp(log) for path, log in logs.items()}
+            shares = {f"{bath}.{key}": side for bath in names for key, side in sides.items()}
+            shares |= {path: theta[key] for key, paths in beside.items() for path in paths}
+            return {path: row.base[path] * ca.exp(theta["ln_factor"] * share) for path, share in shares.items()}
 
         return thicker
 
-    slope = Shape("slope", "1", "relative difference of that logarithm between 100 and 40 degC", -0.9, 0.9, 0.0, 0.4)
+    shapes = (
+        Shape("slope", "1", "relative difference of that logarithm between 100 and 40 degC", -0.9, 0.9, 0.0, 0.4),
+        Shape("friction", "1", "exponent of the factor in the friction of teeth, beside their law", -0.5, 0.5, 0.0, 0.15),
+        Shape("drag", "1", "the same in the drag of bearings and seals in that oil", -0.5, 0.5, 0.0, 0.15),
+        Shape("stir", "1", "exponent of the factor in the conductances of the oil", -0.5, 0.2, -0.1, 0.12),
+    )
     return Cause(
         id="losses.oil_viscosity",
-        doc="The oil is thicker or thinner than assumed; it acts on all that the oil lubricates.",
+        doc="The oil is thicker or thinner than assumed; it acts on all that the oil wets.",
         size=Size("ln_factor", "1", "logarithm of the factor on the viscosity", 0.4, -1.6, 1.6),
-        forms=shared([(baths, values(baths))], [((bath,), values((bath,))) for bath in baths], (slope,)),
+        forms=shared([(baths, values(baths))], [((bath,), values((bath,))) for bath in baths], shapes),
         exposes="a viscosity measurement of a sample; a warm-up from cold",
         acts_on=at.first("oil_temp"),
     )
