@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from gearheat.diagnose.answer import estimate, gain
-from gearheat.diagnose.answer.decide import UNEXPLAINED, calmed, decided
+from gearheat.diagnose.answer.decide import CALM, UNEXPLAINED, calmed, decided
 from gearheat.diagnose.answer.design import of_search, ranked
 from gearheat.diagnose.answer.experiments import added, experiments
 from gearheat.diagnose.answer.predict import predictions
@@ -33,6 +34,21 @@ def test_calm_probabilities_keep_their_order_and_that_of_nothing(wrong: tuple[Se
     assert after.joints[0].chance.probability < before.joints[0].chance.probability
     nothing = [not h.causes and h.extra is None for h in found.hypotheses]
     assert calm.probabilities[nothing] == pytest.approx(found.probabilities[nothing])
+
+
+def test_what_predicts_the_same_is_as_likely_as_its_prior(wrong: tuple[Setting, Found]) -> None:
+    found = wrong[1]
+    top = found.hypotheses[0]
+    same = [replace(top, causes=c, log_joint=top.log_joint - 20.0) for c in (("cooling.air",), (TRUE, "cooling.air"))]
+    far = next(
+        h for h in found.hypotheses if len(h.causes) == 1 and not np.allclose(h.fit.look.shown, top.fit.look.shown)
+    )
+    hypotheses = (top, *same, replace(far, causes=("losses.churning",), log_joint=top.log_joint - 20.0))
+    logs = np.array([h.log_joint for h in hypotheses]) - top.log_joint
+    few = replace(found, hypotheses=hypotheses, probabilities=np.exp(logs) / np.exp(logs).sum())
+    alike, more, apart = calmed(few).probabilities[1:] / calmed(few).probabilities[0]
+    assert alike == pytest.approx(np.exp(CALM * (found.prior(["cooling.air"]) - found.prior([TRUE]))))
+    assert max(more, apart) < 1e-4
 
 
 def test_few_readings_of_one_sensor_are_gross(wrong: tuple[Setting, Found], monkeypatch: pytest.MonkeyPatch) -> None:

@@ -138,7 +138,9 @@ def oil_viscosity(at: Context) -> Cause:
 
     shapes = (
         Shape("slope", "1", "relative difference of that logarithm between 100 and 40 degC", -0.9, 0.9, 0.0, 0.4),
-        Shape("friction", "1", "exponent of the factor in the friction of teeth, beside their law", -0.5, 0.5, 0.0, 0.15),
+        Shape(
+            "friction", "1", "exponent of the factor in the friction of teeth, beside their law", -0.5, 0.5, 0.0, 0.15
+        ),
         Shape("drag", "1", "the same in the drag of bearings and seals in that oil", -0.5, 0.5, 0.0, 0.15),
         Shape("stir", "1", "exponent of the factor in the conductances of the oil", -0.5, 0.2, -0.1, 0.12),
     )
