@@ -24,7 +24,7 @@ ASKED = 3.0
 MEMBER = 0.02
 #: Exponent of the probabilities of answers against each other. Evidence of models that are only nearly true is too sure
 #: (Miller and Dunson, 2019); with this one 90 % sets hold the cause in nine of ten campaigns of known cause.
-CALM = 0.6
+CALM = 0.65
 #: A hypothesis and its probability; with the causes of it that count.
 Member = tuple[Hypothesis, float]
 _Seen = tuple[Hypothesis, tuple[str, ...], float]
