@@ -99,7 +99,7 @@ def composed(
     return LogDiagnosis(known, asked, whole, years, with_words(found))
 
 
-def diagnosed_logs(inputs: Inputs, progress: Progress) -> f.Findings:
+def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
     """What the logs of a request say.
 
     Args:
@@ -123,11 +123,8 @@ def diagnosed_logs(inputs: Inputs, progress: Progress) -> f.Findings:
     logs, reference, siblings = (read(p) for p in (request.logs, request.reference_logs, request.sibling_logs))
     if problems:
         raise DataError(problems)
-    found = diagnose_logs(
-        inputs.scenario, logs, reference, siblings, alpha=request.alpha, seed=request.seed, progress=progress
-    ).findings
-    progress("done", 1.0)
-    return found.model_copy(update={"warnings": (*found.warnings, *inputs.warnings)})
+    alpha, seed = request.alpha, request.seed
+    return diagnose_logs(inputs.scenario, logs, reference, siblings, alpha=alpha, seed=seed, progress=progress)
 
 
 def _check(logs: Sequence[Log], healthy: Sequence[Log]) -> None:

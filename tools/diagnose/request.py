@@ -138,7 +138,7 @@ def read(request: Request) -> Inputs:
     reference = reader.logged(reader.table(request.reference), request.reference_series)
     points = reader.table(request.predict, points=True)
     if data is not None:
-        reader.problems += [] if request.logs else too_small(data)
+        reader.problems += too_small(data)
         reader.problems += [] if reference is None else same_as_reference(data, reference)
     return Inputs(request, *reader.checked(), data, reference, points)
 

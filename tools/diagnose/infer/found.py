@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+from scipy.special import logsumexp
 
 from ..model.formula import Formula
 from . import screen
@@ -64,3 +65,15 @@ class Found:
     drawn: np.ndarray
     p_omnibus: float
     prior: Prior
+
+    def beside(self, log_bayes_factor: Callable[[Iterable[str]], float]) -> Found:
+        """The search with what other data say of its causes, where the two share nothing else that is uncertain.
+
+        Args:
+            log_bayes_factor: of some causes against none
+        """
+        by = np.array([log_bayes_factor(h.causes) for h in self.hypotheses])
+        hypotheses = tuple(replace(h, log_joint=h.log_joint + b) for h, b in zip(self.hypotheses, by, strict=True))
+        with np.errstate(divide="ignore"):
+            logs = np.log(self.probabilities) + by
+        return replace(self, hypotheses=hypotheses, probabilities=np.exp(logs - logsumexp(logs)))

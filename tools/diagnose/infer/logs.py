@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from datetime import UTC, datetime
 
@@ -103,6 +103,19 @@ class Weighed:
     def best(self, cause: str) -> Moved:
         """The leading form of a cause."""
         return max((m for m in self.moved if m.knob.cause == cause), key=lambda m: m.evidence)
+
+    def log_bayes_factor(self, causes: Iterable[str]) -> float:
+        """Of causes against none: what the windows say without any prior, nothing of causes that have no knob.
+
+        Of several that were not tried together, the one that explains most counts.
+        """
+        own = set(self.causes)
+        known = tuple(sorted(own & set(causes)))
+        prior = {0: NOTHING, 1: (1 - NOTHING - TWO) / len(own), 2: 2 * TWO / len(own) ** 2}
+        tried = [known] if known in self.hypotheses else [(c,) for c in known]
+        least = 1e-300
+        logs = [np.log(max(self.hypotheses[key], least) / prior[len(key)]) for key in tried]
+        return float(max(logs) - np.log(max(self.nothing, least) / NOTHING))
 
 
 def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:

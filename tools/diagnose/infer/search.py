@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
 
@@ -49,18 +49,20 @@ def searched(
     seed: int = 0,
     most: int = 2,
     progress: Callable[[str, float], None] = lambda stage, share: None,
+    wanted: Collection[str] = (),
 ) -> Found:
     """A search in which gross readings are set aside; arguments as for `Search`."""
     progress("calibrating without a cause", 0.02)
     problem, null = cleaned(problem, fitted(problem, (), np.zeros(problem.nz)))
     progress("gross readings", 0.05)
-    search = Search(problem, formulas, null, alpha, seed, most, progress)
+    search = Search(problem, formulas, null, alpha, seed, most, progress, wanted)
     leaders = [search.leader()]
     for _ in range(LOOKS):
         aside = set_aside(problem, leaders)
         if aside != problem.aside:
             problem = problem.without(aside)
-            search = Search(problem, formulas, fitted(problem, (), null.look.z), alpha, seed, most, progress)
+            again = fitted(problem, (), null.look.z)
+            search = Search(problem, formulas, again, alpha, seed, most, progress, wanted)
         found = search.run()
         leaders = _leaders(found)
         if set_aside(problem, leaders) == problem.aside:
@@ -86,6 +88,7 @@ class Search:
         seed: of the draws
         most: causes that may act together
         progress: told of each stage and the share done
+        wanted: causes that are fitted however they look
     """
 
     def __init__(
@@ -97,12 +100,13 @@ class Search:
         seed: int = 0,
         most: int = 2,
         progress: Callable[[str, float], None] = lambda stage, share: None,
+        wanted: Collection[str] = (),
     ) -> None:
         self.problem, self.alpha, self.seed, self.most, self.progress = problem, alpha, seed, most, progress
         self.formulas = tuple(f for f in formulas if not f.form.spread)
         self.spreads = tuple(f for f in formulas if f.form.spread)
         self.prior = Prior(f.cause for f in formulas)
-        self.null = null
+        self.null, self.wanted = null, wanted
         progress("effects of all causes", 0.1)
         self.first = screen.look(problem, null, self.formulas)
         self._alarm()
@@ -227,6 +231,7 @@ class Search:
         early = [k for k in np.argsort(-value) if self.formulas[k].paced]  # no first look shows early readings well
         paired = {start.acting.formula for couple in self.couples[:PAIRS] for start in couple}  # each alone, too
         both = [k for k, f in enumerate(self.formulas) if f in paired]
+        both += [next(int(k) for k in np.argsort(-value) if self.formulas[k].cause.id == c) for c in self.wanted]
         for k in [*self._leading(value, CAUSES if self.p_any < QUIET else LEAST), *early[:EACH], *both]:
             self._alone(int(k))
         if self.p_any < QUIET:
