@@ -251,7 +251,8 @@ def _ranges(flat: FlatModel) -> str:
     rows = [
         (escape(c.component), escape(c.law.name), escape(c.argument), f"{c.low:g} .. {c.high:g}") for c in flat.checks
     ]
-    return _table("Ranges that are watched", ("component", "law", "argument", "range (SI)"), rows)
+    once = list(dict.fromkeys(rows))  # a part may use a law several times
+    return _table("Ranges that are watched", ("component", "law", "argument", "range (SI)"), once)
 
 
 def _table(title: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]], before: str = "") -> str:
