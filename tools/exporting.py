@@ -26,6 +26,7 @@ from ..scenarios.entries import catalogue
 from ..scenarios.scenario import Scenario
 from .console import answer, file_of, folder, progress_bar, say, writable
 from .extras import checked, experiment, reference_duty, reference_run, sets_of_oils, write_extras
+from .fmu_page import figures_of, texts_of
 from .network import network_svg
 from .rigs import load
 from .settings import Drive, adjusted, driven_at, flat_of
@@ -93,6 +94,7 @@ def export_command(asked: Asked) -> None:
     options["uncertain"] = uncertain(setting, flat) if asked.uncertainty else None
     kept, run = effective(flat, start), reference_run(flat, duty, start)
     options["others"] = Related(sets_of_oils(setting, kept, told=asked.with_origins), experiment(flat, duty, run))
+    options["drawn"] = figures_of(assemble(setting.spec), flat, start, run)
     with progress_bar() as options["progress"]:
         write_fmu(setting, flat, asked.out, verify=lambda fmu: checked(fmu, flat, duty, run), **options)
     named = {q.name for q in kept.parameters}
@@ -126,18 +128,23 @@ def _print(found: Mapping[str, Any]) -> None:
     print_unchecked(found["unchecked"])
 
 
-def write_fmu(scenario: Scenario, flat: FlatModel, out: Path, **options: Any) -> Path:
-    """Write the FMU of a rig with all that is known of it: sources, uncertainties, a picture of the network.
+def write_fmu(
+    scenario: Scenario, flat: FlatModel, out: Path, drawn: Mapping[str, str] | None = None, **options: Any
+) -> Path:
+    """Write the FMU of a rig with all that is known of it: sources, uncertainties, its network, its equations.
 
     Args:
         scenario: the rig as set and driven
         flat: its model
         out: file to write
+        drawn: figures beside that of the network, title -> SVG
         options: of `gearheat.fmu.export.export`
     """
+    assembly = assemble(scenario.spec)
     known: dict[str, Any] = {"sources": sources_of(scenario, flat), "uncertainties": scenario.standard_uncertainties}
-    known["choices"] = choices_of(scenario)
-    return export(flat, out, picture=network_svg(assemble(scenario.spec)), **{**known, **options})
+    known |= {"choices": choices_of(scenario), "parts": texts_of(assembly)}
+    figures = {"Network": network_svg(assembly), **(drawn or {})}
+    return export(flat, out, figures=figures, **{**known, **options})
 
 
 def choices_of(scenario: Scenario) -> tuple[Choice, ...]:
