@@ -24,7 +24,7 @@ from ..model.run.rows import evaluate_at
 from ..model.run.steady import steady
 from ..scenarios.entries import catalogue
 from ..scenarios.scenario import Scenario
-from .console import answer, file_of, folder, progress_bar, say, writable
+from .console import answer, file_of, folder, lasting, progress_bar, say, writable
 from .extras import checked, experiment, reference_duty, reference_run, sets_of_oils, write_extras
 from .fmu_page import figures_of, texts_of
 from .network import network_svg
@@ -86,6 +86,7 @@ def export_command(asked: Asked) -> None:
             "--uncertainty tells how uncertain values are, which --no-parameters-source keeps back. Take one away."
         )
     writable(asked.out, file_of(asked.json))
+    lasting(asked.out)
     chosen = platforms(asked.platform, asked.fmi)
     scenario, setting, flat, start = asked.prepared()
     beside = folder(asked.extras) if asked.extras is not None else None

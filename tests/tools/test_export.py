@@ -397,6 +397,13 @@ def test_what_is_wrong_is_told_before_anything_is_written(gearheat, tmp_path, op
     assert list(tmp_path.iterdir()) == []
 
 
+def test_places_that_hold_no_file_are_told(gearheat, tmp_path):
+    answer = gearheat("export", "--platform", "host", "planetary", "-o", tmp_path)
+    assert (answer.code, "it is a folder). Name a file in it." in answer.err) == (2, True)
+    answer = gearheat("export", "--platform", "host", "planetary", "-o", "/dev/null")
+    assert (answer.code, "it is a device). Give the output another name." in answer.err) == (2, True)
+
+
 def test_what_a_company_may_keep_to_itself(gearheat, tmp_path):
     path, extras = tmp_path / "own.fmu", tmp_path / "extras"
     keep = ("--license", "Example Ltd, all rights reserved", "--no-sources", "--no-parameters-source")
