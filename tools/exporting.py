@@ -122,8 +122,9 @@ def export_command(asked: Asked) -> None:
 
 
 def _print(found: Mapping[str, Any]) -> None:
-    words = ", ".join(f"{len(found[kind])} {kind}" for kind in ("inputs", "outputs", "parameters"))
-    say(f"{found['fmu']}: {words}, for {', '.join(found['platforms'])}")
+    words = [f"{len(found[kind])} {kind}" for kind in ("inputs", "outputs", "parameters")]
+    words += [f"{len(found['deviations'])} standard deviations"] if found["deviations"] else []
+    say(f"{found['fmu']}: {', '.join(words)}, for {', '.join(found['platforms'])}")
     if found["extras"]:
         say(f"{len(found['extras'])} files beside it, from {found['extras'][0]}")
     print_unchecked(found["unchecked"])
