@@ -57,9 +57,11 @@ def _warm_up(flat: FlatModel, run: Result) -> Figure:
     bodies = [q.name for q in flat.states if q.unit == "K"]
     loss = next((q.name for q in flat.outputs if q.name == "efficiency.P_loss"), None)
     figure, panels = empty(9.0, 5.0 if loss else 3.4, 2 if loss else 1, 1, sharex=True)
-    panels[0].set(
-        ylabel="temperature [°C]", title="two hours at the initial inputs, then two at half of their speed and torque"
+    changed = any(run[q.name][0] != run[q.name][-1] for q in flat.inputs)
+    title = (
+        "two hours at the initial inputs, then two at half of their speed and torque" if changed else "initial inputs"
     )
+    panels[0].set(ylabel="temperature [°C]", title=title)
     for i, name in enumerate(bodies):
         panels[0].plot(run.index / 60, _rounded(run[name] - 273.15), color=COLOURS[i % len(COLOURS)], label=name)
     if loss:
