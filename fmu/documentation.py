@@ -199,9 +199,10 @@ the uncertain parameters of this table. The table gives what one standard deviat
 independent of each other; the parameters of a row change together. Parameters set to other values keep their relative
 uncertainty.</p>
 <p>Sensitivities along the run are integrated with the model, so what has happened before counts. Contained is what is
-linear in the parameters. Not contained are the uncertainty of inputs, of start temperatures without a row, of the laws'
-own form, and of parameters without a row, and the error of the solver. There is no model exchange and no derivative of
-a standard deviation.</p>
+linear in the parameters: while a thermostat opens, or another switch moves, a deviation may be far too small.
+Not contained are the uncertainty of inputs, of start temperatures without a row, of the laws' own form, and of
+parameters without a row, and the error of the solver. There is no model exchange and no derivative of a standard
+deviation.</p>
 """
 
 
