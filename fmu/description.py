@@ -13,7 +13,7 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from gearheat.model.core.flat import FlatModel, Quantity
+from gearheat.model.core.flat import FlatModel
 from gearheat.model.errors import FmuError
 
 from . import units
@@ -284,7 +284,7 @@ def identity(variable: Variable) -> dict[str, str]:
     told = {
         "name": variable.name,
         "valueReference": str(variable.reference),
-        "description": _meaning(variable.quantity),
+        "description": _meaning(variable),
         "causality": variable.causality,
         "variability": variable.variability,
     }
@@ -315,10 +315,11 @@ def values(variable: Variable) -> dict[str, str]:
     return told
 
 
-def _meaning(q: Quantity) -> str:
+def _meaning(variable: Variable) -> str:
     """What a variable is, and of which part: no two variables of a machine are described alike."""
-    part, dot, _ = q.name.rpartition(".")
-    return f"{part}: {q.doc}" if dot and not q.name.startswith("der(") else q.doc
+    part, dot, _ = variable.name.rpartition(".")
+    doc = variable.quantity.doc  # of a derivative and of a standard deviation it names the part
+    return doc if not dot or variable.kind in ("derivative", "deviation") else f"{part}: {doc}"
 
 
 def _model_structure(root: ET.Element, table: Table, dependent: Dependencies) -> None:

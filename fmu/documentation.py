@@ -2,20 +2,39 @@
 
 from __future__ import annotations
 
+import re
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from html import escape
+from math import isfinite
 
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.sources import sources
-from gearheat.model.units import text
 
 from .description import TOLERANCE, tool
 from .leading import Directions
 from .parameter_set import kind_of
 from .related import PARAMETERS
+from .units import Display, fmi_unit, is_difference
+from .units import unit as unit_of
 from .variables import IMPLICIT, RESIDUAL, STORED, SUPPLIED, THROUGHPUT, VALIDITY, Table, Variable
+
+
+@dataclass(frozen=True)
+class PartText:
+    """A part of the model as people read of it.
+
+    Attributes:
+        name, doc: of the part
+        equations: what each says, and its formula
+        laws: names of the laws in them
+    """
+
+    name: str
+    doc: str
+    equations: Sequence[tuple[str, str]]
+    laws: Sequence[str] = ()
 
 
 @dataclass(frozen=True)
@@ -25,16 +44,20 @@ class About:
     Args:
         sources: parameter -> where its value is from
         uncertainties: parameter -> standard uncertainty of its value, in the unit of the value
-        picture: the model drawn, as SVG
+        figures: title -> the model or a run of it drawn as SVG
+        parts: what it is made of
         idle: parameters of the model that the FMU lacks because they have no effect
         directions: of the standard deviations, where it has some
+        with_sources: whether the FMU holds its C source
     """
 
     sources: Mapping[str, str] = field(default_factory=dict)
     uncertainties: Mapping[str, float] = field(default_factory=dict)
-    picture: str = ""
+    figures: Mapping[str, str] = field(default_factory=dict)
+    parts: Sequence[PartText] = ()
     idle: tuple[str, ...] = ()
     directions: Directions | None = None
+    with_sources: bool = True
 
 
 _STYLE = (
@@ -45,8 +68,6 @@ _STYLE = (
 )
 
 _USE = f"""
-<p>The FMU serves FMI 2.0 co-simulation and model exchange on every platform whose binary it holds.
-<code>sources/all.c</code> compiles with any C99 compiler and the C library alone.</p>
 <ul>
 <li>Set inputs, parameters and states in any order before initialization ends. Inputs and parameters may change later.
 A value that is not finite or out of its range is refused, and the message names the variable.</li>
@@ -61,8 +82,6 @@ one it is held. Slopes pay: the error of long steps falls by orders of magnitude
 """
 
 _USE_3 = f"""
-<p>The FMU serves FMI 3.0 co-simulation and model exchange on every platform whose binary it holds.
-<code>sources/all.c</code> compiles with any C99 compiler, the C library and the headers of the standard.</p>
 <ul>
 <li>Set inputs, parameters and states in any order before initialization ends. Inputs and parameters may change later.
 A value that is not finite or out of its range is refused, and the message names the variable.</li>
@@ -119,22 +138,52 @@ def documentation(
         f"<title>{escape(flat.name)}</title>",
         f"<style>{_STYLE}</style></head><body>\n<h1>{escape(flat.name)}</h1>\n<p>{escape(flat.doc)}</p>",
         f"<p>Made by {escape(tool())}.</p>",
-        f"<h2>Network</h2>\n<figure>{about.picture}</figure>" if about.picture else "",
-        f"<h2>Use</h2>{_USE if fmi == 2 else _USE_3}\n<h2>Energy and validity</h2>",
+        *(f"{heading(title)}\n<figure>{svg}</figure>" for title, svg in about.figures.items()),
+        heading("Use") + _serves(table, about, fmi) + (_USE if fmi == 2 else _USE_3) + heading("Energy and validity"),
         _INTEGRATED if table.audit else "",
         _BALANCE,
         implicit if flat.residual_names else "",
-        _deviations(about.directions),
+        _deviations(about.directions, table),
         *(_variables(title, table.of(kind)) for title, kind in _GROUPS),
         _parameters(table.of("parameter"), about),
         _choices(table.of("choice")),
+        _parts(about.parts),
         _laws(flat),
         _ranges(flat),
         _cited(flat, about),
         _verification(flat, checks),
         "</body></html>\n",
     ]
+    parts.insert(_HEAD_PARTS, _contents(parts))
     return "\n".join(part for part in parts if part)
+
+
+def _serves(table: Table, about: About, fmi: int) -> str:
+    """The interfaces it has, and how its source is compiled where it holds that."""
+    kinds = "co-simulation" if table.of("deviation") else "co-simulation and model exchange"
+    needed = "and the C library alone" if fmi == 2 else ", the C library and the headers of the standard"
+    code = f"\n<code>sources/all.c</code> compiles with any C99 compiler {needed}.".replace(" ,", ",")
+    told = f"The FMU serves FMI {fmi}.0 {kinds} on every platform whose binary it holds."
+    return f"\n<p>{told}{code if about.with_sources else ''}</p>"
+
+
+#: What stands before the list of contents: head, style, title, the program that made it.
+_HEAD_PARTS = 5
+
+
+def heading(title: str) -> str:
+    """The heading of a section, which the list of contents leads to.
+
+    Args:
+        title: as it is read
+    """
+    return f'<h2 id="{re.sub("[^a-z]+", "-", title.lower())}">{escape(title)}</h2>'
+
+
+def _contents(parts: Iterable[str]) -> str:
+    found = re.findall(r'<h2 id="(.+?)">(.+?)</h2>', "\n".join(parts))
+    links = "".join(f'<li><a href="#{place}">{title}</a></li>' for place, title in found)
+    return f"<nav><ul>{links}</ul></nav>"
 
 
 _GROUPS = (
@@ -150,40 +199,68 @@ the uncertain parameters of this table. The table gives what one standard deviat
 independent of each other; the parameters of a row change together. Parameters set to other values keep their relative
 uncertainty.</p>
 <p>Sensitivities along the run are integrated with the model, so what has happened before counts. Contained is what is
-linear in the parameters. Not contained are the uncertainty of inputs, of start temperatures without a row, of the laws'
-own form, and of parameters without a row, and the error of the solver. There is no model exchange and no derivative of
-a standard deviation.</p>
+linear in the parameters: while a thermostat opens, or another switch moves, a deviation may be far too small.
+Not contained are the uncertainty of inputs, of start temperatures without a row, of the laws' own form, and of
+parameters without a row, and the error of the solver. There is no model exchange and no derivative of a standard
+deviation.</p>
 """
 
 
-def _deviations(directions: Directions | None) -> str:
+def _deviations(directions: Directions | None, table: Table) -> str:
     """What the standard deviations contain and what not."""
     if directions is None:
         return ""
-    rows = [
-        (escape(r.name), ", ".join(f"<code>{escape(path)}</code> {change:+.3g}" for path, change in r.changes.items()))
-        for r in directions.reasons
-    ]
+    known = {v.name: v for v in table}
+
+    def told(path: str, change: float) -> str:
+        sign = "-" if change < 0 else "+"
+        return f"<code>{escape(path)}</code> {sign}{escape(_difference(abs(change), known[path]))}"
+
+    rows = [(escape(r.name), ", ".join(told(*each) for each in r.changes.items())) for r in directions.reasons]
     short, left_out = directions.shortfall, ""
     if short is not None:
         left_out = (
             f" For what is left out no deviation is ever more than {short:.1%} too small in the default experiment."
         )
     kept = f"<p>Of {len(rows)} rows {directions.count} combinations are integrated, those that move most.{left_out}</p>"
-    return _table("Uncertainty", ("reason", "change of the parameters (SI)"), rows, before=_DEVIATIONS + kept)
+    return _table("Uncertainty", ("reason", "change of the parameters"), rows, before=_DEVIATIONS + kept)
+
+
+def _display(v: Variable) -> Display:
+    """The unit that values of a variable are told in: the displayUnit of the description, else the unit itself."""
+    unit = fmi_unit(v.quantity.unit)
+    own = Display("" if unit == "1" else unit, 1.0)
+    return own if is_difference(v.quantity.unit) else unit_of(unit).display(abs(v.start or v.quantity.nominal)) or own
+
+
+def _value(value: float, v: Variable) -> str:
+    shown = _display(v)
+    return f"{shown.factor * value + shown.offset:.6g} {shown.name}".rstrip()
+
+
+def _difference(value: float, v: Variable) -> str:
+    """A difference of two values: no offset of a unit, and kelvin, touches it."""
+    shown = _display(v)
+    factor, name = (1.0, fmi_unit(v.quantity.unit)) if shown.offset else (shown.factor, shown.name)
+    return f"{factor * value:.3g} {name}".rstrip()
+
+
+def _range(v: Variable) -> str:
+    """The values allowed, in words."""
+    q, ends = v.quantity, []
+    if isfinite(q.low):
+        ends.append(f"{'above' if q.low_open else 'from'} {_value(q.low, v)}")
+    if isfinite(q.high):
+        ends.append(f"{'below' if q.high_open else 'to'} {_value(q.high, v)}")
+    return " ".join(ends)
 
 
 def _cells(v: Variable) -> tuple[str, ...]:
-    return (
-        f"<code>{escape(v.name)}</code>",
-        escape(v.quantity.unit),
-        "" if v.start is None else escape(text(v.start, v.quantity.unit)),
-        escape(v.range_text if v.range_text != "finite" else ""),
-        escape(v.quantity.doc),
-    )
+    start = "" if v.start is None else _value(v.start, v)
+    return (f"<code>{escape(v.name)}</code>", *map(escape, (v.quantity.unit, start, _range(v), v.quantity.doc)))
 
 
-_HEAD = ("name", "unit", "start", "range in that unit", "meaning")
+_HEAD = ("name", "unit of the FMU", "start", "range", "meaning")
 
 
 def _variables(title: str, variables: Iterable[Variable]) -> str:
@@ -220,8 +297,29 @@ def _choices(variables: Iterable[Variable]) -> str:
 
 
 def _uncertainty(v: Variable, known: Mapping[str, float]) -> str:
-    unit = v.quantity.unit.removesuffix("(difference)").strip()
-    return escape(f"{known[v.name]:.3g} {unit}".removesuffix(" 1")) if v.name in known else ""
+    return escape(_difference(known[v.name], v)) if v.name in known else ""
+
+
+def _parts(parts: Sequence[PartText]) -> str:
+    """The equations of every part."""
+    if not parts:
+        return ""
+    shown = [heading("Parts and their equations"), _READING]
+    for part in parts:
+        rows = [f"<tr><td>{escape(says)}</td><td><code>{escape(how)}</code></td></tr>" for says, how in part.equations]
+        laws = f"<p>Laws: {escape(', '.join(part.laws))}.</p>" if part.laws else ""
+        shown.append(
+            f"<h3><code>{escape(part.name)}</code></h3>\n<p>{escape(part.doc)}</p>\n"
+            f'<div class="scroll"><table>{"".join(rows)}</table></div>{laws}'
+        )
+    return "\n".join(shown)
+
+
+_READING = """
+<p>Every quantity belongs to the part; <code>f</code> of some quantities stands for what the laws below the equations
+make of them, whose formulas are in the section on laws. <code>sq</code> is the square. Flows are positive into the
+part.</p>
+"""
 
 
 def _verification(flat: FlatModel, checks: Sequence[tuple[str, str]]) -> str:
@@ -235,8 +333,9 @@ def _laws(flat: FlatModel) -> str:
     rows = []
     for law in flat.laws:
         checked = "" if law.verified else "not compared with a printed number"
-        rows.append(tuple(escape(cell) for cell in (law.name, law.source, law.where, law.valid, checked)))
-    return _table("Laws", ("law", "source", "place", "valid for", ""), rows)
+        told = [escape(cell) for cell in (law.name, law.source, law.where, law.valid, checked)]
+        rows.append((told[0], f"<code>{escape(law.formula)}</code>" if law.formula else "", *told[1:]))
+    return _table("Laws", ("law", "formula (LaTeX)", "source", "place", "valid for", ""), rows)
 
 
 def _cited(flat: FlatModel, about: About) -> str:
@@ -251,7 +350,8 @@ def _ranges(flat: FlatModel) -> str:
     rows = [
         (escape(c.component), escape(c.law.name), escape(c.argument), f"{c.low:g} .. {c.high:g}") for c in flat.checks
     ]
-    return _table("Ranges that are watched", ("component", "law", "argument", "range (SI)"), rows)
+    once = list(dict.fromkeys(rows))  # a part may use a law several times
+    return _table("Ranges that are watched", ("component", "law", "argument", "range (SI)"), once)
 
 
 def _table(title: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]], before: str = "") -> str:
@@ -260,4 +360,4 @@ def _table(title: str, head: tuple[str, ...], rows: Sequence[tuple[str, ...]], b
     cells = "".join("<tr>" + "".join(f"<td>{cell}</td>" for cell in row) + "</tr>\n" for row in rows)
     line = "".join(f"<th>{h}</th>" for h in head)
     table = f'<div class="scroll"><table><tr>{line}</tr>\n{cells}</table></div>' if rows else ""
-    return f"<h2>{title}</h2>{before}\n{table}"
+    return f"{heading(title)}{before}\n{table}"

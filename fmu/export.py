@@ -38,7 +38,7 @@ from . import fmi3_description, fmi3_source
 from .choices import Choice, reduced, start_choice
 from .compiling import Platform, Progress, binary, platforms, store, together
 from .description import Owner, dependencies, description, identifier
-from .documentation import About, documentation
+from .documentation import About, PartText, documentation
 from .effective import effective
 from .equations import equations
 from .icon import icon
@@ -65,7 +65,8 @@ def export(
     start: Mapping[str, float] | None = None,
     sources: Mapping[str, str] | None = None,
     uncertainties: Mapping[str, float] | None = None,
-    picture: str = "",
+    figures: Mapping[str, str] | None = None,
+    parts: Sequence[PartText] = (),
     verify: Callable[[Path], Sequence[Check]] | None = None,
     owner: Owner = Owner(),
     with_sources: bool = True,
@@ -87,13 +88,12 @@ def export(
         start: start values (SI) of inputs, parameters and states that replace those of the model
         sources: parameter -> where its value is from: a citation, or "assumed: ...", "inferred: ...", "calibrated: ..."
         uncertainties: parameter -> standard uncertainty of its value, in the unit of the value
-        picture: the model drawn as SVG, for the documentation
+        figures, parts: for the documentation, title -> the model or a run of it as SVG, and what the model is made of
         verify: called with the finished file; the checks and results it gives are written into the documentation
         owner: author, version, licence and date that its owner gives
-        with_sources: whether it holds its C source
+        with_sources, audit: whether it holds its C source, and two states that integrate the energy across the boundary
         fmi: version of the standard, 2 or 3
         choices: its enumerations: how a run begins, the oils; values of parameters that it does not have go
-        audit: whether two states integrate the energy across the boundary
         uncertain: what makes standard deviations, which co-simulation alone has
         others: further parameter sets, and a run that an importer can repeat
         progress: told what is done, and how much of the compiling
@@ -104,7 +104,7 @@ def export(
     path, chosen = Path(path), platforms(platform, fmi)
     kept, variables = _exported(flat, dict(start or {}), choices, audit, uncertain.shown if uncertain else ())
     code, told, directions = _code(kept, variables, fmi, owner=owner, with_sources=with_sources, uncertain=uncertain)
-    about = About(sources or {}, uncertainties or {}, picture, _idle(flat, kept), directions)
+    about = About(sources or {}, uncertainties or {}, figures or {}, parts, _idle(flat, kept), directions, with_sources)
     content = {
         "modelDescription.xml": told,
         _PAGE: documentation(kept, variables, about, fmi=fmi).encode(),

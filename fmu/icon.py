@@ -1,4 +1,4 @@
-"""model.png of an FMU: a warm-up curve, drawn point by point so that it needs no image file."""
+"""Icon of an FMU: a wheel and a warm pinion that mesh, drawn point by point so that it needs no image file."""
 
 from __future__ import annotations
 
@@ -7,21 +7,32 @@ import zlib
 
 import numpy as np
 
-_SIZE = 96
-_PAPER, _AXIS, _CURVE = (255, 255, 255), (90, 90, 90), (208, 74, 32)
+#: Pixels of an edge, and points drawn for each of them along it.
+_SIZE, _FINE = 96, 4
+_PAPER, _WHEEL, _PINION = (255, 255, 255), (74, 98, 122), (208, 74, 32)
 
 
 def icon() -> bytes:
     """The picture as PNG."""
-    across, down = np.meshgrid(np.arange(_SIZE) + 0.5, np.arange(_SIZE) + 0.5)
-    x, y = (across - 14) / 70, (_SIZE - 14 - down) / 70  # the unit square of the plot
-    rise = 0.9 * (1 - np.exp(-3.5 * x))
-    steepness = np.hypot(1, 0.9 * 3.5 * np.exp(-3.5 * x))
-    picture = np.full((_SIZE, _SIZE, 3), _PAPER, dtype=np.uint8)
-    on_axis = ((np.abs(x) < 0.02) & (y > -0.02) & (y < 1.05)) | ((np.abs(y) < 0.02) & (x > -0.02) & (x < 1.05))
-    picture[on_axis] = _AXIS
-    picture[(x > 0.02) & (x < 1.02) & (np.abs(y - rise) < 0.035 * steepness)] = _CURVE
-    return _png(picture)
+    across, down = np.meshgrid(*[(np.arange(_FINE * _SIZE) + 0.5) / _FINE] * 2)
+    picture = np.full((*across.shape, 3), _PAPER, dtype=float)
+    picture[_gear(across - 36, down - 58, 27.0, 14)] = _WHEEL
+    picture[_gear(across - 68.5, down - 29.5, 15.5, 8)] = _PINION
+    smooth = picture.reshape(_SIZE, _FINE, _SIZE, _FINE, 3).mean(axis=(1, 3))
+    return _png(smooth.round().astype(np.uint8))
+
+
+def _gear(x: np.ndarray, y: np.ndarray, r: float, teeth: int) -> np.ndarray:
+    """Whether points are inside a gear around the origin: its teeth, a disc, a bore.
+
+    Args:
+        x, y: of the points [pixel]
+        r: pitch radius [pixel]
+        teeth: their number
+    """
+    tooth = np.clip(1.6 * np.cos(teeth * np.arctan2(y, x)), -1, 1)
+    radius = np.hypot(x, y)
+    return np.asarray((radius < r + 3.4 * tooth) & (radius > 0.32 * r))
 
 
 def _png(picture: np.ndarray) -> bytes:

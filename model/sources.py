@@ -10,6 +10,7 @@ from __future__ import annotations
 import functools
 import inspect
 import operator
+import re
 import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
@@ -47,7 +48,8 @@ class LawInfo:
     """What a law declares: source key, place in the source, validity in words and as ranges (SI).
 
     A range belongs to an argument, "nu", or to the difference or quotient of two, "T - T_pour", "F_a / C_0". Where one
-    is left, `regimes` says what reigns there; "{name}" in it stands for the value of that output of the part.
+    is left, `regimes` says what reigns there; "{name}" in it stands for the value of that output of the part. `formula`
+    is that of the law's docstring, in LaTeX, "" where it has none.
     """
 
     name: str
@@ -57,6 +59,7 @@ class LawInfo:
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     verified: bool = True
     regimes: Mapping[str, str] = field(default_factory=dict)
+    formula: str = ""
 
 
 @dataclass(frozen=True, eq=False)
@@ -104,7 +107,8 @@ def law(
     limits = dict(ranges or {})
 
     def decorate(function: Callable[P, R]) -> Callable[P, R]:
-        info = LawInfo(function.__name__, source, where, valid, limits, verified, dict(regimes or {}))
+        more = dict(regimes or {}), _formula(function)
+        info = LawInfo(function.__name__, source, where, valid, limits, verified, *more)
         signature = inspect.signature(function)
         operands = {operand for name in limits for operand in name.split(" ")[::2]}
         if unknown := operands - signature.parameters.keys():
@@ -122,6 +126,12 @@ def law(
         return called
 
     return decorate
+
+
+def _formula(function: Callable[..., Any]) -> str:
+    """The formulas of a docstring in one line."""
+    found = re.findall(r"^\.\. math::[ \n]*((?:.+\n?)+)", inspect.getdoc(function) or "", re.MULTILINE)
+    return " ; ".join(" ".join(formula.split()) for formula in found)
 
 
 def _given(name: str, bound: Mapping[str, Any]) -> bool:

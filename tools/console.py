@@ -154,6 +154,16 @@ def writable(*paths: Path | None) -> None:
         raise DataError(problems)
 
 
+def lasting(path: Path) -> None:
+    """Check before long work that what is written to a place can be read again, as it cannot from a device.
+
+    Raises:
+        DataError: it cannot
+    """
+    if path.exists() and not path.is_file():
+        raise DataError(f"{path}: cannot be read again (it is a device). Give the output another name.")
+
+
 def plottable(path: Path | None) -> None:
     """Check before long work that a picture can be written to a place.
 
@@ -183,6 +193,8 @@ def folder(path: Path) -> Path:
 def _cannot_write(path: Path, error: OSError) -> str:
     if isinstance(error, FileExistsError):
         return f"{path}: cannot be written ({error.strerror}). Give the output another name."
+    if isinstance(error, IsADirectoryError):
+        return f"{path}: cannot be written ({error.strerror}). Name a file in it."
     return f"{path}: cannot be written ({error.strerror or error}). Give a folder that exists and may be written."
 
 

@@ -24,8 +24,9 @@ from ..model.run.rows import evaluate_at
 from ..model.run.steady import steady
 from ..scenarios.entries import catalogue
 from ..scenarios.scenario import Scenario
-from .console import answer, file_of, folder, progress_bar, say, writable
+from .console import answer, file_of, folder, lasting, progress_bar, say, writable
 from .extras import checked, experiment, reference_duty, reference_run, sets_of_oils, write_extras
+from .fmu_page import figures_of, texts_of
 from .network import network_svg
 from .rigs import load
 from .settings import Drive, adjusted, driven_at, flat_of
@@ -85,6 +86,7 @@ def export_command(asked: Asked) -> None:
             "--uncertainty tells how uncertain values are, which --no-parameters-source keeps back. Take one away."
         )
     writable(asked.out, file_of(asked.json))
+    lasting(asked.out)
     chosen = platforms(asked.platform, asked.fmi)
     scenario, setting, flat, start = asked.prepared()
     beside = folder(asked.extras) if asked.extras is not None else None
@@ -93,6 +95,7 @@ def export_command(asked: Asked) -> None:
     options["uncertain"] = uncertain(setting, flat) if asked.uncertainty else None
     kept, run = effective(flat, start), reference_run(flat, duty, start)
     options["others"] = Related(sets_of_oils(setting, kept, told=asked.with_origins), experiment(flat, duty, run))
+    options["drawn"] = figures_of(assemble(setting.spec), flat, start, run)
     with progress_bar() as options["progress"]:
         write_fmu(setting, flat, asked.out, verify=lambda fmu: checked(fmu, flat, duty, run), **options)
     named = {q.name for q in kept.parameters}
@@ -119,25 +122,31 @@ def export_command(asked: Asked) -> None:
 
 
 def _print(found: Mapping[str, Any]) -> None:
-    words = ", ".join(f"{len(found[kind])} {kind}" for kind in ("inputs", "outputs", "parameters"))
-    say(f"{found['fmu']}: {words}, for {', '.join(found['platforms'])}")
+    words = [f"{len(found[kind])} {kind}" for kind in ("inputs", "outputs", "parameters")]
+    words += [f"{len(found['deviations'])} standard deviations"] if found["deviations"] else []
+    say(f"{found['fmu']}: {', '.join(words)}, for {', '.join(found['platforms'])}")
     if found["extras"]:
         say(f"{len(found['extras'])} files beside it, from {found['extras'][0]}")
     print_unchecked(found["unchecked"])
 
 
-def write_fmu(scenario: Scenario, flat: FlatModel, out: Path, **options: Any) -> Path:
-    """Write the FMU of a rig with all that is known of it: sources, uncertainties, a picture of the network.
+def write_fmu(
+    scenario: Scenario, flat: FlatModel, out: Path, drawn: Mapping[str, str] | None = None, **options: Any
+) -> Path:
+    """Write the FMU of a rig with all that is known of it: sources, uncertainties, its network, its equations.
 
     Args:
         scenario: the rig as set and driven
         flat: its model
         out: file to write
+        drawn: figures beside that of the network, title -> SVG
         options: of `gearheat.fmu.export.export`
     """
+    assembly = assemble(scenario.spec)
     known: dict[str, Any] = {"sources": sources_of(scenario, flat), "uncertainties": scenario.standard_uncertainties}
-    known["choices"] = choices_of(scenario)
-    return export(flat, out, picture=network_svg(assemble(scenario.spec)), **{**known, **options})
+    known |= {"choices": choices_of(scenario), "parts": texts_of(assembly)}
+    figures = {"Network": network_svg(assembly), **(drawn or {})}
+    return export(flat, out, figures=figures, **{**known, **options})
 
 
 def choices_of(scenario: Scenario) -> tuple[Choice, ...]:

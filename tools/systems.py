@@ -21,7 +21,7 @@ from ..model.machines.apart import Pieces, apart
 from ..model.machines.spec import assemble
 from ..model.run.rows import evaluate_at
 from ..scenarios.scenario import Scenario
-from .console import answer, file_of, progress_bar, say, writable
+from .console import answer, file_of, lasting, progress_bar, say, writable
 from .exporting import Asked, write_fmu
 from .settings import flat_of
 
@@ -29,6 +29,7 @@ from .settings import flat_of
 def system_command(groups: Sequence[str], asked: Asked) -> None:
     """Write a rig as a system of coupled FMUs, with the options of the command `export`."""
     writable(asked.out, file_of(asked.json))
+    lasting(asked.out)
     given_up = {"--extras": asked.extras is not None, "--fmi 3": asked.fmi == 3, "--uncertainty": asked.uncertainty}
     if refused := [option for option, is_asked in given_up.items() if is_asked]:
         raise ScenarioError([f"{option} does not go with --ssp. Leave it out." for option in refused])

@@ -126,6 +126,15 @@ static int wrong_result(Instance *m)
     return N_VARIABLES;
 }
 
+/* Whether the range of a law argument was told of before: a part may use a law several times, such as for each face. */
+static int told(const Instance *m, int check)
+{
+    int i;
+    for (i = 0; i < NK; i++)
+        if (m->warned[i] && strcmp(model_checks[i], model_checks[check]) == 0) return 1;
+    return 0;
+}
+
 /* Law arguments outside the range of their source are told once each. */
 static void warn_validity(Instance *m)
 {
@@ -137,6 +146,7 @@ static void warn_validity(Instance *m)
     model_arguments(m->s.x, m->z, m->s.u, m->s.p, m->c, argument);
     for (i = 0; i < NK; i++) {
         if (m->warned[i] || !(argument[i] < model_check_low[i] || argument[i] > model_check_high[i])) continue;
+        if (told(m, i)) continue;
         m->warned[i] = 1;
         note(m, fmi2Warning, LOG_WARNING, "%s = %.6g is outside %.6g .. %.6g at t = %.10g s.", model_checks[i],
              argument[i], model_check_low[i], model_check_high[i], m->s.time);

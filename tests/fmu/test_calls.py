@@ -1,15 +1,20 @@
 """The interface's rules: what may be called when, what is refused and with which words, and that nothing leaks over."""
 
 import ctypes
+import dataclasses
 import math
 import random
 import threading
+import zipfile
 from collections.abc import Callable
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
+import casadi as ca
 import pytest
 from fmpy.fmi2 import FMU2Model, fmi2LastSuccessfulTime, fmi2Terminated
+from gearheat.fmu.export import export
 
 DISCARD, ERROR = 2, 3
 Opened = Any  # the class of conftest.py
@@ -263,3 +268,17 @@ def test_a_law_outside_its_range_is_told_once(opened: Open, heat_fmu: Path) -> N
     assert warnings == ["oil: T of viscous_torque (Nobody2000, eq. 1) = 340 is outside 273.15 .. 330 at t = 0 s."]
     assert one.get("validity.count") == [1.0]
     assert opened(heat_fmu).start().get("validity.count") == [0.0]
+
+
+def test_a_law_that_a_part_uses_twice_is_told_once(opened: Open, models: SimpleNamespace, tmp_path: Path) -> None:
+    heat = models.heat
+    twice = dataclasses.replace(heat, checks=heat.checks * 2, checked=ca.vertcat(heat.checked, heat.checked + 1))
+    path = export(twice, tmp_path / "twice.fmu")
+    one = opened(path, logging=True).start(oil__T=329.5)
+    one.set(governor__w=500.0)
+    one.fmu.doStep(0, 600)
+    assert one.get("validity.count") == [2.0]
+    assert len([text for _, category, text in one.messages if category == "logStatusWarning"]) == 1
+    with zipfile.ZipFile(path) as file:
+        page = file.read("documentation/index.html").decode()
+    assert page.count("<td>273.15 .. 330</td>") == 1

@@ -13,6 +13,7 @@ import pytest
 from fmpy.validation import validate_fmu
 from fmu_in_c import planetary
 from gearheat.fmu import units
+from gearheat.fmu.choices import reduced
 from gearheat.fmu.description import description, identifier, identity, values
 from gearheat.fmu.equations import equations
 from gearheat.fmu.export import export
@@ -24,6 +25,7 @@ from gearheat.model.machines.spec import assemble
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.units import in_unit
 from gearheat.scenarios.load import list_rigs, load
+from gearheat.tools.exporting import choices_of
 
 
 @pytest.fixture(scope="module")
@@ -152,10 +154,18 @@ def test_same_model_same_bytes(models: SimpleNamespace, rc_fmu: Path, tmp_path: 
     assert {i.date_time[0] for i in zipfile.ZipFile(again).infolist()} == {1980}
 
 
+#: Units that nobody reads in the unit itself.
+SHOWN = ("K", "rad/s", "rad", "m", "m2/s", "m3", "Pa", "J", "W")
+
+
 @pytest.mark.parametrize("rig", list_rigs())
 def test_what_a_user_reads_of_every_variable_of_every_rig(rig: str) -> None:
     """A description of its own, a unit that is understood, the unit people use, a start inside the range."""
-    variables = list(table(flatten(assemble(load(rig).spec))))
+    scenario = load(rig)
+    flat = flatten(assemble(scenario.spec))
+    deviating = [q.name for q in flat.states]
+    variables = list(table(flat, choices=reduced(choices_of(scenario), flat), deviating=deviating))
+    assert {v.kind for v in variables} >= {"choice", "deviation"}
     told = Counter(identity(v)["description"] for v in variables)
     assert [text for text, n in told.items() if n > 1 or not text] == []
     for v in variables:
@@ -163,7 +173,9 @@ def test_what_a_user_reads_of_every_variable_of_every_rig(rig: str) -> None:
         assert ("unit" in attributes) == (v.type == "Real"), v.name
         unit = units.unit(attributes.get("unit", "1"))
         assert unit.exponents is not None, v.name
-        if unit.name in ("K", "rad/s", "rad", "m", "m2/s") and "relativeQuantity" not in attributes:
+        assert unit.shown or unit.name not in SHOWN, unit.name
+        size = abs(v.start or v.quantity.nominal)
+        if v.type == "Real" and unit.shown and size >= unit.shown[0].least and "relativeQuantity" not in attributes:
             assert attributes["displayUnit"] in {d.name for d in unit.shown}, v.name
         start = float(attributes.get("start", "nan"))
         assert not start < float(attributes.get("min", "-inf")), v.name

@@ -103,7 +103,13 @@ SOURCES = {"resistor.R": "calibrated: on <five> readings & more", "capacitor.C":
 @pytest.fixture(scope="module")
 def sourced(models: SimpleNamespace, tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("sourced") / "rc.fmu"
-    return export(models.rc, path, sources=SOURCES, uncertainties={"resistor.R": 0.05}, picture="<svg><!--rc--></svg>")
+    return export(
+        models.rc,
+        path,
+        sources=SOURCES,
+        uncertainties={"resistor.R": 0.05},
+        figures={"Circuit": "<svg><!--rc--></svg>"},
+    )
 
 
 def test_a_receiver_finds_source_value_unit_and_uncertainty(sourced: Path) -> None:

@@ -182,7 +182,8 @@ def test_the_page_says_what_the_deviations_contain(machine: Path) -> None:
 
     with zipfile.ZipFile(machine) as file:
         page = file.read("documentation/index.html").decode()
-    assert "<td>friction</td><td><code>oil.b_0</code> +0.002</td>" in page
+    assert "<td>friction</td><td><code>oil.b_0</code> +0.002 N.m.s/rad</td>" in page
+    assert "serves FMI 2.0 co-simulation on every platform" in page
     assert "Not contained are the uncertainty of inputs" in page and "combinations are integrated" in page
     with Player(machine) as player:
         assert {f"{name}.sd" for name in HEAT.shown} < set(player.described.variables)

@@ -209,9 +209,19 @@ def test_sources_and_uncertainties_are_inside(exported):
 
 def test_the_documentation_says_what_it_is_and_how_it_was_checked(exported):
     page = held(exported["carrier-speed"][0], "documentation/index.html")
-    titles = ["Network", "Use", "Inputs", "Outputs", "States", "Parameters", "Laws", "Ranges that are watched"]
-    for title in [*titles, "Sources", "Verification"]:
-        assert f"<h2>{title}</h2>" in page
+    titles = ["Network", "Warm-up", "Where the heat comes from and where it goes", "Use", "Energy and validity"]
+    titles += ["Inputs", "Outputs", "States", "Parameters", "Choices", "Parts and their equations", "Laws"]
+    titles += ["Ranges that are watched", "Sources", "Verification"]
+    assert re.findall(r'<h2 id=".+?">(.+?)</h2>', page) == titles
+    listed = re.findall(r'<li><a href="#(.+?)">(.+?)</a>', page)
+    assert [title for _, title in listed] == titles
+    assert all(f'<h2 id="{place}">' in page for place, _ in listed)
+    assert page.count("<figure>") == 3
+    for part in assemble(load("planetary").spec).parts:
+        assert f"<h3><code>{part.name}</code></h3>" in page
+    assert "<td>conduction</td><td><code>Q_flow = G*(a.T-b.T)</code></td>" in page
+    for value in ("<td>42 mm</td>", "<td>206 GPa</td>", "<td>250 rpm</td>", "from -60 degC to 500 degC"):
+        assert value in page, value
     for text in ("oil_carrier_body</text>", "Torque loss in a planetary multiplier gearbox", "0.19 W/K"):
         assert text in page, text
     within = re.search(r"temperature: largest difference .*?below (1e-\d+) K", page)
@@ -387,6 +397,13 @@ def test_what_is_wrong_is_told_before_anything_is_written(gearheat, tmp_path, op
     assert list(tmp_path.iterdir()) == []
 
 
+def test_places_that_hold_no_file_are_told(gearheat, tmp_path):
+    answer = gearheat("export", "--platform", "host", "planetary", "-o", tmp_path)
+    assert (answer.code, "it is a folder). Name a file in it." in answer.err) == (2, True)
+    answer = gearheat("export", "--platform", "host", "planetary", "-o", "/dev/null")
+    assert (answer.code, "it is a device). Give the output another name." in answer.err) == (2, True)
+
+
 def test_what_a_company_may_keep_to_itself(gearheat, tmp_path):
     path, extras = tmp_path / "own.fmu", tmp_path / "extras"
     keep = ("--license", "Example Ltd, all rights reserved", "--no-sources", "--no-parameters-source")
@@ -401,6 +418,7 @@ def test_what_a_company_may_keep_to_itself(gearheat, tmp_path):
         told = 'author="A. Maker, Example Ltd" version="1.2"', 'generationDateAndTime="2026-01-31T12:00:00Z"'
         assert all(text in description for text in told)
         assert "SourceFiles" not in description
+        assert "sources/all.c" not in file.read("documentation/index.html").decode()
         assert not [name for name in file.namelist() if name.startswith("sources/")]
         for name in (n for n in file.namelist() if n.endswith((".xml", ".html", ".ssv"))):
             assert b"assumed: standard module" not in file.read(name), name
