@@ -21,7 +21,7 @@ from typing import Any
 
 from ..model.errors import suggestion
 from .document import ABOUT
-from .entries import FILES
+from .shipped import FILES
 from .values import UNCERTAINTIES
 
 #: Keys of a part's table that hold tables: a part adds to those of its template.

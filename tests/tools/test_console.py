@@ -141,14 +141,20 @@ def test_pipes_and_devices_are_written_through(tmp_path):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device that is always full")
-def test_a_full_device_is_a_message():
-    command = [sys.executable, "-m", "gearheat.tools.cli", "list"]
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["list"], "standard output or a temporary file: No space left on device. Make room, or set TMPDIR."),
+        (["steady", "--help"], "standard output: No space left on device. Make room."),
+        (["--version"], "standard output: No space left on device. Make room."),
+    ],
+)
+def test_a_full_device_is_a_message(arguments, said):
+    command = [sys.executable, "-c", "from gearheat.tools.entry import main; main()", *arguments]
     with Path("/dev/full").open("w") as full:
-        said = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
-    assert said.returncode == 2
-    assert said.stderr == (
-        "error: standard output or a temporary file: No space left on device. Make room, or set TMPDIR.\n"
-    )
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr == f"error: {said}\n"
 
 
 def test_a_full_disk_is_a_message(capsys):
