@@ -21,7 +21,7 @@ from typing import Any, ParamSpec
 
 from ..fmu.compiling import Progress
 from ..model.errors import DataError, GearheatError, ScenarioError
-from ..model.files import inputs_kept, place, replacing
+from ..model.files import flows, inputs_kept, place, replacing
 from ..model.screen import fitting
 
 P = ParamSpec("P")
@@ -146,7 +146,7 @@ def writable(*paths: Path | None) -> None:
     for path in (p for p in paths if p is not None):
         try:
             goes = place(path)
-            if not goes.exists() or goes.is_file():
+            if not flows(goes):
                 tempfile.TemporaryFile(dir=goes.parent).close()
         except OSError as error:
             problems.append(_cannot_write(path, error))

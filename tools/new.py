@@ -55,9 +55,9 @@ def new_command(
     entry = _oil(oil)
     if not re.fullmatch(r"[\w.-]+", name):
         raise ScenarioError(f'"{name}" is no name. Take letters, digits, _, - and dots.')
+    writable(path)
     if path.exists():
         raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")
-    writable(path)
     doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
     write(path, text(made, doc, speed, entry))
     scenario = load(path)

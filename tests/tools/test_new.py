@@ -143,3 +143,10 @@ def test_a_file_that_is_there_stays(gearheat, tmp_path):
     plate = ("--stages", "spur", "--ratio", "3", "--power", "2 kW", "--speed", "1450 rpm")
     assert "is there already" in gearheat("new", "a", *plate, "-o", path).err
     assert path.read_text() == "mine"
+
+
+def test_a_name_that_no_file_can_have(gearheat, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    answer = gearheat("new", "x" * 300, "--stages", "spur", "--ratio", "3", "--power", "2 kW", "--speed", "1450 rpm")
+    assert answer.code == 2
+    assert "x.toml: cannot be written (File name too long)" in answer.err
