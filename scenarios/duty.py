@@ -134,6 +134,11 @@ def _time_problems(name: str, rows: Sequence[tuple[int, list[str]]], time: np.nd
         for a, b in pairwise(readable)
         if time[b] < time[a]
     ]
+    problems += [
+        f"{name} line {rows[b][0]}: the time {rows[b][1][0]} is there three times. A jump has two rows."
+        for a, b in zip(readable, readable[2:], strict=False)
+        if time[b] == time[a] and np.ptp(time[readable]) > 0
+    ]
     if readable and np.ptp(time[readable]) == 0:
         problems.append(f"{name}: the table lasts no time. A duty needs at least two different times.")
     return problems

@@ -30,6 +30,8 @@ BAD_INPUT = 2
 INTERRUPTED = 130
 #: Of a device without room.
 FULL = (errno.ENOSPC, errno.EDQUOT)
+#: Of a path that leads nowhere, or where one may not go.
+NO_WAY = (errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOOP, errno.ENOTDIR)
 #: Kinds of pictures, by the ending of the file.
 PICTURES = (".html", ".svg", ".png")
 #: Width that a column of words gets at least.
@@ -55,6 +57,9 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
         except BrokenPipeError:  # the reader of stdout, a pager for example, has gone
             _silence()
         except OSError as error:
+            if error.errno in NO_WAY and error.filename:
+                note(f"error: {error.filename}: {error.strerror}. Check the path.")
+                sys.exit(BAD_INPUT)
             if error.errno not in FULL:
                 raise
             place = error.filename or "standard output or a temporary file"
