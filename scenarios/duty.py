@@ -109,7 +109,9 @@ def _column(cell: str, known: Mapping[str, Quantity]) -> DutyColumn:
     try:
         offset = to_si(f"0 {unit}", quantity.unit)
         return DutyColumn(quantity, offset, (to_si(f"{_LARGE} {unit}", quantity.unit) - offset) / _LARGE)
-    except ScenarioError:
+    except ScenarioError as error:
+        if "may mean" in str(error):
+            raise DataError(f'column "{cell}": its unit may mean revolutions or radians. {remedy}') from None
         raise DataError(f'column "{cell}": the unit does not fit {quantity.doc}. {remedy}') from None
 
 
