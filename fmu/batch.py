@@ -313,7 +313,7 @@ class Batch:
         if not schedule.stop > schedule.start:
             problems.append(f"{self.name}: the duty lasts no time. Give it a duration.")
         if not 0 < tolerance < 1:
-            problems.append(f"{self.name}: tolerance {tolerance:g} makes no sense. Give one between 0 and 1.")
+            problems.append(f"{self.name}: tolerance {tolerance:g} is out of range. Give one between 0 and 1.")
         return problems
 
 

@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import errno
 import os
+import re
 import shutil
+import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 from pathlib import Path
+
+#: Names that systems give the streams of a process.
+_STREAMS = {"/dev/stdout": 1, "/dev/stderr": 2}
+_DESCRIPTOR = re.compile(r"/(?:dev|proc/self)/fd/(\d+)")
 
 #: Whether the command has read a file, by device and number, or made it; none outside a command.
 _KNOWN: ContextVar[dict[tuple[int, int], bool] | None] = ContextVar("_KNOWN", default=None)
@@ -45,12 +51,26 @@ def place(path: Path) -> Path:
         IsADirectoryError: it is a folder
         FileExistsError: the command reads it
     """
-    path = Path(os.path.realpath(path)) if path.is_symlink() else path
+    path = Path(os.path.realpath(path)) if path.is_symlink() and _descriptor(path) is None else path
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, "it is a folder")
     if path.is_file() and (_KNOWN.get() or {}).get(_identity(path)):
         raise FileExistsError(errno.EEXIST, "it is read by this command")
     return path
+
+
+def flows(path: Path) -> bool:
+    """Whether what is written there goes through: a pipe, a device, a stream of this process wherever it leads.
+
+    Args:
+        path: as `place` gives it
+    """
+    return _descriptor(path) is not None or (path.exists() and not path.is_file())
+
+
+def _descriptor(path: Path) -> int | None:
+    found = _DESCRIPTOR.fullmatch(name := str(path))
+    return int(found[1]) if found else _STREAMS.get(name)
 
 
 def _identity(path: Path) -> tuple[int, int]:
@@ -71,15 +91,17 @@ def replacing(path: Path) -> Iterator[Path]:
         OSError: the folder cannot be written to, or the command reads that file
     """
     path = place(path)
-    flows = path.exists() and not path.is_file()
-    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=None if flows else path.parent)
+    through = flows(path)
+    handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=None if through else path.parent)
     os.close(handle)
     _noted(Path(name), read=False)
     try:
         yield Path(name)
-        if flows:
-            with open(name, "rb") as whole, path.open("wb") as stream:
-                shutil.copyfileobj(whole, stream)
+        if through:
+            sys.stdout.flush()
+            stream = _descriptor(path)  # opened by its name, a file behind it would begin anew
+            with open(name, "rb") as whole, open(path if stream is None else os.dup(stream), "wb") as end:
+                shutil.copyfileobj(whole, end)
             return
         mask = os.umask(0)  # the only way to ask for it
         os.umask(mask)

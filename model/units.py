@@ -58,7 +58,7 @@ def _pint_unit(text: str) -> str:
 
 def split(text: str) -> tuple[float, str]:
     """'62 mm' -> (62.0, 'mm'). Raises ValueError where there is no number."""
-    stripped = text.strip()
+    stripped = text.strip().replace("\N{MINUS SIGN}", "-")  # as documents have it
     head, _, tail = stripped.partition(" ")
     try:
         return float(head), tail.strip()

@@ -58,7 +58,7 @@ def scale(unit: str, si: str, *, name: str) -> tuple[float, float]:
     """
     if unit in ("", "1") and si != "1":
         raise ScenarioError(
-            f'{name}: its unit is not known. Write it into the column\'s name, like "{name} [{_usual(si)}]", or in the'
+            f'{name}: its unit is not known. Write it behind the column\'s name, "[{_usual(si)}]", or in the'
             " card's table [units]."
         )
     zero, one = (to_si(f"{value:g} {'' if unit == '1' else unit}".strip(), si, name=name) for value in (0.0, 1.0))

@@ -109,7 +109,9 @@ def _column(cell: str, known: Mapping[str, Quantity]) -> DutyColumn:
     try:
         offset = to_si(f"0 {unit}", quantity.unit)
         return DutyColumn(quantity, offset, (to_si(f"{_LARGE} {unit}", quantity.unit) - offset) / _LARGE)
-    except ScenarioError:
+    except ScenarioError as error:
+        if "may mean" in str(error):
+            raise DataError(f'column "{cell}": its unit may mean revolutions or radians. {remedy}') from None
         raise DataError(f'column "{cell}": the unit does not fit {quantity.doc}. {remedy}') from None
 
 
@@ -133,6 +135,11 @@ def _time_problems(name: str, rows: Sequence[tuple[int, list[str]]], time: np.nd
         f"{name} line {rows[b][0]}: time goes back ({rows[b][1][0]} after {rows[a][1][0]}). Sort the rows by time."
         for a, b in pairwise(readable)
         if time[b] < time[a]
+    ]
+    problems += [
+        f"{name} line {rows[b][0]}: the time {rows[b][1][0]} is there three times. A jump has two rows."
+        for a, b in zip(readable, readable[2:], strict=False)
+        if time[b] == time[a] and np.ptp(time[readable]) > 0
     ]
     if readable and np.ptp(time[readable]) == 0:
         problems.append(f"{name}: the table lasts no time. A duty needs at least two different times.")

@@ -20,6 +20,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..model.errors import suggestion
+from .document import ABOUT
+from .shipped import FILES
 from .values import UNCERTAINTIES
 
 #: Keys of a part's table that hold tables: a part adds to those of its template.
@@ -57,8 +59,18 @@ def joined(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
         base: keys and values
         own: those that go before them
     """
+    base = _sourced(base, own)
     both = [key for key in ADDED if isinstance(base.get(key), Mapping) and isinstance(own.get(key), Mapping)]
     return {**base, **own, **{key: {**base[key], **own[key]} for key in both}}
+
+
+def _sourced(base: Mapping[str, Any], own: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The table a part builds on, its `source` told value by value where the part has a `source` for its own values."""
+    if "source" not in own or not isinstance(singles := base.get("sources", {}), Mapping):
+        return base
+    kept = [key for key in base if key not in (*own, *ABOUT, *ADDED, *FILES, "type", "use")]
+    default = {key: base["source"] for key in kept if "source" in base}
+    return {**base, "sources": default | {key: text for key, text in singles.items() if key not in own}}
 
 
 def expanded(file: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:

@@ -153,7 +153,7 @@ def fitted(study: Measured, flat: FlatModel, quantities: Sequence[Quantity], run
     if len(measured) <= len(start):
         raise SolveError(f"{len(measured)} readings cannot determine {len(start)} parameters. Free fewer.")
     with tempfile.TemporaryDirectory() as folder, Player(export(flat, Path(folder) / "rig.fmu")) as player:
-        simulated = _simulated(player, runs, sensor.reads)
+        simulated = _simulated(player, study, runs, sensor.reads)
 
         def errors(z: np.ndarray) -> np.ndarray:
             values = {q.name: float(v) for q, v in zip(quantities, z * scale, strict=True)}
@@ -184,7 +184,9 @@ def fitted(study: Measured, flat: FlatModel, quantities: Sequence[Quantity], run
     )
 
 
-def _simulated(player: Player, runs: Sequence[campaign.Run], path: str) -> Callable[[Mapping[str, float]], np.ndarray]:
+def _simulated(
+    player: Player, study: Measured, runs: Sequence[campaign.Run], path: str
+) -> Callable[[Mapping[str, float]], np.ndarray]:
     """Parameter values -> the oil temperature at every reading [K]."""
 
     def readings(values: Mapping[str, float]) -> np.ndarray:
@@ -194,7 +196,7 @@ def _simulated(player: Player, runs: Sequence[campaign.Run], path: str) -> Calla
                 run.inputs,
                 run.schedule.stop,
                 60.0,
-                start={**run.start, **values},
+                start={**run.start, **(_settled(study, run, values) if study.campaign.steady else {}), **values},
                 record=[path],
                 output_times=list(run.moments),
             )
@@ -202,6 +204,15 @@ def _simulated(player: Player, runs: Sequence[campaign.Run], path: str) -> Calla
         return np.array(found)
 
     return readings
+
+
+def _settled(study: Measured, run: campaign.Run, values: Mapping[str, float]) -> dict[str, float]:
+    """The steady state with other parameters that a test begins with; nothing where there is none."""
+    states = {q.name for q in study.nominal.flat.states}
+    known = {name: value for name, value in run.start.items() if name not in states}
+    known |= {name: float(course[0]) for name, course in run.schedule.values.items()}
+    found = study.nominal.at({**known, **values}) or {}
+    return {name: found[name] for name in states & found.keys() & run.start.keys()}
 
 
 def _print(found: Mapping[str, Any]) -> None:

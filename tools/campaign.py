@@ -40,8 +40,8 @@ START = 293.15
 AUDIT = (SUPPLIED, THROUGHPUT, STORED)
 
 
-#: How long a row of a steady state is held [s].
-SETTLED = 3600.0
+#: How long a steady state is held that a test begins with, and one that it comes to from another [s].
+SETTLED, SETTLING = 3600.0, 72 * 3600.0
 
 
 @dataclass(frozen=True)
@@ -97,7 +97,9 @@ def _run_of(study: Measured, flat: FlatModel, test: int) -> Run:
     phases: list[tuple[float, dict[str, float | tuple[float, float]]]] = []
     moments, now = [], 0.0
     for row in rows:
-        dwell, given = float(min(c.dwell[row], SETTLED)) if c.steady else float(c.dwell[row]), study.given(row)
+        dwell, given = float(c.dwell[row]), study.given(row)
+        if c.steady:
+            dwell = min(dwell, SETTLING if phases else SETTLED)
         if (stop := float(c.stop[row])) > 0 and phases:
             after = {p: T + (given[p] - T) * stop / (stop + dwell) for p, T in rooms.items()}
             still = {p: 0.0 for p in given if p in shafts} | {p: v for p, v in given.items() if p not in shafts}

@@ -7,6 +7,8 @@ from pathlib import Path
 from ..diagnose.campaign.write import as_json, as_toml, default_card
 from ..diagnose.library.nuisances import nuisances
 from ..diagnose.library.roles import Roles
+from ..model.errors import ScenarioError
+from ..model.files import flows
 from ..scenarios.scenario import Scenario
 from . import console
 from .rigs import load
@@ -14,6 +16,8 @@ from .rigs import load
 
 def command(rig: str, out: Path | None, json: str | None) -> None:
     """Write the card as TOML or JSON; TOML to stdout where no file is named."""
+    if out is not None and out.suffix not in (".toml", ".json") and not flows(out):
+        raise ScenarioError(f"-o {out}: unknown kind of file. Its name must end in .toml or .json.")
     scenario = load(rig)
     card = default_card(scenario, usual_priors(scenario))
     if out is not None:

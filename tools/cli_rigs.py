@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from . import console
-from .cli_options import Json, Rig, Set
+from .cli_options import Json, Plot, Rig, Set
 
 
 @console.guarded
@@ -18,7 +18,7 @@ def map_(
     speed: Annotated[str | None, typer.Option(help='Range such as "300..1800 rpm".')] = None,
     torque: Annotated[str | None, typer.Option(help='Range such as "-600..-60 N.m".')] = None,
     grid: Annotated[str, typer.Option(help="Points: speeds x torques.")] = "21x21",
-    plot: Annotated[Path | None, typer.Option(help="Picture to write, .svg or .png.")] = None,
+    plot: Plot = None,
     output: Annotated[list[str] | None, typer.Option(help="Output to map. Repeatable.")] = None,
     set_: Set = None,
     json: Json = None,

@@ -21,7 +21,7 @@ from typing import Any, ParamSpec
 
 from ..fmu.compiling import Progress
 from ..model.errors import DataError, GearheatError, ScenarioError
-from ..model.files import inputs_kept, place, replacing
+from ..model.files import flows, inputs_kept, place, replacing
 from ..model.screen import fitting
 
 P = ParamSpec("P")
@@ -30,6 +30,8 @@ BAD_INPUT = 2
 INTERRUPTED = 130
 #: Of a device without room.
 FULL = (errno.ENOSPC, errno.EDQUOT)
+#: Of a path that leads nowhere, or where one may not go.
+NO_WAY = (errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOOP, errno.ENOTDIR)
 #: Kinds of pictures, by the ending of the file.
 PICTURES = (".html", ".svg", ".png")
 #: Width that a column of words gets at least.
@@ -55,6 +57,9 @@ def guarded(command: Callable[P, None]) -> Callable[P, None]:
         except BrokenPipeError:  # the reader of stdout, a pager for example, has gone
             _silence()
         except OSError as error:
+            if error.errno in NO_WAY and error.filename:
+                note(f"error: {error.filename}: {error.strerror}. Check the path.")
+                sys.exit(BAD_INPUT)
             if error.errno not in FULL:
                 raise
             place = error.filename or "standard output or a temporary file"
@@ -146,7 +151,7 @@ def writable(*paths: Path | None) -> None:
     for path in (p for p in paths if p is not None):
         try:
             goes = place(path)
-            if not goes.exists() or goes.is_file():
+            if not flows(goes):
                 tempfile.TemporaryFile(dir=goes.parent).close()
         except OSError as error:
             problems.append(_cannot_write(path, error))

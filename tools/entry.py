@@ -1,7 +1,9 @@
-"""Where the program begins: also a Ctrl-C while it loads ends with one word."""
+"""Where the program begins: also a Ctrl-C while it loads, and a help text without room, end with one line."""
 
 from __future__ import annotations
 
+import errno
+import os
 import sys
 
 
@@ -10,7 +12,18 @@ def main() -> None:
     try:
         from .cli import program
 
-        program()
+        try:
+            program()
+        finally:
+            sys.stdout.flush()
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         sys.exit(130)
+    except OSError as error:  # what typer itself prints: help, version, completion
+        if error.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EPIPE):
+            raise
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if error.errno == errno.EPIPE:  # the reader of stdout, a pager for example, has gone
+            sys.exit(0)
+        print(f"error: standard output: {error.strerror}. Make room.", file=sys.stderr)
+        sys.exit(2)

@@ -68,6 +68,11 @@ def map_command(
     plan = planned(Request(rig, vary, out, grid=grid, assignments=assignments, outputs=shows), scenario)
     rows = np.concatenate([found for _, found in sorted(local(plan.job, enumerate([plan.values]), 0))])
     rows[rows[:, len(shows)] != 0, : len(shows)] = np.nan
+    if np.isnan(rows[:, : len(shows)]).all():
+        raise SolveError(
+            f"{plan.rig}: none of {len(rows)} points has a steady state. Run one of them with `gearheat steady` to see"
+            " why, and choose other ranges."
+        )
     names = [*paths, *shows]
     columns = [*plan.values.T, *rows[:, : len(shows)].T]
     found = {n: _shown(c, plan.flat.quantity(n).unit) for n, c in zip(names, columns, strict=True)}

@@ -11,7 +11,7 @@ from typing import Any
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
-from ..model.errors import ScenarioError, suggestion
+from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.run.steady import steady
 from ..model.units import to_si
 from ..scenarios.entries import catalogue
@@ -30,6 +30,8 @@ TOLD = ("kind", "z_1", "z_2", "m_n", "beta", "b")
 SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2", "worm": "a", "planetary": "a"}
 #: Speed at which churning is told [rad/s]; oil temperature that a unit should not reach [degC].
 CHURNED, HOT = 200 * math.pi / 30, 100.0
+#: Efficiency below which standard sizes do not fit the power.
+POOR = 0.4
 
 #: What meets in a planetary unit beside its two shafts.
 PLANETARY = {
@@ -55,14 +57,19 @@ def new_command(
     entry = _oil(oil)
     if not re.fullmatch(r"[\w.-]+", name):
         raise ScenarioError(f'"{name}" is no name. Take letters, digits, _, - and dots.')
+    writable(path)
     if path.exists():
         raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")
-    writable(path)
     doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
     write(path, text(made, doc, speed, entry))
-    scenario = load(path)
-    flat = flat_of(scenario)
-    found = steady(flat, conditions(scenario, flat))
+    try:
+        scenario = load(path)
+        flat = flat_of(scenario)
+        found = steady(flat, conditions(scenario, flat))
+    except GearheatError as error:
+        path.unlink()
+        why = error.problems[0]
+        raise ScenarioError(f"{power} at {speed} gives no gearbox. Check --power and --speed. {why}") from None
     kept = {key: float(found[key][0]) for key in ("oil.T", "efficiency.P_loss", "efficiency.eta")}
     payload = {
         "schema": "gearheat.new/1",
@@ -78,6 +85,8 @@ def new_command(
     answer(payload, json_, lambda: _print(payload))
     if kept["oil.T"] - 273.15 > HOT:
         note(f"the oil is hotter than {HOT:g} degC: such a unit needs a fan, fins or a cooler, or a larger housing.")
+    if kept["efficiency.eta"] < POOR:
+        note("most of the power is lost: standard modules and bearings are too large for it.")
     for shaft in made.shafts:
         for bearing, life in zip(shaft.bearings, shaft.lives, strict=True):
             if life < sizing.LIFE:

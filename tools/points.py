@@ -14,7 +14,7 @@ from ..model.run.result import Result
 from ..model.run.steady import steady
 from ..model.units import from_si, shown
 from ..scenarios.scenario import Scenario
-from .console import answer, plottable, say, table
+from .console import answer, note, plottable, say, table
 from .heat_paths import heat_flows, heat_paths
 from .rigs import load
 from .settings import adjusted, flat_of
@@ -64,6 +64,7 @@ def _plot_heat(scenario: Scenario, flat: FlatModel, result: Result, plot: Path) 
     there = steady(told, conditions(scenario, told), guess=guess)
     values = {name: float(column[0]) for name, column in there.columns.items()}
     plotted(plot, heat_picture(scenario.name, heat_paths(assembly, values), values))
+    note(f"wrote {plot}")
 
 
 def conditions(scenario: Scenario, flat: FlatModel) -> dict[str, float]:

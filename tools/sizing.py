@@ -129,6 +129,8 @@ def _check(kinds: Sequence[str], ratio: float, power: float, speed: float) -> No
     problems += [f"a {kind} stage stands alone here." for kind in ALONE if kind in kinds and len(kinds) > 1]
     if not (power > 0 and speed > 0):
         problems.append("power and speed must be above 0.")
+    if not 0 < ratio < math.inf:
+        raise ScenarioError([*problems, f"a ratio of {ratio:g} is none. Give the input's speed over the output's."])
     least, most = (
         math.prod(limit.get(kind, other) for kind in kinds) ** (1 / max(len(kinds), 1))
         for limit, other in ((LEAST, 1.0), (MOST, MOST["helical"]))

@@ -14,6 +14,7 @@ import numpy as np
 from ..fmu.batch import Batch, Status
 from ..model.core.flat import FlatModel
 from ..model.errors import GearheatError, ScenarioError, SolveError
+from ..model.files import flows
 from ..model.run.point import problem_of
 from ..model.run.schedule import Schedule
 from ..model.run.simulate import simulate
@@ -241,7 +242,7 @@ def _sampled(
 def _problems(request: Request) -> list[str]:
     """What is wrong with the options themselves."""
     found: list[str | None] = []
-    if request.out.suffix not in SUFFIXES:
+    if request.out.suffix not in SUFFIXES and not flows(request.out):
         found.append(f"-o {request.out}: unknown kind of file. Its name must end in {' or '.join(SUFFIXES)}.")
     elif request.out.suffix == ".parquet":
         found.append(parquet_missing())

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import struct
+import tempfile
 import zlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ import numpy as np
 
 from ..fmu.batch import Status
 from ..model.errors import DataError
-from ..model.files import replacing
+from ..model.files import flows, replacing
 from ..model.units import from_si, shown
 from .console import note
 
@@ -30,7 +31,8 @@ SUFFIXES = (".csv", ".parquet")
 
 def work_file(out: Path) -> Path:
     """Where the finished blocks of a sweep are kept until its table is written."""
-    return out.with_name(f"{out.name}.part")
+    folder = Path(tempfile.gettempdir()) if flows(out) else out.parent
+    return folder / f"{out.name}.part"
 
 
 class Store:

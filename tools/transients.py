@@ -64,6 +64,7 @@ def _plot(
         from .plotting import plotted
 
         plotted(plot, courses(title, time, columns, units))
+        note(f"wrote {plot}")
 
 
 def first_temperatures(scenario: Scenario, flat: FlatModel, schedule: Schedule | None) -> dict[str, float]:

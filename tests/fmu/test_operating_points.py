@@ -1,4 +1,5 @@
 """A table of operating points of every shipped rig: cold to hot, rest to twice the speed, all directions and drives.
+Parts that no shipped rig has are asked by themselves, between sources on all of their ports.
 
 Each point either converges in Python, FMU and batch alike, with its audit, no negative loss and an efficiency between 0
 and 1, or is refused by all of them, with a name. Nothing fails in silence.
@@ -14,15 +15,17 @@ import numpy as np
 import pytest
 from gearheat.fmu.batch import Batch, Status
 from gearheat.fmu.export import export
-from gearheat.model.core.flat import FlatModel
+from gearheat.model.core.flat import FlatModel, Quantity
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import SolveError
 from gearheat.model.machines.spec import Spec, assemble
+from gearheat.model.parts import PARTS
 from gearheat.model.run.audit import LEFT, out_of_range
 from gearheat.model.run.rows import evaluate
 from gearheat.model.run.schedule import stepped
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import list_rigs, load
+from one_part import between_sources, oil_at
 
 TEMPERATURES = (-40.0, -20.0, 20.0, 80.0, 150.0)
 SPEEDS = (-2.0, -1.0, 0.0, 0.1, 1.0, 2.0)
@@ -55,6 +58,8 @@ def structures() -> Iterator[str]:
 
 RIGS = tuple(structures())
 CASES = [(rig, drive) for rig in RIGS for drive in drives(load(rig).spec)]
+#: Parts that no shipped rig has.
+ALONE = sorted(set(PARTS) - {part.type for rig in list_rigs() for part in load(rig).spec.parts})
 
 
 @cache
@@ -88,6 +93,25 @@ def points(rig: str, drive: str) -> tuple[np.ndarray, np.ndarray]:
             u[room] = T + 273.15
         table.append((x, u))
     x, u = (np.array(columns).T for columns in zip(*table, strict=True))
+    return x, u
+
+
+def points_of_a_part(flat: FlatModel) -> tuple[np.ndarray, np.ndarray]:
+    """States and inputs of a part alone, a column per point: heat flows up and down, oil is that of its temperature."""
+    table = []
+    for T, w, tau in product(TEMPERATURES, SPEEDS, TORQUES):
+        oil = oil_at(T + 273.15)
+        by_unit = {"rad/s": 50.0 * w, "N.m": 100.0 * tau, "kg/s": 0.1 * w}
+
+        def value(q: Quantity, k: int, T: float = T, oil: Point = oil, by_unit: Point = by_unit) -> float:
+            if q.unit == "K":
+                return T + 273.15 + 5.0 * (k % 3)
+            if q.name == "outlet.m_flow":  # what flows into a sump leaves it
+                return -by_unit[q.unit]
+            return max(q.low, oil.get(q.name.rpartition(".")[2], by_unit.get(q.unit, q.nominal)))
+
+        table.append([[value(q, k) for k, q in enumerate(group)] for group in (flat.states, flat.inputs)])
+    x, u = (np.array(columns).reshape(len(table), -1).T for columns in zip(*table, strict=True))
     return x, u
 
 
@@ -129,10 +153,19 @@ def agree(flat: FlatModel, one: np.ndarray, other: np.ndarray) -> bool:
 def test_every_point_converges_alike_or_is_refused_by_name(
     rig: str, drive: str, tmp_path: Path, opened: Callable[..., Any]
 ) -> None:
-    flat = model(rig, drive)
-    x, u = points(rig, drive)
+    alike(model(rig, drive), *points(rig, drive), tmp_path, opened)
+
+
+@pytest.mark.parametrize("kind", ALONE)
+def test_every_point_of_a_part_that_no_rig_has(kind: str, tmp_path: Path, opened: Callable[..., Any]) -> None:
+    flat = between_sources(kind)
+    alike(flat, *points_of_a_part(flat), tmp_path, opened)
+
+
+def alike(flat: FlatModel, x: np.ndarray, u: np.ndarray, folder: Path, opened: Callable[..., Any]) -> None:
+    """Python, FMU and batch agree at each point, or all refuse it."""
     n = x.shape[1]
-    one = opened(export(flat, tmp_path / "m.fmu"))
+    one = opened(export(flat, folder / "m.fmu"))
     refs = [one.refs[q.name] for q in (*flat.states, *flat.inputs)]
     outputs = [one.refs[q.name] for q in flat.outputs]
     rows = Batch(flat).warmup(stepped([(1e-9, {})]), u.T.copy(), None, x.T.copy(), times=[0.0])
@@ -141,7 +174,7 @@ def test_every_point_converges_alike_or_is_refused_by_name(
         y, problem = told(flat, x[:, k], u[:, k])
         one.fmu.reset()
         one.fmu.setReal(refs, [*x[:, k], *u[:, k]])
-        where = dict(zip([q.name for q in flat.inputs], u[:, k], strict=True)) | {"T": x[0, k]}
+        where = dict(zip([q.name for q in (*flat.states, *flat.inputs)], [*x[:, k], *u[:, k]], strict=True))
         if y is None:
             status, text = one.refused(one.start)
             assert status == 3 and problem and any(q.name.partition(".")[0] in problem for q in flat.outputs), where

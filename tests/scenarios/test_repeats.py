@@ -64,6 +64,17 @@ def test_sources_of_a_part_add_to_those_of_its_template(tmp_path):
     assert sources["input_bearing_a.mu_EHL"] == "assumed: above the oil level"
 
 
+def test_the_source_of_a_part_is_that_of_its_own_values_alone(tmp_path):
+    path = tmp_path / "short.toml"
+    own = 'bearing = "SKF 6308"\nmu_EHL = 0.04\nmu_bl = 0.15\nsource = "drawing"'
+    text = shorter().replace('bearing = "SKF 6308"', own)
+    path.write_text(text.replace('sources = { mu_EHL = "SKF2018, friction, mineral oil" }\n', ""))
+    sources = load(path).value_sources
+    found = {key: sources[f"middle_bearing_a.{key}"] for key in ("mu_EHL", "mu_bl", "K_rs", "F_r_0")}
+    assumed = "assumed: above the oil level"
+    assert found == {"mu_EHL": "drawing", "mu_bl": "drawing", "K_rs": "SKF2018, friction", "F_r_0": assumed}
+
+
 @pytest.mark.parametrize(
     ("text", "names"),
     [

@@ -34,6 +34,7 @@ def test_what_may_be_revolutions_or_radians_is_refused_by_name(written: str) -> 
     ("written", "unit", "value"),
     [
         ("40 Nm", "N.m", 40.0),
+        ("\N{MINUS SIGN}40 Nm", "N.m", -40.0),
         ("4 kNm", "N.m", 4000.0),
         ("40 N m", "N.m", 40.0),
         ("10 lb ft", "N.m", 13.5582),

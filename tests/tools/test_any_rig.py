@@ -85,6 +85,32 @@ def test_calibration_needs_neither_grid_nor_campaign_in_the_rig_file(gearheat, f
     assert nothing.code == 2 and "Give them as --data FILE" in nothing.err
 
 
+@pytest.mark.parametrize("rows", [1, 4])
+def test_steady_states_are_fitted_with_what_made_them_however_many_a_test_has(gearheat, tmp_path, rows):
+    table, card = tmp_path / "points.csv", tmp_path / "card.toml"
+    vary = [
+        x for v in ("input.w=700..1450 rpm", "output.tau=-590..-200 N.m", "room.T=15..25 degC") for x in ("--vary", v)
+    ]
+    options = ("--grid", "2x2x2", "--set", "churning_1.c=12 W", "--output", "oil.T", "-o", table)
+    assert gearheat("sweep", RIG, *vary, *options).code == 0
+    lines = table.read_text().splitlines()
+    numbered = [f"{line},{'test' if k == 0 else (k - 1) // rows + 1}" for k, line in enumerate(lines)]
+    table.write_text("\n".join(numbered) + "\n")
+    columns = {
+        "n_input": "input.w [rpm]",
+        "T_output": "output.tau [N.m]",
+        "T_oil": "oil.T [degC]",
+        "T_amb": "room.T [degC]",
+    }
+    card.write_text("[columns]\n" + "".join(f'{key} = "{name}"\n' for key, name in columns.items()))
+    measured = ("--data", table, "--card", card)
+    found = gearheat("calibrate", RIG, *measured, "--free", "churning_1.c", "--json", "-").json
+    assert found["free"]["churning_1.c"]["value"] == pytest.approx(12.0, rel=1e-4)
+    assert found["rmse_after_K"] < 1e-3 < found["rmse_before_K"]
+    options = ("--set", "churning_1.c=12 W", "--jobs", 1, "--out", tmp_path / "out", "--json", "-")
+    assert gearheat("run", RIG, *measured, *options).json["rmse"]["overall"]["T_oil_K"] < 1e-3
+
+
 def test_card_command(gearheat, tmp_path):
     path = tmp_path / "card.toml"
     assert gearheat("card", RIG, "-o", path).code == 0

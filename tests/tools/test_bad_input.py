@@ -93,8 +93,10 @@ def test_no_steady_state(gearheat, settings, words):
         (DUTY.replace("60,100,1500,25", "60,fast,1500,25"), ("line 3", "fast")),
         (DUTY.replace("60,100,1500,25", "60,nan,1500,25"), ("line 3", "finite")),
         (DUTY.replace("60,100,1500,25", "-1,100,1500,25"), ("line 3", "time goes back")),
+        (DUTY + "60,90,1500,25\n60,80,1500,25\n", ("line 5", "three times")),
         (DUTY.replace("carrier.w [rpm]", "carier.w [rpm]"), ("carrier.w",)),
         (DUTY.replace("[rpm]", "[kg]"), ("unit does not fit",)),
+        (DUTY.replace("[rpm]", "[1/s]"), ("may mean revolutions or radians", "[rpm]")),
         (DUTY.replace("60,100,1500,25", "60,100,1500,-400"), ("line 3", "room.T")),
     ],
 )
@@ -195,3 +197,8 @@ def test_a_process_ends_with_two_and_an_empty_stdout():
     assert done.returncode == 2
     assert done.stdout == ""
     assert done.stderr.startswith("error: ") and "Traceback" not in done.stderr
+
+
+def test_a_path_that_no_system_has(gearheat, tmp_path):
+    refused(gearheat("diagnose", "y" * 300), "File name too long. Check the path.")
+    refused(gearheat("card", "planetary", "-o", tmp_path / "card.xml"), "must end in .toml or .json")

@@ -141,14 +141,48 @@ def test_pipes_and_devices_are_written_through(tmp_path):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="a device that is always full")
-def test_a_full_device_is_a_message():
-    command = [sys.executable, "-m", "gearheat.tools.cli", "list"]
-    with Path("/dev/full").open("w") as full:
-        said = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
-    assert said.returncode == 2
-    assert said.stderr == (
-        "error: standard output or a temporary file: No space left on device. Make room, or set TMPDIR.\n"
+@pytest.mark.skipif(sys.platform == "win32", reason="streams of Unix")
+@pytest.mark.parametrize("name", ["/dev/stdout", "/dev/fd/1"])
+def test_the_streams_of_the_process_are_written_through(tmp_path, name):
+    program = (
+        "from pathlib import Path; from gearheat.tools.console import writable, write\n"
+        f"out = Path({name!r}); print('one'); writable(out); write(out, 'two\\n'); print('three')"
     )
+    command = [sys.executable, "-c", program]
+    assert subprocess.run(command, capture_output=True, text=True, check=True).stdout == "one\ntwo\nthree\n"
+    (log := tmp_path / "log").write_text("zero\n")
+    with log.open("a") as end:  # as >> of a shell
+        subprocess.run(command, stdout=end, check=True)
+    assert log.read_text() == "zero\none\ntwo\nthree\n"
+    assert list(tmp_path.iterdir()) == [log]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="streams of Unix")
+@pytest.mark.parametrize(
+    "command", [("sweep", "--vary", "room.T=10..20 degC", "--sample", 2), ("map", "--grid", "2x2")]
+)
+def test_a_table_goes_to_the_standard_output(command):
+    words = [command[0], "helical_two_stage", *map(str, command[1:]), "-o", "/dev/stdout", "--json", "/dev/null"]
+    program = [sys.executable, "-c", "from gearheat.tools.entry import main; main()", *words]
+    done = subprocess.run(program, capture_output=True, text=True, check=True)
+    assert "room.T [degC],oil.T [degC]" in done.stdout or "input.w [rpm],output.tau [N.m]" in done.stdout
+    assert not Path("/dev/stdout.part").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "said"),
+    [
+        (["list"], "standard output or a temporary file: No space left on device. Make room, or set TMPDIR."),
+        (["steady", "--help"], "standard output: No space left on device. Make room."),
+        (["--version"], "standard output: No space left on device. Make room."),
+    ],
+)
+def test_a_full_device_is_a_message(arguments, said):
+    command = [sys.executable, "-c", "from gearheat.tools.entry import main; main()", *arguments]
+    with Path("/dev/full").open("w") as full:
+        done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
+    assert done.returncode == 2
+    assert done.stderr == f"error: {said}\n"
 
 
 def test_a_full_disk_is_a_message(capsys):

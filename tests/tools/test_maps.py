@@ -64,3 +64,9 @@ def test_what_cannot_be_mapped_or_rated_is_said(gearheat, tmp_path):
     answer = gearheat("rating", "helical_two_stage", "--limit", "oil.T=10 degC", "--grid", "1x1")
     assert answer.code == 2
     assert "20 degC" in answer.err
+    answer = gearheat(
+        "map", "helical_two_stage", "--torque", "-1e6..-9e5 N.m", "--grid", "2x2", "-o", tmp_path / "m.csv"
+    )
+    assert answer.code == 2
+    assert "none of 4 points has a steady state" in answer.err
+    assert not (tmp_path / "m.csv").exists()

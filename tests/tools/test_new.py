@@ -123,6 +123,9 @@ def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
         (("--power", "2 kg"), 'unit "kg" does not fit'),
         (("--oil", "ISO VG 221"), 'no oil "ISO VG 221"'),
         (("--ratio", "0.5"), "expected 1 to 8"),
+        (("--ratio", "nan"), "a ratio of nan is none"),
+        (("--ratio", "inf"), "a ratio of inf is none"),
+        (("--ratio", "-4"), "a ratio of -4 is none"),
         (("--stages", ","), "no stage is given"),
         (("--stages", "helical,bevel"), "a bevel stage comes first"),
         (("--stages", "worm,helical"), "a worm stage stands alone"),
@@ -136,6 +139,18 @@ def test_name_plates_that_are_wrong(gearheat, tmp_path, options, words):
     answer = gearheat("new", "a", *(item for pair in plate.items() for item in pair), "-o", tmp_path / "a.toml")
     assert answer.code == 2
     assert words in answer.err
+    assert not (tmp_path / "a.toml").exists()
+
+
+def test_a_power_too_small_for_standard_sizes_leaves_no_rig(gearheat, tmp_path):
+    plate = ("--stages", "bevel", "--ratio", "3", "--speed", "1450 rpm", "-o", tmp_path / "a.toml")
+    answer = gearheat("new", "a", *plate, "--power", "1e-6 W")
+    assert answer.code == 2
+    assert "1e-6 W at 1450 rpm gives no gearbox. Check --power and --speed." in answer.err
+    assert not (tmp_path / "a.toml").exists()
+    answer = gearheat("new", "a", *plate, "--power", "1 W")
+    assert answer.code == 0
+    assert "most of the power is lost" in answer.err
 
 
 def test_a_file_that_is_there_stays(gearheat, tmp_path):
@@ -143,3 +158,10 @@ def test_a_file_that_is_there_stays(gearheat, tmp_path):
     plate = ("--stages", "spur", "--ratio", "3", "--power", "2 kW", "--speed", "1450 rpm")
     assert "is there already" in gearheat("new", "a", *plate, "-o", path).err
     assert path.read_text() == "mine"
+
+
+def test_a_name_that_no_file_can_have(gearheat, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    answer = gearheat("new", "x" * 300, "--stages", "spur", "--ratio", "3", "--power", "2 kW", "--speed", "1450 rpm")
+    assert answer.code == 2
+    assert "x.toml: cannot be written (File name too long)" in answer.err

@@ -51,8 +51,10 @@ def test_heat_paths_balance_and_begin_at_the_losses(rig):
 @pytest.mark.parametrize("kind", [".png", ".html"])
 def test_steady_draws_where_the_heat_goes(gearheat, tmp_path, kind):
     plot = tmp_path / f"heat{kind}"
-    found = gearheat("steady", "planetary", "--plot", plot, "--json", "-").json
+    answer = gearheat("steady", "planetary", "--plot", plot, "--json", "-")
+    found = answer.json
     assert found["plot"] == str(plot)
+    assert f"wrote {plot}" in answer.err
     assert plot.read_bytes().startswith(KINDS[kind])
     if kind == ".html":
         text = plot.read_text(encoding="utf-8")
