@@ -8,7 +8,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from gearheat.diagnose.answer import estimate, gain
-from gearheat.diagnose.answer.decide import CALM, UNEXPLAINED, calmed, decided
+from gearheat.diagnose.answer.decide import UNEXPLAINED, calmed, decided
 from gearheat.diagnose.answer.design import of_search, ranked
 from gearheat.diagnose.answer.experiments import added, experiments
 from gearheat.diagnose.answer.predict import predictions
@@ -47,7 +47,7 @@ def test_what_predicts_the_same_is_as_likely_as_its_prior(wrong: tuple[Setting, 
     logs = np.array([h.log_joint for h in hypotheses]) - top.log_joint
     few = replace(found, hypotheses=hypotheses, probabilities=np.exp(logs) / np.exp(logs).sum())
     alike, more, apart = calmed(few).probabilities[1:] / calmed(few).probabilities[0]
-    assert alike == pytest.approx(np.exp(CALM * (found.prior(["cooling.air"]) - found.prior([TRUE]))))
+    assert alike == pytest.approx(np.exp(found.prior(["cooling.air"]) - found.prior([TRUE])))
     assert max(more, apart) < 1e-4
 
 
