@@ -51,6 +51,16 @@ def test_what_predicts_the_same_is_as_likely_as_its_prior(wrong: tuple[Setting, 
     assert max(more, apart) < 1e-4
 
 
+def test_other_data_change_the_odds_by_what_they_say(wrong: tuple[Setting, Found]) -> None:
+    found = wrong[1]
+    told = found.beside(lambda causes: 2.0 if "cooling.air" in causes else 0.0)
+    more = np.array(["cooling.air" in h.causes for h in found.hypotheses])
+    expected = found.probabilities * np.where(more, np.exp(2.0), 1.0)
+    assert told.probabilities == pytest.approx(expected / expected.sum())
+    logs = [(h.log_joint, other.log_joint) for h, other in zip(told.hypotheses, found.hypotheses, strict=True)]
+    assert np.subtract(*np.transpose(logs)) == pytest.approx(2.0 * more)
+
+
 def test_few_readings_of_one_sensor_are_gross(wrong: tuple[Setting, Found], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(gross, "MOST", 0.5)
     problem = wrong[1].problem

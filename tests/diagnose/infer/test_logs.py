@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from gearheat.diagnose.campaign.logs import Log
 from gearheat.diagnose.campaign.table import Sensor
-from gearheat.diagnose.infer.logs import Fleet, filter_of, fleet, question
+from gearheat.diagnose.infer.logs import NOTHING, TWO, Fleet, filter_of, fleet, question
 from gearheat.diagnose.logs import LogDiagnosis, composed
 from gearheat.diagnose.report.findings import Findings, as_object
 from gearheat.scenarios.load import load
@@ -93,6 +93,17 @@ def test_what_has_changed_is_found(farm: Farm, name: str, size: float, since: fl
     assert told.findings.causes[0].id == cause
     assert Findings.model_validate(as_object(told.findings)).verdict == told.findings.verdict
     assert best.size == pytest.approx(size, abs=4 * best.sd + 0.2 * abs(size))
+
+
+def test_what_logs_say_of_a_cause_is_free_of_its_prior(farm: Farm) -> None:
+    found = farm.asked(200, "cooler: conductance", float(np.log(0.7))).whole
+    prior = np.log((1 - NOTHING - TWO) / len(found.causes))
+    for cause in found.causes:
+        each = [m.evidence for m in found.moved if m.knob.cause == cause]
+        assert found.log_bayes_factor([cause]) == pytest.approx(np.logaddexp.reduce(each) - prior)
+    assert found.log_bayes_factor(["cooling.cooler"]) > 3
+    assert found.log_bayes_factor(["cooling.cooler", "losses.windage"]) == found.log_bayes_factor(["cooling.cooler"])
+    assert found.log_bayes_factor([]) == found.log_bayes_factor(["losses.windage"]) == 0
 
 
 def test_the_picture_of_a_cause_shows_the_past_and_what_the_cause_takes_away(farm: Farm) -> None:

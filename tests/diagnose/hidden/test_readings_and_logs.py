@@ -1,0 +1,69 @@
+"""Readings and logs of one rig, each of which leaves a cause open: together they tell more."""
+
+import csv
+import json
+from pathlib import Path
+
+import numpy as np
+from diagnose.hidden.benches import HELICAL
+from diagnose.hidden.cases import HIDDEN
+from diagnose.hidden.maker import make
+from gearheat.tools.cli import app
+from typer.testing import CliRunner
+
+#: Samples of a log, its step [s], and what each input is held at [columns of a duty: lowest, highest, samples].
+N, STEP = 1000, 300.0
+HELD = {"input.w [rpm]": (500.0, 1500.0, 9), "output.tau [N.m]": (-590.0, -100.0, 7), "room.T [degC]": (16.0, 24.0, 20)}
+#: The card's columns: what is simulated, sign, and noise.
+LOGGED = {
+    "Drehzahl [rpm]": ("input.w [rpm]", 1, 0.0),
+    "Abtrieb [N.m]": ("output.tau [N.m]", -1, 0.0),
+    "Ölsumpf [degC]": ("oil.T [degC]", 1, 0.15),
+    "Gehäuse [degC]": ("wall.T [degC]", 1, 0.15),
+    "Halle [degC]": ("room.T [degC]", 1, 0.1),
+}
+
+
+def called(*words: object) -> str:
+    """Output of a command that succeeds."""
+    done = CliRunner().invoke(app, [str(word) for word in words])
+    assert done.exit_code == 0, done.output
+    return done.stdout
+
+
+def written(path: Path, columns: dict[str, np.ndarray]) -> Path:
+    """A table as a file."""
+    with path.open("w", encoding="utf-8", newline="") as file:
+        rows = csv.writer(file)
+        rows.writerow(columns)
+        rows.writerows(np.round(np.transpose(list(columns.values())), 4).tolist())
+    return path
+
+
+def log(folder: Path, name: str, seed: int, *changes: str) -> Path:
+    """A log of the rig in a random duty, with changed parameters."""
+    rng = np.random.default_rng(seed)
+    time = {"time [s]": STEP * np.arange(N)}
+    duty = {key: np.repeat(rng.uniform(low, high, N // m + 1), m)[:N] for key, (low, high, m) in HELD.items()}
+    steps, out = written(folder / f"{name}_duty.csv", time | duty), folder / f"{name}_run.csv"
+    called("simulate", "helical_two_stage", "--duty", steps, "-o", out, *(w for c in changes for w in ("--set", c)))
+    with out.open(encoding="utf-8", newline="") as file:
+        rows = {float(row["time [s]"]): row for row in csv.DictReader(file)}
+    shown = {k: np.array([float(rows[t][k]) for t in time["time [s]"]]) for k, _, _ in LOGGED.values() if k not in duty}
+    known = duty | shown
+    return written(
+        folder / f"{name}.csv",
+        time | {column: sign * known[k] + rng.normal(0.0, sd, N) for column, (k, sign, sd) in LOGGED.items()},
+    )
+
+
+def test_a_foot_that_conducts_more_is_told_by_both(tmp_path: Path) -> None:
+    case = make(HELICAL, [HIDDEN["helical"]["foundation"]], 7, tmp_path / "made")
+    asked = ["diagnose", case.data, "--rig", "helical_two_stage", "--card", case.card, "--quick", "--json", "-"]
+    logs = ["--logs", log(tmp_path, "now", 2, "foot.G=9 W/K"), "--reference-logs", log(tmp_path, "past", 1)]
+    alone, both = (json.loads(called(*asked, *more)) for more in ([], logs))
+    cause = ["cooling.foundation"]
+    p, q = (next(h["probability"] for h in r["hypotheses"] if h["causes"] == cause) for r in (alone, both))
+    assert p < 0.5 < 0.8 < q
+    assert both["about"]["logs"] == ["now.csv", "past.csv"] and both["about"]["log_rows"] == 2 * N
+    assert any("cooling.foundation" in text for text in both["warnings"])
