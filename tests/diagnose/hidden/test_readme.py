@@ -88,6 +88,6 @@ def test_the_channels_of_the_measured_campaign_say_what_the_page_prints(campaign
             assert alone[id] == pytest.approx(float(percent) / 100, abs=0.02)
     best = found["answers"][0]
     assert best["causes"] == [["sensor.wall_temp.offset"], ["losses.mesh_direction"], ["sensor.ambient.random_walk"]]
-    assert best["probability"] == pytest.approx(0.67, abs=0.02)
+    assert best["probability"] == pytest.approx(0.68, abs=0.02)
     assert found["test"]["p_adequacy"] == pytest.approx(3e-4, abs=5e-5)
     assert all(["sensor.wall_temp.offset"] in answer["causes"] for answer in found["answers"])
