@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 
 import casadi as ca
 
@@ -11,6 +10,7 @@ from ...model.laws.smooth import smooth_max
 from ..campaign.table import Sensor
 from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 from .cooling import DAYS, factors
+from .forms import COURSES
 from .roles import Roles
 
 #: What early readings are a share of where they are early by a time [s], and rounding of a pace near zero.
@@ -19,32 +19,6 @@ EARLY, ROUND = 7200.0, 0.1
 AT_RANDOM = 0.15
 #: How much of the size each half has, by the form's name, and the forms' weights.
 HALVES = {"": (1.0, 1.0, 0.6), "first half": (1.0, 0.0, 0.25), "later halves": (0.0, 1.0, 0.15)}
-
-
-@dataclass(frozen=True)
-class Course:
-    """A way of a change over the running order: words, share of the prior, its shape, and how far it is, 0 to 1."""
-
-    words: str
-    share: float
-    shape: Shape
-    at: Callable[[Theta, Row], Num]
-
-
-COURSES = (
-    Course(
-        "",
-        0.65,
-        Shape("power", "1", "exponent of the running order", 0.3, 2.0, 0.9, 0.35),
-        lambda theta, row: (row.order + 1e-9) ** theta["power"],
-    ),
-    Course(
-        "settling",
-        0.35,
-        Shape("decay", "1", "share of the campaign in which it settles: running in", 0.05, 0.6),
-        lambda theta, row: (1 - ca.exp(-row.order / theta["decay"])) / (1 - ca.exp(-1 / theta["decay"])),
-    ),
-)
 
 
 def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:

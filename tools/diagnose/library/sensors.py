@@ -14,7 +14,7 @@ from dataclasses import dataclass, replace
 from ..campaign.table import Sensor
 from .cause import Cause, Form, Mostly, Num, Ranges, Row, Shape, Size, Theta
 from .extra_parts import step
-from .forms import FROM_THEN, PLACE, USUAL, WIDTH, Context, since
+from .forms import COURSES, FROM_THEN, PLACE, USUAL, WIDTH, Context, Course, since
 from .probes import heated, lag, position, swapped
 from .readings import one_of, wrong
 from .roles import Roles
@@ -220,7 +220,7 @@ class _Instruments:
         words = self.kind.words
         size = self.size("error at the last test less that at the first", 1.3)
         yield self.cause(
-            "drift", f"Zero of the {words} that moves steadily over the campaign.", size, [DRIFT], REPEAT, "order", 0.5
+            "drift", f"Zero of the {words} that moves steadily over the campaign.", size, DRIFTS, REPEAT, "order", 0.5
         )
         size = self.size("error after the change less that before", 1.3)
         modes = [SINCE, *(replace(m, regime=FROM_THEN) for m in DIRECTED if self.at.both_ways)]
@@ -312,15 +312,15 @@ DIRECTIONS = (
     Mode("driving only", 0.3, lambda theta, row, value: (1 + row.direction) / 2),
     Mode("driven only", 0.3, lambda theta, row, value: (1 - row.direction) / 2),
 )
-DRIFT = Mode(
-    "",
-    1.0,
-    lambda theta, row, value: (row.order + 1e-9) ** theta["power"] - theta["zero"],
-    (
-        Shape("power", "1", "exponent of the running order", 0.5, 2.0, 1.0, 0.3),
-        Shape("zero", "1", "where the reading is right: 0 at the first test, 1 at the last", 0.0, 1.0),
-    ),
-    turns=True,
-)
+ADJUSTED = Mostly("zero", "1", "where the reading is right: 0 at the first test, 1 at the last", 0.0, 1.0)
+
+
+def _drifting(course: Course) -> Mode:
+    """An error that follows a course over the running order."""
+    shapes = (course.shape, ADJUSTED)
+    return Mode(course.words, course.share, lambda t, row, value: course.at(t, row) - t["zero"], shapes, turns=True)
+
+
+DRIFTS = tuple(_drifting(course) for course in COURSES)
 HALVES = "the halves of a test in reversed order"
 MOUNTINGS = "the same point in two mountings or with two fillings"

@@ -56,7 +56,9 @@ class Alarm(Model):
     """Whether anything is wrong, and whether what is left after the best hypothesis is noise."""
 
     alpha: Number
-    p_any: P = Field(description="share of campaigns without a fault whose odds against nothing are as large; 1e-6 means at most that")
+    p_any: P = Field(
+        description="share of campaigns without a fault whose odds against nothing are as large; 1e-6 means at most that"
+    )
     p_omnibus: P | None = Field(
         default=None, description="p of the readings under the calibrated model, no cause in mind"
     )
