@@ -57,7 +57,7 @@ class Alarm(Model):
 
     alpha: Number
     p_any: P = Field(
-        description="share of campaigns without a fault whose odds against nothing are as large; 1e-6 means at most that"
+        description="share of campaigns without a fault whose odds against nothing are as large; 1e-6: at most that"
     )
     p_omnibus: P | None = Field(
         default=None, description="p of the readings under the calibrated model, no cause in mind"
