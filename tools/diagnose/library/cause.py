@@ -70,6 +70,15 @@ class Mostly(Shape):
 
 
 @dataclass(frozen=True)
+class Small(Shape):
+    """One that usually is near its lower bound and may be anywhere: the cube root of its place is even."""
+
+    def at(self, u: Num) -> Num:
+        """The value at a standard normal number."""
+        return self.low + (self.high - self.low) * (0.5 * (1 + ca.erf(u / 2**0.5))) ** 3
+
+
+@dataclass(frozen=True)
 class Row:
     """What a formula may know of one reading: symbols in a fit, numbers where a cause is applied.
 

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 from ..campaign.table import Sensor
-from .cause import Cause, Mostly, Ranges, Shape
+from .cause import Cause, Mostly, Ranges, Shape, Small
 from .extras import Extras
 from .forms import SIDE, Context
 from .roles import Roles
@@ -42,8 +42,8 @@ def external_source(at: Context) -> Cause:
     inside, outside = bodies(at.roles)
     shapes = (
         Mostly("a", "1", "exponent of the speed", 0.0, 2.2),
-        Shape("oil_share", "1", "share of the heat that goes into the oil", 0.0, 0.5, 0.1, 0.1),
-        Shape("inner_share", "1", "share of the rest that enters by the shaft", 0.0, 1.0, 0.0, 0.4),
+        Small("oil_share", "1", "share of the heat that goes into the oil", 0.0, 0.5),
+        Small("inner_share", "1", "share of the rest that enters by the shaft", 0.0, 1.0),
     )
     made = [extras.heat(inside, port, k, len(outside)) for k, port in enumerate(outside)]
     single = [extras.with_parts([part], shapes) for part in made]
