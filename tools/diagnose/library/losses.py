@@ -14,7 +14,7 @@ from dataclasses import replace
 import casadi as ca
 
 from ..campaign.table import Sensor
-from .cause import Cause, Form, Ranges, Row, Shape, Size, Theta, Values
+from .cause import Cause, Form, Ranges, Row, Shape, Size, Small, Theta, Values
 from .extras import Extras
 from .forms import INNER_SHARE, Changes, Context, Regime, oil_share, shared
 from .roles import Place, Roles
@@ -278,12 +278,12 @@ def torque_only(at: Context) -> Iterator[Cause]:
     place = Place("couplings", (), f"{at.roles.ends[0]}.flange", floor, floor, "")
     shapes = (
         Shape("a", "1", "exponent of the speed", 0.8, 2.5, 1.1, 0.4),
-        Shape("c", "1", "exponent of the load", 0.0, 1.3, 0.0, 0.5),
+        Small("c", "1", "exponent of the load", 0.0, 1.3),
     )
     yield Cause(
         id="losses.torque_only",
         doc="A loss that the torques show and the machine does not feel as heat: couplings, bearings of the test rig.",
-        size=at.power("loss", 0.07, -0.3, 1.0),
+        size=at.power("loss", 0.12, -0.3, 1.0),
         forms=Extras("torque_only", at).losses([place], shapes, heats=floor),
         exposes="a run with the gearbox taken out; a transducer at the gearbox's shaft",
         acts_on=at.first("speed"),
