@@ -186,7 +186,12 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
     s = made.shafts[k]
     radii = [t.r_2 for t in made.stages[k - 1 : k]] + [t.r_1 for t in made.stages[k : k + 1]]
     places = [
-        {"name": f"{names[k]}_bearing_{end}", "bearing": bearing, "life": _num(life)}
+        {
+            "name": f"{names[k]}_bearing_{end}",
+            "bearing": bearing,
+            "life": _num(life),
+            "dips": sump.stands_in_oil(made, bearing),
+        }
         for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)
     ]
     gears = [{"x": x, "r": r} for x, r in zip(s.places, radii, strict=False)]
@@ -259,7 +264,9 @@ def _nets(names: Sequence[str], made: Unit) -> list[dict[str, str]]:
     nets["reading_output"] += ["stage_1.reading"] if planets else []
     oiled = (*stages, *churnings, *wetted, "oil_wall", *bearings, *planets)
     nets["lubricant"] = ["oil.lubricant", *(f"{part}.lubricant" for part in oiled)]
-    nets |= {"sump": ["oil.sump", *(f"{part}.sump" for part in churnings)]} if sump.wheels_dip(made) else {}
+    kinds = [bearing for shaft in made.shafts for bearing in shaft.bearings]
+    low = [name for name, kind in zip(bearings, kinds, strict=True) if sump.stands_in_oil(made, kind)]
+    nets |= {"sump": ["oil.sump", *(f"{part}.sump" for part in (*churnings, *low))]} if sump.wheels_dip(made) else {}
     churned = [f"{part}.{side}" for part in churnings for side in ("inner", "outer")]
     nets["heat_oil"] = ["oil.heat", *churned, *(f"{part}.a" for part in wetted), "oil_wall.a"]
     heated = [f"{part}.{side}" for part in planets for side in ("inner", "outer")]

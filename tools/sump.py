@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from typing import Any
 
+from ..model.units import si_of
+from ..scenarios.entries import catalogue
 from .sizing import Unit
 from .stages import PlanetaryStage, Stage, WormStage
 
@@ -45,6 +47,17 @@ def bath(made: Unit) -> dict[str, Any]:
     rule = f"level above the housing's bottom at which the smallest wheel dips by {DIP:g} modules; gears, ribs and"
     rule += f" shafts take {100 * (1 - FILLED):.0f} % of what is below it"
     return {"volume": 1000 * FILLED * level * floor, "level": level, "rule": rule}
+
+
+def stands_in_oil(made: Unit, bearing: str) -> bool:
+    """Whether a bearing of the unit reaches below the level.
+
+    Args:
+        made: the unit
+        bearing: its name in the catalogue
+    """
+    level = bath(made)["level"]
+    return level is not None and height_of_axes(made) - si_of(catalogue("bearing")[bearing].values["D"]) / 2 < level
 
 
 def wetted(stage: Stage) -> float:

@@ -121,6 +121,17 @@ def test_one_level_wets_all_wheels(made, gearheat, name):
     assert 0.5 < parts["oil"]["V"] / (parts["oil"]["level"] * floor) < 0.8
 
 
+@pytest.mark.parametrize(("name", "count"), [("two", 0), ("four", 6)])
+def test_bearings_that_reach_below_the_level_drag(made, name, count):
+    path, answer = made(name)
+    assert answer.code == 0, answer.err
+    parts = {p.name: p for p in load(path).spec.parts}
+    low = [p for n, p in parts.items() if "_bearing_" in n and p.values["oil_bath"]]
+    assert len(low) == count
+    level = parts["oil"].values["level"]
+    assert all(p.values["height"] - p.values["D"] / 2 < level for p in low)
+
+
 @pytest.mark.parametrize("name", PLATES)
 def test_oil_side_coefficients_are_near_those_of_constants(made, gearheat, name):
     """ISO/TR 14179-2 has 200 W/(m2.K) at the walls; at rest a tenth of it is left."""
