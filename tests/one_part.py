@@ -27,6 +27,7 @@ TEETH |= dict(Ra=6e-7, k_mu=1.044, line_load="F_bn/l", E=2.06e11, poisson=0.3)
 WHEEL = dict(r=0.08, b=0.024, m_n=0.003)
 SURFACE = dict(A=0.8, emissivity=0.9)
 BOX = SURFACE | dict(height=0.3, length=0.4, width=0.2, share_top=0.2, share_bottom=0.2)
+SPLASH = dict(A=0.3, r=0.08, c_p=2000.0, alpha_T=-6.5e-4)
 EXTRA = dict(P_ref=50.0, w_ref=20.0, tau_ref=2000.0, a=2.0, c=0.5, forward=1.0, backward=0.5)
 EXTRA |= dict(w_on=10.0, w_side=1.0, w_width=0.5, tau_on=-1e4, tau_side=1.0, tau_width=60.0)
 EXTRA |= dict(T_on=340.0, T_side=-1.0, T_width=1.5, oil_share=0.8, inner_share=0.3)
@@ -114,6 +115,8 @@ EXAMPLES: dict[str, dict] = {
     "RoundHousing": dict(d=0.011, k=50.0, A_flat_inner=0.074, A_flat_outer=0.083, height=0.23)
     | dict(R_o=0.111, L=0.15, circumference=1.0),
     "OilToHousing": dict(h=200.0),
+    "SplashConductor": SPLASH | dict(share=0.5, L=0.3),
+    "GearOilConductor": SPLASH,
     "FlatWallCooling": dict(emissivity=0.8),
     "ShellCooling": dict(emissivity=0.8),
     "LinearFlatWallCooling": LINEAR,

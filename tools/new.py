@@ -15,7 +15,7 @@ from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.run.steady import steady
 from ..model.units import to_si
 from ..scenarios.entries import catalogue
-from . import sizing
+from . import sizing, sump
 from .console import answer, note, writable, write
 from .points import conditions
 from .rigs import load
@@ -108,6 +108,8 @@ def _oil(name: str) -> str:
     """The catalogue's name of an oil; one of a class alone is taken for a mineral oil."""
     for known in (name, f"{name} mineral"):
         if known in catalogue("oil"):
+            if "c_p" not in catalogue("oil")[known].values:
+                raise ScenarioError(f'"{known}" is a grease. Name an oil. See `gearheat list`.')
             return known
     raise ScenarioError(f'there is no oil "{name}".{suggestion(name, catalogue("oil"))} See `gearheat list`.')
 
@@ -129,6 +131,11 @@ def text(made: Unit, doc: str, speed: str, oil: str) -> str:
         "efficiency": efficiency,
         "load": -made.turn * made.stages[0].T * made.ratio * efficiency,
         "oil": oil,
+        "of_oil": catalogue("oil")[oil].values,
+        "bath": sump.bath(made),
+        "splash": sump.splash(made),
+        "below": sump.BELOW,
+        "reached": 100 * sump.REACHED,
         "side": SIDE,
         "gap": GAP,
         "overhang": OVERHANG,
@@ -171,14 +178,20 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
         shape = {"type": "HelicalGearPair", "m_n": s.m_n, "a": s.a, "width": WIDTH}
     c = 0.5 * OIL * CHURNED**3 * s.b * s.reach**4
     shape |= {"z_1": s.z_1, "z_2": s.z_2, "b": s.b, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule, "c": c}
-    return {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", **shape}
+    found = {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", "wetting": f"oil_gears_{k + 1}"}
+    return found | shape | {"r": s.reach, "m": s.m_n, "height": sump.height_of_axes(made), "A_wet": sump.wetted(s)}
 
 
 def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
     s = made.shafts[k]
     radii = [t.r_2 for t in made.stages[k - 1 : k]] + [t.r_1 for t in made.stages[k : k + 1]]
     places = [
-        {"name": f"{names[k]}_bearing_{end}", "bearing": bearing, "life": _num(life)}
+        {
+            "name": f"{names[k]}_bearing_{end}",
+            "bearing": bearing,
+            "life": _num(life),
+            "dips": sump.stands_in_oil(made, bearing),
+        }
         for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)
     ]
     gears = [{"x": x, "r": r} for x, r in zip(s.places, radii, strict=False)]
@@ -197,7 +210,6 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
 def _bodies(made: Unit) -> dict[str, float]:
     """Capacities, conductances and the box."""
     slow = [math.prod(t.u for t in made.stages[:k]) for k in range(len(made.stages))]
-    wheels = [(s.r_2, s.b) for s in made.stages for _ in range(s.count)]
     seats = [(made.shafts[k + 1].d, s.b) for k, s in enumerate(made.stages)]
     shafts = sum(STEEL * math.pi / 4 * s.d**2 * (s.span + 0.1) for s in made.shafts)
     mass = 1.25 * IRON * made.area * made.wall
@@ -208,10 +220,7 @@ def _bodies(made: Unit) -> dict[str, float]:
         "mass": mass,
         "C_half": 500 * mass / 2,
         "wall": made.wall,
-        "volume": 1000 * 0.16 * made.length * made.width * made.height,
-        "G_gears": 400 * sum(math.pi * r**2 + 2 * math.pi * r * b for r, b in wheels),
         "G_seats": 4000 * sum(math.pi * d * b for d, b in seats),
-        "G_wall": 200 * 0.55 * made.area,
         "G_rings": 2.0 * 2 * len(made.shafts),
         "G_through": 50 * made.area / made.wall,
         "area": made.area,
@@ -233,12 +242,17 @@ def _nets(names: Sequence[str], made: Unit) -> list[dict[str, str]]:
     n = len(names) - 1
     bearings = [f"{name}_bearing_{end}" for name in names for end in "ab"]
     seals = ["input_seal", "output_seal"]
-    stages, churnings = ([f"{what}_{k}" for k in range(1, n + 1)] for what in ("stage", "churning"))
+    stages, churnings, wetted = (
+        [f"{what}_{k}" for k in range(1, n + 1)] for what in ("stage", "churning", "oil_gears")
+    )
+    thrower = sump.splash(made)["shaft"]
     nets: dict[str, list[str]] = {}
     for k, name in enumerate(names):
         ends = [f"{name}.flange"] if k in (0, n) else []
         ends += ["rotor.flange"] if k == 0 else []
         ends += [f"{stages[k - 1]}.{_ports(made.stages[k - 1])[1]}", f"{churnings[k - 1]}.shaft"] if k else []
+        ends += [f"{wetted[k - 1]}.shaft"] if k else []
+        ends += ["oil_wall.shaft"] if k == thrower else []
         ends += [f"{stages[k]}.{_ports(made.stages[k])[0]}"] if k < n else []
         turning = [f"{name}_bearing_{end}.shaft" for end in "ab"] + ([f"{name}_seal.shaft"] if k in (0, n) else [])
         nets[f"{name}_shaft"] = [*ends, *turning]
@@ -248,15 +262,19 @@ def _nets(names: Sequence[str], made: Unit) -> list[dict[str, str]]:
         [f"{end}.reading", f"efficiency.{port}"] for end, port in (("input", "a"), ("output", "b"))
     )
     nets["reading_output"] += ["stage_1.reading"] if planets else []
-    nets["lubricant"] = ["oil.lubricant", *(f"{part}.lubricant" for part in (*stages, *churnings, *bearings, *planets))]
+    oiled = (*stages, *churnings, *wetted, "oil_wall", *bearings, *planets)
+    nets["lubricant"] = ["oil.lubricant", *(f"{part}.lubricant" for part in oiled)]
+    kinds = [bearing for shaft in made.shafts for bearing in shaft.bearings]
+    low = [name for name, kind in zip(bearings, kinds, strict=True) if sump.stands_in_oil(made, kind)]
+    nets |= {"sump": ["oil.sump", *(f"{part}.sump" for part in (*churnings, *low))]} if sump.wheels_dip(made) else {}
     churned = [f"{part}.{side}" for part in churnings for side in ("inner", "outer")]
-    nets["heat_oil"] = ["oil.heat", *churned, "oil_gears.a", "oil_wall.a"]
+    nets["heat_oil"] = ["oil.heat", *churned, *(f"{part}.a" for part in wetted), "oil_wall.a"]
     heated = [f"{part}.{side}" for part in planets for side in ("inner", "outer")]
     nets["heat_gears"] = [
         "gears.heat",
         *(f"{stage}.gears" for stage in stages),
         *heated,
-        "oil_gears.b",
+        *(f"{part}.b" for part in wetted),
         "gears_shafts.a",
     ]
     rubbing = [*bearings, *seals]

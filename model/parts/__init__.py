@@ -37,6 +37,7 @@ from .preload import PreloadedPair
 from .rv import CycloidPinStage
 from .sealing import LabyrinthSeal, LipSeal, OilLipSeal
 from .shaft import Efficiency, FanLoad, FixedFlange, Inertia, LoadingClutch, ShaftEnd, TorqueSplit, TurningFrame
+from .splash import GearOilConductor, SplashConductor
 from .supports import ShaftSupport, TwoGearSupport
 from .thermal import (
     BoxCooling,
@@ -122,6 +123,8 @@ PARTS: dict[str, type[Component]] = {
         FinnedBoxCooling,
         RoundHousing,
         OilToHousing,
+        SplashConductor,
+        GearOilConductor,
         FlatWallCooling,
         ShellCooling,
         LinearFlatWallCooling,

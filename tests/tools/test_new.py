@@ -106,6 +106,62 @@ def test_a_bevel_helical_unit_is_what_makers_offer(made, gearheat):
         assert found[f"stage_1.F_a_{k}"] == pytest.approx(forces[2], rel=0.03)
 
 
+@pytest.mark.parametrize("name", ["two", "bevel", "four"])
+def test_one_level_wets_all_wheels(made, gearheat, name):
+    """The smallest wheel dips by three modules, none beyond its axis, and what is below the level holds the oil."""
+    path, answer = made(name)
+    found = gearheat("steady", path, "--json", "-").json["values"]
+    parts = {p.name: p.values for p in load(path).spec.parts}
+    wheels = {n: v for n, v in parts.items() if n.startswith("churning")}
+    assert len(wheels) == len(answer.json["stages"])
+    smallest = min(wheels, key=lambda n: wheels[n]["r"])
+    assert found[f"{smallest}.h"] == pytest.approx(3 * wheels[smallest]["m_n"], rel=0.02)
+    assert all(found[f"{n}.h"] < v["r"] for n, v in wheels.items())
+    floor = parts["cooling"]["length"] * parts["cooling"]["width"]
+    assert 0.5 < parts["oil"]["V"] / (parts["oil"]["level"] * floor) < 0.8
+
+
+@pytest.mark.parametrize(("name", "count"), [("two", 0), ("four", 6)])
+def test_bearings_that_reach_below_the_level_drag(made, name, count):
+    path, answer = made(name)
+    assert answer.code == 0, answer.err
+    parts = {p.name: p for p in load(path).spec.parts}
+    low = [p for n, p in parts.items() if "_bearing_" in n and p.values["oil_bath"]]
+    assert len(low) == count
+    level = parts["oil"].values["level"]
+    assert all(p.values["height"] - p.values["D"] / 2 < level for p in low)
+
+
+@pytest.mark.parametrize("name", PLATES)
+def test_oil_side_coefficients_are_near_those_of_constants(made, gearheat, name):
+    """ISO/TR 14179-2 has 200 W/(m2.K) at the walls; at rest a tenth of it is left."""
+    path, _ = made(name)
+    turning, rest = (
+        gearheat("steady", path, *still, "--json", "-").json["values"]
+        for still in ((), ("--set", "input.w=1e-3 rpm", "--set", "output.tau=0 N.m"))
+    )
+    assert 80 < turning["oil_wall.h"] < 400
+    assert 50 < turning["oil_gears_1.h"] < 1000
+    assert 0 < rest["oil_wall.h"] < 0.3 * turning["oil_wall.h"]
+
+
+def test_churning_is_between_the_methods_of_the_standard(made, gearheat):
+    """A two-stage unit at its name plate, the same depths: the methods differ by more from each other."""
+    path, _ = made("bevel")
+    by = [gearheat("losses", path, "--method", f"iso14179-{k}", "--json", "-").json for k in (1, 2)]
+    here, first, second = (
+        by[k]["losses_W"][whose]["churning"] for k, whose in ((0, "model"), (0, "method"), (1, "method"))
+    )
+    assert 0.5 * min(first, second) < here < 2 * max(first, second)
+
+
+def test_a_grease_is_no_oil(gearheat, tmp_path):
+    plate = ("--stages", "helical", "--ratio", "3", "--power", "2 kW", "--speed", "1450 rpm")
+    answer = gearheat("new", "a", *plate, "--oil", "bearing grease", "-o", tmp_path / "a.toml")
+    assert answer.code == 2
+    assert '"bearing grease" is a grease. Name an oil.' in answer.err
+
+
 def test_what_is_wrong_with_a_name_plate_comes_at_once(gearheat, tmp_path):
     path = tmp_path / "a.toml"
     plate = ("--stages", "spur,warm", "--ratio", "90", "--power", "2 kW", "--speed", "1450 rpm", "-o", path)
