@@ -55,7 +55,12 @@ def film_of_a_part() -> None:
 def exported() -> None:
     names = {"inputs": ["carrier.w"] * 4, "outputs": ["oil.T"] * 61, "parameters": ["cooling.A"] * 143}
     extras = [f"beside/{name}" for name in ("planetary.ssv", "planetary_ref.csv", "planetary_in.csv")]
-    found = {"fmu": "planetary.fmu", "platforms": ["x86_64-linux", "x86_64-windows"], "extras": extras, "deviations": []}
+    found = {
+        "fmu": "planetary.fmu",
+        "platforms": ["x86_64-linux", "x86_64-windows"],
+        "extras": extras,
+        "deviations": [],
+    }
     exporting._print({**found, **names, "unchecked": []})
 
 
