@@ -100,7 +100,8 @@ def test_compare_reads_the_rows_back(ran, gearheat, rig):
     out, found, _ = ran
     again = gearheat("compare", out / "rows.csv", rig.folder / "measured.csv", "--json", "-").json
     assert again["rmse"]["overall"] == pytest.approx(found["rmse"]["overall"], rel=1e-6)
-    assert again["noise_floor"] == found["noise_floor"]
+    known = {key: pytest.approx(value, rel=1e-6) for key, value in found["noise_floor"].items() if key != "repeated"}
+    assert again["noise_floor"] == {**known, "repeated": found["noise_floor"]["repeated"]}
 
 
 def test_a_second_run_plays_nothing_again_and_gives_the_same_bytes(ran, gearheat):
