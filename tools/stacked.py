@@ -6,7 +6,7 @@ import textwrap
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-from .console import cell, say, screen_width, table
+from .console import cell, is_number, say, screen_width, table
 
 #: Width that a column of sentences needs beside others, and how far it stands in under its row.
 READABLE, INDENT = 30, 4
@@ -37,7 +37,7 @@ def stacked(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]], b
         break_long_words=False,
         break_on_hyphens=False,
     )
-    right = [i > 0 and all(_number(row[i]) for row in body) for i in range(split)]
+    right = [i > 0 and all(is_number(row[i]) for row in body) for i in range(split)]
     apart = MARGIN + sum(w + GAP for w in widths[:split]) - GAP > room  # the name has a line of its own
     if apart:
         widths[0] = len(columns[0])
@@ -57,11 +57,3 @@ def stacked(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]], b
         for text in filter(None, row[split:]):
             print("\n".join(sentences.wrap(text)))
     print()
-
-
-def _number(text: str) -> bool:
-    try:
-        float(text or 0)
-    except ValueError:
-        return False
-    return True
