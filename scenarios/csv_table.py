@@ -14,6 +14,8 @@ from typing import Any, Literal
 from ..model.errors import DataError, suggestion
 from .document import read_text
 
+#: Columns in which a table of `gearheat sweep` says how each of its rows was found; nothing reads them.
+ACCOUNTS = ("row", "status", "iterations", "energy_residual [1]", "outside [1]")
 #: Most problems that one message lists; the rest are counted.
 SHOWN = 30
 
@@ -140,6 +142,8 @@ def number(cell: str) -> float:
 def parse(path: Path, columns: Iterable[Column]) -> tuple[Table, list[str]]:
     """The table in a file and all that is wrong with its columns and cells; unknown columns only warn.
 
+    The accounts of a sweep do not even warn.
+
     Args:
         path: the CSV file
         columns: the columns that are known, with unit and range
@@ -150,10 +154,11 @@ def parse(path: Path, columns: Iterable[Column]) -> tuple[Table, list[str]]:
     header, rows = read_cells(path)
     known = {c.name: c for c in columns}
     problems = _missing(path.name, header, known)
+    swept = set(ACCOUNTS) <= set(header)
     warnings = tuple(
         f'{path.name}: column "{h}" is not used.{suggestion(h, known.keys() - set(header))}'
         for h in header
-        if h not in known
+        if h not in known and not (swept and h in ACCOUNTS)
     )
     read: dict[str, list[Any]] = {h: [] for h in header if h in known}
     for line, cells in rows:

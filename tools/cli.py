@@ -290,12 +290,13 @@ def list_(json: Json = None) -> None:
 def show(
     rig: Rig,
     errata: Annotated[bool, typer.Option("--errata", help="Show where the rig's sources are wrong.")] = False,
+    everything: Everything = False,
     json: Json = None,
 ) -> None:
-    """Parts, parameters with units and sources, inputs, states and outputs of a rig."""
+    """What a rig is made of, how it is driven, and which parameters matter most; --all for everything."""
     from . import describe
 
-    describe.show_command(rig, errata, json)
+    describe.show_command(rig, errata, json, everything)
 
 
 @console.guarded

@@ -22,7 +22,7 @@ Rows = Sequence[Row]
 
 @dataclass(frozen=True)
 class Channel:
-    """One thing that is measured and simulated. `relative_to` is subtracted before repeated readings are compared."""
+    """One thing that is measured and simulated. `relative_to` is the column of what it rises over."""
 
     key: str
     column: str
@@ -40,6 +40,8 @@ class Channel:
 #: The channel of the losses, beside those of the thermometers.
 LOSS = Channel("loss_Nm", "loss_Nm", "loss torque", "loss", "N.m")
 
+#: Column of the room, and how far apart rooms of repeats may be [K]: further apart, the model would be compared.
+ROOM, NEAR_ROOM = "T_amb_C", 5.0
 #: What readings are grouped by, with the words for it.
 GROUPINGS = {
     "grid": "grid",
@@ -89,7 +91,7 @@ def measured(rows: Rows) -> tuple[Channel, ...]:
     """The channels that the rows have measured values of: thermometers, then the loss torque."""
     names = dict.fromkeys(name.removesuffix("_meas") for row in rows for name in row if name.endswith("_C_meas"))
     warm = [
-        Channel(f"{c[:-2]}_K", c, f"temperature {c[:-2]}", c[:-2], "K", "T_amb_C" if "T_amb_C" in rows[0] else None)
+        Channel(f"{c[:-2]}_K", c, f"temperature {c[:-2]}", c[:-2], "K", ROOM if ROOM in rows[0] else None)
         for c in names
     ]
     return (*warm, *([LOSS] if any(LOSS.measured in row for row in rows) else []))
@@ -149,19 +151,36 @@ def distinct(values: Iterable[Any]) -> list[Any]:
 
 
 def repeats(rows: Rows) -> list[tuple[int, ...]]:
-    """Positions of rows that repeat one operating point: same oil, set speed, set torque and direction."""
+    """Positions of rows that repeat one operating point: same oil, set speed, set torque and direction, rooms near."""
     points: dict[tuple[Any, ...], list[int]] = {}
     for i, row in enumerate(rows):
         key = tuple(row.get(name) for name in ("oil", "n_set_rpm", "T_set_Nm", "direction"))
         if None not in key:
             points.setdefault(key, []).append(i)
-    return [tuple(found) for found in points.values() if len(found) > 1]
+    near = [group for found in points.values() for group in _near(rows, found)]
+    return [tuple(group) for group in near if len(group) > 1]
+
+
+def _near(rows: Rows, found: Sequence[int]) -> list[list[int]]:
+    """Rows in groups whose rooms differ by no more than `NEAR_ROOM`; all together where no room was read."""
+    rooms = numbers(rows, ROOM)
+    if not np.isfinite(rooms[list(found)]).all():
+        return [list(found)]
+    groups: list[list[int]] = []
+    for i in sorted(found, key=lambda i: float(rooms[i])):
+        if groups and rooms[i] - rooms[groups[-1][0]] <= NEAR_ROOM:
+            groups[-1].append(i)
+        else:
+            groups.append([i])
+    return sorted(sorted(group) for group in groups)
 
 
 def noise_floor(rows: Rows) -> dict[str, Any]:
     """Standard deviation of one reading, from operating points that were measured more than once.
 
-    Temperatures are compared as rise over the room. For pairs it is rms(difference)/sqrt(2), both directions together.
+    Repeats never have quite the same room, speed, torque and history. What that does to a reading is taken out by the
+    simulation, whose own error is the same in all repeats of a point: compared is measured minus simulated. For pairs
+    it is rms(difference)/sqrt(2), both directions together.
 
     Returns:
         channel -> standard deviation; "repeated": the tests that repeat each other; "readings": how many there are
@@ -169,10 +188,8 @@ def noise_floor(rows: Rows) -> dict[str, Any]:
     groups = repeats(rows)
     floor: dict[str, Any] = {}
     for channel in measured(rows):
-        values = numbers(rows, channel.measured)
-        if channel.relative_to is not None:
-            values = values - numbers(rows, channel.relative_to)
-        squares = [values[list(group)].var(ddof=1) * (len(group) - 1) for group in groups]
+        left = errors(rows, channel)
+        squares = [left[list(group)].var(ddof=1) * (len(group) - 1) for group in groups]
         freedom = sum(len(group) - 1 for group in groups)
         if freedom and np.isfinite(squares).all():
             floor[channel.key] = math.sqrt(sum(squares) / freedom)

@@ -245,7 +245,7 @@ def table(
     from rich.table import Table
 
     body = [[cell(value) for value in row] for row in rows]
-    words = [any(not _is_number(row[i]) for row in body) for i in range(len(columns))]
+    words = [any(not is_number(row[i]) for row in body) for i in range(len(columns))]
     whole = [not words[i] or (i == 0 and not wrapped) for i in range(len(columns))]
     screen = Console(width=width or screen_width() or 160, markup=False, emoji=False)
     widest = [max(len(text) for text in (name, *(row[i] for row in body))) for i, name in enumerate(columns)]
@@ -269,7 +269,8 @@ def table(
         say(f"left out for want of room: {', '.join(left)}; widen the screen, or take --json\n")
 
 
-def _is_number(text: str) -> bool:
+def is_number(text: str) -> bool:
+    """Whether a cell holds a number or nothing."""
     try:
         float(text or 0)
     except ValueError:

@@ -2,30 +2,35 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from functools import partial
 from typing import Any
 
 from ..model.core.declare import Choice, Parameter, declared
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import SolveError
+from ..model.run.result import Result
 from ..model.run.steady import steady
 from ..model.sources import LawInfo, sources
 from ..model.units import from_si, in_unit, shown, text
 from ..scenarios.scenario import Scenario
 from .console import answer, say, table
+from .overview import print_overview
 from .points import conditions, outside_of, tell_outside
 from .rigs import load
 from .settings import flat_of
+from .stacked import stacked
 from .unchecked import print_unchecked, unchecked
 
 #: SI units of what everyone reads in degC and rpm, however it is written.
 TEMPERATURE_AND_SPEED = ("K", "rad/s")
 
 
-def show_command(rig: str, errata: bool, json: str | None) -> None:
-    """Everything a rig file says, its parameters in the units of the file; in JSON in those of all commands, too."""
+def show_command(rig: str, errata: bool, json: str | None, everything: bool = False) -> None:
+    """What a rig is, or everything its file says, parameters in the units of the file; in JSON in those of all, too."""
     scenario = load(rig)
     flat, types = flat_of(scenario), scenario.spec.types
+    rest, no_steady_state = _at_the_operating_point(scenario, flat)
     found = {
         "schema": "gearheat.show/1",
         "rig": scenario.name,
@@ -40,19 +45,27 @@ def show_command(rig: str, errata: bool, json: str | None) -> None:
         "outputs": [_output(q) for q in flat.outputs if q.name not in flat.derived],
         "sensors": dict(scenario.sensors),
         "laws": laws(flat),
-        **_at_the_operating_point(scenario, flat),
+        "outside": outside_of(rest) if rest is not None else [],
+        "no_steady_state": no_steady_state,
         "unchecked": unchecked(scenario, flat),
         "errata": errata_of(scenario),
     }
-    answer(found, json, lambda: _print_errata(found) if errata else _print(found))
+
+    def human() -> None:
+        if errata:
+            _print_errata(found)
+        else:
+            _print(found, None if everything else lambda: print_overview(scenario, flat, found, rest))
+
+    answer(found, json, human)
 
 
-def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> dict[str, Any]:
-    """The laws outside their range where the rig is at rest with its surroundings, or why there is no such point."""
+def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> tuple[Result | None, list[str]]:
+    """Where the rig is at rest with its surroundings, or why there is no such point."""
     try:
-        return {"outside": outside_of(steady(flat, conditions(scenario, flat))), "no_steady_state": []}
+        return steady(flat, conditions(scenario, flat)), []
     except SolveError as error:
-        return {"outside": [], "no_steady_state": list(error.problems)}
+        return None, list(error.problems)
 
 
 def source_of(scenario: Scenario, path: str) -> str:
@@ -149,26 +162,31 @@ def _doc(cls: type) -> str:
     return (cls.__doc__ or "").strip().splitlines()[0]
 
 
-def _print(found: dict[str, Any]) -> None:
+def _print(found: dict[str, Any], short: Callable[[], None] | None) -> None:
+    """Print the rig: in short, or everything."""
     say(f"{found['rig']}: {found['doc']}\n")
     if found["reproduces"]:
         say(f"Reproduces: {found['reproduces']}\n")
-    valued = ("name", "value", "unit", "doc")
-    table("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")))
-    known = ("name", "value", "kind", "uncertainty", "unit", "doc", "source")
-    table("Parameters", known, _rows([{**p, **(p["written"] or {})} for p in found["parameters"]], known))
-    table("Choices", ("name", "value", "doc"), _rows(found["choices"], ("name", "value", "doc")))
-    table("Inputs", (*valued, "source"), _rows(found["inputs"], (*valued, "source")))
-    table("States (with start value)", valued, _rows(found["states"], valued))
-    table("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")))
-    keys = ("law", "where", "valid", "verified", "source")
-    table("Laws", keys, _rows(found["laws"], keys))
+    (short or partial(_print_everything, found))()
     tell_outside(found["outside"])
     for problem in found["no_steady_state"]:
         say(f"no steady state at the operating point: {problem}")
     print_unchecked(found["unchecked"])
     if found["errata"]:
         say(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
+
+
+def _print_everything(found: dict[str, Any]) -> None:
+    valued = ("name", "value", "unit", "doc")
+    stacked("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")), 1)
+    known = ("name", "value", "kind", "uncertainty", "unit", "doc", "source")
+    stacked("Parameters", known, _rows([{**p, **(p["written"] or {})} for p in found["parameters"]], known), 2)
+    stacked("Choices", ("name", "value", "doc"), _rows(found["choices"], ("name", "value", "doc")), 1)
+    stacked("Inputs", (*valued, "source"), _rows(found["inputs"], (*valued, "source")), 2)
+    stacked("States (with start value)", valued, _rows(found["states"], valued), 1)
+    stacked("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")), 1)
+    keys = ("law", "verified", "where", "valid", "source")
+    stacked("Laws", keys, _rows(found["laws"], keys), 3)
 
 
 def _print_errata(found: dict[str, Any]) -> None:

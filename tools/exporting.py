@@ -85,6 +85,12 @@ def export_command(asked: Asked) -> None:
         raise ScenarioError(
             "--uncertainty tells how uncertain values are, which --no-parameters-source keeps back. Take one away."
         )
+    if asked.out.suffix.lower() == ".ssp":
+        raise ScenarioError(
+            f"-o {asked.out}: a system (.ssp) has several FMUs. Say with --ssp which parts are one, or write a .fmu."
+        )
+    if asked.extras is not None and asked.extras.resolve() == asked.out.resolve():
+        raise ScenarioError(f"--extras {asked.extras}: is the FMU itself. Give the folder another name.")
     writable(asked.out, file_of(asked.json))
     lasting(asked.out)
     chosen = platforms(asked.platform, asked.fmi)

@@ -46,13 +46,13 @@ def command(
     began = time.perf_counter()
     writable(file_of(json))
     dt = to_si(step, "s", name="--step")
-    kept = folder(folder(out) / "tests")
     with campaign.crew(workers) as pool:
         scenario = adjusted(loaded(rig, extended), assignments)
         study = measured_of(scenario, data, card)
         scenario = study.scenario if study else scenario
         flat = flat_of(scenario)
         found = campaign.runs_of(scenario, flat, study, tests)
+        kept = folder(folder(out) / "tests")  # not before the rig, the data and the options are found to be right
         fmu = write_fmu(scenario, flat, out / f"{scenario.name}.fmu")
         note(f"exported {fmu}")
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()

@@ -30,12 +30,17 @@ def system_command(groups: Sequence[str], asked: Asked) -> None:
     """Write a rig as a system of coupled FMUs, with the options of the command `export`."""
     writable(asked.out, file_of(asked.json))
     lasting(asked.out)
+    if asked.out.suffix.lower() == ".fmu":
+        raise ScenarioError(f"-o {asked.out}: --ssp writes a system of FMUs. Its name must end in .ssp.")
     given_up = {"--extras": asked.extras is not None, "--fmi 3": asked.fmi == 3, "--uncertainty": asked.uncertainty}
     if refused := [option for option, is_asked in given_up.items() if is_asked]:
         raise ScenarioError([f"{option} does not go with --ssp. Leave it out." for option in refused])
     platforms(asked.platform)
     _, setting, _, start = asked.prepared()
     taken = taken_apart(setting, groups_of(groups), start)
+    coupled = {piece for joint in taken.pieces.joints for piece in (joint.giver, joint.taker)}
+    if alone := [_alone(setting, name, parts) for name, parts in groups_of(groups).items() if name not in coupled]:
+        raise ScenarioError(alone)
     options = asked.options
     with progress_bar() as options["progress"]:
         found = write_system(setting, taken, asked.out, **options)
@@ -46,6 +51,17 @@ def system_command(groups: Sequence[str], asked: Asked) -> None:
             say(f"  {connection}")
 
     answer(found, asked.json, human)
+
+
+def _alone(setting: Scenario, name: str, parts: Sequence[str]) -> str:
+    """Why parts that pass nothing on are no FMU."""
+    inputs = setting.inputs()
+    if given := [part for part in parts if f"{part}.T" in inputs]:
+        return (
+            f"--ssp {name}: would exchange nothing, since the temperature of {', '.join(given)} is given from outside."
+            " Leave it in the gearbox, or make it a ClosedRoom, which heat warms."
+        )
+    return f"--ssp {name}: would exchange nothing with the others. Leave its parts in the gearbox."
 
 
 @dataclass(frozen=True)

@@ -81,7 +81,6 @@ def nusselt_horizontal_cylinder(Ra: Num, Pr: Num) -> Num:
     where="hot plate facing up or cold plate facing down",
     valid="Ra 1e4-1e11, length area over perimeter",
     ranges={"Ra": (1e4, 1e11)},
-    verified=False,
 )
 def nusselt_plate_unstable(Ra: Num, *, sharpness: float = 20.0) -> Num:
     r"""Mean Nusselt number of a horizontal plate whose warm side is under the cold one [1].

@@ -173,7 +173,7 @@ def involute(alpha: Num) -> Num:
     return ca.tan(alpha) - alpha
 
 
-@law(source="ISO21771", where="sum of the profile shift coefficients, no backlash", verified=False)
+@law(source="ISO21771", where="sum of the profile shift coefficients, no backlash")
 def profile_shift_sum(alpha_wt: Num, alpha_t: Num, alpha_n: Num, z_sum: Num) -> Num:
     r"""Sum of the profile shift coefficients with which two gears mesh without backlash [1].
 

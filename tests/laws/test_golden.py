@@ -97,3 +97,9 @@ def test_the_flag_verified_is_honest() -> None:
     here = {name for name in known if known[name].law.source}
     wrong = {name for name in here if known[name].law.verified != (name in printed)}
     assert not wrong, f"verified flag and golden rows disagree: {sorted(wrong)}"
+
+
+def test_every_law_has_a_row() -> None:
+    """No formula goes without a number from outside of it."""
+    without = laws().keys() - {row["law"] for row in rows()}
+    assert not without, f"laws without a golden row: {sorted(without)}"

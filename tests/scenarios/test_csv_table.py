@@ -104,6 +104,14 @@ def test_unknown_columns_warn(tmp_path: Path) -> None:
     )
 
 
+def test_the_accounts_of_a_sweep_do_not_warn(tmp_path: Path) -> None:
+    own = "row,status,iterations,energy_residual [1],outside [1]"
+    path = table(tmp_path, *(row + ",1,ok,3,1e-16,0" for row in ROWS), header=f"{HEADER},{own}")
+    assert read(path).warnings == ()
+    path = table(tmp_path, *(row + ",ok" for row in ROWS), header=f"{HEADER},status")
+    assert tuple(read(path).warnings) == ('data.csv: column "status" is not used.',)
+
+
 def test_a_byte_order_mark_and_blank_lines_do_no_harm(tmp_path: Path) -> None:
     path = table(tmp_path, ROWS[0], "", ROWS[1], ",,,", header="\ufeff" + HEADER)
     assert list(read(path).lines) == [2, 4]

@@ -159,7 +159,7 @@ def test_show_has_the_units_of_the_rig_file(gearheat):
     assert (shown["oil.V"]["value"], shown["oil.V"]["unit"]) == (pytest.approx(0.001), "m3")
     assert shown["oil.V"]["written"] == {"value": pytest.approx(1.0), "uncertainty": None, "unit": "l"}
     assert all(line["written"] is None for line in shown.values() if line["unit"] in ("degC", "rpm"))
-    lines = [line.split() for line in gearheat("show", "planetary").out.splitlines()]
+    lines = [line.split() for line in gearheat("show", "planetary", "--all").out.splitlines()]
     assert next(line[1] for line in lines if line[:1] == ["oil.V"]) == "1"
 
 

@@ -34,21 +34,45 @@ def test_groups_cover_speed_torque_oil_and_direction(rows):
     assert [g.value for g in groups if g.by == "n_set_rpm" and g.channel == "loss_Nm"] == [100.0, 200.0, 250.0]
 
 
-def test_noise_floor_is_the_pooled_deviation_of_repeated_points(rows):
-    floor = noise_floor(rows)
+@pytest.fixture
+def repeated(rows):
+    """Rows whose repeated point is simulated alike both times, and measured 0.4 apart."""
+    for twin, row in zip(rows[:2], rows[-2:], strict=True):
+        row |= {name: twin[name] for name in ("T_oil_C", "T_oil2_C", "T_wall_C", "loss_Nm")}
+    return rows
+
+
+def test_noise_floor_is_the_pooled_deviation_of_repeated_points(repeated):
+    floor = noise_floor(repeated)
     assert floor["repeated"] == [[1, 12]]
     assert floor["readings"] == 4
     assert floor["T_oil_K"] == pytest.approx(0.4 / math.sqrt(2))
     assert floor["loss_Nm"] == pytest.approx(0.4 / math.sqrt(2))
 
 
-def test_noise_floor_compares_the_rise_over_the_room(rows):
+def test_what_the_simulation_explains_is_no_noise(rows):
+    """A warmer room makes thinner oil: it warms less than the room, and loses less."""
     for row in rows[-2:]:
-        row["T_amb_C"] += 0.4
-    assert noise_floor(rows)["T_oil_K"] == pytest.approx(0.0, abs=1e-12)
+        row["T_amb_C"] += 3.0
+        for name, change in (("T_oil_C", 2.1), ("T_oil2_C", 2.1), ("T_wall_C", 2.4), ("loss_Nm", -0.3)):
+            row[name] += change
+            row[f"{name}_meas"] += change
+    floor = noise_floor(rows)
+    assert floor["repeated"] == [[1, 12]]
+    assert [floor[key] for key in ("T_oil_K", "T_wall_K", "loss_Nm")] == pytest.approx([0.0] * 3, abs=1e-12)
 
 
-def test_noise_floor_of_three_readings_pools_their_variance(rows):
+def test_points_in_rooms_far_apart_do_not_repeat_each_other(repeated):
+    for row in repeated[-2:]:
+        row["T_amb_C"] += 10.0
+    assert noise_floor(repeated)["repeated"] == []
+    for row in repeated:
+        del row["T_amb_C"]
+    assert noise_floor(repeated)["repeated"] == [[1, 12]]
+
+
+def test_noise_floor_of_three_readings_pools_their_variance(repeated):
+    rows = repeated
     rows.append({**rows[0], "test": 99, "loss_Nm_meas": rows[0]["loss_Nm_meas"] + 1.0})
     values = [0.0, 0.4, 1.0]
     mean = sum(values) / 3

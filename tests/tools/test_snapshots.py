@@ -49,6 +49,7 @@ COMMANDS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
     "parts": (parts, ("parts",)),
     "parts_type": (parts, ("parts", "LipSeal")),
     "show": (describe, ("show", "harmonic_printed")),
+    "show_all": (describe, ("show", "harmonic_printed", "--all")),
     "show_errata": (describe, ("show", "harmonic_printed", "--errata")),
     "new": (new, ("new", "mine", "--stages", "helical,helical", "--ratio", "12.56", "--power", "7.5 kW",
                   "--speed", "1450 rpm")),

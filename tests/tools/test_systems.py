@@ -87,3 +87,23 @@ def test_what_does_not_work_is_told(gearheat, tmp_path: Path) -> None:
         groups_of(["room=room", "room=walls"])
     with pytest.raises(ScenarioError, match="no part"):
         taken_apart(replace(RIG, name="other"), {"a": ["b"]}, {})
+
+
+def test_an_fmu_that_would_exchange_nothing_is_refused(gearheat, tmp_path: Path) -> None:
+    answer = gearheat("export", "planetary", "-o", tmp_path / "p.ssp", "--ssp", "room")
+    assert answer.code == 2
+    assert "--ssp room: would exchange nothing" in answer.err and "ClosedRoom" in answer.err
+    assert not list(tmp_path.iterdir())
+
+
+def test_endings_say_what_is_written(gearheat, tmp_path: Path) -> None:
+    answer = gearheat("export", "planetary", "-o", tmp_path / "p.ssp")
+    assert answer.code == 2
+    assert "Say with --ssp which parts are one, or write a .fmu." in answer.err
+    answer = gearheat("export", "planetary", "-o", tmp_path / "p.fmu", "--ssp", "cooling")
+    assert answer.code == 2
+    assert "Its name must end in .ssp." in answer.err
+    answer = gearheat("export", "planetary", "-o", tmp_path / "p.fmu", "--extras", tmp_path / "p.fmu")
+    assert answer.code == 2
+    assert "is the FMU itself. Give the folder another name." in answer.err
+    assert not list(tmp_path.iterdir())

@@ -196,7 +196,9 @@ def _rigs() -> Iterator[tuple[str, str]]:
     )
     for name, doc in list_rigs().items():
         page = RIGS / name / "README.md"
-        about = f"{words(doc)}\n\nReproduces: {words(reproduces[name])}\n\n`gearheat show {name}` prints all of it.\n"
+        about = (
+            f"{words(doc)}\n\nReproduces: {words(reproduces[name])}\n\n`gearheat show {name} --all` prints all of it.\n"
+        )
         yield f"rigs/{name}.md", page.read_text(encoding="utf-8") if page.exists() else f"# {name}\n\n{about}"
 
 
