@@ -15,8 +15,10 @@ from gearheat.diagnose.answer.predict import predictions
 from gearheat.diagnose.answer.quality import adequacy, scatters
 from gearheat.diagnose.answer.sets import Effects, alike
 from gearheat.diagnose.infer import gross
+from gearheat.diagnose.infer.fit import fitted
 from gearheat.diagnose.infer.found import Found
-from gearheat.diagnose.infer.problem import Aside
+from gearheat.diagnose.infer.problem import Aside, Problem
+from gearheat.diagnose.model.observe import Observed
 from gearheat.diagnose.setting import Setting
 
 TRUE = "sensor.oil_temp.offset"
@@ -67,6 +69,21 @@ def test_few_readings_of_one_sensor_are_gross(wrong: tuple[Setting, Found], monk
     one, other = (np.flatnonzero(problem.data.kind == kind)[:3].tolist() for kind in (0, 1))
     kept = gross.few(problem, [Aside(i) for i in [*one, *other[:1]]])
     assert kept == {Aside(one[0]), Aside(one[1]), Aside(other[0])}
+
+
+def test_a_good_reading_that_hides_a_gross_one_comes_back(clean: tuple[Setting, Found]) -> None:
+    made, sound = clean[0], clean[1].problem
+    oil, row = next(s for s in sound.data.read if s.kind == "oil_temp"), 5
+    room = next(s.name for s in sound.data.given if s.kind == "ambient")
+    values = {**sound.data.campaign.values}
+    values[oil.name] = values[oil.name] + 20 * oil.repeat_sd * (np.arange(sound.data.campaign.n) == row)
+    data = replace(sound.data.campaign, values=values)
+    point = made.scenario.operating_point
+    problem = Problem([Observed(made.plant, data, sound.data.nuisances, made.oils, point)], sound.day_sd)
+    number = int(np.flatnonzero((problem.data.row == row) & (problem.data.entries.sensor == 0))[0])
+    bad, good = Aside(number), Aside(row, room)
+    both = problem.without(frozenset([bad, good]))
+    assert gross.remaining(both, fitted(both, (), np.zeros(both.nz))) == {bad}
 
 
 def test_the_cause_is_named_and_all_agrees(wrong: tuple[Setting, Found]) -> None:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import chain, combinations
 
 import numpy as np
 
@@ -22,6 +23,8 @@ GIVEN = 0.9
 FINE = 4.0
 #: Readings set aside at most: as a share of all, and of one sensor of a campaign. More of one sensor have a cause.
 MOST, ALIKE = 0.05, 2
+#: Of so many that are set aside, those that lie nearest to a hypothesis, all sets are weighed.
+TOGETHER = 6
 
 
 @dataclass(frozen=True)
@@ -89,9 +92,21 @@ def few(problem: Problem, found: Iterable[Aside]) -> frozenset[Aside]:
     return frozenset(kept)
 
 
-def after_all(problem: Problem, fit: Fit) -> frozenset[Aside]:
-    """Readings that were set aside and that a hypothesis explains."""
-    return frozenset(s.aside for s in distances(problem, fit) if abs(s.size_sd) < FINE)
+def remaining(problem: Problem, fit: Fit) -> frozenset[Aside]:
+    """The readings set aside that a hypothesis does not explain: one of them may be all that speaks for another.
+
+    Of all their sets the one counts with which the others are likeliest, where one more must be worth its distance.
+    """
+    open_ = [s.aside for s in sorted(distances(problem, fit), key=lambda s: abs(s.size_sd))[:TOGETHER]]
+    gone = problem.aside - frozenset(open_)
+    each = np.log(problem.FAR) - 0.5 * FINE**2
+
+    def worth(some: tuple[Aside, ...]) -> float:
+        own = problem.without(gone | frozenset(some))
+        white, e = replace(fit, noise=own.noise(fit.look, fit.noise.scales)).linear(own)
+        return white.log_density(e) + len(some) * float(each)
+
+    return gone | frozenset(max(chain.from_iterable(combinations(open_, n) for n in range(len(open_) + 1)), key=worth))
 
 
 def distances(problem: Problem, fit: Fit) -> list[Suspect]:
@@ -118,8 +133,9 @@ def distances(problem: Problem, fit: Fit) -> list[Suspect]:
 
 def set_aside(problem: Problem, fits: Sequence[Fit]) -> frozenset[Aside]:
     """The gross readings: those that the first hypothesis does not explain, and others that show beside one of them."""
-    aside = problem.aside - after_all(problem, fits[0])
-    return few(problem, [*sorted(aside), *(s.aside for fit in fits for s in outliers(problem, fit))])
+    return few(
+        problem, [*sorted(remaining(problem, fits[0])), *(s.aside for fit in fits for s in outliers(problem, fit))]
+    )
 
 
 def cleaned(problem: Problem, null: Fit) -> tuple[Problem, Fit]:
