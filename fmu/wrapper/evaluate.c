@@ -146,7 +146,10 @@ static void warn_validity(Instance *m)
     model_arguments(m->s.x, m->z, m->s.u, m->s.p, m->c, argument);
     for (i = 0; i < NK; i++) {
         if (m->warned[i] || !(argument[i] < model_check_low[i] || argument[i] > model_check_high[i])) continue;
-        if (told(m, i)) continue;
+        if (told(m, i)) {
+            m->warned[i] = 1;
+            continue;
+        }
         m->warned[i] = 1;
         note(m, fmi2Warning, LOG_WARNING, "%s = %.6g is outside %.6g .. %.6g at t = %.10g s.", model_checks[i],
              argument[i], model_check_low[i], model_check_high[i], m->s.time);
