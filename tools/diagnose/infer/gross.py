@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from itertools import chain, combinations
+from itertools import combinations
 
 import numpy as np
 
@@ -106,7 +106,9 @@ def remaining(problem: Problem, fit: Fit) -> frozenset[Aside]:
         white, e = replace(fit, noise=own.noise(fit.look, fit.noise.scales)).linear(own)
         return white.log_density(e) + len(some) * float(each)
 
-    return gone | frozenset(max(chain.from_iterable(combinations(open_, n) for n in range(len(open_) + 1)), key=worth))
+    sets = [some for n in range(len(open_) + 1) for some in combinations(open_, n)]
+    likeliest = max(sets, key=worth)
+    return gone | frozenset(likeliest)
 
 
 def distances(problem: Problem, fit: Fit) -> list[Suspect]:
