@@ -139,18 +139,16 @@ static int told(const Instance *m, int check)
 static void warn_validity(Instance *m)
 {
     double argument[AT_LEAST_1(NK)];
-    int i;
+    int i, again;
     if (NK == 0 || !(m->log_mask & (1u << LOG_WARNING))) return;
     refresh_constants(m);
     if (unsolved(m)) return;
     model_arguments(m->s.x, m->z, m->s.u, m->s.p, m->c, argument);
     for (i = 0; i < NK; i++) {
         if (m->warned[i] || !(argument[i] < model_check_low[i] || argument[i] > model_check_high[i])) continue;
-        if (told(m, i)) {
-            m->warned[i] = 1;
-            continue;
-        }
+        again = told(m, i);
         m->warned[i] = 1;
+        if (again) continue;
         note(m, fmi2Warning, LOG_WARNING, "%s = %.6g is outside %.6g .. %.6g at t = %.10g s.", model_checks[i],
              argument[i], model_check_low[i], model_check_high[i], m->s.time);
     }

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Sequence
 
 from .answer.decide import Decision, calmed, decided
 from .answer.gain import Gain, gains
 from .infer.found import Found
 from .infer.search import searched
+from .library.cause import Cause
 from .logs import LogDiagnosis, logged
 from .report import compose, compose_data, compose_design, compose_pictures, compose_points, compose_rig
 from .report.channels import channel
@@ -33,24 +34,27 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         GearheatError: rig, card and data do not go together
     """
     request, data = inputs.request, inputs.data
-    share = 0.0 if not request.logs else 0.5 if data is not None else 1.0
+    share = 0.5 if request.logs and data is not None else float(data is None)
     logs = logged(inputs, lambda stage, done: progress(stage, share * done)) if request.logs else None
-    if data is None:
-        assert logs is not None
+    if logs and data is None:
         progress("done", 1.0)
         return logs.findings.model_copy(update={"warnings": (*logs.findings.warnings, *inputs.warnings)})
-    progress("compiling the rig", 0.01)
+    assert data is not None, "a request has readings or logs"
+
+    def then(stage: str, done: float) -> None:
+        progress(stage, share + (1 - share) * done)
+
+    then("compiling the rig", 0.01)
     others = [inputs.points] if inputs.points is not None else []
     made = setting(inputs.scenario, inputs.card, data, inputs.reference, request.libraries, others)
-    known = {cause.id for cause in made.causes}
     found = searched(
         made.problem,
         made.formulas,
         request.alpha,
         request.seed,
         request.causes,
-        lambda stage, done: progress(stage, share + (1 - share) * (0.05 + 0.75 * done)),
-        [c for c in logs.whole.causes if c in known] if logs else (),
+        lambda stage, done: then(stage, 0.05 + 0.75 * done),
+        logs.whole.causes if logs else (),
     )
     found = calmed(found)
     if logs:
@@ -59,22 +63,22 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
     wrong = decision.verdict != "consistent"
     held: Sequence[Gain] = ()
     if wrong and not request.quick:
-        held = gains(found, request.seed, lambda done: progress("readings left out", 0.82 + 0.13 * done))
-    progress("what was found", 0.95)
+        held = gains(found, request.seed, lambda done: then("readings left out", 0.82 + 0.13 * done))
+    then("what was found", 0.95)
     findings = _composed(inputs, made, found, decision, held)
     progress("done", 1.0)
-    return with_words(_with_logs(findings, logs, known) if logs else findings)
+    return with_words(_with_logs(findings, logs, made.causes) if logs else findings)
 
 
-def _with_logs(findings: Findings, logs: LogDiagnosis, known: Collection[str]) -> Findings:
+def _with_logs(findings: Findings, logs: LogDiagnosis, causes: Sequence[Cause]) -> Findings:
     """The findings on readings with which logs were asked, too, and what these say alone.
 
     Args:
         findings: on readings
         logs: what they say
-        known: causes that the readings were asked about
+        causes: that the readings were asked about
     """
-    of, said = logs.findings.about, list(logs.findings.warnings)
+    of, said, known = logs.findings.about, list(logs.findings.warnings), {cause.id for cause in causes}
     lacking = [c for c in logs.whole.causes if c not in known and logs.whole.of(c) > ALONE]
     said += [f"the logs speak for {c} ({logs.whole.of(c):.0%}), which no reading of the table shows" for c in lacking]
     about = findings.about.model_copy(update={"logs": of.logs, "log_rows": of.log_rows, "segments": of.segments})

@@ -12,7 +12,7 @@ from scipy.stats import chi2
 
 from ..infer.evidence import White
 from ..infer.found import Found, Hypothesis
-from ..infer.search import OUTSIDE
+from ..infer.prior import OUTSIDE
 
 Verdict = Literal["consistent", "explained", "ambiguous", "unexplained"]
 #: The name of whatever the library lacks.
@@ -124,13 +124,13 @@ def calmed(found: Found) -> Found:
 
 def _priors(found: Found, keys: Sequence[tuple[str, ...]]) -> dict[tuple[str, ...], float]:
     """Prior odds of answers: of all sets of causes that each stands for."""
-    sets: dict[tuple[str, ...], set[frozenset[str]]] = {}
+    sets: dict[tuple[str, ...], dict[tuple[str, ...], None]] = {}
     for key, h in zip(keys, found.hypotheses, strict=True):
-        sets.setdefault(key, set()).add(frozenset(h.causes))
+        sets.setdefault(key, {})[tuple(sorted(h.causes))] = None
     odds = {}
     for key, own in sets.items():
         fewest = min(map(len, own))
-        odds[key] = sum(float(np.exp(found.prior(sorted(causes)))) for causes in own if len(causes) == fewest)
+        odds[key] = sum(float(np.exp(found.prior(causes))) for causes in own if len(causes) == fewest)
         odds[key] *= OUTSIDE if UNEXPLAINED in key else 1.0
     return odds
 
@@ -142,11 +142,13 @@ def _lifts(found: Found) -> np.ndarray:
     deviation of d. Evidence beyond that is due to widths of priors, which nobody knows so well.
     """
     top, lifts = found.hypotheses[0], np.zeros(len(found.hypotheses))
-    white = White.of(top.fit.noise.covariance)
+    if not top.causes or top.extra is not None:
+        return lifts
+    white, evidence = White.of(top.fit.noise.covariance), top.log_joint - found.prior(top.causes)
     for k, h in enumerate(found.hypotheses):
-        if top.causes and h.extra is top.extra is None and len(h.causes) == len(top.causes):
+        if h.extra is None and len(h.causes) == len(top.causes):
             apart = float(np.linalg.norm(white(h.fit.look.shown - top.fit.look.shown)))
-            behind = top.log_joint - found.prior(top.causes) - (h.log_joint - found.prior(h.causes))
+            behind = evidence - (h.log_joint - found.prior(h.causes))
             lifts[k] = max(behind - 0.5 * apart**2 - apart, 0.0)
     return lifts
 

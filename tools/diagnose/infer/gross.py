@@ -99,11 +99,12 @@ def remaining(problem: Problem, fit: Fit) -> frozenset[Aside]:
     """
     open_ = [s.aside for s in sorted(distances(problem, fit), key=lambda s: abs(s.size_sd))[:TOGETHER]]
     gone = problem.aside - frozenset(open_)
+    without, far = problem.without(gone).noise(fit.look, fit.noise.scales), {a: problem.far(a, fit.look) for a in open_}
     each = np.log(problem.FAR) - 0.5 * FINE**2
 
     def worth(some: tuple[Aside, ...]) -> float:
-        own = problem.without(gone | frozenset(some))
-        white, e = replace(fit, noise=own.noise(fit.look, fit.noise.scales)).linear(own)
+        noise = replace(without, terms=(*without.terms, *(far[a] for a in some)))
+        white, e = replace(fit, noise=noise).linear(problem)
         return white.log_density(e) + len(some) * float(each)
 
     sets = [some for n in range(len(open_) + 1) for some in combinations(open_, n)]

@@ -19,11 +19,9 @@ from .extra import extras
 from .fit import Fit, Start, fitted, joined
 from .found import Found, Hypothesis
 from .gross import cleaned, set_aside
-from .prior import Prior
+from .prior import OUTSIDE, Prior
 from .problem import Acting, Problem
 
-#: Prior odds of a remainder beside a hypothesis.
-OUTSIDE = 0.06
 #: Causes fitted: within so many nats of the best or a share of it, as a first look is off by a share of what it finds;
 #: at most, and at least, so many.
 WITHIN, SHARE, CAUSES, LEAST = 12.0, 0.7, 20, 4
@@ -231,7 +229,8 @@ class Search:
         early = [k for k in np.argsort(-value) if self.formulas[k].paced]  # no first look shows early readings well
         paired = {start.acting.formula for couple in self.couples[:PAIRS] for start in couple}  # each alone, too
         both = [k for k, f in enumerate(self.formulas) if f in paired]
-        both += [next(int(k) for k in np.argsort(-value) if self.formulas[k].cause.id == c) for c in self.wanted]
+        looks_best = {self.formulas[k].cause.id: int(k) for k in np.argsort(value)}
+        both += [looks_best[cause] for cause in self.wanted if cause in looks_best]
         for k in [*self._leading(value, CAUSES if self.p_any < QUIET else LEAST), *early[:EACH], *both]:
             self._alone(int(k))
         if self.p_any < QUIET:
