@@ -115,6 +115,12 @@ class Start:
     effect: np.ndarray
 
 
+def again(fit: Fit) -> Start:
+    """A cause as it was fitted alone, about to join another."""
+    (acting,) = fit.look.acting
+    return Start(acting, acting.t[0] * fit.look.jacobian[:, len(fit.look.z)])
+
+
 def joined(problem: Problem, near: Fit, starts: Sequence[Start], steps: int = STEPS) -> Fit:
     """A fitted hypothesis with further causes, fitted from where all of them are expected.
 

@@ -2,24 +2,38 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from .evidence import WIDTHS
 from .fit import Start
 from .prior import Prior
-from .screen import Look, limits
+from .screen import Look, Looks, limits
 
 #: How far behind the best pair another one may lie.
 BEHIND = 10.0
 
 
-def couples(first: Look, prior: Prior) -> list[tuple[Start, Start]]:
+def couples(looks: Looks, prior: Prior) -> list[tuple[Start, Start]]:
     """Pairs of causes, the likeliest first, of those that explain more than any cause alone.
 
     Args:
-        first: all causes at one linearisation
+        looks: all causes to first order
         prior: of hypotheses
     """
+    found: dict[frozenset[str], tuple[float, tuple[Start, Start]]] = {}
+    for _, look in looks.each:
+        for value, starts in _couples(look, prior):
+            names = frozenset(s.acting.id for s in starts)
+            if names not in found or found[names][0] < value:
+                found[names] = value, starts
+    ranked = sorted(found.values(), key=lambda item: -item[0])
+    return [starts for value, starts in ranked if value > ranked[0][0] - BEHIND]
+
+
+def _couples(first: Look, prior: Prior) -> Iterator[tuple[float, tuple[Start, Start]]]:
+    """Pairs at one linearisation with what they promise."""
     ids = list(dict.fromkeys(c.id for c in first.candidates))
     begins = np.searchsorted([ids.index(c.id) for c in first.candidates], np.arange(len(ids)))
     ends = [*begins[1:], len(first.candidates)]
@@ -31,14 +45,14 @@ def couples(first: Look, prior: Prior) -> list[tuple[Start, Start]]:
     for i, one in enumerate(ids):
         for k, other in enumerate(ids):
             best[i, k] += prior([one, other]) if k > i and family[i] != family[k] else -np.inf
-    found, least = [], max(float(alone.max()), float(best.max()) - BEHIND)
+    least = max(float(alone.max()), float(best.max()) - BEHIND)
     for place in np.argsort(-best, axis=None)[: int((best > least).sum())]:
         i, k = divmod(int(place), len(ids))
         own = logs[begins[i] : ends[i], begins[k] : ends[k]]
         row, column = divmod(int(np.argmax(own)), own.shape[1])
         one, other = int(begins[i]) + row, int(begins[k]) + column
-        found.append((first.begun(one, float(sizes[one, other])), first.begun(other, float(sizes[other, one]))))
-    return found
+        starts = first.begun(one, float(sizes[one, other])), first.begun(other, float(sizes[other, one]))
+        yield float(best[i, k]), starts
 
 
 def _together(found: Look) -> tuple[np.ndarray, np.ndarray]:

@@ -16,7 +16,7 @@ from ..model.formula import Formula
 from . import pairs, screen
 from .draws import correction
 from .extra import extras
-from .fit import Fit, Start, fitted, joined
+from .fit import Fit, Start, again, fitted, joined
 from .found import Found, Hypothesis
 from .gross import cleaned, set_aside
 from .prior import OUTSIDE, Prior
@@ -108,8 +108,10 @@ class Search:
         progress("effects of all causes", 0.1)
         self.first = screen.look(problem, null, self.formulas)
         self._alarm()
-        self.couples = [] if self.p_any > QUIET else pairs.couples(self.first, self.prior)[:COUPLES]
+        self.looks = screen.looks(problem, null, self.first, self.formulas)
+        self.couples = [] if self.p_any > QUIET else pairs.couples(self.looks, self.prior)[:COUPLES]
         self._fits: dict[int, Fit | None] = {}
+        self._tried: set[frozenset[Formula]] = set()
 
     def run(self) -> Found:
         """Everything."""
@@ -140,7 +142,7 @@ class Search:
 
     def leader(self) -> Fit:
         """The likeliest of no cause and a few alone, quickly."""
-        log_bf = self.first.by_form(len(self.formulas))
+        log_bf = self.looks.by_form(len(self.formulas))
         fits = [self._alone(k) for k in self._leading(self._value(log_bf), LEAST - 1)]
         return max([self.null, *(f for f in fits if f is not None)], key=lambda fit: fit.evidence)
 
@@ -148,9 +150,9 @@ class Search:
         """A form fitted alone, None where it cannot be run."""
         if k not in self._fits:
             fits = []
-            for start in self.first.starts(k):
+            for near, start in self.looks.starts(k):
                 with suppress(SolveError):
-                    fits.append(joined(self.problem, self.null, [start]))
+                    fits.append(joined(self.problem, near, [start]))
             self._fits[k] = max(fits, key=lambda fit: fit.evidence, default=None)
         return self._fits[k]
 
@@ -210,7 +212,7 @@ class Search:
         at = self._fits[lead].look.acting[0].t[1 + places[lead].index("threshold")]  # type: ignore[union-attr]
         moved = []
         for k in alike:
-            t = np.r_[0.0, self.first.start(k).acting.t[1:]]
+            t = np.r_[0.0, self.looks.starts(k)[0][1].acting.t[1:]]
             t[1 + places[k].index("threshold")] = at
             moved.append(Acting(self.formulas[k], t))
         look, null = self.null.look, self.null
@@ -224,7 +226,7 @@ class Search:
 
     def _singles(self) -> list[Hypothesis]:
         """Every cause alone: its leading forms fitted, the others as they look at first."""
-        log_bf = self.first.by_form(len(self.formulas))
+        log_bf = self.looks.by_form(len(self.formulas))
         value = self._value(log_bf)
         early = [k for k in np.argsort(-value) if self.formulas[k].paced]  # no first look shows early readings well
         paired = {start.acting.formula for couple in self.couples[:PAIRS] for start in couple}  # each alone, too
@@ -266,9 +268,9 @@ class Search:
         for size in range(2, self.most + 1):
             best = max(h.log_joint for h in [*singles, *found.values()])
             promised = sorted((p for h in beam for p in self._beside_causes(h)), key=lambda p: -p[0])
-            before = len(found)
+            before = len(self._tried)
             for log, h, start in promised:
-                if log < best - BEHIND or len(found) >= before + PAIRS:
+                if log < best - BEHIND or len(self._tried) >= before + PAIRS:
                     break
                 self._together(found, known, h.fit, [start])
             beam = sorted((h for h in found.values() if len(h.causes) == size), key=lambda h: -h.log_joint)[:2]
@@ -279,7 +281,7 @@ class Search:
     def _paired(
         self, found: dict[frozenset[str], Hypothesis], singles: Mapping[str, Hypothesis], starts: Sequence[Start]
     ) -> None:
-        """Fits two causes together, from the likelier one as it was fitted alone.
+        """Fits two causes together from the likelier one as it was fitted alone, the other as it looks and as it was.
 
         Args:
             found: hypotheses so far
@@ -291,7 +293,10 @@ class Search:
         if best is None:
             self._together(found, singles, self.null, starts)
         else:
-            self._together(found, singles, best.fit, [s for s in starts if s.acting.id not in best.causes])
+            others = [s for s in starts if s.acting.id not in best.causes]
+            self._together(found, singles, best.fit, others)
+            if all(s.acting.id in singles for s in others):
+                self._together(found, singles, best.fit, [again(singles[s.acting.id].fit) for s in others])
 
     def _together(
         self,
@@ -300,7 +305,7 @@ class Search:
         near: Fit,
         starts: Sequence[Start],
     ) -> None:
-        """Fits causes together unless they are among what was found; the other forms of each count as alone.
+        """Fits causes together unless these forms were; the better forms stay, the others of each count as alone.
 
         Args:
             found: hypotheses so far
@@ -308,16 +313,19 @@ class Search:
             near: what is there
             starts: what joins
         """
-        causes = (*near.causes, *(s.acting.id for s in starts))
-        if frozenset(causes) in found:
+        formulas = (*(a.formula for a in near.look.acting), *(s.acting.formula for s in starts))
+        causes = tuple(f.cause.id for f in formulas)
+        if frozenset(formulas) in self._tried:
             return
+        self._tried.add(frozenset(formulas))
         with suppress(SolveError):
             fit = joined(self.problem, near, starts)
             forms = {c: singles[c].forms[c] for c in causes if c in singles}
             spread = sum(logsumexp(list(w.values())) - max(w.values()) for w in forms.values())
             weight = sum(np.log(a.formula.form.weight) for a in fit.look.acting)
             log = float(fit.evidence + weight + spread + self.prior(causes))
-            found[frozenset(causes)] = Hypothesis(causes, fit, log, None, forms)
+            if frozenset(causes) not in found or log > found[frozenset(causes)].log_joint:
+                found[frozenset(causes)] = Hypothesis(causes, fit, log, None, forms)
 
     def _beside_causes(self, h: Hypothesis) -> list[tuple[float, Hypothesis, Start]]:
         """What each cause promises beside a fitted hypothesis: log joint, the hypothesis, and its start."""
