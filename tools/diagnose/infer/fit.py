@@ -15,8 +15,9 @@ from ...model.errors import SolveError
 from .evidence import WIDTHS, White, log_bayes_factor
 from .problem import Acting, Look, Noise, Problem
 
-#: Steps at most, tries of each with more damping, gain in log likelihood that a further step must promise.
-STEPS, TRIES, LITTLE = 12, 5, 0.05
+#: Steps at most, tries of each with more damping, gain in log likelihood that the last step brings or a further one
+#: promises, and the share of what was promised that a step must bring if the next one is to be damped less.
+STEPS, TRIES, LITTLE, TRUSTED = 12, 5, 0.05, 0.7
 #: Rounds of point and scatter in turn at most, and change of a scale's logarithm below which the last is done.
 ROUNDS, SETTLED = 4, 0.1
 #: Longest step of a nuisance, a size (or that share of it) and a shape; shapes stay inside so many deviations.
@@ -256,13 +257,17 @@ def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> tuple[Lo
                 change = vector.step(look.x, H + damping * np.diag(np.diag(H)), gradient)
             with suppress(SolveError):
                 trial = problem.look(*vector.split(look.x + change))
-                value = _cost(problem, vector, white, trial)
-                if value <= cost + 1e-9:
+                gain = cost - _cost(problem, vector, white, trial)
+                if gain > -1e-9:
                     break
             damping = max(5 * damping, 0.3)
         else:
             break
-        damping, look, cost = damping / 5, trial, value
+        look, cost = trial, cost - gain
+        if gain < LITTLE:
+            break
+        if gain > TRUSTED * (change @ gradient - 0.5 * change @ H @ change):
+            damping /= 5
     return look, cost
 
 

@@ -164,7 +164,7 @@ def _most_likely(
         return float(value + 0.5 * ((x / sd) ** 2).sum()), slopes + x / sd**2
 
     bounds = [BOUNDS] * len(sd)
-    found = minimize(whole, scales, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": 25})
+    found = minimize(whole, scales, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": 25, "gtol": 0.03})
     return np.asarray(found.x)
 
 
