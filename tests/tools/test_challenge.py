@@ -164,8 +164,11 @@ def test_rivals_of_a_limited_fault_are_limited_as_well(drawn: tuple[cases.Drawn,
         )
         return rivals.nearest(fault, 8.0)[1].distance
 
-    acting = yard.acting(limited.regime)
-    assert (acting == (d.plan.n > limited.regime["threshold"])).all()
+    at, width = limited.regime["threshold"], limited.regime["width"]
+    acting = yard.acting(limited.regime, oil(*drawn))
+    inside, outside = d.plan.n > at + 3 * width, d.plan.n < at - 3 * width
+    assert inside.any() and (acting[inside] > 0.99).all() and outside.any() and (acting[outside] < 0.01).all()
+    assert (yard.acting({"speed": "above", "threshold": d.plan.n, "width": width}, oil(*drawn)) == 0.5).all()
     assert distance(limited) < 0.9 * distance(replace(limited, regime={}))
 
 

@@ -9,8 +9,8 @@ A reference adds its readings, in which the signature is zero; parameters and to
 
 A rival is a fault of another class in any form. Its distance is what the best non-negative mixture of drawn forms and
 amounts of one cause leaves of the whitened signature: shapes, heat locations and sizes are free. A fault that acts
-under some conditions only has rivals that do so as well: to first order, their signatures in those readings. Below 2.5
-to 3 the right answer names both.
+under some conditions only has rivals that do so as well, by as much in each reading and with borders as soft: to first
+order, their signatures in those readings. Below 2.5 to 3 the right answer names both.
 """
 
 from __future__ import annotations
@@ -24,6 +24,7 @@ from scipy.linalg import block_diag, solve_triangular
 from scipy.optimize import nnls
 
 from .classes import merged
+from .forms import step
 from .plan import Plan
 
 #: A fault, the columns in which it acts, and how much of it in each of them.
@@ -144,17 +145,17 @@ class Yardstick:
         padded[: flat.shape[1]] = np.where(np.isfinite(flat).all(axis=1)[:, None], flat, 0.0).T
         return np.asarray(solve_triangular(self._root, padded, lower=True))
 
-    def acting(self, regime: Mapping[str, Any]) -> np.ndarray:
-        """Whether a limited fault acts, by reading (2, tests).
+    def acting(self, regime: Mapping[str, Any], oil: np.ndarray) -> np.ndarray:
+        """How much of a limited fault acts, by reading (2, tests).
 
         Args:
-            regime: of the fault: a quantity and its side ("above" or "below") in one text or as key and value, and the
-                threshold
+            regime: of the fault: a quantity and its side ("above" or "below") in one text or as key and value, the
+                threshold, and the width of the border
+            oil: temperatures where it acts (2, tests)
         """
         plan = self.setting.plan
         at = regime["at"] if "at" in regime else regime["threshold"]
         what, side = str(regime["where"]).split() if "where" in regime else next(iter(regime.items()))
-        oil = self.quiet[self.setting.channels.index("T_oil_C")]
         seen = {
             "speed": plan.n,
             "load": plan.load,
@@ -163,7 +164,8 @@ class Yardstick:
             "order": plan.progress,
             "direction": np.array([[1.0], [2.0]]),
         }[what]
-        return np.broadcast_to((seen > at) == (side == "above"), oil.shape)
+        sign = 1.0 if side == "above" else -1.0
+        return np.broadcast_to(step(sign * seen, sign * at, regime["width"]), oil.shape)
 
     def survey(self, fault: Any, amounts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Signal-to-noise for some amounts, and which of them change no oil temperature by more than `OBVIOUS`."""
@@ -197,7 +199,7 @@ class Rival:
 
 
 #: Forms drawn of each cause, and amounts of each over the largest sensible.
-FORMS, AMOUNTS = 3, (0.1, 0.5)
+FORMS, AMOUNTS = 8, (0.1, 0.5)
 
 
 @dataclass
@@ -240,13 +242,15 @@ class Rivals:
         """
         others = list(beside)
         faults, amounts = [fault, *(f for f, _ in others)], np.array([amount, *(a for _, a in others)])
-        white = self.yard.whitened(self.yard.signatures(faults, amounts))
+        changes = self.yard.signatures(faults, amounts)
+        white = self.yard.whitened(changes)
         t, rest = white[:, 0], white[:, 1:]
         if others:
             q = np.linalg.qr(rest)[0]
             t = t - q @ (q.T @ t)
         own = {merged(f.cause) for f in faults}
-        limits = [self.yard.acting(f.regime) for f in faults if f.regime]
+        oil = (self.yard.quiet + changes.sum(axis=0))[self.yard.setting.channels.index("T_oil_C")]
+        limits = [self.yard.acting(f.regime, oil) for f in faults if f.regime]
         found = [Rival("nothing", float(np.linalg.norm(t)))]
         for cause, (forms, white_forms) in self._signatures().items():
             if merged(cause) not in own:
