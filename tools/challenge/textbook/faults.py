@@ -108,6 +108,7 @@ def limited(fault: Fault, rng: np.random.Generator, around: Around) -> Fault:
         return act
 
     stages = {name: (of_readings if name == "read" else of_now)(stage) for name, stage in fault.stages.items()}
+    # the gate is a tanh of twice its width
     return replace(fault, stages=stages, regime={"where": f"{what} {side}", "at": at, "width": 2 * width})
 
 

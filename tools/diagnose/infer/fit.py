@@ -250,7 +250,7 @@ def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> tuple[Lo
         H = J.T @ J + np.diag(vector.precision)
         gradient = J.T @ white(problem.measured - look.shown) - vector.precision * look.x
         change = vector.step(look.x, H, gradient)
-        if change @ gradient - 0.5 * change @ H @ change < LITTLE:
+        if _promised(change, gradient, H) < LITTLE:
             break
         for _ in range(TRIES):
             if damping:
@@ -266,9 +266,14 @@ def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> tuple[Lo
         look, cost = trial, cost - gain
         if gain < LITTLE:
             break
-        if gain > TRUSTED * (change @ gradient - 0.5 * change @ H @ change):
+        if gain > TRUSTED * _promised(change, gradient, H):
             damping /= 5
     return look, cost
+
+
+def _promised(change: np.ndarray, gradient: np.ndarray, H: np.ndarray) -> float:
+    """By how much a step lowers the quadratic cost."""
+    return float(change @ gradient - 0.5 * change @ H @ change)
 
 
 def _begun(problem: Problem, acting: Sequence[Acting], z: np.ndarray) -> Look:
