@@ -8,19 +8,21 @@ their readings tell them; with a reference campaign also a smooth remainder over
 A reference adds its readings, in which the signature is zero; parameters and tolerances are shared.
 
 A rival is a fault of another class in any form. Its distance is what the best non-negative mixture of drawn forms and
-amounts of one cause leaves of the whitened signature: shapes, heat locations and sizes are free. A fault that acts
-under some conditions only has rivals that do so as well, by as much in each reading and with borders as soft: to first
-order, their signatures in those readings. Below 2.5 to 3 the right answer names both.
+amounts of one cause leaves of the whitened signature: shapes, heat locations and sizes are free. Rivals may act under
+some conditions only, too: to first order, by their signatures in those readings. They do so by as much in each reading
+as a fault that is limited itself, or on one side of a speed, a load, an oil temperature or a test, or in one direction.
+Below 2.5 to 3 the right answer names both.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
-from scipy.linalg import block_diag, solve_triangular
+from scipy.linalg import block_diag, qr, solve_triangular
 from scipy.optimize import nnls
 
 from .classes import merged
@@ -91,7 +93,8 @@ class Yardstick:
         S = shared @ shared.T + local @ local.T
         sd = [np.repeat([setting.repeat_sd[c] for c in setting.channels], 2 * p.columns) for p in plans]
         S[np.diag_indices_from(S)] += np.concatenate(sd) ** 2
-        self._root = np.linalg.cholesky(S)
+        own = solve_triangular(np.linalg.cholesky(S), np.eye(len(S), self.quiet.size), lower=True)
+        self._white = qr(own, mode="r")[0][: self.quiet.size]
 
     def _block(self, plan: Plan) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Readings (channels, 2, tests); shared and local sensitivities (readings, columns), scaled by their sd."""
@@ -139,11 +142,9 @@ class Yardstick:
         return found
 
     def whitened(self, signatures: np.ndarray) -> np.ndarray:
-        """Whitened signatures (readings of all campaigns, faults); zero for what is not finite."""
-        padded = np.zeros((len(self._root), len(signatures)))
+        """Whitened signatures (readings, faults); zero for what is not finite."""
         flat = signatures.reshape(len(signatures), -1)
-        padded[: flat.shape[1]] = np.where(np.isfinite(flat).all(axis=1)[:, None], flat, 0.0).T
-        return np.asarray(solve_triangular(self._root, padded, lower=True))
+        return np.asarray(self._white @ np.where(np.isfinite(flat).all(axis=1)[:, None], flat, 0.0).T)
 
     def acting(self, regime: Mapping[str, Any], oil: np.ndarray) -> np.ndarray:
         """How much of a limited fault acts, by reading (2, tests).
@@ -201,6 +202,38 @@ class Rival:
 #: Forms drawn of each cause, and amounts of each over the largest sensible.
 FORMS, AMOUNTS = 8, (0.1, 0.5)
 
+#: Causes that may act under some conditions only, as any of the simulators draws them.
+PARTLY = frozenset(
+    ("losses.churning", "losses.windage", "losses.mesh_friction", "losses.seal_drag", "losses.bearing_preload")
+    + ("heat.external_source", "cooling.air", "cooling.foundation", "cooling.contact")
+    + ("sensor.oil_temp.offset", "sensor.torque.offset")
+)
+
+#: Widths of the borders of what limits them, by quantity; thresholds at these quantiles of the tests.
+WIDTHS = {"speed": (4.0, 12.0), "load": (40.0, 120.0), "oil": (1.3, 4.0), "order": (0.02,)}
+QUANTILES = np.arange(0.1, 0.95, 0.1)
+
+
+class _Mixture:
+    """Non-negative mixtures of forms of one cause: whitened columns (readings, forms), each of length 1."""
+
+    def __init__(self, columns: np.ndarray) -> None:
+        length = np.linalg.norm(columns, axis=0)
+        self.columns = columns[:, length > 1e-9] / length[length > 1e-9]
+        self.gram = self.columns.T @ self.columns
+
+    def beside(self, q: np.ndarray) -> Callable[[np.ndarray], tuple[float, Callable[[], float]]]:
+        """What of a vector is left, beside what orthonormal columns q take up: a lower bound, and how to get it."""
+        inside = self.columns.T @ q
+        R = np.linalg.cholesky(self.gram - inside @ inside.T + 1e-9 * np.eye(len(inside))).T
+
+        def left(t: np.ndarray) -> tuple[float, Callable[[], float]]:
+            along = solve_triangular(R, self.columns.T @ t, trans=1)
+            beyond = max(float(t @ t - along @ along), 0.0)
+            return np.sqrt(beyond), lambda: float(np.hypot(nnls(R, along)[1], np.sqrt(beyond)))
+
+        return left
+
 
 @dataclass
 class Rivals:
@@ -215,23 +248,40 @@ class Rivals:
     yard: Yardstick
     families: Mapping[str, Callable[[np.random.Generator], Any]]
     rng: np.random.Generator
-    _known: dict[str, tuple[np.ndarray, np.ndarray]] = field(default_factory=dict)
 
-    def _signatures(self) -> Mapping[str, tuple[np.ndarray, np.ndarray]]:
-        """Signatures (forms, channels, 2, tests) of every cause, and whitened (readings, forms)."""
-        if not self._known:
-            faults, amounts, causes = [], [], []
-            for cause, family in self.families.items():
-                for _ in range(FORMS):
-                    fault = family(self.rng)
-                    for a in (sign * share * fault.high for sign in fault.signs for share in AMOUNTS):
-                        faults.append(fault)
-                        amounts.append(a)
-                        causes.append(cause)
-            found, named = self.yard.signatures(faults, np.array(amounts)), np.array(causes)
-            white = self.yard.whitened(found)
-            self._known = {c: (found[named == c], white[:, named == c]) for c in self.families}
-        return self._known
+    def _limits(self) -> list[np.ndarray]:
+        """How much of a limited cause acts, by reading (2, tests): one side of each quantity, one direction."""
+        yard = self.yard
+        plan, oil = yard.setting.plan, yard.quiet[yard.setting.channels.index("T_oil_C")]
+        seen = {"speed": plan.n, "load": plan.load, "oil": oil, "order": plan.progress}
+        sides = [
+            {"where": f"{what} {side}", "at": at, "width": width}
+            for what, widths in WIDTHS.items()
+            for side in ("above", "below")
+            for at in np.quantile(seen[what], QUANTILES)
+            for width in widths
+        ]
+        sides += [{"where": f"direction {side}", "at": 1.5, "width": 0.05} for side in ("above", "below")]
+        return [yard.acting(side, oil) for side in sides]
+
+    @cached_property
+    def _forms(self) -> Mapping[str, tuple[np.ndarray, list[_Mixture]]]:
+        """Signatures of every cause (forms, channels, 2, tests), and mixtures of them on each side that limits it."""
+        faults, amounts, causes = [], [], []
+        for cause, family in self.families.items():
+            for _ in range(FORMS):
+                fault = family(self.rng)
+                for a in (sign * share * fault.high for sign in fault.signs for share in AMOUNTS):
+                    faults.append(fault)
+                    amounts.append(a)
+                    causes.append(cause)
+        found, named, limits = self.yard.signatures(faults, np.array(amounts)), np.array(causes), self._limits()
+        known = {}
+        for cause in self.families:
+            forms = found[named == cause]
+            sides = [_Mixture(self.yard.whitened(forms * limit)) for limit in limits if cause in PARTLY]
+            known[cause] = forms, sides
+        return known
 
     def nearest(self, fault: Any, amount: float, beside: Iterable[tuple[Any, float]] = ()) -> tuple[float, Rival]:
         """Signal-to-noise of a fault, and its nearest rival.
@@ -244,29 +294,19 @@ class Rivals:
         faults, amounts = [fault, *(f for f, _ in others)], np.array([amount, *(a for _, a in others)])
         changes = self.yard.signatures(faults, amounts)
         white = self.yard.whitened(changes)
-        t, rest = white[:, 0], white[:, 1:]
-        if others:
-            q = np.linalg.qr(rest)[0]
-            t = t - q @ (q.T @ t)
+        q = np.linalg.qr(white[:, 1:])[0]
+        t = white[:, 0] - q @ (q.T @ white[:, 0])
         own = {merged(f.cause) for f in faults}
         oil = (self.yard.quiet + changes.sum(axis=0))[self.yard.setting.channels.index("T_oil_C")]
-        limits = [self.yard.acting(f.regime, oil) for f in faults if f.regime]
-        found = [Rival("nothing", float(np.linalg.norm(t)))]
-        for cause, (forms, white_forms) in self._signatures().items():
+        limits = [1.0, *(self.yard.acting(f.regime, oil) for f in faults if f.regime)]
+        nearest = Rival("nothing", float(np.linalg.norm(t)))
+        bounds = []
+        for cause, (forms, sides) in self._forms.items():
             if merged(cause) not in own:
-                columns = np.hstack([white_forms, *(self.yard.whitened(forms * limit) for limit in limits)])
-                apart = columns - q @ (q.T @ columns) if others else columns
-                found.append(Rival(cause, _left(apart, t)))
-        return found[0].distance, min(found[1:], key=lambda r: r.distance)
-
-
-def _left(columns: np.ndarray, t: np.ndarray) -> float:
-    """Norm of what the best non-negative mixture leaves of a vector."""
-    scale = np.linalg.norm(columns, axis=0)
-    used = columns[:, scale > 1e-9] / scale[scale > 1e-9]
-    if not used.shape[1]:
-        return float(np.linalg.norm(t))
-    Q, R = np.linalg.qr(used)
-    inside = Q.T @ t
-    beyond = max(float(t @ t - inside @ inside), 0.0)
-    return float(np.hypot(nnls(R, inside)[1], np.sqrt(beyond)))
+                alike = _Mixture(np.hstack([self.yard.whitened(forms * limit) for limit in limits]))
+                bounds += [(*side.beside(q)(t), cause) for side in (alike, *sides)]
+        for least, distance, cause in sorted(bounds, key=lambda b: b[0]):
+            if least >= nearest.distance:
+                break
+            nearest = min(nearest, Rival(cause, distance()), key=lambda r: r.distance)
+        return float(np.linalg.norm(t)), nearest

@@ -16,8 +16,7 @@ from scipy.optimize import minimize
 
 #: Effects of one nuisance and of a size on five readings, and the size at which it saturates.
 BY_Z, BY_T, MOST = np.array([1.0, 0.5, 0.0, 0.3, -0.2]), np.array([0.5, 1.0, 1.5, 1.0, 0.4]), 2.5
-SIZE = SimpleNamespace(low=-50.0, high=50.0, sd=1.0)
-FORMULA: Any = SimpleNamespace(size=1, cause=SimpleNamespace(id="cause", size=SIZE))
+FORMULA: Any = SimpleNamespace(size=1, cause=SimpleNamespace(id="cause"), limits=(-50.0, 50.0))
 
 
 class Bent:

@@ -10,6 +10,7 @@ import numpy as np
 
 from ..infer.evidence import White
 from ..infer.problem import Acting
+from ..infer.screen import limits
 
 #: Distances below this are none.
 APART = 3.0
@@ -43,8 +44,7 @@ class Effects:
     @cached_property
     def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
         """Lowest and highest sizes (k,), in half widths of the priors."""
-        sizes = [c.formula.cause.size for c in self.candidates]
-        return np.array([s.low / s.sd for s in sizes]), np.array([s.high / s.sd for s in sizes])
+        return limits(self.candidates)
 
     def visible(self, cause: str, size: float = 1.0) -> float:
         """Distance of a cause from none, at a size in half widths of its prior."""

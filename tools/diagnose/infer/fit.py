@@ -157,9 +157,9 @@ def _rough(problem: Problem, look: Look, vector: _Vector) -> np.ndarray:
 
 def bounds(acting: Acting) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest parameters of a form."""
-    size = acting.formula.cause.size
+    low, high = acting.formula.limits
     n = acting.formula.size - 1
-    return np.r_[size.low / size.sd, np.full(n, -FAR)], np.r_[size.high / size.sd, np.full(n, FAR)]
+    return np.r_[low, np.full(n, -FAR)], np.r_[high, np.full(n, FAR)]
 
 
 class _Vector:

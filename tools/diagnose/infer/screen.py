@@ -206,8 +206,8 @@ def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarra
 
 def limits(candidates: Sequence[Acting]) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest sizes of candidates, in prior half widths (k,)."""
-    sizes = [c.formula.cause.size for c in candidates]
-    return np.array([s.low / s.sd for s in sizes]), np.array([s.high / s.sd for s in sizes])
+    low, high = np.array([c.formula.limits for c in candidates]).reshape(-1, 2).T
+    return low, high
 
 
 def null_draws(found: Look, weights: np.ndarray, seed: int) -> np.ndarray:

@@ -121,6 +121,7 @@ class Form:
         spread: "" for one size; "test", "mounting" or "walk" where the size is the standard deviation of independent
             sizes of every test, of every mounting, or of the steps from each test to the next
         regime: quantity and side it is limited to ("speed above"), with the shape that holds the threshold; for words
+        only_adds: whether its size cannot be below zero, whatever the cause's can
     """
 
     name: str = ""
@@ -134,6 +135,7 @@ class Form:
     pace: Callable[[Theta, Row], Num] | None = None
     spread: str = ""
     regime: Mapping[str, str] = field(default_factory=dict)
+    only_adds: bool = False
 
 
 @dataclass(frozen=True)

@@ -8,7 +8,7 @@ are n F, in elastohydrodynamic contact up to n^0.7 F^1.3, with shared load and c
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 
 import casadi as ca
@@ -154,6 +154,12 @@ def oil_viscosity(at: Context) -> Cause:
     )
 
 
+def _rubbing(forms: Iterable[Form]) -> tuple[Form, ...]:
+    """The same; those that set in at a speed, a load or a temperature only add: something begins to rub there."""
+    onsets = tuple(Regime.WORDS.values())
+    return tuple(replace(f, only_adds=f.regime.get("quantity", "").startswith(onsets)) for f in forms)
+
+
 def bearing_preload(at: Context, places: Sequence[Place]) -> Cause:
     """Bearings that carry more."""
     shapes = (
@@ -167,7 +173,9 @@ def bearing_preload(at: Context, places: Sequence[Place]) -> Cause:
         id="losses.bearing_preload",
         doc="A friction torque that hardly follows load: bearings preloaded more or less than assumed.",
         size=at.power("loss of all bearings", 0.07, -0.2, 1.2),
-        forms=Extras("preload", at).losses(places, shapes, at.regimes(("w", "tau", "T", "direction", "order"))),
+        forms=_rubbing(
+            Extras("preload", at).losses(places, shapes, at.regimes(("w", "tau", "T", "direction", "order")))
+        ),
         exposes="drag torque measured by hand, temperature at the bearings",
         like=SHAFTS,
         acts_on=at.first("speed"),
@@ -186,7 +194,7 @@ def seal_drag(at: Context, places: Sequence[Place]) -> Cause:
         id="losses.seal_drag",
         doc="A friction torque without load dependence: lips that press more, or run dry.",
         size=at.power("loss of all seals", 0.057, -0.12, 1.0),
-        forms=Extras("seal", at).losses(places, shapes, at.regimes(("w", "T", "direction", "order"))),
+        forms=_rubbing(Extras("seal", at).losses(places, shapes, at.regimes(("w", "T", "direction", "order")))),
         exposes="drag torque measured by hand, temperature at the lips",
         like=SHAFTS,
         acts_on=at.first("speed"),

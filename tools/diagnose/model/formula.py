@@ -87,6 +87,12 @@ class Formula:
         """Number of parameters."""
         return int(self.t.numel())
 
+    @property
+    def limits(self) -> tuple[float, float]:
+        """Lowest and highest size, in prior half widths."""
+        size = self.cause.size
+        return 0.0 if self.form.only_adds else size.low / size.sd, size.high / size.sd
+
     def theta(self, t: np.ndarray) -> dict[str, float]:
         """Size and shapes in their units."""
         return dict(zip(self.names, np.asarray(self._theta(t)).ravel().tolist(), strict=True))
