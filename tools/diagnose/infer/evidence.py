@@ -44,8 +44,10 @@ class White:
     @property
     def inverse(self) -> np.ndarray:
         """The inverse covariance (M, M)."""
-        upper, _ = dpotri(self.L.T)
-        return np.asarray(np.triu(upper) + np.triu(upper, 1).T)
+        upper, _ = dpotri(self.L.T)  # zero below the diagonal, as what it is made of
+        found = upper + upper.T
+        np.fill_diagonal(found, np.diag(upper))
+        return np.asarray(found)
 
     @property
     def log_det(self) -> float:

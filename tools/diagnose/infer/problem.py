@@ -103,14 +103,22 @@ class Noise:
         if sum(c.shape[1] for c in columns) < FEW * len(residual):
             return replace(self, scales=_most_likely(_Few(base, columns, residual), self.scales, sd))
 
+        even = np.array([t.variance is not None for t in self.loose])  # diagonal: most of them
+        variances = np.array([np.diag(C) for C in loose])
+
         def cost(scales: np.ndarray) -> tuple[float, np.ndarray]:
             weights = np.exp(2 * scales)
-            white = White.of(base + sum(w * C for w, C in zip(weights, loose, strict=True)))
+            V = base + np.diag(weights[even] @ variances[even])
+            for k in np.flatnonzero(~even):
+                V += weights[k] * loose[k]
+            white = White.of(V)
             inverse = white.inverse
             a = inverse @ residual
             value = 0.5 * residual @ a + 0.5 * white.log_det
-            slopes = [w * ((inverse * C).sum() - a @ C @ a) for w, C in zip(weights, loose, strict=True)]
-            return float(value), np.array(slopes)
+            slopes = variances @ (np.diag(inverse) - a**2)
+            for k in np.flatnonzero(~even):
+                slopes[k] = np.vdot(inverse, loose[k]) - a @ loose[k] @ a
+            return float(value), weights * slopes
 
         return replace(self, scales=_most_likely(cost, self.scales, sd))
 
