@@ -26,7 +26,7 @@ from gearheat.tools.challenge.hide import APART, KINDS, SHARES, schedule
 from gearheat.tools.challenge.plan import draw_plan
 from gearheat.tools.challenge.scoring import Outcome, metrics, report, score, wilson
 from gearheat.tools.challenge.sheets import SHEETS
-from gearheat.tools.challenge.yardstick import Rivals, Yardstick
+from gearheat.tools.challenge.yardstick import Rivals, Yardstick, loudness
 
 KELVIN = 273.15
 PRACTICE = Path(__file__).parent / "practice"
@@ -172,6 +172,16 @@ def test_rivals_of_a_limited_fault_are_limited_as_well(drawn: tuple[cases.Drawn,
     assert (yard.acting({"speed": "above", "threshold": d.plan.n, "width": width}, oil(*drawn)) == 0.5).all()
     everywhere = replace(limited, regime={})
     assert max(distance(limited), distance(everywhere, "losses.churning")) < 0.9 * distance(everywhere)
+
+
+def test_what_scatters_from_test_to_test_is_as_loud_as_its_likelihood_says() -> None:
+    """Half the squared signal-to-noise is the mean log likelihood ratio, as it is for a known signature."""
+    n, m = 40, 0.7
+    u = np.sqrt(1 + m) * np.random.default_rng(6).standard_normal((20000, n))
+    ratios = 0.5 * (u**2 * m / (1 + m) - np.log1p(m)).sum(axis=1)
+    length = math.sqrt(n * m)
+    assert loudness("procedure.day_scatter", length, n) ** 2 / 2 == pytest.approx(ratios.mean(), rel=0.02)
+    assert loudness("cooling.air", length, n) == length
 
 
 # ------------------------------------------------------------------------------------------------------------ cases

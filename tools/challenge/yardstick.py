@@ -5,7 +5,8 @@ whitened signature, sqrt(s' S^-1 s) with S = R + J Sigma J'. R holds the repeata
 what a nuisance does to the readings, by differences; Sigma is its variance: the fixed tolerance of every channel; the
 rig's parameters; the cooling of every day; the true speed, torque and room of every half, practically free, since only
 their readings tell them; with a reference campaign also a smooth remainder over speed, load and room in both campaigns.
-A reference adds its readings, in which the signature is zero; parameters and tolerances are shared.
+A reference adds its readings, in which the signature is zero; parameters and tolerances are shared. Of what differs by
+chance from test to test nobody knows the course; it is as loud as the scatter of the tests tells (`loudness`).
 
 A rival is a fault of another class in any form. Its distance is what the best non-negative mixture of drawn forms and
 amounts of one cause leaves of the whitened signature: shapes, heat locations and sizes are free. Rivals may act under
@@ -44,6 +45,9 @@ REMAINDER_SD = {"T_sun_Nm": 0.25, "T_oil_C": 1.0, "T_oil2_C": 1.0, "T_wall_C": 1
 #: Change of an oil temperature at which a rig would be stopped [K].
 OBVIOUS = 35.0
 
+#: What differs by chance from test to test.
+BY_CHANCE = frozenset(("procedure.day_scatter",))
+
 #: Tests in one run of several variants.
 BATCH = 4000
 
@@ -79,6 +83,23 @@ class Setting:
 def tiled(base: Mapping[str, Any], copies: int) -> dict[str, Any]:
     """Factors for several copies of the tests."""
     return {name: np.tile(f, copies) if np.ndim(f) else f for name, f in base.items()}
+
+
+def loudness(cause: str, norm: Any, tests: int) -> Any:
+    """Signal-to-noise from the norm of a whitened signature.
+
+    Of what differs by chance from test to test only the mean square m can be told. A likelihood speaks for n tests that
+    scatter by m beside their noise as it does for a known signature of the length sqrt(n (m - log(1 + m))).
+
+    Args:
+        cause: of the fault
+        norm: of its whitened signature
+        tests: number of tests in which it acts
+    """
+    if cause not in BY_CHANCE:
+        return norm
+    m = norm**2 / tests
+    return np.sqrt(tests * (m - np.log1p(m)))
 
 
 class Yardstick:
@@ -174,7 +195,11 @@ class Yardstick:
         oil = change[:, self.setting.channels.index("T_oil_C")]
         with np.errstate(invalid="ignore"):
             sensible = (np.abs(oil) < OBVIOUS).all(axis=(1, 2))
-        return np.linalg.norm(self.whitened(change), axis=0), sensible
+        return self.loud(fault, np.linalg.norm(self.whitened(change), axis=0)), sensible
+
+    def loud(self, fault: Any, norm: Any) -> Any:
+        """Signal-to-noise of a fault from the norm of its whitened signature."""
+        return loudness(fault.cause, norm, self.setting.plan.columns)
 
 
 def _remainder(plan: Plan, channels: tuple[str, ...]) -> list[np.ndarray]:
@@ -299,7 +324,8 @@ class Rivals:
         own = {merged(f.cause) for f in faults}
         oil = (self.yard.quiet + changes.sum(axis=0))[self.yard.setting.channels.index("T_oil_C")]
         limits = [1.0, *(self.yard.acting(f.regime, oil) for f in faults if f.regime)]
-        nearest = Rival("nothing", float(np.linalg.norm(t)))
+        snr = float(self.yard.loud(fault, np.linalg.norm(t)))
+        nearest = Rival("nothing", snr)
         bounds = []
         for cause, (forms, sides) in self._forms.items():
             if merged(cause) not in own:
@@ -309,4 +335,4 @@ class Rivals:
             if least >= nearest.distance:
                 break
             nearest = min(nearest, Rival(cause, distance()), key=lambda r: r.distance)
-        return float(np.linalg.norm(t)), nearest
+        return snr, nearest

@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from gearheat.diagnose.infer import problem
+from gearheat.diagnose.infer import scales
 from gearheat.diagnose.infer.problem import Noise
 from gearheat.diagnose.model.noise import Term
 
@@ -20,6 +20,6 @@ def test_few_columns_weigh_scales_as_the_whole_covariance(monkeypatch) -> None:
     noise = Noise((Term("fixed", covariance=A @ A.T), *loose), np.zeros(3))
     residual, known = 2 * rng.standard_normal(n), np.zeros((n, n))
     few = noise.fitted(residual, known).scales
-    monkeypatch.setattr(problem, "FEW", 0.0)
+    monkeypatch.setattr(scales, "FEW", 0.0)
     assert few == pytest.approx(noise.fitted(residual, known).scales, abs=1e-4)
     assert np.abs(few).max() > 0.1

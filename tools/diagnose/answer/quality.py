@@ -91,8 +91,7 @@ def scale_sds(found: Found, h: Hypothesis) -> np.ndarray:
     noise = h.fit.noise
     white, _ = h.fit.linear(found.problem)
     inverse = white.inverse
-    _, loose = noise.parts
-    weighted = [inverse @ C * np.exp(2 * s) for s, C in zip(noise.scales, loose, strict=True)]
+    weighted = [inverse @ t.matrix * np.exp(2 * s) for s, t in zip(noise.scales, noise.loose, strict=True)]
     information = np.array([2 * float((W * W.T).sum()) for W in weighted])
     prior = np.array([t.loose for t in noise.loose])
     return np.asarray(1 / np.sqrt(information + prior**-2))

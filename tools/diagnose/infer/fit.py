@@ -234,11 +234,11 @@ def fitted(
     noise = problem.noise(look, scales)
     for _ in range(ROUNDS):
         look, cost = _settled(problem, look, noise, steps)
-        fit = weighed(problem, look, noise, cost)
-        moved, noise = np.abs(fit.noise.scales - noise.scales).max(initial=0.0), fit.noise
-        if moved < SETTLED:
+        before, line = noise, _Line(problem, look)
+        noise = line.scattered(before)
+        if np.abs(noise.scales - before.scales).max(initial=0.0) < SETTLED:
             break
-    return fit
+    return line.weighed(noise, cost)
 
 
 def _settled(problem: Problem, look: Look, noise: Noise, steps: int) -> tuple[Look, float]:
@@ -296,25 +296,39 @@ def _cost(problem: Problem, vector: _Vector, white: White, look: Look) -> float:
 
 def weighed(problem: Problem, look: Look, noise: Noise, cost: float) -> Fit:
     """A fit with its scales as the data tell them, and its evidence."""
-    vector = _Vector(problem, look.acting)
-    J = look.jacobian
-    linear = np.r_[np.arange(vector.nz), vector.shapes]
-    known, G = J[:, linear], J[:, vector.sizes]
-    residual = problem.measured - look.shown + J @ look.x
-    noise = problem.noise(look, noise.scales)
-    sizes, (low, high) = look.x[vector.sizes], (b[vector.sizes] for b in (vector.low, vector.high))
-    free = G[:, (sizes > low) & (sizes < high)]  # one that stands at its bound explains nothing more
-    wide = known @ known.T + WIDTHS[-1] ** 2 * free @ free.T
-    noise = noise.fitted(residual, wide)
-    V = noise.covariance + known @ known.T
-    if not look.acting:
-        white = White.of(V)
-        return Fit(look, noise, cost, white.log_density(white(residual)) + noise.log_prior, 0.0)
-    rough = _rough(problem, look, vector)
-    logs = []
-    for share, weight in FORM.items():
-        white = White.of(V + share**2 * rough)
-        e = white(residual)
-        logs.append(white.log_density(e) + log_bayes_factor(white(G), e, low, high) + np.log(weight))
-    form = list(FORM)[int(np.argmax(logs))]
-    return Fit(look, noise, cost, float(logsumexp(logs)) + noise.log_prior, form)
+    line = _Line(problem, look)
+    return line.weighed(line.scattered(noise), cost)
+
+
+class _Line:
+    """A problem linearised at a look: what is known but for the sizes, their effects, and the residual."""
+
+    def __init__(self, problem: Problem, look: Look) -> None:
+        self.problem, self.look, self.vector = problem, look, _Vector(problem, look.acting)
+        vector, J = self.vector, look.jacobian
+        known = J[:, np.r_[np.arange(vector.nz), vector.shapes]]
+        self.known, self.G = known @ known.T, J[:, vector.sizes]
+        self.residual = problem.measured - look.shown + J @ look.x
+        self.low, self.high = vector.low[vector.sizes], vector.high[vector.sizes]
+
+    def scattered(self, noise: Noise) -> Noise:
+        """The scatter here with its most likely scales, from those of a scatter."""
+        sizes = self.look.x[self.vector.sizes]
+        free = self.G[:, (sizes > self.low) & (sizes < self.high)]  # one that stands at its bound explains nothing more
+        wide = self.known + WIDTHS[-1] ** 2 * free @ free.T
+        return self.problem.noise(self.look, noise.scales).fitted(self.residual, wide)
+
+    def weighed(self, noise: Noise, cost: float) -> Fit:
+        """The fit with a scatter, and its evidence."""
+        V, look, residual = noise.covariance + self.known, self.look, self.residual
+        if not look.acting:
+            white = White.of(V)
+            return Fit(look, noise, cost, white.log_density(white(residual)) + noise.log_prior, 0.0)
+        rough = _rough(self.problem, look, self.vector)
+        logs = []
+        for share, weight in FORM.items():
+            white = White.of(V + share**2 * rough)
+            e, g = white(residual), white(self.G)
+            logs.append(white.log_density(e) + log_bayes_factor(g, e, self.low, self.high) + np.log(weight))
+        form = list(FORM)[int(np.argmax(logs))]
+        return Fit(look, noise, cost, float(logsumexp(logs)) + noise.log_prior, form)

@@ -2,23 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-from scipy.optimize import minimize
 
 from ...model.errors import SolveError
 from ..model.formula import Formula
 from ..model.noise import Term, alike, input_scatter, stacked, summed, terms
 from ..model.observe import Observed, Seen
-from .evidence import White
-
-#: Bounds of the logarithms of scales.
-BOUNDS = (-1.5, 2.5)
-#: Loose terms with fewer columns than this share of the entries are weighed by their columns.
-FEW = 0.8
+from .scales import most_likely
 
 
 @dataclass(frozen=True, order=True)
@@ -74,15 +68,11 @@ class Noise:
         return [t for t in self.terms if t.loose > 0]
 
     @cached_property
-    def parts(self) -> tuple[np.ndarray, list[np.ndarray]]:
-        """The sum of all fixed terms, and each loose one (M, M)."""
-        return summed([t for t in self.terms if t.loose == 0]), [t.matrix for t in self.loose]
-
-    @cached_property
     def covariance(self) -> np.ndarray:
         """The whole (M, M)."""
-        fixed, loose = self.parts
-        return np.asarray(fixed + sum(np.exp(2 * s) * C for s, C in zip(self.scales, loose, strict=True)))
+        scales = np.zeros(len(self.terms))
+        scales[[t.loose > 0 for t in self.terms]] = self.scales
+        return summed(self.terms, scales, self.terms[0].m)
 
     @property
     def log_prior(self) -> float:
@@ -97,83 +87,9 @@ class Noise:
             residual: r ~ N(0, known + this) (M,)
             known: covariance of what else is uncertain (M, M)
         """
-        fixed, loose = self.parts
-        base, sd = fixed + known, np.array([t.loose for t in self.loose])
-        columns = [t.effects for t in self.loose]
-        if sum(c.shape[1] for c in columns) < FEW * len(residual):
-            return replace(self, scales=_most_likely(_Few(base, columns, residual), self.scales, sd))
-
-        even = np.array([t.variance is not None for t in self.loose])  # diagonal: most of them
-        variances = np.array([np.diag(C) for C in loose])
-
-        def cost(scales: np.ndarray) -> tuple[float, np.ndarray]:
-            weights = np.exp(2 * scales)
-            V = base + np.diag(weights[even] @ variances[even])
-            for k in np.flatnonzero(~even):
-                V += weights[k] * loose[k]
-            white = White.of(V)
-            inverse = white.inverse
-            a = inverse @ residual
-            value = 0.5 * residual @ a + 0.5 * white.log_det
-            slopes = variances @ (np.diag(inverse) - a**2)
-            for k in np.flatnonzero(~even):
-                slopes[k] = np.vdot(inverse, loose[k]) - a @ loose[k] @ a
-            return float(value), weights * slopes
-
-        return replace(self, scales=_most_likely(cost, self.scales, sd))
-
-
-class _Few:
-    """Minus the log density of a residual by scales, where the loose terms have few columns beside the entries.
-
-    The covariance is base + U W U' with W > 0: all is said by G = U' base^-1 U and b = U' base^-1 r.
-
-    Args:
-        base: covariance of what is fixed (M, M), which may lack variances
-        columns: of each loose term (M, k)
-        residual: (M,)
-    """
-
-    #: Part of the smallest variance that counts with the base.
-    PART = 0.5
-
-    def __init__(self, base: np.ndarray, columns: Sequence[np.ndarray], residual: np.ndarray) -> None:
-        self.counts, U = [c.shape[1] for c in columns], np.concatenate(columns, axis=1)
-        self.least = self.PART * np.exp(2 * BOUNDS[0])
-        white = White.of(base + self.least * U @ U.T)
-        near, e = white(U), white(residual)
-        self.G, self.b, self.rest = near.T @ near, near.T @ e, 0.5 * (e @ e + white.log_det)
-
-    def __call__(self, scales: np.ndarray) -> tuple[float, np.ndarray]:
-        """Value and slopes."""
-        w = np.repeat(np.exp(2 * scales) - self.least, self.counts)
-        white = White.of(self.G + np.diag(1 / w))
-        S = white.inverse
-        along = S @ self.b
-        value = self.rest + 0.5 * (white.log_det + np.log(w).sum() - self.b @ along)
-        own = (1 - np.diag(S) / w - along**2 / w) / w
-        each = [part.sum() for part in np.split(own, np.cumsum(self.counts)[:-1])]
-        return float(value), np.exp(2 * scales) * np.array(each)
-
-
-def _most_likely(
-    cost: Callable[[np.ndarray], tuple[float, np.ndarray]], scales: np.ndarray, sd: np.ndarray
-) -> np.ndarray:
-    """Scales of the least cost, their priors included.
-
-    Args:
-        cost: minus the log density, and its slopes
-        scales: logarithms where it begins
-        sd: standard deviations of their priors
-    """
-
-    def whole(x: np.ndarray) -> tuple[float, np.ndarray]:
-        value, slopes = cost(x)
-        return float(value + 0.5 * ((x / sd) ** 2).sum()), slopes + x / sd**2
-
-    bounds = [BOUNDS] * len(sd)
-    found = minimize(whole, scales, jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": 25, "gtol": 0.03})
-    return np.asarray(found.x)
+        kept = [t for t in self.terms if t.loose == 0]
+        fixed = summed(kept, np.zeros(len(kept)), len(residual))
+        return replace(self, scales=most_likely(known + fixed, self.loose, residual, self.scales))
 
 
 class Problem:

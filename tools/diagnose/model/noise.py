@@ -42,6 +42,11 @@ class Term:
     covariance: np.ndarray | None = None
 
     @property
+    def m(self) -> int:
+        """Number of entries."""
+        return len(next(part for part in (self.columns, self.variance, self.covariance) if part is not None))
+
+    @property
     def matrix(self) -> np.ndarray:
         """The covariance it stands for (m, m)."""
         if self.covariance is not None:
@@ -52,6 +57,11 @@ class Term:
         return np.asarray(self.columns @ self.columns.T)
 
     @property
+    def rank(self) -> int:
+        """Number of its `effects`."""
+        return int((self.variance > 0).sum()) if self.variance is not None else self.effects.shape[1]
+
+    @property
     def effects(self) -> np.ndarray:
         """Columns (m, k) of a term that has columns or variances."""
         if self.variance is not None:
@@ -60,12 +70,27 @@ class Term:
         return self.columns
 
 
-def summed(terms: Sequence[Term]) -> np.ndarray:
-    """The covariance of some terms together (m, m)."""
-    columns = [t.columns for t in terms if t.columns is not None]
-    others = [t.matrix for t in terms if t.columns is None]
-    found = [np.concatenate(columns, axis=1)] if columns else []
-    return np.asarray(sum((c @ c.T for c in found), np.sum(others, axis=0)))
+def summed(terms: Sequence[Term], scales: np.ndarray, m: int) -> np.ndarray:
+    """The covariance of some terms together (m, m).
+
+    Args:
+        terms: n of them
+        scales: logarithms of factors on their standard deviations (n,)
+        m: number of entries
+    """
+    columns, variance = [np.zeros((m, 0))], np.zeros(m)
+    for t, factor in zip(terms, np.exp(scales), strict=True):
+        if t.columns is not None:
+            columns.append(factor * t.columns)
+        elif t.variance is not None:
+            variance += factor**2 * t.variance
+    whole = np.concatenate(columns, axis=1)
+    found = whole @ whole.T
+    found[np.diag_indices(m)] += variance
+    for t, factor in zip(terms, np.exp(scales), strict=True):
+        if t.covariance is not None:
+            found += factor**2 * t.covariance
+    return np.asarray(found)
 
 
 def reading_scatter(o: Observed) -> Iterator[tuple[str, np.ndarray]]:

@@ -76,8 +76,8 @@ def rows(found: Found, h: Hypothesis) -> Rows:
     c = o.campaign
     null, leader = (fit.look.shown[own] for fit in (found.null, h.fit))
     noise = h.fit.noise
-    loose = zip(noise.scales, noise.parts[1], strict=True)  # scatter of readings and days, without tolerances
-    spread = np.sqrt(np.sum([np.exp(2 * s) * np.diag(C) for s, C in loose], axis=0))[own]
+    loose = zip(noise.scales, noise.loose, strict=True)  # scatter of readings and days, without tolerances
+    spread = np.sqrt(np.sum([np.exp(2 * s) * np.diag(t.matrix) for s, t in loose], axis=0))[own]
     told = {}
     for i, s in enumerate(o.read):
         mine = o.kind == i
