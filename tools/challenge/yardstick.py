@@ -6,7 +6,8 @@ what a nuisance does to the readings, by differences; Sigma is its variance: the
 rig's parameters; the cooling of every day; the true speed, torque and room of every half, practically free, since only
 their readings tell them; with a reference campaign also a smooth remainder over speed, load and room in both campaigns.
 A reference adds its readings, in which the signature is zero; parameters and tolerances are shared. Of what differs by
-chance from test to test nobody knows the course; it is as loud as the scatter of the tests tells (`loudness`).
+chance from test to test nobody knows the course; it is as loud, and as far from rivals, as its scatter tells
+(`loudness`).
 
 A rival is a fault of another class in any form. Its distance is what the best non-negative mixture of drawn forms and
 amounts of one cause leaves of the whitened signature: shapes, heat locations and sizes are free. Rivals may act under
@@ -324,8 +325,8 @@ class Rivals:
         own = {merged(f.cause) for f in faults}
         oil = (self.yard.quiet + changes.sum(axis=0))[self.yard.setting.channels.index("T_oil_C")]
         limits = [1.0, *(self.yard.acting(f.regime, oil) for f in faults if f.regime)]
-        snr = float(self.yard.loud(fault, np.linalg.norm(t)))
-        nearest = Rival("nothing", snr)
+        length = float(np.linalg.norm(t))
+        nearest = Rival("nothing", length)
         bounds = []
         for cause, (forms, sides) in self._forms.items():
             if merged(cause) not in own:
@@ -335,4 +336,5 @@ class Rivals:
             if least >= nearest.distance:
                 break
             nearest = min(nearest, Rival(cause, distance()), key=lambda r: r.distance)
-        return snr, nearest
+        snr, distance = self.yard.loud(fault, np.array([length, nearest.distance])).tolist()
+        return snr, Rival(nearest.cause, distance)
