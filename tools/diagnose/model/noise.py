@@ -24,8 +24,6 @@ REFILLED = 0.5
 ELSEWHERE = 0.08
 #: What the model leaves of a rig that a reference tells: share of the typical reading's rise or torque, per feature.
 REMAINDER = {"temperature": 0.8, "other": 0.0005}
-#: A reading that is set aside scatters by so many of its own standard deviations.
-ASIDE = 1e3
 
 
 @dataclass(frozen=True)
