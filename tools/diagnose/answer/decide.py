@@ -111,7 +111,8 @@ def decided(found: Found) -> Decision:
 
 def calmed(found: Found) -> Found:
     """The search with the evidence of different answers drawn together; their priors and nothing's probability stay."""
-    keys, levelled = _keys(found, _asked(found)), found.probabilities * np.exp(_lifts(found))
+    logs = np.array([h.log_joint for h in found.hypotheses])
+    keys, levelled = _keys(found, _asked(found)), np.exp(logs - logsumexp(logs) + _lifts(found))
     whole: dict[tuple[str, ...], float] = {}
     for key, p in zip(keys, levelled, strict=True):
         whole[key] = whole.get(key, 0.0) + float(p)

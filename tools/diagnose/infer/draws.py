@@ -17,6 +17,9 @@ from .problem import Problem
 
 #: Draws of a hypothesis, and how much wider than the fit says they are taken.
 DRAWS, WIDER = 32, 1.3
+#: Draws are taken about where the fit would end by its slopes, unless it is less likely there than where it stands by so
+#: much: a fit that stands at a bend goes nowhere by them.
+MUCH = 1.0
 
 
 @dataclass(frozen=True)
@@ -57,11 +60,15 @@ def correction(problem: Problem, fit: Fit, seed: int) -> Correction:
     highest = log_joint(likely, look.shown + look.jacobian @ (likely - look.x))
     normal = norm.ppf(np.clip(qmc.Sobol(len(own), seed=seed).random(DRAWS), 1e-6, 1 - 1e-6))
     logs = []
+    middle = likely
+    if log_joint(likely, problem.shown(*fit.split(problem, likely))) < log_joint(look.x, look.shown) - MUCH:
+        middle = look.x
     for u in WIDER * normal:
-        x = likely + along @ u
+        x = middle + along @ u
         log = log_joint(x, problem.shown(*fit.split(problem, x))) - highest
         logs.append(log + 0.5 * (u / WIDER) @ (u / WIDER) + len(u) * np.log(WIDER))
-    return smoothed(np.array(logs))
+    found = smoothed(np.array(logs))
+    return Correction(found.log + fit.short, found.error)
 
 
 def smoothed(logs: np.ndarray) -> Correction:

@@ -20,6 +20,8 @@ from .problem import Acting, Look, Noise, Problem
 STEPS, TRIES, LITTLE, TRUSTED = 12, 5, 0.05, 0.7
 #: Rounds of point and scatter in turn at most, and change of a scale's logarithm below which the last is done.
 ROUNDS, SETTLED = 4, 0.1
+#: A fit whose slopes promise more than this has stalled at a bend or a bound, and what they promise does not come.
+STALLED = 0.5
 #: Longest step of a nuisance, a size (or that share of it) and a shape; shapes stay inside so many deviations.
 LONGEST, LONGEST_SIZE, LONGEST_SHAPE, FAR = 1.5, 1.0, 0.8, 2.4
 #: A scale whose logarithm is beyond this has grown.
@@ -52,6 +54,7 @@ class Fit:
         cost: half the squared misfit, priors included
         evidence: log of the marginal likelihood, without the prior of the hypothesis
         form: standard deviation of what the forms leave, the most likely of `FORM`; 0 without a cause
+        short: what the slopes promise of log likelihood beyond the point, where the fit has stalled; the evidence lacks it
     """
 
     look: Look
@@ -59,6 +62,7 @@ class Fit:
     cost: float
     evidence: float
     form: float
+    short: float = 0.0
 
     @property
     def causes(self) -> tuple[str, ...]:
@@ -330,5 +334,16 @@ class _Line:
             white = White.of(V + share**2 * rough)
             e, g = white(residual), white(self.G)
             logs.append(white.log_density(e) + log_bayes_factor(g, e, self.low, self.high) + np.log(weight))
-        form = list(FORM)[int(np.argmax(logs))]
-        return Fit(look, noise, cost, float(logsumexp(logs)) + noise.log_prior, form)
+        form, short = list(FORM)[int(np.argmax(logs))], self._short(noise)
+        return Fit(look, noise, cost, float(logsumexp(logs)) + noise.log_prior - short, form, short)
+
+    def _short(self, noise: Noise) -> float:
+        """What the slopes promise of log likelihood beyond here, 0 where that is little; sizes stay at their bounds."""
+        vector, white, x = self.vector, White.of(noise.covariance), self.look.x
+        free = np.ones(len(x), dtype=bool)
+        free[vector.sizes] = (x[vector.sizes] > self.low) & (x[vector.sizes] < self.high)
+        J = white(self.look.jacobian)
+        H = J.T @ J + np.diag(vector.precision)
+        gradient = J.T @ white(self.problem.measured - self.look.shown) - vector.precision * x
+        promised = 0.5 * gradient[free] @ np.linalg.solve(H[np.ix_(free, free)], gradient[free])
+        return float(promised) if promised > STALLED else 0.0

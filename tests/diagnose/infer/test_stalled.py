@@ -1,0 +1,72 @@
+"""What the slopes of a stalled fit promise beyond the point where it stands counts for nothing."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from gearheat.diagnose.infer import draws, fit
+from gearheat.diagnose.infer.draws import correction
+from gearheat.diagnose.infer.evidence import WIDTHS
+from gearheat.diagnose.infer.fit import _Line
+from gearheat.diagnose.infer.problem import Acting
+
+#: Effects of one nuisance and of a size on five readings; the size at which its effect turns back.
+BY_Z, BY_T, TURNS = np.array([1.0, 0.5, 0.0, 0.3, -0.2]), np.array([0.5, 1.0, 1.5, 1.0, 0.4]), 1.5
+FORMULA: Any = SimpleNamespace(size=1, cause=SimpleNamespace(id="cause"), limits=(-50.0, 50.0))
+NOISE: Any = SimpleNamespace(covariance=np.eye(5), log_prior=0.0)
+
+
+class Turning:
+    """Readings that fall again behind a size, and never get as far as they are measured."""
+
+    nz, m, own = 1, 5, slice(0, 5)
+    alike, same = np.ones((5, 5)), np.eye(5)
+    measured = 4.0 * BY_T
+
+    def shown(self, z: np.ndarray, acting: tuple[Acting, ...]) -> np.ndarray:
+        t = acting[0].t[0]
+        return np.asarray(BY_Z * z[0] + BY_T * t * np.exp(-0.5 * (t / TURNS) ** 2))
+
+    def cost(self, x: np.ndarray) -> float:
+        e = self.measured - self.shown(x[:1], (Acting(FORMULA, x[1:]),))
+        return float(0.5 * e @ e + 0.5 * x[0] ** 2 + 0.5 * (x[1] / WIDTHS[-1]) ** 2)
+
+
+def stalled(problem: Any) -> fit.Fit:
+    x = np.array([0.0, 0.9 * TURNS])
+    acting = (Acting(FORMULA, x[1:]),)
+    slope = (1 - (x[1] / TURNS) ** 2) * np.exp(-0.5 * (x[1] / TURNS) ** 2)
+    J = np.column_stack([BY_Z, BY_T * slope])
+    look = SimpleNamespace(z=x[:1], acting=acting, shown=problem.shown(x[:1], acting), jacobian=J, x=x)
+    return _Line(problem, look).weighed(NOISE, problem.cost(x))  # type: ignore[arg-type]
+
+
+def test_evidence_lacks_what_the_slopes_promise(monkeypatch: pytest.MonkeyPatch) -> None:
+    problem: Any = Turning()
+    found = stalled(problem)
+    J, x = found.look.jacobian, found.look.x
+    precision = np.array([1.0, 1 / WIDTHS[-1] ** 2])
+    r = problem.measured - found.look.shown + J @ x
+    best = np.linalg.solve(J.T @ J + np.diag(precision), J.T @ r)
+    least = 0.5 * ((r - J @ best) ** 2).sum() + 0.5 * precision @ best**2
+    assert found.short == pytest.approx(problem.cost(x) - least) and found.short > 3
+    monkeypatch.setattr(fit, "STALLED", np.inf)
+    assert stalled(problem).evidence - found.evidence == pytest.approx(found.short)
+
+
+def test_the_correction_is_drawn_about_where_the_fit_stands(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where the slopes lead, no draw comes near what the readings say."""
+    problem: Any = Turning()
+    found = replace(stalled(problem), form=0.0)
+    z, t = np.linspace(-8, 8, 321), np.linspace(-12, 12, 1601)
+    costs = np.array([[problem.cost(np.array([a, b])) for b in t] for a in z])
+    exact = np.log(np.exp(-costs).sum() * (z[1] - z[0]) * (t[1] - t[0]))
+    J = found.look.jacobian
+    H = J.T @ J + np.diag([1.0, 1 / WIDTHS[-1] ** 2])
+    gaussian = -problem.cost(found.look.x) + found.short + np.log(2 * np.pi) - 0.5 * np.linalg.slogdet(H)[1]
+    monkeypatch.setattr(draws, "DRAWS", 4096)
+    assert correction(problem, found, seed=0).log - found.short == pytest.approx(exact - gaussian, abs=0.1)
