@@ -54,7 +54,7 @@ class Fit:
         cost: half the squared misfit, priors included
         evidence: log of the marginal likelihood, without the prior of the hypothesis
         form: standard deviation of what the forms leave, the most likely of `FORM`; 0 without a cause
-        short: what the slopes promise of log likelihood beyond the point, where the fit has stalled; the evidence lacks it
+        short: log likelihood that the slopes promise beyond the point, where the fit has stalled; the evidence lacks it
     """
 
     look: Look
