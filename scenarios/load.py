@@ -65,6 +65,7 @@ from ..model.errors import GearheatError, ScenarioError, suggestion
 from ..model.machines import cycloidal, drum_motor, harmonic, planetary, rv_stage
 from ..model.machines.spec import PartSpec, Spec, assemble
 from ..model.parts import PARTS
+from ..model.parts.free_form import EXTRA_PARTS
 from ..model.units import to_si
 from .assemblies import assembled
 from .document import ABOUT, paths, read_toml, sources_of
@@ -90,7 +91,7 @@ LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
 }
 
 
-def load(name_or_path: str | Path, types: Mapping[str, type[Component]] = PARTS) -> Scenario:
+def load(name_or_path: str | Path, types: Mapping[str, type[Component]] = PARTS | EXTRA_PARTS) -> Scenario:
     """The scenario of a shipped rig, or of a rig file.
 
     Args:

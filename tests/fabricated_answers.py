@@ -10,9 +10,13 @@ from typing import Any
 
 import numpy as np
 from gearheat.diagnose.infer.replay import HOURS, Replayed
-from gearheat.tools import bench, calibrate, exporting, film, replay, run, transients
+from gearheat.tools.bench import bench
 from gearheat.tools.challenge import command as challenge
 from gearheat.tools.challenge.scoring import Outcome, report
+from gearheat.tools.compare import calibrate, replay, run
+from gearheat.tools.export import fmu as exporting
+from gearheat.tools.films import film
+from gearheat.tools.solve import simulate as transients
 
 SENSORS = ("T_oil", "T_bearing_high_speed_rotor_side", "T_bearing_high_speed_generator_side")
 

@@ -15,7 +15,7 @@ from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import FmuError
 from gearheat.model.machines.spec import assemble
 from gearheat.scenarios.load import load
-from gearheat.tools.c_importer import Compiler, program, unpack
+from gearheat.tools.bench.c_importer import Compiler, program, unpack
 
 HERE = Path(__file__).parent / "fmu" / "importer"
 

@@ -33,8 +33,8 @@ from gearheat.model.run.schedule import stepped
 from gearheat.model.run.simulate import simulate
 from gearheat.scenarios.load import load
 from gearheat.scenarios.scenario import Scenario
-from gearheat.tools.settings import flat_of
-from gearheat.tools.systems import groups_of, taken_apart, write_system
+from gearheat.tools.export.systems import groups_of, taken_apart, write_system
+from gearheat.tools.solve.settings import flat_of
 
 #: Communication step of the FMUs and of the coupled system [s], and how long they run.
 STEP, HOURS, COUPLED, HOUR = 60.0, 14400.0, 10.0, 3600.0

@@ -7,10 +7,10 @@ from itertools import product
 from pathlib import Path
 
 import numpy as np
-from gearheat.diagnose.campaign.card import Card
-from gearheat.diagnose.campaign.nominal import Nominal
-from gearheat.diagnose.campaign.sensors import sensors_of
 from gearheat.model.units import from_si
+from gearheat.scenarios.measured.card import Card
+from gearheat.scenarios.measured.nominal import Nominal
+from gearheat.scenarios.measured.sensors import sensors_of
 from gearheat.scenarios.scenario import Scenario
 
 #: Speeds and loads of a made table, as parts of the operating point.

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 
-from gearheat.diagnose.library.extra_parts import EXTRA_PARTS
 from gearheat.model.core.component import Component, equation
 from gearheat.model.core.connect import Assembly
 from gearheat.model.core.declare import Input, Port
 from gearheat.model.core.flatten import flatten
 from gearheat.model.laws.oil import density, kinematic_viscosity, pressure_viscosity, thermoviscosity, walther_constants
 from gearheat.model.parts import PARTS as PHYSICS
+from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.parts.ports import Flange
 
 #: Every class of component: the physics, and the fit terms of the diagnosis.

@@ -1,1 +1,1 @@
-"""The command line and what stands behind it: compare, report, bench, check."""
+"""Rooms by what a user does; `gearheat` itself and the command line call them."""

@@ -9,12 +9,7 @@ from typing import ClassVar
 from ..core.component import Component, Equation, equation
 from ..core.declare import Choice, Parameter
 from ..laws.convection import mixed
-from ..laws.drum import (
-    cooling_area,
-    forced_rotating_cylinder,
-    gear_churning_loss,
-    source_coefficient,
-)
+from ..laws.drum import cooling_area, forced_rotating_cylinder, gear_churning_loss, source_coefficient
 from ..laws.pad import fill_arc, fill_volume_share
 from ..laws.smooth import SPEED_WIDTH, Num, smooth_abs
 from .friction import Friction

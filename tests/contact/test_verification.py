@@ -8,9 +8,10 @@ import pytest
 from gearheat.model.errors import DataError, SolveError
 from gearheat.model.laws import film_point
 from gearheat.model.sources import sources
-from gearheat.tools.cli import app
-from gearheat.tools.ehl import cases, command, pages, peer, steady, store
-from gearheat.tools.ehl.rows import Job, bound, row
+from gearheat.tools.bench import contact as peer
+from gearheat.tools.cli.app import app
+from gearheat.tools.verify.contact import cases, command, pages, steady, store
+from gearheat.tools.verify.contact.rows import Job, bound, row
 from pages import problems_of
 from typer.testing import CliRunner
 

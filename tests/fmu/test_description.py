@@ -25,7 +25,7 @@ from gearheat.model.machines.spec import assemble
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.units import in_unit
 from gearheat.scenarios.load import list_rigs, load
-from gearheat.tools.exporting import choices_of
+from gearheat.tools.export.fmu import choices_of
 
 
 @pytest.fixture(scope="module")

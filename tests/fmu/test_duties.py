@@ -9,10 +9,10 @@ from pathlib import Path
 import pytest
 from fmu_in_c import HERE, library, told, unpacked
 from gearheat.scenarios.load import load
-from gearheat.tools.c_importer import Compiler, program
-from gearheat.tools.exporting import operating_start
-from gearheat.tools.settings import adjusted, driven_at, flat_of
-from gearheat.tools.transients import first_temperatures
+from gearheat.tools.bench.c_importer import Compiler, program
+from gearheat.tools.export.fmu import operating_start
+from gearheat.tools.solve.settings import adjusted, driven_at, flat_of
+from gearheat.tools.solve.simulate import first_temperatures
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processor time is asked of Linux")
 

@@ -11,7 +11,7 @@ from fmu_in_c import gcc
 from gearheat.fmu import emit
 from gearheat.fmu.compiling import binary, host_platform
 from gearheat.model.errors import FmuError
-from gearheat.tools.c_importer import Compiler
+from gearheat.tools.bench.c_importer import Compiler
 
 
 def test_every_operation_gives_the_same_number(tmp_path: Path) -> None:

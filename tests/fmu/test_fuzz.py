@@ -14,7 +14,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from fmu_in_c import fuzzer, library, planetary, sanitizer, told, unpacked
-from gearheat.tools.c_importer import Compiler
+from gearheat.tools.bench.c_importer import Compiler
 
 ADDRESS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all", "-g", "-O1")
 

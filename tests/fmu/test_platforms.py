@@ -16,7 +16,7 @@ from binary_formats import Library, elf, pe, universal
 from fmu_in_c import HERE, checks, numbers, planetary, told
 from gearheat.fmu import compiling
 from gearheat.fmu.export import export
-from gearheat.tools.c_importer import Compiler, program, unpack
+from gearheat.tools.bench.c_importer import Compiler, program, unpack
 
 #: What every binary offers: the functions of FMI 2.0, and nothing else.
 FUNCTIONS = 44

@@ -12,7 +12,7 @@ import pytest
 from fmu_in_c import LIBRARY, check, checks, gcc, library, numbers, planetary, told, unpacked
 from gearheat.fmu.compiling import FLAGS, host_platform
 from gearheat.model.errors import FmuError
-from gearheat.tools.c_importer import Compiler, includes
+from gearheat.tools.bench.c_importer import Compiler, includes
 
 MODELS = ("rc", "heat", "planetary")
 

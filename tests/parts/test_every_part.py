@@ -7,9 +7,9 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from gearheat.diagnose.library.extra_parts import EXTRA_PARTS
 from gearheat.model.core.declare import declared
 from gearheat.model.laws.rolling import boundary_share
+from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.parts.ports import Flange, HeatPort
 from gearheat.model.parts.teeth import ToothedPart
 from gearheat.model.run.rows import evaluate_at

@@ -20,7 +20,7 @@ from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 from gearheat.scenarios.scenario import Scenario
-from gearheat.tools.heat_paths import heat_flows, heat_paths
+from gearheat.tools.show.heat_paths import heat_flows, heat_paths
 
 RIG = """
 kind = "network"

@@ -3,9 +3,9 @@
 import itertools
 
 import pytest
-from gearheat.diagnose.library.roles import Roles
 from gearheat.model.core.flatten import flatten
 from gearheat.model.laws.oil_convection import forced_disc_in_oil, forced_wall_in_oil
+from gearheat.model.machines.roles import Roles
 from gearheat.model.machines.spec import PartSpec, assemble
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.steady import steady

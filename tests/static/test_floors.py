@@ -17,7 +17,7 @@ ORDER = (
     ("model.machines", "model.contact"),
     ("model.run",),
     ("fmu", "scenarios"),
-    ("diagnose.campaign",),
+    ("tools.show",),
     ("diagnose.library",),
     ("diagnose.model",),
     ("diagnose.infer",),
@@ -25,7 +25,14 @@ ORDER = (
     ("diagnose.answer",),
     ("diagnose.report",),
     ("diagnose",),
-    ("tools",),
+    ("tools.solve",),
+    ("tools.describe", "tools.build", "tools.export", "tools.films", "tools.rating"),
+    ("tools.compare",),
+    ("tools.verify", "tools.bench"),
+    ("api",),
+    ("tools.docs", "tools.check", "tools.challenge"),
+    ("tools.cli",),
+    ("tools", "api.__main__"),
 )
 FLOORS = {name: floor for floor, names in enumerate(ORDER) for name in names}
 #: Neighbours that do not know each other: laws and core meet in the parts, fmu and scenarios above them.
@@ -33,8 +40,9 @@ STRANGERS = [{"model.laws", "model.core"}, {"model.machines", "model.contact"}, 
 
 
 def installed(path: Path) -> str:
-    """The dotted name of a file below `gearheat`, `__init__` included; the diagnosis is a package of its own."""
-    return ".".join(path.relative_to(ROOT).with_suffix("").parts).replace("tools.diagnose", "diagnose", 1)
+    """The dotted name of a file below `gearheat`, `__init__` included; two rooms are installed beside the others."""
+    name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
+    return name.replace("tools.diagnose", "diagnose", 1).replace("tools.api", "api", 1)
 
 
 MODULES = {
@@ -62,6 +70,8 @@ def named(node: ast.AST, package: list[str]) -> list[tuple[str, str]]:
 
 def module_of(stem: str, name: str) -> str:
     """The module that an import of a name reads; '' where there is none."""
+    if not stem and f"{name}.__init__" not in MODULES:  # a public name
+        return "api.__init__"
     full = f"{stem}.{name}".strip(".")
     return next((m for m in (full, f"{full}.__init__", stem, f"{stem}.__init__") if m in MODULES), "")
 
@@ -70,7 +80,7 @@ def imported(module: str) -> list[str]:
     """Modules of the project that a module imports. Raises AssertionError for one that does not exist."""
     found = []
     for node in ast.walk(ast.parse(MODULES[module].read_text(encoding="utf-8"))):
-        for stem, name in named(node, module.split(".")[:-1]):
+        for stem, name in named(node, [] if module.startswith("api.") else module.split(".")[:-1]):
             found.append(module_of(stem, name))
             assert found[-1], f"{module}: there is no module {stem}.{name}"
     return found

@@ -16,8 +16,9 @@ def tracked(*patterns: str) -> set[str]:
 
 
 def in_wheel(path: Path) -> str:
-    """Where a file of the project stands in the wheel: the diagnosis has a package of its own."""
-    return "gearheat/" + path.relative_to(ROOT).as_posix().replace("tools/diagnose/", "diagnose/", 1)
+    """Where a file of the project stands in the wheel: two rooms are installed beside the others."""
+    name = path.relative_to(ROOT).as_posix()
+    return "gearheat/" + name.replace("tools/diagnose/", "diagnose/", 1).replace("tools/api/", "", 1)
 
 
 def test_wheel_contents(tmp_path: Path) -> None:
@@ -26,10 +27,10 @@ def test_wheel_contents(tmp_path: Path) -> None:
     (wheel,) = tmp_path.glob("*.whl")
     held = set(zipfile.ZipFile(wheel).namelist())
     folders = (
-        "tools/templates",
+        *(f"tools/{room}/templates" for room in ("build", "compare", "describe", "show", "verify")),
         *(f"tools/docs/pages/{kind}" for kind in ("tutorials", "howto", "reference")),
         "tools/diagnose/report/templates",
-        "tools/diagnose/report/vendor",
+        "tools/show/vendor",
     )
     wanted = tracked("*.py", "py.typed", "*.toml", "*.csv", "*.c", "*.h", "*.schema.json")
     wanted |= {in_wheel(p) for folder in folders for p in (ROOT / folder).glob("*")}

@@ -15,7 +15,7 @@ from gearheat.fmu.equations import equations
 from gearheat.fmu.variables import table
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import StructureError
-from gearheat.tools.cli import app
+from gearheat.tools.cli.app import app
 from gearheat.tools.docs.blocks import PAGES, SHOWN, Reader, blocks, missing, pages, read, same
 from small_parts import rc
 

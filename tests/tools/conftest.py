@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 from gearheat.scenarios.shipped import RIGS
-from gearheat.tools.cli import app
+from gearheat.tools.cli.app import app
 from typer.testing import CliRunner
 
 

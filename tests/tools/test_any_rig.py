@@ -6,8 +6,8 @@ import csv
 
 import pytest
 from gearheat.scenarios.load import load
-from gearheat.tools.measured import measured_of
-from gearheat.tools.readings import measured_rows
+from gearheat.tools.compare.measured import measured_of
+from gearheat.tools.compare.readings import measured_rows
 from made_tables import made, written
 
 RIG = "helical_two_stage"

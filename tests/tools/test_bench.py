@@ -2,8 +2,8 @@ from __future__ import annotations
 
 import json
 
-from gearheat.tools.bench import _imports, _integration
-from gearheat.tools.bench_uncertainty import measure
+from gearheat.tools.bench.bench import _imports, _integration
+from gearheat.tools.bench.uncertainty import measure
 
 
 def test_the_fmu_is_ten_times_faster_than_scipy_at_no_larger_error():

@@ -7,8 +7,8 @@ import pytest
 from gearheat.fmu.equations import equations
 from gearheat.model.core.flatten import flatten
 from gearheat.model.run.rows import evaluate_at
-from gearheat.tools import bench_fmu
-from gearheat.tools.bench_costs import chain, growth, massless, massless_chain
+from gearheat.tools.bench import fmu as bench_fmu
+from gearheat.tools.bench.costs import chain, growth, massless, massless_chain
 
 
 def test_figures_of_the_fmu_and_its_peers() -> None:

@@ -8,7 +8,7 @@ import pytest
 import typer
 from gearheat.scenarios.entries import catalogue
 from gearheat.scenarios.shipped import FILES, RIGS
-from gearheat.tools.cli import app
+from gearheat.tools.cli.app import app
 
 COMMANDS = (
     "run",
@@ -35,7 +35,7 @@ COMMANDS = (
 @pytest.mark.parametrize("argument", ["--help", "list"])
 def test_what_a_user_asks_first_loads_nothing_heavy(argument):
     code = (
-        f"import sys; from gearheat.tools.cli import app\n"
+        f"import sys; from gearheat.tools.cli.app import app\n"
         f"try:\n    app(['{argument}'])\nexcept SystemExit: pass\n"
         "heavy = {'casadi', 'numpy', 'scipy', 'matplotlib', 'pint', 'fmpy'} & set(sys.modules)\n"
         "print(sorted(heavy), file=sys.stderr)"
@@ -58,7 +58,7 @@ def test_help_sets_the_commands_for_developers_apart(gearheat):
 )
 def test_the_shell_completes_commands_rigs_and_options(typed, found):
     asked = {"_GEARHEAT_COMPLETE": "complete_bash", "COMP_WORDS": typed, "COMP_CWORD": str(typed.count(" "))}
-    code = "from gearheat.tools.cli import app; app(prog_name='gearheat')"
+    code = "from gearheat.tools.cli.app import app; app(prog_name='gearheat')"
     environment = {**os.environ, **asked}
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, env=environment, check=False)
     assert done.stdout.split() == [found]

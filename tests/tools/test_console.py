@@ -15,8 +15,9 @@ import numpy as np
 import pytest
 from gearheat.model.errors import DataError, SolveError
 from gearheat.model.files import reading
-from gearheat.tools import cli, entry
-from gearheat.tools.console import as_json, cell, folder, guarded, table, writable, write
+from gearheat.tools.cli import __main__ as entry
+from gearheat.tools.cli import app as cli
+from gearheat.tools.show.console import as_json, cell, folder, guarded, table, writable, write
 
 
 def test_json_holds_no_value_that_is_no_json():
@@ -145,7 +146,7 @@ def test_pipes_and_devices_are_written_through(tmp_path):
 @pytest.mark.parametrize("name", ["/dev/stdout", "/dev/fd/1"])
 def test_the_streams_of_the_process_are_written_through(tmp_path, name):
     program = (
-        "from pathlib import Path; from gearheat.tools.console import writable, write\n"
+        "from pathlib import Path; from gearheat.tools.show.console import writable, write\n"
         f"out = Path({name!r}); print('one'); writable(out); write(out, 'two\\n'); print('three')"
     )
     command = [sys.executable, "-c", program]
@@ -163,7 +164,7 @@ def test_the_streams_of_the_process_are_written_through(tmp_path, name):
 )
 def test_a_table_goes_to_the_standard_output(command):
     words = [command[0], "helical_two_stage", *map(str, command[1:]), "-o", "/dev/stdout", "--json", "/dev/null"]
-    program = [sys.executable, "-c", "from gearheat.tools.entry import main; main()", *words]
+    program = [sys.executable, "-c", "from gearheat.tools.cli.__main__ import main; main()", *words]
     done = subprocess.run(program, capture_output=True, text=True, check=True)
     assert "room.T [degC],oil.T [degC]" in done.stdout or "input.w [rpm],output.tau [N.m]" in done.stdout
     assert not Path("/dev/stdout.part").exists()
@@ -178,7 +179,7 @@ def test_a_table_goes_to_the_standard_output(command):
     ],
 )
 def test_a_full_device_is_a_message(arguments, said):
-    command = [sys.executable, "-c", "from gearheat.tools.entry import main; main()", *arguments]
+    command = [sys.executable, "-c", "from gearheat.tools.cli.__main__ import main; main()", *arguments]
     with Path("/dev/full").open("w") as full:
         done = subprocess.run(command, stdout=full, stderr=subprocess.PIPE, text=True, check=False)
     assert done.returncode == 2
@@ -200,7 +201,7 @@ def test_ctrl_c_while_the_program_loads(monkeypatch, capsys):
     def program():
         raise KeyboardInterrupt
 
-    monkeypatch.setitem(sys.modules, "gearheat.tools.cli", SimpleNamespace(program=program))
+    monkeypatch.setitem(sys.modules, "gearheat.tools.cli.app", SimpleNamespace(program=program))
     with pytest.raises(SystemExit) as ended:
         entry.main()
     assert ended.value.code == 130

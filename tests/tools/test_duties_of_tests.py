@@ -5,9 +5,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gearheat.scenarios.load import load
-from gearheat.tools.campaign import Run, runs_of
-from gearheat.tools.measured import Measured, measured_of
-from gearheat.tools.settings import flat_of
+from gearheat.tools.compare.campaign import Run, runs_of
+from gearheat.tools.compare.measured import Measured, measured_of
+from gearheat.tools.solve.settings import flat_of
 
 HEADER = "point,test,order,direction,dwell_min,oil,n_carrier_rpm,T_carrier_Nm,T_sun_Nm,T_oil_C,T_wall_C,T_amb_C"
 ROWS = ("1,1,1,1,240,PAOR,100,1500,370,45,44,25", "2,1,1,2,90,PAOR,100,1500,380,47,45,27")

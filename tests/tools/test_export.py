@@ -23,8 +23,8 @@ from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 from gearheat.scenarios.write import rig_text
-from gearheat.tools.network import network_svg
-from gearheat.tools.settings import adjusted, flat_of
+from gearheat.tools.show.network import network_svg
+from gearheat.tools.solve.settings import adjusted, flat_of
 
 SSV = "{http://ssp-standard.org/SSP1/SystemStructureParameterValues}"
 ABOUT = "{urn:org.gearheat:provenance:1}provenance"
@@ -56,7 +56,7 @@ def elsewhere(monkeypatch):
 @pytest.fixture(scope="module")
 def exported(tmp_path_factory):
     """Every variant with what the command said of it."""
-    from gearheat.tools.cli import app
+    from gearheat.tools.cli.app import app
     from typer.testing import CliRunner
 
     folder = tmp_path_factory.mktemp("export")

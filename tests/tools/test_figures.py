@@ -14,8 +14,8 @@ from gearheat.diagnose.report import figures, plan
 from gearheat.diagnose.report.evidence import Rows, View
 from gearheat.diagnose.report.page import render
 from gearheat.scenarios.shipped import RIGS
-from gearheat.tools import plots
-from gearheat.tools.compare import measured
+from gearheat.tools.compare import plots
+from gearheat.tools.compare.errors import measured
 from matplotlib.figure import Figure
 from pages import words_that_collide
 

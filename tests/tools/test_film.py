@@ -11,9 +11,9 @@ import pytest
 from film_tables import written
 from gearheat.model.contact import solve
 from gearheat.scenarios.film_map import read_film_map
-from gearheat.tools import film
-from gearheat.tools.film_case import from_rig
-from gearheat.tools.rigs import load
+from gearheat.scenarios.load import load
+from gearheat.tools.films import film
+from gearheat.tools.films.case import from_rig
 
 CASE = """
 [contact]

@@ -13,10 +13,10 @@ from gearheat.fmu.play import Player
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
-from gearheat.tools.campaign import runs_of
+from gearheat.tools.compare.campaign import runs_of
+from gearheat.tools.compare.measured import measured_of
 from gearheat.tools.docs.blocks import PAGES
-from gearheat.tools.measured import measured_of
-from gearheat.tools.settings import flat_of
+from gearheat.tools.solve.settings import flat_of
 
 
 @pytest.fixture(scope="module")

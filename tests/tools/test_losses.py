@@ -7,7 +7,7 @@ import json
 from typing import Any
 
 import pytest
-from gearheat.tools.cli import app
+from gearheat.tools.cli.app import app
 from typer.testing import CliRunner
 
 PARTS = ("P_mesh_W", "P_trb_W", "P_dgb_W", "P_needle_W", "P_seal_W")

@@ -7,9 +7,9 @@ import math
 import casadi as ca
 import pytest
 from gearheat.model.parts import TwoGearSupport
-from gearheat.tools import sizing
-from gearheat.tools.rigs import load
-from gearheat.tools.settings import flat_of
+from gearheat.scenarios.load import load
+from gearheat.tools.build import sizing
+from gearheat.tools.solve.settings import flat_of
 
 FORCES = ("F_t", "F_r", "F_a")
 PLATES = {

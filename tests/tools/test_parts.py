@@ -9,7 +9,7 @@ import pytest
 from gearheat.model.core.declare import Parameter, Port, declared
 from gearheat.model.parts import PARTS
 from gearheat.scenarios.shipped import RIGS
-from gearheat.tools import parts
+from gearheat.tools.describe import parts
 
 SCHEMA = parts.schema()
 

@@ -10,13 +10,13 @@ import pytest
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.steady import steady
-from gearheat.tools.courses import courses
-from gearheat.tools.fields import Field, fields
-from gearheat.tools.heat_paths import heat_flows, heat_paths
-from gearheat.tools.plotting import plotted
-from gearheat.tools.points import conditions
-from gearheat.tools.rigs import load
-from gearheat.tools.sankey import heat_picture, placed
+from gearheat.scenarios.load import load
+from gearheat.tools.show.courses import courses
+from gearheat.tools.show.fields import Field, fields
+from gearheat.tools.show.heat_paths import heat_flows, heat_paths
+from gearheat.tools.show.plotting import plotted
+from gearheat.tools.show.sankey import heat_picture, placed
+from gearheat.tools.solve.steady import conditions
 from pages import problems_of, words_that_collide
 
 KINDS = {".svg": b"<svg", ".png": b"\x89PNG", ".html": b"<!doctype html>"}

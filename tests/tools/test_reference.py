@@ -14,10 +14,10 @@ from gearheat.model.core.component import equation
 from gearheat.model.core.declare import Output, Parameter
 from gearheat.model.machines.spec import PartSpec
 from gearheat.model.parts.friction import Friction
-from gearheat.tools.cli import app
-from gearheat.tools.reference.gather import machine_of
-from gearheat.tools.reference.methods import METHODS
-from gearheat.tools.rigs import load
+from gearheat.scenarios.load import load
+from gearheat.tools.cli.app import app
+from gearheat.tools.rating.gather import machine_of
+from gearheat.tools.rating.methods import METHODS
 from typer.testing import CliRunner
 
 RIG = "helical_two_stage"

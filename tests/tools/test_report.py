@@ -4,10 +4,10 @@ import re
 
 import numpy as np
 import pytest
-from gearheat.tools.compare import compare, measured
-from gearheat.tools.plots import breakdown, parity, residuals, warm_up
-from gearheat.tools.rivals import rivals
-from gearheat.tools.summary import error_lines
+from gearheat.tools.compare.errors import compare, measured
+from gearheat.tools.compare.plots import breakdown, parity, residuals, warm_up
+from gearheat.tools.compare.rivals import rivals
+from gearheat.tools.compare.summary import error_lines
 
 TEMPERATURES = ("T_oil_C", "T_wall_C", "T_amb_C")
 

@@ -5,14 +5,14 @@ import json
 from pathlib import Path
 
 import pytest
-from gearheat.diagnose.library.extra_parts import EXTRA_PARTS
 from gearheat.model.errors import ScenarioError
 from gearheat.model.machines.spec import PartSpec
 from gearheat.model.parts import PARTS
+from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.scenarios import load as rig_files
+from gearheat.scenarios.load import load
 from gearheat.scenarios.write import rig_text
-from gearheat.tools.rigs import load
-from gearheat.tools.settings import adjusted, flat_of
+from gearheat.tools.solve.settings import adjusted, flat_of
 
 #: 40 W at 20 rad/s, everywhere.
 VALUES = {"P_ref": 40.0, "w_ref": 20.0, "tau_ref": 1500.0, "a": 1.0, "c": 0.0, "forward": 1.0, "backward": 1.0}
@@ -38,7 +38,7 @@ def extended(tmp_path: Path) -> Path:
 def test_the_physics_knows_no_fit_terms(extended: Path) -> None:
     assert not PARTS.keys() & EXTRA_PARTS.keys()
     with pytest.raises(ScenarioError, match='no part type "ExtraHeat"'):
-        rig_files.load(extended)
+        rig_files.load(extended, PARTS)
 
 
 def test_a_rig_with_fit_terms_loads_and_can_be_set(extended: Path) -> None:

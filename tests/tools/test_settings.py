@@ -7,7 +7,7 @@ from gearheat.model.run.design import design
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 from gearheat.scenarios.scenario import deduced
-from gearheat.tools.settings import adjusted, driven_at, flat_of
+from gearheat.tools.solve.settings import adjusted, driven_at, flat_of
 
 GIVEN = {"carrier": ("w", "tau")}
 

@@ -18,26 +18,21 @@ import fabricated_findings
 import pytest
 from fabricated_answers import ANSWERS
 from gearheat.diagnose.report.screen import text
-from gearheat.tools import (
-    cards,
-    console,
-    describe,
-    designing,
-    listing,
-    losses,
-    maps,
-    new,
-    parts,
-    points,
-    summary,
-    sweep,
-    transients,
-    verify,
-)
-from gearheat.tools.compare import compare
-from gearheat.tools.console import cell, table
-from gearheat.tools.reference import command as reference
-from gearheat.tools.rivals import rivals
+from gearheat.tools.build import new
+from gearheat.tools.cli import cards
+from gearheat.tools.compare import losses, summary
+from gearheat.tools.compare.errors import compare
+from gearheat.tools.compare.rivals import rivals
+from gearheat.tools.describe import listing, parts
+from gearheat.tools.describe import rig as describe
+from gearheat.tools.rating import command as reference
+from gearheat.tools.show import console
+from gearheat.tools.show.console import cell, table
+from gearheat.tools.solve import design as designing
+from gearheat.tools.solve import maps, sweep
+from gearheat.tools.solve import simulate as transients
+from gearheat.tools.solve import steady as points
+from gearheat.tools.verify import verify
 
 FOLDER = Path(__file__).parent / "snapshots"
 WIDTHS = (80, 120)

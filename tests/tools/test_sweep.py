@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gearheat.model.errors import DataError, ScenarioError
-from gearheat.tools import sampling, sweep, sweep_rows
-from gearheat.tools.sampling import Axis
-from gearheat.tools.sweep_file import Store
+from gearheat.tools.solve import sampling, sweep, sweep_rows
+from gearheat.tools.solve.sampling import Axis
+from gearheat.tools.solve.sweep_file import Store
 
 VARY = ("--vary", "carrier.tau=500..2700 N.m", "--vary", "room.T=10..35 degC")
 KEPT = ("--output", "oil.T,efficiency.eta")
@@ -200,8 +200,8 @@ def test_a_warm_up_of_given_length_shows_its_end(gearheat, tmp_path) -> None:
 
 KILLED = """
 import os, signal, sys
-from gearheat.tools import sweep, sweep_rows
-from gearheat.tools.cli import app
+from gearheat.tools.solve import sweep, sweep_rows
+from gearheat.tools.cli.app import app
 
 sweep.BLOCKS["steady"] = 16
 solve, calls = sweep_rows.Job.rows, []

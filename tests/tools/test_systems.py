@@ -14,8 +14,8 @@ from fmpy.ssp.ssd import read_ssd
 from gearheat.model.errors import ScenarioError
 from gearheat.model.run.schedule import stepped
 from gearheat.model.run.simulate import simulate
-from gearheat.tools.settings import flat_of
-from gearheat.tools.systems import groups_of, taken_apart, write_system
+from gearheat.tools.export.systems import groups_of, taken_apart, write_system
+from gearheat.tools.solve.settings import flat_of
 from importers import RIG
 from lxml import etree
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from gearheat.tools.throughput import measure
+from gearheat.tools.bench.throughput import measure
 
 
 def test_throughput_and_error_of_a_batch() -> None:

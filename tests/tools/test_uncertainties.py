@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from gearheat.fmu.play import play
 from gearheat.model.core.flat import FlatModel
+from gearheat.scenarios.load import load
 from gearheat.scenarios.scenario import Scenario
-from gearheat.tools.rigs import load
-from gearheat.tools.settings import flat_of
-from gearheat.tools.uncertainties import reasons, sampled
+from gearheat.tools.solve.settings import flat_of
+from gearheat.tools.solve.uncertainties import reasons, sampled
 
 #: A shipped rig whose code is short.
 SMALL = "cycloidal_areas"

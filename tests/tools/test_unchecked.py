@@ -5,10 +5,10 @@ from __future__ import annotations
 import pytest
 from gearheat.scenarios.load import load
 from gearheat.scenarios.write import rig_text
-from gearheat.tools.losses import oils_of
-from gearheat.tools.measured import measured_of
-from gearheat.tools.settings import adjusted, flat_of
-from gearheat.tools.unchecked import unchecked
+from gearheat.tools.compare.losses import oils_of
+from gearheat.tools.compare.measured import measured_of
+from gearheat.tools.solve.settings import adjusted, flat_of
+from gearheat.tools.solve.unchecked import unchecked
 
 OIL = {
     "catalogue": "oil",

@@ -11,8 +11,8 @@ from gearheat.scenarios.golden import golden_rows
 from gearheat.scenarios.load import RIGS, list_rigs
 from gearheat.scenarios.published import Row, read_published
 from gearheat.tools.docs.blocks import PAGES
-from gearheat.tools.verdicts import CONTRADICTED, NOT_REPRODUCED, REPRODUCED, VERDICTS, Value, judged
-from gearheat.tools.verify import law_of
+from gearheat.tools.verify.verdicts import CONTRADICTED, NOT_REPRODUCED, REPRODUCED, VERDICTS, Value, judged
+from gearheat.tools.verify.verify import law_of
 from pages import problems_of
 
 PAGE = (PAGES / "trust" / "verified.md").read_text(encoding="utf-8")

@@ -22,7 +22,7 @@ Diagnoser = Callable[[Mapping[str, Path], Path], None]
 #: The command, in a process that notes its processor time [s].
 PROGRAM = """
 import atexit, os, pathlib, sys
-from gearheat.tools.entry import main
+from gearheat.tools.cli.__main__ import main
 atexit.register(lambda: pathlib.Path(os.environ["SECONDS_FILE"]).write_text(str(sum(os.times()[:4]))))
 main()
 """

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ...model.errors import ScenarioError, suggestion
-from .. import console
+from ..show import console
 from .bench import run, tasks
 from .hide import KINDS
 from .scoring import Outcome, report

@@ -8,17 +8,15 @@ from pathlib import Path
 from typing import TypeVar
 
 from ..model.errors import DataError, GearheatError, suggestion
-from ..model.parts import PARTS
 from ..scenarios.load import load
+from ..scenarios.measured.card import Card, read_card
+from ..scenarios.measured.checks import outlying, same_as_reference, too_small
+from ..scenarios.measured.invisible import invisible
+from ..scenarios.measured.read import read_campaign
+from ..scenarios.measured.samples import read_samples
+from ..scenarios.measured.series import series_of
+from ..scenarios.measured.table import Campaign
 from ..scenarios.scenario import Scenario
-from .campaign.card import Card, read_card
-from .campaign.checks import outlying, same_as_reference, too_small
-from .campaign.invisible import invisible
-from .campaign.read import read_campaign
-from .campaign.samples import read_samples
-from .campaign.series import series_of
-from .campaign.table import Campaign
-from .library.extra_parts import EXTRA_PARTS
 
 T = TypeVar("T")
 
@@ -232,7 +230,7 @@ class _Reader:
     def __init__(self, rig: str, card: Path | None, problems: list[str]) -> None:
         self.problems = problems
         self.card = self._tried(lambda: read_card(card)) if card is None or card.is_file() else None
-        self.scenario = self._tried(lambda: load(rig, PARTS | EXTRA_PARTS))
+        self.scenario = self._tried(lambda: load(rig))
 
     def table(self, path: Path | None, *, points: bool = False) -> Campaign | None:
         """A table; None where there is none, or something is wrong with it."""

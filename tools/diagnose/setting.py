@@ -7,20 +7,20 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
+from ..model.machines.roles import Roles
 from ..model.machines.spec import Spec
+from ..scenarios.measured.card import Card
+from ..scenarios.measured.lubrication import lubricated, oils_of
+from ..scenarios.measured.nominal import Nominal
+from ..scenarios.measured.sensors import driven_by
+from ..scenarios.measured.table import Campaign
 from ..scenarios.scenario import Scenario
-from .campaign.card import Card
-from .campaign.nominal import Nominal
-from .campaign.sensors import driven_by
-from .campaign.table import Campaign
 from .infer.problem import Problem
 from .library.cause import Cause, Nuisance, Ranges
 from .library.forms import Context
 from .library.nuisances import habit, nuisances
 from .library.registry import library
-from .library.roles import Roles
 from .model.formula import Formula
-from .model.lubrication import lubricated, oils_of
 from .model.observe import Observed
 from .model.plant import Plant
 from .model.ranges import ranges_of

@@ -12,7 +12,7 @@ from pathlib import Path
 from typer.core import TyperGroup
 
 from ...model.errors import GearheatError
-from ..console import folder, note
+from ..show.console import folder, note
 from . import commands, reference
 from .blocks import FENCE, MARKS, PAGES, run_pages
 from .laws import filled

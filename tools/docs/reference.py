@@ -12,14 +12,11 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from ...diagnose.campaign.card import read_card
-from ...diagnose.campaign.read import read_campaign
-from ...diagnose.campaign.write import as_toml, default_card
+from ...diagnose.library.nuisances import usual_priors
 from ...diagnose.library.registry import library
-from ...diagnose.library.roles import Roles
-from ...diagnose.model.lubrication import oils_of
 from ...diagnose.model.ranges import ranges_of
 from ...model import laws
+from ...model.machines.roles import Roles
 from ...model.parts import PARTS
 from ...model.sources import LawInfo, sources
 from ...model.units import PER_MINUTE, ROTATIONS, SPELLINGS, UNCLEAR
@@ -27,10 +24,13 @@ from ...scenarios import load as loading
 from ...scenarios.entries import catalogue
 from ...scenarios.golden import golden_rows
 from ...scenarios.load import load
+from ...scenarios.measured.card import read_card
+from ...scenarios.measured.lubrication import oils_of
+from ...scenarios.measured.read import read_campaign
+from ...scenarios.measured.write import as_toml, default_card
 from ...scenarios.shipped import FILES, RIGS, list_rigs
 from ...scenarios.tables import CampaignTable, ErratumTable, RigTable, SensorTable, Strict
-from ..cards import usual_priors
-from ..parts import described
+from ..describe.parts import described
 from .laws import facts, law_modules, laws_of, title
 from .markdown import arguments, code, docstring, fenced, listing, table, words
 

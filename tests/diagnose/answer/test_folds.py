@@ -8,10 +8,10 @@ import numpy as np
 from gearheat.diagnose.answer import rivals
 from gearheat.diagnose.answer.folds import levels, schemes
 from gearheat.diagnose.answer.grid import planned_campaign
-from gearheat.diagnose.campaign.card import Card
 from gearheat.diagnose.infer.found import Found
 from gearheat.diagnose.setting import Setting
 from gearheat.scenarios.load import load
+from gearheat.scenarios.measured.card import Card
 
 
 def test_levels_are_where_the_gaps_are() -> None:

@@ -6,9 +6,9 @@ from diagnose.hidden.benches import BENCHES, HARMONIC, HELICAL, PLANETARY
 from diagnose.hidden.cases import HIDDEN
 from diagnose.hidden.loudness import chi_square, signal_to_noise
 from diagnose.hidden.maker import Gross, make, model, run
-from gearheat.diagnose.campaign.card import read_card
-from gearheat.diagnose.campaign.read import read_campaign
 from gearheat.scenarios.load import load
+from gearheat.scenarios.measured.card import read_card
+from gearheat.scenarios.measured.read import read_campaign
 
 
 @pytest.mark.parametrize("rig", BENCHES)

@@ -8,7 +8,7 @@ import numpy as np
 from diagnose.hidden.benches import HELICAL
 from diagnose.hidden.cases import HIDDEN
 from diagnose.hidden.maker import make
-from gearheat.tools.cli import app
+from gearheat.tools.cli.app import app
 from typer.testing import CliRunner
 
 #: Samples of a log, its step [s], and what each input is held at [columns of a duty: lowest, highest, samples].

@@ -10,7 +10,7 @@ from diagnose.hidden.benches import HELICAL
 from diagnose.hidden.cases import HIDDEN
 from diagnose.hidden.maker import make
 from gearheat.scenarios.shipped import RIGS
-from gearheat.tools.cli import app
+from gearheat.tools.cli.app import app
 from gearheat.tools.docs.blocks import PAGES
 from typer.testing import CliRunner
 

@@ -4,19 +4,19 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import pytest
-from gearheat.diagnose.campaign.card import Card
-from gearheat.diagnose.campaign.sensors import sensors_of
-from gearheat.diagnose.campaign.table import Sensor
 from gearheat.diagnose.library.cause import Cause, Ranges
-from gearheat.diagnose.library.extra_parts import EXTRA_PARTS
 from gearheat.diagnose.library.registry import library
-from gearheat.diagnose.library.roles import Roles
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
+from gearheat.model.machines.roles import Roles
 from gearheat.model.machines.spec import assemble
+from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.run.result import Result
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
+from gearheat.scenarios.measured.card import Card
+from gearheat.scenarios.measured.sensors import sensors_of
+from gearheat.scenarios.measured.table import Sensor
 from gearheat.scenarios.scenario import Scenario
 
 #: All that may be known of the rows of a campaign.

@@ -3,8 +3,8 @@
 from dataclasses import replace
 
 import pytest
-from gearheat.diagnose.library.roles import Roles
 from gearheat.model.errors import ScenarioError
+from gearheat.model.machines.roles import Roles
 from gearheat.model.machines.spec import PartSpec, Spec
 from gearheat.scenarios.load import list_rigs, load
 

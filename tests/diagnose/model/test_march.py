@@ -8,11 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearheat.diagnose.campaign.card import read_card
-from gearheat.diagnose.campaign.read import read_campaign
-from gearheat.diagnose.campaign.table import Campaign
 from gearheat.diagnose.library.cause import Cause, Form, Nuisance, Shape, Size
-from gearheat.diagnose.library.roles import Roles
 from gearheat.diagnose.model import duty
 from gearheat.diagnose.model.duty import STEADY
 from gearheat.diagnose.model.formula import Formula
@@ -20,9 +16,13 @@ from gearheat.diagnose.model.march import Phases, march
 from gearheat.diagnose.model.observe import Observed
 from gearheat.diagnose.model.plant import Plant
 from gearheat.model.core.flatten import flatten
+from gearheat.model.machines.roles import Roles
 from gearheat.model.machines.spec import PartSpec, assemble
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
+from gearheat.scenarios.measured.card import read_card
+from gearheat.scenarios.measured.read import read_campaign
+from gearheat.scenarios.measured.table import Campaign
 
 FOLDER = Path(duty.__file__).parents[3] / "scenarios" / "rigs" / "planetary"
 SIZE = Size("size", "1", "", 0.1, -1.0, 1.0)

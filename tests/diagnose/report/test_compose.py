@@ -17,9 +17,9 @@ from gearheat.diagnose.infer.problem import Acting
 from gearheat.diagnose.report import compose_data, compose_pictures, compose_points, compose_rig
 from gearheat.diagnose.request import Inputs, Request, read
 from gearheat.diagnose.setting import Setting, setting
-from gearheat.tools.rigs import load
-from gearheat.tools.settings import flat_of
-from gearheat.tools.uncertainties import reasons
+from gearheat.scenarios.load import load
+from gearheat.tools.solve.settings import flat_of
+from gearheat.tools.solve.uncertainties import reasons
 
 CASE = Path(__file__).parents[2] / "tools" / "practice" / "foreign_006"
 CAUSE = "losses.churning"

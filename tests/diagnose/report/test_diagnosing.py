@@ -12,8 +12,9 @@ from gearheat.diagnose.report.findings import Findings, Prediction
 from gearheat.diagnose.request import Inputs, Request
 from gearheat.model.errors import DataError
 from gearheat.scenarios.shipped import RIGS
-from gearheat.tools import cli, diagnosing
-from gearheat.tools.diagnosing import Outputs, Progress, diagnose_command
+from gearheat.tools.cli import app as cli
+from gearheat.tools.cli import diagnosing
+from gearheat.tools.cli.diagnosing import Outputs, Progress, diagnose_command
 from jsonschema import validate
 from typer.testing import CliRunner
 

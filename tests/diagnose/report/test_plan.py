@@ -22,8 +22,9 @@ from gearheat.diagnose.report.plan import (
 from gearheat.diagnose.report.plan import text as printed
 from gearheat.diagnose.request import PlanInputs, PlanRequest, unknown_causes
 from gearheat.model.errors import DataError
-from gearheat.tools import cli, diagnosing
-from gearheat.tools.diagnosing import Progress, plan_command
+from gearheat.tools.cli import app as cli
+from gearheat.tools.cli import diagnosing
+from gearheat.tools.cli.diagnosing import Progress, plan_command
 from typer.testing import CliRunner
 
 PAIR = (AIR, EMISSIVITY)

@@ -9,11 +9,11 @@ from datetime import UTC, datetime
 import numpy as np
 
 from ...model.core.flatten import flatten
+from ...model.machines.roles import Roles
 from ...model.machines.spec import assemble
+from ...scenarios.measured.logs import Log
 from ...scenarios.scenario import Scenario
-from ..campaign.logs import Log
 from ..library.knobs import Knob, knobs
-from ..library.roles import Roles
 from ..model.logs import Filter, Passed
 from ..model.plant import Plant
 from ..model.windows import Windows, windows

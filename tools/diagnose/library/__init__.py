@@ -3,10 +3,10 @@
 The page `contributing/cause.md` of the documentation shows how to add a cause.
 """
 
-from ..campaign.table import Sensor
+from ...model.machines.roles import Roles
+from ...scenarios.measured.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size
 from .extras import Extras
 from .forms import Context
-from .roles import Roles
 
 __all__ = ["Cause", "Context", "Extras", "Form", "Ranges", "Roles", "Row", "Sensor", "Shape", "Size"]

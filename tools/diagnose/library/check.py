@@ -9,9 +9,9 @@ import numpy as np
 from ...model.core.declare import Parameter, declared
 from ...model.errors import suggestion
 from ...model.machines.spec import Spec
-from ..campaign.table import Sensor
+from ...model.parts.free_form import EXTRA_PARTS
+from ...scenarios.measured.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Values, as_array
-from .extra_parts import EXTRA_PARTS
 
 #: Accuracy to which a form has to leave things as they are at size zero, relative.
 NEUTRAL = 1e-6

@@ -8,12 +8,12 @@ from dataclasses import replace
 import casadi as ca
 
 from ...model.laws.smooth import smooth_abs
-from ..campaign.table import Sensor
+from ...model.machines.roles import Roles
+from ...model.parts.free_form import step
+from ...scenarios.measured.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size, Theta, Values
-from .extra_parts import step
 from .extras import Extras
 from .forms import SIDE, Context, Regime, shared
-from .roles import Roles
 
 AIR = "moving air: a better coefficient and faster air are one answer"
 DAYS = "day to day: humidity and other scatter of the days are one answer unless humidity is measured"

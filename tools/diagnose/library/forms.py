@@ -8,10 +8,10 @@ from dataclasses import dataclass
 import casadi as ca
 
 from ...model.laws.smooth import smooth_abs
-from ..campaign.table import Sensor
+from ...model.machines.roles import Roles
+from ...model.parts.free_form import step
+from ...scenarios.measured.table import Sensor
 from .cause import Form, Num, Ranges, Row, Shape, Size, Theta, Values
-from .extra_parts import step
-from .roles import Roles
 
 #: What changes values of the machine.
 Changes = Callable[[Theta, Row], Values]

@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from ..campaign.table import Sensor
+from ...model.machines.roles import Roles
+from ...scenarios.measured.table import Sensor
 from .cause import Cause, Mostly, Ranges, Shape, Small
 from .extras import Extras
 from .forms import SIDE, Context
-from .roles import Roles
 
 #: A machine stands below this share of its typical speed, with as gradual a change.
 STANDS = 0.05

@@ -13,11 +13,11 @@ from dataclasses import replace
 
 import casadi as ca
 
-from ..campaign.table import Sensor
+from ...model.machines.roles import Place, Roles
+from ...scenarios.measured.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size, Small, Theta, Values
 from .extras import Extras
 from .forms import INNER_SHARE, Changes, Context, Regime, oil_share, shared
-from .roles import Place, Roles
 
 NO_LOAD = "no-load oil loss: churning, windage and oil level differ only in how the oil is reached"
 SHAFTS = "friction of shafts: preload and seal drag are the same torque to every steady instrument"

@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
+from ...model.machines.roles import Roles
 from ...model.machines.spec import PartSpec
+from ...scenarios.scenario import Scenario
 from .cause import Nuisance
 from .extras import Extras
 from .forms import Context
-from .roles import Roles
 
 #: Friction in thin films that is the machine's own: share of the typical loss, and its exponents of speed, viscosity
 #: and load, in the middle of what starved teeth do.
@@ -152,3 +153,23 @@ def habit(at: Context) -> Nuisance | None:
     connections = tuple(net for _, nets in made for net in nets)
     paths = {f"{part.name}.k": 1.0 for part in parts}
     return Nuisance("thin films", paths, 0.0, 1.0, parts=parts, connections=connections)
+
+
+def usual_priors(scenario: Scenario) -> dict[str, float]:
+    """Relative standard deviation by part type and parameter, and of single parts that differ from their type's.
+
+    Args:
+        scenario: the rig, whose stated uncertainties count
+    """
+    kinds = {part.name: part.type for part in scenario.spec.parts}
+    own: dict[str, float] = {}
+    for nuisance in nuisances(Roles.of(scenario.spec), {}, scenario.uncertainties):
+        for path, exponent in nuisance.paths.items():
+            if exponent > 0:
+                own.setdefault(path, float(f"{nuisance.sd * exponent:.4g}"))
+    found: dict[str, float] = {}
+    for path, sd in own.items():
+        part, _, key = path.rpartition(".")
+        if found.setdefault(f"{kinds[part]}.{key}", sd) != sd:
+            found[path] = sd
+    return found

@@ -7,11 +7,11 @@ from collections.abc import Callable, Iterator, Sequence
 import casadi as ca
 
 from ...model.laws.smooth import smooth_max
-from ..campaign.table import Sensor
+from ...model.machines.roles import Roles
+from ...scenarios.measured.table import Sensor
 from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 from .cooling import DAYS, factors
 from .forms import COURSES
-from .roles import Roles
 
 #: What early readings are a share of where they are early by a time [s], and rounding of a pace near zero.
 EARLY, ROUND = 7200.0, 0.1

@@ -8,12 +8,12 @@ from importlib.metadata import entry_points
 from pathlib import Path
 
 from ...model.errors import DataError, suggestion
-from ..campaign.table import Sensor
+from ...model.machines.roles import Roles
+from ...scenarios.measured.table import Sensor
 from . import cooling, heat, losses, procedure, thermal
 from . import sensors as instruments
 from .cause import Cause, Ranges
 from .check import problems
-from .roles import Roles
 
 #: What makes the causes of a family.
 Family = Callable[[Roles, Ranges, Sequence[Sensor]], Iterable[Cause]]

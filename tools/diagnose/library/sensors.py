@@ -11,13 +11,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ..campaign.table import Sensor
+from ...model.machines.roles import Roles
+from ...model.parts.free_form import step
+from ...scenarios.measured.table import Sensor
 from .cause import Cause, Form, Mostly, Num, Ranges, Row, Shape, Size, Theta
-from .extra_parts import step
 from .forms import COURSES, FROM_THEN, PLACE, USUAL, WIDTH, Context, Course, since
 from .probes import heated, lag, position, swapped
 from .readings import one_of, wrong
-from .roles import Roles
 
 #: Share of the offsets that show on one side of a speed, a load or what is read only, each.
 ONE_SIDE = 0.025

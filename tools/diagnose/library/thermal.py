@@ -8,14 +8,14 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
+from ...model.machines.roles import Roles
 from ...model.machines.spec import PartSpec
-from ..campaign.table import Sensor
+from ...model.parts.free_form import step
+from ...scenarios.measured.table import Sensor
 from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 from .cooling import factors
-from .extra_parts import step
 from .forms import Context
 from .heat import bodies
-from .roles import Roles
 
 #: A body gives no more than this share of its capacity.
 LEFT = 0.95

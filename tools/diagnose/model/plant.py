@@ -15,8 +15,8 @@ from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
 from ...model.errors import FmuError
 from ...model.machines.spec import Spec, assemble
+from ...model.parts.free_form import EXTRA_PARTS
 from ..library.cause import Form, Nuisance
-from ..library.extra_parts import EXTRA_PARTS
 from .many import Compiled, library, record
 
 

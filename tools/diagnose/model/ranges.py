@@ -8,10 +8,10 @@ import numpy as np
 
 from ...model.core.flatten import flatten
 from ...model.errors import SolveError
+from ...model.machines.roles import Roles
 from ...model.machines.spec import Spec, assemble
-from ..campaign.table import Campaign
+from ...scenarios.measured.table import Campaign
 from ..library.cause import Ranges
-from ..library.roles import Roles
 from .observe import Observed
 from .plant import Plant
 

@@ -7,10 +7,10 @@ from typing import Any
 
 import numpy as np
 
+from ...scenarios.measured.table import Campaign
 from ..answer import estimate
 from ..answer.decide import UNEXPLAINED, Chance, Decision, Joint
 from ..answer.gain import Gain
-from ..campaign.table import Campaign
 from ..infer.found import Found, Hypothesis
 from ..setting import Setting
 from . import channels, findings

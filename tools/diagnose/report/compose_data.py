@@ -6,8 +6,8 @@ from collections.abc import Mapping
 
 import numpy as np
 
+from ...scenarios.measured.table import Campaign
 from ..answer import quality as answer
-from ..campaign.table import Campaign
 from ..infer.found import Found, Hypothesis
 from ..setting import Setting
 from . import channels, quality

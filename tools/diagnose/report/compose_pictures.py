@@ -6,8 +6,8 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
+from ...scenarios.measured.table import Campaign, Sensor
 from ..answer import views as answer
-from ..campaign.table import Campaign, Sensor
 from ..infer.found import Found, Hypothesis
 from . import channels
 from .evidence import Picture, View

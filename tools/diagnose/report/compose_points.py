@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
+from ...scenarios.measured.repeats import Repeat as Repeated
+from ...scenarios.measured.repeats import repeats, scatters
+from ...scenarios.measured.table import Campaign
 from ..answer import predict
-from ..campaign.repeats import Repeat as Repeated
-from ..campaign.repeats import repeats, scatters
-from ..campaign.table import Campaign
 from ..infer.found import Found
 from ..setting import Setting
 from . import channels

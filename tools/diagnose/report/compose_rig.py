@@ -6,11 +6,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from ...model.parts.free_form import EXTRA_PARTS
 from ...model.units import from_si
 from ..answer.estimate import posterior
 from ..infer.found import Found, Hypothesis
 from ..library.cause import Cause, Form, Nuisance, Row, Size, Theta, Values
-from ..library.extra_parts import EXTRA_PARTS
 from ..setting import Setting
 from .extension import Applied, Extended, directions, extended
 from .findings import Calibrated

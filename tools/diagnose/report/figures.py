@@ -7,8 +7,8 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
+from ...tools.show.drawing import COLOURS, empty, legend, svg
 from . import phrases
-from .drawing import COLOURS, empty, legend, svg
 from .evidence import Picture, Rows, View
 from .findings import Channel, Findings
 

@@ -7,7 +7,8 @@ from typing import Any
 
 from markupsafe import Markup
 
-from . import figures, frame, phrases, tables
+from ...tools.show import pages
+from . import figures, phrases, tables
 from .findings import Findings
 from .names import name_of
 
@@ -17,8 +18,8 @@ MOST = 5000
 
 def render(findings: Findings) -> str:
     """The page as HTML text, the same bytes for the same findings."""
-    return frame.page(
-        frame.OWN,
+    return pages.page(
+        "gearheat.diagnose.report",
         "diagnosis.html",
         findings=findings,
         said=findings.says,
@@ -31,7 +32,7 @@ def render(findings: Findings) -> str:
         doubt=phrases.gains_nothing(findings),
         **{name: _sections(made(findings)) for name, made in SECTIONS.items()},
         plot=_data(findings),
-        **frame.vendored(),
+        **pages.vendored(),
     )
 
 
@@ -46,7 +47,7 @@ SECTIONS = {
 
 
 def _sections(found: Sequence[tables.Table]) -> list[dict[str, Any]]:
-    return [{"title": t.title, "note": t.note, "table": frame.html_table(t.columns, t.rows)} for t in found if t.rows]
+    return [{"title": t.title, "note": t.note, "table": pages.html_table(t.columns, t.rows)} for t in found if t.rows]
 
 
 def _bars(findings: Findings) -> list[dict[str, str]]:
@@ -94,7 +95,7 @@ def _data(findings: Findings) -> Markup:
     rest = {"row": rows.row[every], "test": rows.test[every], "direction": rows.direction[every]}
     if not channels or not quantities:
         return Markup("")
-    return frame.as_data(rest | {"channels": channels, "quantities": quantities})
+    return pages.as_data(rest | {"channels": channels, "quantities": quantities})
 
 
 def _left(measured: Sequence[float | None], model: Sequence[float | None]) -> list[float | None]:

@@ -7,8 +7,8 @@ from typing import Any, Literal
 
 from pydantic import Field
 
+from ...tools.show.drawing import COLOURS, empty, legend, png, svg
 from . import phrases
-from .drawing import COLOURS, empty, legend, png, svg
 from .findings import Isolability
 from .names import listed, name_of, names_of
 from .numbers import Model, Number

@@ -1,0 +1,293 @@
+"""Measured tables and cards that cannot be: refused with the row, or warned of, before anything is concluded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from ...model.units import from_si, shown
+from ..csv_table import raise_all
+from .nominal import Nominal
+from .power import efficiency, shaft_powers
+from .sensors import ACCURACY, SI
+from .table import Campaign, Sensor
+
+#: Name of an oil -> values by path.
+Oils = Mapping[str, Mapping[str, float]]
+
+#: Fewer rows or tests than these say nothing about any cause.
+LEAST_ROWS, LEAST_TESTS = 6, 3
+#: Readings of temperature beyond these [K] are taken for another unit.
+COLDEST, HOTTEST = 213.15, 473.15
+#: A given speed or torque this many times the largest, or less than this part of the rig's, has another unit.
+FAR = 50.0
+#: Readings that differ from the nominal model's by more than this factor, in most rows, have another unit or sign.
+TORQUE_FACTOR, LOSS_FACTOR, RISE_FACTOR = 2.0, 10.0, 5.0
+#: A rise over the room below this [K] says nothing about a unit.
+SMALL_RISE = 2.0
+#: Efficiencies outside of these in most rows cannot be.
+POOREST, BEST = 0.2, 1.0
+#: Accuracies further than this factor from the usual ones are a slip.
+ODD = 300.0
+#: Rows that are held against the nominal model.
+SAMPLED = 6
+#: Given conditions nearer than this part of their size are the same point.
+SAME = 0.01
+#: Conditions to predict further out than this, relative to what was measured, are extrapolations.
+OUTLYING = 0.25
+
+
+def checked(campaign: Campaign, nominal: Nominal, oils: Oils, *, points: bool = False) -> Campaign:
+    """The campaign with warnings of what is odd about it.
+
+    Args:
+        campaign: as read
+        nominal: its rig
+        oils: name of each of its oils -> values by path
+        points: whether it holds conditions without readings
+
+    Raises:
+        DataError: all that cannot be
+    """
+    problems = [
+        *_accuracies(campaign, nominal),
+        *_temperatures(campaign),
+        *_contradictions(campaign),
+        *_scales(campaign, nominal),
+    ]
+    if not points and not problems:
+        problems += [*_repeated_columns(campaign), *_against_model(campaign, nominal, oils)]
+    if not points and not problems:
+        problems += _balance(campaign, nominal)
+    raise_all(problems, campaign.name)
+    return replace(campaign, warnings=(*campaign.warnings, *_twice(campaign, same_test=False)))
+
+
+def too_small(campaign: Campaign) -> list[str]:
+    """The problem of a table that is too small to say anything."""
+    if campaign.n >= LEAST_ROWS and campaign.n_tests >= LEAST_TESTS:
+        return []
+    return [
+        f"{campaign.name}: {campaign.n} readings of {campaign.n_tests} tests are too few to say anything."
+        f" Give at least {LEAST_ROWS} readings of {LEAST_TESTS} tests."
+    ]
+
+
+def same_as_reference(campaign: Campaign, reference: Campaign) -> list[str]:
+    """The problem of a campaign that is its own reference.
+
+    Args:
+        campaign: readings of the machine
+        reference: readings of it when healthy
+    """
+    shared = [s.name for s in campaign.sensors if s.name in reference.values]
+    if campaign.n != reference.n or not shared:
+        return []
+    if all(np.array_equal(campaign.values[s], reference.values[s], equal_nan=True) for s in shared):
+        return [f"{campaign.name}: its readings are those of the reference {reference.name}. Give another campaign."]
+    return []
+
+
+def outlying(campaign: Campaign, points: Campaign) -> list[str]:
+    """Warnings of points to predict that are far outside of what was measured.
+
+    Args:
+        campaign: what was measured
+        points: conditions whose readings are predicted
+    """
+    found = []
+    for sensor in (s for s in campaign.given if s.kind in ("torque", "speed") and s.name in points.values):
+        known, asked = np.abs(campaign.values[sensor.name]), np.abs(points.values[sensor.name])
+        far = int(((asked > (1 + OUTLYING) * known.max()) | (asked < (1 - OUTLYING) * known.min())).sum())
+        if far:
+            low, high = (_shown(sensor, value) for value in (known.min(), known.max()))
+            found.append(
+                f"{points.name}: {sensor.column} of {far} points is far outside of {low} to {high}."
+                " Their prediction is an extrapolation."
+            )
+    return found
+
+
+def _shown(sensor: Sensor, value: float) -> str:
+    return f"{from_si(float(value), SI[sensor.kind]):.4g} {shown(SI[sensor.kind])}"
+
+
+def _place(campaign: Campaign, row: int | np.intp) -> str:
+    return f"{campaign.name} line {campaign.lines[row]}"
+
+
+def _accuracies(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
+    """Accuracies that no instrument has."""
+    for sensor in campaign.sensors:
+        usual = dict(zip(("repeat_sd", "offset_sd"), ACCURACY[sensor.kind], strict=True))
+        if SI[sensor.kind] != "K":
+            size = abs(nominal.value(sensor.reads))
+            usual = {key: part * (size if size > 0 else _size(campaign, sensor)) for key, part in usual.items()}
+        for key, value in usual.items():
+            stated = getattr(sensor, key)
+            if (stated == 0.0 and key == "offset_sd") or value == 0.0 or value / ODD <= stated <= value * ODD:
+                continue
+            unit = "K" if SI[sensor.kind] == "K" else shown(SI[sensor.kind])
+            size = stated if unit == "K" else from_si(stated, SI[sensor.kind])
+            normal = value if unit == "K" else from_si(value, SI[sensor.kind])
+            yield (
+                f"{sensor.name}: {key} = {size:.3g} {unit} is no accuracy of such an instrument; {normal:.2g} {unit} is"
+                " usual. Check its unit in the card."
+            )
+
+
+def _size(campaign: Campaign, sensor: Sensor) -> float:
+    values = np.abs(campaign.values[sensor.name])
+    return float(np.nanmax(values)) if np.isfinite(values).any() else 0.0
+
+
+def _temperatures(campaign: Campaign) -> Iterator[str]:
+    """Temperatures in another unit than their column's name says."""
+    for sensor in (s for s in campaign.sensors if SI[s.kind] == "K"):
+        values = campaign.values[sensor.name]
+        for row in np.flatnonzero((values > HOTTEST) | (values < COLDEST)):
+            limit = f"above {HOTTEST - 273.15:g} degC" if values[row] > HOTTEST else f"below {COLDEST - 273.15:g} degC"
+            yield (
+                f"{_place(campaign, row)}: {sensor.column} is {values[row] - 273.15:.4g} degC, {limit}."
+                f" Check its unit, which is taken for {sensor.unit or 'K'}."
+            )
+
+
+def _contradictions(campaign: Campaign) -> Iterator[str]:
+    """Readings that are there twice."""
+    first: dict[int, int] = {}
+    for row, point in enumerate(campaign.points):
+        if (before := first.setdefault(int(point), row)) != row:
+            yield (
+                f"{_place(campaign, row)}: point {point} is the number of line {campaign.lines[before]} too."
+                " Give each reading its own."
+            )
+    yield from _twice(campaign, same_test=True)
+
+
+def _twice(campaign: Campaign, *, same_test: bool) -> Iterator[str]:
+    """Rows whose numbers are all those of another one, of the same test or of an earlier one."""
+    numbers = np.array([campaign.values[s.name] for s in campaign.sensors]).T
+    seen: dict[bytes, int] = {}
+    for row, line in enumerate(numbers if campaign.read else ()):
+        before = seen.setdefault(np.nan_to_num(line).tobytes(), row)
+        if before != row and (campaign.test[before] == campaign.test[row]) == same_test:
+            yield f"{_place(campaign, row)}: all readings are those of line {campaign.lines[before]}. Keep one of them."
+
+
+def _scales(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
+    """Given speeds and torques of another order than the rig's operating point."""
+    for sensor in (s for s in campaign.given if s.kind in ("torque", "speed", "power")):
+        usual = abs(nominal.value(sensor.reads))
+        largest = _size(campaign, sensor)
+        if not usual > 0 or usual / FAR <= largest <= usual * FAR:
+            continue
+        row = int(np.nanargmax(np.abs(campaign.values[sensor.name])))
+        yield (
+            f"{_place(campaign, row)}: {sensor.column} is at most {_shown(sensor, largest)}, the rig runs at"
+            f" {_shown(sensor, usual)}. Check its unit, which is taken for {sensor.unit}."
+        )
+
+
+def _repeated_columns(campaign: Campaign) -> Iterator[str]:
+    """Columns that hold the same numbers."""
+    for k, sensor in enumerate(campaign.sensors):
+        for other in campaign.sensors[:k]:
+            if campaign.n > LEAST_TESTS and np.array_equal(campaign.values[sensor.name], campaign.values[other.name]):
+                yield (
+                    f"{campaign.name}: {sensor.column} holds the numbers of {other.column}."
+                    " Give what each sensor read, or leave out one of the columns."
+                )
+
+
+def _against_model(campaign: Campaign, nominal: Nominal, oils: Oils) -> Iterator[str]:
+    """Torques and temperatures that are far from what the nominal model gives at the same conditions."""
+    rows = np.unique(np.linspace(0, campaign.n - 1, SAMPLED).round().astype(int))
+    given = {s.reads: campaign.values[s.name] * s.sign(campaign.direction) for s in campaign.given}
+    inputs = {row: {path: float(values[row]) for path, values in given.items()} for row in rows}
+    states = {row: nominal.at({**oils.get(campaign.oil[campaign.test[row]], {}), **inputs[row]}) for row in rows}
+    found = {int(row): state for row, state in states.items() if state is not None}
+    for sensor in campaign.read if found else ():
+        measured = campaign.values[sensor.name] * sensor.sign(campaign.direction)
+        pairs = {
+            row: (float(measured[row]), state[sensor.reads])
+            for row, state in found.items()
+            if np.isfinite(measured[row])
+        }
+        if pairs:
+            yield from _constant(campaign, sensor, [model for _, model in pairs.values()])
+        if pairs and sensor.kind == "torque":
+            yield from _torque(campaign, nominal, sensor, pairs)
+        elif pairs and sensor.kind.endswith("_temp"):
+            yield from _rise(campaign, sensor, pairs)
+
+
+def _constant(campaign: Campaign, sensor: Sensor, model: Sequence[float]) -> Iterator[str]:
+    """A sensor that shows the same in all rows where the model does not."""
+    values = campaign.values[sensor.name]
+    known = values[np.isfinite(values)]
+    varies = np.ptp(np.abs(model)) > max(SMALL_RISE if SI[sensor.kind] == "K" else SAME * np.max(np.abs(model)), 1e-9)
+    if len(known) > LEAST_TESTS and np.ptp(known) == 0.0 and varies:
+        yield (
+            f"{campaign.name}: {sensor.column} is {_shown(sensor, known[0])} in all {len(known)} rows."
+            " Give what was read, or leave out the column."
+        )
+
+
+def _torque(
+    campaign: Campaign, nominal: Nominal, sensor: Sensor, pairs: dict[int, tuple[float, float]]
+) -> Iterator[str]:
+    """A torque that is read far from the model's: another unit, another sign, or none at all."""
+    ratios = np.array([read / model for read, model in pairs.values() if abs(model) > 0])
+    factor = TORQUE_FACTOR if len(nominal.ends) > 1 else LOSS_FACTOR
+    middle = float(np.median(ratios)) if len(ratios) else 1.0
+    if 1 / factor <= middle <= factor:
+        return
+    row, (read, model) = next(iter(pairs.items()))
+    where = f"{_place(campaign, row)}: {sensor.column} gives {_shown(sensor, read)}"
+    if 1 / factor <= -middle <= factor:
+        yield (
+            f"{where}, the model {_shown(sensor, model)}: its sign is the other one. Turn it, or say"
+            " magnitude = true of this sensor in the card."
+        )
+    else:
+        yield f"{where}, the model {_shown(sensor, model)}. Check its unit, which is taken for {sensor.unit}."
+
+
+def _rise(campaign: Campaign, sensor: Sensor, pairs: dict[int, tuple[float, float]]) -> Iterator[str]:
+    """A temperature over the room that is far from the model's: speed, torque or the temperature has another unit."""
+    rooms = [s for s in campaign.given if s.kind == "ambient"]
+    if not rooms:
+        return
+    room = campaign.values[rooms[0].name]
+    rises = [(row, read - room[row], model - room[row]) for row, (read, model) in pairs.items()]
+    ratios = [read / model for _, read, model in rises if model > SMALL_RISE or read > RISE_FACTOR * SMALL_RISE]
+    middle = float(np.median(ratios)) if ratios else 1.0
+    short = not campaign.steady  # a reading may be far below the steady state
+    if middle <= RISE_FACTOR and (short or middle >= 1 / RISE_FACTOR):
+        return
+    row, read, model = max(rises, key=lambda r: abs(r[1] - r[2]))
+    given = ", ".join(f"{s.column} ({s.unit})" for s in campaign.given)
+    yield (
+        f"{_place(campaign, row)}: {sensor.column} is {read:.3g} K over the room, the model gives {model:.3g} K."
+        f" Check the units of what drives it: {given}."
+    )
+
+
+def _balance(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
+    """Efficiencies that cannot be, in most rows."""
+    powers = shaft_powers(campaign, nominal)
+    if powers is None or len(powers) < 2:
+        return
+    eta = efficiency(powers)
+    odd = (eta > BEST) | (eta < POOREST)
+    if odd.sum() * 2 <= np.isfinite(eta).sum():
+        return
+    row = int(np.flatnonzero(odd)[0])
+    torques = ", ".join(s.column for s in campaign.sensors if s.kind == "torque")
+    yield (
+        f"{_place(campaign, row)}: the torques give an efficiency of {eta[row]:.3g}, and of more than {BEST:g} or less"
+        f" than {POOREST:g} in {odd.sum()} of {campaign.n} rows. Check units and signs of {torques}."
+    )

@@ -1,0 +1,273 @@
+"""Logs of a running machine: samples in uninterrupted stretches, from CSV, gzipped CSV or Parquet files."""
+
+from __future__ import annotations
+
+import csv
+import gzip
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
+from datetime import UTC, datetime
+from importlib import import_module
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+
+from ...model.errors import DataError, GearheatError, suggestion
+from ...model.files import reading
+from ...model.units import spelled
+from ..columns import in_si, split_unit
+from ..csv_table import raise_all
+from ..scenario import Scenario
+from .card import Card
+from .sensors import SI, sensors_of
+from .table import Sensor
+
+#: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
+TIMES = ("time", "time_utc", "timestamp", "datetime", "date_time", "t")
+#: A gap of more than so many samples starts a new stretch.
+GAP = 1.5
+#: A single sample further than all of these from both its neighbours is a gross reading: standard deviations of steps,
+#: [K], and times what one sample in a thousand exceeds.
+SPIKE_SD, SPIKE_K, SPIKE_TAIL = 12.0, 8.0, 2.5
+#: Temperatures outside of this are none of a machine that runs [K].
+COLDEST, HOTTEST = 213.15, 473.15
+
+
+@dataclass(frozen=True)
+class Gross:
+    """A reading that is set aside: its line in the file, its column, what it shows and what its neighbours say [SI]."""
+
+    line: int
+    column: str
+    shown: float
+    expected: float
+    size_sd: float
+
+
+@dataclass(frozen=True, eq=False)
+class Log:
+    """Samples of one machine.
+
+    Args:
+        name: of the file
+        sensors: what was logged
+        values: sensor -> column in SI with the signs of the column (n,), NaN where a reading is missing or set aside
+        time: end of each sample [s] (n,), since 1970 where the file has time stamps
+        stretch: number of each row's stretch (n,), never falling; within one all steps are alike
+        step: time from sample to sample [s]
+        lines: line of each row in the file (n,)
+        dated: whether the time is that of a calendar
+        gross: readings that were set aside
+    """
+
+    name: str
+    sensors: tuple[Sensor, ...]
+    values: dict[str, np.ndarray]
+    time: np.ndarray
+    stretch: np.ndarray
+    step: float
+    lines: np.ndarray
+    dated: bool
+    gross: tuple[Gross, ...] = field(default=())
+
+    @property
+    def n(self) -> int:
+        """Number of rows."""
+        return len(self.time)
+
+    @property
+    def given(self) -> tuple[Sensor, ...]:
+        """Sensors that drive the model."""
+        return tuple(s for s in self.sensors if s.role == "given")
+
+    @property
+    def read(self) -> tuple[Sensor, ...]:
+        """Sensors that are compared."""
+        return tuple(s for s in self.sensors if s.role == "read")
+
+    def rows(self, keep: np.ndarray, name: str = "") -> Log:
+        """Some of the rows; a hole ends a stretch.
+
+        Args:
+            keep: which rows (n,) bool
+            name: of the log they make; that of this one if empty
+        """
+        kept = np.flatnonzero(keep)
+        breaks = np.append(True, (np.diff(kept) > 1) | (np.diff(self.stretch[kept]) != 0))
+        values = {sensor: column[kept] for sensor, column in self.values.items()}
+        stretch, named = np.cumsum(breaks) - 1, name or self.name
+        return replace(self, name=named, values=values, time=self.time[kept], stretch=stretch, lines=self.lines[kept])
+
+
+def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
+    """A log of a rig.
+
+    Args:
+        path: CSV, CSV.gz or Parquet, one row a sample; columns that no sensor has are not used
+        scenario: the rig
+        card: its columns, units and sensors
+
+    Raises:
+        DataError: everything wrong with the file, at once
+    """
+    header, cells, lines = _cells(path)
+    problems: list[str] = []
+    sensors = [placed for s in sensors_of(scenario, card) if (placed := _placed(s, header, card, path.name, problems))]
+    if not any(s.role == "read" for s in sensors):
+        problems.append(f"{path.name} line 1: no column of a sensor that is compared. Name yours in the card: columns.")
+    time_column = next((h for h in header if h in TIMES or split_unit(h)[0] in TIMES), "")
+    if not time_column:
+        problems.append(f'{path.name} line 1: there is no column of time. Name it "time_utc" or "time_s".')
+    raise_all(problems, path.name)
+    time, dated = _time(cells[time_column], time_column, path.name, lines, problems)
+    values = {s.name: _values(cells[s.column], s, path.name, lines, problems) for s in sensors}
+    raise_all(problems, path.name)
+    segments = cells.get(card.columns.get("segment", "segment"))
+    stretch, step = _stretches(time, segments, path.name, lines)
+    values, gross = _set_aside(values, sensors, stretch, lines)
+    return Log(path.name, tuple(sensors), values, time, stretch, step, lines, dated, gross)
+
+
+def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]:
+    """Header, columns of cells, and the line of each row."""
+    try:
+        if path.suffix in (".parquet", ".pq"):
+            return _parquet(path)
+        with _opened(path) as file:
+            reader = csv.reader(file)
+            header = [h.strip() for h in next(reader, [])]
+            rows = [(reader.line_num, row) for row in reader if any(row)]
+    except FileNotFoundError:
+        raise DataError([f"{path}: there is no such file. Check the path."]) from None
+    except (OSError, EOFError, UnicodeDecodeError):
+        raise DataError([f"{path}: cannot be read. Give a CSV, CSV.gz or Parquet file."]) from None
+    ragged = [line for line, row in rows if len(row) != len(header)]
+    if ragged:
+        raise DataError([f"{path.name} line {ragged[0]}: has not {len(header)} cells as the header has. Mend the row."])
+    if not rows:
+        raise DataError([f"{path.name}: holds no samples."])
+    columns: dict[str, Sequence[Any]] = dict(zip(header, zip(*(row for _, row in rows), strict=True), strict=True))
+    return header, columns, np.array([line for line, _ in rows])
+
+
+def _opened(path: Path) -> IO[str]:
+    if reading(path).suffix == ".gz":
+        return gzip.open(path, "rt", encoding="utf-8-sig")
+    return path.open(encoding="utf-8-sig")
+
+
+def _parquet(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]:
+    try:
+        table = import_module("pyarrow.parquet").read_table(reading(path))
+    except ImportError:
+        raise DataError([f'{path.name}: Parquet files need pyarrow: pip install "gearheat[parquet]".']) from None
+    columns = {name: table.column(name).to_pylist() for name in table.column_names}
+    return list(columns), columns, np.arange(1, table.num_rows + 1)
+
+
+def _placed(sensor: Sensor, header: Sequence[str], card: Card, name: str, problems: list[str]) -> Sensor | None:
+    """The sensor with its column in this file, None where there is none."""
+    names = (sensor.column, split_unit(sensor.column)[0])
+    exact = [h for h in header if h == sensor.column]
+    column = next(iter(exact or [h for h in header if split_unit(h)[0] in names]), None)
+    if column is None:
+        if sensor.role == "given":
+            problems.append(
+                f'{name} line 1: column "{sensor.column}" drives the model ({sensor.reads}) and is missing.'
+                f'{suggestion(sensor.column, header)} Add it, or name yours in the card: columns = {{ "{sensor.name}" ='
+                ' "..." }.'
+            )
+        return None
+    return replace(sensor, column=column, unit=spelled(card.units.get(column, split_unit(column)[1] or sensor.unit)))
+
+
+def _number(cell: Any) -> float:
+    if cell is None or (isinstance(cell, str) and cell.strip().lower() in ("", "nan", "na", "null")):
+        return math.nan
+    return float(cell)
+
+
+def _values(cells: Sequence[Any], sensor: Sensor, name: str, lines: np.ndarray, problems: list[str]) -> np.ndarray:
+    """A column in SI (n,), NaN where a cell is empty."""
+    found = np.full(len(cells), np.nan)
+    for k, cell in enumerate(cells):
+        try:
+            found[k] = _number(cell)
+        except (TypeError, ValueError):
+            problems.append(f'{name} line {lines[k]}: {sensor.column} is "{cell}", expected a number or nothing.')
+    try:
+        return in_si(found, sensor.unit, SI[sensor.kind], name=f"{name} {sensor.column}")
+    except GearheatError as error:
+        problems += error.problems
+        return found
+
+
+def _time(
+    cells: Sequence[Any], column: str, name: str, lines: np.ndarray, problems: list[str]
+) -> tuple[np.ndarray, bool]:
+    """Time [s] (n,), and whether it is a calendar's."""
+    unit = split_unit(column)[1] or "s"
+    found, dated = np.full(len(cells), np.nan), False
+    for k, cell in enumerate(cells):
+        try:
+            if isinstance(cell, datetime):
+                stamp: datetime | None = cell
+            else:
+                stamp = None if _is_number(cell) else datetime.fromisoformat(str(cell).strip())
+            dated = dated or stamp is not None
+            found[k] = (stamp if stamp.tzinfo else stamp.replace(tzinfo=UTC)).timestamp() if stamp else float(cell)
+        except (TypeError, ValueError):
+            problems.append(
+                f'{name} line {lines[k]}: {column} is "{cell}". Write a time as 2016-03-14T06:00Z, or a number.'
+            )
+    return (found if dated else np.asarray(in_si(found, unit, "s", name=f"{name} {column}"))), dated
+
+
+def _is_number(cell: Any) -> bool:
+    try:
+        float(cell)
+    except (TypeError, ValueError):
+        return False
+    return True
+
+
+def _stretches(
+    time: np.ndarray, segments: Sequence[Any] | None, name: str, lines: np.ndarray
+) -> tuple[np.ndarray, float]:
+    """Stretch of each row (n,), and the step [s]: a new segment, a gap or another step begins a stretch."""
+    if len(time) < 3:
+        raise DataError([f"{name}: holds {len(time)} samples. Give at least three."])
+    other = np.array([a != b for a, b in zip(segments[1:], segments[:-1], strict=True)]) if segments else False
+    steps = np.diff(time)
+    if len(back := np.flatnonzero((steps <= 0) & ~other)):
+        raise DataError([f"{name} line {lines[back[0] + 1]}: time does not go on. Sort the samples by time."])
+    step = float(np.median(steps[(steps > 0) & ~other]))
+    breaks = other | (np.abs(steps - step) > (GAP - 1) * step)
+    return np.concatenate([[0], np.cumsum(breaks)]), step
+
+
+def _set_aside(
+    values: dict[str, np.ndarray], sensors: Sequence[Sensor], stretch: np.ndarray, lines: np.ndarray
+) -> tuple[dict[str, np.ndarray], tuple[Gross, ...]]:
+    """Single spikes and impossible temperatures are found and become missing."""
+    cleaned, gross = dict(values), []
+    for sensor in (s for s in sensors if SI[s.kind] == "K"):
+        column = values[sensor.name]
+        wrong = ~((column > COLDEST) & (column < HOTTEST)) & np.isfinite(column)
+        before, after = (np.roll(np.where(wrong, np.nan, column), shift) for shift in (1, -1))
+        inside = np.zeros(len(column), dtype=bool)
+        inside[1:-1] = (stretch[2:] == stretch[1:-1]) & (stretch[:-2] == stretch[1:-1])
+        off = np.where(inside, np.minimum(np.abs(column - before), np.abs(column - after)), np.nan)
+        off = np.where(np.sign(column - before) == np.sign(column - after), off, 0.0)
+        sd = 1.4826 * float(np.nanmedian(np.abs(np.diff(column)))) + 0.05
+        usual = SPIKE_TAIL * float(np.nanquantile(off, 0.999))
+        spiked = wrong | (off > max(SPIKE_SD * sd, SPIKE_K, usual))
+        expected = np.where(np.isfinite(before + after), (before + after) / 2, np.nanmedian(column))
+        gross += [
+            Gross(int(lines[k]), sensor.column, float(column[k]), float(expected[k]), abs(column[k] - expected[k]) / sd)
+            for k in np.flatnonzero(spiked)
+        ]
+        cleaned[sensor.name] = np.where(spiked, np.nan, column)
+    return cleaned, tuple(gross)

@@ -1,0 +1,62 @@
+"""What the model of a rig gives at its operating point and at measured conditions: the yardstick of measured tables."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+
+import numpy as np
+
+from ...model.core.flat import FlatModel
+from ...model.core.flatten import flatten
+from ...model.errors import GearheatError
+from ...model.machines.spec import assemble
+from ...model.parts.shaft import ShaftEnd
+from ...model.run.steady import steady
+from ..scenario import Scenario
+
+#: Speed below which a shaft is at rest [rad/s].
+REST = 1e-6
+
+
+class Nominal:
+    """Steady states of a rig, computed when they are asked for.
+
+    Args:
+        scenario: the rig, driven as its campaigns are
+    """
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.scenario = scenario
+        self.ends = scenario.spec.of_type(ShaftEnd.__name__)
+
+    @cached_property
+    def flat(self) -> FlatModel:
+        """The flat model."""
+        return flatten(assemble(self.scenario.spec))
+
+    @cached_property
+    def operating(self) -> Mapping[str, float]:
+        """All values at the operating point, by path."""
+        return self.at({}) or {}
+
+    def value(self, path: str) -> float:
+        """A value at the operating point, NaN where the model finds none."""
+        point = self.scenario.operating_point
+        return float(point[path]) if path in point else self.operating.get(path, np.nan)
+
+    def at(self, values: Mapping[str, float]) -> Mapping[str, float] | None:
+        """All values at other inputs and parameters, by path; None where there is no steady state."""
+        known = {path: v for path, v in self.scenario.operating_point.items() if path in self.flat.index}
+        try:
+            result = steady(self.flat, known | {path: v for path, v in values.items() if path in self.flat.index})
+        except GearheatError:
+            return None
+        return {name: float(column[0]) for name, column in result.columns.items()}
+
+    @cached_property
+    def ratios(self) -> Mapping[str, float]:
+        """Speed of each shaft end over that of the first one that turns at the operating point."""
+        speeds = {end: self.value(f"{end}.w") for end in self.ends}
+        first = next((w for w in speeds.values() if abs(w) > REST), np.nan)
+        return {end: w / first for end, w in speeds.items()}

@@ -1,0 +1,215 @@
+"""A measured table of any rig as a campaign: its columns found, converted to SI and put in running order."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ...model.errors import GearheatError, ScenarioError, suggestion
+from ...model.units import spelled
+from ..columns import in_si, split_unit
+from ..csv_table import Column, Table, parse, raise_all, read_cells
+from ..scenario import Scenario
+from .card import Card
+from .checks import checked
+from .context import CONTEXT, DIRECTIONS, Cells, contradictions, floats, order_warnings
+from .halves import with_unread
+from .nominal import Nominal
+from .oils import oil_problems, oil_values, oil_warnings
+from .sensors import SI, driven_by, sensors_of
+from .table import Campaign, Sensor
+
+
+def read_campaign(path: Path, scenario: Scenario, card: Card, *, points: bool = False) -> Campaign:
+    """The campaign in a table of readings, one row a reading.
+
+    Args:
+        path: CSV file
+        scenario: the rig
+        card: how the table is written and was taken
+        points: whether the table holds conditions to predict, which need no readings
+
+    Raises:
+        DataError: everything wrong with the table and the card's sensors, at once
+    """
+    return _Reader(path, scenario, card, points).campaign()
+
+
+def placed(sensor: Sensor, header: Sequence[str], card: Card) -> Sensor | None:
+    """The sensor with the column of a table that holds it, None where there is none.
+
+    Args:
+        sensor: as rig and card declare it
+        header: names of the table's columns
+        card: units of columns
+    """
+    same = [h for h in header if h == sensor.column]
+    names = (sensor.column, split_unit(sensor.column)[0])
+    column = next(iter(same or [h for h in header if split_unit(h)[0] in names]), None)
+    if column is None:
+        return None
+    unit = card.units.get(column, split_unit(column)[1] or sensor.unit)
+    return replace(sensor, column=column, unit=spelled(unit))
+
+
+class _Reader:
+    """Reads one table, collecting problems all the way; nothing of it outlives the reading."""
+
+    def __init__(self, path: Path, scenario: Scenario, card: Card, points: bool) -> None:
+        self.path, self.scenario, self.card, self.points = path, scenario, card, points
+        self.header, self.rows = read_cells(path)
+        self.problems: list[str] = []
+        declared = sensors_of(scenario, card)
+        self.sensors = tuple(s for sensor in declared if (s := placed(sensor, self.header, card)) is not None)
+        context = {name: card.columns.get(name, name) for name in CONTEXT}
+        self.context = {name: column for name, column in context.items() if column in self.header}
+        self._missing(declared)
+
+    def campaign(self) -> Campaign:
+        """All of the table, or all of its problems."""
+        table, problems = parse(self.path, self._columns())
+        self.problems += problems
+        cells = Cells(table, self.context)
+        self.problems += contradictions(cells)
+        oils = {oil: table.place(row) for row, oil in reversed(list(enumerate(cells.texts("oil"))))}
+        self.problems += oil_problems(self.path.name, oils, self.card)
+        raise_all(self.problems, self.path.name)
+        values = {s.name: self._values(table, s) for s in self.sensors}
+        minutes = {name: self._si(cells, name) for name, (_, _, si) in CONTEXT.items() if si}
+        raise_all(self.problems, self.path.name)
+        found = self._ordered(cells, values, minutes)
+        nominal = Nominal(driven_by(self.scenario, self.sensors))
+        known = {oil: oil_values(self.scenario, oil, self.card) for oil in oils}
+        warned = replace(found, warnings=(*found.warnings, *oil_warnings(self.scenario, found.oil, self.card)))
+        return with_unread(checked(warned, nominal, known, points=self.points))
+
+    def _missing(self, declared: Sequence[Sensor]) -> None:
+        """Columns that drive the model, and that anything is read."""
+        there = {s.name for s in self.sensors}
+        for sensor in (s for s in declared if s.role == "given" and s.name not in there):
+            close = suggestion(sensor.column, self.header)
+            self.problems.append(
+                f'{self.path.name} line 1: column "{sensor.column}" drives the model ({sensor.reads}) and is missing.'
+                f'{close} Add it, or name yours in the card: columns = {{ "{sensor.name}" = "..." }}.'
+            )
+        if not (self.points or any(s.role == "read" for s in self.sensors)):
+            names = ", ".join(s.column for s in declared if s.role == "read")
+            self.problems.append(f"{self.path.name} line 1: there is nothing to compare. Add at least one of: {names}.")
+
+    def _columns(self) -> list[Column]:
+        found = [
+            Column(s.column, s.reads, required=s.role == "given", at_least=0.0 if s.signs != (1.0, 1.0) else -np.inf)
+            for s in self.sensors
+        ]
+        for name, column in self.context.items():
+            doc, kind, _ = CONTEXT[name]
+            options = DIRECTIONS if name == "direction" else ()
+            above, least = (0.0 if name == n else -np.inf for n in ("dwell_min", "stop_min"))
+            found.append(Column(column, doc, kind, required=False, options=options, above=above, at_least=least))
+        return found
+
+    def _values(self, table: Table, sensor: Sensor) -> np.ndarray:
+        """What a sensor shows (n,) in SI."""
+        cells = floats(table.columns[sensor.column])
+        try:
+            return in_si(cells, sensor.unit, SI[sensor.kind], name=f"{self.path.name} {sensor.column}")
+        except GearheatError as error:
+            self.problems += error.problems
+            return cells
+
+    def _si(self, cells: Cells, name: str) -> np.ndarray:
+        """A context column (n,) in SI."""
+        column = self.context.get(name, name)
+        unit = self.card.units.get(column, split_unit(column)[1] or split_unit(name)[1])
+        try:
+            return in_si(cells.numbers(name), spelled(unit), CONTEXT[name][2], name=f"{self.path.name} {column}")
+        except ScenarioError as error:
+            self.problems += error.problems
+            return cells.numbers(name)
+
+    def _ordered(self, cells: Cells, values: dict[str, np.ndarray], si: dict[str, np.ndarray]) -> Campaign:
+        """The campaign with its tests in running order."""
+        names = cells.texts("test") if "test" in self.context else [str(row) for row in range(cells.n)]
+        order = cells.numbers("order")
+        met = {name: row for row, name in reversed(list(enumerate(names)))}
+        position = np.array([met[name] for name in names])
+        order = np.where(np.isfinite(order), order, np.unique(position, return_inverse=True)[1] + 1)[position]
+        rows = np.lexsort((np.arange(cells.n), position, order))
+        first = np.append(True, np.diff(position[rows]) != 0)
+        test = np.cumsum(first) - 1
+        direction = self._direction(cells, values)[rows]
+        starts = rows[first]
+        points = cells.numbers("point")
+        return Campaign(
+            name=self.path.name,
+            sensors=tuple(_one_way(s, direction) for s in self.sensors),
+            values={name: column[rows] for name, column in values.items()},
+            test=test,
+            order=order[starts],
+            direction=direction,
+            dwell=self._dwell(cells, si["dwell_min"], rows, test),
+            stop=self._stop(si["stop_min"], rows, first),
+            oil=tuple(cells.texts("oil")[row] for row in starts),
+            mounting=tuple(cells.texts("mounting" if "mounting" in self.context else "grid")[row] for row in starts),
+            T_start=si["T_start_C"][starts],
+            room_start=si["T_amb_start_C"][starts],
+            humidity=si["humidity_pct"][starts],
+            date=tuple(cells.texts("date")[row] for row in starts),
+            lines=np.array(cells.table.lines)[rows],
+            points=np.where(np.isfinite(points), points, np.arange(cells.n) + 1)[rows].astype(int),
+            start_by_room=self.card.protocol.T_start_minus_amb_K,
+            room_begin=self.card.protocol.ambient_start_minus_reading_K,
+            names=tuple(names[row] if "test" in self.context else str(k + 1) for k, row in enumerate(starts)),
+            others=self._others(rows),
+            warnings=(*self._unused(cells), *order_warnings(cells)),
+        )
+
+    def _others(self, rows: np.ndarray) -> dict[str, tuple[str, ...]]:
+        """Columns that neither a sensor nor the context has, as they stand, in running order."""
+        used = {s.column for s in self.sensors} | set(self.context.values())
+        columns = {name: k for k, name in enumerate(self.header) if name not in used}
+        return {name: tuple(self.rows[row][1][k] for row in rows) for name, k in columns.items()}
+
+    def _unused(self, cells: Cells) -> list[str]:
+        """Warnings of columns that nothing reads, but for those that the rig file speaks of."""
+        spoken = self.scenario.protocol.notes if self.scenario.protocol else ()
+        return [w for w in cells.table.warnings if not any(f'column "{name}" is not used' in w for name in spoken)]
+
+    def _direction(self, cells: Cells, values: dict[str, np.ndarray]) -> np.ndarray:
+        """+1 and -1 (n,): as stated, by the sign of a signed given torque that turns round, else 0."""
+        stated = cells.numbers("direction")
+        if "direction" in self.context:
+            return np.where(stated == 2, -1.0, np.nan_to_num(stated))
+        for sensor in (s for s in self.sensors if s.role == "given" and s.kind == "torque" and s.signs == (1.0, 1.0)):
+            torque = values[sensor.name]
+            if (torque < 0).any() and (torque > 0).any():
+                usual = np.sign(self.scenario.operating_point.get(sensor.reads, 1.0)) or 1.0
+                return np.asarray(np.sign(torque) * usual)
+        return np.zeros(cells.n)
+
+    def _dwell(self, cells: Cells, stated: np.ndarray, rows: np.ndarray, test: np.ndarray) -> np.ndarray:
+        """Time each row was held [s] (n,)."""
+        minutes = self.card.protocol.dwell_min
+        if self.card.protocol.prose == "steady" or not (minutes or "dwell_min" in self.context):
+            return np.full(cells.n, np.inf)
+        place = np.arange(cells.n) - np.flatnonzero(np.append(True, np.diff(test) != 0))[test]
+        usual = 60.0 * np.array([*minutes, np.inf])[np.minimum(place, max(len(minutes) - 1, 0))]
+        return np.asarray(np.where(np.isfinite(stated[rows]), stated[rows], usual))
+
+    def _stop(self, stated: np.ndarray, rows: np.ndarray, first: np.ndarray) -> np.ndarray:
+        """Time without load before each row [s] (n,)."""
+        protocol = self.scenario.protocol
+        usual = protocol.stop if protocol else 0.0
+        usual = usual if self.card.protocol.stop_min is None else 60.0 * self.card.protocol.stop_min
+        return np.asarray(np.where(first, 0.0, np.where(np.isfinite(stated[rows]), stated[rows], usual)))
+
+
+def _one_way(sensor: Sensor, direction: np.ndarray) -> Sensor:
+    """The sensor with one sign where the power flows one way in all rows (n,)."""
+    if (direction < 0).any() and (direction >= 0).any():
+        return sensor
+    sign = sensor.signs[1] if (direction < 0).any() else sensor.signs[0]
+    return replace(sensor, signs=(sign, sign))

@@ -1,0 +1,269 @@
+"""The sensors of a campaign: what the rig file and the card declare, completed by rule from what each reads."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
+
+from ...model.core.declare import State, declared
+from ...model.core.flat import Quantity
+from ...model.errors import DataError, GearheatError, suggestion
+from ...model.parts.lubrication import OilBath
+from ...model.parts.shaft import ShaftEnd
+from ...model.parts.thermal import Room
+from ...model.units import spelled, text, to_si
+from ..columns import split_unit
+from ..instruments import Instrument
+from ..scenario import Scenario
+from .card import Card
+from .context import CONTEXT
+from .nominal import Nominal
+from .table import Sensor
+
+#: Scatter from reading to reading and fixed tolerance: in K, or relative to the value at the operating point.
+ACCURACY: Mapping[str, tuple[float, float]] = {
+    "oil_temp": (0.35, 0.3),
+    "wall_temp": (0.35, 0.3),
+    "ambient": (0.3, 0.3),
+    "torque": (4e-4, 8e-4),
+    "speed": (8e-4, 8e-4),
+    "power": (5e-3, 5e-3),
+}
+#: SI unit of what a kind of sensor reads.
+SI: Mapping[str, str] = {
+    "oil_temp": "K",
+    "wall_temp": "K",
+    "ambient": "K",
+    "torque": "N.m",
+    "speed": "rad/s",
+    "power": "W",
+}
+#: Kind of a sensor that reads no temperature, by the SI unit of what it reads.
+KINDS: Mapping[str, str] = {"N.m": "torque", "rad/s": "speed", "W": "power"}
+#: Beginning of a sensor's name, and the unit of its column, by the last word of the path it reads.
+NAMES: Mapping[str, tuple[str, str]] = {"w": ("n", "rpm"), "tau": ("T", "Nm"), "T": ("T", "C"), "P": ("P", "W")}
+
+
+def sensors_of(scenario: Scenario, card: Card) -> tuple[Sensor, ...]:
+    """All sensors that a table of the rig may have.
+
+    Args:
+        scenario: the rig
+        card: columns, accuracies and sensors of the campaign
+
+    Raises:
+        DataError: all problems of the card's sensors
+    """
+    return _Sensors(scenario, card).complete()
+
+
+class _Sensors:
+    """Completes the sensors of one rig and card, collecting problems; nothing of it outlives the call."""
+
+    def __init__(self, scenario: Scenario, card: Card) -> None:
+        self.scenario, self.card = scenario, card
+        self.known: Mapping[str, Quantity] = scenario.readable()
+        self.types = {part.name: scenario.spec.types[part.type] for part in scenario.spec.parts}
+        self.nominal = Nominal(scenario)
+        self.problems: list[str] = []
+        self.found = {i.name: i for i in scenario.instruments or default_instruments(scenario)}
+        self.driven: set[str] = set()
+
+    def complete(self) -> tuple[Sensor, ...]:
+        """The card's keys over the rig's, and what is left out by rule."""
+        for key, table in self.card.sensors.items():
+            self._declare(key, table.model_dump(exclude_unset=True))
+        for key, column in self.card.columns.items():
+            if key not in CONTEXT:
+                self._rename(key, column)
+        for key, channel in self.card.channels.items():
+            if (name := self._name(key)) is not None:
+                self._accuracy(f"channels.{key}", name, channel.model_dump(include={"repeat_sd", "offset_sd"}))
+            elif self.card.schema_ == "gearheat.card/2":
+                self._refuse(f"channels.{key}", key)
+        self._drive()
+        sensors = [self._completed(instrument) for instrument in self.found.values()] if not self.problems else []
+        if self.problems:
+            raise DataError(self.problems)
+        return tuple(sensors)
+
+    def _drive(self) -> None:
+        """What drives the model: what the card gives at the shaft ends, else the rig's protocol or drive."""
+        named = [i.reads for i in self.found.values() if i.role == "given"]
+        protocol = self.scenario.protocol
+        usual = self.scenario.driven_by(protocol.inputs if protocol else ())
+        driven = usual.driven_by(named)
+        self.driven = driven.driven_paths()
+        shafts = self.scenario.shaft_paths()
+        if len(self.driven & shafts) != len(usual.driven_paths() & shafts) or not shafts & set(named) <= self.driven:
+            self.problems.append(
+                f"{self.card.name}: {', '.join(named)} cannot all be given: {self.scenario.name} is driven by"
+                f" {len(usual.driven_paths() & shafts)} of the speeds and torques of its shaft ends."
+                ' Give some of them the role "read".'
+            )
+
+    def _name(self, key: str) -> str | None:
+        """The sensor that a key of the card means: its name, its column, or the path that it alone reads."""
+        if key in self.found:
+            return key
+        by_column = [i.name for i in self.found.values() if key == i.column]
+        by_path = [i.name for i in self.found.values() if i.reads == key]
+        return next(iter(by_column), by_path[0] if len(by_path) == 1 else None)
+
+    def _refuse(self, place: str, key: str) -> None:
+        names = [*self.found, *self.known]
+        close = suggestion(key, names) or f" Sensors: {', '.join(self.found)}."
+        self.problems.append(f'{self.card.name} {place}: there is no sensor "{key}".{close}')
+
+    def _new(self, path: str) -> str:
+        """A sensor of its own for a path of the model."""
+        made = instrument_of(path)
+        name = made.name if made.name not in self.found else path.replace(".", "_")
+        self.found[name] = replace(made, name=name)
+        return name
+
+    def _declare(self, key: str, table: Mapping[str, object]) -> None:
+        name = self._name(key)
+        if name is None and table.get("reads") not in self.known:
+            reads = str(table.get("reads", ""))
+            close = suggestion(reads, self.known) or f" Sensors: {', '.join(self.found)}."
+            self.problems.append(f'{self.card.name} sensors.{key}: there is no "{reads}" to read.{close}')
+            return
+        if name is None:
+            name = split_unit(key)[0]
+            self.found[name] = Instrument(name, key, str(table["reads"]))
+        changed = {k: v for k, v in table.items() if k not in ("repeat_sd", "offset_sd") and v is not None}
+        if "signs" in changed:
+            changed |= {"signs": tuple(table["signs"]), "magnitude": True}  # type: ignore[arg-type]
+        self.found[name] = replace(self.found[name], **changed)  # type: ignore[arg-type]
+        self._accuracy(f"sensors.{key}", name, table)
+
+    def _rename(self, key: str, column: str) -> None:
+        name = self._name(key)
+        if name is None and key in self.known:
+            name = self._new(key)
+        if name is None:
+            self._refuse(f"columns.{key}", key)
+            return
+        old = self.found[name]
+        unit = old.unit or split_unit(old.column)[1]  # a column without a unit has that of the one it replaces
+        own = split_unit(column)[1]
+        self.found[name] = replace(old, column=column, unit=own or unit)
+
+    def _accuracy(self, place: str, name: str, table: Mapping[str, object]) -> None:
+        instrument = self.found[name]
+        for key in ("repeat_sd", "offset_sd"):
+            if table.get(key) is None:
+                continue
+            try:
+                value = self._spread(str(table[key]), instrument, f"{self.card.name} {place}.{key}")
+            except GearheatError as error:
+                self.problems += error.problems
+                continue
+            if value < 0:
+                self.problems.append(f"{self.card.name} {place}.{key} = {table[key]} is below zero.")
+            self.found[name] = replace(self.found[name], **{key: value})  # type: ignore[arg-type]
+
+    def _spread(self, written: str, instrument: Instrument, where: str) -> float:
+        """A standard deviation in SI: with its own unit, or in that of the column."""
+        si = self.known[instrument.reads].unit
+        try:
+            number = float(written)
+        except ValueError:
+            return to_si(written, f"{si} (difference)" if si == "K" else si, name=where)
+        unit = self._unit(instrument)
+        unit = "K" if unit in ("degC", "") and si == "K" else unit
+        return to_si(f"{number!r} {unit}".strip(), f"{si} (difference)" if si == "K" else si, name=where)
+
+    def _unit(self, instrument: Instrument) -> str:
+        return spelled(self.card.units.get(instrument.column, instrument.unit or split_unit(instrument.column)[1]))
+
+    def _completed(self, instrument: Instrument) -> Sensor:
+        kind = instrument.kind or self._kind(instrument)
+        repeat, offset = self._default_accuracy(instrument, kind)
+        return Sensor(
+            name=instrument.name,
+            column=instrument.column,
+            reads=instrument.reads,
+            kind=kind,
+            role=instrument.role or ("given" if instrument.reads in self.driven else "read"),
+            unit=self._unit(instrument),
+            repeat_sd=instrument.repeat_sd if instrument.repeat_sd is not None else repeat,
+            offset_sd=instrument.offset_sd if instrument.offset_sd is not None else offset,
+            signs=self._signs(instrument, kind),
+        )
+
+    def _kind(self, instrument: Instrument) -> str:
+        """What a sensor is, by what it reads."""
+        unit, part = self.known[instrument.reads].unit, instrument.reads.partition(".")[0]
+        if unit == "K":
+            cls = self.types[part]
+            return "oil_temp" if issubclass(cls, OilBath) else "ambient" if issubclass(cls, Room) else "wall_temp"
+        if unit not in KINDS:
+            self.problems.append(
+                f"{self.card.name} sensors.{instrument.name}: {instrument.reads} is in {unit}, which no kind of sensor"
+                " reads. Read a temperature, a torque, a speed or a power."
+            )
+        return KINDS.get(unit, "")
+
+    def _default_accuracy(self, instrument: Instrument, kind: str) -> tuple[float, float]:
+        if None not in (instrument.repeat_sd, instrument.offset_sd) or kind not in ACCURACY:
+            return 0.0, 0.0
+        repeat, offset = ACCURACY[kind]
+        if kind.endswith("_temp") or kind == "ambient":
+            return repeat, offset
+        quantity = self.known[instrument.reads]
+        value = abs(self.nominal.value(instrument.reads))
+        full = value if value > 0 else quantity.nominal
+        return _rounded(repeat * full, quantity.unit), _rounded(offset * full, quantity.unit)
+
+    def _signs(self, instrument: Instrument, kind: str) -> tuple[float, float]:
+        """Sign of the model's value where the column holds magnitudes: loads turn round with the direction."""
+        driven = self.scenario.protocol.inputs.get(instrument.reads) if self.scenario.protocol else None
+        if instrument.signs is not None:
+            return instrument.signs
+        if not instrument.magnitude and driven is not None:
+            return driven.sign
+        if not instrument.magnitude:
+            return 1.0, 1.0
+        sign = -1.0 if self.nominal.value(instrument.reads) < 0 else 1.0
+        return sign, -sign if kind == "torque" else sign
+
+
+def _rounded(value: float, unit: str) -> float:
+    """A value with two digits in the unit that a person reads."""
+    return to_si(text(value, unit, 2), unit)
+
+
+def driven_by(scenario: Scenario, sensors: Iterable[Sensor]) -> Scenario:
+    """The rig driven by what a campaign gives at its shaft ends.
+
+    Args:
+        scenario: the rig
+        sensors: of the campaign; those that are given drive
+    """
+    return scenario.driven_by([sensor.reads for sensor in sensors if sensor.role == "given"])
+
+
+def instrument_of(path: str) -> Instrument:
+    """A sensor of a path with a name by rule: "oil.T" is read by T_oil in the column T_oil_C."""
+    part, _, key = path.rpartition(".")
+    if key not in NAMES:
+        name = path.replace(".", "_")
+        return Instrument(name, name, path)
+    letter, unit = NAMES[key]
+    return Instrument(f"{letter}_{part}", f"{letter}_{part}_{unit}", path)
+
+
+def default_instruments(scenario: Scenario) -> tuple[Instrument, ...]:
+    """Sensors of a rig whose file declares none: its shaft ends, its oil, its bodies and its rooms."""
+    paths, rooms = [], []
+    for part in scenario.spec.parts:
+        cls = scenario.spec.types[part.type]
+        if issubclass(cls, Room):
+            rooms.append(f"{part.name}.T")
+        if issubclass(cls, ShaftEnd):
+            paths += [f"{part.name}.w", f"{part.name}.tau"]
+        elif issubclass(cls, Room) or "T" in declared(cls, State):
+            paths.append(f"{part.name}.T")
+    return tuple(Instrument("T_amb", "T_amb_C", path) if rooms == [path] else instrument_of(path) for path in paths)

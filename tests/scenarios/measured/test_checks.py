@@ -1,0 +1,129 @@
+"""Tables and cards that cannot be: each is refused with the row and what to do."""
+
+from __future__ import annotations
+
+import pytest
+from gearheat.model.errors import DataError
+from gearheat.scenarios.measured.checks import outlying, same_as_reference, too_small
+
+
+def problems(read, rig, columns, card="") -> str:
+    with pytest.raises(DataError) as error:
+        read(rig, columns, card)
+    return "\n".join(error.value.problems)
+
+
+def times(columns, column, factor, digits=4):
+    return {**columns, column: [round(v * factor, digits) for v in columns[column]]}
+
+
+def test_torque_in_kilonewtonmetres(read, planetary, helical):
+    found = problems(read, "planetary", times(planetary, "T_carrier_Nm", 1e-3, 6))
+    assert "data.csv line 4: T_carrier_Nm is at most 2.5 N.m, the rig runs at 2500 N.m. Check its unit" in found
+    assert "T_output_Nm is at most 0.59 N.m" in problems(read, "helical_two_stage", times(helical, "T_output_Nm", 1e-3))
+
+
+@pytest.mark.parametrize("factor", [0.0, 4.0, 0.25, 1e-3])
+def test_sun_torque_zero_or_far_off(read, planetary, factor):
+    found = problems(read, "planetary", times(planetary, "T_sun_Nm", factor))
+    assert "T_sun_Nm" in found and "data.csv" in found
+    assert "the model" in found or "in all 12 rows" in found
+
+
+def test_speed_in_radians_per_second(read, planetary, helical):
+    for rig, columns, column in (
+        ("planetary", planetary, "n_carrier_rpm"),
+        ("helical_two_stage", helical, "n_input_rpm"),
+    ):
+        found = problems(read, rig, times(columns, column, 0.10472))
+        assert "over the room, the model gives" in found and f"{column} (rpm)" in found
+
+
+def test_a_torque_of_the_other_sign(read, helical, planetary):
+    columns = {**helical, "T_input_Nm": [v / 12.4 for v in helical["T_output_Nm"]]}
+    assert "its sign is the other one. Turn it, or say magnitude = true" in problems(
+        read, "helical_two_stage", columns, '[sensors.T_input_Nm]\nreads = "input.tau"\n'
+    )
+    turned = {**planetary, "direction": [3 - d for d in planetary["direction"]]}
+    assert "efficiency of 1.0" in problems(read, "planetary", turned)
+
+
+def test_all_temperatures_equal(read, planetary):
+    columns = {**planetary, **{c: [50.0] * 12 for c in ("T_oil_C", "T_wall_C")}}
+    found = problems(read, "planetary", columns)
+    assert "T_wall_C holds the numbers of T_oil_C" in found
+    assert "T_oil_C is 50 degC in all 12 rows" in found
+
+
+def test_temperatures_in_another_unit(read, helical):
+    kelvin = {**helical, "T_oil_C": [round(v + 273.15, 2) for v in helical["T_oil_C"]]}
+    assert "above 200 degC. Check its unit, which is taken for degC" in problems(read, "helical_two_stage", kelvin)
+    below = {**helical, "T_oil_K": helical["T_oil_C"]}
+    del below["T_oil_C"]
+    assert "below -60 degC. Check its unit, which is taken for K" in problems(read, "helical_two_stage", below)
+
+
+@pytest.mark.parametrize("factor", [1e-3, 1e3])
+def test_accuracies_a_thousand_times_off(read, helical, factor):
+    card = (
+        f'[channels]\nT_oil = {{ repeat_sd = "{0.35 * factor} K" }}\nT_output_Nm = {{ offset_sd = {0.5 * factor} }}\n'
+    )
+    found = problems(read, "helical_two_stage", helical, card)
+    assert "T_oil: repeat_sd = " in found and "0.35 K is usual" in found and "T_output: offset_sd = " in found
+
+
+def test_rows_and_points_that_are_there_twice(read, planetary):
+    doubled = {c: [*v, v[-1]] for c, v in planetary.items()}
+    found = problems(read, "planetary", doubled)
+    assert "data.csv line 14: point 12 is the number of line 13 too." in found
+    assert "data.csv line 14: all readings are those of line 13. Keep one of them." in found
+
+
+def test_the_same_numbers_in_another_test_only_warn(read, helical):
+    found = read("helical_two_stage", {c: [*v, v[0]] for c, v in helical.items()})
+    assert "data.csv line 8: all readings are those of line 2. Keep one of them." in found.warnings
+
+
+def test_contradictions_within_a_test(read, planetary):
+    order, oil = [k // 2 + 1 for k in range(12)], ["PAOR"] * 12
+    order[3], oil[5] = 1, "MINR"
+    found = problems(read, "planetary", {**planetary, "order": order, "oil": oil})
+    assert "data.csv line 5: order goes back within test 2 (1 after 2). Sort its rows." in found
+    assert "data.csv line 7: test 3 has oil PAOR in line 6, here MINR. Mend one of them." in found
+
+
+def test_order_that_goes_back_between_tests_warns(read, planetary):
+    order = [[2, 1, 3, 4, 5, 6][t - 1] for t in planetary["test"]]
+    found = read("planetary", {**planetary, "order": order})
+    assert any("line 4: order goes back (1 after 2). Tests are taken in this order." in w for w in found.warnings)
+
+
+def test_wrong_cells_are_all_named(read, planetary):
+    columns = {c: list(v) for c, v in planetary.items()}
+    columns["n_carrier_rpm"][0], columns["T_carrier_Nm"][1], columns["T_amb_C"][2] = "1OO", -1500, ""
+    columns["direction"][3], columns["oil"][4] = 3, "PAOOR"
+    found = problems(read, "planetary", columns)
+    for text in (
+        'data.csv line 2: n_carrier_rpm = "1OO" is no number.',
+        'data.csv line 3: T_carrier_Nm = "-1500" is out of range.',
+        'data.csv line 4: T_amb_C = "" is empty.',
+        'data.csv line 5: direction = "3" is not known. Write one of: 1, 2, -1, 0.',
+        'data.csv line 6: unknown oil "PAOOR". Did you mean "PAOR"?',
+    ):
+        assert text in found, text
+
+
+def test_too_few_rows_and_a_campaign_that_is_its_own_reference(read, helical):
+    whole = read("helical_two_stage", helical)
+    short = read("helical_two_stage", {c: v[:4] for c, v in helical.items()})
+    assert not too_small(whole) and "4 readings of 4 tests are too few" in too_small(short)[0]
+    assert "its readings are those of the reference" in same_as_reference(whole, whole)[0]
+    assert not same_as_reference(short, whole)
+
+
+def test_points_far_outside_warn(read, helical):
+    whole = read("helical_two_stage", helical)
+    points = {**helical, "n_input_rpm": [v * 1.5 for v in helical["n_input_rpm"]]}
+    far = read("helical_two_stage", points, points=True)
+    assert "n_input_rpm of 2 points is far outside of 580 rpm to 1450 rpm" in outlying(whole, far)[0]
+    assert not outlying(whole, whole)

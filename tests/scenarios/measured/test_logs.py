@@ -1,0 +1,97 @@
+"""Logs as files: CSV, gzipped CSV and Parquet, stretches, spikes, and files that are refused by name."""
+
+import gzip
+from pathlib import Path
+
+import numpy as np
+import pytest
+from gearheat.model.errors import DataError
+from gearheat.scenarios.load import load
+from gearheat.scenarios.measured.card import Card, read_card
+from gearheat.scenarios.measured.logs import Log, read_log
+
+HEAD = "time_utc,n_hss_rpm,T_hss_Nm,T_sump_C,T_inlet_C,T_bearing1_C,T_bearing2_C,T_nacelle_C,wind_m_s"
+N = 60
+
+
+def lines(n: int = N) -> list[str]:
+    rng = np.random.default_rng(3)
+    T = 55 + 0.1 * rng.standard_normal(n)
+    stamps = [f"2016-03-14T{k // 6:02d}:{10 * (k % 6):02d}Z" for k in range(n)]
+    return [f"{t},1500,3000,{v:.2f},50.0,60.0,61.0,20.0,7.1" for t, v in zip(stamps, T, strict=True)]
+
+
+def read(path: Path, rows: list[str], head: str = HEAD, card: Card | None = None) -> Log:
+    path.write_text("\n".join([head, *rows]) + "\n")
+    return read_log(path, load("wind_turbine"), card or read_card(None))
+
+
+def test_a_log_is_in_si_with_one_stretch(tmp_path: Path) -> None:
+    log = read(tmp_path / "a.csv", lines())
+    assert (log.n, log.step, log.dated, log.stretch.max()) == (N, 600.0, True, 0)
+    assert log.values["n_hss"][0] == pytest.approx(1500 * np.pi / 30)
+    assert log.values["T_nacelle"][0] == pytest.approx(293.15)
+    assert {s.name for s in log.given} == {"n_hss", "T_hss", "T_nacelle"}
+
+
+def test_gzip_and_parquet_hold_the_same(tmp_path: Path) -> None:
+    plain = read(tmp_path / "a.csv", lines())
+    with gzip.open(tmp_path / "a.csv.gz", "wt") as file:
+        file.write("\n".join([HEAD, *lines()]))
+    zipped = read_log(tmp_path / "a.csv.gz", load("wind_turbine"), read_card(None))
+    assert np.array_equal(plain.values["T_sump"], zipped.values["T_sump"])
+    pa = pytest.importorskip("pyarrow")
+    from pyarrow import parquet
+
+    cells = [row.split(",") for row in lines()]
+    table = {name: [c[k] if k == 0 else float(c[k]) for c in cells] for k, name in enumerate(HEAD.split(","))}
+    parquet.write_table(pa.table(table), tmp_path / "a.parquet")
+    same = read_log(tmp_path / "a.parquet", load("wind_turbine"), read_card(None))
+    assert np.array_equal(plain.values["T_sump"], same.values["T_sump"])
+    assert np.array_equal(plain.time, same.time)
+
+
+def test_gaps_and_segments_begin_stretches(tmp_path: Path) -> None:
+    rows = lines()
+    assert read(tmp_path / "a.csv", rows[:20] + rows[30:]).stretch.max() == 1
+    numbered = [f"{'a' if k < 10 else 'b'},{row}" for k, row in enumerate(rows)]
+    log = read(tmp_path / "b.csv", numbered, f"segment,{HEAD}")
+    assert log.stretch.tolist() == [0] * 10 + [1] * (N - 10)
+
+
+def test_a_single_spike_is_set_aside_by_line_and_column(tmp_path: Path) -> None:
+    rows = lines()
+    cells = rows[20].split(",")
+    rows[20] = ",".join([*cells[:3], "396.0", *cells[4:]])
+    log = read(tmp_path / "a.csv", rows)
+    (gross,) = log.gross
+    assert (gross.line, gross.column) == (22, "T_sump_C")
+    assert gross.shown == pytest.approx(396 + 273.15)
+    assert np.isnan(log.values["T_sump"][20])
+
+
+def test_own_names_and_units_by_the_card(tmp_path: Path) -> None:
+    card = Card(columns={"T_sump": "Sumpf"}, units={"Sumpf": "degC"})
+    log = read(tmp_path / "a.csv", lines(), HEAD.replace("T_sump_C", "Sumpf"), card)
+    assert 320 < log.values["T_sump"][0] < 340
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        (lambda head, rows: (head.replace("n_hss_rpm", "n"), rows), "drives the model"),
+        (lambda head, rows: (head.replace("time_utc", "when"), rows), "no column of time"),
+        (lambda head, rows: (head, rows[:5] + rows[3:]), "line 7: time does not go on"),
+        (lambda head, rows: (head, [rows[0].replace("1500", "fast"), *rows[1:]]), 'line 2: n_hss_rpm is "fast"'),
+        (lambda head, rows: (head, []), "holds no samples"),
+    ],
+)
+def test_bad_files_say_where_and_what(tmp_path: Path, change, told: str) -> None:
+    head, rows = change(HEAD, lines())
+    with pytest.raises(DataError, match=told):
+        read(tmp_path / "a.csv", rows, head)
+
+
+def test_a_file_that_is_not_there(tmp_path: Path) -> None:
+    with pytest.raises(DataError, match="no such file"):
+        read_log(tmp_path / "none.csv", load("wind_turbine"), read_card(None))

@@ -1,0 +1,5 @@
+"""`python -m gearheat`: the command line."""
+
+from .tools.cli.__main__ import main
+
+main()

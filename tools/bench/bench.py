@@ -1,0 +1,299 @@
+"""The command `bench`: time and memory of the main job, beside SciPy's LSODA on the same equations in the same run."""
+
+from __future__ import annotations
+
+import os
+import platform
+import resource
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...fmu.export import export
+from ...fmu.play import Player
+from ...model.core.flat import FlatModel
+from ...model.run.simulate import simulate
+from ...scenarios.load import load
+from ..compare import campaign
+from ..compare.measured import measured_of
+from ..show.console import answer, note, say, table
+from ..solve.settings import flat_of
+from . import fmu as bench_fmu
+from . import throughput
+from . import uncertainty as bench_uncertainty
+from .costs import rhs_s
+
+#: Tolerances at which LSODA runs; the cheapest one that is as accurate as the FMU is what the FMU is compared with.
+TOLERANCES = (1e-6, 1e-8, 1e-9)
+
+#: Tolerance of the run that errors are measured against.
+REFERENCE = 1e-10
+
+#: Communication step of the FMU [s].
+STEP = 60.0
+
+#: How often the memory of the whole job is looked at [s].
+EVERY = 0.02
+
+
+def command(rig: str, tests: str | None, json: str | None, what: str = "job", draws: int = 10_000) -> None:
+    """Measure and print.
+
+    Args:
+        rig: name or path
+        tests: of the main job
+        json: file of the JSON object, "-" for stdout
+        what: "job", the main job; "fmu", the FMU against its peers, and the batch; "batch" alone; "uncertainty", the
+            FMU's standard deviations beside those of rows that are drawn; "contact", the contact solver
+        draws: rows that are drawn
+    """
+    measures: dict[str, tuple[Callable[[], dict[str, Any]], Callable[[dict[str, Any]], None]]] = {
+        "job": (lambda: _job(rig, tests), _print),
+        "fmu": (lambda: _fmu(rig), _print_fmu),
+        "batch": (lambda: _batch(rig), _print_batch),
+        "uncertainty": (lambda: bench_uncertainty.measure(rig, draws), _print_uncertainty),
+        "contact": (_contact, _print_contact),
+    }
+    measure, show = measures[what]
+    found = {"schema": "gearheat.bench/1", **measure()}
+    answer(found, json, lambda: show(found))
+
+
+def _job(rig: str, tests: str | None) -> dict[str, Any]:
+    note("gearheat --help")
+    helped = min(_timed(lambda: _gearheat("--help"))[0] for _ in range(3))
+    note(f"gearheat run {rig}, warm cache")
+    job = _main_job(rig, tests)
+    return {
+        "machine": {"cores": os.cpu_count(), "python": platform.python_version(), "system": platform.system()},
+        "help_s": helped,
+        "help_imports_casadi": _imports("casadi"),
+        "run_s": job[0],
+        "run_peak_memory_MB": job[1],
+        **_integration(rig, tests),
+    }
+
+
+def _fmu(rig: str) -> dict[str, Any]:
+    note("the FMU, its peers and the batch; this installs PythonFMU in an environment of its own")
+    return {**bench_fmu.measure(rig), "batch": throughput.measure(rig)}
+
+
+def _batch(rig: str) -> dict[str, Any]:
+    return {"rhs_s": rhs_s(flat_of(load(rig))), "batch": throughput.measure(rig, threads=(1,), swept=0)}
+
+
+def _contact() -> dict[str, Any]:
+    from . import contact as peer
+
+    return peer.measure()
+
+
+def _timed(work: Callable[[], Any], clock: Callable[[], float] = time.perf_counter) -> tuple[float, Any]:
+    began = clock()
+    result = work()
+    return clock() - began, result
+
+
+def _gearheat(*arguments: str) -> None:
+    command = [sys.executable, "-m", "gearheat.tools.cli", *arguments]
+    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+
+
+def _imports(module: str) -> bool:
+    """Whether the program as started for its help loads a module."""
+    code = f"import sys, gearheat.tools.cli; sys.exit({module!r} in sys.modules)"
+    return bool(subprocess.run([sys.executable, "-c", code], check=False).returncode)
+
+
+def _main_job(rig: str, tests: str | None) -> tuple[float, float]:
+    """Wall time [s] and peak memory [MB] of the whole main job, the compiler's cache warm."""
+    chosen = [] if tests is None else ["--tests", tests]
+    with tempfile.TemporaryDirectory() as folder:
+        _gearheat("run", rig, "--out", f"{folder}/cold", *chosen)
+        command = [sys.executable, "-m", "gearheat.tools.cli", "run", rig, "--out", f"{folder}/warm", *chosen]
+        began = time.perf_counter()
+        process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        peak = _Peak(process.pid)
+        process.wait()
+        return time.perf_counter() - began, peak.stop()
+
+
+class _Peak:
+    """Largest memory of a process and its children together while it runs.
+
+    Where the system does not tell, the largest single process so far, from the operating system's account.
+    """
+
+    def __init__(self, pid: int) -> None:
+        self._pid, self._peak, self._running = pid, 0.0, True
+        self._thread = threading.Thread(target=self._watch, daemon=True)
+        self._thread.start()
+
+    def _watch(self) -> None:
+        while self._running:
+            self._peak = max(self._peak, sum(_resident(pid) for pid in _family(self._pid)))
+            time.sleep(EVERY)
+
+    def stop(self) -> float:
+        """Peak in MB."""
+        self._running = False
+        self._thread.join()
+        return self._peak or resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+
+
+def _family(pid: int) -> list[int]:
+    """A process and all its descendants."""
+    found = [pid]
+    for child in found:
+        try:
+            tasks = list(Path(f"/proc/{child}/task").iterdir())
+            found += [int(c) for task in tasks for c in (task / "children").read_text().split()]
+        except (OSError, ValueError):
+            continue
+    return found
+
+
+def _resident(pid: int) -> float:
+    """Resident memory of a process [MB]; pages shared by several are counted in each."""
+    try:
+        pages = int(Path(f"/proc/{pid}/statm").read_text().split()[1])
+    except (OSError, IndexError, ValueError):
+        return 0.0
+    return pages * resource.getpagesize() / 1e6
+
+
+def _integration(rig: str, tests: str | None) -> dict[str, Any]:
+    """Processor time of the integration alone: all tests through the FMU, and through LSODA, in one process."""
+    scenario = load(rig)
+    study = measured_of(scenario)
+    scenario = study.scenario if study else scenario
+    flat = flat_of(scenario)
+    runs = campaign.runs_of(scenario, flat, study, tests)
+    states = [q.name for q in flat.states]
+    note(f"{len(runs)} tests: reference")
+    exact = _simulated(flat, runs, "idas", REFERENCE)
+    fmu_s: list[float] = []
+    lsoda: list[dict[str, float]] = []
+    with tempfile.TemporaryDirectory() as folder, Player(export(flat, Path(folder) / "rig.fmu")) as player:
+        values = _played(player, runs, states)
+        fmu_error = _apart(values, exact)
+        for tolerance in TOLERANCES:  # both by turns, so that a busy moment of the machine meets both
+            note(f"FMU, then LSODA with tolerance {tolerance:g}")
+            fmu_s += [_timed(lambda: _played(player, runs, states), time.process_time)[0] for _ in range(3)]
+            began = time.process_time()
+            values = _simulated(flat, runs, "lsoda", tolerance)
+            took = time.process_time() - began
+            lsoda.append({"tolerance": tolerance, "s": took, "error_K": _apart(values, exact)})
+    equal = [run for run in lsoda if run["error_K"] <= fmu_error] or lsoda[-1:]
+    best = min(equal, key=lambda run: run["s"])
+    middle = float(np.median(fmu_s))
+    return {
+        "tests": len(runs),
+        "fmu_s": middle,
+        "fmu_error_K": fmu_error,
+        "lsoda": lsoda,
+        "lsoda_s": best["s"],
+        "lsoda_error_K": best["error_K"],
+        "ratio": best["s"] / middle,
+    }
+
+
+def _simulated(flat: FlatModel, runs: Sequence[campaign.Run], method: str, tolerance: float) -> np.ndarray:
+    """States at all readings."""
+    names = {q.name for q in flat.states}
+    found = []
+    for run in runs:
+        result = simulate(
+            flat,
+            run.schedule,
+            start={n: v for n, v in run.start.items() if n in names},
+            values={n: v for n, v in run.start.items() if n not in names},
+            times=[
+                run.schedule.start,
+                *(m for m in run.moments for _ in range(2 if m < run.schedule.stop else 1)),
+            ],
+            tolerance=tolerance,
+            method=method,
+        )
+        rows = [int(np.flatnonzero(result.index == moment)[0]) for moment in run.moments]
+        found.append([[result[name][row] for name in sorted(names)] for row in rows])
+    return np.concatenate(found)
+
+
+def _played(player: Player, runs: Sequence[campaign.Run], states: Sequence[str]) -> np.ndarray:
+    """States at all readings."""
+    found = []
+    for run in runs:
+        times, stop = _both_sides(run), run.schedule.stop
+        played = player.run(run.inputs, stop, STEP, start=run.start, record=sorted(states), output_times=times)
+        rows = [int(np.flatnonzero(played.time == moment)[0]) for moment in run.moments]
+        found.append(played.values[rows])
+    return np.concatenate(found)
+
+
+def _both_sides(run: campaign.Run) -> list[float]:
+    """Times of the readings; twice where a jump follows, so that the first row shows the state before it."""
+    return [m for m in run.moments for _ in range(2 if m < run.schedule.stop else 1)]
+
+
+def _apart(values: np.ndarray, exact: np.ndarray) -> float:
+    return float(np.max(np.abs(values - exact)))
+
+
+def _print(found: dict[str, Any]) -> None:
+    rows = [
+        ["gearheat --help [s]", found["help_s"]],
+        ["main job, warm cache [s]", found["run_s"]],
+        ["main job, peak memory of all processes [MB]", found["run_peak_memory_MB"]],
+        [f"{found['tests']} tests through the FMU, processor time [s]", found["fmu_s"]],
+        ["largest error of a state at a reading, FMU", found["fmu_error_K"]],
+    ]
+    for run in found["lsoda"]:
+        rows.append([f"same through LSODA, tolerance {run['tolerance']:g}, processor time [s]", run["s"]])
+        rows.append(["largest error of a state at a reading", run["error_K"]])
+    rows.append(["LSODA over FMU, at no larger error", found["ratio"]])
+    table("Benchmark", ("what", "value"), rows)
+
+
+def _print_fmu(found: dict[str, Any]) -> None:
+    body = [*bench_fmu.rows(found), *_batch_rows(found)]
+    table("The FMU and its peers, one run", ("what", "value"), [list(row) for row in body], wrapped=True)
+
+
+def _print_batch(found: dict[str, Any]) -> None:
+    table(f"{found['batch']['rig']}: many rows in one call", ("what", "value"), _batch_rows(found), wrapped=True)
+
+
+def _batch_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
+    rates = {kind: found["batch"][kind]["rows_per_core_s"] for kind in ("steady", "warmup_330_min")}
+    return [
+        (f"batch, {kind} rows per second and core; right-hand sides each", f"{rate:.0f}; {each:.1f}")
+        for kind, rate in rates.items()
+        for each in (1 / (rate * found["rhs_s"]),)
+    ]
+
+
+def _print_contact(found: dict[str, Any]) -> None:
+    from . import contact as peer
+
+    table("The contact solver and slippy, processor times of one core", ("what", "value"), peer.rows(found))
+
+
+def _print_uncertainty(found: dict[str, Any]) -> None:
+    title = f"{found['rig']}: standard deviations, the FMU's beside those of {found['draws']} draws, over four hours"
+    table(title, bench_uncertainty.HEAD, bench_uncertainty.rows(found))
+    if found["failed"]:
+        say(f"{found['failed']} of the draws have no result and are left out.")
+    cost = found["cost"]
+    say(
+        f"Four hours at 60 s from C, all outputs read: {cost['plain_rhs']:.0f} right-hand sides,"
+        f" {cost['uncertain_rhs']:.0f} with standard deviations, {cost['ratio']:.2f} times as much."
+    )

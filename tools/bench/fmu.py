@@ -1,0 +1,314 @@
+"""The FMU against its peers on the same equations: what calls cost, a warm-up of 330 min, growth with the model's size.
+
+All ratios are of one run. A right-hand side is the rates at a new point, its implicit equations solved from the last
+solution, by the functions in the source of the FMU; it is the unit in which costs are given. All times are processor
+times, so other work on the machine does not count.
+"""
+
+from __future__ import annotations
+
+import io
+import json
+import subprocess
+import sys
+import tempfile
+import time
+import venv
+from collections.abc import Callable, Mapping
+from contextlib import redirect_stdout
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import casadi as ca
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from ...fmu.export import export
+from ...fmu.play import Player
+from ...model.core.flat import FlatModel
+from ...model.run.algebra import algebra
+from ...model.run.fast import Fast
+from ...model.run.schedule import Schedule, stepped
+from ...model.run.simulate import simulate
+from ...scenarios.load import load
+from ..solve.settings import flat_of
+from .costs import from_c, growth, growth_rows, massless
+
+#: The warm-up: five stages of 66 min at these parts of the speed; the same as in `importer/measure.c`.
+PARTS_OF_SPEED, STAGE = (0.4, 0.6, 0.8, 1.0, 0.2), 3960.0
+#: Thermal nodes of the chains by which growth is measured.
+CHAINS = (4, 20, 100, 400, 1000)
+#: Conductors of the chains without masses between them.
+MASSLESS = (20, 80, 160, 1000)
+#: Tolerances at which a peer is tried: the first that is as accurate as the FMU counts.
+TOLERANCES = (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
+#: Goal -> (what is measured, comparison, bound).
+GOALS = {
+    "step of the solver with input slopes, in right-hand sides": ("step_rhs", "<=", 4.0),
+    "set 4, step of 1 s, get 15, in right-hand sides": ("call_rhs", "<=", 7.0),
+    "step of 60 s behind a jump, in right-hand sides": ("jump_rhs", "<=", 15.0),
+    "330 min at 60 s, in right-hand sides": ("warmup_60_rhs", "<=", 3000.0),
+    "error of 330 min at 60 s [K]": ("warmup_60_error_K", "<=", 1e-4),
+    "LSODA at no larger error over FMU from C": ("lsoda_ratio", ">=", 15.0),
+    "BDF at no larger error over FMU from C": ("bdf_ratio", ">=", 10.0),
+    "PythonFMU over FMU from C, 60 s": ("pythonfmu_ratio", ">=", 50.0),
+    "FMU state [bytes]": ("state_bytes", "<=", 2048.0),
+}
+
+
+class Peer(NamedTuple):
+    """A run by other means: processor time [s], largest error of a state, and the tolerance it was given."""
+
+    s: float
+    error_K: float
+    tolerance: float | None
+
+
+def measure(
+    rig: str = "planetary",
+    *,
+    pythonfmu: bool = True,
+    chains: tuple[int, ...] = CHAINS,
+    conductors: tuple[int, ...] = MASSLESS,
+) -> dict[str, Any]:
+    """All figures of the bench of the FMU; `goals` lists each goal with its figure and whether it is met."""
+    scenario = load(rig)
+    flat = flat_of(scenario)
+    speed = next(q.name for q in flat.inputs if q.name.endswith(".w"))
+    duty = stepped([(STAGE, {speed: share * flat.quantity(speed).start}) for share in PARTS_OF_SPEED])
+    ends = [STAGE * (k + 1) for k in range(len(PARTS_OF_SPEED))]
+    reference = simulate(flat, duty, times=ends, tolerance=1e-12)
+    truth = np.stack([reference[q.name] for q in flat.states], axis=1)
+    with tempfile.TemporaryDirectory() as folder:
+        fmu = export(flat, Path(folder) / "rig.fmu")
+        found = from_c(fmu, Path(folder), speed, truth, flat)
+        found["fmu_kB"] = fmu.stat().st_size / 1000
+        peers = _peers(flat, duty, ends, truth, fmu, speed, found["warmup_60_error_K"])
+        if pythonfmu:
+            peers[PYTHONFMU] = Peer(*_pythonfmu(flat, duty, ends, truth, Path(folder)), None)
+    base = found["warmup_60_s"]
+    found["peers"] = {name: {**peer._asdict(), "over_fmu_from_c": peer.s / base} for name, peer in peers.items()}
+    found["lsoda_ratio"] = found["peers"]["SciPy LSODA"]["over_fmu_from_c"]
+    found["bdf_ratio"] = found["peers"]["SciPy BDF"]["over_fmu_from_c"]
+    if pythonfmu:
+        found["pythonfmu_ratio"] = found["peers"][PYTHONFMU]["over_fmu_from_c"]
+    found["growth"] = [growth(n) for n in chains]
+    found["massless"] = [massless(n) for n in conductors]
+    found["goals"] = [
+        {"goal": goal, "bound": f"{sign} {bound:g}", "measured": found[key], "met": _met(found[key], sign, bound)}
+        for goal, (key, sign, bound) in GOALS.items()
+        if key in found
+    ]
+    return found
+
+
+def _met(value: float, sign: str, bound: float) -> bool:
+    return value <= bound if sign == "<=" else value >= bound
+
+
+Run = Callable[[float], np.ndarray]
+
+
+def _clocked(work: Callable[[], np.ndarray], truth: np.ndarray, repeats: int = 5) -> tuple[float, float]:
+    """Least processor time of a run, and its largest error."""
+    best, values = np.inf, truth
+    for _ in range(repeats):
+        begun = time.process_time()
+        values = work()
+        best = min(best, time.process_time() - begun)
+    return best, float(np.abs(values - truth).max())
+
+
+def _as_accurate(run: Run, truth: np.ndarray, error: float) -> Peer:
+    """The run at the loosest tolerance whose error is no larger; the tightest when none is as accurate."""
+    for tolerance in TOLERANCES:
+        found = float(np.abs(run(tolerance) - truth).max())  # and what is compiled once is compiled
+        if found <= error:
+            break
+    return Peer(*_clocked(lambda: run(tolerance), truth), tolerance)
+
+
+def _peers(
+    flat: FlatModel, duty: Schedule, ends: list[float], truth: np.ndarray, fmu: Path, speed: str, error: float
+) -> dict[str, Peer]:
+    """The same warm-up by other means, at tolerances where their error is no larger than that of the FMU."""
+    inputs = {name: (duty.time, values) for name, values in duty.values.items()}
+    names = [q.name for q in flat.states]
+
+    def idas(tolerance: float) -> np.ndarray:
+        found = simulate(flat, duty, times=ends, tolerance=tolerance)
+        return np.stack([found[q.name] for q in flat.states], axis=1)
+
+    def played() -> np.ndarray:
+        return np.asarray(player.run(inputs, ends[-1], 60.0, record=names, output_times=ends).values)
+
+    def fmpy(kind: str) -> Run:
+        return lambda tolerance: _fmpy(fmu, duty, ends, speed, names, kind, tolerance)
+
+    with Player(fmu) as player:
+        peers = {"this project's Player, this FMU, 60 s": Peer(*_clocked(played, truth), 1e-5)}
+    peers["FMPy, this FMU, 60 s"] = Peer(*_clocked(lambda: fmpy("CoSimulation")(1e-5), truth), 1e-5)
+    peers["FMPy, model exchange, its CVode"] = _as_accurate(fmpy("ModelExchange"), truth, error)
+    peers["CasADi IDAS from Python"] = _as_accurate(idas, truth, error)
+    peers["SciPy LSODA"] = _as_accurate(_scipy(flat, ends, speed, "LSODA"), truth, error)
+    peers["SciPy BDF"] = _as_accurate(_scipy(flat, ends, speed, "BDF"), truth, error)
+    return peers
+
+
+def _scipy(flat: FlatModel, ends: list[float], speed: str, method: str) -> Run:
+    """The warm-up by a solver of SciPy on compiled expressions, with the exact Jacobian."""
+    p, place = flat.starts("parameter"), flat.locate(speed)[1]
+    ode, symbols = _explicit(flat)
+    value = ode(*symbols)
+    rates, slopes = Fast("rates", symbols, [value]), Fast("slopes", symbols, [ca.jacobian(value, symbols[0])])
+    nominal = np.array([q.nominal for q in flat.states])
+
+    def run(tolerance: float) -> np.ndarray:
+        x, t, rows = flat.starts("state"), 0.0, []
+        for end, share in zip(ends, PARTS_OF_SPEED, strict=True):
+            u = flat.starts("input")
+            u[place] *= share
+            solved = solve_ivp(
+                lambda _, z, u=u: rates(z, u, p)[0],
+                (t, end),
+                x,
+                method=method,
+                jac=lambda _, z, u=u: slopes(z, u, p)[0],
+                rtol=1e-12,
+                atol=tolerance * nominal,
+            )
+            x, t = solved.y[:, -1], end
+            rows.append(x)
+        return np.stack(rows)
+
+    return run
+
+
+def _explicit(flat: FlatModel) -> tuple[Any, list[Any]]:
+    """The rates as a function of x, u, p, and symbols for these; CasADi's Newton solves the implicit equations."""
+    x, u, p = symbols = [ca.MX.sym(name, v.shape[0]) for name, v in zip("xup", (flat.x, flat.u, flat.p), strict=True)]
+    given = ca.vertcat(flat.x, flat.u, flat.p)
+    z = ca.DM(flat.starts("algebraic"))
+    if flat.algebraic:
+        root = ca.rootfinder("z", "fast_newton", {"x": flat.z, "p": given, "g": flat.residual})
+        start = algebra(flat).solve(*map(flat.starts, ("state", "input", "parameter")))
+        z = root(x0=start, p=ca.vertcat(*symbols))["x"]
+    return ca.Function("ode", symbols, [flat.function(x, z, u, p)[0]]), symbols
+
+
+def _fmpy(
+    fmu: Path, duty: Schedule, ends: list[float], speed: str, names: list[str], kind: str, tolerance: float
+) -> np.ndarray:
+    """The warm-up by FMPy's own loop."""
+    from fmpy import simulate_fmu
+
+    signal = np.array(list(zip(duty.time, duty.values[speed], strict=True)), dtype=[("time", "d"), (speed, "d")])
+    options = {"stop_time": ends[-1], "output_interval": 60.0, "relative_tolerance": tolerance}
+    with redirect_stdout(io.StringIO()):  # it warns of every input that keeps its start value
+        found = simulate_fmu(str(fmu), fmi_type=kind, input=signal, output=names, **options)
+    rows = [np.flatnonzero(np.isclose(found["time"], end))[0] for end in ends]
+    return np.stack([[found[name][row] for name in names] for row in rows])
+
+
+PYTHONFMU = "PythonFMU, explicit Euler of 0.5 s, in FMPy"
+#: The model as a PythonFMU slave: explicit Euler of 0.5 s inside, the right-hand side by CasADi.
+SLAVE = """
+import casadi, os
+from pythonfmu import Fmi2Causality, Fmi2Slave, Real
+
+class Peer(Fmi2Slave):
+    def __init__(self, **kwargs):
+        super().__init__(**kwargs)
+        self.ode = casadi.Function.load({ode!r})
+        self.x, self.u, self.p = casadi.DM({x}), casadi.DM({u}), casadi.DM({p})
+        self.speed, self.warm = {speed}, 0.0
+        self.register_variable(Real("speed", causality=Fmi2Causality.input))
+        self.register_variable(Real("warm", causality=Fmi2Causality.output))
+        {outputs}
+
+    def do_step(self, t, h):
+        self.u[{place}] = self.speed
+        n = max(int(round(h / 0.5)), 1)
+        for _ in range(n):
+            self.x = self.x + h / n * self.ode(self.x, self.u, self.p)
+        {assign}
+        return True
+"""
+PLAY = """
+import json, sys, time
+import numpy as np
+from fmpy import read_model_description, extract
+from fmpy.fmi2 import FMU2Slave
+import fmpy
+md = read_model_description(sys.argv[1]); folder = extract(sys.argv[1])
+name = md.coSimulation.modelIdentifier
+fmu = FMU2Slave(guid=md.guid, unzipDirectory=folder, modelIdentifier=name, instanceName="peer")
+refs = {v.name: v.valueReference for v in md.modelVariables}
+fmu.instantiate(); fmu.setupExperiment(startTime=0.0); fmu.enterInitializationMode(); fmu.exitInitializationMode()
+parts, speed, n = json.loads(sys.argv[2]), float(sys.argv[3]), int(sys.argv[4])
+rows, t, begun = [], 0.0, time.process_time()
+for share in parts:
+    fmu.setReal([refs["speed"]], [share * speed])
+    for _ in range(66):
+        fmu.doStep(t, 60.0); t += 60.0
+    rows.append(fmu.getReal([refs[f"x{i}"] for i in range(n)]))
+print(json.dumps([time.process_time() - begun, rows]))
+"""
+
+
+def _pythonfmu(
+    flat: FlatModel, duty: Schedule, ends: list[float], truth: np.ndarray, folder: Path
+) -> tuple[float, float]:
+    """The same warm-up by PythonFMU in FMPy, both in an environment of their own."""
+    place, n = flat.locate(next(iter(duty.values)))[1], len(flat.states)
+    u, speed = flat.starts("input"), float(flat.starts("input")[place])
+    _explicit(flat)[0].save(str(folder / "ode.casadi"))
+    text = SLAVE.format(
+        ode=str(folder / "ode.casadi"),
+        x=flat.starts("state").tolist(),
+        u=u.tolist(),
+        p=flat.starts("parameter").tolist(),
+        place=place,
+        speed=speed,
+        outputs="\n        ".join(
+            f'self.x{i} = 0.0; self.register_variable(Real("x{i}", causality=Fmi2Causality.output))' for i in range(n)
+        ),
+        assign="\n        ".join(f"self.x{i} = float(self.x[{i}])" for i in range(n)),
+    )
+    (folder / "peer.py").write_text(text, encoding="utf-8")
+    (folder / "play.py").write_text(PLAY, encoding="utf-8")
+    venv.create(folder / "peers", with_pip=True)
+    python = folder / "peers" / ("Scripts" if sys.platform == "win32" else "bin") / "python"
+    subprocess.run(
+        [str(python), "-m", "pip", "install", "-q", "pythonfmu", "fmpy", "casadi"], check=True, capture_output=True
+    )
+    subprocess.run(
+        [str(python), "-m", "pythonfmu", "build", "-f", "peer.py"], cwd=folder, check=True, capture_output=True
+    )
+    command = [str(python), "play.py", "Peer.fmu", json.dumps(PARTS_OF_SPEED), str(speed), str(n)]
+    out = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
+    seconds, rows = json.loads(out.stdout.splitlines()[-1])
+    return float(seconds), float(np.abs(np.array(rows) - truth).max())
+
+
+def rows(found: Mapping[str, Any]) -> list[tuple[str, str]]:
+    """The table: what, value."""
+    table = [
+        ("right-hand side [us]", f"{1e6 * found['rhs_s']:.2f}"),
+        ("step; outputs [right-hand sides]", f"{found['step_rhs']:.1f}; {found['outputs_rhs']:.1f}"),
+        ("set 4, step of 1 s, get 15 [right-hand sides]", f"{found['call_rhs']:.1f}"),
+        ("step of 60 s behind a jump [right-hand sides]", f"{found['jump_rhs']:.1f}"),
+    ]
+    for step in ("1", "10", "60"):
+        cost, error = found[f"warmup_{step}_rhs"], found[f"warmup_{step}_error_K"]
+        table.append((f"330 min at {step} s from C [right-hand sides; K]", f"{cost:.0f}; {error:.1e}"))
+    for name, peer in found["peers"].items():
+        text = f"{peer['over_fmu_from_c']:.1f}; {peer['error_K']:.1e}"
+        table.append((f"{name}, over the FMU from C at 60 s [ratio; error]", text))
+    table += growth_rows(found)
+    table += [("FMU [kB]", f"{found['fmu_kB']:.0f}"), ("FMU state [bytes]", f"{found['state_bytes']:.0f}")]
+    if "instance_bytes" in found:
+        table.append(("memory of one more instance [bytes]", f"{found['instance_bytes']:.0f}"))
+    for g in found["goals"]:
+        table.append((f"goal {g['bound']}: {g['goal']}", f"{g['measured']:.3g}, {'met' if g['met'] else 'missed'}"))
+    return table

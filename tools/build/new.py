@@ -1,0 +1,316 @@
+"""The command `new`: a rig file from a name plate, that runs at once and says of every number how it came about."""
+
+from __future__ import annotations
+
+import json
+import math
+import re
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from ...model.errors import GearheatError, ScenarioError, suggestion
+from ...model.run.steady import steady
+from ...model.units import to_si
+from ...scenarios.entries import catalogue
+from . import sizing, sump
+from ..show.console import answer, note, writable, write
+from ..solve.steady import conditions
+from ...scenarios.load import load
+from ..solve.settings import flat_of
+from .sizing import APART, GAP, LIGHT, OVERHANG, SIDE, Unit, unit
+from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, BevelStage, PlanetaryStage, Stage, WormStage
+
+#: Steel, cast iron and oil [kg/m3].
+STEEL, IRON, OIL = 7850.0, 7200.0, 835.0
+#: What is told of a stage, and the size by which one of its kind is known.
+TOLD = ("kind", "z_1", "z_2", "m_n", "beta", "b")
+SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2", "worm": "a", "planetary": "a"}
+#: Speed at which churning is told [rad/s]; oil temperature that a unit should not reach [degC].
+CHURNED, HOT = 200 * math.pi / 30, 100.0
+#: Efficiency below which standard sizes do not fit the power.
+POOR = 0.4
+
+#: What meets in a planetary unit beside its two shafts.
+PLANETARY = {
+    "ring": ["stage_1.ring", "ring_mount.flange"],
+    "planets": ["stage_1.planet", "planet_bearing.shaft"],
+    "load_input": ["stage_1.sun_load", "input_bearing_a.load", "input_bearing_b.load"],
+    "load_output": ["stage_1.carrier_load", "output_bearing_a.load", "output_bearing_b.load"],
+    "load_planets": ["stage_1.planet_load", "planet_bearing.load"],
+}
+
+
+def new_command(
+    name: str, stages: str, ratio: float, power: str, speed: str, oil: str, out: Path | None, json_: str | None
+) -> None:
+    """Write a rig of a name, run it once, and tell what it is.
+
+    Raises:
+        ScenarioError: all that is wrong with the name plate at once
+    """
+    path = out or Path(f"{name}.toml")
+    kinds = [kind.strip() for kind in stages.split(",") if kind.strip()]
+    made = unit(kinds, ratio, to_si(power, "W", name="--power"), to_si(speed, "rad/s", name="--speed"))
+    entry = _oil(oil)
+    if not re.fullmatch(r"[\w.-]+", name):
+        raise ScenarioError(f'"{name}" is no name. Take letters, digits, _, - and dots.')
+    writable(path)
+    if path.exists():
+        raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")
+    doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
+    write(path, text(made, doc, speed, entry))
+    try:
+        scenario = load(path)
+        flat = flat_of(scenario)
+        found = steady(flat, conditions(scenario, flat))
+    except GearheatError as error:
+        path.unlink()
+        why = error.problems[0]
+        raise ScenarioError(f"{power} at {speed} gives no gearbox. Check --power and --speed. {why}") from None
+    kept = {key: float(found[key][0]) for key in ("oil.T", "efficiency.P_loss", "efficiency.eta")}
+    payload = {
+        "schema": "gearheat.new/1",
+        "file": str(path),
+        "ratio": made.ratio,
+        "stages": [{k: getattr(s, k) for k in (*TOLD, SIZES[s.kind])} for s in made.stages],
+        "bearings": [{"a": s.bearings[0], "b": s.bearings[1], "lives_h": s.lives} for s in made.shafts],
+        "assumed": sum(source.startswith("assumed") for source in scenario.value_sources.values()),
+        "oil_degC": kept["oil.T"] - 273.15,
+        "loss_W": kept["efficiency.P_loss"],
+        "efficiency": kept["efficiency.eta"],
+    }
+    answer(payload, json_, lambda: _print(payload))
+    if kept["oil.T"] - 273.15 > HOT:
+        note(f"the oil is hotter than {HOT:g} degC: such a unit needs a fan, fins or a cooler, or a larger housing.")
+    if kept["efficiency.eta"] < POOR:
+        note("most of the power is lost: standard modules and bearings are too large for it.")
+    for shaft in made.shafts:
+        for bearing, life in zip(shaft.bearings, shaft.lives, strict=True):
+            if life < sizing.LIFE:
+                note(f"{bearing}: a life of {life:.0f} h only; the catalogue has no stronger one.")
+
+
+def _print(found: dict[str, Any]) -> None:
+    print(f"{found['file']}: i = {found['ratio']:.5g}, {found['assumed']} values assumed, each with its rule")
+    for k, s in enumerate(found["stages"], start=1):
+        known = SIZES[s["kind"]]
+        print(f"  stage {k}: {s['kind']} {s['z_1']}/{s['z_2']}", end=", ")
+        print(f"module {1e3 * s['m_n']:.4g} mm, {known} {1e3 * s[known]:g} mm")
+    print(f"  at the name plate: oil {found['oil_degC']:.1f} degC, loss {found['loss_W']:.0f} W,", end=" ")
+    print(f"efficiency {100 * found['efficiency']:.2f} %")
+    print(f"Next: put your numbers into the file, then `gearheat steady {found['file']}`.")
+
+
+def _oil(name: str) -> str:
+    """The catalogue's name of an oil; one of a class alone is taken for a mineral oil."""
+    for known in (name, f"{name} mineral"):
+        if known in catalogue("oil"):
+            if "c_p" not in catalogue("oil")[known].values:
+                raise ScenarioError(f'"{known}" is a grease. Name an oil. See `gearheat list`.')
+            return known
+    raise ScenarioError(f'there is no oil "{name}".{suggestion(name, catalogue("oil"))} See `gearheat list`.')
+
+
+def text(made: Unit, doc: str, speed: str, oil: str) -> str:
+    """The rig file of a unit.
+
+    Args:
+        made: its sizes
+        doc: what it is
+        speed: of the input, as it is written
+        oil: entry of the catalogue
+    """
+    n, efficiency = len(made.stages), math.prod(s.efficiency for s in made.stages)
+    names = ["input", *(f"middle_{k}" if n > 2 else "middle" for k in range(1, n)), "output"]
+    values = {
+        "doc": doc,
+        "speed": speed,
+        "efficiency": efficiency,
+        "load": -made.turn * made.stages[0].T * made.ratio * efficiency,
+        "oil": oil,
+        "of_oil": catalogue("oil")[oil].values,
+        "bath": sump.bath(made),
+        "splash": sump.splash(made),
+        "below": sump.BELOW,
+        "reached": 100 * sump.REACHED,
+        "side": SIDE,
+        "gap": GAP,
+        "overhang": OVERHANG,
+        "apart": APART,
+        "own_load": 0.0 if made.shafts[0].places else LIGHT,
+        "stages": [_stage(made, k) for k in range(n)],
+        "shafts": [_shaft(made, names, k) for k in range(n + 1)],
+        "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d} for k in (0, -1)],
+        "nets": _nets(names, made),
+        "losses": _losses(names, made),
+        **_bodies(made),
+    }
+    templates = Environment(loader=PackageLoader("gearheat.tools.build", "templates"), undefined=StrictUndefined)
+    return templates.get_template("new_rig.toml").render(values, num=_num, mm=_mm).strip() + "\n"
+
+
+def _num(value: float) -> str:
+    return f"{value:.4g}"
+
+
+def _mm(value: float) -> str:
+    return f"{1000 * value:.6g}"
+
+
+def _stage(made: Unit, k: int) -> dict[str, Any]:
+    s = made.stages[k]
+    if isinstance(s, BevelStage):
+        rule = f"F_t/(b d_v1) (u_v + 1)/u_v of {K_BEVEL / 1e6:g} N/mm2 at mid face, d_e2 of {_mm(s.d_e2)} mm"
+        shape: dict[str, Any] = {"type": "BevelGearPair", "m_et": s.m_et, "x_1": s.x_1, "width": FACE}
+    elif isinstance(s, PlanetaryStage):
+        rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2 of sun and planet, standard module, straight teeth"
+        shape = {"type": "PlanetarySet", "N": s.count, "z_3": s.z_3, "m_n": s.m_n, "a": s.a, "width": WIDTH}
+        shape |= {"s_planet": s.b / 2, "d_planet": s.d_planet} | s.ratios
+    elif isinstance(s, WormStage):
+        rule = f"wheel's torque over a3 of {T_WORM / 1e6:g} N/mm2 as makers rate them, standard a = {_mm(s.a)} mm"
+        shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "width": SLIM}
+    else:
+        twist = f"beta for a = {_mm(s.a)} mm" if KINDS[s.kind] else "a follows from the teeth"
+        rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"
+        shape = {"type": "HelicalGearPair", "m_n": s.m_n, "a": s.a, "width": WIDTH}
+    c = 0.5 * OIL * CHURNED**3 * s.b * s.reach**4
+    shape |= {"z_1": s.z_1, "z_2": s.z_2, "b": s.b, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule, "c": c}
+    found = {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", "wetting": f"oil_gears_{k + 1}"}
+    return found | shape | {"r": s.reach, "m": s.m_n, "height": sump.height_of_axes(made), "A_wet": sump.wetted(s)}
+
+
+def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
+    s = made.shafts[k]
+    radii = [t.r_2 for t in made.stages[k - 1 : k]] + [t.r_1 for t in made.stages[k : k + 1]]
+    places = [
+        {
+            "name": f"{names[k]}_bearing_{end}",
+            "bearing": bearing,
+            "life": _num(life),
+            "dips": sump.stands_in_oil(made, bearing),
+        }
+        for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)
+    ]
+    gears = [{"x": x, "r": r} for x, r in zip(s.places, radii, strict=False)]
+    support = ("", "ShaftSupport", "TwoGearSupport")[len(gears)]
+    return {
+        "name": names[k],
+        "support": support,
+        "gears": gears,
+        "span": s.span,
+        "bearings": places,
+        "d": s.d,
+        "d_torsion": s.d_torsion,
+    }
+
+
+def _bodies(made: Unit) -> dict[str, float]:
+    """Capacities, conductances and the box."""
+    slow = [math.prod(t.u for t in made.stages[:k]) for k in range(len(made.stages))]
+    seats = [(made.shafts[k + 1].d, s.b) for k, s in enumerate(made.stages)]
+    shafts = sum(STEEL * math.pi / 4 * s.d**2 * (s.span + 0.1) for s in made.shafts)
+    mass = 1.25 * IRON * made.area * made.wall
+    return {
+        "inertia": sum(STEEL * s.inertia / i**2 for s, i in zip(made.stages, slow, strict=True)),
+        "C_gears": 470 * STEEL * sum(s.volume for s in made.stages),
+        "C_shafts": 470 * shafts,
+        "mass": mass,
+        "C_half": 500 * mass / 2,
+        "wall": made.wall,
+        "G_seats": 4000 * sum(math.pi * d * b for d, b in seats),
+        "G_rings": 2.0 * 2 * len(made.shafts),
+        "G_through": 50 * made.area / made.wall,
+        "area": made.area,
+        "length": made.length,
+        "width_box": made.width,
+        "height": made.height,
+        "share": made.length * made.width / made.area,
+    }
+
+
+def _ports(stage: Stage) -> tuple[str, str]:
+    """Ports of a stage's part at the shafts that drive and are driven."""
+    planets, worm = isinstance(stage, PlanetaryStage), isinstance(stage, WormStage)
+    return ("sun", "carrier") if planets else ("worm" if worm else "pinion", "wheel")
+
+
+def _nets(names: Sequence[str], made: Unit) -> list[dict[str, str]]:
+    """What meets, by name of the net."""
+    n = len(names) - 1
+    bearings = [f"{name}_bearing_{end}" for name in names for end in "ab"]
+    seals = ["input_seal", "output_seal"]
+    stages, churnings, wetted = (
+        [f"{what}_{k}" for k in range(1, n + 1)] for what in ("stage", "churning", "oil_gears")
+    )
+    thrower = sump.splash(made)["shaft"]
+    nets: dict[str, list[str]] = {}
+    for k, name in enumerate(names):
+        ends = [f"{name}.flange"] if k in (0, n) else []
+        ends += ["rotor.flange"] if k == 0 else []
+        ends += [f"{stages[k - 1]}.{_ports(made.stages[k - 1])[1]}", f"{churnings[k - 1]}.shaft"] if k else []
+        ends += [f"{wetted[k - 1]}.shaft"] if k else []
+        ends += ["oil_wall.shaft"] if k == thrower else []
+        ends += [f"{stages[k]}.{_ports(made.stages[k])[0]}"] if k < n else []
+        turning = [f"{name}_bearing_{end}.shaft" for end in "ab"] + ([f"{name}_seal.shaft"] if k in (0, n) else [])
+        nets[f"{name}_shaft"] = [*ends, *turning]
+    planets = ["planet_bearing"] if isinstance(made.stages[0], PlanetaryStage) else []
+    nets |= PLANETARY if planets else _forces(names, made)
+    nets["reading_input"], nets["reading_output"] = (
+        [f"{end}.reading", f"efficiency.{port}"] for end, port in (("input", "a"), ("output", "b"))
+    )
+    nets["reading_output"] += ["stage_1.reading"] if planets else []
+    oiled = (*stages, *churnings, *wetted, "oil_wall", *bearings, *planets)
+    nets["lubricant"] = ["oil.lubricant", *(f"{part}.lubricant" for part in oiled)]
+    kinds = [bearing for shaft in made.shafts for bearing in shaft.bearings]
+    low = [name for name, kind in zip(bearings, kinds, strict=True) if sump.stands_in_oil(made, kind)]
+    nets |= {"sump": ["oil.sump", *(f"{part}.sump" for part in (*churnings, *low))]} if sump.wheels_dip(made) else {}
+    churned = [f"{part}.{side}" for part in churnings for side in ("inner", "outer")]
+    nets["heat_oil"] = ["oil.heat", *churned, *(f"{part}.a" for part in wetted), "oil_wall.a"]
+    heated = [f"{part}.{side}" for part in planets for side in ("inner", "outer")]
+    nets["heat_gears"] = [
+        "gears.heat",
+        *(f"{stage}.gears" for stage in stages),
+        *heated,
+        *(f"{part}.b" for part in wetted),
+        "gears_shafts.a",
+    ]
+    rubbing = [*bearings, *seals]
+    nets["heat_shafts"] = ["shafts.heat", "gears_shafts.b", "shafts_wall.a", *(f"{part}.inner" for part in rubbing)]
+    outer = [f"{part}.outer" for part in rubbing]
+    nets["heat_wall"] = ["wall.heat", "oil_wall.b", "shafts_wall.b", "wall_surface.a", *outer]
+    nets["heat_surface"] = ["surface.heat", "wall_surface.b", "cooling.surface", "foot.a"]
+    nets |= {"air": ["room.air", "cooling.air"], "floor": ["room.floor", "foot.b"]}
+    return [{"name": name, "ports": json.dumps(ports)} for name, ports in nets.items()]
+
+
+def _forces(names: Sequence[str], made: Unit) -> dict[str, list[str]]:
+    """Tooth forces on the supports of the shafts, and what their bearings carry."""
+    nets = {}
+    for k, stage in enumerate(made.stages):
+        name, driver = f"stage_{k + 1}", _ports(stage)[0]
+        on_pinion, on_wheel = f"{names[k]}_support.{'mesh_2' if k else 'mesh'}", f"{names[k + 1]}_support.mesh"
+        if isinstance(stage, BevelStage | WormStage):
+            nets[f"force_{k + 1}_{driver}"] = [f"{name}.{driver}_force", on_pinion]
+            nets[f"force_{k + 1}_wheel"] = [f"{name}.wheel_force", on_wheel]
+        else:
+            nets[f"force_{k + 1}"] = [f"{name}.force", on_pinion, on_wheel]
+    for name in names:
+        nets |= {f"load_{name}_{e}": [f"{name}_support.load_{e}", f"{name}_bearing_{e}.load"] for e in "ab"}
+    return nets
+
+
+def _losses(names: Sequence[str], made: Unit) -> dict[str, str]:
+    """Columns of the losses' table."""
+    stages, planets = range(1, len(names)), isinstance(made.stages[0], PlanetaryStage)
+    found = {
+        "P_mesh_W": ["stage_1.P_loss_sp", "stage_1.P_loss_pr"] if planets else [f"stage_{k}.P_loss" for k in stages],
+        "P_dgb_W": [f"{name}_bearing_{end}.P_loss" for name in names for end in "ab"],
+        "P_seal_W": ["input_seal.P_loss", "output_seal.P_loss"],
+        "P_churn_W": [f"churning_{k}.P_loss" for k in stages],
+    }
+    if planets:
+        found["P_needle_W"] = ["planet_bearing.P_loss"]
+    return {column: json.dumps(parts) for column, parts in found.items()}

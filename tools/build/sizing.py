@@ -1,0 +1,191 @@
+"""Sizes of a gear unit from its name plate, by usual design rules: stages, shafts, bearings, housing.
+
+Nothing here is measured or verified: the numbers are what a first draft would have, so that a rig runs before its
+drawings are at hand. Every rule is told beside the number that it gives.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ...model.errors import ScenarioError
+from ...model.units import si_of
+from ...scenarios.entries import catalogue
+from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, PlanetaryStage, Stage, WormStage
+
+#: Shear stress of shafts [Pa], wanted life of bearings [h].
+SHEAR, LIFE = 25e6, 20_000.0
+#: Least load of a bearing [N], and kinds of stages that stand alone.
+LIGHT, ALONE = 100.0, ("worm", "planetary")
+#: From the middle of a bearing to a gear, and between gears [m].
+SIDE, GAP = 0.020, 0.010
+#: Distance of the bearings of a bevel pinion over how far its mid face overhangs; of those of a worm over its wheel's
+#: diameter.
+OVERHANG, APART = 2.5, 0.9
+RATINGS = {
+    "SKF 6205": 14.8e3,
+    "SKF 6206": 20.3e3,
+    "SKF 6207": 27.0e3,
+    "SKF 6208": 32.5e3,
+    "SKF 6209": 35.1e3,
+    "SKF 6210": 37.1e3,
+    "SKF 6211": 46.2e3,
+    "SKF 6212": 55.3e3,
+    "SKF 6217": 87.1e3,
+    "SKF 6305": 23.4e3,
+    "SKF 6306": 29.6e3,
+    "SKF 6308": 42.3e3,
+    "SKF 6310": 65.0e3,
+    "SKF 6312": 85.2e3,
+}
+
+
+@dataclass(frozen=True)
+class Shaft:
+    """A shaft: torque, speed [1/s], diameter of its larger seat and that by torsion, places of its gears and bearing b,
+    both bearings with their lives [h].
+    """
+
+    T: float
+    n: float
+    d: float
+    d_torsion: float
+    places: tuple[float, ...]
+    span: float
+    bearings: tuple[str, str]
+    lives: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Unit:
+    """A gear unit: stages, shafts, and the box around them."""
+
+    stages: tuple[Stage, ...]
+    shafts: tuple[Shaft, ...]
+    wall: float
+    length: float
+    width: float
+    height: float
+
+    @property
+    def ratio(self) -> float:
+        """Of all stages."""
+        return math.prod(s.u for s in self.stages)
+
+    @property
+    def turn(self) -> int:
+        """Sense of rotation of the output, 1 for that of the input."""
+        return math.prod(s.turn for s in self.stages)
+
+    @property
+    def area(self) -> float:
+        """Of the box."""
+        return 2 * (self.length * self.width + self.length * self.height + self.width * self.height)
+
+
+def unit(kinds: Sequence[str], ratio: float, power: float, speed: float) -> Unit:
+    """A gear unit for a name plate.
+
+    Args:
+        kinds: of the stages, from the input on, keys of `KINDS`
+        ratio: speed of the input over that of the output
+        power: at the input [W]
+        speed: of the input [rad/s]
+
+    Raises:
+        ScenarioError: unknown kinds, or more than so many stages of so much can do
+    """
+    _check(kinds, ratio, power, speed)
+    T, n, x = power / speed, speed / (2 * math.pi), SIDE
+    found: list[Stage] = []
+    left = ratio
+    for k, kind in enumerate(kinds):
+        made = MAKE[kind](kind, _share(left, kinds[k:]), T, n, x)
+        found.append(made)
+        T, n, x, left = T * made.u, n / made.u, x + made.b + GAP, left / made.u
+    span = x - GAP + SIDE
+    shafts = tuple(_shaft(found, k, span) for k in range(len(found) + 1))
+    wall = max(0.008, 0.025 * found[-1].along + 0.003)
+    tips = [(s.r_1 + s.m_n, s.r_2 + s.m_n) for s in found]
+    length = sum(s.along for s in found) + tips[-1][1] + 0.040 + 2 * wall
+    height = 2 * max(max(pair) for pair in tips) + 0.080 + 2 * wall
+    if isinstance(found[0], WormStage):  # the wheel stands on the worm
+        length, height = shafts[0].span + 0.090, found[0].a + sum(tips[0]) + 0.080 + 2 * wall
+    elif isinstance(found[0], PlanetaryStage):
+        length = height = 2 * found[0].reach + 8 * found[0].m_n + 0.040 + 2 * wall
+    else:
+        length += shafts[0].span if isinstance(found[0], BevelStage) else tips[0][0]
+    return Unit(tuple(found), shafts, wall, length, span + 0.090, height)
+
+
+def _check(kinds: Sequence[str], ratio: float, power: float, speed: float) -> None:
+    problems = [f'there is no stage "{k}". Stages: {", ".join(KINDS)}.' for k in kinds if k not in KINDS]
+    if not kinds:
+        problems.append("no stage is given. Name them from the input on, for example helical,helical.")
+    if "bevel" in kinds[1:]:
+        problems.append("a bevel stage comes first: here its pinion is on the input shaft.")
+    problems += [f"a {kind} stage stands alone here." for kind in ALONE if kind in kinds and len(kinds) > 1]
+    if not (power > 0 and speed > 0):
+        problems.append("power and speed must be above 0.")
+    if not 0 < ratio < math.inf:
+        raise ScenarioError([*problems, f"a ratio of {ratio:g} is none. Give the input's speed over the output's."])
+    least, most = (
+        math.prod(limit.get(kind, other) for kind in kinds) ** (1 / max(len(kinds), 1))
+        for limit, other in ((LEAST, 1.0), (MOST, MOST["helical"]))
+    )
+    if kinds and not least <= ratio ** (1 / len(kinds)) <= most:
+        needed = max(1, math.ceil(math.log(max(ratio, 1.01)) / math.log(most)))
+        problems.append(
+            f"a ratio of {ratio:g} in {len(kinds)} stages is {ratio ** (1 / len(kinds)):.3g} each, expected {least:.3g}"
+            f" to {most:.3g}. Give {needed} stages or more."
+        )
+    if problems:
+        raise ScenarioError(problems)
+
+
+def _share(ratio: float, kinds: Sequence[str]) -> float:
+    """Ratio of the next stage: the first ones have more, so that all wheels are of like size."""
+    stages = len(kinds)
+    share = {1: ratio, 2: 0.8 * ratio ** (2 / 3), 3: 0.6 * ratio ** (4 / 7)}.get(stages, ratio ** (1 / stages))
+    return float(min(max(share, ratio / math.prod(MOST[kind] for kind in kinds[1:]), 1.0), ratio, MOST[kinds[0]]))
+
+
+def _shaft(stages: Sequence[Stage], k: int, span: float) -> Shaft:
+    """The shaft behind k stages: its diameter by torsion, its bearings by bore and life."""
+    before, behind = stages[k - 1 : k] if k else (), stages[k : k + 1]
+    T = behind[0].T if behind else before[0].T * before[0].u
+    n = behind[0].n if behind else before[0].n / before[0].u
+    d = (16 * T / (math.pi * SHEAR)) ** (1 / 3)
+    gears = [(s.forces[1], s.x, s.r_2) for s in before] + [(s.forces[0], s.x, s.r_1) for s in behind]
+    if k == 0 and isinstance(stages[0], BevelStage):  # the pinion overhangs bearing b, where the apex is
+        beyond = SIDE + stages[0].b / 2
+        span = OVERHANG * beyond
+        gears = [(stages[0].forces[0], span + beyond, stages[0].r_1)]
+    elif k == 0 and isinstance(stages[0], WormStage):
+        span = APART * 2 * stages[0].r_2
+        gears = [(stages[0].forces[0], span / 2, stages[0].r_1)]
+    elif isinstance(stages[0], PlanetaryStage):  # the forces on sun and carrier are in balance
+        gears = []
+    axial = abs(sum((1 if i else -1) * F[2] for i, (F, _, _) in enumerate(gears)))
+    planes = [(F[0], (1 if i else -1) * F[1], x, F[2] * r) for i, (F, x, r) in enumerate(gears)]
+    far = [sum(p[0] * p[2] for p in planes) / span, sum(p[1] * p[2] + p[3] for p in planes) / span]
+    near = [sum(p[i] for p in planes) - far[i] for i in (0, 1)]
+    chosen = [_bearing(d, math.hypot(*F), F_a, n) for F, F_a in ((near, axial), (far, 0.0))]
+    bore = max(si_of(catalogue("bearing")[name].values["d"]) for name, _ in chosen)
+    (a, life_a), (b, life_b) = chosen
+    return Shaft(T, n, bore, d, tuple(x for _, x, _ in gears), span, (a, b), (life_a, life_b))
+
+
+def _bearing(d: float, F_r: float, F_a: float, n: float) -> tuple[str, float]:
+    """The smallest bearing of the catalogue with a bore and the wanted life, else the strongest; and its life [h]."""
+    P = max(F_r, 0.56 * F_r + 1.6 * F_a, LIGHT)
+    sizes = {name: [si_of(catalogue("bearing")[name].values[key]) for key in ("D", "d")] for name in RATINGS}
+    fitting = [name for name in RATINGS if sizes[name][1] >= 0.999 * d]
+    if not fitting:
+        raise ScenarioError(f"a shaft of {1000 * d:.0f} mm: no ball bearing of the catalogue has such a bore.")
+    lives = {name: 1e6 / (3600 * n) * (RATINGS[name] / P) ** 3 for name in fitting}
+    lasting = [name for name in fitting if lives[name] >= LIFE]
+    name = min(lasting, key=sizes.__getitem__) if lasting else max(fitting, key=lives.__getitem__)
+    return name, lives[name]

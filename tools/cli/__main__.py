@@ -1,0 +1,33 @@
+"""Where the program begins: also a Ctrl-C while it loads, and a help text without room, end with one line."""
+
+from __future__ import annotations
+
+import errno
+import os
+import sys
+
+
+def main() -> None:
+    """Entry point of the program."""
+    try:
+        from .app import program
+
+        try:
+            program()
+        finally:
+            sys.stdout.flush()
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        sys.exit(130)
+    except OSError as error:  # what typer itself prints: help, version, completion
+        if error.errno not in (errno.ENOSPC, errno.EDQUOT, errno.EPIPE):
+            raise
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        if error.errno == errno.EPIPE:  # the reader of stdout, a pager for example, has gone
+            sys.exit(0)
+        print(f"error: standard output: {error.strerror}. Make room.", file=sys.stderr)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

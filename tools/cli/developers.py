@@ -1,0 +1,62 @@
+"""The commands for those who work on gearheat itself: how good the diagnosis is, and how fast the program."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+
+from ..show import console
+from .options import Jobs, Json, Rig, Tests
+
+
+@console.guarded
+def challenge(
+    sheet: Annotated[
+        Literal["own", "foreign", "textbook", "practice", "all"],
+        typer.Option(
+            help="own: the rig behaves as the model; foreign: another simulator, with a healthy reference; textbook: a "
+            "frozen third one with rough readings; practice: the campaigns of --practice; all: these, pooled."
+        ),
+    ],
+    n: Annotated[int, typer.Option("--n", help="Number of cases of each sheet.")] = 150,
+    seed: Annotated[int, typer.Option(help="The same seed hides the same.")] = 0,
+    jobs: Jobs = 0,
+    out: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", help="Folder for cases and answers; an interrupted run goes on from there."),
+    ] = None,
+    only: Annotated[str | None, typer.Option(help='One kind of cases, for example "clean".')] = None,
+    practice: Annotated[
+        Path | None, typer.Option(help="Folder of campaigns: data.csv, card.json and key.json in a folder each.")
+    ] = None,
+    json: Json = None,
+) -> None:
+    """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
+    from ..challenge import command
+
+    command.command(sheet, n, seed, jobs, out, only, practice, json)
+
+
+@console.guarded
+def bench(
+    rig: Rig = "planetary",
+    tests: Tests = None,
+    fmu: Annotated[bool, typer.Option("--fmu", help="The FMU against its peers, and the batch, instead.")] = False,
+    batch: Annotated[bool, typer.Option("--batch", help="Many rows in one call, instead.")] = False,
+    uncertainty: Annotated[
+        bool, typer.Option("--uncertainty", help="Standard deviations of the FMU beside Monte Carlo, instead.")
+    ] = False,
+    contact: Annotated[bool, typer.Option("--contact", help="The contact solver against slippy, instead.")] = False,
+    draws: Annotated[int, typer.Option(help="Rows that --uncertainty draws.")] = 10_000,
+    json: Json = None,
+) -> None:
+    """Time and memory of the main job, beside SciPy's LSODA on the same equations."""
+    asked = {"contact": contact, "fmu": fmu, "batch": batch, "uncertainty": uncertainty}
+    if contact:
+        os.environ.setdefault("OMP_NUM_THREADS", "1")
+    from ..bench import bench
+
+    bench.command(rig, tests, json, next((name for name, given in asked.items() if given), "job"), draws)

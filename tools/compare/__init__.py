@@ -1,0 +1,1 @@
+"""Simulated beside measured: runs of campaigns, losses at readings, fits, rivals, report."""

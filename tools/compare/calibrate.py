@@ -1,0 +1,228 @@
+"""The command `calibrate`: fit parameters to the measured oil temperatures of one grid by playing the FMU."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares
+
+from ...fmu.export import export
+from ...fmu.play import Player
+from ...model.core.flat import FlatModel, Quantity
+from ...model.errors import DataError, GearheatError, ScenarioError, SolveError
+from ...model.units import from_si, shown, to_si
+from ...scenarios.load import load
+from ..show.console import answer, note, say, table
+from ..solve.settings import adjusted, flat_of
+from . import campaign
+from .measured import Measured, measured_of
+
+#: Relative step of the difference quotients; well above what the FMU's own tolerance leaves.
+STEP = 1e-3
+
+
+@dataclass(frozen=True)
+class Fit:
+    """Fitted values in SI with their standard errors and correlations, and the errors before and after [K].
+
+    A value that ended at its bound has neither standard error nor correlation (NaN): the readings ask for more than the
+    bound allows.
+    """
+
+    names: tuple[str, ...]
+    start: np.ndarray
+    values: np.ndarray
+    standard_errors: np.ndarray
+    correlation: np.ndarray
+    readings: int
+    rmse_before: float
+    rmse_after: float
+
+
+def command(
+    rig: str,
+    grid: str | None,
+    free: Sequence[str],
+    bounds: Sequence[str],
+    assignments: Sequence[str],
+    json: str | None,
+    *,
+    data: Path | None = None,
+    card: Path | None = None,
+) -> None:
+    """Print the fitted values."""
+    scenario = adjusted(load(rig), assignments, named=free)
+    study = measured_of(scenario, data, card)
+    if study is None:
+        raise DataError(f"{scenario.name}: there are no measured data to fit to. Give them as --data FILE.")
+    scenario = study.scenario
+    flat = flat_of(scenario)
+    quantities = _bounded(_checked(flat, free), bounds)
+    chosen = _of_grid(study, campaign.runs_of(scenario, flat, study), grid)
+    fit = fitted(study, flat, quantities, chosen)
+    found = {
+        "schema": "gearheat.calibrate/1",
+        "rig": scenario.name,
+        "grid": grid,
+        "readings": fit.readings,
+        "free": {
+            q.name: {
+                "value": from_si(float(fit.values[i]), q.unit),
+                "standard_error": float(fit.standard_errors[i]) * (from_si(1.0, q.unit) - from_si(0.0, q.unit)),
+                "start": from_si(float(fit.start[i]), q.unit),
+                "unit": shown(q.unit),
+                "at_bound": bool(np.isnan(fit.standard_errors[i])),
+            }
+            for i, q in enumerate(quantities)
+        },
+        "correlation": {
+            a: dict(zip(fit.names, line.tolist(), strict=True))
+            for a, line in zip(fit.names, fit.correlation, strict=True)
+        },
+        "rmse_before_K": fit.rmse_before,
+        "rmse_after_K": fit.rmse_after,
+    }
+    answer(found, json, lambda: _print(found))
+
+
+def _checked(flat: FlatModel, free: Sequence[str]) -> list[Quantity]:
+    problems: list[str] = []
+    for name in free:
+        try:
+            if flat.locate(name)[0] != "parameter":
+                problems.append(f"{name} is no parameter and cannot be fitted. `gearheat show` lists the parameters.")
+        except GearheatError as error:
+            problems += error.problems
+    if len(set(free)) < len(free):
+        problems.append("A parameter is free twice. Name each once.")
+    if problems:
+        raise ScenarioError(problems)
+    return [flat.quantity(name) for name in free]
+
+
+def _bounded(quantities: Sequence[Quantity], bounds: Sequence[str]) -> list[Quantity]:
+    """The quantities with the ranges of texts such as "cooling.A=0.4 m2..1.2 m2"."""
+    found = {q.name: q for q in quantities}
+    problems: list[str] = []
+    for text in bounds:
+        name, _, ends = (part.strip() for part in text.partition("="))
+        low, dots, high = ends.partition("..")
+        if name not in found or not dots:
+            problems.append(f'--bounds "{text}": write a free parameter and its range, like cooling.A=0.4 m2..1.2 m2.')
+            continue
+        try:
+            unit = found[name].unit
+            values = [to_si(end, unit, name=f"--bounds {name}") for end in (low, high)]
+        except GearheatError as error:
+            problems += error.problems
+            continue
+        if not values[0] < values[1]:
+            problems.append(f'--bounds "{text}": the first end must lie below the second.')
+        found[name] = replace(found[name], low=values[0], high=values[1])
+    if problems:
+        raise ScenarioError(problems)
+    return list(found.values())
+
+
+def _of_grid(study: Measured, runs: Sequence[campaign.Run], grid: str | None) -> list[campaign.Run]:
+    """The tests of one mounting or grid of the table, all of them where none is named."""
+    mountings = study.campaign.mounting
+    found = [run for run, mounting in zip(runs, mountings, strict=True) if grid in (None, mounting)]
+    if not found:
+        known = ", ".join(dict.fromkeys(name for name in mountings if name)) or "none"
+        raise DataError(f'There is no grid "{grid}". Grids: {known}.')
+    return found
+
+
+def fitted(study: Measured, flat: FlatModel, quantities: Sequence[Quantity], runs: Sequence[campaign.Run]) -> Fit:
+    """Least squares on the first thermometer, that of the oil where there is one, over the readings of the tests.
+
+    Raises:
+        SolveError: the readings do not determine the parameters
+    """
+    start = np.array([q.start for q in quantities])
+    scale = np.where(start != 0, np.abs(start), [q.nominal for q in quantities])
+    if (sensor := study.oil_sensor) is None:
+        raise DataError(f"{study.campaign.name}: no temperature of the gearbox was read to fit to.")
+    measured = study.campaign.values[sensor.name][[row for run in runs for row in run.rows]]
+    if len(measured) <= len(start):
+        raise SolveError(f"{len(measured)} readings cannot determine {len(start)} parameters. Free fewer.")
+    with tempfile.TemporaryDirectory() as folder, Player(export(flat, Path(folder) / "rig.fmu")) as player:
+        simulated = _simulated(player, study, runs, sensor.reads)
+
+        def errors(z: np.ndarray) -> np.ndarray:
+            values = {q.name: float(v) for q, v in zip(quantities, z * scale, strict=True)}
+            return np.asarray(simulated(values) - measured)
+
+        low, high = (np.array([getattr(q, side) for q in quantities]) / scale for side in ("low", "high"))
+        first = errors(start / scale)
+        begin = np.clip(start / scale, low + 1e-6 * (1 + np.abs(low)), high)
+        found = least_squares(errors, begin, bounds=(low, high), diff_step=STEP, xtol=1e-6, ftol=1e-9)
+    note(f"{found.nfev} evaluations of {len(runs)} tests: {found.message}")
+    inside = found.active_mask == 0
+    _, sizes, _ = np.linalg.svd(found.jac[:, inside])
+    if sizes.size and sizes[-1] < 1e-8 * sizes[0]:
+        raise SolveError("The readings do not tell the free parameters apart. Free fewer.")
+    variance = (found.fun @ found.fun) / (len(measured) - inside.sum())
+    covariance = np.full((len(start), len(start)), np.nan)
+    covariance[np.ix_(inside, inside)] = np.linalg.inv(found.jac[:, inside].T @ found.jac[:, inside]) * variance
+    deviation = np.sqrt(np.diag(covariance))
+    return Fit(
+        names=tuple(q.name for q in quantities),
+        start=start,
+        values=found.x * scale,
+        standard_errors=deviation * scale,
+        correlation=covariance / np.outer(deviation, deviation),
+        readings=len(measured),
+        rmse_before=float(np.sqrt(np.mean(first**2))),
+        rmse_after=float(np.sqrt(np.mean(found.fun**2))),
+    )
+
+
+def _simulated(
+    player: Player, study: Measured, runs: Sequence[campaign.Run], path: str
+) -> Callable[[Mapping[str, float]], np.ndarray]:
+    """Parameter values -> the oil temperature at every reading [K]."""
+
+    def readings(values: Mapping[str, float]) -> np.ndarray:
+        found: list[float] = []
+        for run in runs:
+            played = player.run(
+                run.inputs,
+                run.schedule.stop,
+                60.0,
+                start={**run.start, **(_settled(study, run, values) if study.campaign.steady else {}), **values},
+                record=[path],
+                output_times=list(run.moments),
+            )
+            found += played.values[:, 0].tolist()
+        return np.array(found)
+
+    return readings
+
+
+def _settled(study: Measured, run: campaign.Run, values: Mapping[str, float]) -> dict[str, float]:
+    """The steady state with other parameters that a test begins with; nothing where there is none."""
+    states = {q.name for q in study.nominal.flat.states}
+    known = {name: value for name, value in run.start.items() if name not in states}
+    known |= {name: float(course[0]) for name, course in run.schedule.values.items()}
+    found = study.nominal.at({**known, **values}) or {}
+    return {name: found[name] for name in states & found.keys() & run.start.keys()}
+
+
+def _print(found: Mapping[str, Any]) -> None:
+    body = [[n, f["value"], f["standard_error"], f["unit"], f["start"]] for n, f in found["free"].items()]
+    table(
+        f"{found['rig']}: fitted to {found['readings']} oil temperatures of {found['grid'] or 'all tests'}",
+        ("name", "value", "standard error", "unit", "before"),
+        body,
+    )
+    table("Correlation", ("", *found["free"]), [[n, *line.values()] for n, line in found["correlation"].items()])
+    for name in (n for n, f in found["free"].items() if f["at_bound"]):
+        say(f"{name} ended at its bound: the readings ask for more than it allows.")
+    say(f"root mean square: {found['rmse_before_K']:.3f} K before, {found['rmse_after_K']:.3f} K after")

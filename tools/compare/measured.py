@@ -1,0 +1,117 @@
+"""A rig with its measured readings, as every command that plays or compares them loads it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+
+from ...model.errors import DataError
+from ...scenarios.load import load
+from ...scenarios.measured.card import Card, read_card
+from ...scenarios.measured.lubrication import lubricated
+from ...scenarios.measured.nominal import Nominal
+from ...scenarios.measured.oils import oil_values
+from ...scenarios.measured.read import read_campaign
+from ...scenarios.measured.sensors import driven_by
+from ...scenarios.measured.table import Campaign, Sensor
+from ...scenarios.scenario import Scenario
+from ...scenarios.write import DIAGNOSED
+from ..solve.settings import SET
+
+
+@dataclass(frozen=True)
+class Measured:
+    """A rig driven and lubricated as its campaign was run.
+
+    Args:
+        scenario: the rig
+        campaign: the readings
+        card: how they were taken
+    """
+
+    scenario: Scenario
+    campaign: Campaign
+    card: Card
+
+    @cached_property
+    def nominal(self) -> Nominal:
+        """The model at steady states."""
+        return Nominal(self.scenario)
+
+    def given(self, row: int) -> dict[str, float]:
+        """Inputs of the model in a row, by path, with the signs of the model."""
+        c = self.campaign
+        direction = c.direction[row : row + 1]
+        return {s.reads: float(c.values[s.name][row] * s.sign(direction)[0]) for s in c.given}
+
+    def oil(self, test: int) -> dict[str, float]:
+        """Values of the oil of a test, but for those that the user set or a diagnosis changed."""
+        values = oil_values(self.scenario, self.campaign.oil[test], self.card)
+        sources, kept = self.scenario.value_sources, (SET, DIAGNOSED)
+        return {path: value for path, value in values.items() if not sources.get(path, "").startswith(kept)}
+
+    @property
+    def read_rows(self) -> list[int]:
+        """Rows that were read, not only run."""
+        return [row for row in range(self.campaign.n) if self.campaign.points[row] > 0]
+
+    @property
+    def warm(self) -> tuple[Sensor, ...]:
+        """Thermometers of the gearbox."""
+        return tuple(s for s in self.campaign.read if s.kind.endswith("_temp"))
+
+    @property
+    def oil_sensor(self) -> Sensor | None:
+        """The first thermometer in the oil, else of the gearbox."""
+        return next((s for s in self.warm if s.kind == "oil_temp"), next(iter(self.warm), None))
+
+    @property
+    def rooms(self) -> tuple[Sensor, ...]:
+        """Thermometers of the surroundings."""
+        return tuple(s for s in self.campaign.given if s.kind == "ambient")
+
+    def number(self, test: int) -> int:
+        """Number of a test: as in the file where all have one, else its place in the running order."""
+        names = self.campaign.names
+        return int(names[test]) if all(name.isdigit() for name in names) else test + 1
+
+
+def measured_of(scenario: Scenario, data: Path | None = None, card: Path | None = None) -> Measured | None:
+    """A rig with the readings in a table, or with its own; None for a rig without any.
+
+    Args:
+        scenario: the rig; one that a diagnosis extended has its lubricants where they belong
+        data: measured table that takes the place of the rig's own
+        card: how that table was taken, as `diagnose` is told
+
+    Raises:
+        DataError: all problems of the files; a card without a table
+    """
+    if card is not None and data is None:
+        raise DataError(f"--card {card} says how a measured table was taken. Give the table, too, as --data FILE.")
+    path = data or scenario.data
+    if path is None:
+        return None
+    told = Card() if card is None else read_card(card)
+    campaign = read_campaign(path, scenario, told)
+    diagnosed = any(source.startswith(DIAGNOSED) for source in scenario.value_sources.values())
+    spec = scenario.spec if diagnosed else lubricated(scenario.spec, told.lubrication)
+    return Measured(driven_by(replace(scenario, spec=spec), campaign.sensors), campaign, told)
+
+
+def loaded(rig: str, extended: Path | None = None) -> Scenario:
+    """A rig, or its extension with the rig's own measured table.
+
+    Args:
+        rig: name or file
+        extended: rig file of the extension, which takes the rig's place
+
+    Raises:
+        GearheatError: all problems of the files
+    """
+    scenario = load(rig)
+    if extended is None:
+        return scenario
+    found = load(extended)
+    return replace(found, data=found.data or scenario.data, instruments=found.instruments or scenario.instruments)

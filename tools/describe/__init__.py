@@ -1,0 +1,1 @@
+"""What there is: rigs, catalogues, part types, and what one rig is made of."""

@@ -1,0 +1,118 @@
+"""The short answer of `show`: what the machine is made of, how it is driven, and which parameters matter most."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ...model.core.declare import declared
+from ...model.core.flat import FlatModel
+from ...model.errors import SolveError
+from ...model.parts.ports import Flange, HeatPort
+from ...model.run.result import Result
+from ...model.run.sensitivity import sensitivities
+from ...model.units import from_si, shown
+from ...scenarios.scenario import Scenario
+from ..show.console import cell, say, table
+from ..show.stacked import stacked
+from ..solve.steady import conditions, told
+
+#: How many parameters are told, and by what share of its value each is changed.
+FIRST, SHARE = 12, 0.1
+#: Below this share of the largest effect of all a parameter does not matter.
+LEAST = 1e-2
+
+
+def print_overview(scenario: Scenario, flat: FlatModel, found: Mapping[str, Any], rest: Result | None) -> None:
+    """Print parts by type, inputs, states, main outputs and the parameters with the largest effect.
+
+    Args:
+        scenario: the rig
+        flat: its model
+        found: the object of `--json`
+        rest: its steady state at the operating point, where there is one
+    """
+    by_type: dict[str, list[str]] = {}
+    for part in found["parts"]:
+        by_type.setdefault(part["type"], []).append(part["name"])
+    lines = [[kind, str(len(names)), ", ".join(names)] for kind, names in by_type.items()]
+    table("Parts", ("type", "number", "names"), lines)
+    head = ("name", "value", "unit", "doc", "source")
+    given = [line for line in found["inputs"] if line["source"] != "default"]
+    stacked("Inputs", head, [[line[key] for key in head] for line in given], 2)
+    if others := [line["name"] for line in found["inputs"] if line not in given]:
+        say(f"Inputs left at their defaults: {', '.join(others)}")
+    say(f"States: {', '.join(line['name'] for line in found['states']) or 'none'}")
+    rooms = [f"{name}.Q_flow" for name in scenario.spec.of_type("Room")]
+    named = [name for name in (*told(scenario), *rooms) if name in flat.index]
+    named = [name for name in named if name not in {line["name"] for line in found["states"]}]
+    more = len(found["outputs"]) - len(named)
+    say(f"Outputs: {', '.join([*named, f'{more} more'])}")
+    if found["sensors"]:
+        say(f"Sensors: {', '.join(found['sensors'])}")
+    print()
+    if rest is not None:
+        _print_effects(scenario, flat, found["parameters"], rest)
+    counts = [f"{len(found[key])} {key}" for key in ("parameters", "choices", "outputs", "laws")]
+    say(f"{', '.join(counts)} with --all")
+
+
+def _print_effects(scenario: Scenario, flat: FlatModel, parameters: Sequence[Mapping[str, Any]], rest: Result) -> None:
+    """Print the parameters that change the temperature of the oil and the loss the most."""
+    of = [name for name in told(scenario) if name in flat.index and not name.endswith(".eta")][:2]
+    ranked = effects(scenario, flat, of, parameters, rest)
+    if not ranked:
+        return
+    units = [flat.quantity(name).unit for name in of]
+    body = []
+    for line, changes in ranked:
+        own = {**line, **(line["written"] or {})}
+        told_as = [c if unit == "K" else from_si(c, unit) for c, unit in zip(changes, units, strict=True)]
+        body.append([own["name"], own["value"], own["unit"], *map(_signed, told_as), own["doc"], own["source"]])
+    keys = [name.rpartition(".")[2] for name in of]
+    heads = [f"{key} [{unit if unit == 'K' else shown(unit)}]" for key, unit in zip(keys, units, strict=True)]
+    title = f"Parameters that matter most: what {100 * SHARE:g} % more of each does to {' and '.join(of)}"
+    stacked(title, ("name", "value", "unit", *heads, "doc", "source"), body, 2)
+
+
+def effects(
+    scenario: Scenario, flat: FlatModel, of: Sequence[str], parameters: Sequence[Mapping[str, Any]], rest: Result
+) -> list[tuple[Mapping[str, Any], list[float]]]:
+    """The parameters with the largest effect, and what each changes in SI.
+
+    Those that the rig gives and that are no temperatures. Left out is what the drawing fixes: numbers of things, and
+    lengths and angles of all parts but those that only carry heat.
+
+    Args:
+        scenario: the rig
+        flat: its model
+        of: outputs or states that are changed
+        parameters: as `--json` lists them
+        rest: the steady state
+    """
+    thermal = {p.name for p in scenario.spec.parts if _thermal(scenario.spec.types[p.type])}
+    own = {line["name"]: line for line in parameters if line["kind"] == "given"}
+    free = [q for q in flat.parameters if q.name in own and q.unit != "K" and not q.whole]
+    free = [q for q in free if q.unit not in ("m", "rad") or q.name.rpartition(".")[0] in thermal]
+    if not free or not of:
+        return []
+    guess = {q.name: float(rest[q.name][0]) for q in flat.states}
+    try:
+        slopes = sensitivities(flat, of, [q.name for q in free], conditions(scenario, flat), guess=guess)
+    except (SolveError, np.linalg.LinAlgError):
+        return []
+    change = SHARE * slopes * np.array([q.start for q in free])
+    largest = np.abs(change).max(axis=1, keepdims=True)
+    weight = (np.abs(change) / np.where(largest > 0, largest, 1.0)).max(axis=0)
+    order = sorted((k for k in range(len(free)) if weight[k] > LEAST), key=lambda k: (-float(f"{weight[k]:.6g}"), k))
+    return [(own[free[k].name], [float(c) for c in change[:, k]]) for k in order[:FIRST]]
+
+
+def _thermal(cls: type) -> bool:
+    return bool(declared(cls, HeatPort)) and not declared(cls, Flange)
+
+
+def _signed(value: float) -> str:
+    return f"+{cell(value)}" if value > 0 else cell(value)

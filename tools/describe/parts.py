@@ -1,0 +1,285 @@
+"""What rigs are built of: the commands `parts`, which tells all of a part type, and `schema`, which editors read."""
+
+from __future__ import annotations
+
+import inspect
+import math
+import tomllib
+from collections.abc import Mapping
+from functools import cache
+from importlib.resources import files
+from pathlib import Path
+from typing import Any
+
+from ...model.core.component import Component
+from ...model.core.declare import Choice, Declaration, Input, Output, Parameter, Port, State, declared
+from ...model.core.flat import Quantity
+from ...model.errors import ScenarioError, suggestion
+from ...model.parts import PARTS
+from ...model.sources import recording, sources
+from ...model.units import example, from_si, shown, text, to_si
+from ...scenarios.entries import DESCRIPTIVE, Entry, catalogue
+from ...scenarios.load import load
+from ...scenarios.scenario import Scenario
+from ...scenarios.shipped import FILES, list_rigs
+from ...scenarios.tables import RigTable
+from ...scenarios.values import UNCERTAINTIES, settable
+from ..show.console import answer, as_json, say, table, write
+
+#: Parameters that a catalogue entry of a kind brings.
+ENTRIES: Mapping[str, str] = {kind: f"name of an entry, see `gearheat list`: values of {kind}s" for kind in FILES}
+
+
+def parts_command(kind: str | None, json: str | None) -> None:
+    """All part types, or everything about one of them.
+
+    Raises:
+        ScenarioError: there is no such type
+    """
+    if kind is None:
+        types = [{"type": name, "role": cls.role, "doc": _doc(cls)} for name, cls in PARTS.items()]
+        rows = [(t["type"], t["role"], t["doc"]) for t in types]
+        answer({"schema": "gearheat.parts/1", "types": types}, json, lambda: _list(rows))
+        return
+    if kind not in PARTS:
+        raise ScenarioError(f'there is no part type "{kind}".{suggestion(kind, PARTS)} See `gearheat parts`.')
+    found = {"schema": "gearheat.part/1", **described(kind)}
+    answer(found, json, lambda: _print(found))
+
+
+def described(kind: str) -> dict[str, Any]:
+    """Ports, parameters, choices, inputs, states, outputs, equations, sources and an example of a part type.
+
+    Args:
+        kind: name in `PARTS`
+    """
+    cls = PARTS[kind]
+    where, values, entries = _example(kind)
+    equations, laws = _inside(cls, values)
+    return {
+        "type": kind,
+        "role": cls.role,
+        "doc": inspect.cleandoc(cls.__doc__ or ""),
+        "ports": [_port(name, port) for name, port in declared(cls, Port).items()],
+        "parameters": [_parameter(name, d) for name, d in declared(cls, Parameter).items()],
+        "choices": [
+            {"name": name, "options": [str(o) for o in c.options], "default": _told(c.default), "doc": c.doc}
+            for name, c in declared(cls, Choice).items()
+        ],
+        **{
+            title: [_line(name, d) for name, d in declared(cls, of).items()]
+            for title, of in (("inputs", Input), ("states", State), ("outputs", Output))
+        },
+        "entries": [k for k in FILES if any(_fits(e, cls) for e in catalogue(k).values())],
+        "equations": equations,
+        "laws": laws,
+        "example": _snippet(kind, values, entries),
+        "example_from": where,
+    }
+
+
+def _port(name: str, port: Port) -> dict[str, Any]:
+    kind = type(port)
+    carried = ", ".join(f"{n} [{shown(d.unit)}]" for n, d in {**kind.potentials(), **kind.flows()}.items())
+    return {"name": name, "type": kind.__name__, "carries": carried, "must_meet": port.needed, "doc": _meaning(port)}
+
+
+def _meaning(port: Port) -> str:
+    return port.doc or _doc(type(port))
+
+
+def _line(name: str, d: Declaration) -> dict[str, Any]:
+    return {"name": name, "unit": shown(d.unit), "range": _range(d.quantity(name)), "doc": d.doc}
+
+
+def _parameter(name: str, d: Parameter) -> dict[str, Any]:
+    left_out = "follows from others" if d.derived else "may be left out" if d.optional else ""
+    default = left_out if d.default is None else text(d.default, d.unit)
+    return {**_line(name, d), "default": default}
+
+
+def _range(q: Quantity) -> str:
+    """The values that a quantity may have, in the unit shown."""
+    low, high = (f"{from_si(bound, q.unit):.6g}" for bound in (q.low, q.high))
+    words = [f"{'above' if q.low_open else 'from'} {low}"] if math.isfinite(q.low) else []
+    words += [f"{'below' if q.high_open else 'to'} {high}"] if math.isfinite(q.high) else []
+    return " ".join(words)
+
+
+def _fits(entry: Entry, cls: type[Component]) -> bool:
+    """Whether a part takes all that an entry of a catalogue gives, but for what describes it to a reader."""
+    return set(entry.values) - set(DESCRIPTIVE.get(entry.kind, {})) <= set(settable(cls))
+
+
+@cache
+def _shipped() -> tuple[Scenario, ...]:
+    return tuple(load(rig) for rig in list_rigs())
+
+
+def _example(kind: str) -> tuple[str, dict[str, Any], Mapping[str, str]]:
+    """A shipped rig with such a part, its values, and its catalogue entries; "" and typical sizes where none has it.
+
+    The sizes of parts that need some which fit each other are those of a template, the rest nominal ones.
+    """
+    found: list[tuple[str, dict[str, Any], Mapping[str, str]]] = []
+    for scenario in _shipped():
+        for name in scenario.spec.of_type(kind):
+            found.append((scenario.name, dict(scenario.spec.part(name).values), scenario.entries.get(name, {})))
+    if found:
+        return next((e for e in found if e[2]), found[0])
+    known: dict[str, Parameter] = declared(PARTS[kind], Parameter)
+    needed = {k: d for k, d in known.items() if d.default is None and d.derived is None and not d.optional}
+    grown = {k: d.nominal * (1 + i / 2 if d.unit == "m" else 1) for i, (k, d) in enumerate(needed.items())}
+    return "", grown | _typical().get(kind, {}), {}
+
+
+@cache
+def _typical() -> dict[str, dict[str, Any]]:
+    """Sizes of part types that no shipped rig has, by type, in SI."""
+    written = files("gearheat.tools.describe").joinpath("templates", "parts.toml").read_text(encoding="utf-8")
+    found: dict[str, dict[str, Any]] = tomllib.loads(written)
+    for kind, sizes in found.items():
+        known = settable(PARTS[kind])
+        sizes |= {key: to_si(sizes[key], known[key].unit, name=key) for key in sizes.keys() & known.keys()}
+    return found
+
+
+def _inside(cls: type[Component], values: Mapping[str, Any]) -> tuple[list[str], list[dict[str, Any]]]:
+    """Names of the equations of a part, and the laws in them with what they cite."""
+    with recording() as uses:
+        part = cls("part", **values)
+        names = [e.name for e in part.equations()]
+    known = sources()
+    used = {use.law.name: use.law for use in (*part.uses, *uses)}
+    return names, [
+        {
+            "law": law.name,
+            "source": known[law.source].cited,
+            "where": law.where,
+            "valid": law.valid,
+        }
+        for law in used.values()
+    ]
+
+
+def _snippet(kind: str, values: Mapping[str, Any], entries: Mapping[str, str]) -> str:
+    """A table of a rig file with these values, and the ports to connect."""
+    cls = PARTS[kind]
+    lines = ["[part.name]", f'type = "{kind}"', *(f'{k} = "{name}"  # catalogue' for k, name in entries.items())]
+    brought = {k for entry, name in entries.items() for k in catalogue(entry)[name].values}
+    for key, d in {**settable(cls), **declared(cls, Choice)}.items():
+        default = d.default if isinstance(d, Parameter | Choice) else None
+        if key not in values or key in brought or values[key] == default:
+            continue
+        written = values[key] if isinstance(d, Choice) or d.unit == "1" else text(values[key], d.unit)
+        lines.append(f"{key} = {_toml(written)}  # {d.doc}")
+    if len(lines) > 2:
+        lines.append('source = "assumed: where these values are from"')
+    ports = [f'net_{k} = ["name.{k}", "..."]  # {_meaning(port)}' for k, port in declared(cls, Port).items()]
+    return "\n".join([*lines, "", "[connect]", *ports]) + "\n"
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(_toml, value))}]"
+    return f"{value:.6g}" if isinstance(value, int | float) else f'"{value}"'
+
+
+def _told(value: Any) -> str:
+    return "" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
+
+
+def _doc(cls: type) -> str:
+    return inspect.cleandoc(cls.__doc__ or "").splitlines()[0]
+
+
+def _list(rows: list[tuple[str, str, str]]) -> None:
+    table("Part types", ("type", "role", "what it is"), rows)
+    say("gearheat parts TYPE tells all of one of them, with an example to copy.")
+
+
+def _print(found: dict[str, Any]) -> None:
+    say(f"{found['type']}: {found['doc']}\n")
+    titles = {
+        "ports": ("name", "type", "carries", "doc"),
+        "parameters": ("name", "unit", "range", "default", "doc"),
+        "choices": ("name", "options", "default", "doc"),
+        "inputs": ("name", "unit", "range", "doc"),
+        "states": ("name", "unit", "range", "doc"),
+        "outputs": ("name", "unit", "doc"),
+        "laws": ("law", "where", "valid", "source"),
+    }
+    for title, keys in titles.items():
+        if lines := found[title]:
+            table(title.capitalize(), keys, [[_cell(line[key]) for key in keys] for line in lines])
+    say(f"Equations: {'; '.join(found['equations'])}\n")
+    if found["entries"]:
+        say(f"Catalogues that may give values: {', '.join(found['entries'])} (gearheat list)\n")
+    origin = f"values of the rig {found['example_from']}" if found["example_from"] else "typical sizes"
+    print(f"Example ({origin}):\n\n{found['example']}")
+
+
+def _cell(value: Any) -> str:
+    return ", ".join(value) if isinstance(value, list) else str(value)
+
+
+# ------------------------------------------------------------------------------------------------------ schema
+
+
+def schema_command(out: Path | None) -> None:
+    """Print or write the schema of rig files."""
+    if out is None:
+        print(as_json(schema()), end="")
+        return
+    write(out, as_json(schema()))
+    say(f'{out}: put "#:schema {out.name}" into the first line of a rig file beside it')
+
+
+def schema() -> dict[str, Any]:
+    """JSON schema of a rig file, in which editors check and complete what is typed."""
+    found = RigTable.model_json_schema()
+    found["$defs"] |= {f"part_{kind}": _part_schema(kind) for kind in PARTS}
+    own = [{"$ref": f"#/$defs/part_{kind}"} for kind in PARTS]
+    named = {"type": "object", "not": {"required": ["type"]}, "description": "a part of the machine named by `kind`"}
+    found["properties"]["part"]["additionalProperties"] = {"anyOf": [*own, named]}
+    found["properties"]["template"] = {"type": "object", "description": "values that parts share by use = NAME"}
+    found["properties"]["assembly"] = {"type": "object", "description": "parts and nets that use = NAME stands for"}
+    found["properties"]["sensors"]["additionalProperties"] = {
+        "anyOf": [{"type": "string"}, found["properties"]["sensors"]["additionalProperties"]]
+    }
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "gearheat rig file", **found}
+
+
+def _part_schema(kind: str) -> dict[str, Any]:
+    cls = PARTS[kind]
+    properties: dict[str, Any] = {
+        "type": {"const": kind, "description": _doc(cls)},
+        "use": {
+            "type": "string",
+            "description": "template of its values, or assembly in its place",
+        },
+    }
+    for key, d in settable(cls).items():
+        about = ", ".join(filter(None, (d.doc, _range(d.quantity(key)), shown(d.unit) if d.unit != "1" else "")))
+        taken = ["number", "string"] if d.unit == "1" else ["string"]
+        properties[key] = {"type": taken, "description": about, "examples": [example(d.unit)]}
+    for key, c in declared(cls, Choice).items():
+        plain = [o for o in c.options if isinstance(o, str | bool | int | float)]
+        options = {"enum": plain} if plain and len(plain) == len(c.options) and c.also is None else {}
+        properties[key] = {"description": c.doc, **options}
+    words = {"type": "string"}
+    properties |= {
+        entry: {**words, "description": about, "examples": list(catalogue(entry))[:3]}
+        for entry, about in ENTRIES.items()
+    }
+    properties |= {
+        "source": {
+            **words,
+            "description": "where the values are from: a citation, or assumed:, inferred:, calibrated:",
+        },
+        "sources": {"type": "object", "additionalProperties": words, "description": "the same of single values"},
+        UNCERTAINTIES: {"type": "object", "description": "standard uncertainties of values, with their units"},
+    }
+    return {"type": "object", "properties": properties, "required": ["type"], "additionalProperties": False}

@@ -1,0 +1,1 @@
+"""A rig as an FMU, or as a system of FMUs, and what goes beside it."""

@@ -1,0 +1,200 @@
+"""What goes beside an FMU: parameter sets of the rig and of every oil, and a reference result; and its own check."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from collections.abc import Container, Mapping
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ...fmu.compiling import store
+from ...fmu.export import export
+from ...fmu.parameter_set import parameter_set
+from ...fmu.play import Player
+from ...fmu.reference import TOLERANCE, results, stimuli, write_reference
+from ...fmu.related import Experiment
+from ...fmu.variables import STORED, SUPPLIED, THROUGHPUT, tidy
+from ...model.core.flat import FlatModel
+from ...model.errors import GearheatError
+from ...model.run.result import Result
+from ...model.run.schedule import Schedule, stepped
+from ...model.run.simulate import simulate
+from ...scenarios.entries import catalogue
+from ...scenarios.scenario import Scenario
+from ...scenarios.values import oil_values
+
+#: Communication step and rows of the reference result of a model driven by speed, and of one driven by torques [s].
+STEP, SHORT_STEP = 60.0, 0.5
+
+#: What is below this is round-off, which differs between machines.
+_ROUND_OFF = 5e-13
+
+
+def reference_duty(flat: FlatModel, start: Mapping[str, float], shafts: Container[str]) -> Schedule:
+    """The duty of the reference result, with every input in it.
+
+    With a given speed: two hours at the operating point, then two hours at half of its speed and torque. With torques
+    alone: a minute at the operating point, the middle third with 0.5 % more of the larger torque. Inputs jump and do
+    not ramp, so that an importer without slopes of inputs gets the same.
+    """
+    values = {q.name: float(start.get(q.name, q.start)) for q in flat.inputs}
+    driven = [q for q in flat.inputs if q.name in shafts]
+    if any(q.unit == "rad/s" for q in driven) or not driven:
+        return stepped([(7200.0, values), (7200.0, {q.name: values[q.name] / 2 for q in driven})])
+    first = max((q.name for q in driven), key=lambda name: abs(values[name]))
+    return stepped([(20.0, values), (20.0, {first: 1.005 * values[first]}), (20.0, {first: values[first]})])
+
+
+def step_of(duty: Schedule) -> float:
+    """Time between the rows of the reference result [s]."""
+    return STEP if duty.stop > 3600 else SHORT_STEP
+
+
+def reference_run(flat: FlatModel, duty: Schedule, start: Mapping[str, float]) -> Result | GearheatError:
+    """The reference run of the model itself, or why there is none.
+
+    Args:
+        flat: the model
+        duty: of the reference result
+        start: start values that are not those of the model
+    """
+    states = {q.name: start[q.name] for q in flat.states if q.name in start}
+    times = np.unique(np.append(np.arange(duty.start, duty.stop, step_of(duty)), duty.stop))
+    try:
+        return simulate(flat, duty, start=states, times=times)
+    except GearheatError as error:
+        return error
+
+
+def experiment(flat: FlatModel, duty: Schedule, run: Result | GearheatError) -> Experiment | None:
+    """The reference run as an importer can repeat it: temperatures and speeds, by another method than the FMU's.
+
+    Args:
+        flat: the model
+        duty: of the reference result
+        run: of `reference_run`
+    """
+    if isinstance(run, GearheatError):
+        return None
+    names = [q.name for q in flat.states]
+    doc = f"{duty.stop:g} s with steps of the load, states as CVODES integrates the model that the FMU was made of"
+    values = np.stack([run[name] for name in names], axis=1)
+    inputs = stimuli(_inputs(duty), duty.stop)
+    return Experiment("reference", doc, duty.stop, step_of(duty), TOLERANCE, inputs, results(names, run.index, values))
+
+
+def checked(fmu: Path, flat: FlatModel, duty: Schedule, own: Result | GearheatError) -> tuple[tuple[str, str], ...]:
+    """What was checked with this FMU, and the result: it is played over the reference duty beside the model's own run.
+
+    Results are bounds, the next power of ten above what was found, so that the same model gives the same text.
+    """
+    if not _plays_here(fmu):
+        return ()
+    try:
+        if isinstance(own, GearheatError):
+            raise own
+        with Player(fmu) as player:
+            audit = [name for name in (SUPPLIED, STORED, THROUGHPUT) if SUPPLIED in player.described.variables]
+            names = [*(q.name for q in flat.states), *audit]
+            moments = np.unique(own.index)
+            played = player.run(_inputs(duty), duty.stop, step_of(duty), record=names, output_times=moments)
+    except GearheatError as error:
+        return (("reference run of this FMU against the model, integrated by another method", f"failed: {error}"),)
+    rows = []
+    what = f"largest difference over the reference run of {duty.stop:g} s, this FMU against CVODES at 1e-8"
+    for unit, word in (("K", "temperature"), ("rad/s", "speed")):
+        apart = [np.abs(played[q.name] - own[q.name]).max() for q in flat.states if q.unit == unit]
+        if apart:
+            rows.append((f"{word}: {what}", f"below {_bound(max(apart))} {unit}"))
+    if not audit:
+        return tuple(rows)
+    gained = played[STORED] - played[STORED][0]
+    residual = np.abs(played[SUPPLIED] - gained).max() / played[THROUGHPUT][-1]
+    return (
+        *rows,
+        ("energy in less energy stored over that run, relative to the throughput", f"below {_bound(residual)}"),
+    )
+
+
+def _inputs(duty: Schedule) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    return {name: (duty.time, column) for name, column in duty.values.items()}
+
+
+def _plays_here(fmu: Path) -> bool:
+    import fmpy
+
+    return fmpy.platform in fmpy.supported_platforms(str(fmu))
+
+
+def _bound(value: float) -> str:
+    """The next power of ten above a value."""
+    return f"1e{math.floor(math.log10(max(value, _ROUND_OFF))) + 1}"
+
+
+def write_extras(
+    fmu: Path,
+    folder: Path,
+    scenario: Scenario,
+    flat: FlatModel,
+    duty: Schedule,
+    start: Mapping[str, float],
+    sources: Mapping[str, str] | None,
+) -> list[Path]:
+    """Write what goes beside an FMU.
+
+    Args:
+        fmu: the FMU; the files have its name
+        folder: where to write
+        scenario: the rig as exported
+        flat: its model, with the parameters of the FMU
+        duty: of the reference result
+        start: start values of the FMU that are not those of the model
+        sources: parameter -> where its value is from; None tells neither that nor how uncertain values are
+
+    Returns:
+        NAME.ssv, oils/OIL.ssv for every oil that gives all the rig's oil has, NAME_in.csv, NAME_ref.csv, NAME_ref.opt
+    """
+    files = {folder / f"{fmu.stem}.ssv": _set_of_rig(scenario, flat, sources)}
+    for oil, content in sets_of_oils(scenario, flat, told=sources is not None).items():
+        files[folder / "oils" / f"{oil.replace(' ', '_')}.ssv"] = content
+    for path, content in files.items():
+        store(path, content)
+    with tempfile.TemporaryDirectory() as place:
+        played = fmu if _plays_here(fmu) else export(flat, Path(place) / fmu.name, start=start)
+        reference = write_reference(played, _inputs(duty), duty.stop, step_of(duty), folder=folder)
+    return [*files, *reference]
+
+
+def _set_of_rig(scenario: Scenario, flat: FlatModel, sources: Mapping[str, str] | None) -> bytes:
+    return parameter_set(
+        scenario.name,
+        [replace(q, start=tidy(q.start)) for q in flat.parameters],
+        doc=scenario.doc,
+        sources=sources,
+        uncertainties=None if sources is None else scenario.standard_uncertainties,
+    )
+
+
+def sets_of_oils(scenario: Scenario, flat: FlatModel, *, told: bool) -> dict[str, bytes]:
+    """A set for every oil of the catalogue that gives the oil baths all that oils can give this model.
+
+    Args:
+        scenario: the rig
+        flat: its model
+        told: whether the sets say where their values are from
+    """
+    oils = {name: oil_values(name) for name in catalogue("oil")}
+    given = {key for values in oils.values() for key in values}
+    paths = {f"{bath}.{key}": key for bath in scenario.spec.of_type("OilBath") for key in given}
+    filled = [q for q in flat.parameters if q.name in paths]
+    sets: dict[str, bytes] = {}
+    for name, values in oils.items() if filled else ():
+        if all(paths[q.name] in values for q in filled):
+            entry = catalogue("oil")[name]
+            chosen = [replace(q, start=values[paths[q.name]]) for q in filled]
+            sources = {q.name: entry.sources[paths[q.name]] for q in filled if told}
+            sets[name] = parameter_set(name, chosen, doc=f"{entry.doc}, for {scenario.name}", sources=sources)
+    return sets

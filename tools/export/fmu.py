@@ -1,0 +1,254 @@
+"""The command `export`: a rig as an FMU that starts at its operating point, and what goes beside it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...fmu.choices import Choice, Item, reduced, start_choice
+from ...fmu.compiling import platforms
+from ...fmu.description import Owner
+from ...fmu.effective import effective
+from ...fmu.export import export
+from ...fmu.related import Related
+from ...model.core.flat import FlatModel
+from ...model.errors import ScenarioError, SolveError
+from ...model.machines.spec import assemble
+from ...model.run.point import point
+from ...model.run.rows import evaluate_at
+from ...model.run.steady import steady
+from ...scenarios.entries import catalogue
+from ...scenarios.load import load
+from ...scenarios.scenario import Scenario
+from ..show.console import answer, file_of, folder, lasting, progress_bar, say, writable
+from ..show.network import network_svg
+from ..solve.settings import Drive, adjusted, driven_at, flat_of
+from ..solve.simulate import first_temperatures
+from ..solve.uncertainties import uncertain
+from ..solve.unchecked import print_unchecked, unchecked
+from .extras import checked, experiment, reference_duty, reference_run, sets_of_oils, write_extras
+from .page import figures_of, texts_of
+
+#: Shares of the operating point's torques at which a machine on torques alone is looked for that holds its speed.
+_SHARES = (1.0, 0.75, 0.5, 0.25, 0.1, 0.0)
+#: Kind of catalogue that fills parts with oil.
+_OIL = "oil"
+#: Source of what no file gives.
+_DEFAULT = "inferred: follows from the other values, or a numerical default"
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What the command `export` is asked for; `drive` and `given` say which shaft end's speed or torque is given."""
+
+    rig: str
+    out: Path
+    assignments: Sequence[str]
+    drive: str | None
+    given: str
+    platform: str
+    extras: Path | None
+    json: str | None
+    owner: Owner
+    with_sources: bool
+    with_origins: bool
+    fmi: int
+    audit: bool
+    uncertainty: bool
+
+    def prepared(self) -> tuple[Scenario, Scenario, FlatModel, dict[str, float]]:
+        """The rig, the rig as set and driven, its model, and start values that are not those of the model."""
+        scenario = load(self.rig)
+        asked = self.drive is not None or self.given == "torque"
+        drive: Drive | None = driven_at(scenario, self.drive, self.given) if asked else None
+        setting = adjusted(scenario, self.assignments, drive=drive)
+        flat = flat_of(setting)
+        start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, self.assignments)
+        return scenario, setting, flat, start
+
+    @property
+    def options(self) -> dict[str, Any]:
+        """Options of `fmu.export.export` that every FMU has alike."""
+        told: dict[str, Any] = {} if self.with_origins else {"sources": {}, "uncertainties": {}}
+        alike = {"owner": self.owner, "with_sources": self.with_sources, "audit": self.audit}
+        return told | alike | {"platform": self.platform}
+
+
+def export_command(asked: Asked) -> None:
+    """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
+    if asked.uncertainty and not asked.with_origins:
+        raise ScenarioError(
+            "--uncertainty tells how uncertain values are, which --no-parameters-source keeps back. Take one away."
+        )
+    if asked.out.suffix.lower() == ".ssp":
+        raise ScenarioError(
+            f"-o {asked.out}: a system (.ssp) has several FMUs. Say with --ssp which parts are one, or write a .fmu."
+        )
+    if asked.extras is not None and asked.extras.resolve() == asked.out.resolve():
+        raise ScenarioError(f"--extras {asked.extras}: is the FMU itself. Give the folder another name.")
+    writable(asked.out, file_of(asked.json))
+    lasting(asked.out)
+    chosen = platforms(asked.platform, asked.fmi)
+    scenario, setting, flat, start = asked.prepared()
+    beside = folder(asked.extras) if asked.extras is not None else None
+    duty = reference_duty(flat, start, setting.shaft_paths())
+    options = asked.options | {"start": start, "fmi": asked.fmi}
+    options["uncertain"] = uncertain(setting, flat) if asked.uncertainty else None
+    kept, run = effective(flat, start), reference_run(flat, duty, start)
+    options["others"] = Related(sets_of_oils(setting, kept, told=asked.with_origins), experiment(flat, duty, run))
+    options["drawn"] = figures_of(assemble(setting.spec), flat, start, run)
+    with progress_bar() as options["progress"]:
+        write_fmu(setting, flat, asked.out, verify=lambda fmu: checked(fmu, flat, duty, run), **options)
+    named = {q.name for q in kept.parameters}
+    origins = sources_of(setting, kept) if asked.with_origins else None
+    written = [] if beside is None else write_extras(asked.out, beside, setting, kept, duty, start, origins)
+    choices = reduced(choices_of(setting), kept)
+    found = {
+        "schema": "gearheat.export/1",
+        "rig": scenario.name,
+        "fmu": str(asked.out),
+        "fmi": f"{asked.fmi}.0",
+        "sha256": hashlib.sha256(asked.out.read_bytes()).hexdigest(),
+        "platforms": [p.name for p in chosen],
+        "inputs": [q.name for q in flat.inputs],
+        "outputs": [q.name for q in (*flat.states, *flat.outputs)],
+        "deviations": [f"{name}.sd" for name in options["uncertain"].shown] if asked.uncertainty else [],
+        "parameters": [q.name for q in kept.parameters],
+        "choices": {c.name: [i.name for i in c.items] for c in choices},
+        "without_effect": [q.name for q in flat.parameters if q.name not in named],
+        "extras": [str(path) for path in written],
+        "unchecked": unchecked(setting, flat),
+    }
+    answer(found, asked.json, lambda: _print(found))
+
+
+def _print(found: Mapping[str, Any]) -> None:
+    words = [f"{len(found[kind])} {kind}" for kind in ("inputs", "outputs", "parameters")]
+    words += [f"{len(found['deviations'])} standard deviations"] if found["deviations"] else []
+    say(f"{found['fmu']}: {', '.join(words)}, for {', '.join(found['platforms'])}")
+    if found["extras"]:
+        say(f"{len(found['extras'])} files beside it, from {found['extras'][0]}")
+    print_unchecked(found["unchecked"])
+
+
+def write_fmu(
+    scenario: Scenario, flat: FlatModel, out: Path, drawn: Mapping[str, str] | None = None, **options: Any
+) -> Path:
+    """Write the FMU of a rig with all that is known of it: sources, uncertainties, its network, its equations.
+
+    Args:
+        scenario: the rig as set and driven
+        flat: its model
+        out: file to write
+        drawn: figures beside that of the network, title -> SVG
+        options: of `gearheat.fmu.export.export`
+    """
+    assembly = assemble(scenario.spec)
+    known: dict[str, Any] = {"sources": sources_of(scenario, flat), "uncertainties": scenario.standard_uncertainties}
+    known |= {"choices": choices_of(scenario), "parts": texts_of(assembly)}
+    figures = {"Network": network_svg(assembly), **(drawn or {})}
+    return export(flat, out, figures=figures, **{**known, **options})
+
+
+def choices_of(scenario: Scenario) -> tuple[Choice, ...]:
+    """How a run begins; for each part that holds oil, the oils of the catalogue that give it all that its own does."""
+    room = scenario.room if scenario.room in scenario.driven_paths() else None
+    return (start_choice(room), *(_oil(scenario, part) for part, kinds in scenario.entries.items() if _OIL in kinds))
+
+
+def _oil(scenario: Scenario, part: str) -> Choice:
+    known = catalogue(_OIL)
+    own = Item("as exported", "the start values of the parameters")
+    others = (Item(name, known[name].doc, scenario.entry_values(part, name)) for name in scenario.alternatives(part))
+    return Choice(f"{part}.{_OIL}", "the oil filled in", (own, *others))
+
+
+def sources_of(scenario: Scenario, flat: FlatModel) -> dict[str, str]:
+    """Where the value of every parameter is from."""
+    return {q.name: scenario.value_sources.get(q.name, _DEFAULT) for q in flat.parameters}
+
+
+def operating_start(
+    scenario: Scenario, setting: Scenario, flat: FlatModel, assignments: Sequence[str]
+) -> dict[str, float]:
+    """Shaft quantities and states at the operating point, for a model that is driven otherwise than its rig.
+
+    What follows at the operating point (the torque that balances, the speed of the other shaft) is what the inputs and
+    the rotating masses of the other drive start with, so that it starts at the same point. With torques alone nothing
+    but friction holds the speed, so there it starts where friction does (see `_holding`), unless the user has set a
+    torque or a speed.
+
+    Args:
+        scenario: the rig as it is
+        setting: the rig as set and driven by the user
+        flat: its model
+        assignments: what the user has set, which stays
+    """
+    own = flat_of(setting.driven(scenario.given))
+    names = setting.shaft_paths()
+    fixed = {text.partition("=")[0].strip() for text in assignments}
+    if {q.name for q in own.inputs} & names == {q.name for q in flat.inputs} & names:
+        return {}
+    masses = {q.name for q in flat.states if q.unit == "rad/s"}
+    if masses and not fixed & (names | masses):
+        free = masses | names | first_temperatures(setting, flat, None).keys()
+        return {name: value for name, value in _holding(own, flat, names).items() if name in free - fixed}
+    at = _evaluated(own, first_temperatures(setting, own, None))
+    shafts = {name: at[name] for name in sorted(names) if name in at}
+    start = {q.name: shafts[q.name] for q in flat.inputs if q.name in shafts and q.name not in fixed}
+    return start | _speeds(flat, shafts, {q.name for q in flat.states} & fixed)
+
+
+def _holding(own: FlatModel, flat: FlatModel, names: set[str]) -> dict[str, float]:
+    """Torques and states of an equilibrium that the machine does not leave by itself.
+
+    Friction that falls with speed or with its own heat lets a loaded machine run away or stop as long as both torques
+    stay, so the equilibrium may be one of a part of the load. A machine that holds no speed at all starts at rest.
+
+    Args:
+        own: the model driven as its rig
+        flat: the model driven by torques
+        names: paths of what may be given at the shaft ends
+    """
+    torques = [q.name for q in flat.inputs if q.name in names]
+    for share in _SHARES:
+        load = {q.name: share * q.start for q in own.inputs if q.name in names and q.unit == "N.m"}
+        try:
+            at = steady(own, load)
+            balancing = {name: float(at[name][0]) for name in torques}
+            shafts = {name: float(at[name][0]) for name in names & at.columns.keys()}
+            warm = {q.name: float(at[q.name][0]) for q in flat.states if q.name in at.columns}
+            speeds = _speeds(flat, shafts, set())
+            found = steady(flat, balancing, guess=warm | speeds)
+        except SolveError:
+            continue
+        if any(abs(float(found[name][0])) < 0.1 * abs(speed) for name, speed in speeds.items()):
+            continue  # it has come to rest, where friction holds any load
+        return balancing | {q.name: float(found[q.name][0]) for q in flat.states}
+    return dict.fromkeys([*torques, *(q.name for q in flat.states if q.unit == "rad/s")], 0.0)
+
+
+def _evaluated(flat: FlatModel, states: Mapping[str, float]) -> dict[str, float]:
+    """Inputs and outputs of a model at its start values."""
+    here = point(flat, None, states, who="export")
+    y = evaluate_at(flat, here.x, here.u, here.p)["y"]
+    return {q.name: float(v) for q, v in (*zip(flat.inputs, here.u, strict=True), *zip(flat.outputs, y, strict=True))}
+
+
+def _speeds(flat: FlatModel, shafts: Mapping[str, float], fixed: set[str]) -> dict[str, float]:
+    """Speeds of the rotating masses at which the shaft ends have their speeds; these are linear in those."""
+    masses = [q.name for q in flat.states if q.unit == "rad/s" and q.name not in fixed]
+    ends = [q.name for q in flat.outputs if q.name in shafts and q.unit == "rad/s"]
+    if not masses or not ends:
+        return {}
+    rest = _evaluated(flat, dict.fromkeys(masses, 0.0))
+    columns = [_evaluated(flat, {name: float(name == one) for name in masses}) for one in masses]
+    slope = np.array([[column[end] - rest[end] for column in columns] for end in ends])
+    wanted = np.array([shafts[end] - rest[end] for end in ends])
+    speeds = np.linalg.lstsq(slope, wanted, rcond=None)[0]
+    return {name: float(w) for name, w in zip(masses, speeds, strict=True)}

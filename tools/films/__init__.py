@@ -1,0 +1,1 @@
+"""Films of one contact over load, speed and temperature, and the law fitted to them."""

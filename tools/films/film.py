@@ -1,0 +1,317 @@
+"""The command `film`: films of one contact over load, speed and temperature in a table, and the law fitted to it."""
+
+from __future__ import annotations
+
+import hashlib
+import io
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from math import isfinite
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...model.contact import Contact, Lubricant, solve
+from ...model.errors import ScenarioError, SolveError
+from ...model.laws.film import asperity_share, mixed_friction
+from ...model.laws.film_line import line_film_central
+from ...model.laws.film_point import point_film_central
+from ...model.units import from_si, shown
+from ...scenarios.film_map import COLUMNS, FAILED, OK, FittedMap, read_film_map
+from ...scenarios.load import load
+from ..show import console
+from ..solve.settings import adjusted
+from ..solve.sweep_file import Store, work_file
+from .case import AXES, MapCase, from_file, from_rig
+
+#: Points along load, speed and temperature, and nodes of a line contact and along a side of an elliptical one.
+POINTS, NODES = {"F": 6, "u_m": 6, "T": 4}, (201, 129)
+#: Numbers kept of each point: films, friction, share on asperities, pressure, and whether there is a solution.
+KEPT = ("h_c", "h_min", "mu_fluid", "share", "p_max", "found")
+#: Whether a film was found: none, one, or one on too coarse a grid; and the largest error of a film on a grid [1].
+LOST, FOUND, COARSE, ROUGHEST = 0.0, 1.0, 2.0, 0.1
+#: Fewest nodes along a side of an elliptical contact.
+FINER = 65
+#: What the table and a person are told of a point without a film.
+WRONG = {LOST: (FAILED, "no film found"), COARSE: ("coarse", "the grid is too coarse; give more --nodes")}
+
+
+@dataclass(frozen=True)
+class Request:
+    """What a user asks for, as written on the command line."""
+
+    rig: str
+    out: Path
+    part: str | None = None
+    vary: Sequence[str] = ()
+    grid: str | None = None
+    nodes: int | None = None
+    plot: Path | None = None
+    assignments: Sequence[str] = ()
+    json: str | None = None
+
+
+def command(request: Request) -> None:
+    """Solve what an earlier run has not finished, write the table, fit the law."""
+    console.writable(request.out, request.plot, console.file_of(request.json))
+    problems = [
+        f"{option} {path}: unknown kind of file. Its name must end in {' or '.join(kinds)}."
+        for option, path, kinds in (("-o", request.out, (".csv",)), ("--plot", request.plot, (".png", ".svg")))
+        if path is not None and path.suffix not in kinds
+    ]
+    if problems:
+        raise ScenarioError(problems)
+    case = case_of(request)
+    points = grid_of(case, request.grid)
+    nodes = request.nodes or NODES[0 if _is_line(case.contact) else 1]
+    if not _is_line(case.contact) and (nodes < FINER or (nodes - 1) & (nodes - 2)):
+        raise ScenarioError(
+            f"--nodes {nodes}: give 2^k + 1, at least {FINER}: a film is compared with that on half of them."
+        )
+    kept = solved(case, points, nodes, request.out)
+    console.write(request.out, table_of(case, points, kept))
+    wrong = [(p, k[-1]) for p, k in zip(points, kept, strict=True) if k[-1] != FOUND]
+    failed = [f"{_named(case, point)}: {WRONG[found][1]}" for point, found in wrong]
+    law = read_film_map(request.out)
+    if request.plot is not None:
+        console.write(request.plot, _plot(case, points, kept, request.plot.suffix))
+    payload = _payload(case, request, law, failed)
+    console.answer(payload, request.json, partial(_print, case, payload))
+
+
+def case_of(request: Request) -> MapCase:
+    """The contact of a request: of a case file, or of a part of a rig.
+
+    Raises:
+        GearheatError: all that is wrong with it
+    """
+    path = Path(request.rig)
+    if path.suffix == ".toml" and path.is_file() and "[contact]" in path.read_text(encoding="utf-8", errors="replace"):
+        if request.part is not None or request.assignments:
+            raise ScenarioError(f"{path.name}: --part and --set belong to a rig. Leave them out.")
+        return from_file(path, request.vary)
+    return from_rig(adjusted(load(request.rig), request.assignments), request.part, request.vary)
+
+
+def grid_of(case: MapCase, written: str | None) -> np.ndarray:
+    """Load, speed and temperature of each point (n, 3): equal ratios of load and speed, equal steps of temperature.
+
+    Args:
+        case: the contact and its ranges
+        written: points along each axis that is varied, such as "6x6x4"
+
+    Raises:
+        ScenarioError: the grid does not fit the axes
+    """
+    names = [axis.name for axis in case.axes]
+    counts = [POINTS[name] for name in names]
+    if written is not None:
+        cells = written.lower().split("x")
+        if len(cells) != len(names) or not all(c.strip().isdecimal() and int(c) > 1 for c in cells):
+            raise ScenarioError(
+                f"--grid {written}: does not fit {', '.join(names)}. "
+                f'Write {len(names)} whole numbers above 1, for example "{"x".join(map(str, counts))}".'
+            )
+        counts = [int(c) for c in cells]
+    spaced = {
+        a.name: (np.linspace if a.name == "T" else np.geomspace)(a.first, a.second, n)
+        for a, n in zip(case.axes, counts, strict=True)
+    }
+    lines = [spaced.get(name, np.array([case.fixed.get(name, 0.0)])) for name in AXES]
+    return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, len(lines))
+
+
+def contact_at(case: MapCase, point: np.ndarray) -> Contact:
+    """The contact at a point of the map.
+
+    Args:
+        case: the contact and its oil
+        point: load [N], mean speed [m/s], temperature [K]
+    """
+    F, u_m, T = (float(v) for v in point)
+    eta_0, alpha_p = case.oil(T)
+    oil: Lubricant = replace(case.contact.lubricant, eta_0=eta_0, alpha_p=alpha_p)
+    slide = case.slide_roll / 2
+    return replace(case.contact, F=F, u_1=u_m * (1 + slide), u_2=u_m * (1 - slide), lubricant=oil)
+
+
+def solved(case: MapCase, points: np.ndarray, nodes: int, out: Path) -> np.ndarray:
+    """What is kept of each point (n, KEPT): a run that was interrupted goes on from the points it has finished.
+
+    Args:
+        case: the contact
+        points: of the map (n, 3)
+        nodes: of the contact solver
+        out: file of the map, beside which finished points are kept
+
+    Raises:
+        GearheatError: the contact or the nodes make no problem, or the work file cannot be written
+    """
+    contacts = [contact_at(case, point) for point in points]
+    key = hashlib.sha256(repr((contacts, nodes)).encode()).hexdigest()
+    with Store(work_file(out), key, len(KEPT)) as store:
+        left = [i for i in range(len(points)) if i not in store.places]
+        if len(left) < len(points):
+            console.note(f"{len(points) - len(left)} of {len(points)} contacts were solved before: {store.path}")
+        for i in _watched(left, len(points)):
+            store.put(i, np.array([_solution(contacts[i], nodes)]))
+        found = np.concatenate([store.get(i) for i in range(len(points))])
+        store.remove()
+    return found
+
+
+def _solution(contact: Contact, nodes: int) -> list[float]:
+    """What is kept of one contact; zeros where no film is found."""
+    try:
+        film = solve(contact, n=nodes)
+    except SolveError:
+        return [0.0] * len(KEPT)
+    found = FOUND if film.h_c > 0 and film.h_min > 0 else LOST
+    if found == FOUND and not _is_line(contact) and _error(contact, nodes, film.h_c) > ROUGHEST:
+        found = COARSE
+    return [film.h_c, film.h_min, film.mu, film.asperity_share, float(film.p.max()), found]
+
+
+def _is_line(contact: Contact) -> bool:
+    return not isfinite(contact.R_y) and contact.edge_radius == 0
+
+
+def _error(contact: Contact, nodes: int, h_c: float) -> float:
+    """Error of a central film, from that on every other node: of second order, a third of their difference [1]."""
+    try:
+        return abs(h_c - solve(contact, n=(nodes + 1) // 2).h_c) / (3 * h_c)
+    except SolveError:
+        return 1.0
+
+
+def _watched(left: Sequence[int], total: int) -> Iterator[int]:
+    """The numbers of the points that are left, with progress on a terminal."""
+    from rich.console import Console
+    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
+
+    screen = Console(stderr=True)
+    parts = (TextColumn("contacts"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
+    with Progress(*parts, console=screen, disable=not screen.is_terminal) as progress:
+        task = progress.add_task("contacts", total=total, completed=total - len(left))
+        for i in left:
+            yield i
+            progress.advance(task)
+
+
+def table_of(case: MapCase, points: np.ndarray, kept: np.ndarray) -> str:
+    """The map as CSV.
+
+    Args:
+        case: the contact
+        points: load, speed and temperature (n, 3)
+        kept: what was found at each (n, KEPT)
+    """
+    text = io.StringIO()
+    text.write(",".join(column.name for column in COLUMNS) + "\n")
+    c = case.contact
+    across = c.R_y if isfinite(c.R_y) else None
+    constant = (c.R_x, across, c.length, c.E_eff, case.slide_roll, case.sigma, case.mu_boundary)
+    for (F, u_m, T), (h_c, h_min, mu_fluid, share, p_max, found) in zip(points, kept, strict=True):
+        eta_0, alpha_p = case.oil(float(T))
+        films: tuple[float | None, ...] = (None,) * 2
+        rest: tuple[float | None, ...] = (None,) * 5
+        formula = formula_of(contact_at(case, np.array([F, u_m, T])))
+        if found == FOUND:
+            Lambda = h_c / case.sigma if case.sigma else None
+            carried = float(asperity_share(Lambda)) if Lambda is not None else share
+            rough = Lambda is not None and case.mu_boundary is not None
+            mu = float(mixed_friction(Lambda, mu_fluid, case.mu_boundary)) if rough else None
+            films, rest = (h_c, h_min), (mu_fluid, Lambda, carried, mu, p_max)
+        cells = [
+            F,
+            u_m,
+            T - 273.15,
+            eta_0,
+            alpha_p,
+            *films,
+            formula,
+            *rest,
+            OK if found == FOUND else WRONG[found][0],
+            *constant,
+        ]
+        text.write(",".join("" if v is None else v if isinstance(v, str) else f"{v:.9g}" for v in cells) + "\n")
+    return text.getvalue()
+
+
+def formula_of(contact: Contact) -> float:
+    """Central film by the formula for such contacts [m]: Moes for lines, Nijenbanning, Venner and Moes for ellipses."""
+    oil, u_sum = contact.lubricant, 2 * contact.u_m
+    if not isfinite(contact.R_y):
+        load = contact.F / contact.length
+        return float(line_film_central(oil.eta_0, u_sum, oil.alpha_p, load, contact.R_x, contact.E_eff))
+    shape = (contact.R_x, contact.R_y, contact.E_eff)
+    return float(point_film_central(oil.eta_0, u_sum, oil.alpha_p, contact.F, *shape))
+
+
+def _named(case: MapCase, point: np.ndarray) -> str:
+    """A point in words."""
+    words = [
+        f"{name} = {from_si(float(v), AXES[name].unit):.4g} {shown(AXES[name].unit)}"
+        for name, v in zip(AXES, point, strict=True)
+        if name in {axis.name for axis in case.axes}
+    ]
+    return ", ".join(words)
+
+
+def _payload(case: MapCase, request: Request, found: FittedMap, failed: Sequence[str]) -> dict[str, Any]:
+    law = found.law
+    fits = {"h_c": law.central, "h_min": law.minimum}
+    return {
+        "schema": "gearheat.film/1",
+        "case": case.name,
+        "part": case.part,
+        "out": str(request.out),
+        "shape": law.shape,
+        "contacts": found.points + found.failed,
+        "failed": list(failed),
+        "varied": {
+            a.name: {
+                "low": from_si(a.first, AXES[a.name].unit),
+                "high": from_si(a.second, AXES[a.name].unit),
+                "unit": shown(AXES[a.name].unit),
+            }
+            for a in case.axes
+        },
+        "terms": len(law.degrees),
+        "fit": {k: {"largest": f.error, "rms": found.rms[k]} for k, f in fits.items()},
+        "plot": None if request.plot is None else str(request.plot),
+    }
+
+
+def _print(case: MapCase, found: dict[str, Any]) -> None:
+    of = f"{case.name}: {case.part}" if case.part else case.name
+    rows = [(k, v["low"], v["high"], v["unit"]) for k, v in found["varied"].items()]
+    console.table(f"{of}: {found['contacts']} {found['shape']} contacts", ("varied", "low", "high", "unit"), rows)
+    for name in found["failed"]:
+        console.say(f"without a film: {name}")
+    for key, error in found["fit"].items():
+        largest, rms = 100 * error["largest"], 100 * error["rms"]
+        console.say(f"law of {key}, {found['terms']} terms: error {largest:.2g} % at most, {rms:.2g} % rms")
+    console.say(f'{found["out"]}: film = "map:{found["out"]}" in a rig file')
+
+
+def _plot(case: MapCase, points: np.ndarray, kept: np.ndarray, suffix: str) -> str | bytes:
+    """Central film over speed at each load, a panel for each temperature, as a picture."""
+    from ..show.drawing import COLOURS, empty, png, svg
+
+    temperatures, loads = np.unique(points[:, 2]), np.unique(points[:, 0])
+    figure, panels = empty(3.2 * len(temperatures) + 0.8, 3.6, 1, len(temperatures), sharey=True)
+    for panel, T in zip(panels, temperatures, strict=True):
+        for k, F in enumerate(loads):
+            here = (points[:, 2] == T) & (points[:, 0] == F) & (kept[:, -1] == FOUND)
+            label = f"{F:.3g} N" if panel is panels[0] else None
+            panel.loglog(points[here, 1], 1e6 * kept[here, 0], "o-", ms=3, color=COLOURS[k % len(COLOURS)], label=label)
+            panel.loglog(points[here, 1], 1e6 * kept[here, 1], ":", color=COLOURS[k % len(COLOURS)])
+        panel.set_title(f"{T - 273.15:.0f} degC")
+        panel.set_xlabel("mean speed [m/s]")
+    panels[0].set_ylabel("film [um]: central, minimum dotted")
+    panels[0].legend()
+    figure.suptitle(f"{case.name} {case.part}".strip())
+    return svg(figure) if suffix == ".svg" else png(figure)

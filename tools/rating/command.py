@@ -1,0 +1,218 @@
+"""`gearheat losses --method`: losses of the model beside those of a reference method, sump temperature and rating."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from scipy.optimize import brentq
+
+from ...model.core.flat import Quantity
+from ...model.errors import GearheatError, ScenarioError
+from ...model.parts.ports import COLDEST, HOTTEST
+from ...model.sources import LawInfo, LawUse, recording
+from ...model.units import from_si
+from ...scenarios.load import load
+from ...scenarios.values import in_range
+from ..show.console import answer, table
+from ..solve.settings import adjusted
+from ..solve.steady import tell_outside
+from .bearings import FACTORS
+from .gather import machine_of
+from .machine import Machine
+from .methods import METHODS, Method
+
+#: Largest multiple of the load that a rating looks for.
+MOST_LOAD = 100.0
+#: What the options are values of.
+LIMIT = Quantity("--limit", "K", "temperature of the sump", low=COLDEST, high=HOTTEST)
+K = Quantity("--k", "W/(m2.K)", "heat transfer coefficient", low=0.0, low_open=True)
+DEPTH = Quantity("", "m", "depth to which a gear dips", low=0.0)
+
+
+def asked(method: str | None, own: Mapping[str, object], others: Mapping[str, object]) -> bool:
+    """Whether a reference method is asked for.
+
+    Args:
+        method: its name, None without one
+        own: option -> value, of those that only a method takes
+        others: option -> value, of those that no method takes
+
+    Raises:
+        ScenarioError: options that do not go together
+    """
+    wrong = [name for name, value in (own if method is None else others).items() if value]
+    if wrong and method is None:
+        raise ScenarioError(
+            f"{', '.join(wrong)} belongs to --method. Add --method {next(iter(METHODS))}, or leave it out."
+        )
+    if wrong:
+        raise ScenarioError(f"{', '.join(wrong)} does not go with --method. Leave out one of them.")
+    return method is not None
+
+
+def command(
+    rig: str,
+    method: str,
+    limit: str,
+    k: str | None,
+    dips: Sequence[str],
+    assignments: Sequence[str],
+    json: str | None,
+) -> None:
+    """Losses by component of the model and of a method, and what the method rates.
+
+    Args:
+        rig: name or path
+        method: key of `METHODS`
+        limit: temperature of the sump that the rating keeps, as text
+        k: heat transfer coefficient in the place of the method's, as text
+        dips: texts "stage.wheel=30 mm"
+        assignments: what `--set` sets
+        json: where JSON goes
+    """
+    known = METHODS[method]
+    T_limit = in_range("", limit, LIMIT)
+    k_given = None if k is None else in_range("", k, K)
+    scenario = adjusted(load(rig), assignments)
+    machine = machine_of(scenario, tuple(FACTORS), _depths(dips))
+    found = compared(machine, known, T_limit, k_given)
+    found = {"schema": "gearheat.reference/1", "rig": scenario.name, "method": method, **found}
+    answer(found, json, lambda: _print(known, found))
+
+
+def compared(machine: Machine, method: Method, T_limit: float, k: float | None) -> dict[str, Any]:
+    """Everything that a method says of a machine, beside the model.
+
+    Args:
+        machine: the machine
+        method: the method
+        T_limit: temperature of the sump that the rating keeps [K]
+        k: heat transfer coefficient over the bare area in the place of the method's [W/(m2.K)]
+    """
+    area = sum(s.values["A"] for s in machine.surfaces)
+
+    def conductance(T: float) -> float:
+        return k * area if k is not None else method.conductance(machine, T)
+
+    def surplus(T: float, share: float = 1.0) -> float:
+        return total(method.losses(machine.loaded(share), T)) - conductance(T) * (T - machine.T_room)
+
+    T_sump = _root(surplus, machine.T_room, HOTTEST)
+    share = _root(lambda s: surplus(T_limit, s), 0.0, MOST_LOAD)
+    with recording() as uses:
+        columns = {"model": machine.ours, "method": method.losses(machine, machine.T_oil)}
+        if share is not None:
+            method.losses(machine.loaded(share), T_limit)
+    if T_sump is not None:
+        columns["method_at_sump"] = method.losses(machine, T_sump)
+    temperatures = {"model": machine.T_oil, "method": machine.T_oil, "method_at_sump": T_sump}
+    return {
+        "losses_W": {name: _summed(losses) for name, losses in columns.items()},
+        "parts_W": columns,
+        "eta": {name: 1 - total(losses) / machine.P_in if machine.P_in else None for name, losses in columns.items()},
+        "T_oil_C": {name: _celsius(temperatures[name]) for name in columns},
+        "T_sump_C": _celsius(T_sump),
+        "T_room_C": _celsius(machine.T_room),
+        "conductance_W_K": conductance(T_sump) if T_sump is not None else None,
+        "rating": _rating(machine, T_limit, share, surplus(T_limit, 0.0)),
+        "gears": [
+            {"part": m.name, "v_m_s": m.v, "F_t_N": m.F_t, "dips_mm": [1e3 * dip for dip in m.dips]}
+            for m in machine.meshes
+        ],
+        "not_treated": [asdict(u) for u in machine.untreated],
+        "outside": _outside(method, uses),
+        "assumptions": list(method.assumptions),
+    }
+
+
+def _outside(method: Method, uses: Sequence[LawUse]) -> list[dict[str, Any]]:
+    """The laws that a method uses outside their range, now or at its rating, as results list them."""
+    met: dict[tuple[LawInfo, str], list[float]] = {}
+    for use in uses:
+        for argument, value in use.arguments.items():
+            low, high = use.law.ranges[argument]
+            if not low <= float(value) <= high:
+                met.setdefault((use.law, argument), []).append(float(value))
+    return [
+        {
+            "part": method.title,
+            "law": law.name,
+            "argument": argument,
+            "range": list(law.ranges[argument]),
+            "met": [min(values), max(values)],
+            "regime": "",
+        }
+        for (law, argument), values in met.items()
+    ]
+
+
+def total(losses: Mapping[str, Mapping[str, float]]) -> float:
+    """Sum of all losses [W]."""
+    return sum(power for parts in losses.values() for power in parts.values())
+
+
+def _summed(losses: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
+    return {kind: sum(parts.values()) for kind, parts in losses.items()} | {"total": total(losses)}
+
+
+def _rating(machine: Machine, T_limit: float, share: float | None, at_no_load: float) -> dict[str, Any]:
+    """The power that keeps the sump at its limit; none where it is beyond reach, and why."""
+    found = {"limit_C": _celsius(T_limit), "load_share": share, "power_W": None, "why": ""}
+    if share is not None and machine.P_in is None:
+        return found | {"why": f"{share:.3g} times the load, but no power passes through the rig"}
+    if share is not None:
+        return found | {"power_W": share * (machine.P_in or 0.0)}
+    if at_no_load > 0:
+        return found | {"power_W": 0.0, "why": "without load the sump already gets hotter than that"}
+    return found | {"why": f"even {MOST_LOAD:g} times the load keeps the sump below that"}
+
+
+def _root(function: Any, low: float, high: float) -> float | None:
+    """Where a rising or falling function is zero; None where it is not between the ends."""
+    if function(low) * function(high) > 0:
+        return None
+    return float(brentq(function, low, high, xtol=1e-6))
+
+
+def _celsius(T: float | None) -> float | None:
+    return None if T is None else from_si(T, "K")
+
+
+def _depths(texts: Sequence[str]) -> dict[str, float]:
+    found: dict[str, float] = {}
+    problems: list[str] = []
+    for text in texts:
+        name, _, raw = (part.strip() for part in text.partition("="))
+        try:
+            found[name] = in_range(f"--dip {name}", raw, DEPTH)
+        except GearheatError as error:
+            problems += error.problems
+    if problems:
+        raise ScenarioError(problems)
+    return found
+
+
+def _print(method: Method, found: Mapping[str, Any]) -> None:
+    names = {"model": "model", "method": method.title, "method_at_sump": f"{method.title}, own sump"}
+    columns = [name for name in names if name in found["losses_W"]]
+    kinds = list(dict.fromkeys(kind for name in columns for kind in found["losses_W"][name]))
+    kinds = [kind for kind in kinds if kind != "total" and any(found["losses_W"][n].get(kind) for n in columns)]
+    rows = [[f"{k} [W]", *(found["losses_W"][n].get(k) for n in columns)] for k in (*kinds, "total")]
+    rows.append(["efficiency", *(found["eta"][n] for n in columns)])
+    rows.append(["oil [degC]", *(found["T_oil_C"][n] for n in columns)])
+    table(f"{found['rig']}: losses at the operating point", ("", *(names[n] for n in columns)), rows)
+    if found["T_sump_C"] is None:
+        print("sump: the losses never equal the heat that leaves")
+    else:
+        print(f"sump by {method.title}: {found['T_sump_C']:.1f} degC with {found['conductance_W_K']:.1f} W/K")
+    rating = found["rating"]
+    power = "none" if rating["power_W"] is None else f"{rating['power_W'] / 1000:.3g} kW at the input"
+    why = f" ({rating['why']})" if rating["why"] else f", {rating['load_share']:.3g} times the load"
+    print(f"thermal rating at {rating['limit_C']:.1f} degC: {power}{why}")
+    for u in found["not_treated"]:
+        print(f"not treated: {u['part']} ({u['type']}): {u['why']}; in the model {u['power']:.4g} W")
+    tell_outside(found["outside"])
+    for assumption in found["assumptions"]:
+        print(f"assumed: {assumption}")

@@ -1,0 +1,172 @@
+"""A rig as a rating method sees it: what its parts declare, and speeds and loads at its operating point."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from ...model.core.component import Component
+from ...model.core.declare import Port, declared
+from ...model.errors import ScenarioError
+from ...model.machines.spec import assemble
+from ...model.parts.equivalent import CylindricalPair, pair_of
+from ...model.parts.ports import AirPort, HeatPort
+from ...model.parts.shaft import Efficiency
+from ...model.parts.thermal import PrescribedTemperature, Room
+from ...model.run.steady import steady
+from ...scenarios.scenario import Scenario
+from ..solve.settings import flat_of
+from ..solve.steady import conditions
+from .machine import Bearing, Machine, Mesh, Seal, Surface, Untreated
+from .readings import reading, with_readings
+
+#: Role of a part -> kind of its loss.
+KINDS = {"teeth": "mesh", "churning": "churning", "bearing": "bearings", "seal": "seals"}
+#: Depth to which a wheel dips unless given, in normal modules: twice the height of a tooth.
+DIP = 4.5
+#: How far a pitch radius may differ, relative, and still be that of the same gear.
+SAME = 0.02
+#: Depth of a gear that runs clear of the oil, over its diameter.
+DRY = 1e-3
+
+Parts = Mapping[str, Component]
+Values = Mapping[str, float]
+
+
+def machine_of(scenario: Scenario, bearing_types: Sequence[str], dips: Mapping[str, float]) -> Machine:
+    """The machine of a rig at its operating point.
+
+    Args:
+        scenario: the rig, with its values
+        bearing_types: types of the bearings that the methods treat
+        dips: depth to which gears dip by "part.pinion" or "part.wheel" [m]
+
+    Raises:
+        ScenarioError: the rig has no cylindrical gear pair, not one oil bath, or not the gears that `dips` names
+    """
+    parts = {part.name: part for part in assemble(scenario.spec).parts}
+    pairs = {name: pair for name, part in parts.items() if (pair := pair_of(part)) is not None}
+    baths = [name for name, part in parts.items() if part.role == "bath"]
+    rooms = scenario.spec.of_type(Room.__name__)
+    surfaces = tuple(Surface(name, part.values) for name, part in parts.items() if _is_surface(part))
+    _check(scenario, pairs, {"oil bath": baths, "room": rooms, "surface with area and emissivity": surfaces}, dips)
+    at = _at_operating_point(scenario, [n for n, p in parts.items() if n in pairs or p.role in ("bearing", "seal")])
+    dips = {**_told_dips(scenario, parts, pairs, at), **dips}
+    meshes = tuple(_mesh(name, pair, at, dips) for name, pair in pairs.items())
+    bearings = tuple(_bearing(part, at) for part in parts.values() if type(part).__name__ in bearing_types)
+    seals = tuple(
+        Seal(name, part.values["count"], part.values["d_sh"], at[f"{reading(name, 'shaft')}.w"])
+        for name, part in parts.items()
+        if part.role == "seal" and "d_sh" in part.values
+    )
+    ends = scenario.spec.of_type("ShaftEnd")
+    treated = {*pairs, *(b.name for b in bearings), *(s.name for s in seals), *(s.name for s in surfaces)}
+    passes = scenario.spec.of_type(Efficiency.__name__)
+    return Machine(
+        meshes,
+        bearings,
+        seals,
+        surfaces,
+        oil=parts[baths[0]].values,
+        T_oil=at[f"{baths[0]}.T"],
+        T_room=at[f"{rooms[0]}.T"],
+        P_in=sum(max(0.0, at[f"{end}.P"]) for end in ends) if passes else None,
+        ours=_ours(parts, at),
+        untreated=tuple(_untreated(scenario, parts, treated, at)),
+    )
+
+
+def _check(
+    scenario: Scenario,
+    pairs: Mapping[str, CylindricalPair],
+    needed: Mapping[str, Sequence[object]],
+    dips: Mapping[str, float],
+) -> None:
+    problems = []
+    if not pairs:
+        teeth = [f"{p.name} ({p.type})" for p in scenario.spec.parts if scenario.spec.types[p.type].role == "teeth"]
+        problems.append(
+            f"{scenario.name}: the method treats external gear pairs and there is none. "
+            f"Found {', '.join(teeth) or 'no teeth'}. Leave out --method."
+        )
+    for what, found in needed.items():
+        if not found or (what == "oil bath" and len(found) > 1):
+            number = f"has {len(found)}" if found else "has none"
+            problems.append(f"{scenario.name}: the method needs one {what}, and the rig {number}. Leave out --method.")
+    gears = [f"{name}.{gear}" for name in pairs for gear in ("pinion", "wheel")]
+    problems += [
+        f'--dip: there is no gear "{name}". Gears: {", ".join(gears)}.' for name in dips if pairs and name not in gears
+    ]
+    if problems:
+        raise ScenarioError(problems)
+
+
+def _at_operating_point(scenario: Scenario, read: Sequence[str]) -> dict[str, float]:
+    """Outputs, states and inputs at the steady state, with readings at some parts, by path in SI."""
+    probed = replace(scenario, spec=with_readings(scenario.spec, read))
+    flat = flat_of(probed)
+    result = steady(flat, conditions(probed, flat))
+    return {path: float(column[0]) for path, column in result.columns.items()}
+
+
+def _mesh(name: str, pair: CylindricalPair, at: Values, dips: Mapping[str, float]) -> Mesh:
+    pinion, wheel = (at[f"{reading(name, gear)}.w"] for gear in ("pinion", "wheel"))
+    depths = dips.get(f"{name}.pinion", 0.0), dips.get(f"{name}.wheel", DIP * pair.m_n)
+    return Mesh(name, pair, at[f"{name}.F_t"], (pinion, wheel), depths)
+
+
+def _told_dips(scenario: Scenario, parts: Parts, pairs: Mapping[str, CylindricalPair], at: Values) -> dict[str, float]:
+    """Depths of the gears for which a churning part on the same shaft, of the same pitch radius, knows its own [m].
+
+    Such a part declares its pitch radius `r` and shows the depth `h` to which the pitch circle dips.
+    """
+    told = [p for n, p in parts.items() if p.role == "churning" and "r" in p.values and f"{n}.h" in at]
+    found = {}
+    for name, pair in pairs.items():
+        for gear, d in zip(("pinion", "wheel"), pair.diameters, strict=True):
+            shaft = {path for net in scenario.spec.connections if f"{name}.{gear}" in net for path in net}
+            for part in told:
+                if f"{part.name}.shaft" in shaft and abs(2 * part.values["r"] / d - 1) < SAME:
+                    depth = at[f"{part.name}.h"]
+                    found[f"{name}.{gear}"] = depth + pair.m_n if depth > DRY * d else 0.0
+    return found
+
+
+def _bearing(part: Component, at: Values) -> Bearing:
+    load = reading(part.name, "load")
+    w = at[f"{reading(part.name, 'shaft')}.w"]
+    return Bearing(part.name, type(part).__name__, part.values, w, at[f"{load}.F_r"], at[f"{load}.F_a"])
+
+
+def _is_surface(part: Component) -> bool:
+    air = any(isinstance(port, AirPort) for port in declared(type(part), Port).values())
+    return part.role == "surface" and air and {"A", "emissivity"} <= part.values.keys()
+
+
+def _ours(parts: Parts, at: Values) -> dict[str, dict[str, float]]:
+    found: dict[str, dict[str, float]] = {kind: {} for kind in (*KINDS.values(), "other")}
+    for name, part in parts.items():
+        if part.role and f"{name}.P_loss" in at:
+            found[KINDS.get(part.role, "other")][name] = at[f"{name}.P_loss"]
+    return found
+
+
+def _untreated(scenario: Scenario, parts: Parts, treated: set[str], at: Values) -> Iterator[Untreated]:
+    """Losses without a rule, and ways of heat that are no surface."""
+    left = {name: p for name, p in parts.items() if name not in treated and p.role and p.role != "churning"}
+    for name, part in left.items():
+        kind = type(part).__name__
+        if f"{name}.P_loss" in at:
+            yield Untreated(name, kind, "its loss has no rule", at[f"{name}.P_loss"])
+        elif f"{name}.Q_flow" in at and _leads_out(scenario, name, part):
+            yield Untreated(name, kind, "its heat to the surroundings has no rule", at[f"{name}.Q_flow"])
+        if outside := at.get(f"{name}.Q_flow_external", 0.0):
+            yield Untreated(name, kind, "heat from outside has no rule", outside)
+
+
+def _leads_out(scenario: Scenario, name: str, part: Component) -> bool:
+    """Whether a heat port of a part meets a room, or another thing of given temperature, that it is not itself."""
+    ends = scenario.spec.of_type(Room.__name__, PrescribedTemperature.__name__)
+    heat = {f"{name}.{key}" for key, port in declared(type(part), Port).items() if isinstance(port, HeatPort)}
+    met = {path.rpartition(".")[0] for net in scenario.spec.connections if heat & set(net) for path in net}
+    return name not in ends and not met.isdisjoint(ends)

@@ -1,0 +1,57 @@
+"""Files of pictures: an SVG, a PNG, or an HTML page with a table, and with courses that one can zoom."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from markupsafe import Markup
+from matplotlib.figure import Figure
+
+from .console import cell, write
+from .drawing import png, svg
+from .pages import OWN, as_data, html_table, page, vendored
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What is drawn, and what an HTML page says beside it.
+
+    Attributes:
+        figure: the picture
+        title, note: what it is, and what to know about it
+        columns, rows: of a table below it; none without columns
+        courses: series over time as `courses.js` reads them; the figure is then for readers without JavaScript
+    """
+
+    figure: Figure
+    title: str
+    note: str = ""
+    columns: Sequence[str] = ()
+    rows: Sequence[Sequence[Any]] = ()
+    courses: Any = None
+
+
+def plotted(path: Path, picture: Picture) -> None:
+    """Write a picture to a file whose ending says its kind, see `console.plottable`."""
+    kind = path.suffix.lower()
+    if kind == ".png":
+        write(path, png(picture.figure))
+        return
+    drawn = svg(picture.figure)
+    write(path, drawn if kind == ".svg" else _page(picture, drawn))
+
+
+def _page(picture: Picture, drawn: str) -> str:
+    rows = [[cell(value) for value in row] for row in picture.rows]
+    return page(
+        OWN,
+        "plot.html",
+        picture=picture,
+        figure=Markup(drawn),
+        table=html_table(picture.columns, rows) if rows else "",
+        data=as_data(picture.courses) if picture.courses else "",
+        **vendored(),
+    )

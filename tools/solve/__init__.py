@@ -1,0 +1,1 @@
+"""A rig set, driven and solved: steady states, runs over time, designs, maps, sweeps."""

@@ -1,0 +1,195 @@
+"""What a sweep varies, as a user writes it, and the values of its rows: a grid, a Latin hypercube, or chance.
+
+carrier.tau=500..2700 N.m       uniform between two values
+cooling.A~normal(0.8, 0.05) m2  normal with mean and standard deviation
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from ...model.core.flat import Quantity
+from ...model.errors import GearheatError, ScenarioError
+from ...model.units import from_si, shown, to_si
+
+#: Rows of the largest sweep that is not taken for a slip of the keyboard.
+MOST_ROWS = 100_000_000
+
+_UNIFORM = re.compile(r"\s*([^=~\s]+)\s*=\s*(.+?)\s*\.\.\s*(.+?)\s*")
+_NORMAL = re.compile(r"\s*([^=~\s]+)\s*~\s*normal\(\s*([^,()]+?)\s*,\s*([^,()]+?)\s*\)\s*(.*?)\s*")
+_BARE = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
+
+
+@dataclass(frozen=True)
+class Written:
+    """One quantity that is varied, as written: a name, two numbers and a unit."""
+
+    name: str
+    kind: Literal["uniform", "normal"]
+    first: str
+    second: str
+
+
+@dataclass(frozen=True)
+class Axis:
+    """One quantity that is varied (SI): uniform from `first` to `second`, or normal with that mean and deviation.
+
+    Of a lognormal one they are the median and, in its unit, what one standard deviation of the logarithm changes it by.
+    """
+
+    name: str
+    kind: Literal["uniform", "normal", "lognormal"]
+    first: float
+    second: float
+
+    def at(self, share: np.ndarray) -> np.ndarray:
+        """Values below which the shares (0 ... 1) of all values lie."""
+        if self.kind == "uniform":
+            return np.asarray(self.first + share * (self.second - self.first))
+        from scipy.special import ndtri
+
+        change = self.second * ndtri(share)
+        if self.kind == "lognormal":
+            return np.asarray(self.first * np.exp(change / self.first))
+        return np.asarray(self.first + change)
+
+
+def read(texts: Sequence[str]) -> tuple[Written, ...]:
+    """What is varied.
+
+    Raises:
+        ScenarioError: all texts that cannot be read, and names given twice
+    """
+    found: list[Written] = []
+    problems: list[str] = []
+    for text in texts:
+        if (match := _NORMAL.fullmatch(text)) is not None:
+            name, mean, deviation, unit = match.groups()
+            found.append(Written(name, "normal", f"{mean} {unit}".strip(), f"{deviation} {unit}".strip()))
+        elif (match := _UNIFORM.fullmatch(text)) is not None:
+            name, low, high = match.groups()
+            unit = re.sub(_BARE, "", high, count=1).strip()
+            low = f"{low} {unit}".strip() if _BARE.fullmatch(low) else low
+            found.append(Written(name, "uniform", low, high))
+        else:
+            problems.append(
+                f'--vary "{text}" is no range. Write NAME=LOW..HIGH with a unit, for example "room.T=10..35 degC",\n'
+                'or NAME~normal(MEAN, DEVIATION), for example "cooling.A~normal(0.8, 0.05) m2".'
+            )
+    names = [w.name for w in found]
+    problems += [f'--vary: "{n}" is varied twice. Give it once.' for n in dict.fromkeys(names) if names.count(n) > 1]
+    if not texts:
+        problems.append('--vary is missing. Say what is varied, for example --vary "room.T=10..35 degC".')
+    if problems:
+        raise ScenarioError(problems)
+    return tuple(found)
+
+
+def axes(written: Sequence[Written], known: Mapping[str, Quantity]) -> tuple[Axis, ...]:
+    """The axes of a sweep in SI.
+
+    Args:
+        written: what is varied
+        known: the quantity of every name
+
+    Raises:
+        ScenarioError: wrong units, values out of range, ranges that are none
+    """
+    found: list[Axis] = []
+    problems: list[str] = []
+    for w in written:
+        try:
+            found.append(_axis(w, known[w.name]))
+        except GearheatError as error:
+            problems += error.problems
+    if problems:
+        raise ScenarioError(problems)
+    return tuple(found)
+
+
+def _axis(w: Written, quantity: Quantity) -> Axis:
+    where = f"--vary {w.name}"
+    first = to_si(w.first, quantity.unit, name=where)
+    second = to_si(w.second, quantity.unit, name=where)
+    if w.kind == "normal":
+        second -= to_si(f"0 {w.second.partition(' ')[2]}".strip(), quantity.unit, name=where)  # a difference
+        if not second > 0:
+            raise ScenarioError(f"{where}: the deviation {w.second} is not above 0. Give a larger one.")
+    elif not second > first:
+        raise ScenarioError(f"{where}: {w.first} is not below {w.second}. Write LOW..HIGH.")
+    ends = (first,) if w.kind == "normal" else (first, second)
+    problems = [f"--vary: {problem}" for end in ends if (problem := quantity.problem(end)) is not None]
+    if problems:
+        raise ScenarioError(problems)
+    return Axis(w.name, w.kind, first, second)
+
+
+def sampled(axes: Sequence[Axis], rows: int, method: str, seed: int) -> np.ndarray:
+    """Values of a random sample, the same for the same seed (rows, axes).
+
+    Args:
+        method: "lhs" (Latin hypercube: each axis is cut into as many slices as there are rows, one row in each) or
+            "monte-carlo"
+
+    Raises:
+        ScenarioError: the number of rows or the seed is out of range
+    """
+    _check(rows, "--sample")
+    if seed < 0:
+        raise ScenarioError(f"--seed {seed} is negative. Give 0 or more.")
+    random = np.random.default_rng(seed)
+    if method == "lhs":
+        from scipy.stats import qmc
+
+        shares = qmc.LatinHypercube(len(axes), seed=random).random(rows)
+    else:
+        shares = random.random((rows, len(axes)))
+    shares = np.clip(shares, np.finfo(float).tiny, 1.0 - np.finfo(float).epsneg)  # 0 and 1 have no normal value
+    return np.column_stack([axis.at(shares[:, k]) for k, axis in enumerate(axes)])
+
+
+def gridded(axes: Sequence[Axis], text: str) -> np.ndarray:
+    """Values of a grid such as "20x10" (rows, axes), the last axis running fastest.
+
+    A uniform axis goes from end to end, a normal one through the middles of slices of equal probability.
+
+    Raises:
+        ScenarioError: no grid, or not one number per axis
+    """
+    counts = [int(n) for n in re.split(r"\s*[xX*]\s*", text.strip()) if n.isdecimal()]
+    if len(counts) != len(re.split(r"[xX*]", text)) or min(counts, default=0) < 1:
+        raise ScenarioError(f'--grid "{text}" is no grid. Write whole numbers above 0, for example 20x10.')
+    if len(counts) != len(axes):
+        names = ", ".join(axis.name for axis in axes)
+        raise ScenarioError(f"--grid {text}: {len(counts)} numbers for {len(axes)} varied ({names}). Give one each.")
+    _check(int(np.prod([float(n) for n in counts])), "--grid")
+    lines = [axis.at(_shares(axis, n)) for axis, n in zip(axes, counts, strict=True)]
+    return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, len(axes))
+
+
+def _shares(axis: Axis, n: int) -> np.ndarray:
+    if axis.kind == "uniform" and n > 1:
+        return np.linspace(0.0, 1.0, n)
+    return (np.arange(n) + 0.5) / n
+
+
+def _check(rows: int, option: str) -> None:
+    if not 1 <= rows <= MOST_ROWS:
+        raise ScenarioError(f"{option}: {rows} rows. Give at least 1 and at most {MOST_ROWS}.")
+
+
+def described(axis: Axis, quantity: Quantity) -> dict[str, object]:
+    """An axis for a summary, in the unit shown to a person."""
+    first = from_si(axis.first, quantity.unit)
+    second = from_si(axis.second, quantity.unit)
+    if axis.kind != "uniform":
+        second -= from_si(0.0, quantity.unit)
+    words = {"uniform": ("low", "high"), "normal": ("mean", "deviation"), "lognormal": ("median", "deviation")}[
+        axis.kind
+    ]
+    return {"kind": axis.kind, words[0]: first, words[1]: second, "unit": shown(quantity.unit)}

@@ -1,0 +1,156 @@
+"""What a user sets and frees on the command line, turned into a scenario that is driven accordingly."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from ...model.core.declare import Choice, Parameter, declared
+from ...model.core.flat import FlatModel
+from ...model.core.flatten import flatten
+from ...model.errors import GearheatError, ScenarioError, suggestion
+from ...model.laws.film_map import FilmMap
+from ...model.machines.spec import Spec, assemble
+from ...scenarios.film_map import map_named, names_map
+from ...scenarios.scenario import Scenario, deduced, parse_assignments
+
+Drive = Mapping[str, tuple[str, ...]]
+
+#: Source of the values that the user sets; they hold for every test, whatever oil it ran with.
+SET = "set on the command line"
+
+
+def adjusted(
+    scenario: Scenario,
+    assignments: Sequence[str] = (),
+    *,
+    named: Iterable[str] = (),
+    drive: Drive | None = None,
+) -> Scenario:
+    """The scenario with values set by the user, driven at the shaft ends as the names say.
+
+    A shaft speed that is set or named takes the place of the rig's given speed, a torque that of its given torque. A
+    parameter that follows from others and is set or named has a value of its own from then on, at first the one it had.
+
+    Args:
+        scenario: the rig
+        assignments: texts "NAME=VALUE": parameters, inputs, start values of states, choices
+            ("gear_set.power_flow=ideal"), and parts filled from a catalogue ("oil=MINR")
+        named: further values that come from outside: sought by a design, varied by a sweep, or given by a duty
+        drive: quantities given per shaft end, where that is known
+
+    Raises:
+        ScenarioError: all problems of all assignments at once
+    """
+    choices, problems = _choices(scenario.spec, assignments)
+    problems += _doubled(assignments)
+    values: dict[str, float] = {}
+    try:
+        values = parse_assignments(scenario, (a for a in assignments if _name(a) not in choice_paths(scenario.spec)))
+    except GearheatError as error:
+        problems += error.problems
+    if problems:
+        raise ScenarioError(problems)
+    shafts = scenario.shaft_paths()
+    ends = [name for name in dict.fromkeys((*values, *named)) if name in shafts]
+    driven = deduced(scenario.given, ends) if drive is None else drive
+    if idle := [name for name in ends if name.rpartition(".")[2] not in driven.get(name.rpartition(".")[0], ())]:
+        raise ScenarioError([f"{name} is set, but it follows from what drives the rig. Take it out." for name in idle])
+    set_up = scenario.with_values(values, SET).driven(driven)
+    sources = {**set_up.value_sources, **_filled(scenario, assignments)}
+    set_up = replace(set_up, spec=set_up.spec.with_values(choices), value_sources=sources)
+    return set_up.with_values(_derived(set_up.spec, named), SET)
+
+
+def flat_of(scenario: Scenario) -> FlatModel:
+    """The flat model of a scenario."""
+    return flatten(assemble(scenario.spec))
+
+
+def driven_at(scenario: Scenario, shaft: str | None, given: str) -> dict[str, tuple[str, ...]]:
+    """The drive of an FMU.
+
+    Args:
+        scenario: the rig
+        shaft: the shaft end that drives; the rig's own if None
+        given: "speed": speed and torque of that shaft; "torque": the torques of all shaft ends
+
+    Raises:
+        ScenarioError: the rig has no such shaft end
+    """
+    ends = scenario.spec.of_type("ShaftEnd")
+    if shaft is not None and shaft not in ends:
+        raise ScenarioError(
+            f'{scenario.name}: "{shaft}" is no shaft end.{suggestion(shaft, ends)} Shaft ends: {", ".join(ends)}.'
+        )
+    if given == "torque":
+        return {end: ("tau",) for end in ends}
+    return dict(scenario.given) if shaft is None else {shaft: ("w", "tau")}
+
+
+def choice_paths(spec: Spec) -> dict[str, Choice]:
+    """Choices of all parts by path; those without options follow from the drive."""
+    found = {f"{p.name}.{key}": c for p in spec.parts for key, c in declared(spec.types[p.type], Choice).items()}
+    return {path: choice for path, choice in found.items() if choice.options}
+
+
+def _derived(spec: Spec, named: Iterable[str]) -> dict[str, float]:
+    """The values that named parameters have which follow from others."""
+    following = [name for name in named if (d := parameter_of(spec, name)) is not None and d.derived is not None]
+    if not following:
+        return {}
+    parts = {part.name: part for part in assemble(spec).parts}
+    split = [(name, *name.rpartition(".")[::2]) for name in following]
+    return {name: parts[part].values[key] for name, part, key in split if key in parts[part].derived}
+
+
+def parameter_of(spec: Spec, path: str) -> Parameter | None:
+    """The declaration of the parameter of a path, None where there is none."""
+    part, _, key = path.rpartition(".")
+    kinds = [p.type for p in spec.parts if p.name == part]
+    return declared(spec.types[kinds[0]], Parameter).get(key) if kinds else None
+
+
+def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], list[str]]:
+    """The choices among the assignments, and what is wrong with them."""
+    known = choice_paths(spec)
+    values: dict[str, Any] = {}
+    problems: list[str] = []
+    for text in assignments:
+        if (path := _name(text)) not in known:
+            continue
+        options = {str(option).lower(): option for option in known[path].options}
+        written = text.partition("=")[2].strip()
+        if written.lower() in options:
+            values[path] = options[written.lower()]
+        elif known[path].also is FilmMap and names_map(written):
+            try:
+                values[path] = map_named(written, Path())
+            except GearheatError as error:
+                problems += [f"{path}: {problem}" for problem in error.problems]
+        else:
+            close = suggestion(written.lower(), options)
+            problems.append(f'{path} = "{written}" is not known.{close} Choose one of: {", ".join(options)}.')
+    return values, problems
+
+
+def _filled(scenario: Scenario, assignments: Sequence[str]) -> dict[str, str]:
+    """Sources of the values that parts filled from a catalogue have, but for those that are set one by one."""
+    parts = {part.name for part in scenario.spec.parts}
+    single = {_name(text) for text in assignments}
+    found: dict[str, str] = {}
+    for text in assignments:
+        if (part := _name(text)) in parts:
+            found |= scenario.entry_sources(part, text.partition("=")[2].strip(), SET)
+    return {path: source for path, source in found.items() if path not in single}
+
+
+def _doubled(assignments: Iterable[str]) -> list[str]:
+    names = [_name(text) for text in assignments]
+    return [f'"{name}" is set twice. Set it once.' for name in dict.fromkeys(names) if name and names.count(name) > 1]
+
+
+def _name(assignment: str) -> str:
+    return assignment.partition("=")[0].strip()

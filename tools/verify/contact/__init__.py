@@ -1,0 +1,1 @@
+"""The contact solver beside published films, Hertz, measurements and another solver."""

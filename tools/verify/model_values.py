@@ -1,0 +1,213 @@
+"""What a rig's model gives for published numbers: steady states, designs, losses at readings, contacts of a cycle.
+
+The flattened model is shared by all rows that have the same structure: the choices, what drives the rig, and which
+parameters have a value of their own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ...model.core.flat import FlatModel
+from ...model.errors import ScenarioError, SolveError
+from ...model.parts.contacts import ContactTable
+from ...model.run.design import design
+from ...model.run.steady import steady
+from ...model.sources import LawInfo
+from ...model.units import to_si
+from ...scenarios.document import paths
+from ...scenarios.published import Row
+from ...scenarios.scenario import Scenario, parse_assignments
+from ..compare.losses import at_readings, contacts_at_operating_point, held
+from ..compare.measured import measured_of
+from ..compare.readings import measured_rows, table_columns
+from ..solve.settings import adjusted, choice_paths, flat_of, parameter_of
+from .expressions import evaluate
+from .verdicts import Value, number_of
+
+
+@dataclass(frozen=True)
+class _Setting:
+    """A rig as a row sets it: structure in `scenario` and `flat`, numbers in `values` and start `states` (SI)."""
+
+    scenario: Scenario
+    flat: FlatModel
+    values: Mapping[str, float]
+    states: Mapping[str, float]
+
+
+class RigValues:
+    """Values of the rows of one rig, with what they share computed once."""
+
+    def __init__(self, scenario: Scenario) -> None:
+        self.scenario = scenario
+        self._structures: dict[object, tuple[Scenario, FlatModel]] = {}
+        self._losses: dict[tuple[str, ...], list[dict[str, Any]]] = {}
+        self._cycles: dict[tuple[str, ...], ContactTable] = {}
+
+    @cached_property
+    def laws(self) -> tuple[LawInfo, ...]:
+        """The laws that the rig's model uses."""
+        return self._setting(()).flat.laws
+
+    def value(self, row: Row) -> Value:
+        """What the model gives for a row.
+
+        Args:
+            row: with run = "steady", "held", "design", "losses" or "contacts"
+
+        Raises:
+            ScenarioError: the row names what the rig does not have
+        """
+        found = {"steady": self._steady, "held": self._held, "design": self._design}
+        found |= {"losses": self._at_readings, "contacts": self._contacts}
+        try:
+            return found[row.run](row)
+        except SolveError as error:
+            return Value(None, problem=str(error))
+
+    def _steady(self, row: Row) -> Value:
+        setting = self._setting(_assignments(row))
+        result = steady(setting.flat, setting.values, guess=setting.states)
+        return _read(row.path, setting, {name: float(column[0]) for name, column in result.columns.items()})
+
+    def _held(self, row: Row) -> Value:
+        setting = self._setting(_assignments(row))
+        columns = held(setting.flat, [setting.values], [to_si(row.temperature, "K", name="temperature")])
+        return _read(row.path, setting, {name: float(column[0]) for name, column in columns.items()})
+
+    def _design(self, row: Row) -> Value:
+        free, targets = _listed(row.free), _listed(row.target)
+        setting = self._setting(_assignments(row), free)
+        aims = parse_assignments(setting.flat, targets)
+        solution = design(setting.flat, free, aims, setting.values, guess=setting.states)
+        columns = {name: float(column[0]) for name, column in solution.result.columns.items()}
+        return _read(row.path or free[0], setting, columns | dict(solution.values))
+
+    def _contacts(self, row: Row) -> Value:
+        """A total of the contacts over a mesh cycle, or their columns: all of them, or at one angle."""
+        found = self._cycle(_assignments(row))
+        columns = {name: np.array([contact[name] for contact in found.rows]) for name in found.columns}
+        theta = columns.get("theta_deg")
+        if row.at is not None and theta is not None:
+            if not theta.min() <= row.at <= theta.max():
+                raise ScenarioError(f"at = {row.at:g} is outside the contacts, {theta.min():g} to {theta.max():g} deg.")
+            order = np.argsort(theta)
+            columns = {name: np.interp(row.at, theta[order], column[order]) for name, column in columns.items()}
+        known = columns | dict(found.totals)
+
+        def value_of(name: str) -> Any:
+            if name not in known:
+                raise ScenarioError(f'there is no "{name}" among the contacts. Known: {", ".join(known)}.')
+            return known[name]
+
+        return Value(single(row.path, value_of))
+
+    def _cycle(self, assignments: tuple[str, ...]) -> ContactTable:
+        """The contacts at the operating point with values set."""
+        if assignments not in self._cycles:
+            self._cycles[assignments] = contacts_at_operating_point(adjusted(self.scenario, assignments))
+        return self._cycles[assignments]
+
+    def _at_readings(self, row: Row) -> Value:
+        readings = selected(self._readings(_assignments(row)), row.select)
+        if not readings:
+            raise ScenarioError(f"no reading of {self.scenario.name} has {row.select}.")
+
+        def column(name: str) -> np.ndarray:
+            if name not in readings[0]:
+                raise ScenarioError(f'there is no column "{name}". Columns: {", ".join(readings[0])}.')
+            return np.array([reading[name] for reading in readings])
+
+        return Value(single(row.path, column), labelled=True)
+
+    def _readings(self, assignments: tuple[str, ...]) -> list[dict[str, Any]]:
+        """The losses at all measured readings beside what was measured, a row each."""
+        if assignments not in self._losses:
+            scenario = adjusted(self.scenario, assignments)
+            if (study := measured_of(scenario)) is None:
+                raise ScenarioError(f"{scenario.name} has no measured readings.")
+            read, table = measured_rows(study), table_columns(study)
+            rows = zip(study.read_rows, at_readings(study, "measured"), strict=True)
+            self._losses[assignments] = [{**table[row], **read[row], **found} for row, found in rows]
+        return self._losses[assignments]
+
+    def _setting(self, assignments: Iterable[str], free: Iterable[str] = ()) -> _Setting:
+        """The rig with values set, flattened once for each structure."""
+        known = choice_paths(self.scenario.spec)
+        chosen = [text for text in assignments if text.partition("=")[0].strip() in known]
+        numbers = parse_assignments(self.scenario, [text for text in assignments if text not in chosen])
+        named = [*numbers, *free]
+        own = [name for name in named if (p := parameter_of(self.scenario.spec, name)) is not None and p.derived]
+        structural = adjusted(self.scenario, chosen, named=named)
+        key = (tuple(chosen), tuple(own), tuple(structural.given.items()))
+        if key not in self._structures:
+            self._structures[key] = (structural, flat_of(structural))
+        scenario, flat = self._structures[key]
+        states = {q.name for q in flat.states}
+        return _Setting(
+            scenario,
+            flat,
+            {name: value for name, value in numbers.items() if name not in states},
+            {name: value for name, value in numbers.items() if name in states},
+        )
+
+
+def selected(rows: Iterable[Mapping[str, Any]], select: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """The rows whose columns have the values asked for, in the order of the first column that lists several.
+
+    Args:
+        rows: of a table
+        select: column -> value, or list of values
+    """
+    wanted = {column: value if isinstance(value, list) else [value] for column, value in select.items()}
+    found = [row for row in rows if all(row.get(column) in values for column, values in wanted.items())]
+    for column, values in wanted.items():
+        if len(values) > 1:
+            return sorted(found, key=lambda row: values.index(row[column]))
+    return found
+
+
+def single(path: str, value_of: Callable[[str], Any]) -> float | bool:
+    """The one value of an expression.
+
+    Args:
+        path: the expression
+        value_of: name -> number or array
+
+    Raises:
+        ScenarioError: it is no expression, or gives many values
+    """
+    try:
+        return number_of(evaluate(path, value_of))
+    except (ValueError, IndexError, TypeError) as error:
+        raise ScenarioError(f"{path}: {error}.") from None
+
+
+def _read(path: str, setting: _Setting, columns: Mapping[str, float]) -> Value:
+    """A path, or an expression in paths, of a result."""
+    flat = setting.flat
+    given = {q.name: q.start for q in flat.parameters} | dict(setting.values)
+    if path in flat.index and path in (columns.keys() | given.keys()):
+        return Value(columns.get(path, given.get(path)), flat.quantity(path).unit)
+
+    def value_of(name: str) -> float:
+        if name in columns or name in given:
+            return columns[name] if name in columns else given[name]
+        flat.locate(name)  # raises with suggestions for an unknown name
+        raise ScenarioError(f"{name} is no result of this run.")
+
+    return Value(single(path, value_of))
+
+
+def _assignments(row: Row) -> tuple[str, ...]:
+    return tuple(f"{path}={value}" for path, value in paths(row.set))
+
+
+def _listed(text: str | list[str]) -> list[str]:
+    return [text] if isinstance(text, str) else list(text)

@@ -1,0 +1,209 @@
+"""The command `verify`: every published number of every machine, what the model gives for it, and the verdict."""
+
+from __future__ import annotations
+
+import re
+import sys
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from importlib import import_module
+from pathlib import Path
+from typing import Any, TypeVar
+
+from ...model.errors import GearheatError, ScenarioError
+from ...model.sources import LawInfo, sources
+from ...model.units import si_of
+from ...scenarios.golden import golden_rows
+from ...scenarios.load import load
+from ...scenarios.published import Row, read_published
+from ...scenarios.scenario import Scenario
+from ...scenarios.shipped import list_rigs
+from ..describe.rig import errata_of
+from ..show.console import answer, file_of, writable, write
+from ..show.pages import page
+from .model_values import RigValues, single
+from .table import show
+from .verdicts import NOT_REPRODUCED, VERDICTS, Machine, Value, Verdict, counts, judged, kinds
+
+A = TypeVar("A")
+B = TypeVar("B")
+
+#: Exit code where a number is not reproduced.
+FAILED = 1
+
+
+def command(rig: str | None, json: str | None, html: Path | None) -> None:
+    """Verify one rig with the laws it uses, or all shipped rigs and all laws; exit code 1 if a number fails."""
+    writable(file_of(json), html)
+    rigs = [RigValues(load(name)) for name in ([rig] if rig else list_rigs())]
+    rows = _each(published_of, [values.scenario for values in rigs])
+    laws = [row for row in golden_rows() if rig is None or law_of(row) in rigs[0].laws]
+    with _progress(sum(map(len, rows)) + len(laws)) as advance:
+        machines = _each(lambda pair: _machine(pair[0], pair[1], advance), list(zip(rigs, rows, strict=True)))
+        verdicts = verified(laws, None, advance)
+    found = as_dict(machines, verdicts)
+    if html is not None:
+        write(html, page("gearheat.tools.verify", "verify.html", found=found, verdicts=VERDICTS))
+    answer(found, json, lambda: show(machines, verdicts, found))
+    if found["counts"][NOT_REPRODUCED]:
+        sys.exit(FAILED)
+
+
+def _each(work: Callable[[A], B], items: Sequence[A]) -> list[B]:
+    """Work done on each item, or the problems of all of them."""
+    found: list[B] = []
+    problems: list[str] = []
+    for item in items:
+        try:
+            found.append(work(item))
+        except ScenarioError as error:
+            problems += error.problems
+    if problems:
+        raise ScenarioError(problems)
+    return found
+
+
+def published_of(scenario: Scenario) -> tuple[Row, ...]:
+    """The published numbers beside a rig file; none where there is no such file.
+
+    Args:
+        scenario: the rig
+
+    Raises:
+        ScenarioError: everything wrong with the file at once
+    """
+    path = scenario.path.parent / "published.toml"
+    try:
+        return read_published(path) if path.is_file() else ()
+    except ScenarioError as error:
+        raise ScenarioError([f"{scenario.name}: {problem}" for problem in error.problems]) from None
+
+
+def as_dict(machines: Sequence[Machine], laws: Sequence[Verdict]) -> dict[str, Any]:
+    """The object of `--json`.
+
+    Args:
+        machines: the rigs
+        laws: verdicts on the golden rows of laws
+    """
+    every = [verdict for machine in machines for verdict in machine.verdicts] + list(laws)
+    return {
+        "schema": "gearheat.verify/1",
+        "counts": counts(every),
+        "kinds": kinds(every),
+        "machines": [machine.as_dict() for machine in machines],
+        "laws": {
+            "counts": counts(laws),
+            "kinds": kinds(laws),
+            "rows": [{"law": v.row.law, **v.as_dict()} for v in laws],
+        },
+        "sources": _cited(verdict.row.where for verdict in every),
+    }
+
+
+def _cited(places: Iterable[str]) -> dict[str, str]:
+    """The sources whose keys stand in places such as "Dias2014, table 5.7": key -> author, year and title."""
+    words = {word for place in places for word in re.findall(r"\w+", place)}
+    return {key: s.cited for key, s in sources().items() if key in words}
+
+
+def _machine(values: RigValues, rows: Sequence[Row], advance: Any) -> Machine:
+    scenario = values.scenario
+    verdicts = verified(rows, values, advance)
+    return Machine(scenario.name, scenario.doc, scenario.reproduces, verdicts, tuple(errata_of(scenario)))
+
+
+def verified(rows: Sequence[Row], rig: RigValues | None, advance: Any = lambda: None) -> tuple[Verdict, ...]:
+    """The verdict on each row.
+
+    Args:
+        rows: published numbers
+        rig: what the model of their rig gives; None for rows of laws alone
+        advance: called after each row
+
+    Raises:
+        ScenarioError: all rows that name what does not exist, or do not fit together, at once
+    """
+    problems: list[str] = []
+    known: dict[str, Verdict] = {}
+    found = []
+    for row in sorted(rows, key=lambda row: row.run == "rows"):  # they need the others
+        if not known.keys() >= set(row.of.values()):  # what is wrong with the others is told
+            continue
+        try:
+            verdict = judged(row, _value(row, rig, known))
+            known[row.name] = verdict
+            found.append((row, verdict))
+        except GearheatError as error:
+            problems += [p if p.startswith(row.name) else f"{row.name}: {p}" for p in error.problems]
+        advance()
+    if problems:
+        where = f"{rig.scenario.name}: " if rig else ""
+        raise ScenarioError([f"{where}{problem}" for problem in problems])
+    order = {id(row): i for i, row in enumerate(rows)}
+    return tuple(verdict for _, verdict in sorted(found, key=lambda pair: order[id(pair[0])]))
+
+
+def _value(row: Row, rig: RigValues | None, known: Mapping[str, Verdict]) -> Value:
+    """What the model, a law or arithmetic gives for a row."""
+    if row.run == "law":
+        return _law_value(row)
+    if row.run in ("rows", "print"):
+        return _from_rows(row, known)
+    if rig is None:
+        raise ScenarioError(f'run = "{row.run}" needs a rig.')
+    return rig.value(row)
+
+
+def _from_rows(row: Row, known: Mapping[str, Verdict]) -> Value:
+    """What an expression in other rows gives, or in printed numbers alone."""
+    others = {name: known[other].model for name, other in row.of.items()}
+    if lost := [row.of[name] for name, value in others.items() if value is None]:
+        return Value(None, problem=f"no solution of: {', '.join(lost)}")
+
+    def value_of(name: str) -> Any:
+        if name not in others:
+            raise ScenarioError(f'"{name}" is not among the names of the row ({", ".join(others) or "none"}).')
+        return others[name]
+
+    return Value(single(row.path, value_of), labelled=True)
+
+
+def _law_value(row: Row) -> Value:
+    arguments = {name: si_of(value) for name, value in row.args.items()}
+    try:
+        result = _function(row.law)(**arguments)
+        return Value(float(result if row.item is None else result[row.item]))
+    except (TypeError, IndexError) as error:
+        raise ScenarioError(f"{row.law}: {error}.") from None
+
+
+def law_of(row: Row) -> LawInfo | None:
+    """What the law of a row declares.
+
+    Args:
+        row: with run = "law"
+    """
+    return getattr(_function(row.law), "law", None)
+
+
+def _function(name: str) -> Any:
+    module, _, law = name.partition(".")
+    try:
+        return getattr(import_module(f"gearheat.model.laws.{module}"), law)
+    except (ImportError, AttributeError):
+        raise ScenarioError(f'there is no law "{name}". Write "module.function" of gearheat.model.laws.') from None
+
+
+def _progress(total: int) -> Any:
+    """Rows done, on a terminal; nothing elsewhere."""
+    from rich.console import Console
+    from rich.progress import Progress
+
+    @contextmanager
+    def shown() -> Iterator[Callable[[], None]]:
+        with Progress(console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()) as bar:
+            task = bar.add_task("verify", total=total)
+            yield lambda: bar.advance(task)
+
+    return shown()
