@@ -1,12 +1,13 @@
-"""The commands for those who work on gearheat itself: how good the diagnosis is, and how fast the program."""
+"""For those who work on gearheat: its benches and its documentation."""
 
 from __future__ import annotations
 
 import os
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Literal, cast
 
 import typer
+from typer.core import TyperGroup
 
 from ..show import console
 from .options import Jobs, Json, Rig, Tests
@@ -60,3 +61,18 @@ def bench(
     from ..bench import bench
 
     bench.command(rig, tests, json, next((name for name, given in asked.items() if given), "job"), draws)
+
+
+@console.guarded
+def docs(
+    context: typer.Context,
+    out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the web site.")],
+    run: Annotated[
+        Literal["quick", "all", "none"],
+        typer.Option(help="Code blocks to run before: those that take seconds, all, or none."),
+    ] = "quick",
+) -> None:
+    """Build the documentation as a web site; its code blocks are run and their output compared with the pages."""
+    from ..docs import build
+
+    build.docs_command(cast(TyperGroup, context.find_root().command), out, run)

@@ -1,4 +1,4 @@
-"""The commands of the diagnosis: what the model gets wrong, and which experiment would tell."""
+"""What the model gets wrong in measured data, and which experiment would tell."""
 
 from __future__ import annotations
 

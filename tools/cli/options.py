@@ -40,3 +40,6 @@ Ssp = Annotated[
         help="Write a system of coupled FMUs (.ssp): these parts are one, again for more, the rest is gearbox.",
     ),
 ]
+Extended = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="Rig file that `diagnose` wrote; it takes the rig's place.")
+]

@@ -1,4 +1,4 @@
-"""The commands that make rigs and judge them as a whole: `new`, `parts`, `schema`, `map`, `rating`."""
+"""Rigs, catalogues and part types: what there is, and a rig of your own."""
 
 from __future__ import annotations
 
@@ -8,42 +8,7 @@ from typing import Annotated
 import typer
 
 from ..show import console
-from .options import Json, Plot, Rig, Set
-
-
-@console.guarded
-def map_(
-    rig: Rig,
-    out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write, a row per point.")],
-    speed: Annotated[str | None, typer.Option(help='Range such as "300..1800 rpm".')] = None,
-    torque: Annotated[str | None, typer.Option(help='Range such as "-600..-60 N.m".')] = None,
-    grid: Annotated[str, typer.Option(help="Points: speeds x torques.")] = "21x21",
-    plot: Plot = None,
-    output: Annotated[list[str] | None, typer.Option(help="Output to map. Repeatable.")] = None,
-    set_: Set = None,
-    json: Json = None,
-) -> None:
-    """Oil temperature, loss and efficiency over speed and torque: table and picture."""
-    from ..solve import maps
-
-    maps.map_command(rig, out, {"w": speed, "tau": torque}, grid, plot, output or [], set_ or [], json)
-
-
-@console.guarded
-def rating(
-    rig: Rig,
-    limit: Annotated[str, typer.Option(help='What must be kept, such as "oil.T=95 degC".')],
-    room: Annotated[str | None, typer.Option(help='Range of the room, such as "0..40 degC".')] = None,
-    speed: Annotated[str | None, typer.Option(help='Range such as "300..1800 rpm".')] = None,
-    grid: Annotated[str, typer.Option(help="Points: rooms x speeds.")] = "5x5",
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="CSV to write.")] = None,
-    set_: Set = None,
-    json: Json = None,
-) -> None:
-    """Thermal power over room temperature and speed: what the rig carries for ever within a limit."""
-    from ..solve import maps
-
-    maps.rating_command(rig, limit, {"room": room, "w": speed}, grid, out, set_ or [], json)
+from .options import Everything, Json, Rig
 
 
 @console.guarded
@@ -63,6 +28,27 @@ def new(
     from ..build import new
 
     new.new_command(name, stages, ratio, power, speed, oil, out, json)
+
+
+@console.guarded
+def list_(json: Json = None) -> None:
+    """The shipped rigs and catalogues."""
+    from ..describe import listing
+
+    listing.list_command(json)
+
+
+@console.guarded
+def show(
+    rig: Rig,
+    errata: Annotated[bool, typer.Option("--errata", help="Show where the rig's sources are wrong.")] = False,
+    everything: Everything = False,
+    json: Json = None,
+) -> None:
+    """What a rig is made of, how it is driven, and which parameters matter most; --all for everything."""
+    from ..describe import rig as describe
+
+    describe.show_command(rig, errata, json, everything)
 
 
 @console.guarded

@@ -1,4 +1,4 @@
-"""The commands of the contact solver: film maps, and what the solver is verified with."""
+"""Films of contacts, and published numbers beside what the model gives."""
 
 from __future__ import annotations
 
@@ -33,6 +33,20 @@ def film(
     from ..films import film
 
     film.command(film.Request(rig, out, part, vary or [], grid, nodes, plot, set_ or [], json))
+
+
+@console.guarded
+def verify(
+    rig: Annotated[
+        str | None, typer.Argument(help="Name of a shipped rig, or path of a rig file; all shipped rigs if left out.")
+    ] = None,
+    json: Json = None,
+    html: Annotated[Path | None, typer.Option(metavar="FILE", help="HTML page to write.")] = None,
+) -> None:
+    """Published numbers of each machine beside what the model gives."""
+    from ..verify import verify
+
+    verify.command(rig, json, html)
 
 
 @console.guarded
