@@ -15,9 +15,9 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from gearheat.model.core.flat import Quantity
-from gearheat.model.errors import FmuError
 
+from ..model.core.flat import Quantity
+from ..model.errors import FmuError
 from .compiling import binary, host_platform
 from .grid import Grid
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from gearheat.model.core.flat import FlatModel
+from ..model.core.flat import FlatModel
 
 #: Name of the choice how a run begins, and what its items are called.
 START, GIVEN, ROOM, STEADY = "start", "given", "room", "steady"

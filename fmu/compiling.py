@@ -17,8 +17,8 @@ from importlib.metadata import version
 from pathlib import Path
 from types import MappingProxyType
 
-from gearheat.model.errors import FmuError, suggestion
-from gearheat.model.files import replacing
+from ..model.errors import FmuError, suggestion
+from ..model.files import replacing
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,8 @@ from dataclasses import dataclass, field
 from html import escape
 from math import isfinite
 
-from gearheat.model.core.flat import FlatModel
-from gearheat.model.sources import sources
-
+from ..model.core.flat import FlatModel
+from ..model.sources import sources
 from .description import TOLERANCE, tool
 from .leading import Directions
 from .parameter_set import kind_of

@@ -8,7 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import casadi as ca
-from gearheat.model.errors import FmuError
+
+from ..model.errors import FmuError
 
 #: C text of each scalar operation, by the name of CasADi's code.
 _OPERATIONS = {

@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from gearheat.model.core.flat import FlatModel
-from gearheat.model.errors import FmuError, SolveError
-from gearheat.model.run.algebra import algebra
-from gearheat.model.run.schedule import Schedule
-from gearheat.model.run.simulate import simulate
 
+from ..model.core.flat import FlatModel
+from ..model.errors import FmuError, SolveError
+from ..model.run.algebra import algebra
+from ..model.run.schedule import Schedule
+from ..model.run.simulate import simulate
 from .description import EXPERIMENT
 from .equations import Equations
 from .sensitivity import Sensitivities

@@ -13,7 +13,8 @@ import fmpy
 import numpy as np
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
-from gearheat.model.errors import FmuError
+
+from ..model.errors import FmuError
 
 _ADDRESS, _SIZE, _DOUBLE, _INT, _BOOL = (
     ctypes.c_void_p,

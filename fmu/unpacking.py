@@ -8,8 +8,7 @@ import zipfile
 from contextlib import suppress
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
-from gearheat.model.errors import FmuError
-
+from ..model.errors import FmuError
 from .compiling import cache_folder, store
 
 #: Bytes that an FMU may unpack to, and files that it may hold.

@@ -9,10 +9,10 @@ from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
-from gearheat.model.core.flat import FlatModel, Quantity
-from gearheat.model.errors import FmuError, suggestion
-from gearheat.model.run.point import follows
 
+from ..model.core.flat import FlatModel, Quantity
+from ..model.errors import FmuError, suggestion
+from ..model.run.point import follows
 from .choices import Choice
 
 SUPPLIED, THROUGHPUT, STORED, RESIDUAL = "energy.supplied", "energy.throughput", "energy.stored", "energy.residual"
