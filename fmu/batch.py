@@ -34,8 +34,10 @@ TOLERANCE = 1e-4
 #: Steps of a warm-up between two points of its schedule or output.
 MOST_STEPS = 1_000_000
 
-#: Rows that a thread takes at a time. The results do not depend on it.
-STEADY_BLOCK, WARMUP_BLOCK = 1024, 64
+#: Steady states that a thread takes at a time. The results do not depend on it.
+STEADY_BLOCK = 1024
+#: Warm-ups that a thread takes at a time: fewer, as each takes longer.
+WARMUP_BLOCK = 64
 
 
 class Status(IntEnum):

@@ -19,8 +19,10 @@ from .variables import Table, Variable
 
 #: Share by which a standard deviation may come out too small for the directions left out.
 SHORTFALL = 0.01
-#: Intervals of the run in which the directions are weighed, the last some thousand times as long as the first.
-_INTERVALS, _FIRST = 80, 1e-4
+#: Intervals of the run in which the directions are weighed, each longer than the one before by one factor.
+_INTERVALS = 80
+#: End of the first interval, as a share of the run: fast states settle early.
+_FIRST = 1e-4
 #: Digits of a direction: what follows is round-off, which differs between machines.
 _DIGITS = 9
 
