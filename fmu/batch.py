@@ -18,11 +18,11 @@ from functools import cached_property
 from typing import Any
 
 import numpy as np
-from gearheat.model.core.flat import FlatModel, Quantity
-from gearheat.model.errors import ScenarioError, suggestion
-from gearheat.model.run.audit import SLACK
-from gearheat.model.run.schedule import Schedule
 
+from ..model.core.flat import FlatModel, Quantity
+from ..model.errors import ScenarioError, suggestion
+from ..model.run.audit import SLACK
+from ..model.run.schedule import Schedule
 from .batch_library import BESIDE, Duty, address, driver, instructions, rows_from, shared, widened
 from .batch_relations import broken_relations, relations_source
 from .batch_source import EXTRA, steady_source, warmup_source
@@ -34,8 +34,10 @@ TOLERANCE = 1e-4
 #: Steps of a warm-up between two points of its schedule or output.
 MOST_STEPS = 1_000_000
 
-#: Rows that a thread takes at a time. The results do not depend on it.
-STEADY_BLOCK, WARMUP_BLOCK = 1024, 64
+#: Steady states that a thread takes at a time. The results do not depend on it.
+STEADY_BLOCK = 1024
+#: Warm-ups that a thread takes at a time: fewer, as each takes longer.
+WARMUP_BLOCK = 64
 
 
 class Status(IntEnum):

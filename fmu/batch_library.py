@@ -15,13 +15,16 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-from gearheat.model.core.flat import Quantity
-from gearheat.model.errors import FmuError
 
+from ..model.core.flat import Quantity
+from ..model.errors import FmuError
 from .compiling import binary, host_platform
 from .grid import Grid
 
-_POINTER, _COUNT = ctypes.c_void_p, ctypes.c_int64
+#: Addresses and numbers of rows as the drivers take them.
+_POINTER = ctypes.c_void_p
+_COUNT = ctypes.c_int64  # batches may hold more rows than an int of C
+#: Arguments of each driver.
 _SIGNATURES = {
     "batch_steady": [_COUNT, *[_POINTER, _COUNT] * 3, *[_POINTER] * 5],
     "batch_relations": [_COUNT, _POINTER, _COUNT, _POINTER],

@@ -5,8 +5,8 @@ from __future__ import annotations
 from importlib.resources import files
 
 import numpy as np
-from gearheat.model.core.flat import FlatModel
 
+from ..model.core.flat import FlatModel
 from . import emit
 from .batch_library import address, driver
 

@@ -8,8 +8,8 @@ from itertools import pairwise
 from typing import Any
 
 import casadi as ca
-from gearheat.model.core.flat import FlatModel
 
+from ..model.core.flat import FlatModel
 from . import emit, rosenbrock
 from .equations import equations
 from .source import defined, newton_constants

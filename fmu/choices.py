@@ -5,10 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
-from gearheat.model.core.flat import FlatModel
+from ..model.core.flat import FlatModel
 
-#: Name of the choice how a run begins, and what its items are called.
-START, GIVEN, ROOM, STEADY = "start", "given", "room", "steady"
+#: Name of the choice how a run begins.
+START = "start"
+#: Its item: at the start values of the states.
+GIVEN = "given"
+#: Its item: all temperatures as the room's.
+ROOM = "room"
+#: Its item: at the steady state of the initial inputs.
+STEADY = "steady"
 
 
 @dataclass(frozen=True)

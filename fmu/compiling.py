@@ -17,8 +17,8 @@ from importlib.metadata import version
 from pathlib import Path
 from types import MappingProxyType
 
-from gearheat.model.errors import FmuError, suggestion
-from gearheat.model.files import replacing
+from ..model.errors import FmuError, suggestion
+from ..model.files import replacing
 
 
 @dataclass(frozen=True)
@@ -30,10 +30,14 @@ class Platform:
     targets: tuple[str, ...]
 
 
-#: An old C library of Linux by name: newer ones would bind exp, log and pow to versions a user may not have. An old
-#: macOS by name: without it the library asks for the newest the compiler knows.
-_LINUX, _LINUX_ARM = "x86_64-linux-gnu.2.17", "aarch64-linux-gnu.2.17"
-_MAC, _MAC_ARM = "x86_64-macos.11.0", "aarch64-macos.11.0"
+#: Linux with an old C library: newer ones would bind exp, log and pow to versions a user may not have.
+_LINUX = "x86_64-linux-gnu.2.17"
+#: The same for ARM.
+_LINUX_ARM = "aarch64-linux-gnu.2.17"
+#: An old macOS: without a version the library asks for the newest that the compiler knows.
+_MAC = "x86_64-macos.11.0"
+#: The same for ARM; its first macOS.
+_MAC_ARM = "aarch64-macos.11.0"
 
 #: The platforms of FMI 2.0, with one that only 3.0 has a name for, and those of 3.0, by name.
 PLATFORMS = {

@@ -11,10 +11,10 @@ from pathlib import Path
 from typing import Any
 
 import fmpy
-from gearheat.model.core.flat import Quantity
-from gearheat.model.errors import FmuError
-from gearheat.model.files import reading
 
+from ..model.core.flat import Quantity
+from ..model.errors import FmuError
+from ..model.files import reading
 from .unpacking import check
 
 

@@ -13,9 +13,9 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from gearheat.model.core.flat import FlatModel
-from gearheat.model.errors import FmuError
 
+from ..model.core.flat import FlatModel
+from ..model.errors import FmuError
 from . import units
 from .choices import Choice
 from .equations import Equations

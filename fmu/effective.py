@@ -7,8 +7,9 @@ from dataclasses import replace
 from typing import Any
 
 import casadi as ca
-from gearheat.model.core.flat import FlatModel
-from gearheat.model.run.fast import once
+
+from ..model.core.flat import FlatModel
+from ..model.run.fast import once
 
 #: Operations through which a parameter acts although the derivative is zero: it decides when something happens.
 _SWITCHES = frozenset(

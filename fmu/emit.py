@@ -8,7 +8,8 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, NamedTuple
 
 import casadi as ca
-from gearheat.model.errors import FmuError
+
+from ..model.errors import FmuError
 
 #: C text of each scalar operation, by the name of CasADi's code.
 _OPERATIONS = {
@@ -73,9 +74,11 @@ _OF_LANES = {
     "SIGN": "lanes_true({0}>0)-lanes_true({0}<0)",
     "IF_ELSE_ZERO": "lanes_only({0}!=0,{1})",
 }
-#: Statements up to which a function stays whole, and those of a piece of a longer one. The work of a compiler on one
-#: function grows faster than its length, above all the search for operations that vector instructions can do at once.
-WHOLE, PIECE = 15_000, 250
+#: Statements up to which a function stays whole. The work of a compiler on one function grows faster than its length,
+#: above all the search for operations that vector instructions can do at once.
+WHOLE = 15_000
+#: Statements of each piece of a longer function.
+PIECE = 250
 #: Keeps a function from being put into the one that calls it.
 _APART = """#ifndef APART
 #if defined(__GNUC__)

@@ -9,10 +9,10 @@ from typing import Any
 
 import casadi as ca
 import numpy as np
-from gearheat.model.core.eliminate import Factors
-from gearheat.model.core.flat import FlatModel
-from gearheat.model.errors import FmuError
 
+from ..model.core.eliminate import Factors
+from ..model.core.flat import FlatModel
+from ..model.errors import FmuError
 from . import rosenbrock
 
 

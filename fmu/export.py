@@ -32,8 +32,7 @@ import zipfile
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
-from gearheat.model.core.flat import FlatModel
-
+from ..model.core.flat import FlatModel
 from . import fmi3_description, fmi3_source
 from .choices import Choice, reduced, start_choice
 from .compiling import Platform, Progress, binary, platforms, store, together

@@ -5,8 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Sequence
 
-from gearheat.model.core.flat import FlatModel
-
+from ..model.core.flat import FlatModel
 from .choices import Choice
 from .description import (
     Dependencies,

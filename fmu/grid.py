@@ -6,7 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from gearheat.model.errors import FmuError
+
+from ..model.errors import FmuError
 
 #: Communication steps of a run at most.
 MOST_STEPS = 1e7

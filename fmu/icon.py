@@ -7,9 +7,16 @@ import zlib
 
 import numpy as np
 
-#: Pixels of an edge, and points drawn for each of them along it.
-_SIZE, _FINE = 96, 4
-_PAPER, _WHEEL, _PINION = (255, 255, 255), (74, 98, 122), (208, 74, 32)
+#: Length of an edge [pixel]; importers draw icons at about this size.
+_SIZE = 96
+#: Points drawn along each pixel; their mean smooths the edges.
+_FINE = 4
+#: Colour of the ground, red, green and blue of 255: white.
+_PAPER = (255, 255, 255)
+#: Colour of the wheel: steel blue, the cold one.
+_WHEEL = (74, 98, 122)
+#: Colour of the pinion: red, the warm one.
+_PINION = (208, 74, 32)
 
 
 def icon() -> bytes:

@@ -6,12 +6,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from gearheat.model.core.flat import FlatModel
-from gearheat.model.errors import FmuError, SolveError
-from gearheat.model.run.algebra import algebra
-from gearheat.model.run.schedule import Schedule
-from gearheat.model.run.simulate import simulate
 
+from ..model.core.flat import FlatModel
+from ..model.errors import FmuError, SolveError
+from ..model.run.algebra import algebra
+from ..model.run.schedule import Schedule
+from ..model.run.simulate import simulate
 from .description import EXPERIMENT
 from .equations import Equations
 from .sensitivity import Sensitivities
@@ -19,8 +19,10 @@ from .variables import Table, Variable
 
 #: Share by which a standard deviation may come out too small for the directions left out.
 SHORTFALL = 0.01
-#: Intervals of the run in which the directions are weighed, the last some thousand times as long as the first.
-_INTERVALS, _FIRST = 80, 1e-4
+#: Intervals of the run in which the directions are weighed, each longer than the one before by one factor.
+_INTERVALS = 80
+#: End of the first interval, as a share of the run: fast states settle early.
+_FIRST = 1e-4
 #: Digits of a direction: what follows is round-off, which differs between machines.
 _DIGITS = 9
 

@@ -9,8 +9,7 @@ import hashlib
 import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 
-from gearheat.model.core.flat import FlatModel
-
+from ..model.core.flat import FlatModel
 from .description import tool, xml
 from .units import fmi_unit
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping
 
-from gearheat.model.core.flat import Quantity
-
+from ..model.core.flat import Quantity
 from . import units
 from .description import tool
 

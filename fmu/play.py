@@ -12,8 +12,8 @@ from types import TracebackType
 from typing import Self
 
 import numpy as np
-from gearheat.model.errors import FmuError, suggestion
 
+from ..model.errors import FmuError, suggestion
 from .described import Described, described, is_real, is_whole, settable
 from .grid import Grid, Inputs, grid
 from .slave import Slave, Slave2, Slave3

@@ -10,7 +10,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import casadi as ca
-from gearheat.model.core.eliminate import Factors
+
+from ..model.core.eliminate import Factors
 
 
 @dataclass(frozen=True)

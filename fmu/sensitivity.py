@@ -7,8 +7,8 @@ from functools import cached_property
 from typing import Any
 
 import casadi as ca
-from gearheat.model.core.eliminate import Factors
 
+from ..model.core.eliminate import Factors
 from .equations import Equations, full
 
 #: Diagonal coefficient of the L-stable method of two stages, order 2 (Kennedy and Carpenter 2016, NASA/TM-2016-219173).

@@ -13,15 +13,15 @@ import fmpy
 import numpy as np
 from fmpy.fmi2 import FMU2Slave, fmi2CallbackFunctions, fmi2CallbackLoggerTYPE
 from fmpy.fmi3 import FMU3Slave
-from gearheat.model.errors import FmuError
 
-_ADDRESS, _SIZE, _DOUBLE, _INT, _BOOL = (
-    ctypes.c_void_p,
-    ctypes.c_size_t,
-    ctypes.c_double,
-    ctypes.c_int,
-    ctypes.c_bool,
-)
+from ..model.errors import FmuError
+
+# Types of the functions' arguments, and those of the ones that set or get values.
+_ADDRESS = ctypes.c_void_p
+_SIZE = ctypes.c_size_t
+_DOUBLE = ctypes.c_double
+_INT = ctypes.c_int
+_BOOL = ctypes.c_bool
 _VALUES = (_ADDRESS, _SIZE, _ADDRESS)
 
 #: Function(address of references, their number, address of values).

@@ -8,10 +8,10 @@ from importlib.resources import files
 from typing import Any, NamedTuple
 
 import numpy as np
-from gearheat.model.core.flat import FlatModel
-from gearheat.model.run import newton
-from gearheat.model.run.algebra import GUESSES
 
+from ..model.core.flat import FlatModel
+from ..model.run import newton
+from ..model.run.algebra import GUESSES
 from . import emit, fmi3_source
 from .choices import ROOM, START, STEADY
 from .description import TOLERANCE, identifier

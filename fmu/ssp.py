@@ -6,8 +6,7 @@ import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
-from gearheat.model.core.flat import Quantity
-
+from ..model.core.flat import Quantity
 from .description import tool, xml
 from .export import archive
 from .parameter_set import SSC, define_units

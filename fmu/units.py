@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
-from gearheat.model import units as model_units
+from ..model import units as model_units
 
 #: Exponents of the SI base units, and the factor to them, of each unit the model writes.
 _NAMED: dict[str, tuple[float, dict[str, int]]] = {

@@ -8,12 +8,13 @@ import zipfile
 from contextlib import suppress
 from pathlib import Path, PurePosixPath, PureWindowsPath
 
-from gearheat.model.errors import FmuError
-
+from ..model.errors import FmuError
 from .compiling import cache_folder, store
 
-#: Bytes that an FMU may unpack to, and files that it may hold.
-MOST_BYTES, MOST_FILES = 1 << 30, 10_000
+#: Bytes that an FMU may unpack to: far above any FMU known, far below what fills a disk.
+MOST_BYTES = 1 << 30
+#: Files that an FMU may hold.
+MOST_FILES = 10_000
 
 
 def check(path: Path, file: zipfile.ZipFile) -> None:

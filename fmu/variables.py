@@ -9,15 +9,24 @@ from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
-from gearheat.model.core.flat import FlatModel, Quantity
-from gearheat.model.errors import FmuError, suggestion
-from gearheat.model.run.point import follows
 
+from ..model.core.flat import FlatModel, Quantity
+from ..model.errors import FmuError, suggestion
+from ..model.run.point import follows
 from .choices import Choice
 
-SUPPLIED, THROUGHPUT, STORED, RESIDUAL = "energy.supplied", "energy.throughput", "energy.stored", "energy.residual"
-VALIDITY, IMPLICIT = "validity.count", "implicit.residual"
-
+#: Audit state: integral of the power across the boundary [J].
+SUPPLIED = "energy.supplied"
+#: Audit state: integral of the sizes of these powers [J].
+THROUGHPUT = "energy.throughput"
+#: Audit output: energy of the states [J].
+STORED = "energy.stored"
+#: Audit output: violation of the balance of energy by the equations [W].
+RESIDUAL = "energy.residual"
+#: Audit output: number of law arguments outside the range of their source.
+VALIDITY = "validity.count"
+#: Audit output: what the implicit equations leave, in units of their typical size.
+IMPLICIT = "implicit.residual"
 
 #: Smallest number an end at zero leaves open: far below all sizes, and far from the denormal numbers that std::stod and
 #: other readers of the description refuse.

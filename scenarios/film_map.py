@@ -48,8 +48,10 @@ COLUMNS = (
 )
 #: Columns of what a contact is, which do not change over a map.
 CONSTANT = ("R_x [m]", "R_y [m]", "length [m]", "E_eff [Pa]", "slide_roll [1]")
-#: What a row with a film says, and one for which none was found.
-OK, FAILED = "ok", "failed"
+#: Status of a row with a film.
+OK = "ok"
+#: Status of a row for which no film was found.
+FAILED = "failed"
 
 
 @dataclass(frozen=True)

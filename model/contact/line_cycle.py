@@ -16,8 +16,10 @@ from .line_start import settled
 from .line_system import LineState, Moment, newton
 from .line_unit import flooded, line_unit
 
-#: How often a time step may be halved, and by how much the next one may be longer.
-HALVINGS, LONGER = 8, 2.0
+#: How often a time step may be halved before the cycle is given up.
+HALVINGS = 8
+#: Factor from a halved step that succeeded to the next one.
+LONGER = 2.0
 
 #: Height of a surface over the place on it [m].
 Profile = Callable[[Array], Array]

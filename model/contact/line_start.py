@@ -17,10 +17,18 @@ from .line_unit import LineUnit, film_number, numbers
 
 #: How many nodes the first grid has.
 FIRST = 81
-#: Lubricant number and load number up to which the Hertz pressure is a good start.
-SOFT, EASY = 1.5, 10.0
-#: Factors of a step towards a stiffer oil and towards another speed; shares of the roughness; smallest share of a step.
-STIFFER, SLOWER, ROUGHER, LEAST_STEP = 1.5, 4.0, 0.25, 0.02
+#: Moes' lubricant number up to which the Hertz pressure is a good start.
+SOFT = 1.5
+#: Moes' load number up to which the Hertz pressure is a good start.
+EASY = 10.0
+#: Factor of the lubricant number in a step towards a stiffer oil.
+STIFFER = 1.5
+#: Factor of the speed in a step towards another one.
+SLOWER = 4.0
+#: Share of the roughness that a step adds.
+ROUGHER = 0.25
+#: Smallest share of a step before the start is given up.
+LEAST_STEP = 0.02
 
 
 def settled(

@@ -8,7 +8,18 @@ from .case import Array
 
 #: Neighbours (along y, along x) in the order of the layers: itself, two upstream, one downstream, the two sides.
 OFFSETS = ((0, 0), (0, -1), (0, -2), (0, 1), (-1, 0), (1, 0))
-CENTRE, WEST, WEST_2, EAST, SOUTH, NORTH = range(6)
+#: Layer of the node itself.
+CENTRE = 0
+#: Layer of the node upstream.
+WEST = 1
+#: Layer of the second node upstream.
+WEST_2 = 2
+#: Layer of the node downstream.
+EAST = 3
+#: Layer of the node at the side, before it.
+SOUTH = 4
+#: Layer of the node at the other side, behind it.
+NORTH = 5
 
 
 def apply(stencil: Array, f: Array) -> Array:

@@ -20,9 +20,14 @@ from scipy.sparse.csgraph import min_weight_full_bipartite_matching
 from ..errors import StructureError
 from .eliminate import Factors, Singular, typical_sizes
 
-#: What it costs to let an equation determine an unknown: given by one side, linear in it, nonlinear; and on top of
-#: these where it gives a torn unknown, which it is to test.
-EXPLICIT, LINEAR, NONLINEAR, DEFINES_TORN = 1.0, 2.0, 100.0, 1e4
+#: Cost of letting an equation determine an unknown that one side of it gives.
+EXPLICIT = 1.0
+#: Cost of letting an equation determine an unknown in which it is linear.
+LINEAR = 2.0
+#: Cost of letting an equation determine an unknown in which it is nonlinear.
+NONLINEAR = 100.0
+#: What it costs on top of these where the equation gives a torn unknown, which it is to test.
+DEFINES_TORN = 1e4
 #: What it costs to test a torn unknown by an equation that it is not in.
 ABSENT = 1e6
 

@@ -11,9 +11,12 @@ import casadi as ca
 from ..sources import law
 from .smooth import Num, smooth_abs, smooth_power, smooth_sign
 
+#: Acceleration of gravity, standard value [m/s2].
 GRAVITY = 9.80665
-#: Rounding of a temperature difference [K] and of an air speed [m/s].
-DT_WIDTH, V_WIDTH = 1e-2, 1e-3
+#: Rounding of a temperature difference [K].
+DT_WIDTH = 1e-2
+#: Rounding of an air speed [m/s].
+V_WIDTH = 1e-3
 #: Pressure of the air at sea level [Pa].
 SEA_LEVEL = 101325.0
 #: Gas constant of dry air [J/(kg.K)].

@@ -16,10 +16,14 @@ import casadi as ca
 from ..sources import law
 from .smooth import Num, smooth_abs, smooth_max, smooth_min
 
-#: How far beyond the map its law is used, and over what it is blurred there; in halves of the range.
-BEYOND, BLUR = 0.01, 0.004
-#: Roundings at standstill [m/s] and without load [N/m or N].
-U_WIDTH, F_WIDTH = 1e-6, 1e-3
+#: How far beyond the map its law is used, in halves of the range.
+BEYOND = 0.01
+#: Over what its end is rounded, in halves of the range.
+BLUR = 0.004
+#: Rounding at standstill [m/s].
+U_WIDTH = 1e-6
+#: Rounding without load [N/m of a line contact, N of a point contact].
+F_WIDTH = 1e-3
 
 
 @dataclass(frozen=True)

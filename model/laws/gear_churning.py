@@ -17,8 +17,10 @@ from .smooth import SPEED_WIDTH, Num, smooth_abs, smooth_cap, smooth_max, smooth
 #: Acceleration of gravity [m/s2].
 GRAVITY = 9.81
 
-#: Working depth of a tooth with its clearance, in modules, and the pressure angle: standard gears.
-TOOTH_HEIGHT, PRESSURE_ANGLE = 2.25, math.radians(20)
+#: Working depth of a tooth with its clearance, in modules: standard gears.
+TOOTH_HEIGHT = 2.25
+#: Pressure angle [rad]: standard gears.
+PRESSURE_ANGLE = math.radians(20)
 
 
 def immersion(level: Num, height: Num, r: Num, *, rounding: float = 0.01) -> Num:

@@ -7,8 +7,10 @@ import casadi as ca
 from ..sources import law
 from .smooth import Num
 
-#: Steps of the arithmetic-geometric mean, and of the search for the axes: both to rounding for R_y/R_x up to 1e5.
-MEANS, STEPS = 7, 30
+#: Steps of the arithmetic-geometric mean: to rounding for R_y/R_x up to 1e5.
+MEANS = 7
+#: Steps of the search for the axes: to rounding for R_y/R_x up to 1e5.
+STEPS = 30
 
 
 def elliptic_integrals(k: Num) -> tuple[Num, Num]:

@@ -9,7 +9,14 @@ import casadi as ca
 from ..sources import law
 from .smooth import Num
 
-T_40, T_100, T_15, T_0 = 313.15, 373.15, 288.15, 273.15
+#: Lower temperature at which data sheets give the viscosity, 40 degC [K].
+T_40 = 313.15
+#: Upper temperature at which data sheets give the viscosity, 100 degC [K].
+T_100 = 373.15
+#: Temperature at which data sheets give the density, 15 degC [K].
+T_15 = 288.15
+#: Zero of the Celsius scale [K].
+T_0 = 273.15
 #: Viscosity [mm2/s] at which the charts of ASTM D341 end; the line is held there, far below any pour point.
 LARGEST_VISCOSITY = 2e7
 

@@ -17,8 +17,10 @@ import casadi as ca
 from ..sources import law
 from .smooth import SPEED_WIDTH, Num, smooth_abs, smooth_max
 
-#: Least section of a pocket, and how much more it is where the tip enters, in squares of the module.
-LEAST, MORE = 0.65, 2.9
+#: Least section of a pocket, in squares of the module.
+LEAST = 0.65
+#: How much larger the section is where the tip enters, in squares of the module.
+MORE = 2.9
 
 
 @law(source="GearheatSqueezing", where="when a space that is not full begins to squeeze", verified=False)

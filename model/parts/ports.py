@@ -6,9 +6,11 @@ from typing import Any
 
 from ..core.declare import Flow, Port, Potential
 
-#: Temperatures [K] of bodies, oils and rooms. Colder, oils are solid and their viscosity laws explode; hotter, no
-#: lubricant, seal or heat treatment lasts, so that a machine that overheats ends here and not at thousands of kelvins.
-COLDEST, HOTTEST = 213.15, 773.15
+#: Lowest temperature of bodies, oils and rooms, -60 degC [K]: colder, oils are solid and their viscosity laws explode.
+COLDEST = 213.15
+#: Highest temperature of bodies, oils and rooms, 500 degC [K]: hotter, no lubricant, seal or heat treatment lasts, so
+#: that a machine that overheats ends here and not at thousands of kelvins.
+HOTTEST = 773.15
 
 
 class HeatPort(Port):

@@ -13,8 +13,10 @@ from .result import Audit
 #: Round-off allowed at the ends of a range, relative to value and nominal.
 SLACK = 1e-9
 
-#: Violation of the energy balance that is an error, over the throughput; and over the tolerance of an integration.
-ENERGY, ENERGY_BY_TOLERANCE = 1e-6, 100.0
+#: Violation of the energy balance that is an error, over the throughput.
+ENERGY = 1e-6
+#: The same over the tolerance of an integration, where that is more: errors of its steps add up.
+ENERGY_BY_TOLERANCE = 100.0
 
 #: What an implicit equation may leave, in units of its variable's nominal.
 LEFT = 1e-6

@@ -17,8 +17,12 @@ from .result import Result
 from .search import Range, Search, Tried
 from .steady import Equilibrium, steady, table
 
-#: Points of a scan over one freed name, of its refinement, and starts tried where several are free.
-SCAN, REFINED, STARTS = 25, 12, 32
+#: Points of a scan over one freed name.
+SCAN = 25
+#: Points that refine the scan between two of its points.
+REFINED = 12
+#: Starts tried where several names are free.
+STARTS = 32
 
 #: A target that varies less than this over a scan, relative, does not depend on the freed name.
 UNMOVED = 1e-9

@@ -21,8 +21,10 @@ MOST_STEPS = 100_000
 #: First step of IDAS over its tolerance [s].
 FIRST_STEP = 1e-3
 
-#: Steps in search of the moment where an integration fails, and the size of a scaled state that is beyond all reason.
-MOST_TRIAL_STEPS, BLOWN_UP = 20_000, 1e9
+#: Steps in search of the moment where an integration fails.
+MOST_TRIAL_STEPS = 20_000
+#: Size of a state, in nominals, that is beyond all reason.
+BLOWN_UP = 1e9
 
 
 class Failure(Exception):

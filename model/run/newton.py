@@ -28,17 +28,35 @@ STRIDE = 10.0
 #: Least damping factor before Newton gives up.
 LEAST_STEP = 1e-5
 
-#: Corrections before Newton gives up: alone, inside an implicit Euler step, and behind a stride of a homotopy.
-MOST_NEWTON, MOST_EULER, MOST_STRIDE = 50, 8, 15
+#: Corrections before Newton gives up.
+MOST_NEWTON = 50
 
-#: A stride of a homotopy: the first, and the least before it gives up.
-FIRST_STRIDE, LEAST_STRIDE = 0.25, 1e-3
+#: Corrections before Newton gives up inside an implicit Euler step: a shorter step is cheaper than more of them.
+MOST_EULER = 8
 
-#: Longest pseudo-transient step: as a share of the time in which a deviation grows by e, and in scales.
-CAUTION, FAR = 0.3, 5.0
+#: Corrections before Newton gives up behind a stride of a homotopy.
+MOST_STRIDE = 15
 
-#: The pseudo-transient ends where steps this long [s] change nothing, and gives up below the shortest.
-LONGEST, SHORTEST, MOST_RELAX = 1e9, 1e-12, 1000
+#: First stride of a homotopy, as a share of its way.
+FIRST_STRIDE = 0.25
+
+#: Least stride of a homotopy before it gives up.
+LEAST_STRIDE = 1e-3
+
+#: Longest pseudo-transient step, as a share of the time in which a deviation grows by e.
+CAUTION = 0.3
+
+#: Longest change of a state in a pseudo-transient step, in scales; more for values of many scales, as for `STRIDE`.
+FAR = 5.0
+
+#: The pseudo-transient ends where steps this long [s] change nothing.
+LONGEST = 1e9
+
+#: Shortest step [s] before the pseudo-transient gives up.
+SHORTEST = 1e-12
+
+#: Steps before the pseudo-transient gives up.
+MOST_RELAX = 1000
 
 
 @dataclass(frozen=True)

@@ -27,6 +27,7 @@ def test_wheel_contents(tmp_path: Path) -> None:
     (wheel,) = tmp_path.glob("*.whl")
     held = set(zipfile.ZipFile(wheel).namelist())
     folders = (
+        "fmu/templates",
         *(f"tools/{room}/templates" for room in ("build", "compare", "describe", "show", "verify")),
         *(f"tools/docs/pages/{kind}" for kind in ("tutorials", "howto", "reference")),
         "tools/diagnose/report/templates",
