@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from typing import Any
 
+Check = Callable[..., None]
+
 
 def for_each(
     cases: Iterable[Any], name: Callable[[Any], str] = str
