@@ -3,10 +3,12 @@
 import csv
 import math
 import tomllib
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pytest
+from for_each import for_each
 from gearheat.model.laws.oil import kinematic_viscosity
 from gearheat.model.parts import PARTS
 from gearheat.model.sources import sources
@@ -27,6 +29,7 @@ LUBRICANT = {"nu_40", "nu_100", "rho_15", "alpha_T", "X_L", "s_p", "t_p"}
 BEARING = {"d", "D", "d_m", "R_1", "R_2", "S_1", "S_2", "K_Z"}
 
 
+@cache
 def entries(file: str) -> dict[str, dict[str, Any]]:
     return tomllib.loads((FOLDER / file).read_text("utf-8"))
 
@@ -38,7 +41,7 @@ def si(entry: dict[str, Any]) -> dict[str, float]:
 EVERY = [(path.name, name) for path in sorted(FOLDER.glob("*.toml")) for name in entries(path.name)]
 
 
-@pytest.mark.parametrize(("file", "name"), EVERY)
+@for_each(EVERY)
 def test_entry(file: str, name: str) -> None:
     entry = entries(file)[name]
     values = si(entry)
@@ -85,7 +88,7 @@ def test_viscosity_index_of_the_standards_examples(U: float, Y: float, printed: 
     assert viscosity_index(U, Y) == pytest.approx(printed, abs=0.5)
 
 
-@pytest.mark.parametrize("name", [n for n in entries("oils.toml") if n.startswith("ISO VG")])
+@for_each([n for n in entries("oils.toml") if n.startswith("ISO VG")])
 def test_grade(name: str) -> None:
     """The grade is the viscosity at 40 degC; the one at 100 degC has the viscosity index of the text."""
     entry = entries("oils.toml")[name]
@@ -96,7 +99,7 @@ def test_grade(name: str) -> None:
     assert viscosity_index(1e6 * values["nu_40"], 1e6 * values["nu_100"]) == pytest.approx(stated, abs=0.5)
 
 
-@pytest.mark.parametrize("name", entries("oils.toml"))
+@for_each(entries("oils.toml"))
 def test_oil(name: str) -> None:
     """Everything an oil bath needs but its volume; where Cragoe is cited, his specific heat."""
     entry = entries("oils.toml")[name]
@@ -107,7 +110,7 @@ def test_oil(name: str) -> None:
         assert values["c_p"] == pytest.approx((1685 + 3.4 * 60) / math.sqrt(values["rho_15"] / 999), abs=0.5)
 
 
-@pytest.mark.parametrize("name", entries("bearings.toml"))
+@for_each(entries("bearings.toml"))
 def test_bearing(name: str) -> None:
     values = si(entries("bearings.toml")[name])
     assert values["d_m"] == pytest.approx((values["d"] + values["D"]) / 2)
@@ -146,7 +149,7 @@ SERIES = {
 }
 
 
-@pytest.mark.parametrize("row", PRINTED, ids=lambda row: row["name"])
+@for_each(PRINTED, lambda row: row["name"])
 def test_bearing_is_the_printed_one(row: dict[str, str]) -> None:
     """Sizes, static load rating and axial factor as the maker's general catalogue prints them."""
     values = si(entries("bearings.toml")[row["name"]])
@@ -163,7 +166,7 @@ def test_every_bearing_of_the_maker_is_compared_with_print() -> None:
     assert names == {row["name"] for row in PRINTED}
 
 
-@pytest.mark.parametrize("name", [n for n in entries("bearings.toml") if n.startswith("SKF")])
+@for_each([n for n in entries("bearings.toml") if n.startswith("SKF")])
 def test_bearing_has_the_printed_friction_constants_of_its_series(name: str) -> None:
     number = name.split()[1]
     printed = SERIES[number[:2] if len(number.partition("-")[0]) == 4 else number[:3]]

@@ -9,12 +9,14 @@ import importlib
 import inspect
 import itertools
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import casadi as ca
 import numpy as np
 import pytest
+from for_each import for_each
 from gearheat.model.laws import convection
 from gearheat.model.sources import sources
 
@@ -175,6 +177,7 @@ def structural(name: str) -> set[str]:
     return {a for a in arguments(FUNCTIONS[name]) if annotations[a] == "float"}
 
 
+@cache
 def symbolic(name: str) -> tuple[ca.Function, list[str]]:
     """The law as a CasADi function of its symbols, with its Jacobian."""
     fixed = {a: v for a, v in nominal(name).items() if a in structural(name)}
@@ -189,11 +192,6 @@ def vector(name: str, values: dict[str, float], free: list[str]) -> np.ndarray:
     return np.array([values[a] for a in free])
 
 
-@pytest.fixture(params=FUNCTIONS)
-def name(request: pytest.FixtureRequest) -> str:
-    return request.param
-
-
 def test_all_laws_of_the_source_folder_are_covered() -> None:
     """`NOMINAL` has a value for every argument of every law."""
     folder = Path(inspect.getfile(convection)).parent
@@ -203,6 +201,7 @@ def test_all_laws_of_the_source_folder_are_covered() -> None:
         assert {f"{path.stem}.{n}" for n in decorated} <= FUNCTIONS.keys()
 
 
+@for_each(FUNCTIONS)
 def test_source_exists(name: str) -> None:
     info = getattr(FUNCTIONS[name], "law", None)
     if info:
@@ -210,6 +209,7 @@ def test_source_exists(name: str) -> None:
         assert info.where
 
 
+@for_each(FUNCTIONS)
 def test_symbols_give_the_same_number(name: str) -> None:
     function, free = symbolic(name)
     result = FUNCTIONS[name](**nominal(name))
@@ -227,6 +227,7 @@ def extremes(name: str) -> list[dict[str, float]]:
     return points
 
 
+@for_each(FUNCTIONS)
 def test_finite_at_rest_and_reversed(name: str) -> None:
     function, free = symbolic(name)
     for point in extremes(name):
@@ -251,6 +252,7 @@ EXTREME = {
 }
 
 
+@for_each(FUNCTIONS)
 def test_extreme_values_are_finite_and_no_loss_is_negative(name: str) -> None:
     """At every combination of the ends; slopes as well, which solvers need."""
     function, free = symbolic(name)
@@ -265,6 +267,7 @@ def test_extreme_values_are_finite_and_no_loss_is_negative(name: str) -> None:
             assert (value.full() >= 0).all(), dict(zip(free, values, strict=True))
 
 
+@for_each(FUNCTIONS)
 def test_reversal_changes_nothing(name: str) -> None:
     base = nominal(name)
     for argument in [a for a in base if a in ZERO]:
@@ -295,6 +298,7 @@ def blend_points(name: str) -> list[tuple[dict[str, float], str, float]]:
     return points
 
 
+@for_each(FUNCTIONS)
 def test_derivative_is_the_difference_quotient(name: str) -> None:
     function, free = symbolic(name)
     for point, argument, step in blend_points(name):

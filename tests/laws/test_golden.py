@@ -11,7 +11,7 @@ import tomllib
 from pathlib import Path
 from typing import Any
 
-import pytest
+from for_each import for_each
 
 GOLDEN = Path(__file__).parents[2] / "model" / "golden"
 RPM = 3.141592653589793 / 30
@@ -78,7 +78,7 @@ def laws() -> dict[str, Any]:
     return found
 
 
-@pytest.mark.parametrize("row", rows(), ids=lambda r: f"{r['law']}: {r['name']}")
+@for_each(rows(), lambda r: f"{r['law']}: {r['name']}")
 def test_row(row: dict[str, Any]) -> None:
     assert row["kind"] in KINDS
     assert row["source"]

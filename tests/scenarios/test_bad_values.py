@@ -1,6 +1,6 @@
 """Every value of every part, written wrongly: refused with its place, what was found, and what to write instead."""
 
-import pytest
+from for_each import for_each
 from gearheat.model.core.declare import Parameter, declared
 from gearheat.model.parts import PARTS
 from gearheat.scenarios.values import part_values, settable
@@ -22,7 +22,7 @@ def said_of(kind, key, raw):
     return part_values("rig.toml [part.x]", "x", PARTS[kind], {key: raw, "source": "assumed: test"}).problems
 
 
-@pytest.mark.parametrize("kind", PARTS)
+@for_each(PARTS)
 def test_values_that_are_none(kind):
     for key, declaration in settable(PARTS[kind]).items():
         unit = declaration.unit.removesuffix("(difference)").strip()
@@ -37,7 +37,7 @@ def test_values_that_are_none(kind):
             assert any(word in told[0] for word in ("Write", "expected", "must be")), told
 
 
-@pytest.mark.parametrize("kind", PARTS)
+@for_each(PARTS)
 def test_values_out_of_range(kind):
     for key, d in declared(PARTS[kind], Parameter).items():
         unit = "" if d.unit == "1" else f" {d.unit.removesuffix('(difference)').strip()}"

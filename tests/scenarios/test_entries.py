@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import pytest
+from for_each import for_each
 from gearheat.model.errors import ScenarioError
 from gearheat.model.parts import PARTS
 from gearheat.model.sources import sources
@@ -36,14 +37,14 @@ def problems(tmp_path: Path, text: str, kind: str = "bearing") -> tuple[str, ...
     return raised.value.problems
 
 
-@pytest.mark.parametrize("found", ENTRIES, ids=lambda e: f"{e.kind} {e.name}")
+@for_each(ENTRIES, lambda e: f"{e.kind} {e.name}")
 def test_every_value_of_an_entry_has_a_source_that_exists(found: Entry) -> None:
     assert set(found.values) == set(found.sources)
     for text in found.sources.values():
         assert text.split(",")[0] in sources() or text.split(":")[0] in SOURCE_KINDS, text
 
 
-@pytest.mark.parametrize("found", ENTRIES, ids=lambda e: f"{e.kind} {e.name}")
+@for_each(ENTRIES, lambda e: f"{e.kind} {e.name}")
 def test_an_entry_says_what_its_values_were_compared_with(found: Entry) -> None:
     """A value from memory, typical or assumed for a product that does not exist is never called checked."""
     assert set(found.checked) <= set(found.values)
@@ -59,7 +60,7 @@ def test_all_other_bearings_are_checked() -> None:
     assert unchecked == {"7208 B", "22212 E", "51108", "81108"}  # named by others, no print at hand
 
 
-@pytest.mark.parametrize("found", catalogue("oil").values(), ids=lambda e: e.name)
+@for_each(catalogue("oil").values(), lambda e: e.name)
 def test_an_oil_gives_all_that_a_lubricant_needs(found: Entry) -> None:
     given = set(entry_values(found, settable(PARTS["OilBath"])))
     needed = {"nu_40", "nu_100", "rho_15", "alpha_T", "s_p", "t_p", "X_L"}
@@ -69,7 +70,7 @@ def test_an_oil_gives_all_that_a_lubricant_needs(found: Entry) -> None:
     assert 800 < values["rho_15"] < 1100
 
 
-@pytest.mark.parametrize("found", catalogue("bearing").values(), ids=lambda e: e.name)
+@for_each(catalogue("bearing").values(), lambda e: e.name)
 def test_a_bearing_gives_its_type_all_the_catalogue_knows(found: Entry) -> None:
     (part,) = [part for word, part in WORDS.items() if word in found.doc]
     values = entry_values(found, settable(PARTS[part]))
@@ -78,14 +79,14 @@ def test_a_bearing_gives_its_type_all_the_catalogue_knows(found: Entry) -> None:
     assert values["d_m"] == pytest.approx((sizes["d"] + sizes["D"]) / 2, rel=1e-12)
 
 
-@pytest.mark.parametrize("found", catalogue("seal").values(), ids=lambda e: e.name)
+@for_each(catalogue("seal").values(), lambda e: e.name)
 def test_a_seal_gives_its_shaft_and_its_friction(found: Entry) -> None:
     values = entry_values(found, settable(PARTS["LipSeal"]))
     assert set(values) == {"d_sh", "c_sh"}
     assert found.name.startswith(f"{1e3 * values['d_sh']:g}x")
 
 
-@pytest.mark.parametrize("found", catalogue("material").values(), ids=lambda e: e.name)
+@for_each(catalogue("material").values(), lambda e: e.name)
 def test_a_material_gives_a_fin_or_a_surface(found: Entry) -> None:
     values = entry_values(found, settable(PARTS["FinnedBoxCooling"]))
     assert set(values) in ({"k_fin"}, {"emissivity"})

@@ -3,16 +3,11 @@
 import ast
 import re
 from collections import Counter
-from pathlib import Path
+from itertools import chain
 
 from gearheat.tools.docs.blocks import blocks
+from source_trees import ROOT, modules, name_of, nodes_of
 
-ROOT = Path(__file__).parents[2]
-TREES = {
-    path: ast.parse(path.read_text(encoding="utf-8"))
-    for top in ("model", "fmu", "scenarios", "tools")
-    for path in sorted((ROOT / top).rglob("*.py"))
-}
 #: Decorators that register what they decorate: commands of the program, checks of a file's table.
 REGISTERED = ("command", "field_validator", "model_validator")
 #: Python examples of the pages: what is offered to users.
@@ -35,7 +30,7 @@ OFFERED = {"model/run/sensitivity.py: sensitivities"}
 def used() -> Counter[str]:
     """How often each name is read or imported; its definition does not count."""
     names = Counter(VERIFIED)
-    for node in (node for tree in (*TREES.values(), *map(ast.parse, EXAMPLES)) for node in ast.walk(tree)):
+    for node in chain(*map(nodes_of, modules()), *(ast.walk(ast.parse(example)) for example in EXAMPLES)):
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
             names[node.id] += 1
         elif isinstance(node, ast.Attribute) and isinstance(node.ctx, ast.Load):
@@ -52,12 +47,12 @@ def test_every_function_and_class_is_used() -> None:
     names = used()
     defined = [
         (path, node)
-        for path, tree in TREES.items()
-        for node in ast.walk(tree)
+        for path in modules()
+        for node in nodes_of(path)
         if isinstance(node, ast.FunctionDef | ast.ClassDef) and not registered(node)
     ]
     dead = {
-        f"{path.relative_to(ROOT)}: {node.name}"
+        f"{name_of(path)}: {node.name}"
         for path, node in defined
         if names[node.name] == 0 and not node.name.startswith("__")
     }

@@ -5,15 +5,8 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-import pytest
+from source_trees import modules, name_of, tree_of
 
-ROOT = Path(__file__).parents[2]
-MODULES = sorted(
-    path.relative_to(ROOT).as_posix()
-    for top in ("model", "fmu", "scenarios")
-    for path in (ROOT / top).rglob("*.py")
-    if not path.name.startswith("_")
-)
 Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
@@ -77,19 +70,20 @@ def abstract(node: Function) -> bool:
     return len(node.body) == 2 and isinstance(node.body[1], ast.Raise)
 
 
-def problems(path: str) -> list[str]:
+def problems(path: Path) -> list[str]:
     """What the docstrings of a module do not say."""
     found = []
-    for name, node, method in public(ast.parse((ROOT / path).read_text(encoding="utf-8"))):
+    for function, node, method in public(tree_of(path)):
+        name = f"{name_of(path)}: {function}"
         doc = ast.get_docstring(node) or ""
         if abstract(node):
             continue
         given, args = parameters(node, method), described(section(doc, "Args"))
         if len(given) >= 2 or decorated(node, "law"):
-            found += [f"{path}: {name}: Args does not describe {p}" for p in given if p not in args]
+            found += [f"{name}: Args does not describe {p}" for p in given if p not in args]
         if decorated(node, "law"):
-            found += [f"{path}: {name}: {p} has no [unit]" for p in given if not UNIT.search(args.get(p, "[1]"))]
-        found += [f"{path}: {name}: Raises does not name {e}" for e in sorted(raised(node)) if e not in raises(doc)]
+            found += [f"{name}: {p} has no [unit]" for p in given if not UNIT.search(args.get(p, "[1]"))]
+        found += [f"{name}: Raises does not name {e}" for e in sorted(raised(node)) if e not in raises(doc)]
     return found
 
 
@@ -103,6 +97,7 @@ def raises(doc: str) -> str:
     return section(doc, "Raises") + " ".join(sentences)
 
 
-@pytest.mark.parametrize("path", MODULES)
-def test_docstrings_say_what_goes_in_and_what_is_raised(path: str) -> None:
-    assert not problems(path)
+def test_docstrings_say_what_goes_in_and_what_is_raised() -> None:
+    public_modules = [path for path in modules("model", "fmu", "scenarios") if not path.name.startswith("_")]
+    assert public_modules
+    assert not [problem for path in public_modules for problem in problems(path)]

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import tomllib
 
-import pytest
+from for_each import for_each
 from gearheat.model.core.declare import Parameter, Port, declared
 from gearheat.model.parts import PARTS
 from gearheat.scenarios.shipped import RIGS
@@ -20,7 +20,7 @@ def test_all_types_are_listed(gearheat):
     assert all(t["doc"].endswith((".", ":")) for t in types)
 
 
-@pytest.mark.parametrize("kind", PARTS)
+@for_each(PARTS)
 def test_everything_about_a_type(kind):
     found = parts.described(kind)
     assert [p["name"] for p in found["parameters"]] == list(declared(PARTS[kind], Parameter))

@@ -1,0 +1,36 @@
+"""One test of many cases, for checks so small that a test each would cost more than what it asks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from typing import Any
+
+Check = Callable[..., None]
+
+
+def for_each(
+    cases: Iterable[Any], name: Callable[[Any], str] = str
+) -> Callable[[Callable[..., None]], Callable[[], None]]:
+    """Make a check of one case the test of all of them; it fails with every case that does not hold.
+
+    Args:
+        cases: what the check is called with, one after the other; a tuple is several arguments
+        name: what a case is called in the list of failures
+    """
+
+    def join(check: Check) -> Callable[[], None]:
+        def test() -> None:
+            tried, problems = 0, []
+            for case in cases:
+                tried += 1
+                try:
+                    check(*case) if isinstance(case, tuple) else check(case)
+                except Exception as error:
+                    problems.append(f"{name(case)}: {type(error).__name__}: {error}")
+            assert tried, "there is no case"
+            assert not problems, "\n".join(problems)
+
+        test.__name__, test.__doc__, test.__module__ = check.__name__, check.__doc__, check.__module__
+        return test
+
+    return join
