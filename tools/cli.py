@@ -370,7 +370,7 @@ PANELS = {
         cli_logs.replay,
     ),
     "Films, and proof": (cli_contact.film, verify, cli_contact.verify_contact),
-    "For developers": (cli_developers.challenge, cli_developers.bench, cli_docs.docs),
+    "For developers": (cli_developers.bench, cli_docs.docs),
 }
 for _panel, _commands in PANELS.items():
     for _command in _commands:
