@@ -9,10 +9,10 @@ from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
+from challenge.printing import show as show_challenge
+from challenge.scoring import Outcome, report
 from gearheat.diagnose.infer.replay import HOURS, Replayed
 from gearheat.tools.bench import bench
-from gearheat.tools.challenge import command as challenge
-from gearheat.tools.challenge.scoring import Outcome, report
 from gearheat.tools.compare import calibrate, replay, run
 from gearheat.tools.export import fmu as exporting
 from gearheat.tools.films import film
@@ -73,7 +73,7 @@ def challenged() -> None:
     wrong = replace(plain, case="case-002", top=other, p_truth=0.02, p_top=0.94, exact=False, sure_wrong=True)
     clean = {"kind": "clean", "truth": "nothing", "top": "nothing", "distance": None, "snr": 0.0, "alarm": False}
     cases = [plain, wrong, replace(plain, case="case-003", **clean), replace(plain, sheet="foreign", answered=False)]
-    challenge.show(report(cases, 7))
+    show_challenge(report(cases, 7))
 
 
 def benched() -> None:

@@ -31,7 +31,7 @@ ORDER = (
     ("tools.compare",),
     ("tools.verify", "tools.bench"),
     ("api",),
-    ("tools.docs", "tools.check", "tools.challenge"),
+    ("tools.docs", "tools.check"),
     ("tools.cli",),
     ("tools", "api.__main__"),
 )

@@ -50,7 +50,7 @@ PANELS = {
         measured.replay,
     ),
     "Films, and proof": (verify.film, verify.verify, verify.verify_contact),
-    "For developers": (developers.challenge, developers.bench, developers.docs),
+    "For developers": (developers.bench, developers.docs),
 }
 for _panel, _commands in PANELS.items():
     for _command in _commands:

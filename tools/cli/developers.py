@@ -10,35 +10,7 @@ import typer
 from typer.core import TyperGroup
 
 from ..show import console
-from .options import Jobs, Json, Rig, Tests
-
-
-@console.guarded
-def challenge(
-    sheet: Annotated[
-        Literal["own", "foreign", "textbook", "practice", "all"],
-        typer.Option(
-            help="own: the rig behaves as the model; foreign: another simulator, with a healthy reference; textbook: a "
-            "frozen third one with rough readings; practice: the campaigns of --practice; all: these, pooled."
-        ),
-    ],
-    n: Annotated[int, typer.Option("--n", help="Number of cases of each sheet.")] = 150,
-    seed: Annotated[int, typer.Option(help="The same seed hides the same.")] = 0,
-    jobs: Jobs = 0,
-    out: Annotated[
-        Path | None,
-        typer.Option("-o", "--out", help="Folder for cases and answers; an interrupted run goes on from there."),
-    ] = None,
-    only: Annotated[str | None, typer.Option(help='One kind of cases, for example "clean".')] = None,
-    practice: Annotated[
-        Path | None, typer.Option(help="Folder of campaigns: data.csv, card.json and key.json in a folder each.")
-    ] = None,
-    json: Json = None,
-) -> None:
-    """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
-    from ..challenge import command
-
-    command.command(sheet, n, seed, jobs, out, only, practice, json)
+from .options import Json, Rig, Tests
 
 
 @console.guarded

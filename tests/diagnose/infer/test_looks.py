@@ -1,8 +1,8 @@
 """Causes that nuisances far off take up where no cause is fitted, and so do not show there."""
 
+from challenge import own
+from challenge.cases import make_case
 from gearheat.diagnose import diagnose
-from gearheat.tools.challenge import own
-from gearheat.tools.challenge.cases import make_case
 
 
 def test_readings_far_too_early_are_found_though_other_capacities_hide_them(tmp_path) -> None:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gearheat.tools.challenge.cases import Drawn
-from gearheat.tools.challenge.textbook.campaign import draw
-from gearheat.tools.challenge.textbook.faults import CAUSES, OUTSIDE
+from challenge.cases import Drawn
+from challenge.textbook.campaign import draw
+from challenge.textbook.faults import CAUSES, OUTSIDE
 
 #: Readings of one test of the rig of seed 2026: channels, both halves.
 HEALTHY = [

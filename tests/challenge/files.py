@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import csv
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from datetime import date, timedelta
 from pathlib import Path
 from typing import Any
@@ -25,7 +25,9 @@ CLASSES: Mapping[str, tuple[float, float]] = {
 }
 UNITS = {"rpm": "rpm", "Nm": "N.m", "C": "degC"}
 FULL_SCALE: Mapping[str, float] = {"T_carrier_Nm": 3000.0, "T_sun_Nm": 1000.0}
-DAY_COOLING_SD = 0.015
+DAY_COOLING_SD = 0.015  # standard deviation of a day's cooling as the card states it, relative [1]
+#: What is given at points to predict.
+GIVEN = ("n_carrier_rpm", "T_carrier_Nm", "T_amb_C")
 
 #: Relative uncertainty of the model's parameters, as the card states it.
 PRIOR_SD: Mapping[str, float] = {
@@ -39,8 +41,10 @@ PRIOR_SD: Mapping[str, float] = {
     "cap": 0.10,
 }
 
-#: First day of a campaign, and how long before it the reference campaign began.
-FIRST_DAY, EARLIER = date(2020, 3, 2), timedelta(days=35)
+#: First day of the campaign of the data.
+FIRST_DAY = date(2020, 3, 2)
+#: How long before it the reference campaign began.
+EARLIER = timedelta(days=35)
 
 
 @dataclass(frozen=True)
@@ -123,64 +127,120 @@ def card(instruments: Instruments, *, bearing_oil: bool, room_drift: float) -> d
 
 
 @dataclass(frozen=True)
-class Columns:
-    """Optional columns of a table."""
+class Column:
+    """How a table shows a channel in the user's own words.
+
+    Args:
+        sensor: its name on the card
+        name: of the column
+        scale: its value over that of the scaled rig
+        reads: path in the model, where the rig's file has no such sensor
+    """
+
+    sensor: str
+    name: str
+    scale: float
+    reads: str = ""
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Columns of a table.
+
+    Args:
+        humidity, start, date: whether there are such columns
+        earlier: how long before the campaign of the data this one began
+        shown: channel -> column of steady points in own words; none for the planetary rig's own
+    """
 
     humidity: bool = False
     start: bool = False
     date: bool = False
     earlier: timedelta = timedelta()
+    shown: Mapping[str, Column] = field(default_factory=dict)
+
+    def name(self, channel: str) -> str:
+        """Column of a channel."""
+        return self.shown[channel].name if self.shown else channel
+
+    def cells(self, values: Mapping[str, float]) -> dict[str, str]:
+        """Cells of a row, by column, for values by channel."""
+        if not self.shown:
+            return {c: f"{v:.2f}" for c, v in values.items()}
+        return {self.name(c): f"{v * self.shown[c].scale:.6g}" for c, v in values.items()}
 
 
-def table(
-    path: Path, plan: Plan, shown: np.ndarray, instruments: Instruments, columns: Columns, rng: np.random.Generator
+def card_of_steady_points(instruments: Instruments, columns: Mapping[str, Column]) -> dict[str, Any]:
+    """What the diagnosis is told of a campaign in own words.
+
+    Args:
+        instruments: of the campaign
+        columns: channel -> column
+    """
+    accuracy = {"repeat_sd": instruments.repeat_sd, "offset_sd": instruments.offset_sd}
+    return {
+        "schema": "gearheat.card/2",
+        "day_cooling_sd": DAY_COOLING_SD,
+        "columns": {k.sensor: k.name for k in columns.values() if not k.reads},
+        "channels": {k.sensor: {a: sd[c] * k.scale for a, sd in accuracy.items()} for c, k in columns.items()},
+        "prior_sd": dict(PRIOR_SD),
+        "sensors": {
+            **{k.sensor: {"column": k.name, "reads": k.reads} for k in columns.values() if k.reads},
+            columns["T_carrier_Nm"].sensor: {"magnitude": True},
+        },
+    }
+
+
+def write_table(
+    path: Path, plan: Plan, shown: np.ndarray, instruments: Instruments, layout: Layout, rng: np.random.Generator
 ) -> dict[str, Any] | None:
     """Write a table of steady readings in running order, some missing, perhaps one gross; returns the gross one."""
     order = [(int(j), half) for j in np.argsort(plan.order) for half in (0, 1)]
     kept = [i for i in range(len(order)) if rng.random() >= instruments.missing]
     gross = None
-    if rng.random() < instruments.gross / (2.0 if columns.earlier else 1.0):
+    if rng.random() < instruments.gross / (2.0 if layout.earlier else 1.0):
         place, c = int(rng.choice(kept)), str(rng.choice(list(instruments.channels)))
         by = float(rng.choice([-1.0, 1.0]) * rng.uniform(12.0, 25.0) * instruments.repeat_sd[c])
         shown = shown.copy()
         j, half = order[place]
         shown[instruments.channels.index(c), half, j] += by
-        gross = {"point": place + 1, "row": kept.index(place) + 1, "channel": c, "by": round(by, 3)}
+        gross = {"point": place + 1, "row": kept.index(place) + 1, "channel": layout.name(c), "by": round(by, 3)}
     rows = []
     for i in kept:
         j, half = order[i]
         row = _conditions(plan, j, half, i + 1)
-        row |= {c: f"{v:.2f}" for c, v in zip(instruments.channels, shown[:, half, j], strict=True)}
-        rows.append(row | _extra(plan, columns, j, half))
+        row |= layout.cells(dict(zip(instruments.channels, shown[:, half, j], strict=True)))
+        rows.append(row | _extra(plan, layout, j, half))
     _write(path, rows)
     return gross
 
 
-def _extra(plan: Plan, columns: Columns, j: int, half: int) -> dict[str, str]:
+def _extra(plan: Plan, layout: Layout, j: int, half: int) -> dict[str, str]:
     found: dict[str, str] = {}
-    if columns.date:
-        found["date"] = (FIRST_DAY - columns.earlier + timedelta(days=int(plan.order[j]) - 1)).isoformat()
-    if columns.humidity:
+    if layout.date:
+        found["date"] = (FIRST_DAY - layout.earlier + timedelta(days=int(plan.order[j]) - 1)).isoformat()
+    if layout.humidity:
         found["humidity_pct"] = f"{plan.humidity[j]:.1f}"
-    if columns.start:
+    if layout.start:
         begin = (f"{plan.start[j]:.2f}", f"{plan.room[0, j]:.2f}", "") if half == 0 else ("", "", f"{plan.stop[j]:g}")
         found |= dict(zip(("T_start_C", "T_amb_start_C", "stop_min"), begin, strict=True))
     return found
 
 
-def points(path: Path, plan: Plan, shown: np.ndarray, channels: Sequence[str], columns: Columns) -> None:
+def write_points(path: Path, plan: Plan, shown: np.ndarray, channels: Sequence[str], layout: Layout) -> None:
     """Write conditions to predict, as the instruments show them without noise."""
     rows = []
     for j in range(plan.columns):
         for half in (0, 1):
             row = _conditions(plan, j, half, 2 * j + half + 1)
-            for c in ("n_carrier_rpm", "T_carrier_Nm", "T_amb_C"):
-                row[c] = f"{shown[channels.index(c), half, j]:.2f}"
-            rows.append(row | _extra(plan, replace(columns, start=False, date=False), j, half))
+            row |= layout.cells({c: shown[channels.index(c), half, j] for c in GIVEN})
+            rows.append(row | _extra(plan, replace(layout, start=False, date=False), j, half))
     _write(path, rows)
 
 
 def _conditions(plan: Plan, j: int, half: int, point: int) -> dict[str, str]:
+    if plan.steady:
+        return {"point": str(point), "test": str(j + 1)}
     dwell = f"{plan.dwell[half, j]:g}"
     known = {"point": point, "test": j + 1, "order": int(plan.order[j]), "direction": half + 1, "dwell_min": dwell}
     return {name: str(v) for name, v in known.items()} | {"oil": OIL_NAME}

@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from ...model.errors import DataError
-from .classes import merged_all
+from gearheat.model.errors import DataError
+
+from .classes import classes_of
 
 #: Gets the files of a case by what they are, and a folder for answers; writes RESULT.json there, and
 #: PREDICTIONS.csv and SECONDS (its processor time) if it can.
@@ -76,7 +77,7 @@ class Hypothesis:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a diagnosis said: look-alikes that count as one are merged, likeliest hypothesis first.
+    """What a diagnosis said: look-alikes that count as one are class_of, likeliest hypothesis first.
 
     Args:
         verdict: its word; anything but "consistent" is an alarm
@@ -124,7 +125,7 @@ def read_answer(place: Path) -> Answer:
         said = json.loads((place / "RESULT.json").read_text(encoding="utf-8"))
         weights: dict[frozenset[str], float] = {}
         for h in said["hypotheses"]:
-            names = merged_all(h["causes"])
+            names = classes_of(h["causes"])
             names = names - UNNAMED or names
             weights[names] = weights.get(names, 0.0) + float(h["probability"])
         verdict, impact = str(said["verdict"]), {k: _estimate(v) for k, v in said.get("impact", {}).items()}

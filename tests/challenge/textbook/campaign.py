@@ -36,15 +36,13 @@ def draw(rng: np.random.Generator) -> Drawn:
         plan=plan,
         points=draw_points(rng, plan, room_drift=drift),
         reference=reference,
-        base={},
-        cooling=("conv", "rad"),
         days=(a, b),
         day_sd=day_sd,
         prior=PRIOR_SD,
         instruments=files.draw_instruments(
             rng, 0.6, second_oil=False, understated=UNDERSTATED, tails=4.0, missing=0.08, gross=0.4
         ),
-        columns=files.Columns(humidity=True, start=warm, date=bool(rng.random() < 0.5)),
+        layout=files.Layout(humidity=True, start=warm, date=bool(rng.random() < 0.5)),
         bearing_oil=sizes.bearing_oil,
         room_drift=drift,
         band=(5.0, 60.0),

@@ -17,11 +17,16 @@ from .plan import Plan
 from .rig import CHANNELS, RATIO
 from .textbook.rig import Fault
 
-#: Conditions at which amounts are stated: speed [rpm], torque [N.m], viscosity [mm2/s], oil temperature [degC].
-N, LOAD, NU, T_OIL = 175.0, 2100.0, 80.0, 60.0
+# Conditions at which amounts are stated: the middle of the planetary rig's campaigns.
+N = 175.0  #: speed [rpm]
+LOAD = 2100.0  #: torque [N.m]
+NU = 80.0  #: viscosity of the oil [mm2/s]
+T_OIL = 60.0  #: temperature of the oil [degC]
 
 ROW = {c: i for i, c in enumerate(CHANNELS)}
-UP, BOTH = (1,), (1, -1)
+#: Signs that the amount of a fault may have.
+UP = (1,)
+BOTH = (1, -1)
 
 
 @dataclass(frozen=True)
@@ -33,6 +38,7 @@ class Draw:
         n, load, oil: speeds, torques and healthy oil temperatures of the readings
         tests: number of tests
         inner: share of gears and shafts in the heat capacity of all but the oil
+        steady: whether the campaign holds steady points in one direction
     """
 
     rng: np.random.Generator
@@ -41,18 +47,19 @@ class Draw:
     oil: np.ndarray
     tests: int
     inner: float
+    steady: bool
 
     def numbers(self, spans: Mapping[str, Any]) -> SimpleNamespace:
         """One of each list, a number of each pair, a middling quantile of "n", "load", "oil"; and chance by test."""
-        found: dict[str, Any] = {"z": self.rng.normal(0.0, 1.0, self.tests), "inner": self.inner}
+        numbers: dict[str, Any] = {"z": self.rng.normal(0.0, 1.0, self.tests), "inner": self.inner}
         for name, span in spans.items():
             if isinstance(span, list):
-                found[name] = span[int(self.rng.integers(len(span)))]
+                numbers[name] = span[int(self.rng.integers(len(span)))]
             elif isinstance(span, str):
-                found[name] = float(np.quantile(getattr(self, span), self.rng.uniform(0.3, 0.7)))
+                numbers[name] = float(np.quantile(getattr(self, span), self.rng.uniform(0.3, 0.7)))
             else:
-                found[name] = float(f"{self.rng.uniform(*span):.4g}")
-        return SimpleNamespace(**found)
+                numbers[name] = float(f"{self.rng.uniform(*span):.4g}")
+        return SimpleNamespace(**numbers)
 
 
 Family = Callable[[Draw], Fault]
@@ -84,7 +91,7 @@ KINDS: Mapping[str, tuple[list[tuple[str, float]], float]] = {
 }
 
 
-def added(kind: str, weight: Callable[[Plan, Any], Any], **spans: Any) -> Family:
+def add(kind: str, weight: Callable[[Plan, Any], Any], **spans: Any) -> Family:
     """An error [N.m at the carrier, K, rpm] that is an amount times a weight over tests (2, columns)."""
     columns, high = KINDS[kind]
 
@@ -98,7 +105,7 @@ def added(kind: str, weight: Callable[[Plan, Any], Any], **spans: Any) -> Family
 
 
 def _constant(kind: str) -> Family:
-    return added(kind, lambda plan, f: 1.0)
+    return add(kind, lambda plan, f: 1.0)
 
 
 def _since(kind: str) -> Family:
@@ -108,22 +115,22 @@ def _since(kind: str) -> Family:
         late = plan.progress - f.since
         return np.where(late > 0, np.exp(-f.creep * np.maximum(late, 0.0)), 0.0)
 
-    return added(kind, weight, since=(0.25, 0.75), creep=[0.0, 0.0, 0.3])
+    return add(kind, weight, since=(0.25, 0.75), creep=[0.0, 0.0, 0.3])
 
 
 def _one_way(kind: str) -> Family:
-    return added(kind, lambda plan, f: np.array(f.parts)[:, None], parts=[(1.0, 0.0), (0.0, 1.0), (1.0, -1.0)])
+    return add(kind, lambda plan, f: np.array(f.parts)[:, None], parts=[(1.0, 0.0), (0.0, 1.0), (1.0, -1.0)])
 
 
 def _drift(kind: str) -> Family:
-    return added(kind, lambda plan, f: plan.progress**f.p, p=[0.5, 0.7, 1.0])
+    return add(kind, lambda plan, f: plan.progress**f.p, p=[0.5, 0.7, 1.0])
 
 
-def _walk(kind: str) -> Family:
-    return added(kind, lambda plan, f: by_order(np.cumsum(f.z), plan.order) / np.sqrt(plan.tests / 2.0))
+def _random_walk(kind: str) -> Family:
+    return add(kind, lambda plan, f: by_order(np.cumsum(f.z), plan.order) / np.sqrt(plan.tests / 2.0))
 
 
-def mixed(high: float, what: Callable[[np.ndarray, Any], tuple[str, Any]], signs: Any = BOTH, **spans: Any) -> Family:
+def follow(high: float, what: Callable[[np.ndarray, Any], tuple[str, Any]], signs: Any = BOTH, **spans: Any) -> Family:
     """An error that follows other readings: a column, and what an amount of one adds to it."""
 
     def read(shown: np.ndarray, plan: Plan, a: np.ndarray, f: SimpleNamespace) -> None:
@@ -135,10 +142,10 @@ def mixed(high: float, what: Callable[[np.ndarray, Any], tuple[str, Any]], signs
 
 def gain(high: float, columns: list[str], about: list[float]) -> Family:
     """A wrong slope of a column, about a value at which it was adjusted."""
-    return mixed(high, lambda y, f: (f.column, y[ROW[f.column]] - f.about), column=columns, about=about)
+    return follow(high, lambda y, f: (f.column, y[ROW[f.column]] - f.about), column=columns, about=about)
 
 
-#: Every way to err of every kind of instrument: whatever is hidden has to be told from all of them.
+#: Every error of every kind of instrument: rivals of whatever is hidden.
 INSTRUMENTS: Mapping[str, Family] = {
     f"sensor.{kind}.{name}": errors(kind)
     for kind in KINDS
@@ -147,7 +154,7 @@ INSTRUMENTS: Mapping[str, Family] = {
         "drift": _drift,
         "since": _since,
         "by_direction": _one_way,
-        "random_walk": _walk,
+        "random_walk": _random_walk,
     }.items()
 } | {
     "sensor.torque.gain": gain(0.015, ["T_carrier_Nm", "T_sun_Nm"], [0.0]),

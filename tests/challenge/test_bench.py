@@ -11,25 +11,25 @@ from typing import Any
 
 import numpy as np
 import pytest
+from challenge import cases, foreign, forms, own, practice, rig, scoring
+from challenge.answers import Answer, Hypothesis, ask_command, read_answer
+from challenge.bench import run, tasks
+from challenge.classes import classes_of
+from challenge.command import show
+from challenge.hide import APART, KINDS, SHARES, schedule
+from challenge.plan import draw_plan
+from challenge.scoring import Outcome, metrics, report, score, wilson
+from challenge.sheets import SHEETS
+from challenge.signal_to_noise import Noise, Rivals, snr_of
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import DataError
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.schedule import stepped
 from gearheat.model.run.simulate import simulate as run_model
 from gearheat.scenarios.load import load
-from gearheat.tools.challenge import cases, foreign, forms, own, practice, rig, scoring
-from gearheat.tools.challenge.answers import Answer, Hypothesis, ask_command, read_answer
-from gearheat.tools.challenge.bench import run, tasks
-from gearheat.tools.challenge.classes import merged_all
-from gearheat.tools.challenge.command import show
-from gearheat.tools.challenge.hide import APART, KINDS, SHARES, schedule
-from gearheat.tools.challenge.plan import draw_plan
-from gearheat.tools.challenge.scoring import Outcome, metrics, report, score, wilson
-from gearheat.tools.challenge.sheets import SHEETS
-from gearheat.tools.challenge.yardstick import Rivals, Yardstick, loudness
 
 KELVIN = 273.15
-PRACTICE = Path(__file__).parent / "practice"
+PRACTICE = Path(__file__).parent / "practice_cases"
 
 # ------------------------------------------------------------------------------------------------------ simulators
 
@@ -77,49 +77,49 @@ def test_foreign_rigs_conserve_energy(seed: int) -> None:
 
 
 @pytest.fixture(scope="module")
-def drawn() -> tuple[cases.Drawn, Yardstick]:
+def drawn() -> tuple[cases.Drawn, Noise]:
     d = SHEETS["foreign"](np.random.default_rng(5))
-    return d, Yardstick(cases.setting(d))
+    return d, Noise(cases.setting(d))
 
 
-def oil(d: cases.Drawn, yard: Yardstick) -> np.ndarray:
-    return yard.quiet[d.instruments.channels.index("T_oil_C")]
+def oil(d: cases.Drawn, noise: Noise) -> np.ndarray:
+    return noise.healthy[d.instruments.channels.index("T_oil_C")]
 
 
-def test_columns_do_not_know_each_other(drawn: tuple[cases.Drawn, Yardstick]) -> None:
+def test_columns_do_not_know_each_other(drawn: tuple[cases.Drawn, Noise]) -> None:
     """Two faults side by side in copies of a campaign do what they do alone."""
-    d, yard = drawn
+    d, noise = drawn
     faults = [d.draw(c, "single", oil(*drawn), np.random.default_rng(1)) for c in ("losses.churning", "cooling.air")]
-    both = yard.signatures(faults, np.array([150.0, 0.3]))
+    both = noise.signatures(faults, np.array([150.0, 0.3]))
     for i, fault in enumerate(faults):
-        assert both[i] == pytest.approx(yard.signatures([fault], np.array([(150.0, 0.3)[i]]))[0], abs=1e-9)
+        assert both[i] == pytest.approx(noise.signatures([fault], np.array([(150.0, 0.3)[i]]))[0], abs=1e-9)
 
 
 @pytest.mark.parametrize("cause", [*forms.CAUSES, *forms.OUTSIDE])
-def test_every_cause_can_be_heard(cause: str, drawn: tuple[cases.Drawn, Yardstick]) -> None:
+def test_every_cause_can_be_heard(cause: str, drawn: tuple[cases.Drawn, Noise]) -> None:
     """Some sensible amount of it is louder than the band's lower end; days that scatter only where they did so."""
-    d, yard = drawn
+    d, noise = drawn
     kind = "outside" if cause in forms.OUTSIDE else "single"
     reached = 0.0
     for seed in range(6):
         fault = d.draw(cause, kind, oil(*drawn), np.random.default_rng(seed))
-        snr, sensible = yard.survey(fault, fault.signs[0] * fault.high * np.array([0.1, 0.3, 1.0]))
+        snr, sensible = noise.survey(fault, fault.signs[0] * fault.high * np.array([0.1, 0.3, 1.0]))
         reached = max(reached, snr[sensible].max(initial=0.0))
     assert reached > (0.2 if cause == "thermal.split" else 5.0)  # after four hours hardly any of it is left
 
 
 @pytest.mark.parametrize("cause", forms.REGIMES)
-def test_regimes_limit(cause: str, drawn: tuple[cases.Drawn, Yardstick]) -> None:
+def test_regimes_limit(cause: str, drawn: tuple[cases.Drawn, Noise]) -> None:
     """Limited, a fault does less than everywhere."""
-    d, yard = drawn
+    d, noise = drawn
     rngs = (np.random.default_rng(2) for _ in range(2))
     everywhere, limited = (d.draw(cause, k, oil(*drawn), r) for k, r in zip(("single", "regime"), rngs, strict=True))
-    change = yard.signatures([everywhere, limited], np.full(2, 0.2 * everywhere.high))
+    change = noise.signatures([everywhere, limited], np.full(2, 0.2 * everywhere.high))
     size = np.abs(change).sum(axis=(1, 2, 3))
     assert limited.regime and 0.0 < size[1] < size[0]
 
 
-# ------------------------------------------------------------------------------------------------------- yardstick
+# ------------------------------------------------------------------------------------------- signal-to-noise ratio
 
 
 def test_a_lone_offset_has_its_closed_form() -> None:
@@ -127,22 +127,22 @@ def test_a_lone_offset_has_its_closed_form() -> None:
     d = SHEETS["foreign"](np.random.default_rng(5))
     quiet = {c: 1e-6 for c in d.prior}
     s = replace(cases.setting(d), prior=quiet, day_sd=1e-9)
-    yard = Yardstick(replace(s, reference=None))
+    noise = Noise(replace(s, reference=None))
     fault = d.draw("sensor.wall_temp.offset", "single", np.zeros(2), np.random.default_rng(0))
-    snr, _ = yard.survey(fault, np.array([1.0]))
+    snr, _ = noise.survey(fault, np.array([1.0]))
     n, repeat, fixed = 2 * d.plan.columns, s.repeat_sd["T_wall_C"], s.offset_sd["T_wall_C"]
     assert snr[0] < 1.0 / math.hypot(repeat / math.sqrt(n), fixed)
-    with_reference = Yardstick(replace(s, offset_sd=dict.fromkeys(s.offset_sd, 1e3)))
+    with_reference = Noise(replace(s, offset_sd=dict.fromkeys(s.offset_sd, 1e3)))
     assert with_reference.survey(fault, np.array([1.0]))[0][0] > 3.0 * 0.5 / repeat
 
 
-def test_look_alikes_are_near_and_others_far(drawn: tuple[cases.Drawn, Yardstick]) -> None:
+def test_look_alikes_are_near_and_others_far(drawn: tuple[cases.Drawn, Noise]) -> None:
     """Drag of bearings and seals are one class; a torque's zero is far from churning."""
-    d, yard = drawn
+    d, noise = drawn
     rng = np.random.default_rng(3)
 
     def rival(called: str, cause: str) -> float:
-        rivals = Rivals(yard, {called: partial(d.draw, cause, "single", oil(*drawn))}, rng)
+        rivals = Rivals(noise, {called: partial(d.draw, cause, "single", oil(*drawn))}, rng)
         return rivals.nearest(churning, 150.0)[1].distance
 
     churning = d.draw("losses.churning", "single", oil(*drawn), rng)
@@ -151,25 +151,25 @@ def test_look_alikes_are_near_and_others_far(drawn: tuple[cases.Drawn, Yardstick
     )
 
 
-def test_rivals_of_a_limited_fault_are_limited_as_well(drawn: tuple[cases.Drawn, Yardstick]) -> None:
+def test_rivals_of_a_limited_fault_are_limited_as_well(drawn: tuple[cases.Drawn, Noise]) -> None:
     """Above a speed only, a seal's drag is nearer to churning above that speed than to churning everywhere.
 
     Churning may act there only, too, where the fault is not known to be limited.
     """
-    d, yard = drawn
+    d, noise = drawn
     rng = np.random.default_rng(3)
     faults = (d.draw("losses.seal_drag", "regime", oil(*drawn), rng) for _ in range(200))
     limited = next(f for f in faults if f.regime.get("speed") == "above")
 
     def distance(fault: Any, called: str = "other") -> float:
         family = partial(d.draw, "losses.churning", "single", oil(*drawn))
-        return Rivals(yard, {called: family}, np.random.default_rng(4)).nearest(fault, 8.0)[1].distance
+        return Rivals(noise, {called: family}, np.random.default_rng(4)).nearest(fault, 8.0)[1].distance
 
     at, width = limited.regime["threshold"], limited.regime["width"]
-    acting = yard.acting(limited.regime, oil(*drawn))
+    acting = noise.share(limited.regime, oil(*drawn))
     inside, outside = d.plan.n > at + 3 * width, d.plan.n < at - 3 * width
     assert inside.any() and (acting[inside] > 0.99).all() and outside.any() and (acting[outside] < 0.01).all()
-    assert (yard.acting({"speed": "above", "threshold": d.plan.n, "width": width}, oil(*drawn)) == 0.5).all()
+    assert (noise.share({"speed": "above", "threshold": d.plan.n, "width": width}, oil(*drawn)) == 0.5).all()
     everywhere = replace(limited, regime={})
     assert max(distance(limited), distance(everywhere, "losses.churning")) < 0.9 * distance(everywhere)
 
@@ -180,8 +180,8 @@ def test_what_scatters_from_test_to_test_is_as_loud_as_its_likelihood_says() -> 
     u = np.sqrt(1 + m) * np.random.default_rng(6).standard_normal((20000, n))
     ratios = 0.5 * (u**2 * m / (1 + m) - np.log1p(m)).sum(axis=1)
     length = math.sqrt(n * m)
-    assert loudness("procedure.day_scatter", length, n) ** 2 / 2 == pytest.approx(ratios.mean(), rel=0.02)
-    assert loudness("cooling.air", length, n) == length
+    assert snr_of("procedure.day_scatter", length, n) ** 2 / 2 == pytest.approx(ratios.mean(), rel=0.02)
+    assert snr_of("cooling.air", length, n) == length
 
 
 # ------------------------------------------------------------------------------------------------------------ cases
@@ -332,7 +332,7 @@ def truth_of(*causes: str, kind: str = "single") -> dict:
     return {
         "case": 0,
         "kind": kind,
-        "answer": sorted(merged_all(causes)),
+        "answer": sorted(classes_of(causes)),
         "effects": [{"snr": 9.0}] * len(causes),
         "impact": {"T_oil_K": 2.0, "loss_Nm": 0.0},
         "repeat_sd": {"T_oil_K": 0.5, "loss_Nm": 1.0},
@@ -341,7 +341,7 @@ def truth_of(*causes: str, kind: str = "single") -> dict:
 
 
 def answer(*hypotheses: tuple[tuple[str, ...], float], verdict: str = "explained", **rest: dict) -> Answer:
-    ranked = tuple(Hypothesis(merged_all(causes), p) for causes, p in hypotheses)
+    ranked = tuple(Hypothesis(classes_of(causes), p) for causes, p in hypotheses)
     return Answer(verdict, ranked, **rest)
 
 

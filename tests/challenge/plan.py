@@ -7,17 +7,19 @@ from typing import Any
 
 import numpy as np
 
-#: Names of the columns that readings have, in the files' order.
-CHANNELS = ("n_carrier_rpm", "T_carrier_Nm", "T_sun_Nm", "T_oil_C", "T_oil2_C", "T_wall_C", "T_amb_C")
-
 #: Catalogue values of the oil of all campaigns: kinematic viscosities [mm2/s], density [kg/m3] and its slope [1/K].
 OIL = {"nu40": 324.38, "nu100": 35.27, "rho15": 859.0, "alpha_T": -5.6e-4}
 OIL_NAME = "PAOR"
+
+#: Duration of every point of a steady campaign [min]: twenty time constants of the slowest rig.
+STEADY_DWELL = 3000.0
 
 
 @dataclass(frozen=True)
 class Plan:
     """Tests as columns; a test is a half as multiplier, a stop, a half as reducer.
+
+    In a steady campaign a test is a day with two steady points, both as reducer.
 
     Args:
         n, load: carrier speed [rpm] and torque [N.m] in both halves (2, columns)
@@ -28,7 +30,7 @@ class Plan:
         dwell: both halves as stated [min] (2, columns)
         stop: between the halves [min]
         humidity: of the room [%]
-        future: tests outside the campaign (points to predict)
+        steady: whether each half is a steady point
     """
 
     n: np.ndarray
@@ -40,12 +42,17 @@ class Plan:
     dwell: np.ndarray
     stop: np.ndarray
     humidity: np.ndarray
-    future: bool = False
+    steady: bool = False
 
     @property
     def columns(self) -> int:
         """Number of columns."""
         return len(self.order)
+
+    @property
+    def directions(self) -> tuple[int, int]:
+        """Direction of both halves: 1 multiplier, 2 reducer."""
+        return (2, 2) if self.steady else (1, 2)
 
     @property
     def progress(self) -> np.ndarray:
@@ -89,7 +96,21 @@ def draw_points(rng: np.random.Generator, plan: Plan, tests: int = 12, room_drif
     n = rng.uniform(0.85 * plan.n.min(), 1.12 * plan.n.max(), tests)
     load = rng.uniform(0.8 * plan.load.min(), 1.08 * plan.load.max(), tests)
     order = np.sort(rng.choice(np.arange(1.0, plan.tests + 1.0), tests, replace=False))
-    return replace(_plan(rng, n, load, order, plan.tests, False, room_drift), future=True)
+    return _plan(rng, n, load, order, plan.tests, False, room_drift)
+
+
+def hold(plan: Plan, rng: np.random.Generator) -> Plan:
+    """The steady campaign of a plan: its points in pairs, two on a day in one room, each until nothing changes."""
+    other, room = rng.permutation(plan.columns), plan.room[1]
+    return replace(
+        plan,
+        n=np.array([plan.n[0], plan.n[0][other]]),
+        load=np.array([plan.load[0], plan.load[0][other]]),
+        room=np.tile(room, (3, 1)),
+        start=room,
+        dwell=np.full((2, plan.columns), STEADY_DWELL),
+        steady=True,
+    )
 
 
 def _plan(

@@ -106,6 +106,8 @@ def draw_sizes(rng: np.random.Generator) -> Sizes:
 class ForeignRig:
     """The rig of some sizes."""
 
+    power_unit = 1.0
+
     def __init__(self, sizes: Sizes) -> None:
         self.sizes, self.nodes, self._place = sizes, sizes.nodes, NODES[sizes.nodes]
         self._links = [(a, b, G * f, name) for (a, b, G, name), f in zip(LINKS[self.nodes], sizes.links, strict=True)]
@@ -202,13 +204,10 @@ def draw(rng: np.random.Generator) -> Drawn:
         plan=plan,
         points=draw_points(rng, plan, room_drift=drift),
         reference=reference,
-        base={},
-        cooling=("conv", "rad"),
         days=(a, b),
-        day_sd=files.DAY_COOLING_SD,
         prior=PRIOR_SD,
         instruments=files.draw_instruments(rng, 0.7, second_oil=second),
-        columns=files.Columns(humidity=True, start=warm, date=bool(rng.random() < 0.5)),
+        layout=files.Layout(humidity=True, start=warm, date=bool(rng.random() < 0.5)),
         bearing_oil=rig.sizes.bearing_oil,
         room_drift=drift,
         band=(5.0, 60.0),

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...model.errors import DataError
+from gearheat.model.errors import DataError
+
 from . import practice
 from .answers import Answer, Diagnoser, ask_command, read_answer
 from .cases import make_case

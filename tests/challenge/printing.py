@@ -1,84 +1,14 @@
-"""`gearheat challenge`: hides faults, asks the diagnosis without telling it, and prints how well it did."""
+"""The report of a run as tables."""
 
 from __future__ import annotations
 
-import os
-import tempfile
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
-from pathlib import Path
 from typing import Any
 
-from ...model.errors import ScenarioError, suggestion
-from ..show import console
-from .bench import run, tasks
-from .hide import KINDS
-from .scoring import Outcome, report
-from .sheets import SHEETS
+from gearheat.tools.show import console
 
 #: Columns of the table of cases.
 CASES = ("case", "kind", "S/N", "rival", "truth (p)", "answer (p)", "remarks")
-
-
-def command(
-    sheet: str,
-    n: int,
-    seed: int,
-    jobs: int = 0,
-    out: Path | None = None,
-    only: str | None = None,
-    practice: Path | None = None,
-    json: str | None = None,
-) -> None:
-    """Run sheets and give their pooled table.
-
-    Args:
-        sheet: one of `SHEETS`, "practice", or "all" for these
-        n: number of cases of each sheet
-        seed: of the challenge
-        jobs: processes, 0 for one per core
-        out: folder for cases and answers; a run that was interrupted goes on from there. A passing one if left out
-        only: one kind of cases, e.g. "clean"
-        practice: folder of campaigns with their keys
-        json: where to write the report; - for stdout
-
-    Raises:
-        ScenarioError: an unknown kind, no cases, or no folder to practise on
-    """
-    problems = []
-    if only is not None and only not in KINDS:
-        problems.append(f'challenge: unknown kind "{only}".{suggestion(only, KINDS)} Kinds: {", ".join(KINDS)}.')
-    if n < 1:
-        problems.append(f"challenge: --n {n}: ask for at least one case.")
-    if sheet == "practice" and practice is None:
-        problems.append("challenge: --sheet practice needs --practice FOLDER, a folder of campaigns with their keys.")
-    if problems:
-        raise ScenarioError(problems)
-    console.writable(console.file_of(json))
-    with _folder(out) as place:
-        todo = []
-        for name in SHEETS if sheet == "all" else (sheet,):
-            if name in SHEETS:
-                todo += tasks(name, n, seed, place / f"{name}-{seed}", kind=only)
-        if practice is not None and sheet in ("all", "practice"):
-            todo += tasks("practice", n, seed, place / "practice", given=practice)
-
-        def progress(done: int, o: Outcome) -> None:
-            trouble = f": {o.problem}" if o.problem else ""
-            console.note(f"{done}/{len(todo)}: {o.sheet} {o.case}, {o.seconds:.1f} s of processor time{trouble}")
-
-        outcomes = run(todo, min(jobs or os.cpu_count() or 1, len(todo)), progress)
-    found = report(outcomes, seed)
-    console.answer(found, json, lambda: show(found))
-
-
-@contextmanager
-def _folder(out: Path | None) -> Iterator[Path]:
-    if out is not None:
-        yield console.folder(out)
-        return
-    with tempfile.TemporaryDirectory(prefix="gearheat-challenge-") as passing:
-        yield Path(passing)
 
 
 def show(found: Mapping[str, Any]) -> None:

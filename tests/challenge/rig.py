@@ -110,6 +110,7 @@ class Rig(Protocol):
     """The physics of a rig, vectorised over columns. Temperatures in degC."""
 
     nodes: int
+    power_unit: float  # power that a fault of 1 W brakes [W]
 
     def temperatures(self, T: np.ndarray) -> dict[str, np.ndarray]:
         """Temperature of every place, from those of the nodes (nodes, columns)."""
@@ -186,7 +187,7 @@ class _Stage:
         scene = Scene(
             n=np.zeros(m) if stopped else plan.n[half],
             load=np.zeros(m) if stopped else plan.load[half],
-            direction=np.full(m, half + 1.0),
+            direction=np.full(m, float(plan.directions[half])),
             order=plan.order,
             progress=plan.progress,
             humidity=plan.humidity,
@@ -208,8 +209,8 @@ class _Stage:
     def read(self, T: np.ndarray) -> np.ndarray:
         """All channels at the end (channels, columns)."""
         scene = self._scene(T, 1.0)
-        loss = self.rig.loss_torque(T, scene) + scene.power / scene.w
-        sun = (scene.load - loss if self.half == 0 else scene.load + loss) / RATIO
+        loss = self.rig.loss_torque(T, scene) + self.rig.power_unit * scene.power / scene.w
+        sun = (scene.load + np.where(scene.direction == 1, -loss, loss)) / RATIO
         places = scene.T
         second = self.rig.second_oil(places)
         return np.array([scene.n, scene.load, sun, places["oil"], places["wall"], scene.room, second])

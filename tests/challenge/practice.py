@@ -10,8 +10,9 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from ...model.errors import DataError
-from .classes import merged_all
+from gearheat.model.errors import DataError
+
+from .classes import classes_of
 
 FILES: Mapping[str, str] = {
     "data": "data.csv",
@@ -55,8 +56,8 @@ def truth(folder: Path) -> dict[str, Any]:
         return {
             "case": folder.name,
             "kind": KINDS.get(key["kind"], key["kind"]),
-            "answer": sorted(merged_all(key["truth"])),
-            "fair": sorted(merged_all(key.get("fair", ()))),
+            "answer": sorted(classes_of(key["truth"])),
+            "fair": sorted(classes_of(key.get("fair", ()))),
             "effects": [{"snr": key["snr"]}] if key["truth"] else [],
             "rival": {"cause": near[0], "distance": near[1]} if near else None,
             "impact": key["impact"],

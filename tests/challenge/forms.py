@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from .instruments import BOTH, INSTRUMENTS, LOAD, NU, ROW, T_OIL, UP, Draw, Family, N, added, by_order, family, mixed
+from .instruments import BOTH, INSTRUMENTS, LOAD, NU, ROW, T_OIL, UP, Draw, Family, N, add, by_order, family, follow
 from .plan import Plan
 from .rig import Scene
 from .textbook.rig import Fault
@@ -44,7 +44,7 @@ def step(x: np.ndarray, threshold: float, width: float) -> np.ndarray:
     return np.asarray(0.5 + 0.5 * np.tanh((x - threshold) / width))
 
 
-def _churned(s: Scene, f: Any) -> np.ndarray:
+def _churn(s: Scene, f: Any) -> np.ndarray:
     """Power of speed, a sum of two powers, or what sets in at some speed."""
     x = s.n / N
     speed = {
@@ -55,14 +55,14 @@ def _churned(s: Scene, f: Any) -> np.ndarray:
     return np.asarray(speed * (s.nu / NU) ** f.q)
 
 
-def _overfilled(s: Scene, a: np.ndarray, f: Any) -> None:
+def _overfill(s: Scene, a: np.ndarray, f: Any) -> None:
     """More oil is churned, stores heat and wets more."""
     s.brake(a * (s.n / N) ** f.p * (s.nu / NU) ** f.q * s.running, {"oil": 0.9, "gears": 0.1})
     s.scale("cap_oil", 1 + a / 400.0)
     s.scale("oil_inner", 1 + f.wet * a / 200.0)
 
 
-def _rubbing(s: Scene, f: Any) -> np.ndarray:
+def _rub(s: Scene, f: Any) -> np.ndarray:
     """By a power of speed and an exponential of the oil's temperature."""
     return np.asarray((np.maximum(s.n, 1.0) / N) ** f.p * np.exp(f.tilt * (s.T["oil"] - T_OIL) / 40.0))
 
@@ -72,7 +72,7 @@ def _teeth(s: Scene, f: Any) -> np.ndarray:
     return np.asarray(np.minimum((np.maximum(s.load, 50.0) / LOAD) ** f.p * (np.maximum(s.n, 1.0) / N) ** f.q, 4.0))
 
 
-def _starved(s: Scene, a: np.ndarray, f: Any) -> None:
+def _starve(s: Scene, a: np.ndarray, f: Any) -> None:
     """Teeth rub more where the film is thin: by a power of speed times viscosity, or below some value of it."""
     film = np.maximum(s.n, 20.0) * s.nu / (N * NU)
     below = 0.5 - 0.5 * np.tanh(np.log(film / f.ratio) / f.width)
@@ -87,11 +87,11 @@ def _neighbour(s: Scene, a: np.ndarray, f: Any) -> None:
     s.warm(f.place, (1 - f.oil) * (1 - f.wall) * power)
 
 
-def _tilted(place: str) -> Callable[[Scene, Any], Any]:
+def _tilt(place: str) -> Callable[[Scene, Any], Any]:
     return lambda s, f: 1 + f.p * (s.T[place] - 50.0) / 40.0
 
 
-def _humid(s: Scene, f: Any) -> np.ndarray:
+def _humidity(s: Scene, f: Any) -> np.ndarray:
     x = (s.humidity - 50.0) / 20.0
     return np.asarray(np.clip(x + f.p * x * x, -3.0, 3.0))
 
@@ -109,13 +109,13 @@ def _early(dwell: np.ndarray, plan: Plan, a: np.ndarray, f: Any) -> None:
     dwell *= np.exp(-np.minimum(a * np.array(f.halves)[:, None] * hurry, 3.5))
 
 
-_RUB: dict[str, Any] = {"to": (0.2, 0.95), "unit": "N.m"}
+_TORQUE: dict[str, Any] = {"to": (0.2, 0.95), "unit": "N.m"}
 _HEATED = lambda y, f: ("T_amb_C", 35.0 * (np.maximum(y[ROW["T_wall_C"]] - y[ROW["T_amb_C"]], 0.0) / 35.0) ** f.p)  # noqa: E731
 
 CAUSES: Mapping[str, Family] = {
     "losses.churning": _brake(
         450.0,
-        _churned,
+        _churn,
         "oil",
         "gears",
         to=(0.55, 1.0),
@@ -125,11 +125,9 @@ CAUSES: Mapping[str, Family] = {
         n_0=(50.0, 150.0),
     ),
     "losses.oil_viscosity": _scale(1.6, "viscosity", lambda s, f: 1 + f.p * (s.T["oil"] - T_OIL) / 40, p=(-0.5, 0.5)),
-    "losses.oil_level": family(
-        400.0, "W", UP, "act", _overfilled, {"p": (1.4, 2.6), "q": (0.0, 0.4), "wet": (0.0, 0.3)}
-    ),
-    "losses.bearing_preload": _brake(14.0, _rubbing, "oil", "body", "wall", p=(0.0, 0.35), tilt=(-0.65, 0.45), **_RUB),
-    "losses.seal_drag": _brake(14.0, _rubbing, "oil", "body", "wall", p=(-0.3, 0.5), tilt=(-0.7, 0.0), **_RUB),
+    "losses.oil_level": family(400.0, "W", UP, "act", _overfill, {"p": (1.4, 2.6), "q": (0.0, 0.4), "wet": (0.0, 0.3)}),
+    "losses.bearing_preload": _brake(14.0, _rub, "oil", "body", "wall", p=(0.0, 0.35), tilt=(-0.65, 0.45), **_TORQUE),
+    "losses.seal_drag": _brake(14.0, _rub, "oil", "body", "wall", p=(-0.3, 0.5), tilt=(-0.7, 0.0), **_TORQUE),
     "losses.mesh_friction": _scale(0.9, "mesh", _teeth, p=(-0.4, 1.0), q=(-0.35, 0.35)),
     "losses.mesh_direction": _scale(
         0.8,
@@ -144,7 +142,7 @@ CAUSES: Mapping[str, Family] = {
         "1",
         UP,
         "act",
-        _starved,
+        _starve,
         {"kind": ["power", "threshold"], "p": (0.7, 2.2), "ratio": (0.6, 1.6), "width": (0.15, 0.5)},
     ),
     "losses.windage": _brake(
@@ -165,11 +163,11 @@ CAUSES: Mapping[str, Family] = {
         {"p": (0.0, 2.0), "oil": (0.0, 0.3), "wall": (0.0, 1.0), "place": ["surface", "surface", "body"]},
     ),
     "cooling.air": _scale(1.2, "conv", lambda s, f: (s.rise / 35.0) ** f.p, p=(-0.5, 0.5)),
-    "cooling.emissivity": _scale(2.6, "rad", _tilted("surface"), (-1,), p=(-0.2, 0.2)),
+    "cooling.emissivity": _scale(2.6, "rad", _tilt("surface"), (-1,), p=(-0.2, 0.2)),
     "cooling.foundation": _scale(1.8, "foot", lambda s, f: (s.rise / 35.0) ** f.p, p=(-0.3, 0.3)),
-    "cooling.contact": _scale(4.0, "contact", _tilted("wall"), (-1,), p=(-0.3, 0.3)),
+    "cooling.contact": _scale(4.0, "contact", _tilt("wall"), (-1,), p=(-0.3, 0.3)),
     "cooling.oil_wall": _scale(2.2, "oil_wall", lambda s, f: (np.maximum(s.n, 20.0) / N) ** f.p, p=(-0.5, 0.6)),
-    "cooling.humidity": _scale(0.35, "conv", _humid, p=(-0.4, 0.4)),
+    "cooling.humidity": _scale(0.35, "conv", _humidity, p=(-0.4, 0.4)),
     "thermal.mass": _scale(1.0, "", lambda s, f: 1.0, what=["cap_out cap_in", "cap_out cap_in", "cap_out"]),
     "thermal.split": family(1.2, "ln", BOTH, "act", _split, {}),
     **{
@@ -183,10 +181,10 @@ CAUSES: Mapping[str, Family] = {
         )
         for name in (f"sensor.{kind}.{error}" for error in errors.split())
     },
-    "sensor.oil_temp.position": mixed(
+    "sensor.oil_temp.position": follow(
         0.5, lambda y, f: ("T_oil_C", y[ROW[f.other]] - y[ROW["T_oil_C"]]), UP, other=["T_wall_C", "T_amb_C"]
     ),
-    "sensor.ambient.heated": mixed(0.35, _HEATED, UP, p=(0.8, 1.4)),
+    "sensor.ambient.heated": follow(0.35, _HEATED, UP, p=(0.8, 1.4)),
     "procedure.not_stationary": family(
         2.6, "ln", UP, "pace", _early, {"halves": [(1, 1), (1, 1), (1, 0), (0, 1)], "chance": [False, False, True]}
     ),
@@ -226,11 +224,11 @@ OUTSIDE: Mapping[str, Family] = {
         at="n",
         width=(8.0, 20.0),
     ),
-    "outside.hysteresis": added(
+    "outside.hysteresis": add(
         "torque",
         lambda p, f: np.sign(by_order(f.z, p.order)) * np.array([[1.0], [-0.6]]) * 4 * (x := p.load / 3000.0) * (1 - x),
     ),
-    "outside.crosstalk": added(
+    "outside.crosstalk": add(
         "oil_temp", lambda p, f: (p.n * p.load / (N * LOAD)) ** 2 * np.array([[1.0], [f.back]]), back=(-1.0, -0.3)
     ),
 }
@@ -247,16 +245,33 @@ REGIMES: Mapping[str, list[str]] = {
 }
 
 
+#: Causes, or their last words, that steady points in one direction do not show.
+NOT_STEADY = frozenset(
+    ("losses.mesh_direction", "cooling.humidity", "thermal.mass", "thermal.split", "procedure.not_stationary")
+    + ("by_direction", "outside.hysteresis", "outside.crosstalk")
+)
+
+
 def names(kind: str) -> Sequence[str]:
     """Causes that a kind of case may hide."""
     return list({"regime": REGIMES, "outside": OUTSIDE}.get(kind, CAUSES))
 
 
+def steady_names(kind: str) -> Sequence[str]:
+    """Causes that a kind of case of steady points may hide."""
+    return [name for name in names(kind) if not {name, name.rpartition(".")[2]} & NOT_STEADY]
+
+
+def misreadings(plan: Plan) -> Sequence[str]:
+    """Errors of instruments that the tests may show."""
+    return [name for name in INSTRUMENTS if not (plan.steady and name.rpartition(".")[2] in NOT_STEADY)]
+
+
 def draw(plan: Plan, inner: float, cause: str, kind: str, oil: np.ndarray, rng: np.random.Generator) -> Fault:
     """A fault of a cause in a form for a kind of case; oil: healthy oil temperatures."""
-    d = Draw(rng, plan.n.ravel(), plan.load.ravel(), oil.ravel(), plan.tests, inner)
+    d = Draw(rng, plan.n.ravel(), plan.load.ravel(), oil.ravel(), plan.tests, inner, plan.steady)
     fault = replace({**INSTRUMENTS, **CAUSES, **OUTSIDE}[cause](d), cause=cause)
-    return _limited(fault, d) if kind == "regime" else fault
+    return _limit(fault, d) if kind == "regime" else fault
 
 
 #: Where a regime may end, and how soft; of a direction between 1 and 2.
@@ -268,9 +283,9 @@ BORDERS: Mapping[str, tuple[Any, tuple[float, float]]] = {
 }
 
 
-def _limited(fault: Fault, d: Draw) -> Fault:
+def _limit(fault: Fault, d: Draw) -> Fault:
     """The same on one side of a threshold inside the campaign's range, or in one direction."""
-    kind = str(d.rng.choice(REGIMES[fault.cause]))
+    kind = str(d.rng.choice([kind for kind in REGIMES[fault.cause] if kind != "direction" or not d.steady]))
     f, stage = d.numbers({"at": BORDERS[kind][0], "width": BORDERS[kind][1], "side": [1, -1]}), fault.stages["act"]
 
     def act(s: Scene, a: np.ndarray) -> None:

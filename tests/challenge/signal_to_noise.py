@@ -1,18 +1,18 @@
-"""How loud a hidden fault is, and how far from what could be taken for it: for any simulator of rigs.
+"""Signal-to-noise ratio of a hidden fault and its distance from the nearest other cause, for any simulator of rigs.
 
 The signature of a fault is what it changes in the readings without noise. Its signal-to-noise is the norm of the
 whitened signature, sqrt(s' S^-1 s) with S = R + J Sigma J'. R holds the repeatabilities squared; each column of J is
 what a nuisance does to the readings, by differences; Sigma is its variance: the fixed tolerance of every channel; the
 rig's parameters; the cooling of every day; the true speed, torque and room of every half, practically free, since only
 their readings tell them; with a reference campaign also a smooth remainder over speed, load and room in both campaigns.
-A reference adds its readings, in which the signature is zero; parameters and tolerances are shared. Of what differs by
-chance from test to test nobody knows the course; it is as loud, and as far from rivals, as its scatter tells
-(`loudness`).
+A reference adds its readings, in which the signature is zero; parameters and tolerances are shared. Where a fault
+differs by chance from test to test, only its scatter counts (`snr_of`).
 
 A rival is a fault of another class in any form. Its distance is what the best non-negative mixture of drawn forms and
 amounts of one cause leaves of the whitened signature: shapes, heat locations and sizes are free. Rivals may act under
-some conditions only, too: to first order, by their signatures in those readings. They do so by as much in each reading
-as a fault that is limited itself, or on one side of a speed, a load, an oil temperature or a test, or in one direction.
+some conditions only, too: to first order, by their signatures in those readings. They then act in each reading by
+the share of a fault that is limited itself, or on one side of a speed, load, oil temperature or test, or in one
+direction.
 Below 2.5 to 3 the right answer names both.
 """
 
@@ -27,7 +27,7 @@ import numpy as np
 from scipy.linalg import block_diag, qr, solve_triangular
 from scipy.optimize import nnls
 
-from .classes import merged
+from .classes import class_of
 from .forms import step
 from .plan import Plan
 
@@ -37,8 +37,13 @@ Acting = tuple[Any, slice, np.ndarray]
 #: Readings without noise (channels, 2, columns) of tests with factors of the rig and acting faults.
 Run = Callable[[Plan, Mapping[str, Any], Sequence[Acting]], np.ndarray]
 
-#: Practically free: true speed [rpm], torque [N.m] and room [K] of a half; steps of them.
-FREE = {"n": (300.0, 2.0), "load": (3000.0, 20.0), "room": (100.0, 1.0)}
+#: Standard deviations of the true speed [rpm], torque [N.m] and room [K] of a half: practically free, as only their
+#: readings tell them.
+FREE_SD = {"n": 300.0, "load": 3000.0, "room": 100.0}
+#: Steps of their differences: small against the campaign's range, large against round-off.
+FREE_STEP = {"n": 2.0, "load": 20.0, "room": 1.0}
+#: Step of the differences of factors, relative [1].
+FACTOR_STEP = 0.05
 
 #: Remainder of a rig that is not the model: sun torque [N.m], oil and wall [K].
 REMAINDER_SD = {"T_sun_Nm": 0.25, "T_oil_C": 1.0, "T_oil2_C": 1.0, "T_wall_C": 1.0}
@@ -52,12 +57,10 @@ BY_CHANCE = frozenset(("procedure.day_scatter",))
 #: Tests in one run of several variants.
 BATCH = 4000
 
-_STEP = 0.05
-
 
 @dataclass(frozen=True)
 class Setting:
-    """A campaign for the yardstick.
+    """A campaign in which signal-to-noise ratios are measured.
 
     Args:
         run: the simulator
@@ -81,13 +84,13 @@ class Setting:
     day_sd: float
 
 
-def tiled(base: Mapping[str, Any], copies: int) -> dict[str, Any]:
+def tile(base: Mapping[str, Any], copies: int) -> dict[str, Any]:
     """Factors for several copies of the tests."""
     return {name: np.tile(f, copies) if np.ndim(f) else f for name, f in base.items()}
 
 
-def loudness(cause: str, norm: Any, tests: int) -> Any:
-    """Signal-to-noise from the norm of a whitened signature.
+def snr_of(cause: str, norm: Any, tests: int) -> Any:
+    """Signal-to-noise ratio from the norm of a whitened signature.
 
     Of what differs by chance from test to test only the mean square m can be told. A likelihood speaks for n tests that
     scatter by m beside their noise as it does for a known signature of the length sqrt(n (m - log(1 + m))).
@@ -103,20 +106,20 @@ def loudness(cause: str, norm: Any, tests: int) -> Any:
     return np.sqrt(tests * (m - np.log1p(m)))
 
 
-class Yardstick:
-    """Signal-to-noise of faults in one campaign."""
+class Noise:
+    """Covariance of the readings of one campaign, and signal-to-noise ratios of faults in it."""
 
     def __init__(self, setting: Setting) -> None:
         self.setting = setting
         plans = [p for p in (setting.plan, setting.reference) if p is not None]
         blocks = [self._block(plan) for plan in plans]
-        self.quiet = blocks[0][0]
+        self.healthy = blocks[0][0]
         shared, local = np.vstack([b[1] for b in blocks]), block_diag(*(b[2] for b in blocks))
         S = shared @ shared.T + local @ local.T
         sd = [np.repeat([setting.repeat_sd[c] for c in setting.channels], 2 * p.columns) for p in plans]
         S[np.diag_indices_from(S)] += np.concatenate(sd) ** 2
-        own = solve_triangular(np.linalg.cholesky(S), np.eye(len(S), self.quiet.size), lower=True)
-        self._white = qr(own, mode="r")[0][: self.quiet.size]
+        white = solve_triangular(np.linalg.cholesky(S), np.eye(len(S), self.healthy.size), lower=True)
+        self._white = qr(white, mode="r")[0][: self.healthy.size]
 
     def _block(self, plan: Plan) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Readings (channels, 2, tests); shared and local sensitivities (readings, columns), scaled by their sd."""
@@ -124,51 +127,51 @@ class Yardstick:
         names = [*s.prior, " ".join(s.days)]
         moves = [(name, rows) for name in ("n", "load") for rows in ((0,), (1,))] + [("room", (0, 1)), ("room", (2,))]
         m, copies = plan.columns, 1 + len(names) + len(moves)
-        big, base = plan.tiled(copies), tiled(s.base, copies)
+        big, base = plan.tiled(copies), tile(s.base, copies)
         here = [slice(i * m, (i + 1) * m) for i in range(copies)]
         for part, joined in zip(here[1:], names, strict=False):
             for name in joined.split():
                 base[name] = base.get(name, 1.0) * np.ones(copies * m)
-                base[name][part] *= 1.0 + _STEP
+                base[name][part] *= 1.0 + FACTOR_STEP
         for part, (name, rows) in zip(here[1 + len(names) :], moves, strict=True):
             for row in rows:
-                getattr(big, name)[row, part] += FREE[name][1]
+                getattr(big, name)[row, part] += FREE_STEP[name]
         y = s.run(big, base, ())
         y = y.reshape(*y.shape[:2], copies, m)
         change = np.moveaxis(y[:, :, 1:] - y[:, :, :1], 2, 0)
-        shared = [change[i].ravel() / _STEP * sd for i, sd in enumerate(s.prior.values())]
+        shared = [change[i].ravel() / FACTOR_STEP * sd for i, sd in enumerate(s.prior.values())]
         for i, c in enumerate(s.channels):
             zero = np.zeros_like(y[:, :, 0])
             zero[i] = s.offset_sd[c]
             shared.append(zero.ravel())
         shared += _remainder(plan, s.channels) if s.reference is not None else []
-        local = [change[len(s.prior)] / _STEP * s.day_sd]
-        local += [c / FREE[name][1] * FREE[name][0] for c, (name, _) in zip(change[len(names) :], moves, strict=True)]
+        local = [change[len(s.prior)] / FACTOR_STEP * s.day_sd]
+        local += [c / FREE_STEP[name] * FREE_SD[name] for c, (name, _) in zip(change[len(names) :], moves, strict=True)]
         per_test = [(e[..., None] * np.eye(m)).reshape(-1, m) for e in local]
         return y[:, :, 0], np.array(shared).T, np.hstack(per_test)
 
     def signatures(self, faults: Sequence[Any], amounts: np.ndarray) -> np.ndarray:
         """What each fault changes with its amount (faults, channels, 2, tests); not finite where the rig runs away."""
         s, m, size = self.setting, self.setting.plan.columns, max(BATCH // self.setting.plan.columns, 1)
-        found = np.empty((len(faults), *self.quiet.shape))
+        changes = np.empty((len(faults), *self.healthy.shape))
         physical = [i for i, fault in enumerate(faults) if set(fault.stages) != {"read"}]
         for i in set(range(len(faults))) - set(physical):  # what only misreads needs no other run
-            shown = self.quiet.copy()
+            shown = self.healthy.copy()
             faults[i].stages["read"](shown, s.plan, np.full(m, amounts[i]))
-            found[i] = shown - self.quiet
+            changes[i] = shown - self.healthy
         for some in (physical[k : k + size] for k in range(0, len(physical), size)):
             acting = [(faults[i], slice(k * m, (k + 1) * m), np.full(m, amounts[i])) for k, i in enumerate(some)]
             with np.errstate(all="ignore"):
-                y = s.run(s.plan.tiled(len(some)), tiled(s.base, len(some)), acting)
-            found[some] = np.moveaxis(y.reshape(*y.shape[:2], len(some), m) - self.quiet[:, :, None], 2, 0)
-        return found
+                y = s.run(s.plan.tiled(len(some)), tile(s.base, len(some)), acting)
+            changes[some] = np.moveaxis(y.reshape(*y.shape[:2], len(some), m) - self.healthy[:, :, None], 2, 0)
+        return changes
 
-    def whitened(self, signatures: np.ndarray) -> np.ndarray:
+    def whiten(self, signatures: np.ndarray) -> np.ndarray:
         """Whitened signatures (readings, faults); zero for what is not finite."""
         flat = signatures.reshape(len(signatures), -1)
         return np.asarray(self._white @ np.where(np.isfinite(flat).all(axis=1)[:, None], flat, 0.0).T)
 
-    def acting(self, regime: Mapping[str, Any], oil: np.ndarray) -> np.ndarray:
+    def share(self, regime: Mapping[str, Any], oil: np.ndarray) -> np.ndarray:
         """How much of a limited fault acts, by reading (2, tests).
 
         Args:
@@ -185,36 +188,36 @@ class Yardstick:
             "oil": oil,
             "temperature": oil,
             "order": plan.progress,
-            "direction": np.array([[1.0], [2.0]]),
+            "direction": np.array(plan.directions, float)[:, None],
         }[what]
         sign = 1.0 if side == "above" else -1.0
         return np.broadcast_to(step(sign * seen, sign * at, regime["width"]), oil.shape)
 
     def survey(self, fault: Any, amounts: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Signal-to-noise for some amounts, and which of them change no oil temperature by more than `OBVIOUS`."""
+        """Signal-to-noise ratio by amount, and which of them change no oil temperature by more than `OBVIOUS`."""
         change = self.signatures([fault] * len(amounts), amounts)
         oil = change[:, self.setting.channels.index("T_oil_C")]
         with np.errstate(invalid="ignore"):
             sensible = (np.abs(oil) < OBVIOUS).all(axis=(1, 2))
-        return self.loud(fault, np.linalg.norm(self.whitened(change), axis=0)), sensible
+        return self.snr(fault, np.linalg.norm(self.whiten(change), axis=0)), sensible
 
-    def loud(self, fault: Any, norm: Any) -> Any:
-        """Signal-to-noise of a fault from the norm of its whitened signature."""
-        return loudness(fault.cause, norm, self.setting.plan.columns)
+    def snr(self, fault: Any, norm: Any) -> Any:
+        """Signal-to-noise ratio of a fault from the norm of its whitened signature."""
+        return snr_of(fault.cause, norm, self.setting.plan.columns)
 
 
 def _remainder(plan: Plan, channels: tuple[str, ...]) -> list[np.ndarray]:
-    """Smooth terms of the conditions, per channel and direction, flat over readings."""
+    """Smooth terms of the conditions, per channel and half, flat over readings."""
     x, y = (plan.n[0] - 175.0) / 75.0, (plan.load[0] - 2130.0) / 580.0
     terms = [np.ones_like(x), x, y, x * y, x * x, y * y, (plan.room[1] - 24.0) / 5.0]
-    found = []
+    remainder = []
     for i, c in enumerate(channels):
         for half in (0, 1):
             for term in terms if c in REMAINDER_SD else ():
                 one = np.zeros((len(channels), 2, plan.columns))
                 one[i, half] = REMAINDER_SD[c] * term
-                found.append(one.ravel())
-    return found
+                remainder.append(one.ravel())
+    return remainder
 
 
 @dataclass(frozen=True)
@@ -225,8 +228,10 @@ class Rival:
     distance: float
 
 
-#: Forms drawn of each cause, and amounts of each over the largest sensible.
-FORMS, AMOUNTS = 8, (0.1, 0.5)
+#: Forms drawn of each cause.
+FORMS = 8
+#: Amounts of each form, over its largest sensible one.
+AMOUNTS = (0.1, 0.5)
 
 #: Causes that may act under some conditions only, as any of the simulators draws them.
 PARTLY = frozenset(
@@ -235,8 +240,9 @@ PARTLY = frozenset(
     + ("sensor.oil_temp.offset", "sensor.torque.offset")
 )
 
-#: Widths of the borders of what limits them, by quantity; thresholds at these quantiles of the tests.
+#: Widths of the borders of what limits them: speed [rpm], load [N.m], oil [K], share of the campaign [1].
 WIDTHS = {"speed": (4.0, 12.0), "load": (40.0, 120.0), "oil": (1.3, 4.0), "order": (0.02,)}
+#: Quantiles of the tests at which thresholds lie.
 QUANTILES = np.arange(0.1, 0.95, 0.1)
 
 
@@ -266,19 +272,19 @@ class Rivals:
     """Nearest rivals in one campaign.
 
     Args:
-        yard: of the campaign
+        noise: of the campaign
         families: draw a form of each cause
         rng: source of forms
     """
 
-    yard: Yardstick
+    noise: Noise
     families: Mapping[str, Callable[[np.random.Generator], Any]]
     rng: np.random.Generator
 
     def _limits(self) -> list[np.ndarray]:
         """How much of a limited cause acts, by reading (2, tests): one side of each quantity, one direction."""
-        yard = self.yard
-        plan, oil = yard.setting.plan, yard.quiet[yard.setting.channels.index("T_oil_C")]
+        noise = self.noise
+        plan, oil = noise.setting.plan, noise.healthy[noise.setting.channels.index("T_oil_C")]
         seen = {"speed": plan.n, "load": plan.load, "oil": oil, "order": plan.progress}
         sides = [
             {"where": f"{what} {side}", "at": at, "width": width}
@@ -287,8 +293,9 @@ class Rivals:
             for at in np.quantile(seen[what], QUANTILES)
             for width in widths
         ]
-        sides += [{"where": f"direction {side}", "at": 1.5, "width": 0.05} for side in ("above", "below")]
-        return [yard.acting(side, oil) for side in sides]
+        if not plan.steady:
+            sides += [{"where": f"direction {side}", "at": 1.5, "width": 0.05} for side in ("above", "below")]
+        return [noise.share(side, oil) for side in sides]
 
     @cached_property
     def _forms(self) -> Mapping[str, tuple[np.ndarray, list[_Mixture]]]:
@@ -301,16 +308,16 @@ class Rivals:
                     faults.append(fault)
                     amounts.append(a)
                     causes.append(cause)
-        found, named, limits = self.yard.signatures(faults, np.array(amounts)), np.array(causes), self._limits()
+        changes, cause_of, limits = self.noise.signatures(faults, np.array(amounts)), np.array(causes), self._limits()
         known = {}
         for cause in self.families:
-            forms = found[named == cause]
-            sides = [_Mixture(self.yard.whitened(forms * limit)) for limit in limits if cause in PARTLY]
+            forms = changes[cause_of == cause]
+            sides = [_Mixture(self.noise.whiten(forms * limit)) for limit in limits if cause in PARTLY]
             known[cause] = forms, sides
         return known
 
     def nearest(self, fault: Any, amount: float, beside: Iterable[tuple[Any, float]] = ()) -> tuple[float, Rival]:
-        """Signal-to-noise of a fault, and its nearest rival.
+        """Signal-to-noise ratio of a fault, and its nearest rival.
 
         Args:
             fault, amount: what is judged
@@ -318,23 +325,23 @@ class Rivals:
         """
         others = list(beside)
         faults, amounts = [fault, *(f for f, _ in others)], np.array([amount, *(a for _, a in others)])
-        changes = self.yard.signatures(faults, amounts)
-        white = self.yard.whitened(changes)
+        changes = self.noise.signatures(faults, amounts)
+        white = self.noise.whiten(changes)
         q = np.linalg.qr(white[:, 1:])[0]
         t = white[:, 0] - q @ (q.T @ white[:, 0])
-        own = {merged(f.cause) for f in faults}
-        oil = (self.yard.quiet + changes.sum(axis=0))[self.yard.setting.channels.index("T_oil_C")]
-        limits = [1.0, *(self.yard.acting(f.regime, oil) for f in faults if f.regime)]
+        classes = {class_of(f.cause) for f in faults}
+        oil = (self.noise.healthy + changes.sum(axis=0))[self.noise.setting.channels.index("T_oil_C")]
+        limits = [1.0, *(self.noise.share(f.regime, oil) for f in faults if f.regime)]
         length = float(np.linalg.norm(t))
         nearest = Rival("nothing", length)
         bounds = []
         for cause, (forms, sides) in self._forms.items():
-            if merged(cause) not in own:
-                alike = _Mixture(np.hstack([self.yard.whitened(forms * limit) for limit in limits]))
+            if class_of(cause) not in classes:
+                alike = _Mixture(np.hstack([self.noise.whiten(forms * limit) for limit in limits]))
                 bounds += [(*side.beside(q)(t), cause) for side in (alike, *sides)]
         for least, distance, cause in sorted(bounds, key=lambda b: b[0]):
             if least >= nearest.distance:
                 break
             nearest = min(nearest, Rival(cause, distance()), key=lambda r: r.distance)
-        snr, distance = self.yard.loud(fault, np.array([length, nearest.distance])).tolist()
+        snr, distance = self.noise.snr(fault, np.array([length, nearest.distance])).tolist()
         return snr, Rival(nearest.cause, distance)

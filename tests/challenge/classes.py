@@ -16,11 +16,11 @@ CLASSES: tuple[tuple[str, ...], ...] = (
 _FIRST = {name: names[0] for names in CLASSES for name in names}
 
 
-def merged(cause: str) -> str:
+def class_of(cause: str) -> str:
     """The name that a cause counts as."""
     return _FIRST.get(cause, cause)
 
 
-def merged_all(causes: Iterable[str]) -> frozenset[str]:
+def classes_of(causes: Iterable[str]) -> frozenset[str]:
     """The names that causes count as."""
-    return frozenset(merged(c) for c in causes)
+    return frozenset(class_of(c) for c in causes)

@@ -1,0 +1,92 @@
+"""`python -m tests.challenge`: hides faults, has them diagnosed without telling what they are, and scores the answers.
+
+To be run in a checkout. An interrupted run with a folder (`-o`) goes on where it stopped.
+"""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Annotated, Literal
+
+import typer
+from gearheat.model.errors import ScenarioError, suggestion
+from gearheat.tools.cli.options import Jobs, Json
+from gearheat.tools.show import console
+
+from .bench import run, tasks
+from .hide import KINDS
+from .printing import show
+from .scoring import Outcome, report
+from .sheets import POOLED, SHEETS
+
+app = typer.Typer(add_completion=False, rich_markup_mode=None)
+
+
+@app.command()
+@console.guarded
+def challenge(
+    sheet: Annotated[
+        Literal["own", "foreign", "textbook", "rigs", "practice", "all"],
+        typer.Option(
+            help="own: the planetary rig as the model has it; foreign: another simulator, with a healthy reference; "
+            "textbook: a frozen third one with rough readings; rigs: steady points of other shipped rigs; practice: "
+            "the campaigns of --practice; all: all of these but rigs, pooled."
+        ),
+    ],
+    n: Annotated[int, typer.Option("--n", help="Number of cases of each sheet.")] = 150,
+    seed: Annotated[int, typer.Option(help="The same seed hides the same.")] = 0,
+    jobs: Jobs = 0,
+    out: Annotated[
+        Path | None,
+        typer.Option("-o", "--out", help="Folder for cases and answers; an interrupted run goes on from there."),
+    ] = None,
+    only: Annotated[str | None, typer.Option(help='One kind of cases, for example "clean".')] = None,
+    practice: Annotated[
+        Path | None, typer.Option(help="Folder of campaigns: data.csv, card.json and key.json in a folder each.")
+    ] = None,
+    json: Json = None,
+) -> None:
+    """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
+    problems = []
+    if only is not None and only not in KINDS:
+        problems.append(f'challenge: unknown kind "{only}".{suggestion(only, KINDS)} Kinds: {", ".join(KINDS)}.')
+    if n < 1:
+        problems.append(f"challenge: --n {n}: ask for at least one case.")
+    if sheet == "practice" and practice is None:
+        problems.append("challenge: --sheet practice needs --practice FOLDER, a folder of campaigns with their keys.")
+    if problems:
+        raise ScenarioError(problems)
+    console.writable(console.file_of(json))
+    with _folder(out) as place:
+        todo = []
+        for name in POOLED if sheet == "all" else (sheet,):
+            if name in SHEETS:
+                todo += tasks(name, n, seed, place / f"{name}-{seed}", kind=only)
+        if practice is not None and sheet in ("all", "practice"):
+            todo += tasks("practice", n, seed, place / "practice", given=practice)
+
+        def progress(done: int, o: Outcome) -> None:
+            trouble = f": {o.problem}" if o.problem else ""
+            console.note(f"{done}/{len(todo)}: {o.sheet} {o.case}, {o.seconds:.1f} s of processor time{trouble}")
+
+        outcomes = run(todo, min(jobs or os.cpu_count() or 1, len(todo)), progress)
+    result = report(outcomes, seed)
+    console.answer(result, json, lambda: show(result))
+
+
+@contextmanager
+def _folder(out: Path | None) -> Iterator[Path]:
+    """The folder that is given, or a temporary one."""
+    if out is not None:
+        yield console.folder(out)
+        return
+    with tempfile.TemporaryDirectory(prefix="gearheat-challenge-") as temporary:
+        yield Path(temporary)
+
+
+if __name__ == "__main__":
+    app(prog_name="python -m tests.challenge")
