@@ -1,0 +1,94 @@
+"""Results that show themselves: some lines in a console, a table in a notebook, a table of pandas, a file."""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Mapping, Sequence
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from ...model.errors import DataError
+from .console import as_json, cell, write
+
+#: Lines of a result in a console; a notebook shows all.
+LINES = 10
+
+
+def optional(package: str) -> Any:
+    """A package that need not be installed.
+
+    Raises:
+        DataError: it is not installed
+    """
+    try:
+        return importlib.import_module(package)
+    except ImportError:
+        raise DataError(f'this needs the package "{package}". Install it: pip install {package}') from None
+
+
+class Display:
+    """Base of results. A result says its title, its table and its JSON object; everything else follows."""
+
+    @property
+    def title(self) -> str:
+        """What the result is of, in a few words."""
+        raise NotImplementedError
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Head and rows, in the units shown to a person."""
+        raise NotImplementedError
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object that the command prints."""
+        raise NotImplementedError
+
+    def picture(self) -> str:
+        """The result drawn as SVG, "" where there is nothing to draw."""
+        return ""
+
+    def __repr__(self) -> str:
+        head, rows = self.table()
+        texts = [[cell(value) for value in row] for row in rows[:LINES]]
+        widths = [max(len(line[i]) for line in [list(head), *texts]) for i in range(len(head))]
+        lines = ["  ".join(text.ljust(w) for text, w in zip(line, widths, strict=True)).rstrip() for line in texts]
+        more = [f"... {len(rows) - LINES} more"] if len(rows) > LINES else []
+        return "\n".join([self.title, *lines, *more])
+
+    def _repr_html_(self) -> str:
+        head, rows = self.table()
+        body = [f"<tr>{''.join(f'<td>{escape(cell(value))}</td>' for value in row)}</tr>" for row in rows]
+        heads = "".join(f"<th>{escape(name)}</th>" for name in head)
+        return f"<b>{escape(self.title)}</b>\n<table><tr>{heads}</tr>\n{''.join(body)}</table>\n{self.picture()}"
+
+    def to_pandas(self) -> Any:
+        """The table as a DataFrame.
+
+        Raises:
+            DataError: pandas is not installed
+        """
+        head, rows = self.table()
+        return optional("pandas").DataFrame([list(row) for row in rows], columns=list(head))
+
+    def save(self, path: str | Path) -> Path:
+        """Write the JSON object to a file.
+
+        Args:
+            path: file to write
+
+        Raises:
+            DataError: it cannot be written
+        """
+        write(Path(path), as_json(self.as_dict()))
+        return Path(path)
+
+
+def lines_of(values: Mapping[str, Any]) -> list[tuple[str, Any]]:
+    """Numbers and texts of an object as rows of a table, nested objects by dotted names."""
+    found: list[tuple[str, Any]] = []
+    for name, value in values.items():
+        if isinstance(value, Mapping):
+            found += [(f"{name}.{key}", inner) for key, inner in lines_of(value)]
+        elif isinstance(value, int | float | str):
+            found.append((name, value))
+    return found
