@@ -14,7 +14,7 @@ from gearheat.scenarios.load import load
 from gearheat.tools.show.courses import courses
 from gearheat.tools.show.fields import Field, fields
 from gearheat.tools.show.heat_paths import heat_flows, heat_paths
-from gearheat.tools.show.plotting import plotted
+from gearheat.tools.show.plotting import write_picture
 from gearheat.tools.show.sankey import heat_picture, placed
 from gearheat.tools.solve.steady import conditions
 from pages import problems_of, words_that_collide
@@ -66,7 +66,7 @@ def test_courses_are_drawn_to_be_zoomed(tmp_path):
     time = np.arange(0.0, 3 * 3600.0, 2.0)
     columns = {"oil.T": 300 + time / 1000, "room.T": np.full(len(time), 293.15), "oil.Q_flow_external": 0 * time}
     plot = tmp_path / "run.html"
-    plotted(plot, courses("rig, duty", time, columns, {"oil.T": "K", "room.T": "K", "oil.Q_flow_external": "W"}))
+    write_picture(plot, courses("rig, duty", time, columns, {"oil.T": "K", "room.T": "K", "oil.Q_flow_external": "W"}))
     text = plot.read_text(encoding="utf-8")
     assert problems_of(text) == []
     data = json.loads(re.search(r'id="data">(.*?)</script>', text, re.DOTALL)[1])
@@ -97,11 +97,11 @@ def test_lines_and_maps(tmp_path, kind, over):
         Field("b", "W", y),
     ]
     path = tmp_path / f"a{kind}"
-    plotted(path, fields("rig", axes[:over], drawn))
+    write_picture(path, fields("rig", axes[:over], drawn))
     before = path.read_bytes()
     assert before.startswith(KINDS[kind])
     if kind == ".svg":
-        plotted(path, fields("rig", axes[:over], drawn))
+        write_picture(path, fields("rig", axes[:over], drawn))
         assert path.read_bytes() == before
     assert not words_that_collide(fields("rig", axes[:over], drawn).figure)
 

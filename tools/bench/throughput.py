@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-import io
 import tempfile
 import time
 from collections.abc import Callable, Sequence
-from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -17,8 +15,8 @@ from ...model.core.flat import FlatModel
 from ...model.run.schedule import Schedule, stepped
 from ...model.run.simulate import simulate
 from ...scenarios.load import load
-from ..solve import sweep
 from ..solve.settings import adjusted, flat_of
+from ..solve.sweep import sweep
 
 #: What varies from row to row: the load by this much of its value, the room by this much [K].
 LOAD, ROOM = (0.2, 1.08), (-15.0, 10.0)
@@ -109,7 +107,6 @@ def _sweep(rig: str, load_name: str, room: str, values: dict[str, np.ndarray], r
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "rows.csv"
         began = time.perf_counter()
-        with redirect_stdout(io.StringIO()):
-            sweep.command(sweep.Request(rig, vary, out, sample=rows, json="-"))
+        sweep(rig, vary, out=out, sample=rows)
         seconds = time.perf_counter() - began
         return {"rows": rows, "seconds": seconds, "rows_per_s": rows / seconds, "MB": out.stat().st_size / 1e6}

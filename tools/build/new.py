@@ -1,11 +1,13 @@
-"""The command `new`: a rig file from a name plate, that runs at once and says of every number how it came about."""
+"""A rig file from a name plate, that runs at once and says of every number how it came about."""
 
 from __future__ import annotations
 
 import json
 import math
 import re
-from collections.abc import Sequence
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -15,21 +17,29 @@ from ...model.errors import GearheatError, ScenarioError, suggestion
 from ...model.run.steady import steady
 from ...model.units import to_si
 from ...scenarios.entries import catalogue
-from . import sizing, sump
-from ..show.console import answer, note, writable, write
-from ..solve.steady import conditions
-from ...scenarios.load import load
+from ...scenarios.load import load as read_rig
+from ..describe.rig import Rig
+from ..show.console import writable, write
 from ..solve.settings import flat_of
+from ..solve.steady import conditions
+from . import sizing, sump
 from .sizing import APART, GAP, LIGHT, OVERHANG, SIDE, Unit, unit
 from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, BevelStage, PlanetaryStage, Stage, WormStage
 
-#: Steel, cast iron and oil [kg/m3].
-STEEL, IRON, OIL = 7850.0, 7200.0, 835.0
-#: What is told of a stage, and the size by which one of its kind is known.
-TOLD = ("kind", "z_1", "z_2", "m_n", "beta", "b")
+#: Density of steel [kg/m3].
+STEEL = 7850.0
+#: Density of cast iron [kg/m3].
+IRON = 7200.0
+#: Density of oil at which churning is stated [kg/m3].
+OIL = 835.0
+#: What the answer holds of a stage.
+STAGE_KEYS = ("kind", "z_1", "z_2", "m_n", "beta", "b")
+#: Kind of stage -> the size by which one is known.
 SIZES = {"spur": "a", "helical": "a", "bevel": "d_e2", "worm": "a", "planetary": "a"}
-#: Speed at which churning is told [rad/s]; oil temperature that a unit should not reach [degC].
-CHURNED, HOT = 200 * math.pi / 30, 100.0
+#: Speed at which churning is stated, 200 rpm [rad/s].
+CHURNED = 200 * math.pi / 30
+#: Oil temperature that a unit should not reach [degC].
+HOT = 100.0
 #: Efficiency below which standard sizes do not fit the power.
 POOR = 0.4
 
@@ -43,65 +53,95 @@ PLANETARY = {
 }
 
 
-def new_command(
-    name: str, stages: str, ratio: float, power: str, speed: str, oil: str, out: Path | None, json_: str | None
-) -> None:
-    """Write a rig of a name, run it once, and tell what it is.
+@dataclass(frozen=True, eq=False, repr=False)
+class NewRig(Rig):
+    """A rig from a name plate.
+
+    Attributes:
+        sizes: the JSON object: stages, bearings, what it does at the name plate
+        notes: what a user should know about it
+    """
+
+    sizes: Mapping[str, Any] = field(default_factory=dict)
+    notes: tuple[str, ...] = ()
+
+
+def new(
+    name: str,
+    *,
+    stages: str | Sequence[str],
+    ratio: float,
+    power: str,
+    speed: str,
+    oil: str = "ISO VG 220 mineral",
+    out: str | Path | None = None,
+) -> NewRig:
+    """A rig of your own from a name plate: it runs at once, and says the rule of every number.
+
+    Args:
+        name: of the rig
+        stages: from the input, such as "helical,helical"; bevel first; worm or planetary alone
+        ratio: speed of the input over that of the output
+        power: at the input, such as "7.5 kW"
+        speed: of the input, such as "1450 rpm"
+        oil: entry of the catalogue
+        out: file to write; none is left if None
 
     Raises:
         ScenarioError: all that is wrong with the name plate at once
+
+    Example:
+        >>> import gearheat as gh
+        >>> mine = gh.new("mine", stages="helical,helical", ratio=12.56, power="7.5 kW", speed="1450 rpm")
+        >>> mine.sizes["assumed"] > 0
+        True
     """
-    path = out or Path(f"{name}.toml")
-    kinds = [kind.strip() for kind in stages.split(",") if kind.strip()]
+    words = stages.split(",") if isinstance(stages, str) else stages
+    kinds = [kind.strip() for kind in words if kind.strip()]
     made = unit(kinds, ratio, to_si(power, "W", name="--power"), to_si(speed, "rad/s", name="--speed"))
     entry = _oil(oil)
     if not re.fullmatch(r"[\w.-]+", name):
         raise ScenarioError(f'"{name}" is no name. Take letters, digits, _, - and dots.')
-    writable(path)
-    if path.exists():
-        raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")
-    doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
-    write(path, text(made, doc, speed, entry))
-    try:
-        scenario = load(path)
-        flat = flat_of(scenario)
-        found = steady(flat, conditions(scenario, flat))
-    except GearheatError as error:
-        path.unlink()
-        why = error.problems[0]
-        raise ScenarioError(f"{power} at {speed} gives no gearbox. Check --power and --speed. {why}") from None
-    kept = {key: float(found[key][0]) for key in ("oil.T", "efficiency.P_loss", "efficiency.eta")}
-    payload = {
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"{name}.toml" if out is None else Path(out)
+        writable(path)
+        if path.exists():
+            raise ScenarioError(f"{path}: is there already. Give another name, or take it away.")
+        doc = f"{name}: {', '.join(kinds)}, i = {made.ratio:.4g}, {power} at {speed}, {entry}"
+        write(path, text(made, doc, speed, entry))
+        try:
+            scenario = read_rig(path)
+            flat = flat_of(scenario)
+            rest = steady(flat, conditions(scenario, flat))
+        except GearheatError as error:
+            path.unlink()
+            why = error.problems[0]
+            raise ScenarioError(f"{power} at {speed} gives no gearbox. Check --power and --speed. {why}") from None
+    kept = {key: float(rest[key][0]) for key in ("oil.T", "efficiency.P_loss", "efficiency.eta")}
+    sizes = {
         "schema": "gearheat.new/1",
         "file": str(path),
         "ratio": made.ratio,
-        "stages": [{k: getattr(s, k) for k in (*TOLD, SIZES[s.kind])} for s in made.stages],
+        "stages": [{k: getattr(s, k) for k in (*STAGE_KEYS, SIZES[s.kind])} for s in made.stages],
         "bearings": [{"a": s.bearings[0], "b": s.bearings[1], "lives_h": s.lives} for s in made.shafts],
         "assumed": sum(source.startswith("assumed") for source in scenario.value_sources.values()),
         "oil_degC": kept["oil.T"] - 273.15,
         "loss_W": kept["efficiency.P_loss"],
         "efficiency": kept["efficiency.eta"],
     }
-    answer(payload, json_, lambda: _print(payload))
-    if kept["oil.T"] - 273.15 > HOT:
-        note(f"the oil is hotter than {HOT:g} degC: such a unit needs a fan, fins or a cooler, or a larger housing.")
-    if kept["efficiency.eta"] < POOR:
-        note("most of the power is lost: standard modules and bearings are too large for it.")
+    return NewRig(scenario, sizes, tuple(_notes(made, sizes)))
+
+
+def _notes(made: Unit, sizes: Mapping[str, Any]) -> Iterator[str]:
+    """What a user should know about a unit."""
+    if sizes["oil_degC"] > HOT:
+        yield f"the oil is hotter than {HOT:g} degC: such a unit needs a fan, fins or a cooler, or a larger housing."
+    if sizes["efficiency"] < POOR:
+        yield "most of the power is lost: standard modules and bearings are too large for it."
     for shaft in made.shafts:
         for bearing, life in zip(shaft.bearings, shaft.lives, strict=True):
             if life < sizing.LIFE:
-                note(f"{bearing}: a life of {life:.0f} h only; the catalogue has no stronger one.")
-
-
-def _print(found: dict[str, Any]) -> None:
-    print(f"{found['file']}: i = {found['ratio']:.5g}, {found['assumed']} values assumed, each with its rule")
-    for k, s in enumerate(found["stages"], start=1):
-        known = SIZES[s["kind"]]
-        print(f"  stage {k}: {s['kind']} {s['z_1']}/{s['z_2']}", end=", ")
-        print(f"module {1e3 * s['m_n']:.4g} mm, {known} {1e3 * s[known]:g} mm")
-    print(f"  at the name plate: oil {found['oil_degC']:.1f} degC, loss {found['loss_W']:.0f} W,", end=" ")
-    print(f"efficiency {100 * found['efficiency']:.2f} %")
-    print(f"Next: put your numbers into the file, then `gearheat steady {found['file']}`.")
+                yield f"{bearing}: a life of {life:.0f} h only; the catalogue has no stronger one."
 
 
 def _oil(name: str) -> str:

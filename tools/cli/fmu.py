@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal
 
 import typer
 
 from ..show import console
+from ..show.notes import print_unchecked
 from .options import Extended, Json, Plot, Rig, Set, Ssp
+from .solve import print_run
 
 
 @console.guarded
@@ -48,30 +51,30 @@ def export(
     json: Json = None,
 ) -> None:
     """Write the rig as an FMU for FMI 2.0 or 3.0, or as a system of FMUs."""
-    from ...fmu.description import Owner
-    from ..export import fmu as exporting
-    from ..export import systems
+    import gearheat as gh
 
-    asked = exporting.Asked(
-        str(extended or rig),
+    console.writable(out, console.file_of(json))
+    written = gh.export(
+        extended or rig,
         out,
-        set_ or [],
-        drive,
-        given,
-        platform,
-        extras,
-        json,
-        owner=Owner(author, of_version, license_, made),
-        with_sources=sources,
-        with_origins=origins,
         fmi=int(fmi),
+        set=set_ or [],
+        drive=drive,
+        given=given,
+        platform=platform,
+        license=license_,
+        author=author,
+        model_version=of_version,
+        date=made,
+        sources=sources,
         audit=audit,
+        parameters_source=origins,
+        extras=extras,
         uncertainty=uncertainty,
+        ssp=ssp or (),
     )
-    if ssp:
-        systems.system_command(ssp, asked)
-    else:
-        exporting.export_command(asked)
+    found = written.as_dict()
+    console.answer(found, json, lambda: _print_system(found) if ssp else _print_fmu(found))
 
 
 @console.guarded
@@ -86,6 +89,24 @@ def play(
     json: Json = None,
 ) -> None:
     """Play an FMU over a duty cycle."""
-    from ..solve import simulate as transients
+    import gearheat as gh
 
-    transients.play_command(fmu, duty, out, step, set_ or [], json, trust=trust, plot=plot)
+    console.writable(out, console.file_of(json))
+    console.plottable(plot)
+    run = gh.play(fmu, duty, step=step, set=set_ or [], trust=trust)
+    print_run(run, out, plot, json)
+
+
+def _print_fmu(found: Mapping[str, Any]) -> None:
+    words = [f"{len(found[kind])} {kind}" for kind in ("inputs", "outputs", "parameters")]
+    words += [f"{len(found['deviations'])} standard deviations"] if found["deviations"] else []
+    console.say(f"{found['fmu']}: {', '.join(words)}, for {', '.join(found['platforms'])}")
+    if found["extras"]:
+        console.say(f"{len(found['extras'])} files beside it, from {found['extras'][0]}")
+    print_unchecked(found["unchecked"])
+
+
+def _print_system(found: Mapping[str, Any]) -> None:
+    console.say(f"{found['ssp']}: {', '.join(found['fmus'])}")
+    for connection in found["connections"]:
+        console.say(f"  {connection}")

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Mapping
+from functools import partial
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..show import console
+from ..show.notes import print_outside, print_unchecked
+from ..show.stacked import stacked
 from .options import Everything, Json, Rig
+
+if TYPE_CHECKING:
+    from gearheat import Description, PartTypes, Shipped
 
 
 @console.guarded
@@ -25,17 +32,22 @@ def new(
     json: Json = None,
 ) -> None:
     """A rig of your own from a name plate: it runs at once, and tells the rule of every number."""
-    from ..build import new
+    import gearheat as gh
 
-    new.new_command(name, stages, ratio, power, speed, oil, out, json)
+    path = out or Path(f"{name}.toml")
+    rig = gh.new(name, stages=stages, ratio=ratio, power=power, speed=speed, oil=oil, out=path)
+    console.answer(rig.sizes, json, lambda: _print_new(rig.sizes))
+    for note in rig.notes:
+        console.note(note)
 
 
 @console.guarded
 def list_(json: Json = None) -> None:
     """The shipped rigs and catalogues."""
-    from ..describe import listing
+    import gearheat as gh
 
-    listing.list_command(json)
+    held = gh.shipped()
+    console.answer(held.as_dict(), json, lambda: _print_shipped(held))
 
 
 @console.guarded
@@ -46,9 +58,11 @@ def show(
     json: Json = None,
 ) -> None:
     """What a rig is made of, how it is driven, and which parameters matter most; --all for everything."""
-    from ..describe import rig as describe
+    import gearheat as gh
 
-    describe.show_command(rig, errata, json, everything)
+    about = gh.show(rig)
+    human = _print_errata if errata else partial(_print_rig, everything=everything)
+    console.answer(about.as_dict(), json, lambda: human(about))
 
 
 @console.guarded
@@ -57,9 +71,10 @@ def parts(
     json: Json = None,
 ) -> None:
     """What a rig can be built of: part types, and all about one with an example."""
-    from ..describe import parts
+    import gearheat as gh
 
-    parts.parts_command(kind, json)
+    types = gh.parts(kind)
+    console.answer(types.as_dict(), json, lambda: _print_types(types) if kind is None else _print_type(types.found))
 
 
 @console.guarded
@@ -67,6 +82,132 @@ def schema(
     out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; printed if left out.")] = None,
 ) -> None:
     """JSON schema of rig files: editors complete and check them with it."""
-    from ..describe import parts
+    import gearheat as gh
 
-    parts.schema_command(out)
+    text = console.as_json(gh.schema())
+    if out is None:
+        print(text, end="")
+        return
+    console.write(out, text)
+    console.say(f'{out}: put "#:schema {out.name}" into the first line of a rig file beside it')
+
+
+def _print_new(found: Mapping[str, Any]) -> None:
+    print(f"{found['file']}: i = {found['ratio']:.5g}, {found['assumed']} values assumed, each with its rule")
+    for k, s in enumerate(found["stages"], start=1):
+        known = list(s)[-1]  # the size by which such a stage is known
+        print(f"  stage {k}: {s['kind']} {s['z_1']}/{s['z_2']}", end=", ")
+        print(f"module {1e3 * s['m_n']:.4g} mm, {known} {1e3 * s[known]:g} mm")
+    print(f"  at the name plate: oil {found['oil_degC']:.1f} degC, loss {found['loss_W']:.0f} W,", end=" ")
+    print(f"efficiency {100 * found['efficiency']:.2f} %")
+    print(f"Next: put your numbers into the file, then `gearheat steady {found['file']}`.")
+
+
+def _print_shipped(held: Shipped) -> None:
+    console.table(held.title, *held.table())
+    for kind, entries in held.catalogues.items():
+        rows = [(name, e.doc, e.checked) for name, e in entries.items()]
+        console.table(f"Catalogue: {kind}", ("name", "what it is", "checked"), rows)
+
+
+def _print_rig(about: Description, everything: bool) -> None:
+    """Print the rig: in short, or everything."""
+    found = about.found
+    console.say(f"{found['rig']}: {found['doc']}\n")
+    if found["reproduces"]:
+        console.say(f"Reproduces: {found['reproduces']}\n")
+    if everything:
+        _print_everything(found)
+    else:
+        _print_overview(about)
+    print_outside(found["outside"])
+    for problem in found["no_steady_state"]:
+        console.say(f"no steady state at the operating point: {problem}")
+    print_unchecked(found["unchecked"])
+    if found["errata"]:
+        console.say(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
+
+
+def _print_overview(about: Description) -> None:
+    """Print parts by type, inputs, states, main outputs and the parameters with the largest effect."""
+    found, by_type = about.found, dict[str, list[str]]()
+    for part in found["parts"]:
+        by_type.setdefault(part["type"], []).append(part["name"])
+    lines = [[kind, str(len(names)), ", ".join(names)] for kind, names in by_type.items()]
+    console.table("Parts", ("type", "number", "names"), lines)
+    head = ("name", "value", "unit", "doc", "source")
+    given = [line for line in found["inputs"] if line["source"] != "default"]
+    stacked("Inputs", head, [[line[key] for key in head] for line in given], 2)
+    if others := [line["name"] for line in found["inputs"] if line not in given]:
+        console.say(f"Inputs left at their defaults: {', '.join(others)}")
+    console.say(f"States: {', '.join(line['name'] for line in found['states']) or 'none'}")
+    named = about.main_outputs
+    more = len(found["outputs"]) - len(named)
+    console.say(f"Outputs: {', '.join([*named, f'{more} more'])}")
+    if found["sensors"]:
+        console.say(f"Sensors: {', '.join(found['sensors'])}")
+    print()
+    if (effects := about.effects()) is not None:
+        stacked(*effects, 2)
+    counts = [f"{len(found[key])} {key}" for key in ("parameters", "choices", "outputs", "laws")]
+    console.say(f"{', '.join(counts)} with --all")
+
+
+def _print_everything(found: dict[str, Any]) -> None:
+    valued = ("name", "value", "unit", "doc")
+    stacked("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")), 1)
+    known = ("name", "value", "kind", "uncertainty", "unit", "doc", "source")
+    stacked("Parameters", known, _rows([{**p, **(p["written"] or {})} for p in found["parameters"]], known), 2)
+    stacked("Choices", ("name", "value", "doc"), _rows(found["choices"], ("name", "value", "doc")), 1)
+    stacked("Inputs", (*valued, "source"), _rows(found["inputs"], (*valued, "source")), 2)
+    stacked("States (with start value)", valued, _rows(found["states"], valued), 1)
+    stacked("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")), 1)
+    keys = ("law", "verified", "where", "valid", "source")
+    stacked("Laws", keys, _rows(found["laws"], keys), 3)
+
+
+def _print_errata(about: Description) -> None:
+    found = about.found
+    keys = ("place", "says", "should_be", "evidence")
+    if not found["errata"]:
+        console.say(f"{found['rig']}: no corrections to its sources are known.")
+        return
+    console.table(
+        f"{found['rig']}: corrections to the sources",
+        ("place", "says", "should be", "evidence"),
+        _rows(found["errata"], keys),
+    )
+
+
+def _rows(lines: Iterable[dict[str, Any]], keys: tuple[str, ...]) -> list[list[Any]]:
+    return [[line[key] for key in keys] for line in lines]
+
+
+def _print_types(types: PartTypes) -> None:
+    console.table(types.title, *types.table())
+    console.say("gearheat parts TYPE tells all of one of them, with an example to copy.")
+
+
+def _print_type(found: Mapping[str, Any]) -> None:
+    console.say(f"{found['type']}: {found['doc']}\n")
+    titles = {
+        "ports": ("name", "type", "carries", "doc"),
+        "parameters": ("name", "unit", "range", "default", "doc"),
+        "choices": ("name", "options", "default", "doc"),
+        "inputs": ("name", "unit", "range", "doc"),
+        "states": ("name", "unit", "range", "doc"),
+        "outputs": ("name", "unit", "doc"),
+        "laws": ("law", "where", "valid", "source"),
+    }
+    for title, keys in titles.items():
+        if lines := found[title]:
+            console.table(title.capitalize(), keys, [[_cell(line[key]) for key in keys] for line in lines])
+    console.say(f"Equations: {'; '.join(found['equations'])}\n")
+    if found["entries"]:
+        console.say(f"Catalogues that may give values: {', '.join(found['entries'])} (gearheat list)\n")
+    origin = f"values of the rig {found['example_from']}" if found["example_from"] else "typical sizes"
+    print(f"Example ({origin}):\n\n{found['example']}")
+
+
+def _cell(value: Any) -> str:
+    return ", ".join(value) if isinstance(value, list) else str(value)

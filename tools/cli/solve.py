@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 import typer
 
+from ...model.errors import ScenarioError
 from ..show import console
+from ..show.notes import print_outside, print_unchecked
 from .options import Everything, Extended, Jobs, Json, Plot, Rig, Set
+
+if TYPE_CHECKING:
+    from gearheat import DesignAnswer, Map, Rating, Sweep, TimeSeries
 
 
 @console.guarded
@@ -21,9 +27,13 @@ def steady(
     json: Json = None,
 ) -> None:
     """Steady temperatures and losses at one operating point."""
-    from ..solve import steady as points
+    import gearheat as gh
 
-    points.steady_command(str(extended or rig), set_ or [], json, plot=plot, everything=everything)
+    console.plottable(plot)
+    state = gh.steady(extended or rig, set_ or [])
+    found = _drawn(state.as_dict(), plot, state.heat)
+    shows = list(state.result.columns) if everything else state.first
+    console.answer(found, json, lambda: _print_point(state.title, state.rows(shows), found))
 
 
 @console.guarded
@@ -36,9 +46,12 @@ def simulate(
     json: Json = None,
 ) -> None:
     """Temperatures and losses over a duty cycle."""
-    from ..solve import simulate as transients
+    import gearheat as gh
 
-    transients.simulate_command(rig, duty, out, set_ or [], json, plot=plot)
+    console.writable(out, console.file_of(json))
+    console.plottable(plot)
+    run = gh.simulate(rig, duty, set_ or [])
+    print_run(run, out, plot, json)
 
 
 @console.guarded
@@ -63,11 +76,12 @@ def design(
     json: Json = None,
 ) -> None:
     """Find parameters or inputs for which outputs reach their targets."""
-    from ..solve import design as designing
+    import gearheat as gh
 
-    designing.design_command(
-        str(extended or rig), free or [], target, set_ or [], among or [], json, everything=everything
-    )
+    if len(among or []) > 1:
+        raise ScenarioError("--among can be given once. Write all names behind it, for example oil=PAOR,MINR,PAGD.")
+    answer = gh.design(extended or rig, free or [], target, set=set_ or [], among=among[0] if among else None)
+    console.answer(answer.as_dict(), json, lambda: _print_design(answer, everything))
 
 
 @console.guarded
@@ -105,10 +119,33 @@ def sweep(
     json: Json = None,
 ) -> None:
     """Many steady states or warm-ups, on a grid or at random. An interrupted sweep goes on."""
-    from ..solve import sweep
+    import gearheat as gh
 
-    options = (sample, grid, method, seed, set_ or [], output or [], kind, duty, duration, every)
-    sweep.command(sweep.Request(rig, vary, out, *options, jobs, scheduler, json, plot))
+    console.writable(out, console.file_of(json))
+    console.plottable(plot)
+    rows = gh.sweep(
+        rig,
+        vary,
+        out=out,
+        sample=sample,
+        grid=grid,
+        method=method,
+        seed=seed,
+        set=set_ or [],
+        output=output or [],
+        kind=kind,
+        duty=duty,
+        duration=duration,
+        every=every,
+        jobs=jobs,
+        scheduler=scheduler,
+        draw=plot is not None,
+    )
+    found = rows.as_dict()
+    if plot is not None:
+        found = _drawn(found, plot, rows.contours if rows.summary.count else None, say=False)
+    console.answer(found, json, lambda: _print_sweep(rows, found))
+    rows.check()
 
 
 @console.guarded
@@ -124,9 +161,14 @@ def map_(
     json: Json = None,
 ) -> None:
     """Oil temperature, loss and efficiency over speed and torque: table and picture."""
-    from ..solve import maps
+    import gearheat as gh
 
-    maps.map_command(rig, out, {"w": speed, "tau": torque}, grid, plot, output or [], set_ or [], json)
+    console.writable(out, console.file_of(json))
+    console.plottable(plot)
+    points = gh.map(rig, speed=speed, torque=torque, grid=grid, output=output or [], set=set_ or [])
+    points.save(out)
+    found = _drawn({**points.as_dict(), "out": str(out)}, plot, points.contours, say=False)
+    console.answer(found, json, lambda: _print_map(points, found))
 
 
 @console.guarded
@@ -141,6 +183,113 @@ def rating(
     json: Json = None,
 ) -> None:
     """Thermal power over room temperature and speed: what the rig carries for ever within a limit."""
-    from ..solve import maps
+    import gearheat as gh
 
-    maps.rating_command(rig, limit, {"room": room, "w": speed}, grid, out, set_ or [], json)
+    console.writable(out, console.file_of(json))
+    powers = gh.rating(rig, limit, room=room, speed=speed, grid=grid, set=set_ or [])
+    if out is not None:
+        powers.save(out)
+    found = powers.as_dict() | {"out": out and str(out)}
+    console.answer(found, json, lambda: _print_rating(powers))
+
+
+def _drawn(
+    found: dict[str, Any], plot: Path | None, picture: Callable[[], Any] | None, *, say: bool = True
+) -> dict[str, Any]:
+    """The object with the place of its picture, which is written."""
+    if plot is None:
+        return found
+    if picture is not None:
+        from ..show.plotting import write_picture
+
+        write_picture(plot, picture())
+        if say:
+            console.note(f"wrote {plot}")
+    return found | {"plot": str(plot)}
+
+
+def print_run(run: TimeSeries, out: Path, plot: Path | None, json: str | None) -> None:
+    """Write a time series and its picture, and say where it ends.
+
+    Args:
+        run: the time series
+        out: CSV to write
+        plot: picture to write
+        json: where the JSON object goes
+    """
+    run.save(out)
+    found = _drawn({**run.as_dict(), "out": str(out)}, plot, run.courses)
+
+    def human() -> None:
+        console.say(f"{out}: {found['rows']} rows to {found['stop_s']:g} s")
+        print_outside(found.get("outside", ()))
+        print_unchecked(found.get("unchecked", ()))
+
+    console.answer(found, json, human)
+
+
+def _print_point(title: str, rows: Sequence[Sequence[Any]], found: Mapping[str, Any]) -> None:
+    console.table(title, ("name", "value", "unit", "meaning"), rows)
+    if more := len(found["values"]) - len(rows):
+        console.say(f"{more} more values with --all")
+    console.say(f"power balance closed within {found['energy_residual']:.1e} of the throughput")
+    print_outside(found["outside"])
+    print_unchecked(found["unchecked"])
+
+
+def _print_design(answer: DesignAnswer, everything: bool) -> None:
+    found = answer.found
+    if "among" in found:
+        _print_alternatives(answer)
+        return
+    units, rig = found["units"], found["rig"]
+    if found["free"]:
+        console.table(f"{rig}: found", ("name", "value", "unit", "meaning"), answer.rows(list(found["free"])))
+        aims = next(iter(found["sensitivity"].values()))
+        slopes = [[n, *found["sensitivity"][n].values()] for n in found["free"]]
+        head = ("change of", *(f"per {units[t] if units[t] != 'degC' else 'K'} of {t}" for t in aims))
+        console.table("Sensitivity", head, slopes)
+    for note in found["notes"]:
+        console.say(note)
+    shows = list(found["values"]) if everything else answer.first
+    _print_point(f"{rig}: steady state there", answer.rows(shows), found)
+
+
+def _print_alternatives(answer: DesignAnswer) -> None:
+    found = answer.found
+    part = found["among"]
+    console.table(f"{found['rig']}: alternatives, the best first", *answer.table())
+    solved = [a for a in found["alternatives"] if "problems" not in a]
+    for alternative in solved:
+        if alternative["outside"]:
+            console.say(f"{part} = {alternative[part]}:")
+            print_outside(alternative["outside"])
+    for alternative in found["alternatives"]:
+        for problem in alternative.get("problems", ()):
+            console.say(f"{part} = {alternative[part]}: {problem}")
+    print_unchecked({line["entry"]: line for a in solved for line in a["unchecked"]}.values())
+
+
+def _print_sweep(rows: Sweep, found: Mapping[str, Any]) -> None:
+    console.table(rows.title, *rows.table())
+    if failed := {name: n for name, n in found["status"].items() if name != "ok"}:
+        console.say("rows without a result: " + ", ".join(f"{name} {n}" for name, n in failed.items()))
+    if (outside := found["outside"]) is not None:
+        count = found["rows_outside"]
+        console.say(f"rows with a law outside the range of its source: {count}, most of all row {outside['row']}:")
+        print_outside(outside["laws"])
+    print_unchecked(found["unchecked"])
+    print(found["out"] + ("" if rows.seconds is None else f" after {rows.seconds:.1f} s"))
+
+
+def _print_map(points: Map, found: Mapping[str, Any]) -> None:
+    console.table(points.title, *points.table())
+    if found["without_result"]:
+        console.say(f"{found['without_result']} points have no steady state; their cells are nan")
+    print(", ".join(filter(None, (found["out"], found["plot"]))))
+
+
+def _print_rating(powers: Rating) -> None:
+    console.table(powers.title, *powers.table())
+    for place, reason in powers.without_result.items():
+        console.note(f"{place}: {reason}")

@@ -21,10 +21,11 @@ from ...scenarios.load import load
 from ...scenarios.measured.oils import bath_of
 from ...scenarios.scenario import Scenario
 from ..show.console import answer, table
+from ..show.notes import print_outside, print_unchecked
 from ..solve.contacts import contacts_at, part_with_contacts, print_contacts
 from ..solve.settings import adjusted, choice_paths, flat_of
-from ..solve.steady import conditions, outside_of, tell_outside
-from ..solve.unchecked import print_unchecked, unchecked
+from ..solve.steady import conditions, outside_of
+from ..solve.unchecked import unchecked
 from .measured import Measured, measured_of
 from .readings import about
 
@@ -79,7 +80,7 @@ def command(
         table(f"{scenario.name}: losses", columns, [[r[c] for c in columns] for r in rows])
         if told is not None:
             print_contacts(scenario.name, told)
-        tell_outside(found.get("outside", ()))
+        print_outside(found.get("outside", ()))
         print_unchecked(found["unchecked"])
 
     answer(found, json, human)

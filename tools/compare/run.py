@@ -13,11 +13,12 @@ import numpy as np
 from ...model.core.flat import FlatModel
 from ...model.units import shown, to_si
 from ...scenarios.scenario import Scenario
-from ..describe import rig as describe
+from ..describe import description as describe
 from ..export.fmu import write_fmu
 from ..show.console import answer, as_json, file_of, folder, note, say, table, writable, write
+from ..show.notes import print_unchecked, unchecked_lines
 from ..solve.settings import adjusted, flat_of
-from ..solve.unchecked import print_unchecked, unchecked, unchecked_lines
+from ..solve.unchecked import unchecked
 from . import campaign, summary
 from .errors import Comparison, Rows, compare, present
 from .losses import oils_of

@@ -1,14 +1,14 @@
-"""What rigs are built of: the commands `parts`, which tells all of a part type, and `schema`, which editors read."""
+"""What rigs are built of: all about a part type, and the schema of rig files that editors read."""
 
 from __future__ import annotations
 
 import inspect
 import math
 import tomllib
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
-from pathlib import Path
 from typing import Any
 
 from ...model.core.component import Component
@@ -24,27 +24,59 @@ from ...scenarios.scenario import Scenario
 from ...scenarios.shipped import FILES, list_rigs
 from ...scenarios.tables import RigTable
 from ...scenarios.values import UNCERTAINTIES, settable
-from ..show.console import answer, as_json, say, table, write
+from ..show.display import Display
 
 #: Parameters that a catalogue entry of a kind brings.
 ENTRIES: Mapping[str, str] = {kind: f"name of an entry, see `gearheat list`: values of {kind}s" for kind in FILES}
 
 
-def parts_command(kind: str | None, json: str | None) -> None:
+@dataclass(frozen=True, eq=False, repr=False)
+class PartTypes(Display):
     """All part types, or everything about one of them.
+
+    Attributes:
+        found: the JSON object
+    """
+
+    found: Mapping[str, Any]
+
+    @property
+    def title(self) -> str:
+        """What is shown."""
+        return "Part types" if "types" in self.found else f"{self.found['type']}: {self.found['doc']}"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """The types, or the parameters of one."""
+        if "types" in self.found:
+            return ("type", "role", "what it is"), [(t["type"], t["role"], t["doc"]) for t in self.found["types"]]
+        head = ("name", "unit", "range", "default", "doc")
+        return head, [[line[key] for key in head] for line in self.found["parameters"]]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object."""
+        return dict(self.found)
+
+
+def parts(kind: str | None = None) -> PartTypes:
+    """All part types, or everything about one of them.
+
+    Args:
+        kind: name of a type; all types if None
 
     Raises:
         ScenarioError: there is no such type
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.parts("HeatCapacity").found["parameters"][0]["name"]
+        'C'
     """
     if kind is None:
         types = [{"type": name, "role": cls.role, "doc": _doc(cls)} for name, cls in PARTS.items()]
-        rows = [(t["type"], t["role"], t["doc"]) for t in types]
-        answer({"schema": "gearheat.parts/1", "types": types}, json, lambda: _list(rows))
-        return
+        return PartTypes({"schema": "gearheat.parts/1", "types": types})
     if kind not in PARTS:
         raise ScenarioError(f'there is no part type "{kind}".{suggestion(kind, PARTS)} See `gearheat parts`.')
-    found = {"schema": "gearheat.part/1", **described(kind)}
-    answer(found, json, lambda: _print(found))
+    return PartTypes({"schema": "gearheat.part/1", **described(kind)})
 
 
 def described(kind: str) -> dict[str, Any]:
@@ -195,46 +227,7 @@ def _doc(cls: type) -> str:
     return inspect.cleandoc(cls.__doc__ or "").splitlines()[0]
 
 
-def _list(rows: list[tuple[str, str, str]]) -> None:
-    table("Part types", ("type", "role", "what it is"), rows)
-    say("gearheat parts TYPE tells all of one of them, with an example to copy.")
-
-
-def _print(found: dict[str, Any]) -> None:
-    say(f"{found['type']}: {found['doc']}\n")
-    titles = {
-        "ports": ("name", "type", "carries", "doc"),
-        "parameters": ("name", "unit", "range", "default", "doc"),
-        "choices": ("name", "options", "default", "doc"),
-        "inputs": ("name", "unit", "range", "doc"),
-        "states": ("name", "unit", "range", "doc"),
-        "outputs": ("name", "unit", "doc"),
-        "laws": ("law", "where", "valid", "source"),
-    }
-    for title, keys in titles.items():
-        if lines := found[title]:
-            table(title.capitalize(), keys, [[_cell(line[key]) for key in keys] for line in lines])
-    say(f"Equations: {'; '.join(found['equations'])}\n")
-    if found["entries"]:
-        say(f"Catalogues that may give values: {', '.join(found['entries'])} (gearheat list)\n")
-    origin = f"values of the rig {found['example_from']}" if found["example_from"] else "typical sizes"
-    print(f"Example ({origin}):\n\n{found['example']}")
-
-
-def _cell(value: Any) -> str:
-    return ", ".join(value) if isinstance(value, list) else str(value)
-
-
 # ------------------------------------------------------------------------------------------------------ schema
-
-
-def schema_command(out: Path | None) -> None:
-    """Print or write the schema of rig files."""
-    if out is None:
-        print(as_json(schema()), end="")
-        return
-    write(out, as_json(schema()))
-    say(f'{out}: put "#:schema {out.name}" into the first line of a rig file beside it')
 
 
 def schema() -> dict[str, Any]:

@@ -1,205 +1,193 @@
-"""What is shipped, and what a rig consists of: the commands `list` and `show`."""
+"""A rig in Python: its parameters are read and changed by name, and parts of one's own join it."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
-from functools import partial
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
 from typing import Any
 
-from ...model.core.declare import Choice, Parameter, declared
-from ...model.core.flat import FlatModel, Quantity
-from ...model.errors import SolveError
-from ...model.run.result import Result
-from ...model.run.steady import steady
-from ...model.sources import LawInfo, sources
-from ...model.units import from_si, in_unit, shown, text
-from ...scenarios.load import load
-from ...scenarios.scenario import Scenario
-from ..show.console import answer, say, table
-from ..show.stacked import stacked
-from ..solve.settings import flat_of
-from ..solve.steady import conditions, outside_of, tell_outside
-from ..solve.unchecked import print_unchecked, unchecked
-from .overview import print_overview
+from ...model.core.component import Component
+from ...model.core.declare import Choice, declared
+from ...model.core.flat import FlatModel
+from ...model.errors import ScenarioError
+from ...model.machines.spec import PartSpec, Spec
+from ...model.units import in_unit
+from ...scenarios.load import load as read_rig
+from ...scenarios.scenario import Scenario, parse_assignments
+from ...scenarios.shipped import list_rigs
+from ...scenarios.write import rig_text
+from ..show.console import write
+from ..show.display import Display
+from ..solve.rig import Settings, assignments_of
+from ..solve.settings import adjusted, choice_paths, flat_of
+from .description import Description, show
 
-#: SI units of what everyone reads in degC and rpm, however it is written.
-TEMPERATURE_AND_SPEED = ("K", "rad/s")
-
-
-def show_command(rig: str, errata: bool, json: str | None, everything: bool = False) -> None:
-    """What a rig is, or everything its file says, parameters in the units of the file; in JSON in those of all, too."""
-    scenario = load(rig)
-    flat, types = flat_of(scenario), scenario.spec.types
-    rest, no_steady_state = _at_the_operating_point(scenario, flat)
-    found = {
-        "schema": "gearheat.show/1",
-        "rig": scenario.name,
-        "doc": scenario.doc,
-        "reproduces": scenario.reproduces,
-        "kind": scenario.kind,
-        "parts": [{"name": p.name, "type": p.type, "doc": _doc(types[p.type])} for p in scenario.spec.parts],
-        "parameters": [_parameter(scenario, flat, q) for q in every_parameter(scenario, flat)],
-        "choices": choices(scenario),
-        "inputs": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.inputs],
-        "states": [_line(q) for q in flat.states],
-        "outputs": [_output(q) for q in flat.outputs if q.name not in flat.derived],
-        "sensors": dict(scenario.sensors),
-        "laws": laws(flat),
-        "outside": outside_of(rest) if rest is not None else [],
-        "no_steady_state": no_steady_state,
-        "unchecked": unchecked(scenario, flat),
-        "errata": errata_of(scenario),
-    }
-
-    def human() -> None:
-        if errata:
-            _print_errata(found)
-        else:
-            _print(found, None if everything else lambda: print_overview(scenario, flat, found, rest))
-
-    answer(found, json, human)
+#: Source of the values of parts that a user adds in Python.
+ADDED = "set in Python"
 
 
-def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> tuple[Result | None, list[str]]:
-    """Where the rig is at rest with its surroundings, or why there is no such point."""
-    try:
-        return steady(flat, conditions(scenario, flat)), []
-    except SolveError as error:
-        return None, list(error.problems)
+@dataclass(frozen=True, eq=False, repr=False)
+class Rig(Display):
+    """A gearbox with all its values. Nothing changes it: `with_` and `join` give new rigs.
+
+    Attributes:
+        scenario: what its file says
+    """
+
+    scenario: Scenario
+
+    @cached_property
+    def flat(self) -> FlatModel:
+        """Its equations, sorted."""
+        return flat_of(self.scenario)
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self.scenario.name
+
+    @property
+    def parts(self) -> dict[str, str]:
+        """Its parts, name -> type."""
+        return {part.name: part.type for part in self.scenario.spec.parts}
+
+    def __getitem__(self, name: str) -> Any:
+        """Value of a parameter, an input or the start of a state in SI, or what is chosen for a choice.
+
+        Raises ScenarioError with suggestions for an unknown name.
+        """
+        if name in choice_paths(self.scenario.spec):
+            part, _, key = name.rpartition(".")
+            choice = declared(self.scenario.spec.types[self.parts[part]], Choice)[key]
+            return self.scenario.spec.part(part).values.get(key, choice.default)
+        return self.flat.quantity(name).start
+
+    def to(self, name: str, unit: str) -> float:
+        """A value in a unit.
+
+        Args:
+            name: path, such as "cooling.A"
+            unit: such as "m2"
+
+        Raises:
+            ScenarioError: there is no such value, or the unit does not fit
+        """
+        return in_unit(float(self[name]), unit)
+
+    def with_(self, set: Settings) -> Rig:
+        """The rig with other values.
+
+        Args:
+            set: values by name: texts with units, quantities of pint, or numbers in SI
+
+        Raises:
+            ScenarioError: all that is wrong with them
+        """
+        return Rig(adjusted(self.scenario, set))
+
+    def join(self, *parts: Component, nets: Iterable[Sequence[str]]) -> Rig:
+        """The rig with parts added, of types of one's own, too.
+
+        Args:
+            parts: with their names and values in SI, such as `Fan("fan", A=0.1)`
+            nets: ports that meet, such as ("fan.shaft", "input_seal.shaft")
+
+        Raises:
+            ScenarioError: a name that is there already
+            StructureError: ports that do not fit
+        """
+        spec = self.scenario.spec
+        if taken := [part.name for part in parts if part.name in self.parts]:
+            raise ScenarioError([f'{self.name}: there is a part "{n}" already. Give it another name.' for n in taken])
+        added = [PartSpec(part.name, type(part).__name__, _given(part)) for part in parts]
+        types = {type(part).__name__: type(part) for part in parts}
+        sources = {f"{part.name}.{key}": ADDED for part in added for key in part.values}
+        joined = spec.with_parts(added, [tuple(net) for net in nets], types)
+        return Rig(replace(self.scenario, spec=joined, value_sources={**self.scenario.value_sources, **sources}))
+
+    def show(self) -> Description:
+        """What it is made of."""
+        return show(self.scenario)
+
+    @property
+    def title(self) -> str:
+        """Name and description."""
+        return f"{self.name}: {self.scenario.doc}"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Its parts."""
+        docs = {kind: (cls.__doc__ or "").strip().splitlines()[0] for kind, cls in self.scenario.spec.types.items()}
+        return ("part", "type", "what it is"), [(name, kind, docs[kind]) for name, kind in self.parts.items()]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Everything about it, as `gearheat show --json` has it."""
+        return self.show().as_dict()
+
+    def save(self, path: str | Path) -> Path:
+        """Write a rig file that every command reads.
+
+        Args:
+            path: TOML file to write
+
+        Raises:
+            DataError: it cannot be written
+        """
+        write(Path(path), rig_text(self.scenario))
+        return Path(path)
 
 
-def source_of(scenario: Scenario, path: str) -> str:
-    """Where the value of a path is from: a source, or what the part itself says where no file gives it."""
-    if path in scenario.value_sources:
-        return scenario.value_sources[path]
-    part, _, key = path.rpartition(".")
-    parameter = declared(scenario.spec.types[scenario.spec.part(part).type], Parameter).get(key)
-    return "follows from the other values" if parameter is not None and parameter.derived else "default"
+def _given(part: Component) -> dict[str, Any]:
+    """Values and choices that a part was made with."""
+    usual = declared(type(part), Choice)
+    chosen = {key: value for key, value in part.choices.items() if value != usual[key].default}
+    return {key: part.values[key] for key in sorted(part.told)} | chosen
 
 
-def parameters(scenario: Scenario, flat: FlatModel) -> tuple[tuple[str, str, str], ...]:
-    """Name, value with unit and source of every parameter."""
-    every = every_parameter(scenario, flat)
-    return tuple((q.name, text(q.start, q.unit), source_of(scenario, q.name)) for q in every)
+def assemble(
+    name: str,
+    parts: Sequence[Component],
+    nets: Iterable[Sequence[str]],
+    drive: Mapping[str, Sequence[str]],
+    point: Settings = (),
+) -> Rig:
+    """A rig of parts, without a file.
+
+    Args:
+        name: of the rig
+        parts: with their names and values in SI
+        nets: ports that meet
+        drive: shaft end -> what is given there, "w" and "tau"
+        point: inputs at the operating point, by name
+
+    Raises:
+        ScenarioError: values that do not fit
+        StructureError: ports that do not fit
+    """
+    scenario = Scenario(name, name, "network", Path(f"{name}.toml"), Spec(name, name, (), ()), {}, {})
+    joined = Rig(scenario).join(*parts, nets=nets).scenario.driven(drive)
+    values = parse_assignments(joined, assignments_of(point, joined.settable()))
+    return Rig(replace(joined.with_values(values, ADDED), operating_point=values))
 
 
-def every_parameter(scenario: Scenario, flat: FlatModel) -> list[Quantity]:
-    """All parameters, those that follow from others among them, part by part."""
-    order = {part.name: i for i, part in enumerate(scenario.spec.parts)}
-    every = (*flat.parameters, *(flat.quantity(name) for name in flat.derived))
-    return sorted(every, key=lambda q: order[q.name.rpartition(".")[0]])
+def load(rig: str | Path) -> Rig:
+    """A shipped rig, or that of a rig file.
+
+    Args:
+        rig: a name of `rigs`, a TOML file, or a folder with a `rig.toml`
+
+    Raises:
+        ScenarioError: everything wrong with the file at once
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.load("planetary").to("cooling.A", "m2") > 0
+        True
+    """
+    return Rig(read_rig(rig))
 
 
-def choices(scenario: Scenario) -> list[dict[str, Any]]:
-    """The structural choices of all parts, with what is chosen."""
-    found = []
-    for part in scenario.spec.parts:
-        for key, choice in declared(scenario.spec.types[part.type], Choice).items():
-            value = part.values.get(key, choice.default)
-            value = str(value) if choice.also is not None and isinstance(value, choice.also) else value
-            found.append({"name": f"{part.name}.{key}", "value": value, "options": choice.options, "doc": choice.doc})
-    return found
-
-
-def cited(flat: FlatModel) -> tuple[LawInfo, ...]:
-    """The laws a model uses, each once."""
-    return tuple({(law.name, law.source, law.where): law for law in flat.laws}.values())
-
-
-def laws(flat: FlatModel) -> list[dict[str, Any]]:
-    """The laws a model uses with what they cite, and whether a golden row from print verifies them."""
-    known = sources()
-    return [
-        {
-            "law": law.name,
-            "source": known[law.source].cited,
-            "where": law.where,
-            "valid": law.valid,
-            "verified": law.verified,
-        }
-        for law in cited(flat)
-    ]
-
-
-def errata_of(scenario: Scenario) -> list[dict[str, str]]:
-    """The places where the rig's sources are wrong."""
-    return [
-        {"place": e.place, "says": e.says, "should_be": e.should_be, "evidence": e.evidence} for e in scenario.errata
-    ]
-
-
-def _line(q: Quantity) -> dict[str, Any]:
-    return {"name": q.name, "value": from_si(q.start, q.unit), "unit": shown(q.unit), "doc": q.doc}
-
-
-def _output(q: Quantity) -> dict[str, Any]:
-    return {"name": q.name, "unit": shown(q.unit), "doc": q.doc}
-
-
-def _kind(scenario: Scenario, flat: FlatModel, path: str) -> str:
-    """Whether a value is given, derived from others, or a default of the numerics."""
-    if path in flat.derived:
-        return "derived"
-    part, _, key = path.rpartition(".")
-    return "given" if key in scenario.spec.part(part).values else "default"
-
-
-def _parameter(scenario: Scenario, flat: FlatModel, q: Quantity) -> dict[str, Any]:
-    """A parameter with its standard uncertainty, in the unit shown, where the rig states one."""
-    sd = scenario.standard_uncertainties.get(q.name)
-    known = sd if sd is None or q.unit == "K" else from_si(sd, q.unit)  # degC and K have the same differences
-    kind, source = _kind(scenario, flat, q.name), source_of(scenario, q.name)
-    own = q.name.rpartition(".")[0] + "."
-    if follows := ", ".join(path.removeprefix(own) for path in flat.derived.get(q.name, ())):
-        source = f"follows from {follows}"
-    unit = scenario.units.get(q.name, "") if q.unit not in TEMPERATURE_AND_SPEED else ""
-    written = [in_unit(v, unit) if unit and v is not None else v for v in (q.start, sd)]
-    as_written = {"value": written[0], "uncertainty": written[1], "unit": unit} if unit else None
-    return {**_line(q), "kind": kind, "uncertainty": known, "source": source, "written": as_written}
-
-
-def _doc(cls: type) -> str:
-    return (cls.__doc__ or "").strip().splitlines()[0]
-
-
-def _print(found: dict[str, Any], short: Callable[[], None] | None) -> None:
-    """Print the rig: in short, or everything."""
-    say(f"{found['rig']}: {found['doc']}\n")
-    if found["reproduces"]:
-        say(f"Reproduces: {found['reproduces']}\n")
-    (short or partial(_print_everything, found))()
-    tell_outside(found["outside"])
-    for problem in found["no_steady_state"]:
-        say(f"no steady state at the operating point: {problem}")
-    print_unchecked(found["unchecked"])
-    if found["errata"]:
-        say(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
-
-
-def _print_everything(found: dict[str, Any]) -> None:
-    valued = ("name", "value", "unit", "doc")
-    stacked("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")), 1)
-    known = ("name", "value", "kind", "uncertainty", "unit", "doc", "source")
-    stacked("Parameters", known, _rows([{**p, **(p["written"] or {})} for p in found["parameters"]], known), 2)
-    stacked("Choices", ("name", "value", "doc"), _rows(found["choices"], ("name", "value", "doc")), 1)
-    stacked("Inputs", (*valued, "source"), _rows(found["inputs"], (*valued, "source")), 2)
-    stacked("States (with start value)", valued, _rows(found["states"], valued), 1)
-    stacked("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")), 1)
-    keys = ("law", "verified", "where", "valid", "source")
-    stacked("Laws", keys, _rows(found["laws"], keys), 3)
-
-
-def _print_errata(found: dict[str, Any]) -> None:
-    keys = ("place", "says", "should_be", "evidence")
-    if not found["errata"]:
-        say(f"{found['rig']}: no corrections to its sources are known.")
-        return
-    table(
-        f"{found['rig']}: corrections to the sources",
-        ("place", "says", "should be", "evidence"),
-        _rows(found["errata"], keys),
-    )
-
-
-def _rows(lines: Iterable[dict[str, Any]], keys: tuple[str, ...]) -> list[list[Any]]:
-    return [[line[key] for key in keys] for line in lines]
+def rigs() -> dict[str, str]:
+    """The shipped rigs, name -> what they are."""
+    return list_rigs()

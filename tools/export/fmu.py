@@ -1,4 +1,4 @@
-"""The command `export`: a rig as an FMU that starts at its operating point, and what goes beside it."""
+"""A rig as an FMU that starts at its operating point, and what goes beside it."""
 
 from __future__ import annotations
 
@@ -23,14 +23,15 @@ from ...model.run.point import point
 from ...model.run.rows import evaluate_at
 from ...model.run.steady import steady
 from ...scenarios.entries import catalogue
-from ...scenarios.load import load
 from ...scenarios.scenario import Scenario
-from ..show.console import answer, file_of, folder, lasting, progress_bar, say, writable
+from ..show.console import folder, lasting, progress_bar, writable
+from ..show.display import Display
 from ..show.network import network_svg
+from ..solve.rig import RigLike, scenario_of
 from ..solve.settings import Drive, adjusted, driven_at, flat_of
 from ..solve.simulate import first_temperatures
 from ..solve.uncertainties import uncertain
-from ..solve.unchecked import print_unchecked, unchecked
+from ..solve.unchecked import unchecked
 from .extras import checked, experiment, reference_duty, reference_run, sets_of_oils, write_extras
 from .page import figures_of, texts_of
 
@@ -44,16 +45,15 @@ _DEFAULT = "inferred: follows from the other values, or a numerical default"
 
 @dataclass(frozen=True)
 class Asked:
-    """What the command `export` is asked for; `drive` and `given` say which shaft end's speed or torque is given."""
+    """What an export is asked for; `drive` and `given` say which shaft end's speed or torque is given."""
 
-    rig: str
+    rig: RigLike
     out: Path
     assignments: Sequence[str]
     drive: str | None
     given: str
     platform: str
     extras: Path | None
-    json: str | None
     owner: Owner
     with_sources: bool
     with_origins: bool
@@ -63,7 +63,7 @@ class Asked:
 
     def prepared(self) -> tuple[Scenario, Scenario, FlatModel, dict[str, float]]:
         """The rig, the rig as set and driven, its model, and start values that are not those of the model."""
-        scenario = load(self.rig)
+        scenario = scenario_of(self.rig)
         asked = self.drive is not None or self.given == "torque"
         drive: Drive | None = driven_at(scenario, self.drive, self.given) if asked else None
         setting = adjusted(scenario, self.assignments, drive=drive)
@@ -79,8 +79,44 @@ class Asked:
         return told | alike | {"platform": self.platform}
 
 
-def export_command(asked: Asked) -> None:
-    """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
+@dataclass(frozen=True, eq=False, repr=False)
+class Exported(Display):
+    """What was written.
+
+    Attributes:
+        found: the JSON object: file, checksum, inputs, outputs, parameters, or FMUs and connections of a system
+    """
+
+    found: Mapping[str, Any]
+
+    @property
+    def path(self) -> Path:
+        """The FMU, or the system of FMUs."""
+        return Path(self.found.get("fmu") or self.found["ssp"])
+
+    @property
+    def title(self) -> str:
+        """The file and its rig."""
+        return f"{self.path}: {self.found['rig']}"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Inputs and outputs, or FMUs with theirs."""
+        if "ssp" in self.found:
+            fmus = self.found["fmus"].items()
+            return ("FMU", "inputs", "outputs"), [(n, len(f["inputs"]), len(f["outputs"])) for n, f in fmus]
+        return ("name", "causality"), [(n, kind[:-1]) for kind in ("inputs", "outputs") for n in self.found[kind]]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object."""
+        return dict(self.found)
+
+
+def export_rig(asked: Asked) -> Exported:
+    """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set.
+
+    Args:
+        asked: the options
+    """
     if asked.uncertainty and not asked.with_origins:
         raise ScenarioError(
             "--uncertainty tells how uncertain values are, which --no-parameters-source keeps back. Take one away."
@@ -91,7 +127,7 @@ def export_command(asked: Asked) -> None:
         )
     if asked.extras is not None and asked.extras.resolve() == asked.out.resolve():
         raise ScenarioError(f"--extras {asked.extras}: is the FMU itself. Give the folder another name.")
-    writable(asked.out, file_of(asked.json))
+    writable(asked.out)
     lasting(asked.out)
     chosen = platforms(asked.platform, asked.fmi)
     scenario, setting, flat, start = asked.prepared()
@@ -124,16 +160,7 @@ def export_command(asked: Asked) -> None:
         "extras": [str(path) for path in written],
         "unchecked": unchecked(setting, flat),
     }
-    answer(found, asked.json, lambda: _print(found))
-
-
-def _print(found: Mapping[str, Any]) -> None:
-    words = [f"{len(found[kind])} {kind}" for kind in ("inputs", "outputs", "parameters")]
-    words += [f"{len(found['deviations'])} standard deviations"] if found["deviations"] else []
-    say(f"{found['fmu']}: {', '.join(words)}, for {', '.join(found['platforms'])}")
-    if found["extras"]:
-        say(f"{len(found['extras'])} files beside it, from {found['extras'][0]}")
-    print_unchecked(found["unchecked"])
+    return Exported(found)
 
 
 def write_fmu(

@@ -1,4 +1,4 @@
-"""`export --ssp`: a rig taken apart into FMUs that exchange heat, as one system in an .ssp file."""
+"""A rig taken apart into FMUs that exchange heat, as one system in an .ssp file."""
 
 from __future__ import annotations
 
@@ -21,14 +21,19 @@ from ...model.machines.apart import Pieces, apart
 from ...model.machines.spec import assemble
 from ...model.run.rows import evaluate_at
 from ...scenarios.scenario import Scenario
-from ..show.console import answer, file_of, lasting, progress_bar, say, writable
+from ..show.console import lasting, progress_bar, writable
 from ..solve.settings import flat_of
-from .fmu import Asked, write_fmu
+from .fmu import Asked, Exported, write_fmu
 
 
-def system_command(groups: Sequence[str], asked: Asked) -> None:
-    """Write a rig as a system of coupled FMUs, with the options of the command `export`."""
-    writable(asked.out, file_of(asked.json))
+def export_system(groups: Sequence[str], asked: Asked) -> Exported:
+    """Write a rig as a system of coupled FMUs.
+
+    Args:
+        groups: parts of each FMU, "NAME=PART,PART"
+        asked: the options of an export
+    """
+    writable(asked.out)
     lasting(asked.out)
     if asked.out.suffix.lower() == ".fmu":
         raise ScenarioError(f"-o {asked.out}: --ssp writes a system of FMUs. Its name must end in .ssp.")
@@ -44,13 +49,7 @@ def system_command(groups: Sequence[str], asked: Asked) -> None:
     options = asked.options
     with progress_bar() as options["progress"]:
         found = write_system(setting, taken, asked.out, **options)
-
-    def human() -> None:
-        say(f"{asked.out}: {', '.join(found['fmus'])}")
-        for connection in found["connections"]:
-            say(f"  {connection}")
-
-    answer(found, asked.json, human)
+    return Exported(found)
 
 
 def _alone(setting: Scenario, name: str, parts: Sequence[str]) -> str:

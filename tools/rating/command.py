@@ -16,8 +16,8 @@ from ...model.units import from_si
 from ...scenarios.load import load
 from ...scenarios.values import in_range
 from ..show.console import answer, table
+from ..show.notes import print_outside
 from ..solve.settings import adjusted
-from ..solve.steady import tell_outside
 from .bearings import FACTORS
 from .gather import machine_of
 from .machine import Machine
@@ -213,6 +213,6 @@ def _print(method: Method, found: Mapping[str, Any]) -> None:
     print(f"thermal rating at {rating['limit_C']:.1f} degC: {power}{why}")
     for u in found["not_treated"]:
         print(f"not treated: {u['part']} ({u['type']}): {u['why']}; in the model {u['power']:.4g} W")
-    tell_outside(found["outside"])
+    print_outside(found["outside"])
     for assumption in found["assumptions"]:
         print(f"assumed: {assumption}")

@@ -8,11 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from markupsafe import Markup
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from .console import cell, write
 from .drawing import png, svg
 from .pages import OWN, as_data, html_table, page, vendored
+
+#: Width and height of a figure that is made for a result [inch].
+SIZE = (8.0, 4.5)
 
 
 @dataclass(frozen=True)
@@ -34,7 +38,7 @@ class Picture:
     courses: Any = None
 
 
-def plotted(path: Path, picture: Picture) -> None:
+def write_picture(path: Path, picture: Picture) -> None:
     """Write a picture to a file whose ending says its kind, see `console.plottable`."""
     kind = path.suffix.lower()
     if kind == ".png":
@@ -55,3 +59,12 @@ def _page(picture: Picture, drawn: str) -> str:
         data=as_data(picture.courses) if picture.courses else "",
         **vendored(),
     )
+
+
+def axes_or_new(axes: Axes | None) -> Axes:
+    """Axes to draw on: those given, else those of a new figure."""
+    if axes is not None:
+        return axes
+    from matplotlib import pyplot
+
+    return pyplot.figure(figsize=SIZE, layout="constrained").add_subplot()

@@ -1,23 +1,23 @@
-"""The command `design`: what would have to change for an output to be as asked, and which alternative is best."""
+"""Designs: what would have to change for an output to be as asked, and which alternative is best."""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Container, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
-from ...model.core.flat import FlatModel
-from ...model.errors import GearheatError, ScenarioError, SolveError
+from ...model.core.flat import FlatModel, Quantity
+from ...model.errors import GearheatError, ScenarioError, SolveError, suggestion
 from ...model.run.design import Design
 from ...model.run.least import Target, least_change, rank, unchanged
-from ...model.units import from_si, shown
-from ...scenarios.load import load
+from ...model.units import from_si, in_unit, shown
 from ...scenarios.scenario import Scenario, parse_assignments
-from ..show.console import answer, say, table
+from ..show.display import Display
+from .rig import RigLike, Settings, assignments_of, scenario_of, written
 from .settings import adjusted, flat_of
-from .steady import HEAD, conditions, first_of, point_of, print_point, tell_outside
-from .unchecked import print_unchecked, unchecked
+from .steady import HEAD, conditions, first_of, point_of
+from .unchecked import unchecked
 
 #: Name of all entries of a catalogue that fit.
 ALL = "all"
@@ -47,56 +47,157 @@ class _Case:
         return replace(self, setting=adjusted(self.setting, [f"{part}={name}"], named=self.free), own=own)
 
 
-def design_command(
-    rig: str,
-    free: Sequence[str],
-    targets: Sequence[str],
-    assignments: Sequence[str],
-    among: Sequence[str],
-    json: str | None,
+@dataclass(frozen=True, eq=False, repr=False)
+class DesignAnswer(Display):
+    """What has to change for outputs to be as asked, or the alternatives of a catalogue, the best first.
+
+    Attributes:
+        setting: the rig as set
+        flat: its model
+        found: the JSON object
+        state: values of free names and of the steady state there in SI; empty where alternatives were asked for
+    """
+
+    setting: Scenario
+    flat: FlatModel
+    found: Mapping[str, Any]
+    state: Mapping[str, float] = field(default_factory=dict)
+
+    def __getitem__(self, name: str) -> float:
+        """Value of a free name, a state, input or output in SI. Raises ScenarioError for an unknown name."""
+        if name not in self.state:
+            raise ScenarioError(f'{self.setting.name}: the design has no "{name}".{suggestion(name, self.state)}')
+        return self.state[name]
+
+    def to(self, name: str, unit: str) -> float:
+        """A value in a unit.
+
+        Args:
+            name: path, such as "cooling.A"
+            unit: such as "m2"
+
+        Raises:
+            ScenarioError: the unit does not fit
+        """
+        return in_unit(self[name], unit)
+
+    @property
+    def title(self) -> str:
+        """The rig and what is shown."""
+        return f"{self.setting.name}: {'alternatives, the best first' if 'among' in self.found else 'design'}"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Free names and targets, or a row for each alternative."""
+        if "among" in self.found:
+            return alternatives_table(self.found)
+        return HEAD, self.rows([*self.found["free"], *self.found["targets"]])
+
+    def rows(self, names: Sequence[str]) -> list[tuple[str, Any, str, str]]:
+        """Rows of a table under `HEAD`.
+
+        Args:
+            names: of free values, states, inputs or outputs
+        """
+        values, units = {**self.found["values"], **self.found["free"]}, self.found["units"]
+        return [(name, values[name], units[name], self.flat.quantity(name).doc) for name in names]
+
+    @property
+    def first(self) -> list[str]:
+        """What a first answer holds of the steady state."""
+        return first_of(self.setting, self.flat, self.found["values"])
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object."""
+        return dict(self.found)
+
+
+def alternatives_table(found: Mapping[str, Any]) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+    """Head and rows of the alternatives that have a solution.
+
+    Args:
+        found: the JSON object
+    """
+    part = found["among"]
+    solved = [a for a in found["alternatives"] if "problems" not in a]
+    names = list(dict.fromkeys(name for a in solved for name in (*a["targets"], *a["free"])))
+    units = {name: unit for a in solved for name, unit in a["units"].items()}
+    rows = [
+        (a[part], "yes" if a["met"] else "no", *(a["values"].get(n, a["free"].get(n)) for n in names)) for a in solved
+    ]
+    return (part, "met", *(f"{name} [{units[name]}]" for name in names)), rows
+
+
+def design(
+    rig: RigLike,
+    free: Sequence[str] = (),
+    target: Settings = (),
     *,
-    everything: bool = False,
-) -> None:
-    """Values of the freed names at which the targets hold, for each alternative of `among` where there is one."""
-    scenario = load(rig)
+    set: Settings = (),
+    among: str | None = None,
+) -> DesignAnswer:
+    """Find parameters or inputs for which outputs reach their targets, for each alternative of a catalogue if asked.
+
+    Args:
+        rig: name, file or rig
+        free: parameters or inputs that may change, one for each value to reach
+        target: values to reach by name, or texts such as "oil.T=80 degC", "oil.T<80 degC"
+        set: values by name: texts with units, quantities of pint, or numbers in SI
+        among: alternatives from a catalogue, such as "oil=PAOR,MINR" or "oil=all"
+
+    Raises:
+        ScenarioError: all that is wrong with what is asked
+        SolveError: there is no solution
+
+    Example:
+        >>> import gearheat as gh
+        >>> small = gh.design("planetary", ["cooling.A"], {"oil.T": "80 degC"})
+        >>> small.to("oil.T", "degC")  # doctest: +SKIP
+        80.0
+    """
+    scenario = scenario_of(rig)
     part, names = _alternatives(scenario, among)
+    targets, assignments = list(target), assignments_of(set, scenario.settable())
+    if isinstance(target, Mapping):
+        known = scenario.readable()
+        targets = [_written_target(name, value, known.get(name)) for name, value in target.items()]
     found: dict[str, Any] = {"schema": "gearheat.design/1", "rig": scenario.name}
+    case = _case(scenario, free, targets, assignments)
     if part is None:
-        case = _case(scenario, free, targets, assignments)
         solution = least_change(case.flat, case.free, case.targets, case.values)
-        found |= _solution(case, solution)
-        shown_first = None if everything else first_of(case.setting, case.flat)
-        answer(found, json, lambda: _print_design(case.flat, found, shown_first))
-        return
+        state = {name: float(column[0]) for name, column in solution.result.columns.items()} | dict(solution.values)
+        return DesignAnswer(case.setting, case.flat, found | _solution(case, solution), state)
     solved: list[tuple[tuple[float, ...], dict[str, Any]]] = []
     unsolved: list[dict[str, Any]] = []
-    base = _case(scenario, free, targets, assignments)
     for name in names:
-        case = base.filled(part, name) or _case(scenario, free, targets, [*assignments, f"{part}={name}"])
+        other = case.filled(part, name) or _case(scenario, free, targets, [*assignments, f"{part}={name}"])
         try:
-            search = least_change(case.flat, case.free, case.targets, case.values) if free else None
-            solution = search or unchanged(case.flat, case.targets, case.values)
+            search = least_change(other.flat, other.free, other.targets, other.values) if free else None
+            solution = search or unchanged(other.flat, other.targets, other.values)
         except SolveError as error:
             unsolved.append({part: name, "problems": list(error.problems)})
             continue
-        solved.append((rank(case.flat, solution, case.targets, case.values), {part: name, **_solution(case, solution)}))
+        order = rank(other.flat, solution, other.targets, other.values)
+        solved.append((order, {part: name, **_solution(other, solution)}))
     if not solved:
         raise SolveError([f"{part} = {a[part]}: {p}" for a in unsolved for p in a["problems"]])
-    best_first = [told for _, told in sorted(solved, key=lambda pair: pair[0])]
-    found |= {"among": part, "alternatives": [*best_first, *unsolved]}
-    answer(found, json, lambda: _print_alternatives(found))
+    best_first = [answer for _, answer in sorted(solved, key=lambda pair: pair[0])]
+    return DesignAnswer(case.setting, case.flat, found | {"among": part, "alternatives": [*best_first, *unsolved]})
 
 
-def _alternatives(scenario: Scenario, among: Sequence[str]) -> tuple[str | None, list[str]]:
-    """Part and catalogue names of texts such as "oil=PAOR,MINR", or "oil=all" for every entry that fits."""
-    if not among:
+def _written_target(name: str, value: Any, quantity: Quantity | None) -> str:
+    """A target as the command line has it."""
+    text = written(value, quantity)
+    return f"{name}{text}" if text[:1] in "<>" else f"{name}={text}"
+
+
+def _alternatives(scenario: Scenario, among: str | None) -> tuple[str | None, list[str]]:
+    """Part and catalogue names of a text such as "oil=PAOR,MINR", or "oil=all" for every entry that fits."""
+    if among is None:
         return None, []
-    if len(among) > 1:
-        raise ScenarioError("--among can be given once. Write all names behind it, for example oil=PAOR,MINR,PAGD.")
-    part, _, text = (word.strip() for word in among[0].partition("="))
+    part, _, text = (word.strip() for word in among.partition("="))
     names = [name.strip() for name in text.split(",") if name.strip()]
     if not part or not names:
-        raise ScenarioError(f'"{among[0]}" names no alternatives. Write for example oil=PAOR,MINR,PAGD, or oil=all.')
+        raise ScenarioError(f'"{among}" names no alternatives. Write for example oil=PAOR,MINR,PAGD, or oil=all.')
     return part, list(scenario.alternatives(part)) if names == [ALL] else names
 
 
@@ -110,9 +211,9 @@ def _case(scenario: Scenario, free: Sequence[str], targets: Sequence[str], assig
         problems += error.problems
     flat = flat_of(setting)
     aims: list[Target] = []
-    for written in targets:
+    for text in targets:
         try:
-            aims.append(_target(flat, written))
+            aims.append(_target(flat, text))
         except GearheatError as error:
             problems += error.problems
     for name in free:
@@ -163,36 +264,3 @@ def _solution(case: _Case, solution: Design) -> dict[str, Any]:
         "units": point["units"] | units,
         "unchecked": unchecked(case.setting, flat),
     }
-
-
-def _print_design(flat: FlatModel, found: Mapping[str, Any], first: Container[str] | None) -> None:
-    units = found["units"]
-    if body := [[n, v, units[n], flat.quantity(n).doc] for n, v in found["free"].items()]:
-        table(f"{found['rig']}: found", HEAD, body)
-        aims = next(iter(found["sensitivity"].values()))
-        slopes = [[n, *found["sensitivity"][n].values()] for n in found["free"]]
-        head = ("change of", *(f"per {units[t] if units[t] != 'degC' else 'K'} of {t}" for t in aims))
-        table("Sensitivity", head, slopes)
-    for note in found["notes"]:
-        say(note)
-    print_point(f"{found['rig']}: steady state there", flat, found, first)
-
-
-def _print_alternatives(found: Mapping[str, Any]) -> None:
-    part = found["among"]
-    solved = [a for a in found["alternatives"] if "problems" not in a]
-    names = list(dict.fromkeys(name for a in solved for name in (*a["targets"], *a["free"])))
-    units = {name: unit for a in solved for name, unit in a["units"].items()}
-    rows = [
-        (a[part], "yes" if a["met"] else "no", *(a["values"].get(n, a["free"].get(n)) for n in names)) for a in solved
-    ]
-    head = (part, "met", *(f"{name} [{units[name]}]" for name in names))
-    table(f"{found['rig']}: alternatives, the best first", head, rows)
-    for alternative in solved:
-        if alternative["outside"]:
-            say(f"{part} = {alternative[part]}:")
-            tell_outside(alternative["outside"])
-    for alternative in found["alternatives"]:
-        for problem in alternative.get("problems", ()):
-            say(f"{part} = {alternative[part]}: {problem}")
-    print_unchecked({line["entry"]: line for a in solved for line in a["unchecked"]}.values())

@@ -1,27 +1,32 @@
-"""The commands `map` and `rating`: a rig over speed and torque, and the power that it carries for ever."""
+"""A rig over speed and torque, and its thermal power: what it carries continuously within a limit."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, cast
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
 from ...model.errors import ScenarioError, SolveError
 from ...model.run.design import design
 from ...model.units import from_si, shown, text
-from ...scenarios.load import load
 from ...scenarios.scenario import Scenario, parse_assignments
 from ..show.columns import table_text
-from ..show.console import answer, file_of, note, plottable, say, table, writable, write
+from ..show.console import write
+from ..show.display import Display, optional
 from . import sampling
+from .rig import RigLike, Settings, assignments_of, scenario_of
 from .settings import adjusted, flat_of
-from .steady import conditions, told
-from .sweep import Request, planned
+from .steady import conditions, leading_outputs
+from .sweep_plan import Request, plan_sweep
 from .sweep_rows import local
 
-#: Ranges where none is given, as shares of the operating point.
+if TYPE_CHECKING:
+    from ..show.plotting import Picture
+
+#: Ranges where none is given, as shares of the operating point [1].
 USUAL = (0.2, 1.2)
 #: Torque up to which a rating is looked for, in those of the operating point.
 MOST_LOAD = 20.0
@@ -41,31 +46,124 @@ def driving(scenario: Scenario) -> tuple[str, str]:
     return found[0], found[1]
 
 
-def usual(scenario: Scenario, path: str) -> str:
+def usual_range(scenario: Scenario, path: str) -> str:
     """A range about the value of the operating point, as it is written on the command line."""
     value = scenario.operating_point[path]
     low, high = (from_si(share * value, "rad/s" if path.endswith(".w") else "N.m") for share in USUAL)
     return f"{min(low, high):.4g}..{max(low, high):.4g} {'rpm' if path.endswith('.w') else 'N.m'}"
 
 
-def map_command(
-    rig: str,
-    out: Path,
-    ranges: Mapping[str, str | None],
-    grid: str,
-    plot: Path | None,
-    outputs: Sequence[str],
-    assignments: Sequence[str],
-    json: str | None,
-) -> None:
-    """Oil temperatures, losses and efficiencies over speed and torque, as a table and a picture."""
-    writable(out, file_of(json))
-    plottable(plot)
-    scenario = load(rig)
+@dataclass(frozen=True, eq=False, repr=False)
+class Map(Display):
+    """Outputs over speed and torque.
+
+    Attributes:
+        rig: its name
+        columns: name -> values at all points (n,) in the units shown to a person, nan where there is no steady state;
+            speed and torque first
+        units: unit of each column
+    """
+
+    rig: str
+    columns: Mapping[str, np.ndarray]
+    units: Mapping[str, str]
+
+    @property
+    def title(self) -> str:
+        """The rig and the number of points."""
+        return f"{self.rig}: map of {len(next(iter(self.columns.values())))} points"
+
+    @property
+    def head(self) -> list[str]:
+        """Names with units, as the CSV file has them."""
+        return [f"{name} [{self.units[name]}]" for name in self.columns]
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Range of each column."""
+        ends = [(n, np.nanmin(c), np.nanmax(c), self.units[n]) for n, c in self.columns.items()]
+        return ("name", "low", "high", "unit"), [(n, float(low), float(high), unit) for n, low, high, unit in ends]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Ranges, and how many points have no steady state."""
+        columns = list(self.columns.values())
+        return {
+            "schema": "gearheat.map/1",
+            "rig": self.rig,
+            "out": None,
+            "plot": None,
+            "rows": len(columns[0]),
+            "without_result": int(np.isnan(columns[2]).sum()),
+            "ranges": {n: {"unit": unit, "low": low, "high": high} for n, low, high, unit in self.table()[1]},
+        }
+
+    def to_pandas(self) -> Any:
+        """All points as a DataFrame.
+
+        Raises:
+            DataError: pandas is not installed
+        """
+        return optional("pandas").DataFrame(dict(zip(self.head, self.columns.values(), strict=True)))
+
+    def save(self, path: str | Path) -> Path:
+        """Write all points as CSV.
+
+        Args:
+            path: file to write
+
+        Raises:
+            DataError: it cannot be written
+        """
+        write(Path(path), table_text(self.head, list(self.columns.values())))
+        return Path(path)
+
+    def contours(self) -> Picture:
+        """A panel of contours for each output."""
+        from ..show.fields import Field, fields
+
+        drawn = [Field(n, self.units[n], c) for n, c in self.columns.items()]
+        return fields(f"{self.rig}: {drawn[0].name} and {drawn[1].name}", drawn[:2], drawn[2:])
+
+    def picture(self) -> str:
+        """The contours as SVG."""
+        from ..show.drawing import svg
+
+        return svg(self.contours().figure)
+
+
+def map_outputs(
+    rig: RigLike,
+    *,
+    speed: str | None = None,
+    torque: str | None = None,
+    grid: str = "21x21",
+    output: Sequence[str] = (),
+    set: Settings = (),
+) -> Map:
+    """Oil temperature, loss and efficiency over speed and torque.
+
+    Args:
+        rig: name, file or rig
+        speed: range such as "300..1800 rpm"; about the operating point if None
+        torque: range such as "-600..-60 N.m"; about the operating point if None
+        grid: points, speeds x torques
+        output: outputs to map; oil temperature, losses and efficiencies if none is named
+        set: values by name: texts with units, quantities of pint, or numbers in SI
+
+    Raises:
+        ScenarioError: all that is wrong with what is asked
+        SolveError: no point has a steady state
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.map("helical_two_stage", grid="5x5").save("map.csv")  # doctest: +SKIP
+    """
+    scenario = scenario_of(rig)
     paths = driving(scenario)
-    vary = [f"{path}={ranges[key] or usual(scenario, path)}" for path, key in zip(paths, ("w", "tau"), strict=True)]
-    shows = list(outputs) or told(scenario)
-    plan = planned(Request(rig, vary, out, grid=grid, assignments=assignments, outputs=shows), scenario)
+    ranges = zip(paths, (speed, torque), strict=True)
+    vary = [f"{path}={written or usual_range(scenario, path)}" for path, written in ranges]
+    shows = list(output) or leading_outputs(scenario)
+    assignments = assignments_of(set, scenario.settable())
+    plan = plan_sweep(Request(scenario, vary, None, grid=grid, assignments=assignments, outputs=shows))
     rows = np.concatenate([found for _, found in sorted(local(plan.job, enumerate([plan.values]), 0))])
     rows[rows[:, len(shows)] != 0, : len(shows)] = np.nan
     if np.isnan(rows[:, : len(shows)]).all():
@@ -76,24 +174,7 @@ def map_command(
     names = [*paths, *shows]
     columns = [*plan.values.T, *rows[:, : len(shows)].T]
     found = {n: _shown(c, plan.flat.quantity(n).unit) for n, c in zip(names, columns, strict=True)}
-    units = {n: shown(plan.flat.quantity(n).unit) for n in names}
-    write(out, table_text([f"{n} [{units[n]}]" for n in names], list(found.values())))
-    if plot is not None:
-        from ..show.fields import Field, fields
-        from ..show.plotting import plotted
-
-        drawn = [Field(n, units[n], c) for n, c in found.items()]
-        plotted(plot, fields(f"{plan.rig}: {paths[0]} and {paths[1]}", drawn[:2], drawn[2:]))
-    payload = {
-        "schema": "gearheat.map/1",
-        "rig": plan.rig,
-        "out": str(out),
-        "plot": plot and str(plot),
-        "rows": len(plan.values),
-        "without_result": int(np.isnan(found[names[2]]).sum()),
-        "ranges": {n: {"unit": units[n], "low": np.nanmin(c), "high": np.nanmax(c)} for n, c in found.items()},
-    }
-    answer(payload, json, lambda: _print_map(payload))
+    return Map(plan.rig, found, {n: shown(plan.flat.quantity(n).unit) for n in names})
 
 
 def _shown(values: np.ndarray, unit: str) -> np.ndarray:
@@ -101,44 +182,105 @@ def _shown(values: np.ndarray, unit: str) -> np.ndarray:
     return np.asarray(from_si(cast(Any, values), unit))
 
 
-def _print_map(found: Mapping[str, Any]) -> None:
-    rows = [(name, r["low"], r["high"], r["unit"]) for name, r in found["ranges"].items()]
-    table(f"{found['rig']}: map of {found['rows']} points", ("name", "low", "high", "unit"), rows)
-    if found["without_result"]:
-        say(f"{found['without_result']} points have no steady state; their cells are nan")
-    print(", ".join(filter(None, (found["out"], found["plot"]))))
+@dataclass(frozen=True, eq=False, repr=False)
+class Rating(Display):
+    """Thermal power over room temperature and speed.
+
+    Attributes:
+        rig: its name
+        limit: what is kept
+        columns: title -> values at all points (n,): room, speed, torque, power; nan where there is no result
+        without_result: point -> why it has none
+    """
+
+    rig: str
+    limit: str
+    columns: Mapping[str, np.ndarray]
+    without_result: Mapping[str, str]
+
+    @property
+    def title(self) -> str:
+        """The rig and the limit."""
+        return f"{self.rig}: thermal power [kW] at {self.limit}"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Power, rooms down and speeds across."""
+        (room, *_), (T, w, _, power) = list(self.columns), self.columns.values()
+        rooms, speeds = np.unique(T), np.unique(w)
+        powers = power.reshape(len(rooms), len(speeds))
+        head = (room, *(f"{one:.4g} rpm" for one in speeds))
+        return head, [(float(one), *map(float, row)) for one, row in zip(rooms, powers, strict=True)]
+
+    def as_dict(self) -> dict[str, Any]:
+        """All points, and why some have no result."""
+        rows = zip(*self.columns.values(), strict=True)
+        return {
+            "schema": "gearheat.rating/1",
+            "rig": self.rig,
+            "limit": self.limit,
+            "out": None,
+            "rows": [dict(zip(self.columns, map(float, row), strict=True)) for row in rows],
+            "without_result": dict(self.without_result),
+        }
+
+    def save(self, path: str | Path) -> Path:
+        """Write all points as CSV.
+
+        Args:
+            path: file to write
+
+        Raises:
+            DataError: it cannot be written
+        """
+        write(Path(path), table_text(list(self.columns), list(self.columns.values())))
+        return Path(path)
 
 
-def rating_command(
-    rig: str,
-    limit: str,
-    ranges: Mapping[str, str | None],
-    grid: str,
-    out: Path | None,
-    assignments: Sequence[str],
-    json: str | None,
-) -> None:
-    """Thermal power: what the rig carries for ever with an oil that just keeps to a limit, over room and speed."""
-    writable(out, file_of(json))
-    scenario = load(rig)
-    (speed, torque), room = driving(scenario), scenario.room
-    if room is None:
+def rating(
+    rig: RigLike,
+    limit: str | Mapping[str, Any],
+    *,
+    room: str | None = None,
+    speed: str | None = None,
+    grid: str = "5x5",
+    set: Settings = (),
+) -> Rating:
+    """Thermal power: the continuous power at which the oil just keeps a limit, over room temperature and speed.
+
+    Args:
+        rig: name, file or rig
+        limit: what is kept, such as "oil.T=95 degC" or {"oil.T": "95 degC"}
+        room: range of the room temperature; 0 to 40 degC if None
+        speed: range of the speed; about the operating point if None
+        grid: points, rooms x speeds
+        set: values by name: texts with units, quantities of pint, or numbers in SI
+
+    Raises:
+        ScenarioError: all that is wrong with what is asked
+        SolveError: no point has a result
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.rating("helical_two_stage", "oil.T=95 degC", grid="2x2")  # doctest: +SKIP
+    """
+    scenario = scenario_of(rig)
+    (driven, torque), place = driving(scenario), scenario.room
+    if place is None:
         raise ScenarioError(f"{scenario.name}: has no room, so no heat leaves it.")
-    varied = sampling.read(
-        [f"{room}={ranges['room'] or '0..40 degC'}", f"{speed}={ranges['w'] or usual(scenario, speed)}"]
-    )
-    setting = adjusted(scenario, assignments, named=[room, speed])
+    varied = sampling.read([f"{place}={room or '0..40 degC'}", f"{driven}={speed or usual_range(scenario, driven)}"])
+    setting = adjusted(scenario, set, named=[place, driven])
     flat = flat_of(setting)
-    aim = parse_assignments(flat, [limit])
-    axes = sampling.axes(varied, {name: flat.quantity(name) for name in (room, speed)})
+    (written,) = [limit] if isinstance(limit, str) else assignments_of(limit, scenario.readable())
+    aim = parse_assignments(flat, [written])
+    axes = sampling.axes(varied, {name: flat.quantity(name) for name in (place, driven)})
     values = sampling.gridded(axes, grid)
     powers, torques = np.full(len(values), np.nan), np.full(len(values), np.nan)
-    load_ = abs(scenario.operating_point[torque])
+    load = abs(scenario.operating_point[torque])
     side = -1.0 if scenario.operating_point[torque] < 0 else 1.0
-    bounds = {torque: (0.0, MOST_LOAD * load_) if side > 0 else (-MOST_LOAD * load_, 0.0)}
+    bounds = {torque: (0.0, MOST_LOAD * load) if side > 0 else (-MOST_LOAD * load, 0.0)}
     why: dict[str, str] = {}
     for k, (T, w) in enumerate(values):
-        given = {**conditions(setting, flat), room: float(T), speed: float(w), torque: side * load_}
+        given = {**conditions(setting, flat), place: float(T), driven: float(w), torque: side * load}
         try:
             found = design(flat, [torque], aim, given, bounds=bounds)
         except SolveError as error:
@@ -147,28 +289,7 @@ def rating_command(
         torques[k] = found.values[torque]
         powers[k] = abs(float(found.result[f"{torque.partition('.')[0]}.P"][0]))
     if np.isnan(powers).all():
-        raise SolveError([f"{place}: {reason}" for place, reason in list(why.items())[:3]])
-    shown_values = [_shown(values[:, k], unit) for k, unit in enumerate(("K", "rad/s"))]
-    columns: list[np.ndarray] = [*shown_values, torques, powers / 1000]
-    head = [f"{room} [degC]", f"{speed} [rpm]", f"{torque} [N.m]", "power [kW]"]
-    if out is not None:
-        write(out, table_text(head, columns))
-    payload = {
-        "schema": "gearheat.rating/1",
-        "rig": scenario.name,
-        "limit": limit,
-        "out": out and str(out),
-        "rows": [dict(zip(head, map(float, row), strict=True)) for row in zip(*columns, strict=True)],
-        "without_result": why,
-    }
-    answer(payload, json, lambda: _print_rating(payload, columns, room, speed))
-
-
-def _print_rating(found: Mapping[str, Any], columns: Sequence[np.ndarray], room: str, speed: str) -> None:
-    rooms, speeds = (np.unique(column) for column in columns[:2])
-    powers = columns[3].reshape(len(rooms), len(speeds))
-    head = (f"{room} [degC]", *(f"{w:.4g} rpm" for w in speeds))
-    title = f"{found['rig']}: thermal power [kW] at {found['limit']}"
-    table(title, head, [(float(T), *map(float, row)) for T, row in zip(rooms, powers, strict=True)])
-    for place, reason in found["without_result"].items():
-        note(f"{place}: {reason}")
+        raise SolveError([f"{point}: {reason}" for point, reason in list(why.items())[:3]])
+    columns = [*(_shown(values[:, k], unit) for k, unit in enumerate(("K", "rad/s"))), torques, powers / 1000]
+    head = [f"{place} [degC]", f"{driven} [rpm]", f"{torque} [N.m]", "power [kW]"]
+    return Rating(scenario.name, written, dict(zip(head, columns, strict=True)), why)

@@ -15,6 +15,7 @@ from ...model.laws.film_map import FilmMap
 from ...model.machines.spec import Spec, assemble
 from ...scenarios.film_map import map_named, names_map
 from ...scenarios.scenario import Scenario, deduced, parse_assignments
+from .rig import Settings, assignments_of
 
 Drive = Mapping[str, tuple[str, ...]]
 
@@ -24,7 +25,7 @@ SET = "set on the command line"
 
 def adjusted(
     scenario: Scenario,
-    assignments: Sequence[str] = (),
+    assignments: Settings = (),
     *,
     named: Iterable[str] = (),
     drive: Drive | None = None,
@@ -36,7 +37,7 @@ def adjusted(
 
     Args:
         scenario: the rig
-        assignments: texts "NAME=VALUE": parameters, inputs, start values of states, choices
+        assignments: values by name, or texts "NAME=VALUE": parameters, inputs, start values of states, choices
             ("gear_set.power_flow=ideal"), and parts filled from a catalogue ("oil=MINR")
         named: further values that come from outside: sought by a design, varied by a sweep, or given by a duty
         drive: quantities given per shaft end, where that is known
@@ -44,6 +45,7 @@ def adjusted(
     Raises:
         ScenarioError: all problems of all assignments at once
     """
+    assignments = assignments_of(assignments, scenario.settable())
     choices, problems = _choices(scenario.spec, assignments)
     problems += _doubled(assignments)
     values: dict[str, float] = {}

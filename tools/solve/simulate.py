@@ -1,70 +1,240 @@
-"""The commands `simulate` and `play`: time series from the model itself or from its FMU."""
+"""Runs over time: a rig through a duty, and the time series that a rig or its FMU gives."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ...fmu.described import Described, described, settable
 from ...model.core.flat import FlatModel
-from ...model.errors import FmuError, ScenarioError
+from ...model.errors import ScenarioError, suggestion
 from ...model.run.schedule import Schedule
-from ...model.run.simulate import simulate
-from ...model.units import from_si, shown, to_si
+from ...model.run.simulate import simulate as integrate
+from ...model.units import from_si, in_unit, shown, si_of
 from ...scenarios.duty import duty_names, read_duty
-from ...scenarios.load import load
 from ...scenarios.scenario import Scenario
 from ..show.columns import series
-from ..show.console import answer, file_of, note, plottable, say, writable, write
+from ..show.console import write
+from ..show.display import Display, optional
+from .rig import RigLike, Settings, scenario_of
 from .settings import adjusted, flat_of
-from .steady import outside_of, tell_outside
-from .unchecked import print_unchecked, unchecked
+from .steady import outside_of
+from .unchecked import unchecked
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..show.plotting import Picture
+
+#: A duty: a CSV file, or a DataFrame whose column names have units, "time [min]" first.
+Duty = str | Path | Any
 
 
-def simulate_command(
-    rig: str, duty: Path, out: Path, assignments: Sequence[str], json: str | None, *, plot: Path | None = None
-) -> None:
-    """Run a rig through a duty; temperatures that are not set start at the room's."""
-    writable(out, file_of(json))
-    plottable(plot)
-    scenario = adjusted(load(rig), assignments, named=duty_names(duty))
-    flat = flat_of(scenario)
-    schedule = read_duty(duty, flat)
-    result = simulate(flat, schedule, start=first_temperatures(scenario, flat, schedule))
-    write(out, series(result.index, result.columns, result.units))
-    _plot(plot, f"{scenario.name}, {duty.stem}", result.index, result.columns, result.units)
-    found = {
-        "schema": "gearheat.simulate/1",
-        "rig": scenario.name,
-        "out": str(out),
-        "plot": plot and str(plot),
-        **_summary(result.index, result.columns, result.units),
+@dataclass(frozen=True, eq=False, repr=False)
+class TimeSeries(Display):
+    """Temperatures, speeds, torques and losses over time.
+
+    Attributes:
+        name: of the rig and the duty
+        time: of the rows [s]; a time given twice is a jump
+        columns: path -> values in SI
+        units: SI unit of each column
+        about: what else the JSON object says, before and behind the summary of the series
+    """
+
+    name: str
+    time: np.ndarray
+    columns: Mapping[str, np.ndarray]
+    units: Mapping[str, str]
+    about: tuple[Mapping[str, Any], Mapping[str, Any]] = ({}, {})
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A column in SI. Raises ScenarioError with suggestions for an unknown name."""
+        if name not in self.columns:
+            raise ScenarioError(f'{self.name}: there is no column "{name}".{suggestion(name, self.columns)}')
+        return self.columns[name]
+
+    def to(self, name: str, unit: str) -> np.ndarray:
+        """A column in a unit.
+
+        Args:
+            name: path, such as "oil.T"
+            unit: such as "degC"
+
+        Raises:
+            ScenarioError: the unit does not fit
+        """
+        return np.array([in_unit(float(value), unit) for value in self[name]])
+
+    @property
+    def title(self) -> str:
+        """Name, rows and length."""
+        return f"{self.name}: {len(self.time)} rows to {self.time[-1]:g} s"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """First and last value of each column, states first."""
+        ends = [(n, self.units[n], float(c[0]), float(c[-1])) for n, c in self.columns.items()]
+        rows = [(n, from_si(first, unit), from_si(last, unit), shown(unit)) for n, unit, first, last in ends]
+        return ("name", "first", "last", "unit"), rows
+
+    def as_dict(self) -> dict[str, Any]:
+        """How long the series is, and where it ends, in the units shown to a person."""
+        return {
+            **self.about[0],
+            "rows": len(self.time),
+            "stop_s": float(self.time[-1]),
+            "final": {name: from_si(float(column[-1]), self.units[name]) for name, column in self.columns.items()},
+            "units": {name: shown(self.units[name]) for name in self.columns},
+            **self.about[1],
+        }
+
+    def to_pandas(self) -> Any:
+        """A DataFrame over time [s], columns as the CSV file has them.
+
+        Raises:
+            DataError: pandas is not installed
+        """
+        index = optional("pandas").Index(self.time, name="time [s]")
+        return optional("pandas").DataFrame(self._titled(), index=index)
+
+    def to_xarray(self) -> Any:
+        """A Dataset over time [s] in SI, units as attributes.
+
+        Raises:
+            DataError: xarray is not installed
+        """
+        xarray = optional("xarray")
+        held = {name: ("time", column, {"units": self.units[name]}) for name, column in self.columns.items()}
+        return xarray.Dataset(held, coords={"time": ("time", self.time, {"units": "s"})})
+
+    def _titled(self) -> dict[str, np.ndarray]:
+        """Columns in the units shown to a person, by their titles."""
+        shows = {name: np.asarray(from_si(c, self.units[name])) for name, c in self.columns.items()}  # type: ignore[arg-type]
+        return {f"{name} [{shown(self.units[name])}]": values for name, values in shows.items()}
+
+    def save(self, path: str | Path) -> Path:
+        """Write the series as CSV, units in the header.
+
+        Args:
+            path: file to write
+
+        Raises:
+            DataError: it cannot be written
+        """
+        write(Path(path), series(self.time, self.columns, self.units))
+        return Path(path)
+
+    @classmethod
+    def load(cls, path: str | Path) -> TimeSeries:
+        """A series that `save` has written.
+
+        Args:
+            path: CSV file, units in the header
+
+        Raises:
+            DataError: it cannot be read
+        """
+        from ...scenarios.columns import split_unit
+        from ...scenarios.csv_table import read_cells
+
+        header, rows = read_cells(Path(path))
+        numbers = np.array([[float(text) for text in cells] for _, cells in rows])
+        names, units = zip(*map(split_unit, header), strict=True)
+        si = {unit: (si_of(f"0 {unit}"), si_of(f"1 {unit}")) for unit in set(units) if unit not in ("", "1")}
+        columns = {
+            name: numbers[:, k] if unit not in si else si[unit][0] + numbers[:, k] * (si[unit][1] - si[unit][0])
+            for k, (name, unit) in enumerate(zip(names, units, strict=True))
+        }
+        kept = {"degC": "K", "rpm": "rad/s"}
+        return cls(
+            Path(path).stem,
+            columns.pop(names[0]),
+            columns,
+            {n: kept.get(u, u) for n, u in zip(names, units, strict=True)},
+        )
+
+    def courses(self) -> Picture:
+        """The temperatures as a picture that a page can zoom."""
+        from ..show.courses import courses
+
+        return courses(self.name, self.time, self.columns, self.units)
+
+    def picture(self) -> str:
+        """The temperatures as SVG."""
+        from ..show.drawing import svg
+
+        return svg(self.courses().figure)
+
+    def plot(self, *names: str, axes: Axes | None = None) -> Axes:
+        """Draw columns over time, in the units shown to a person.
+
+        Args:
+            names: of the columns; all temperatures if none is given
+            axes: where to draw; new ones if None
+        """
+        from ..show.plotting import axes_or_new
+
+        panel = axes_or_new(axes)
+        drawn = names or [name for name in self.columns if self.units[name] == "K"]
+        for name in drawn:
+            panel.plot(self.time / 60, from_si(self[name], self.units[name]), label=name)  # type: ignore[arg-type]
+        units = dict.fromkeys(shown(self.units[name]) for name in drawn)
+        panel.set(title=self.name, xlabel="time [min]", ylabel=", ".join(units))
+        panel.legend()
+        return panel
+
+
+@contextmanager
+def duty_file(duty: Duty) -> Iterator[Path]:
+    """The file of a duty; of a DataFrame one that lasts as long as it is needed.
+
+    Args:
+        duty: file or DataFrame
+    """
+    if not hasattr(duty, "to_csv"):
+        yield Path(duty)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "duty.csv"
+        duty.to_csv(path, index=False)
+        yield path
+
+
+def simulate(rig: RigLike, duty: Duty, set: Settings = ()) -> TimeSeries:
+    """Temperatures and losses over a duty; temperatures that are not set start at the room's.
+
+    Args:
+        rig: name, file or rig
+        duty: CSV file with time and inputs, units in the header, or a DataFrame with the same column names
+        set: values by name: texts with units, quantities of pint, or numbers in SI
+
+    Raises:
+        GearheatError: all that is wrong with the rig, the duty or what is set; the run fails
+
+    Example:
+        >>> import gearheat as gh
+        >>> run = gh.simulate("planetary", "duty.csv")  # doctest: +SKIP
+        >>> run.plot("oil.T", "wall.T")  # doctest: +SKIP
+    """
+    with duty_file(duty) as path:
+        scenario = adjusted(scenario_of(rig), set, named=duty_names(path))
+        flat = flat_of(scenario)
+        schedule = read_duty(path, flat)
+    result = integrate(flat, schedule, start=first_temperatures(scenario, flat, schedule))
+    before = {"schema": "gearheat.simulate/1", "rig": scenario.name, "out": None, "plot": None}
+    behind = {
         "energy_residual": result.audit.residual,
         "outside": outside_of(result),
         "laws": list(result.laws),
         "unchecked": unchecked(scenario, flat),
     }
-
-    def human() -> None:
-        _print(found)
-        tell_outside(found["outside"])
-        print_unchecked(found["unchecked"])
-
-    answer(found, json, human)
-
-
-def _plot(
-    plot: Path | None, title: str, time: np.ndarray, columns: Mapping[str, np.ndarray], units: Mapping[str, str]
-) -> None:
-    if plot is not None:
-        from ..show.courses import courses
-        from ..show.plotting import plotted
-
-        plotted(plot, courses(title, time, columns, units))
-        note(f"wrote {plot}")
+    name = f"{scenario.name}, {path.stem}"
+    return TimeSeries(name, result.index, result.columns, result.units, (before, behind))
 
 
 def first_temperatures(scenario: Scenario, flat: FlatModel, schedule: Schedule | None) -> dict[str, float]:
@@ -76,117 +246,3 @@ def first_temperatures(scenario: Scenario, flat: FlatModel, schedule: Schedule |
     T = float(schedule.values[room][0]) if schedule is not None and given else flat.quantity(room).start
     own = {f"{part.name}.{key}" for part in scenario.spec.parts for key in part.values}
     return {q.name: T for q in flat.states if q.unit == "K" and q.name not in own}
-
-
-def play_command(
-    fmu: Path,
-    duty: Path,
-    out: Path,
-    step: str,
-    assignments: Sequence[str],
-    json: str | None,
-    *,
-    trust: bool = False,
-    plot: Path | None = None,
-) -> None:
-    """Play an FMU over a duty; one that was not made here only if it is trusted."""
-    from ...fmu.play import Player
-    from ...fmu.unpacking import trusted
-
-    writable(out, file_of(json))
-    plottable(plot)
-    dt = to_si(step, "s", name="--step")
-    told = described(fmu)
-    made_by = told.description.generationTool or "an unknown tool"
-    if not trusted(fmu):
-        if not trust:
-            raise FmuError(
-                f"{fmu}: was not made by gearheat on this machine (but by {made_by}), and playing it runs native code"
-                " of it with your rights. Add --trust if you trust its maker."
-            )
-        note(f"{fmu}: running native code of {made_by}")
-    with Player(told) as player:
-        schedule = read_duty(duty, told.quantities("input"))
-        start = _start(told, assignments)
-        first = start | {name: float(values[0]) for name, values in schedule.values.items()}
-        start = _at_room(told, first) | start
-        inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
-        played = player.run(inputs, schedule.stop, dt, begin=schedule.start, start=start)
-    units = {name: q.unit for name, q in told.quantities("input", "output").items()}
-    columns = {name: played.values[:, k] for k, name in enumerate(played.names)}
-    write(out, series(played.time, columns, units))
-    _plot(plot, f"{fmu.stem}, {duty.stem}", played.time, columns, units)
-    found = {
-        "schema": "gearheat.play/1",
-        "fmu": str(fmu),
-        "out": str(out),
-        "plot": plot and str(plot),
-        **_summary(played.time, columns, units),
-    }
-    answer(found, json, lambda: _print(found))
-
-
-def _print(found: Mapping[str, Any]) -> None:
-    say(f"{found['out']}: {found['rows']} rows to {found['stop_s']:g} s")
-
-
-def _at_room(told: Described, first: Mapping[str, float]) -> dict[str, float]:
-    """Start temperatures of an FMU of gearheat that are its room's, where the run gives the room another one.
-
-    Args:
-        told: description of the FMU
-        first: what the run sets, and the first value of what it gives
-    """
-    if not (told.description.generationTool or "").startswith("gearheat"):
-        return {}
-    warm = [v for v in told.variables.values() if v.unit == "K" and v.start and settable(v)]
-    rooms = {float(v.start): first[v.name] for v in warm if v.causality == "input" and v.name in first}
-    states = [v for v in warm if v.causality in ("output", "local") and float(v.start) in rooms]
-    return {v.name: rooms[float(v.start)] for v in states}
-
-
-def _start(told: Described, assignments: Sequence[str]) -> dict[str, float]:
-    """Start values from texts NAME=VALUE, in SI. Raises ScenarioError with all problems at once."""
-    from ...model.errors import GearheatError, suggestion
-
-    known, shown, wholes = told.quantities("start"), told.quantities("output"), told.wholes()
-    values: dict[str, float] = {}
-    problems: list[str] = []
-    for text in assignments:
-        name, _, written = (part.strip() for part in text.partition("="))
-        try:
-            if name in wholes:
-                values[name] = _whole(name, written, wholes[name])
-            elif name in known:
-                values[name] = to_si(written, known[name].unit, name=name)
-            else:
-                every = [*known, *wholes]
-                why = f" It is calculated: {shown[name].doc}." if name in shown else suggestion(name, every)
-                problems.append(f'{told.path.name}: "{name}" cannot be set.{why}')
-        except GearheatError as error:
-            problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
-    return values
-
-
-def _whole(name: str, written: str, items: Mapping[str, int]) -> int:
-    """A whole number, or that of an item by its name."""
-    if written in items:
-        return items[written]
-    if items:
-        raise ScenarioError(f'{name} = "{written}" is not known. Choose one of: {", ".join(items)}.')
-    try:
-        return int(written)
-    except ValueError:
-        raise ScenarioError(f'{name} = "{written}" is no whole number.') from None
-
-
-def _summary(time: np.ndarray, columns: Any, units: Any) -> dict[str, Any]:
-    """How long a time series is, and where it ends, in the units shown to a person."""
-    return {
-        "rows": len(time),
-        "stop_s": float(time[-1]),
-        "final": {name: from_si(float(column[-1]), units[name]) for name, column in columns.items()},
-        "units": {name: shown(units[name]) for name in columns},
-    }

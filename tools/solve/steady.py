@@ -1,70 +1,177 @@
-"""The command `steady`: one operating point, and what other commands tell of one."""
+"""Steady states: one operating point of a rig at rest with its surroundings."""
 
 from __future__ import annotations
 
-from collections.abc import Container, Mapping, Sequence
-from pathlib import Path
-from typing import Any
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from ...model.core.declare import Port, State, declared
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
 from ...model.machines.spec import assemble
 from ...model.run.result import Result
-from ...model.run.steady import steady
-from ...model.units import from_si, shown
-from ...scenarios.load import load
+from ...model.run.steady import steady as solve
+from ...model.units import from_si, in_unit, shown
 from ...scenarios.scenario import Scenario
-from ..show.console import answer, note, plottable, say, table
+from ..show.display import Display
 from ..show.heat_paths import heat_flows, heat_paths
+from .rig import RigLike, Settings, scenario_of
 from .settings import adjusted, flat_of
-from .unchecked import print_unchecked, unchecked
+from .unchecked import unchecked
 
-#: Words of a table of values.
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from ..show.plotting import Picture
+
+#: Columns of a table of values.
 HEAD = ("name", "value", "unit", "meaning")
 
 
-def told(scenario: Scenario) -> list[str]:
+@dataclass(frozen=True, eq=False, repr=False)
+class SteadyState(Display):
+    """A rig at rest with its surroundings.
+
+    Attributes:
+        scenario: the rig as set
+        flat: its model
+        result: states, inputs and outputs in SI, with the power balance and the laws used
+    """
+
+    scenario: Scenario
+    flat: FlatModel
+    result: Result
+
+    def __getitem__(self, name: str) -> float:
+        """Value of a state, input or output in SI. Raises KeyError with suggestions for an unknown name."""
+        return float(self.result[name][0])
+
+    def to(self, name: str, unit: str) -> float:
+        """A value in a unit.
+
+        Args:
+            name: path, such as "oil.T"
+            unit: such as "degC"
+
+        Raises:
+            ScenarioError: the unit does not fit
+        """
+        return in_unit(self[name], unit)
+
+    def losses(self) -> dict[str, float]:
+        """Loss power of each part that has one [W]."""
+        named = {name: name.rpartition(".") for name in self.result.columns}
+        meters = self.scenario.spec.of_type("Efficiency")
+        return {part: self[name] for name, (part, _, key) in named.items() if key == "P_loss" and part not in meters}
+
+    @property
+    def title(self) -> str:
+        """The rig and what is shown of it."""
+        return f"{self.scenario.name}: steady state"
+
+    @property
+    def first(self) -> list[str]:
+        """What a first answer holds."""
+        return first_of(self.scenario, self.flat, self.result.columns)
+
+    def rows(self, names: Sequence[str]) -> list[tuple[str, float, str, str]]:
+        """Rows of a table under `HEAD`.
+
+        Args:
+            names: the values in it
+        """
+        units = self.result.units
+        return [(n, from_si(self[n], units[n]), shown(units[n]), self.flat.quantity(n).doc) for n in names]
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """The first answer."""
+        return HEAD, self.rows(self.first)
+
+    def as_dict(self) -> dict[str, Any]:
+        """Values by path in the units shown to a person, and how far they can be trusted."""
+        return {
+            "schema": "gearheat.steady/1",
+            "rig": self.scenario.name,
+            "plot": None,
+            **point_of(self.flat, self.result),
+            "unchecked": unchecked(self.scenario, self.flat),
+        }
+
+    def heat(self) -> Picture:
+        """Where the heat comes from and where it goes, as a Sankey diagram."""
+        from ..show.sankey import heat_picture
+
+        assembly = assemble(self.scenario.spec)
+        with_flows = flatten(assembly, flows=heat_flows(assembly))
+        guess = {q.name: self[q.name] for q in self.flat.states}
+        there = solve(with_flows, conditions(self.scenario, with_flows), guess=guess)
+        values = {name: float(column[0]) for name, column in there.columns.items()}
+        return heat_picture(self.scenario.name, heat_paths(assembly, values), values)
+
+    def picture(self) -> str:
+        """The Sankey diagram as SVG."""
+        from ..show.drawing import svg
+
+        return svg(self.heat().figure)
+
+    def plot(self, axes: Axes | None = None) -> Axes:
+        """Draw the losses of the parts as bars.
+
+        Args:
+            axes: where to draw; new ones if None
+        """
+        from ..show.plotting import axes_or_new
+
+        panel, losses = axes_or_new(axes), self.losses()
+        panel.barh(list(losses), list(losses.values()))
+        panel.invert_yaxis()
+        panel.set(title=self.title, xlabel="loss [W]")
+        return panel
+
+
+def steady(rig: RigLike, set: Settings = ()) -> SteadyState:
+    """Temperatures and losses of a rig at rest with its surroundings.
+
+    Args:
+        rig: name, file or rig
+        set: values by name: texts with units, quantities of pint, or numbers in SI
+
+    Raises:
+        ScenarioError: all that is wrong with the rig or with what is set
+        SolveError: there is no steady state
+
+    Example:
+        >>> import gearheat as gh
+        >>> hot = gh.steady("planetary", {"room.T": "35 degC"})
+        >>> hot.to("oil.T", "degC") > 80
+        True
+    """
+    scenario = adjusted(scenario_of(rig), set)
+    flat = flat_of(scenario)
+    return SteadyState(scenario, flat, solve(flat, conditions(scenario, flat)))
+
+
+def first_of(scenario: Scenario, flat: FlatModel, values: Iterable[str]) -> list[str]:
+    """What a first answer holds of a point: states, what is given, shafts, losses, heat to rooms, efficiencies.
+
+    Args:
+        scenario: the rig as set
+        flat: its model
+        values: all names, in their order
+    """
+    names = {q.name for q in flat.states} | {*scenario.operating_point} | scenario.shaft_paths()
+    names |= {f"{room}.Q_flow" for room in scenario.spec.of_type("Room")}
+    names |= {q.name for q in flat.outputs if q.name.rpartition(".")[2].startswith(("P_loss", "eta"))}
+    return [name for name in values if name in names]
+
+
+def leading_outputs(scenario: Scenario) -> list[str]:
     """What a picture shows of a rig: the temperature of its oil, or of its first body; losses and efficiencies."""
     warm = [p for p in scenario.spec.parts if "T" in declared(scenario.spec.types[p.type], State)]
     warm.sort(key=lambda p: "lubricant" not in declared(scenario.spec.types[p.type], Port))
     meters = scenario.spec.of_type("Efficiency")
     return [*(f"{p.name}.T" for p in warm[:1]), *(f"{name}.{key}" for name in meters for key in ("P_loss", "eta"))]
-
-
-def steady_command(
-    rig: str, assignments: Sequence[str], json: str | None, *, plot: Path | None = None, everything: bool = False
-) -> None:
-    """Temperatures and losses of a rig at rest with its surroundings."""
-    plottable(plot)
-    scenario = adjusted(load(rig), assignments)
-    flat = flat_of(scenario)
-    result = steady(flat, conditions(scenario, flat))
-    found = {
-        "schema": "gearheat.steady/1",
-        "rig": scenario.name,
-        "plot": plot and str(plot),
-        **point_of(flat, result),
-        "unchecked": unchecked(scenario, flat),
-    }
-    if plot is not None:
-        _plot_heat(scenario, flat, result, plot)
-    first = None if everything else first_of(scenario, flat)
-    answer(found, json, lambda: print_point(f"{scenario.name}: steady state", flat, found, first))
-
-
-def _plot_heat(scenario: Scenario, flat: FlatModel, result: Result, plot: Path) -> None:
-    """Draw where the heat of a steady state comes from and where it goes."""
-    from ..show.plotting import plotted
-    from ..show.sankey import heat_picture
-
-    assembly = assemble(scenario.spec)
-    told = flatten(assembly, flows=heat_flows(assembly))
-    guess = {q.name: float(result[q.name][0]) for q in flat.states}
-    there = steady(told, conditions(scenario, told), guess=guess)
-    values = {name: float(column[0]) for name, column in there.columns.items()}
-    plotted(plot, heat_picture(scenario.name, heat_paths(assembly, values), values))
-    note(f"wrote {plot}")
 
 
 def conditions(scenario: Scenario, flat: FlatModel) -> dict[str, float]:
@@ -98,37 +205,3 @@ def outside_of(result: Result) -> list[dict[str, Any]]:
         }
         for o in result.outside
     ]
-
-
-def first_of(scenario: Scenario, flat: FlatModel) -> set[str]:
-    """What a first answer holds of a point: states, what is given, shafts, losses, heat to rooms, efficiencies."""
-    told = {q.name for q in flat.states} | set(scenario.operating_point) | scenario.shaft_paths()
-    told |= {f"{room}.Q_flow" for room in scenario.spec.of_type("Room")}
-    return told | {q.name for q in flat.outputs if q.name.rpartition(".")[2].startswith(("P_loss", "eta"))}
-
-
-def print_point(title: str, flat: FlatModel, found: Mapping[str, Any], first: Container[str] | None = None) -> None:
-    """Print a steady state.
-
-    Args:
-        title: above it
-        flat: the model
-        found: the state, as `point_of` gives it
-        first: the values that are printed; all if None
-    """
-    told = [n for n in found["values"] if first is None or n in first]
-    table(title, HEAD, [[n, found["values"][n], found["units"][n], flat.quantity(n).doc] for n in told])
-    if more := len(found["values"]) - len(told):
-        say(f"{more} more values with --all")
-    say(f"power balance closed within {found['energy_residual']:.1e} of the throughput")
-    tell_outside(found["outside"])
-    print_unchecked(found["unchecked"])
-
-
-def tell_outside(outside: Sequence[Mapping[str, Any]]) -> None:
-    """Print a line for each law that was used outside its range, as `outside_of` lists them."""
-    for o in outside:
-        (least, most), (low, high) = o["met"], o["range"]
-        met = f"{least:.4g}" if least == most else f"{least:.4g} to {most:.4g}"
-        there = f": {o['regime']}" if o["regime"] else ""
-        say(f"outside its range: {o['part']}: {o['law']}, {o['argument']} = {met} (valid {low:g} to {high:g}){there}")

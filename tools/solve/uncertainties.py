@@ -14,7 +14,7 @@ from ...model.errors import ScenarioError
 from ...model.machines.roles import Roles
 from ...scenarios.scenario import Scenario
 from .sampling import Axis
-from .steady import told
+from .steady import leading_outputs
 
 #: Stands on the command line for all uncertain parameters of a rig.
 UNCERTAINTY = "uncertainty"
@@ -102,5 +102,5 @@ def uncertain(scenario: Scenario, flat: FlatModel) -> Uncertain:
     Raises:
         ScenarioError: nothing is uncertain
     """
-    shown = [q.name for q in flat.states] + told(scenario)
+    shown = [q.name for q in flat.states] + leading_outputs(scenario)
     return Uncertain(reasons(scenario, flat), tuple(dict.fromkeys(name for name in shown if name in flat.index)))

@@ -18,7 +18,7 @@ from ...scenarios.load import load
 from ...scenarios.published import Row, read_published
 from ...scenarios.scenario import Scenario
 from ...scenarios.shipped import list_rigs
-from ..describe.rig import errata_of
+from ..describe.description import errata_of
 from ..show.console import answer, file_of, writable, write
 from ..show.pages import page
 from .model_values import RigValues, single

@@ -1,0 +1,212 @@
+"""What a rig consists of, how it is driven, and which parameters matter most."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from ...model.core.declare import Choice, Parameter, declared
+from ...model.core.flat import FlatModel, Quantity
+from ...model.errors import SolveError
+from ...model.run.result import Result
+from ...model.run.steady import steady
+from ...model.sources import LawInfo, sources
+from ...model.units import from_si, in_unit, shown, text
+from ...scenarios.scenario import Scenario
+from ..show.display import Display
+from ..solve.rig import RigLike, scenario_of
+from ..solve.settings import flat_of
+from ..solve.steady import conditions, leading_outputs, outside_of
+from ..solve.unchecked import unchecked
+from .overview import effects_table
+
+#: SI units of what everyone reads in degC and rpm, however it is written.
+TEMPERATURE_AND_SPEED = ("K", "rad/s")
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Description(Display):
+    """What a rig is.
+
+    Attributes:
+        scenario: the rig
+        flat: its model
+        rest: its steady state at the operating point, where there is one
+        found: the JSON object
+    """
+
+    scenario: Scenario
+    flat: FlatModel
+    rest: Result | None
+    found: dict[str, Any]
+
+    @property
+    def title(self) -> str:
+        """Name and description."""
+        return f"{self.scenario.name}: {self.scenario.doc}"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Parameters in the units of the file."""
+        head = ("name", "value", "unit", "doc", "source")
+        lines = [{**p, **(p["written"] or {})} for p in self.found["parameters"]]
+        return head, [[line[key] for key in head] for line in lines]
+
+    def as_dict(self) -> dict[str, Any]:
+        """Everything the rig file says, parameters in the units of the file and in those of all."""
+        return self.found
+
+    def effects(self) -> tuple[str, Sequence[str], list[list[Any]]] | None:
+        """Title, head and rows of the parameters that matter most; None without a steady state or an effect."""
+        if self.rest is None:
+            return None
+        return effects_table(self.scenario, self.flat, self.found["parameters"], self.rest)
+
+    @property
+    def main_outputs(self) -> list[str]:
+        """Oil temperature, losses, efficiencies and the heat to the rooms, as far as they are no states."""
+        rooms = [f"{name}.Q_flow" for name in self.scenario.spec.of_type("Room")]
+        states = {q.name for q in self.flat.states}
+        names = (*leading_outputs(self.scenario), *rooms)
+        return [name for name in names if name in self.flat.index and name not in states]
+
+
+def show(rig: RigLike) -> Description:
+    """What a rig is made of: parts, parameters with sources, inputs, states, outputs, laws, errata.
+
+    Args:
+        rig: name, file or rig
+
+    Raises:
+        ScenarioError: all that is wrong with the rig
+
+    Example:
+        >>> import gearheat as gh
+        >>> len(gh.show("planetary").found["errata"]) > 0
+        True
+    """
+    scenario = scenario_of(rig)
+    flat, types = flat_of(scenario), scenario.spec.types
+    rest, no_steady_state = _at_the_operating_point(scenario, flat)
+    found = {
+        "schema": "gearheat.show/1",
+        "rig": scenario.name,
+        "doc": scenario.doc,
+        "reproduces": scenario.reproduces,
+        "kind": scenario.kind,
+        "parts": [{"name": p.name, "type": p.type, "doc": _doc(types[p.type])} for p in scenario.spec.parts],
+        "parameters": [_parameter(scenario, flat, q) for q in every_parameter(scenario, flat)],
+        "choices": choices(scenario),
+        "inputs": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.inputs],
+        "states": [_line(q) for q in flat.states],
+        "outputs": [_output(q) for q in flat.outputs if q.name not in flat.derived],
+        "sensors": dict(scenario.sensors),
+        "laws": laws(flat),
+        "outside": outside_of(rest) if rest is not None else [],
+        "no_steady_state": no_steady_state,
+        "unchecked": unchecked(scenario, flat),
+        "errata": errata_of(scenario),
+    }
+    return Description(scenario, flat, rest, found)
+
+
+def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> tuple[Result | None, list[str]]:
+    """Where the rig is at rest with its surroundings, or why there is no such point."""
+    try:
+        return steady(flat, conditions(scenario, flat)), []
+    except SolveError as error:
+        return None, list(error.problems)
+
+
+def source_of(scenario: Scenario, path: str) -> str:
+    """Where the value of a path is from: a source, or what the part itself says where no file gives it."""
+    if path in scenario.value_sources:
+        return scenario.value_sources[path]
+    part, _, key = path.rpartition(".")
+    parameter = declared(scenario.spec.types[scenario.spec.part(part).type], Parameter).get(key)
+    return "follows from the other values" if parameter is not None and parameter.derived else "default"
+
+
+def parameters(scenario: Scenario, flat: FlatModel) -> tuple[tuple[str, str, str], ...]:
+    """Name, value with unit and source of every parameter."""
+    every = every_parameter(scenario, flat)
+    return tuple((q.name, text(q.start, q.unit), source_of(scenario, q.name)) for q in every)
+
+
+def every_parameter(scenario: Scenario, flat: FlatModel) -> list[Quantity]:
+    """All parameters, those that follow from others among them, part by part."""
+    order = {part.name: i for i, part in enumerate(scenario.spec.parts)}
+    every = (*flat.parameters, *(flat.quantity(name) for name in flat.derived))
+    return sorted(every, key=lambda q: order[q.name.rpartition(".")[0]])
+
+
+def choices(scenario: Scenario) -> list[dict[str, Any]]:
+    """The structural choices of all parts, with what is chosen."""
+    found = []
+    for part in scenario.spec.parts:
+        for key, choice in declared(scenario.spec.types[part.type], Choice).items():
+            value = part.values.get(key, choice.default)
+            value = str(value) if choice.also is not None and isinstance(value, choice.also) else value
+            found.append({"name": f"{part.name}.{key}", "value": value, "options": choice.options, "doc": choice.doc})
+    return found
+
+
+def cited(flat: FlatModel) -> tuple[LawInfo, ...]:
+    """The laws a model uses, each once."""
+    return tuple({(law.name, law.source, law.where): law for law in flat.laws}.values())
+
+
+def laws(flat: FlatModel) -> list[dict[str, Any]]:
+    """The laws a model uses with what they cite, and whether a golden row from print verifies them."""
+    known = sources()
+    return [
+        {
+            "law": law.name,
+            "source": known[law.source].cited,
+            "where": law.where,
+            "valid": law.valid,
+            "verified": law.verified,
+        }
+        for law in cited(flat)
+    ]
+
+
+def errata_of(scenario: Scenario) -> list[dict[str, str]]:
+    """The places where the rig's sources are wrong."""
+    return [
+        {"place": e.place, "says": e.says, "should_be": e.should_be, "evidence": e.evidence} for e in scenario.errata
+    ]
+
+
+def _line(q: Quantity) -> dict[str, Any]:
+    return {"name": q.name, "value": from_si(q.start, q.unit), "unit": shown(q.unit), "doc": q.doc}
+
+
+def _output(q: Quantity) -> dict[str, Any]:
+    return {"name": q.name, "unit": shown(q.unit), "doc": q.doc}
+
+
+def _kind(scenario: Scenario, flat: FlatModel, path: str) -> str:
+    """Whether a value is given, derived from others, or a default of the numerics."""
+    if path in flat.derived:
+        return "derived"
+    part, _, key = path.rpartition(".")
+    return "given" if key in scenario.spec.part(part).values else "default"
+
+
+def _parameter(scenario: Scenario, flat: FlatModel, q: Quantity) -> dict[str, Any]:
+    """A parameter with its standard uncertainty, in the unit shown, where the rig states one."""
+    sd = scenario.standard_uncertainties.get(q.name)
+    known = sd if sd is None or q.unit == "K" else from_si(sd, q.unit)  # degC and K have the same differences
+    kind, source = _kind(scenario, flat, q.name), source_of(scenario, q.name)
+    own = q.name.rpartition(".")[0] + "."
+    if follows := ", ".join(path.removeprefix(own) for path in flat.derived.get(q.name, ())):
+        source = f"follows from {follows}"
+    unit = scenario.units.get(q.name, "") if q.unit not in TEMPERATURE_AND_SPEED else ""
+    written = [in_unit(v, unit) if unit and v is not None else v for v in (q.start, sd)]
+    as_written = {"value": written[0], "uncertainty": written[1], "unit": unit} if unit else None
+    return {**_line(q), "kind": kind, "uncertainty": known, "source": source, "written": as_written}
+
+
+def _doc(cls: type) -> str:
+    return (cls.__doc__ or "").strip().splitlines()[0]

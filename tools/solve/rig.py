@@ -1,0 +1,67 @@
+"""Rigs as functions take them: a name, a file, a scenario, or anything that holds one; and what is set of them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+from typing import Any, Protocol, runtime_checkable
+
+from ...model.core.flat import Quantity
+from ...scenarios.load import load
+from ...scenarios.scenario import Scenario
+
+
+@runtime_checkable
+class HoldsScenario(Protocol):
+    """What stands for a rig in Python."""
+
+    @property
+    def scenario(self) -> Scenario:
+        """The rig with its values."""
+
+
+#: A name of a shipped rig, a rig file, or a rig in Python.
+RigLike = str | Path | Scenario | HoldsScenario
+#: What a user sets: name -> text with a unit, quantity of pint, or number in SI; or texts "NAME=VALUE".
+Settings = Mapping[str, Any] | Sequence[str]
+
+
+def scenario_of(rig: RigLike) -> Scenario:
+    """The scenario of a rig.
+
+    Args:
+        rig: its name, its file, or the rig itself
+
+    Raises:
+        ScenarioError: everything wrong with the file at once
+    """
+    if isinstance(rig, Scenario):
+        return rig
+    return load(rig) if isinstance(rig, str | Path) else rig.scenario
+
+
+def written(value: Any, quantity: Quantity | None = None) -> str:
+    """A value as the command line has it.
+
+    Args:
+        value: text, number in SI, or quantity of pint
+        quantity: what it is of, None for a choice or an entry of a catalogue
+    """
+    if isinstance(value, str | bool):
+        return str(value)
+    if (number := getattr(value, "magnitude", None)) is not None:
+        return f"{float(number)!r} {value.units:~C}"
+    unit = "1" if quantity is None else quantity.unit
+    return repr(float(value)) if unit == "1" else f"{float(value)!r} {unit}"
+
+
+def assignments_of(given: Settings, known: Mapping[str, Quantity]) -> list[str]:
+    """What is set as texts "NAME=VALUE".
+
+    Args:
+        given: by name, or such texts
+        known: the quantity of each name that may be set
+    """
+    if not isinstance(given, Mapping):
+        return list(given)
+    return [f"{name}={written(value, known.get(name))}" for name, value in given.items()]
