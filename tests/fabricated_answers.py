@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,10 +14,10 @@ from challenge.printing import show as show_challenge
 from challenge.scoring import Outcome, report
 from gearheat.diagnose.infer.replay import HOURS, Replayed
 from gearheat.tools.bench import bench
+from gearheat.tools.cli import fmu as exporting
+from gearheat.tools.cli.solve import print_end
 from gearheat.tools.compare import calibrate, replay, run
-from gearheat.tools.export import fmu as exporting
 from gearheat.tools.films import film
-from gearheat.tools.solve import simulate as transients
 
 SENSORS = ("T_oil", "T_bearing_high_speed_rotor_side", "T_bearing_high_speed_generator_side")
 
@@ -60,7 +61,7 @@ def exported() -> None:
     names = {"inputs": ["carrier.w"] * 4, "outputs": ["oil.T"] * 61, "parameters": ["cooling.A"] * 143}
     extras = [f"beside/{name}" for name in ("planetary.ssv", "planetary_ref.csv", "planetary_in.csv")]
     found = {"fmu": "planetary.fmu", "platforms": ["x86_64-linux", "x86_64-windows"], "extras": extras}
-    exporting._print({**found, **names, "deviations": [], "unchecked": []})
+    exporting._print_fmu({**found, **names, "deviations": [], "unchecked": []})
 
 
 def challenged() -> None:
@@ -119,7 +120,7 @@ ANSWERS: dict[str, Callable[[], None]] = {
     "replay": replayed,
     "film": film_of_a_part,
     "export": exported,
-    "play": partial(transients._print, {"out": "played.csv", "rows": 241, "stop_s": 14400.0}),
+    "play": partial(print_end, Path("played.csv"), {"rows": 241, "stop_s": 14400.0}),
     "challenge": challenged,
     "bench": benched,
     "bench_fmu": benched_fmu,

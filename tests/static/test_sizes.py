@@ -1,4 +1,4 @@
-"""Modules stay below 400 lines, functions below 60, law bodies below 13."""
+"""Modules stay below 400 lines, what functions do below 60, law bodies below 13; docstrings and options do not count."""
 
 import ast
 from collections.abc import Iterator
@@ -12,10 +12,10 @@ def functions(path: Path) -> Iterator[ast.FunctionDef]:
     return (node for node in nodes_of(path) if isinstance(node, ast.FunctionDef))
 
 
-def law_body(law: ast.FunctionDef) -> int:
-    """Lines of a law without its docstring."""
-    body = [n for n in law.body if not (isinstance(n, ast.Expr) and isinstance(n.value, ast.Constant))]
-    return body[-1].end_lineno - body[0].lineno + 1
+def body_lines(function: ast.FunctionDef) -> int:
+    """Lines of what a function does, without its arguments and its docstring."""
+    body = [n for n in function.body if not (isinstance(n, ast.Expr) and isinstance(n.value, ast.Constant))]
+    return body[-1].end_lineno - body[0].lineno + 1 if body else 0
 
 
 def test_no_module_is_longer_than_400_lines() -> None:
@@ -28,14 +28,14 @@ def test_no_function_is_longer_than_60_lines() -> None:
         f"{name_of(path)}: {function.name} is too long"
         for path in modules()
         for function in functions(path)
-        if function.end_lineno - function.lineno >= 60
+        if body_lines(function) >= 60
     ]
 
 
 def test_no_body_of_a_law_is_longer_than_12_lines() -> None:
     assert not [
-        f"{name_of(path)}: the body of law {function.name} has {law_body(function)} lines"
+        f"{name_of(path)}: the body of law {function.name} has {body_lines(function)} lines"
         for path in modules("model/laws")
         for function in functions(path)
-        if any("law" in ast.dump(d) for d in function.decorator_list) and law_body(function) > 12
+        if any("law" in ast.dump(d) for d in function.decorator_list) and body_lines(function) > 12
     ]

@@ -11,60 +11,52 @@ import re
 from collections.abc import Callable
 from contextlib import redirect_stdout
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import fabricated_findings
 import pytest
 from fabricated_answers import ANSWERS
 from gearheat.diagnose.report.screen import text
-from gearheat.tools.build import new
-from gearheat.tools.cli import cards
+from gearheat.tools.cli.rigs import schema as gearheat_schema
 from gearheat.tools.compare import losses, summary
 from gearheat.tools.compare.errors import compare
 from gearheat.tools.compare.rivals import rivals
-from gearheat.tools.describe import listing, parts
-from gearheat.tools.describe import rig as describe
 from gearheat.tools.rating import command as reference
 from gearheat.tools.show import console
 from gearheat.tools.show.console import cell, table
-from gearheat.tools.solve import design as designing
-from gearheat.tools.solve import maps, sweep
-from gearheat.tools.solve import simulate as transients
-from gearheat.tools.solve import steady as points
 from gearheat.tools.verify import verify
 
 FOLDER = Path(__file__).parent / "snapshots"
 WIDTHS = (80, 120)
 DUTY = "time [min],room.T [degC]\n0,20\n60,20\n"
 RANGES = ("--speed", "900..1450 rpm", "--torque", "-600..-300 N.m", "--grid", "2x2")
-#: Name of the file, module that answers, arguments.
-COMMANDS: dict[str, tuple[ModuleType, tuple[str, ...]]] = {
-    "list": (listing, ("list",)),
-    "parts": (parts, ("parts",)),
-    "parts_type": (parts, ("parts", "LipSeal")),
-    "show": (describe, ("show", "harmonic_printed")),
-    "show_all": (describe, ("show", "harmonic_printed", "--all")),
-    "show_errata": (describe, ("show", "harmonic_printed", "--errata")),
-    "new": (new, ("new", "mine", "--stages", "helical,helical", "--ratio", "12.56", "--power", "7.5 kW",
-                  "--speed", "1450 rpm")),
-    "steady": (points, ("steady", "helical_two_stage")),
-    "steady_all": (points, ("steady", "harmonic", "--all")),
-    "steady_outside": (points, ("steady", "cycloidal")),
-    "design": (designing, ("design", "helical_two_stage", "--free", "cooling.A", "--target", "oil.T=45 degC")),
-    "design_limit": (designing, ("design", "planetary", "--free", "cooling.A", "--free", "foot.G",
-                                 "--target", "oil.T<75 degC")),
-    "design_among": (designing, ("design", "helical_two_stage", "--target", "oil.T<39.5 degC",
-                                 "--among", "oil=ISO VG 220 mineral,ISO VG 220 PAO,MINR")),
-    "simulate": (transients, ("simulate", "helical_two_stage", "--duty", "duty.csv", "-o", "out.csv")),
-    "rating": (maps, ("rating", "helical_two_stage", "--limit", "oil.T=80 degC", "--grid", "2x2")),
-    "map": (maps, ("map", "helical_two_stage", "-o", "map.csv", *RANGES)),
-    "sweep": (sweep, ("sweep", "helical_two_stage", "--vary", "room.T=10..30 degC", "--grid", "3", "-o", "out.csv",
-                      "--output", "oil.T,efficiency.eta,stage_1.P_loss")),
-    "card": (cards.console, ("card", "fzg_four_square")),
-    "losses": (losses, ("losses", "helical_two_stage", "--temperature", "model")),
-    "losses_method": (reference, ("losses", "helical_two_stage", "--method", "iso14179-1")),
-    "verify": (verify, ("verify", "fzg_four_square")),
+#: Name of the file -> command.
+COMMANDS: dict[str, tuple[str, ...]] = {
+    "list": ("list",),
+    "parts": ("parts",),
+    "parts_type": ("parts", "LipSeal"),
+    "show": ("show", "harmonic_printed"),
+    "show_all": ("show", "harmonic_printed", "--all"),
+    "show_errata": ("show", "harmonic_printed", "--errata"),
+    "new": ("new", "mine", "--stages", "helical,helical", "--ratio", "12.56", "--power", "7.5 kW",
+                  "--speed", "1450 rpm"),
+    "steady": ("steady", "helical_two_stage"),
+    "steady_all": ("steady", "harmonic", "--all"),
+    "steady_outside": ("steady", "cycloidal"),
+    "design": ("design", "helical_two_stage", "--free", "cooling.A", "--target", "oil.T=45 degC"),
+    "design_limit": ("design", "planetary", "--free", "cooling.A", "--free", "foot.G",
+                                 "--target", "oil.T<75 degC"),
+    "design_among": ("design", "helical_two_stage", "--target", "oil.T<39.5 degC",
+                                 "--among", "oil=ISO VG 220 mineral,ISO VG 220 PAO,MINR"),
+    "simulate": ("simulate", "helical_two_stage", "--duty", "duty.csv", "-o", "out.csv"),
+    "rating": ("rating", "helical_two_stage", "--limit", "oil.T=80 degC", "--grid", "2x2"),
+    "map": ("map", "helical_two_stage", "-o", "map.csv", *RANGES),
+    "sweep": ("sweep", "helical_two_stage", "--vary", "room.T=10..30 degC", "--grid", "3", "-o", "out.csv",
+                      "--output", "oil.T,efficiency.eta,stage_1.P_loss"),
+    "card": ("card", "fzg_four_square"),
+    "losses": ("losses", "helical_two_stage", "--temperature", "model"),
+    "losses_method": ("losses", "helical_two_stage", "--method", "iso14179-1"),
+    "verify": ("verify", "fzg_four_square"),
 }  # fmt: skip
 #: What is round-off or depends on the machine, and what stands in its place.
 MASKED = ((r"(closed within )\S+", r"\1~0"), (r"( after )[\d.]+ s$", r"\1~ s"))
@@ -112,12 +104,12 @@ def same_elsewhere(value: float) -> bool:
 
 @pytest.mark.parametrize("name", COMMANDS)
 def test_commands_print_what_they_did(gearheat, at_both, tmp_path, monkeypatch, name):
-    module, arguments = COMMANDS[name]
     monkeypatch.chdir(tmp_path)
     Path("duty.csv").write_text(DUTY, encoding="utf-8")
     answered = []
-    monkeypatch.setattr(module, "answer", lambda payload, to, human: answered.append(human))
-    done = gearheat(*arguments)
+    for module in (console, losses, reference, verify):
+        monkeypatch.setattr(module, "answer", lambda payload, to, human: answered.append(human))
+    done = gearheat(*COMMANDS[name])
     assert done.code == 0, done.err
     at_both(name, answered[0])
 
@@ -129,7 +121,7 @@ def test_costly_commands_print_a_made_up_result_as_they_did(at_both, name):
 
 def test_schema_says_what_to_do_with_it(at_both, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    at_both("schema", lambda: parts.schema_command(Path("rig.json")))
+    at_both("schema", lambda: gearheat_schema(out=Path("rig.json")))
 
 
 def test_a_comparison_prints_what_it_did(at_both, rows):

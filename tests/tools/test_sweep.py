@@ -13,7 +13,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gearheat.model.errors import DataError, ScenarioError
-from gearheat.tools.solve import sampling, sweep, sweep_rows
+from gearheat.tools.solve import sampling, sweep, sweep_plan, sweep_rows
 from gearheat.tools.solve.sampling import Axis
 from gearheat.tools.solve.sweep_file import Store
 
@@ -32,7 +32,7 @@ def column(rows: list[dict[str, str]], name: str) -> np.ndarray:
 
 @pytest.fixture(autouse=True)
 def small_blocks(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(sweep, "BLOCKS", {"steady": 16, "warmup": 4})
+    monkeypatch.setattr(sweep_plan, "BLOCKS", {"steady": 16, "warmup": 4})
 
 
 # --- samples ------------------------------------------------------------------------------------------------------
@@ -200,10 +200,10 @@ def test_a_warm_up_of_given_length_shows_its_end(gearheat, tmp_path) -> None:
 
 KILLED = """
 import os, signal, sys
-from gearheat.tools.solve import sweep, sweep_rows
+from gearheat.tools.solve import sweep_plan, sweep_rows
 from gearheat.tools.cli.app import app
 
-sweep.BLOCKS["steady"] = 16
+sweep_plan.BLOCKS["steady"] = 16
 solve, calls = sweep_rows.Job.rows, []
 
 def rows(self, values, threads=0):

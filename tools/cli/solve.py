@@ -219,13 +219,19 @@ def print_run(run: TimeSeries, out: Path, plot: Path | None, json: str | None) -
     """
     run.save(out)
     found = _drawn({**run.as_dict(), "out": str(out)}, plot, run.courses)
+    console.answer(found, json, lambda: print_end(out, found))
 
-    def human() -> None:
-        console.say(f"{out}: {found['rows']} rows to {found['stop_s']:g} s")
-        print_outside(found.get("outside", ()))
-        print_unchecked(found.get("unchecked", ()))
 
-    console.answer(found, json, human)
+def print_end(out: Path, found: Mapping[str, Any]) -> None:
+    """Print where a time series ends.
+
+    Args:
+        out: its file
+        found: its JSON object
+    """
+    console.say(f"{out}: {found['rows']} rows to {found['stop_s']:g} s")
+    print_outside(found.get("outside", ()))
+    print_unchecked(found.get("unchecked", ()))
 
 
 def _print_point(title: str, rows: Sequence[Sequence[Any]], found: Mapping[str, Any]) -> None:

@@ -22,7 +22,7 @@ from . import sampling
 from .rig import RigLike, Settings, assignments_of, scenario_of, written
 from .simulate import Duty, duty_file
 from .sweep_file import Column, Store, words, work_file, write_table
-from .sweep_plan import BLOCKS, Plan, Request, plan_sweep
+from .sweep_plan import Plan, Request, plan_sweep
 from .sweep_rows import TELLING, Block, clustered, local
 
 if TYPE_CHECKING:
@@ -194,8 +194,7 @@ def run_sweep(request: Request, folder: Path) -> Sweep:
     """
     plan = plan_sweep(request)
     out, blocks = request.out, plan.blocks
-    key = plan.job.key(plan.values, BLOCKS[plan.kind])
-    with Store(work_file(out or folder / "rows.csv"), key, len(plan.job.outputs) + len(TELLING)) as store:
+    with Store(work_file(out or folder / "rows.csv"), plan.key, len(plan.job.outputs) + len(TELLING)) as store:
         left = [k for k in range(len(blocks)) if k not in store.places]
         if len(left) < len(blocks):
             done = len(plan.values) - sum(blocks[k].stop - blocks[k].start for k in left)

@@ -92,6 +92,11 @@ class Plan:
         ]
 
     @property
+    def key(self) -> str:
+        """Hash of all that the rows depend on."""
+        return self.job.key(self.values, BLOCKS[self.kind])
+
+    @property
     def blocks(self) -> list[slice]:
         """The rows of each block."""
         size = BLOCKS[self.kind]

@@ -1,0 +1,208 @@
+"""`import gearheat`: what the README promises, in a new process where it must be, and results that show themselves."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+import typing
+from pathlib import Path
+
+import gearheat as gh
+import numpy as np
+import pytest
+from matplotlib.axes import Axes
+
+ROOT = Path(__file__).parents[2]
+DUTY = "time [min],carrier.w [rpm],carrier.tau [N.m],room.T [degC]\n0,150,2000,20\n60,150,2000,22\n"
+#: Longest import of the package, of the best of some tries [s].
+IMPORT_S = 0.1
+
+
+@pytest.fixture(scope="module")
+def rig() -> gh.Rig:
+    return gh.load("planetary")
+
+
+@pytest.fixture
+def duty(tmp_path: Path) -> Path:
+    (path := tmp_path / "duty.csv").write_text(DUTY, encoding="utf-8")
+    return path
+
+
+def test_it_takes_no_time_and_loads_nothing() -> None:
+    code = (
+        "import time, sys; began = time.perf_counter(); import gearheat; took = time.perf_counter() - began\n"
+        "print(took, sorted({'numpy', 'casadi', 'pint', 'typer', 'matplotlib'} & set(sys.modules)))"
+    )
+    runs = [subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True) for _ in range(3)]
+    took, loaded = zip(*(run.stdout.strip().split(" ", 1) for run in runs), strict=True)
+    assert min(map(float, took)) < IMPORT_S
+    assert set(loaded) == {"[]"}
+
+
+def test_without_assertions() -> None:
+    code = "import gearheat as gh; print(gh.steady(gh.load('planetary'))['oil.T'])"
+    done = subprocess.run([sys.executable, "-O", "-c", code], capture_output=True, text=True, check=True)
+    assert float(done.stdout) == gh.steady("planetary")["oil.T"]
+
+
+def test_every_public_name_is_there_and_typed() -> None:
+    assert set(dir(gh)) == set(gh.__all__) == gh.PUBLIC.keys()
+    tree = ast.parse((ROOT / "tools" / "api" / "__init__.py").read_text(encoding="utf-8"))
+    checked = next(n for n in tree.body if isinstance(n, ast.If))
+    typed = {a.asname or a.name for n in ast.walk(checked) if isinstance(n, ast.ImportFrom) for a in n.names}
+    assert (typed - set(gh.RENAMED.values())) | gh.RENAMED.keys() == gh.PUBLIC.keys()
+    for name in gh.PUBLIC:
+        public = getattr(gh, name)
+        assert public.__doc__, name
+        if callable(public) and not isinstance(public, type):
+            typing.get_type_hints(public, vars(sys.modules[public.__module__]))
+            assert "Example" in public.__doc__ or name in ("assemble", "rigs", "schema"), name
+    with pytest.raises(AttributeError, match="nothing_like_it"):
+        gh.nothing_like_it  # noqa: B018
+
+
+def test_a_steady_state_by_texts_numbers_and_quantities(rig: gh.Rig) -> None:
+    import pint
+
+    hot = gh.steady(rig, {"room.T": "35 degC"})
+    assert hot["oil.T"] == gh.steady(rig, {"room.T": 308.15})["oil.T"]
+    assert hot["oil.T"] == gh.steady(rig, {"room.T": pint.Quantity(35.0, "degC")})["oil.T"]
+    assert hot["oil.T"] == gh.steady("planetary", ["room.T=35 degC"])["oil.T"]
+    assert hot.to("oil.T", "degC") == pytest.approx(hot["oil.T"] - 273.15)
+    assert sum(hot.losses().values()) == pytest.approx(hot["efficiency.P_loss"])
+    assert isinstance(hot.plot(), Axes)
+
+
+def test_a_result_shows_itself(rig: gh.Rig) -> None:
+    hot = gh.steady(rig)
+    assert len(repr(hot).splitlines()) == 12 and "81.78" in repr(hot) and "degC" in repr(hot)
+    assert "<table>" in hot._repr_html_() and "<svg" in hot._repr_html_()
+
+
+def test_a_rig_changes_by_making_another(rig: gh.Rig) -> None:
+    larger = rig.with_({"cooling.A": "1 m2", "gear_set.power_flow": "ideal"})
+    assert (larger["cooling.A"], larger["gear_set.power_flow"]) == (1.0, "ideal")
+    assert (rig["cooling.A"], rig["gear_set.power_flow"]) == (0.42, "successive")
+    assert rig.parts["oil"] == "OilBath"
+    assert gh.steady(larger)["oil.T"] < gh.steady(rig)["oil.T"]
+    with pytest.raises(gh.GearheatError, match="cooling"):
+        rig["colling.A"]
+
+
+def test_a_rig_is_written_and_read(rig: gh.Rig, tmp_path: Path) -> None:
+    path = rig.with_({"cooling.A": "1 m2"}).save(tmp_path / "mine.toml")
+    assert gh.steady(path)["oil.T"] == pytest.approx(gh.steady(rig, {"cooling.A": "1 m2"})["oil.T"], rel=1e-12)
+
+
+def test_a_run_over_time(rig: gh.Rig, duty: Path, tmp_path: Path) -> None:
+    run = gh.simulate(rig, duty)
+    assert run.to("oil.T", "degC")[0] == pytest.approx(20.0)
+    assert isinstance(run.plot("oil.T", "wall.T"), Axes)
+    again = gh.TimeSeries.load(run.save(tmp_path / "run.csv"))
+    np.testing.assert_allclose(again["oil.T"], run["oil.T"], rtol=1e-8)
+    assert again.units["carrier.w"] == "rad/s"
+    np.testing.assert_allclose(again["carrier.w"], run["carrier.w"], rtol=1e-8)
+
+
+def test_frames_of_pandas_go_in_and_out(rig: gh.Rig, duty: Path) -> None:
+    pandas = pytest.importorskip("pandas")
+    run, by_file = gh.simulate(rig, pandas.read_csv(duty)), gh.simulate(rig, duty)
+    np.testing.assert_array_equal(run["oil.T"], by_file["oil.T"])
+    assert run.to_pandas()["oil.T [degC]"].iloc[0] == pytest.approx(20.0)
+    assert "oil.T" in set(gh.steady(rig).to_pandas()["name"])
+
+
+def test_a_package_that_is_not_there_is_named(rig: gh.Rig, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "pandas", None)
+    with pytest.raises(gh.GearheatError, match="pip install pandas"):
+        gh.steady(rig).to_pandas()
+
+
+def test_designs_sweeps_and_maps(rig: gh.Rig, tmp_path: Path) -> None:
+    small = gh.design(rig, free=["cooling.A"], target={"oil.T": "80 degC"})
+    assert small["oil.T"] == pytest.approx(353.15)
+    assert gh.steady(rig, {"cooling.A": small["cooling.A"]})["oil.T"] == pytest.approx(353.15)
+    rows = gh.sweep(rig, vary={"carrier.w": ("50 rpm", "250 rpm", 3)}, output=["oil.T"])
+    assert [float(v) for v in rows.rows[:, 0]] == pytest.approx(
+        [gh.steady(rig, {"carrier.w": f"{n} rpm"})["oil.T"] for n in (50, 150, 250)]
+    )
+    points = gh.map("helical_two_stage", grid="2x2")
+    assert len(points.save(tmp_path / "map.csv").read_text().splitlines()) == 5
+    assert gh.rating("helical_two_stage", {"oil.T": "95 degC"}, grid="2x2").as_dict()["limit"].startswith("oil.T")
+
+
+def test_an_fmu_is_written_and_played(rig: gh.Rig, duty: Path, tmp_path: Path) -> None:
+    fmu = gh.export(rig, tmp_path / "planetary.fmu", platform="host").path
+    played = gh.play(fmu, duty)
+    assert played["oil.T"][-1] == pytest.approx(gh.simulate(rig, duty)["oil.T"][-1], abs=1e-3)
+
+
+def test_a_part_of_ones_own_joins_a_rig(rig: gh.Rig) -> None:
+    from gearheat.model.core.component import Component, Equation, equation
+    from gearheat.model.core.declare import Parameter
+    from gearheat.model.parts import PARTS
+    from gearheat.model.parts.ports import HeatPort
+
+    class OilCooler(Component):
+        """Heat from the oil to water, in proportion to their difference."""
+
+        oil = HeatPort()
+        water = HeatPort()
+        G = Parameter("W/K", "conductance", at_least=0.0)
+
+        def equations(self) -> typing.Iterator[Equation]:
+            yield equation("heat leaves the oil", self.oil.Q_flow, self.G * (self.oil.T - self.water.T))
+            yield equation("and warms the water", self.water.Q_flow, -self.oil.Q_flow)
+
+    water = PARTS["PrescribedTemperature"]("mains", T=288.15)
+    nets = [("cooler.oil", "oil.heat"), ("cooler.water", "mains.heat")]
+    cooled = rig.join(OilCooler("cooler", G=2.0), water, nets=nets)
+    assert cooled.parts["cooler"] == "OilCooler"
+    assert gh.steady(cooled)["oil.T"] < gh.steady(rig)["oil.T"] - 1
+    assert gh.steady(cooled, {"cooler.G": "0 W/K"})["oil.T"] == pytest.approx(gh.steady(rig)["oil.T"], abs=1e-6)
+    with pytest.raises(gh.GearheatError, match='a part "oil" already'):
+        rig.join(OilCooler("oil", G=1.0), nets=[])
+
+
+def test_a_rig_of_parts_without_a_file() -> None:
+    from gearheat.model.parts import PARTS
+
+    parts = [
+        PARTS["PrescribedHeatFlow"]("heater", Q_flow=50.0),
+        PARTS["HeatCapacity"]("body", C=1000.0),
+        PARTS["ThermalConductor"]("path", G=2.0),
+        PARTS["PrescribedTemperature"]("outside", T=293.15),
+    ]
+    nets = [("heater.heat", "body.heat", "path.a"), ("path.b", "outside.heat")]
+    box = gh.assemble("box", parts, nets, drive={})
+    assert gh.steady(box)["body.T"] == pytest.approx(293.15 + 25.0)
+
+
+def test_a_rig_from_a_name_plate(tmp_path: Path) -> None:
+    mine = gh.new("mine", stages="helical,helical", ratio=12.56, power="7.5 kW", speed="1450 rpm")
+    assert gh.steady(mine).to("oil.T", "degC") == pytest.approx(mine.sizes["oil_degC"])
+
+
+#: What commands may know beside `gearheat` itself.
+MAY_KNOW = ("gearheat", "gearheat.model.errors", "gearheat.scenarios.shipped")
+
+
+def test_commands_are_options_one_call_and_printing() -> None:
+    problems = []
+    for path in sorted((ROOT / "tools" / "cli").glob("*.py")):
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if isinstance(node, ast.Import):
+                names = [a.name for a in node.names]
+            elif isinstance(node, ast.ImportFrom):
+                base = ["gearheat", "tools", "cli"][: 4 - node.level] if node.level else []
+                names = [".".join([*base, *([node.module] if node.module else [])])]
+            else:
+                continue
+            for name in names:
+                ours = name == "gearheat" or name.startswith("gearheat.")
+                room = name.startswith(("gearheat.tools.show", "gearheat.tools.cli")) or name == "gearheat.tools"
+                if ours and name not in MAY_KNOW and not room:
+                    problems.append(f"{path.name}: {name}")
+    assert not problems
