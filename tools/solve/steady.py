@@ -60,10 +60,14 @@ class SteadyState(Display):
         return in_unit(self[name], unit)
 
     def losses(self) -> dict[str, float]:
-        """Loss power of each part that has one [W]."""
-        named = {name: name.rpartition(".") for name in self.result.columns}
-        meters = self.scenario.spec.of_type("Efficiency")
-        return {part: self[name] for name, (part, _, key) in named.items() if key == "P_loss" and part not in meters}
+        """Loss power of each part that has one [W]; of a part with several kinds their sum."""
+        meters, found = self.scenario.spec.of_type("Efficiency"), dict[str, float]()
+        for name in self.result.columns:
+            part, _, key = name.rpartition(".")
+            whole = f"{part}.P_loss" in self.result.columns
+            if part not in meters and (key == "P_loss" or (key.startswith("P_loss_") and not whole)):
+                found[part] = found.get(part, 0.0) + self[name]
+        return found
 
     @property
     def title(self) -> str:
