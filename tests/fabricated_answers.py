@@ -12,11 +12,11 @@ from typing import Any
 import numpy as np
 from challenge.printing import show as show_challenge
 from challenge.scoring import Outcome, report
-from gearheat.diagnose.infer.replay import HOURS, Replayed
 from gearheat.tools.bench import bench
 from gearheat.tools.cli import fmu as exporting
 from gearheat.tools.cli.solve import print_end
 from gearheat.tools.compare import calibrate, replay, run
+from gearheat.tools.diagnose.infer.replay import HOURS, Replayed
 from gearheat.tools.films import film
 
 SENSORS = ("T_oil", "T_bearing_high_speed_rotor_side", "T_bearing_high_speed_generator_side")

@@ -5,9 +5,9 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from gearheat.diagnose.report.estimate import Estimate
-from gearheat.diagnose.report.evidence import Picture, Rows, View
-from gearheat.diagnose.report.findings import (
+from gearheat.tools.diagnose.report.estimate import Estimate
+from gearheat.tools.diagnose.report.evidence import Picture, Rows, View
+from gearheat.tools.diagnose.report.findings import (
     About,
     Alarm,
     Answer,
@@ -27,7 +27,7 @@ from gearheat.diagnose.report.findings import (
     Remainder,
     RemainderChannel,
 )
-from gearheat.diagnose.report.quality import (
+from gearheat.tools.diagnose.report.quality import (
     DataQuality,
     GrossReading,
     NuisanceOff,
@@ -35,7 +35,7 @@ from gearheat.diagnose.report.quality import (
     RepeatedPoint,
     VarianceComponent,
 )
-from gearheat.diagnose.report.words import with_words
+from gearheat.tools.diagnose.report.words import with_words
 
 CHURNING, WINDAGE, AIR, EMISSIVITY = "losses.churning", "losses.windage", "cooling.air", "cooling.emissivity"
 OFFSET = "sensor.torque.offset"

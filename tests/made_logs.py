@@ -3,10 +3,10 @@
 from dataclasses import replace
 
 import numpy as np
-from gearheat.diagnose.library.knobs import Knob
-from gearheat.diagnose.model.logs import Filter
-from gearheat.diagnose.model.windows import windows
 from gearheat.scenarios.measured.logs import Log
+from gearheat.tools.diagnose.library.knobs import Knob
+from gearheat.tools.diagnose.model.logs import Filter
+from gearheat.tools.diagnose.model.windows import windows
 
 STEP = 600.0
 DAY = 86400.0

@@ -19,13 +19,13 @@ ORDER = (
     ("model.run",),
     ("fmu", "scenarios"),
     ("tools.show",),
-    ("diagnose.library",),
-    ("diagnose.model",),
-    ("diagnose.infer",),
-    ("diagnose.setting",),
-    ("diagnose.answer",),
-    ("diagnose.report",),
-    ("diagnose",),
+    ("tools.diagnose.library",),
+    ("tools.diagnose.model",),
+    ("tools.diagnose.infer",),
+    ("tools.diagnose.setting",),
+    ("tools.diagnose.answer",),
+    ("tools.diagnose.report",),
+    ("tools.diagnose",),
     ("tools.solve",),
     ("tools.describe", "tools.export"),
     ("tools.build", "tools.films", "tools.rating"),
@@ -42,9 +42,8 @@ STRANGERS = [{"model.laws", "model.core"}, {"model.machines", "model.contact"}, 
 
 
 def installed(path: Path) -> str:
-    """The dotted name of a file below `gearheat`, `__init__` included; two rooms are installed beside the others."""
-    name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
-    return name.replace("tools.diagnose", "diagnose", 1).replace("tools.api", "api", 1)
+    """The dotted name of a file below `gearheat`, `__init__` included; the API is `gearheat` itself."""
+    return ".".join(path.relative_to(ROOT).with_suffix("").parts).replace("tools.api", "api", 1)
 
 
 MODULES = {installed(path): path for path in modules()}

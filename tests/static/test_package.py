@@ -16,9 +16,9 @@ def tracked(*patterns: str) -> set[str]:
 
 
 def in_wheel(path: Path) -> str:
-    """Where a file of the project stands in the wheel: two rooms are installed beside the others."""
+    """Where a file of the project stands in the wheel: the API is `gearheat` itself."""
     name = path.relative_to(ROOT).as_posix()
-    return "gearheat/" + name.replace("tools/diagnose/", "diagnose/", 1).replace("tools/api/", "", 1)
+    return "gearheat/" + name.replace("tools/api/", "", 1)
 
 
 def test_wheel_contents(tmp_path: Path) -> None:

@@ -10,12 +10,12 @@ import fabricated_findings
 import numpy as np
 import pytest
 from fabricated_findings import AIR, CHURNING, EMISSIVITY, KINDS, OFFSET, WINDAGE, explained
-from gearheat.diagnose.report import figures, plan
-from gearheat.diagnose.report.evidence import Rows, View
-from gearheat.diagnose.report.page import render
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.compare import plots
 from gearheat.tools.compare.errors import measured
+from gearheat.tools.diagnose.report import figures, plan
+from gearheat.tools.diagnose.report.evidence import Rows, View
+from gearheat.tools.diagnose.report.page import render
 from matplotlib.figure import Figure
 from pages import words_that_collide
 

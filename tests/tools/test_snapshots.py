@@ -16,11 +16,11 @@ from typing import Any
 import fabricated_findings
 import pytest
 from fabricated_answers import ANSWERS
-from gearheat.diagnose.report.screen import text
 from gearheat.tools.cli.rigs import schema as gearheat_schema
 from gearheat.tools.compare import losses, summary
 from gearheat.tools.compare.errors import compare
 from gearheat.tools.compare.rivals import rivals
+from gearheat.tools.diagnose.report.screen import text
 from gearheat.tools.rating import command as reference
 from gearheat.tools.show import console
 from gearheat.tools.show.console import cell, table

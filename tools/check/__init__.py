@@ -28,7 +28,6 @@ PACKAGES = {
     "model": "model",
     "fmu": "fmu",
     "scenarios": "scenarios",
-    "diagnose": "tools/diagnose",
     "tools": "tools",
 }
 #: The tests' environment: a version and hashes of every package.

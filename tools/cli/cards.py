@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ...diagnose.library.nuisances import usual_priors
 from ...model.errors import ScenarioError
 from ...model.files import flows
 from ...scenarios.load import load
 from ...scenarios.measured.write import as_json, as_toml, default_card
+from ..diagnose.library.nuisances import usual_priors
 from ..show import console
 
 

@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal, TypeVar
 
-from ...diagnose.report import plan as plans
-from ...diagnose.report.findings import Findings, as_object
-from ...diagnose.report.page import render
-from ...diagnose.report.predictions import predictions_text
-from ...diagnose.report.screen import text
-from ...diagnose.request import Inputs, PlanInputs, PlanRequest, Request, read, read_plan
 from ...fmu.compiling import Progress
 from ...model.errors import DataError, GearheatError
+from ..diagnose.report import plan as plans
+from ..diagnose.report.findings import Findings, as_object
+from ..diagnose.report.page import render
+from ..diagnose.report.predictions import predictions_text
+from ..diagnose.report.screen import text
+from ..diagnose.request import Inputs, PlanInputs, PlanRequest, Request, read, read_plan
 from ..show.console import as_json, file_of, progress_bar, screen_width, writable, write
 
 #: What is read and a listener for progress -> what was found, with its words; the same of a plan.
@@ -82,7 +82,7 @@ def diagnose_command(
 
 def _inference() -> Infer:
     """The project's inference, imported when it is needed."""
-    from ...diagnose.diagnosis import diagnosed
+    from ..diagnose.diagnosis import diagnosed
 
     return diagnosed
 
@@ -122,7 +122,7 @@ def plan_command(
 
 def _planning() -> Find:
     """The project's planning, imported when it is needed."""
-    from ...diagnose.planning import planned
+    from ..diagnose.planning import planned
 
     return planned
 

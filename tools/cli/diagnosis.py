@@ -51,7 +51,7 @@ def diagnose(
 ) -> None:
     """What the model gets wrong in measured data: causes by name, size and certainty, and what to measure next."""
     _one_thread()
-    from ...diagnose.request import Request
+    from ..diagnose.request import Request
     from . import diagnosing
 
     several = (tuple(paths or ()) for paths in (logs, reference_logs, sibling_logs, library))
@@ -96,7 +96,7 @@ def plan(
 ) -> None:
     """Which causes a campaign can tell apart on a rig, and which experiments would, before anything is measured."""
     _one_thread()
-    from ...diagnose.request import PlanRequest
+    from ..diagnose.request import PlanRequest
     from . import diagnosing
 
     request = PlanRequest(rig, separate, card, points, tuple(library or ()), reference)

@@ -9,12 +9,12 @@ from typing import Any
 
 import numpy as np
 
-from ...diagnose.infer.logs import filter_of, year_of
-from ...diagnose.infer.replay import HOURS, Replayed, Rivals, replay
 from ...model.errors import DataError
 from ...scenarios.load import load
 from ...scenarios.measured.card import read_card
 from ...scenarios.measured.logs import Log, read_log
+from ..diagnose.infer.logs import filter_of, year_of
+from ..diagnose.infer.replay import HOURS, Replayed, Rivals, replay
 from ..show.console import answer, note, table, writable, write
 
 #: Width and height of the picture [inch], and its longest stretch [samples].

@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import chi2
 
-from ..model.errors import DataError
-from ..scenarios.measured.logs import Log, read_log
-from ..scenarios.scenario import Scenario
+from ...model.errors import DataError
+from ...scenarios.measured.logs import Log, read_log
+from ...scenarios.scenario import Scenario
 from .infer.logs import Fleet, Moved, Progress, Question, Weighed, fleet, question, weigh
 from .model.windows import windows
 from .report import compose_logs

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import numpy as np
 
-from ..model.errors import DataError
+from ...model.errors import DataError
 from .answer.design import design
 from .answer.experiments import experiments
 from .answer.grid import planned_campaign

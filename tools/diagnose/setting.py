@@ -7,14 +7,14 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
-from ..model.machines.roles import Roles
-from ..model.machines.spec import Spec
-from ..scenarios.measured.card import Card
-from ..scenarios.measured.lubrication import lubricated, oils_of
-from ..scenarios.measured.nominal import Nominal
-from ..scenarios.measured.sensors import driven_by
-from ..scenarios.measured.table import Campaign
-from ..scenarios.scenario import Scenario
+from ...model.machines.roles import Roles
+from ...model.machines.spec import Spec
+from ...scenarios.measured.card import Card
+from ...scenarios.measured.lubrication import lubricated, oils_of
+from ...scenarios.measured.nominal import Nominal
+from ...scenarios.measured.sensors import driven_by
+from ...scenarios.measured.table import Campaign
+from ...scenarios.scenario import Scenario
 from .infer.problem import Problem
 from .library.cause import Cause, Nuisance, Ranges
 from .library.forms import Context

@@ -100,7 +100,7 @@ def _json(program: TyperGroup) -> str:
     with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
         Path("duty.csv").write_text(DUTY, encoding="utf-8")
         shown = "".join(_keys_of(program, command) for command in ASKED)
-    schema = json.loads(files("gearheat.diagnose.report").joinpath("diagnosis.schema.json").read_text("utf-8"))
+    schema = json.loads(files("gearheat.tools.diagnose.report").joinpath("diagnosis.schema.json").read_text("utf-8"))
     rows = [(code(key), words(about.get("description", ""))) for key, about in schema["properties"].items()]
     findings = f"## diagnose\n\nSchema: `{schema['$id']}`, as a JSON schema beside the module.\n\n"
     return f"# JSON\n\n{text}{shown}{findings}{table(('key', 'meaning'), rows)}"

@@ -12,9 +12,6 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
-from ...diagnose.library.nuisances import usual_priors
-from ...diagnose.library.registry import library
-from ...diagnose.model.ranges import ranges_of
 from ...model import laws
 from ...model.machines.roles import Roles
 from ...model.parts import PARTS
@@ -31,6 +28,9 @@ from ...scenarios.measured.write import as_toml, default_card
 from ...scenarios.shipped import FILES, RIGS, list_rigs
 from ...scenarios.tables import CampaignTable, ErratumTable, RigTable, SensorTable, Strict
 from ..describe.parts import described
+from ..diagnose.library.nuisances import usual_priors
+from ..diagnose.library.registry import library
+from ..diagnose.model.ranges import ranges_of
 from .laws import facts, law_modules, laws_of, title
 from .markdown import arguments, code, docstring, fenced, listing, table, words
 

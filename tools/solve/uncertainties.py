@@ -6,13 +6,13 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from ...diagnose.library.nuisances import nuisances
 from ...fmu.leading import Uncertain, Uncertainty
 from ...fmu.variables import Variable
 from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError
 from ...model.machines.roles import Roles
 from ...scenarios.scenario import Scenario
+from ..diagnose.library.nuisances import nuisances
 from .sampling import Axis
 from .steady import leading_outputs
 

@@ -6,15 +6,15 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from gearheat.diagnose.answer.grid import planned_campaign
-from gearheat.diagnose.infer.found import Found
-from gearheat.diagnose.infer.search import searched
-from gearheat.diagnose.setting import Setting, setting
 from gearheat.model.parts import PARTS
 from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.table import Campaign
+from gearheat.tools.diagnose.answer.grid import planned_campaign
+from gearheat.tools.diagnose.infer.found import Found
+from gearheat.tools.diagnose.infer.search import searched
+from gearheat.tools.diagnose.setting import Setting, setting
 
 #: What may be wrong in these tests, and by how much the oil thermometer is.
 CAUSES = ("sensor.oil_temp.offset", "cooling.air", "losses.churning", "sensor.oil_temp.drift")

@@ -7,19 +7,19 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from gearheat.diagnose.answer import estimate, gain
-from gearheat.diagnose.answer.decide import UNEXPLAINED, calmed, decided
-from gearheat.diagnose.answer.design import of_search, ranked
-from gearheat.diagnose.answer.experiments import added, experiments
-from gearheat.diagnose.answer.predict import predictions
-from gearheat.diagnose.answer.quality import adequacy, scatters
-from gearheat.diagnose.answer.sets import Effects, alike
-from gearheat.diagnose.infer import gross
-from gearheat.diagnose.infer.fit import fitted
-from gearheat.diagnose.infer.found import Found
-from gearheat.diagnose.infer.problem import Aside, Problem
-from gearheat.diagnose.model.observe import Observed
-from gearheat.diagnose.setting import Setting
+from gearheat.tools.diagnose.answer import estimate, gain
+from gearheat.tools.diagnose.answer.decide import UNEXPLAINED, calmed, decided
+from gearheat.tools.diagnose.answer.design import of_search, ranked
+from gearheat.tools.diagnose.answer.experiments import added, experiments
+from gearheat.tools.diagnose.answer.predict import predictions
+from gearheat.tools.diagnose.answer.quality import adequacy, scatters
+from gearheat.tools.diagnose.answer.sets import Effects, alike
+from gearheat.tools.diagnose.infer import gross
+from gearheat.tools.diagnose.infer.fit import fitted
+from gearheat.tools.diagnose.infer.found import Found
+from gearheat.tools.diagnose.infer.problem import Aside, Problem
+from gearheat.tools.diagnose.model.observe import Observed
+from gearheat.tools.diagnose.setting import Setting
 
 TRUE = "sensor.oil_temp.offset"
 #: What may be wrong, and by how much the oil thermometer is, as the fixtures have it [K].

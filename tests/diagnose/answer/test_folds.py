@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 
 import numpy as np
-from gearheat.diagnose.answer import rivals
-from gearheat.diagnose.answer.folds import levels, schemes
-from gearheat.diagnose.answer.grid import planned_campaign
-from gearheat.diagnose.infer.found import Found
-from gearheat.diagnose.setting import Setting
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
+from gearheat.tools.diagnose.answer import rivals
+from gearheat.tools.diagnose.answer.folds import levels, schemes
+from gearheat.tools.diagnose.answer.grid import planned_campaign
+from gearheat.tools.diagnose.infer.found import Found
+from gearheat.tools.diagnose.setting import Setting
 
 
 def test_levels_are_where_the_gaps_are() -> None:

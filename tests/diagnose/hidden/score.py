@@ -6,12 +6,12 @@ from dataclasses import dataclass
 from typing import Any
 
 from diagnose.hidden.maker import Case
-from gearheat.diagnose.answer.decide import calmed, decided
-from gearheat.diagnose.answer.quality import gross_readings
-from gearheat.diagnose.infer.search import searched
-from gearheat.diagnose.report.compose import hypotheses
-from gearheat.diagnose.request import Request, read
-from gearheat.diagnose.setting import setting
+from gearheat.tools.diagnose.answer.decide import calmed, decided
+from gearheat.tools.diagnose.answer.quality import gross_readings
+from gearheat.tools.diagnose.infer.search import searched
+from gearheat.tools.diagnose.report.compose import hypotheses
+from gearheat.tools.diagnose.request import Request, read
+from gearheat.tools.diagnose.setting import setting
 
 #: Share of the probability that a set of answers holds.
 SET = 0.9
@@ -66,7 +66,7 @@ class Score:
 def score(case: Case, seed: int = 0) -> Score:
     """Diagnose a campaign and compare with what is hidden in it.
 
-    It is what `gearheat.diagnose.diagnose` does, without gain and pictures, which cost more than the search.
+    It is what `gearheat.tools.diagnose.diagnose` does, without gain and pictures, which cost more than the search.
 
     Args:
         case: the campaign

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gearheat.diagnose.infer import draws
-from gearheat.diagnose.infer.draws import correction
-from gearheat.diagnose.infer.evidence import WIDTHS
-from gearheat.diagnose.infer.fit import Fit
-from gearheat.diagnose.infer.problem import Acting
+from gearheat.tools.diagnose.infer import draws
+from gearheat.tools.diagnose.infer.draws import correction
+from gearheat.tools.diagnose.infer.evidence import WIDTHS
+from gearheat.tools.diagnose.infer.fit import Fit
+from gearheat.tools.diagnose.infer.problem import Acting
 from scipy.optimize import minimize
 
 #: Effects of one nuisance and of a size on five readings, and the size at which it saturates.

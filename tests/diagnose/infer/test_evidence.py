@@ -7,9 +7,9 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from gearheat.diagnose.infer.evidence import WIDTHS, White, log_bayes_factor, log_bayes_factors
-from gearheat.diagnose.infer.gross import _robust
-from gearheat.diagnose.infer.prior import MORE, TWO, Prior
+from gearheat.tools.diagnose.infer.evidence import WIDTHS, White, log_bayes_factor, log_bayes_factors
+from gearheat.tools.diagnose.infer.gross import _robust
+from gearheat.tools.diagnose.infer.prior import MORE, TWO, Prior
 from scipy.integrate import quad
 from scipy.stats import multivariate_normal, norm
 

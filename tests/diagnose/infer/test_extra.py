@@ -5,11 +5,11 @@ from __future__ import annotations
 from types import SimpleNamespace
 
 import numpy as np
-from gearheat.diagnose.infer import extra
-from gearheat.diagnose.infer.evidence import White
-from gearheat.diagnose.infer.fit import View
-from gearheat.diagnose.infer.problem import Noise
-from gearheat.diagnose.model.noise import Term, walk
+from gearheat.tools.diagnose.infer import extra
+from gearheat.tools.diagnose.infer.evidence import White
+from gearheat.tools.diagnose.infer.fit import View
+from gearheat.tools.diagnose.infer.problem import Noise
+from gearheat.tools.diagnose.model.noise import Term, walk
 
 M = 24
 

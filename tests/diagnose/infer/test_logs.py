@@ -4,12 +4,12 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from gearheat.diagnose.infer.logs import NOTHING, TWO, Fleet, filter_of, fleet, question
-from gearheat.diagnose.logs import LogDiagnosis, composed
-from gearheat.diagnose.report.findings import Findings, as_object
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.logs import Log
 from gearheat.scenarios.measured.table import Sensor
+from gearheat.tools.diagnose.infer.logs import NOTHING, TWO, Fleet, filter_of, fleet, question
+from gearheat.tools.diagnose.logs import LogDiagnosis, composed
+from gearheat.tools.diagnose.report.findings import Findings, as_object
 from made_logs import MACHINES, YEARS, differing, made
 
 #: Samples of one stretch: a week; seasons of the healthy logs and of that in question.

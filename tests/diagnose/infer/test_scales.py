@@ -2,9 +2,9 @@
 
 import numpy as np
 import pytest
-from gearheat.diagnose.infer import scales
-from gearheat.diagnose.infer.problem import Noise
-from gearheat.diagnose.model.noise import Term
+from gearheat.tools.diagnose.infer import scales
+from gearheat.tools.diagnose.infer.problem import Noise
+from gearheat.tools.diagnose.model.noise import Term
 
 
 def test_few_columns_weigh_scales_as_the_whole_covariance(monkeypatch) -> None:

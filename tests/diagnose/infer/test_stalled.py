@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 import pytest
-from gearheat.diagnose.infer import draws, fit
-from gearheat.diagnose.infer.draws import correction
-from gearheat.diagnose.infer.evidence import WIDTHS
-from gearheat.diagnose.infer.fit import _Line
-from gearheat.diagnose.infer.problem import Acting
+from gearheat.tools.diagnose.infer import draws, fit
+from gearheat.tools.diagnose.infer.draws import correction
+from gearheat.tools.diagnose.infer.evidence import WIDTHS
+from gearheat.tools.diagnose.infer.fit import _Line
+from gearheat.tools.diagnose.infer.problem import Acting
 
 #: Effects of one nuisance and of a size on five readings; the size at which its effect turns back.
 BY_Z, BY_T, TURNS = np.array([1.0, 0.5, 0.0, 0.3, -0.2]), np.array([0.5, 1.0, 1.5, 1.0, 0.4]), 1.5

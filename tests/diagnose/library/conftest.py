@@ -4,8 +4,6 @@ from dataclasses import dataclass, replace
 from functools import cache
 
 import pytest
-from gearheat.diagnose.library.cause import Cause, Ranges
-from gearheat.diagnose.library.registry import library
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.roles import Roles
@@ -18,6 +16,8 @@ from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.sensors import sensors_of
 from gearheat.scenarios.measured.table import Sensor
 from gearheat.scenarios.scenario import Scenario
+from gearheat.tools.diagnose.library.cause import Cause, Ranges
+from gearheat.tools.diagnose.library.registry import library
 
 #: All that may be known of the rows of a campaign.
 ALL_KNOWN = frozenset({"order", "dwell", "mounting", "humidity", "logs", "still: T_wall", "still: T_oil"})

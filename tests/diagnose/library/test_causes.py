@@ -6,14 +6,14 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 import pytest
-from gearheat.diagnose.library.cause import Row, as_array
-from gearheat.diagnose.library.check import parameters, problems
-from gearheat.diagnose.library.registry import library
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
 from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import list_rigs
+from gearheat.tools.diagnose.library.cause import Row, as_array
+from gearheat.tools.diagnose.library.check import parameters, problems
+from gearheat.tools.diagnose.library.registry import library
 
 RIGS = tuple(list_rigs())
 ROWS = 4

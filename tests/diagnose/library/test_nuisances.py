@@ -4,14 +4,14 @@ import math
 from dataclasses import replace
 
 import pytest
-from gearheat.diagnose.library.forms import Context
-from gearheat.diagnose.library.nuisances import habit, nuisances
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
 from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import list_rigs
+from gearheat.tools.diagnose.library.forms import Context
+from gearheat.tools.diagnose.library.nuisances import habit, nuisances
 
 RIGS = tuple(list_rigs())
 

@@ -4,14 +4,14 @@ import re
 from importlib.metadata import EntryPoint
 
 import pytest
-from gearheat.diagnose.library import registry
 from gearheat.model.errors import DataError
+from gearheat.tools.diagnose.library import registry
 from gearheat.tools.docs.blocks import PAGES
 
 PAGE = (PAGES / "contributing" / "cause.md").read_text("utf-8")
 EXAMPLE = re.search(r"^```python\n(.*?)^```$", PAGE, re.MULTILINE | re.DOTALL)[1]
 ONE = """
-from gearheat.diagnose.library import Cause, Form, Size
+from gearheat.tools.diagnose.library import Cause, Form, Size
 
 def causes(roles, ranges, sensors):
     yield Cause("my.cause", "doc", Size("s", "1", "how much", 1.0, -1.0, 1.0), ({form},))
@@ -33,7 +33,7 @@ def test_the_example_of_the_page(case, tmp_path, rig):
 WRONG = {
     "x = 1": "there is no function causes",
     "def causes(": "fails: SyntaxError",
-    "def causes(roles, ranges, sensors):\n    return [1]": "gives int. Give gearheat.diagnose.library.Cause",
+    "def causes(roles, ranges, sensors):\n    return [1]": "gives int. Give gearheat.tools.diagnose.library.Cause",
     "def causes(roles, ranges, sensors):\n    return [roles.nothing]": "fails: AttributeError",
     ONE.format(
         form="Form(values=lambda t, r: {'oil.VV': 1.0})"

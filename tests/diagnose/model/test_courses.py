@@ -7,20 +7,20 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from gearheat.diagnose.infer import screen
-from gearheat.diagnose.infer.fit import fitted
-from gearheat.diagnose.infer.problem import Problem
-from gearheat.diagnose.model import duty
-from gearheat.diagnose.model.formula import Formula
-from gearheat.diagnose.model.noise import terms
-from gearheat.diagnose.model.observe import Observed
-from gearheat.diagnose.setting import Setting, setting
 from gearheat.model.parts import PARTS
 from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.read import read_campaign
 from gearheat.scenarios.measured.table import PLACES, Campaign, Course, Series
+from gearheat.tools.diagnose.infer import screen
+from gearheat.tools.diagnose.infer.fit import fitted
+from gearheat.tools.diagnose.infer.problem import Problem
+from gearheat.tools.diagnose.model import duty
+from gearheat.tools.diagnose.model.formula import Formula
+from gearheat.tools.diagnose.model.noise import terms
+from gearheat.tools.diagnose.model.observe import Observed
+from gearheat.tools.diagnose.setting import Setting, setting
 from made_tables import made, written
 
 Parts = Sequence[tuple[Formula, np.ndarray]]

@@ -8,13 +8,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearheat.diagnose.library.cause import Cause, Form, Nuisance, Shape, Size
-from gearheat.diagnose.model import duty
-from gearheat.diagnose.model.duty import STEADY
-from gearheat.diagnose.model.formula import Formula
-from gearheat.diagnose.model.march import Phases, march
-from gearheat.diagnose.model.observe import Observed
-from gearheat.diagnose.model.plant import Plant
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.roles import Roles
 from gearheat.model.machines.spec import PartSpec, assemble
@@ -23,6 +16,13 @@ from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import read_card
 from gearheat.scenarios.measured.read import read_campaign
 from gearheat.scenarios.measured.table import Campaign
+from gearheat.tools.diagnose.library.cause import Cause, Form, Nuisance, Shape, Size
+from gearheat.tools.diagnose.model import duty
+from gearheat.tools.diagnose.model.duty import STEADY
+from gearheat.tools.diagnose.model.formula import Formula
+from gearheat.tools.diagnose.model.march import Phases, march
+from gearheat.tools.diagnose.model.observe import Observed
+from gearheat.tools.diagnose.model.plant import Plant
 
 FOLDER = Path(duty.__file__).parents[3] / "scenarios" / "rigs" / "planetary"
 SIZE = Size("size", "1", "", 0.1, -1.0, 1.0)

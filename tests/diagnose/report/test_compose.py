@@ -8,16 +8,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from gearheat.diagnose.answer.estimate import posterior
-from gearheat.diagnose.infer import screen
-from gearheat.diagnose.infer.fit import fitted
-from gearheat.diagnose.infer.found import Found, Hypothesis
-from gearheat.diagnose.infer.prior import Prior
-from gearheat.diagnose.infer.problem import Acting
-from gearheat.diagnose.report import compose_data, compose_pictures, compose_points, compose_rig
-from gearheat.diagnose.request import Inputs, Request, read
-from gearheat.diagnose.setting import Setting, setting
 from gearheat.scenarios.load import load
+from gearheat.tools.diagnose.answer.estimate import posterior
+from gearheat.tools.diagnose.infer import screen
+from gearheat.tools.diagnose.infer.fit import fitted
+from gearheat.tools.diagnose.infer.found import Found, Hypothesis
+from gearheat.tools.diagnose.infer.prior import Prior
+from gearheat.tools.diagnose.infer.problem import Acting
+from gearheat.tools.diagnose.report import compose_data, compose_pictures, compose_points, compose_rig
+from gearheat.tools.diagnose.request import Inputs, Request, read
+from gearheat.tools.diagnose.setting import Setting, setting
 from gearheat.tools.solve.settings import flat_of
 from gearheat.tools.solve.uncertainties import reasons
 

@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pytest
 from fabricated_findings import explained
-from gearheat.diagnose.report.findings import Findings, Prediction
-from gearheat.diagnose.request import Inputs, Request
 from gearheat.model.errors import DataError
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.cli import app as cli
 from gearheat.tools.cli import diagnosing
 from gearheat.tools.cli.diagnosing import Outputs, Progress, diagnose_command
+from gearheat.tools.diagnose.report.findings import Findings, Prediction
+from gearheat.tools.diagnose.request import Inputs, Request
 from jsonschema import validate
 from typer.testing import CliRunner
 
@@ -37,7 +37,7 @@ def test_everything_is_written_whole(tmp_path: Path, capsys: pytest.CaptureFixtu
     diagnose_command(Request(RIG, DATA, predict=DATA), outputs, infer)
     assert (tmp_path / "p.csv").read_text() == "point,T_oil_nominal_C,T_oil_extended_C\n1,60.000,61.500\n"
     found = json.loads((tmp_path / "o.json").read_text())
-    schema = files("gearheat.diagnose.report").joinpath("diagnosis.schema.json")
+    schema = files("gearheat.tools.diagnose.report").joinpath("diagnosis.schema.json")
     validate(found, json.loads(schema.read_text(encoding="utf-8")))
     assert found["about"]["readings"] > 10
     assert (tmp_path / "o.html").read_text().startswith("<!doctype html>")

@@ -7,12 +7,12 @@ from pathlib import Path
 import casadi as ca
 import numpy as np
 import pytest
-from gearheat.diagnose.library.cause import Cause, Form, Row, Size, Theta, Values
-from gearheat.diagnose.report.extension import Applied, directions, extended
 from gearheat.model.machines.spec import PartSpec
 from gearheat.model.parts import PARTS
 from gearheat.scenarios.load import load
 from gearheat.scenarios.write import DIAGNOSED
+from gearheat.tools.diagnose.library.cause import Cause, Form, Row, Size, Theta, Values
+from gearheat.tools.diagnose.report.extension import Applied, directions, extended
 
 RIG = load("helical_two_stage")
 OIL = next(name for name, kinds in RIG.entries.items() if "oil" in kinds)

@@ -6,11 +6,11 @@ from importlib.resources import files
 import numpy as np
 import pytest
 from fabricated_findings import KINDS, explained
-from gearheat.diagnose.report.evidence import Rows
-from gearheat.diagnose.report.findings import Alarm, Findings, Hypothesis, as_object
+from gearheat.tools.diagnose.report.evidence import Rows
+from gearheat.tools.diagnose.report.findings import Alarm, Findings, Hypothesis, as_object
 from pydantic import ValidationError
 
-SHIPPED = files("gearheat.diagnose.report").joinpath("diagnosis.schema.json")
+SHIPPED = files("gearheat.tools.diagnose.report").joinpath("diagnosis.schema.json")
 
 
 def test_the_shipped_schema_is_that_of_the_models() -> None:

@@ -6,8 +6,8 @@ import re
 
 import pytest
 from fabricated_findings import KINDS, clean, explained, spoiled
-from gearheat.diagnose.report.evidence import Rows
-from gearheat.diagnose.report.page import render
+from gearheat.tools.diagnose.report.evidence import Rows
+from gearheat.tools.diagnose.report.page import render
 from pages import problems_of
 
 

@@ -8,8 +8,12 @@ from typing import Any
 
 import pytest
 from fabricated_findings import AIR, CHURNING, EMISSIVITY, OFFSET, WINDAGE
-from gearheat.diagnose.report.findings import Isolability
-from gearheat.diagnose.report.plan import (
+from gearheat.model.errors import DataError
+from gearheat.tools.cli import app as cli
+from gearheat.tools.cli import diagnosing
+from gearheat.tools.cli.diagnosing import Progress, plan_command
+from gearheat.tools.diagnose.report.findings import Isolability
+from gearheat.tools.diagnose.report.plan import (
     Outlook,
     Plan,
     Planned,
@@ -19,12 +23,8 @@ from gearheat.diagnose.report.plan import (
     picture,
     sentence,
 )
-from gearheat.diagnose.report.plan import text as printed
-from gearheat.diagnose.request import PlanInputs, PlanRequest, unknown_causes
-from gearheat.model.errors import DataError
-from gearheat.tools.cli import app as cli
-from gearheat.tools.cli import diagnosing
-from gearheat.tools.cli.diagnosing import Progress, plan_command
+from gearheat.tools.diagnose.report.plan import text as printed
+from gearheat.tools.diagnose.request import PlanInputs, PlanRequest, unknown_causes
 from typer.testing import CliRunner
 
 PAIR = (AIR, EMISSIVITY)

@@ -4,12 +4,12 @@ import re
 
 import pytest
 from fabricated_findings import AIR, CHURNING, KINDS, ambiguous, cause, clean, explained, spoiled, unexplained
-from gearheat.diagnose.report import phrases
-from gearheat.diagnose.report.estimate import Estimate
-from gearheat.diagnose.report.findings import Alarm, Answer, CauseSet, Played, Remainder, RemainderChannel
-from gearheat.diagnose.report.names import listed, name_of
-from gearheat.diagnose.report.screen import text
-from gearheat.diagnose.report.words import contradictions, with_words
+from gearheat.tools.diagnose.report import phrases
+from gearheat.tools.diagnose.report.estimate import Estimate
+from gearheat.tools.diagnose.report.findings import Alarm, Answer, CauseSet, Played, Remainder, RemainderChannel
+from gearheat.tools.diagnose.report.names import listed, name_of
+from gearheat.tools.diagnose.report.screen import text
+from gearheat.tools.diagnose.report.words import contradictions, with_words
 
 
 @pytest.mark.parametrize("kind", KINDS)

@@ -10,7 +10,7 @@ import numpy as np
 from scipy.special import logsumexp
 from scipy.stats import norm
 
-from ...scenarios.measured.table import Sensor
+from ....scenarios.measured.table import Sensor
 from ..infer.evidence import WIDTHS, White, log_bayes_factors
 from ..infer.fit import Fit
 from ..infer.found import Found, Hypothesis

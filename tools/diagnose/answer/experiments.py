@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...scenarios.measured.table import Campaign, Sensor
+from ....scenarios.measured.table import Campaign, Sensor
 
 #: A cold room [K], and how much colder than in the campaign it is at least.
 COLD, COLDER = 278.15, 15.0

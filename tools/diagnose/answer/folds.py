@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...scenarios.measured.table import Campaign
+from ....scenarios.measured.table import Campaign
 
 #: Levels further apart than this share of their range are different ones.
 GAP = 0.06

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from ...model.errors import SolveError
+from ....model.errors import SolveError
 from ..infer import screen
 from ..infer.evidence import White
 from ..infer.extra import REMAINDERS

@@ -6,12 +6,12 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.errors import DataError
-from ...scenarios.measured.card import Card
-from ...scenarios.measured.nominal import Nominal
-from ...scenarios.measured.sensors import driven_by, sensors_of
-from ...scenarios.measured.table import Campaign, Sensor
-from ...scenarios.scenario import Scenario
+from ....model.errors import DataError
+from ....scenarios.measured.card import Card
+from ....scenarios.measured.nominal import Nominal
+from ....scenarios.measured.sensors import driven_by, sensors_of
+from ....scenarios.measured.table import Campaign, Sensor
+from ....scenarios.scenario import Scenario
 
 #: Speeds and loads of the grid, as shares of those at the operating point, and a change of the room along it [K].
 SPEEDS, LOADS, ROOM = (0.4, 0.6, 0.8, 1.0), (0.55, 0.7, 0.85, 1.0), 4.0

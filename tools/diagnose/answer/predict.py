@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...scenarios.measured.table import Campaign
+from ....scenarios.measured.table import Campaign
 from ..infer.evidence import White
 from ..infer.fit import Fit
 from ..infer.found import Found

@@ -13,7 +13,7 @@ import numpy as np
 from scipy.special import logsumexp
 from scipy.stats import chi2
 
-from ...scenarios.measured.table import Sensor
+from ....scenarios.measured.table import Sensor
 from ..infer.evidence import White, log_bayes_factors
 from ..infer.found import Found
 from ..infer.screen import limits

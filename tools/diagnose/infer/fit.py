@@ -11,7 +11,7 @@ from scipy.linalg import solve_triangular
 from scipy.optimize import lsq_linear
 from scipy.special import logsumexp
 
-from ...model.errors import SolveError
+from ....model.errors import SolveError
 from .evidence import WIDTHS, White, log_bayes_factor
 from .problem import Acting, Look, Noise, Problem
 

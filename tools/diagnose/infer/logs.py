@@ -8,11 +8,11 @@ from datetime import UTC, datetime
 
 import numpy as np
 
-from ...model.core.flatten import flatten
-from ...model.machines.roles import Roles
-from ...model.machines.spec import assemble
-from ...scenarios.measured.logs import Log
-from ...scenarios.scenario import Scenario
+from ....model.core.flatten import flatten
+from ....model.machines.roles import Roles
+from ....model.machines.spec import assemble
+from ....scenarios.measured.logs import Log
+from ....scenarios.scenario import Scenario
 from ..library.knobs import Knob, knobs
 from ..model.logs import Filter, Passed
 from ..model.plant import Plant

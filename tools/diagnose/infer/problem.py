@@ -8,7 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ...model.errors import SolveError
+from ....model.errors import SolveError
 from ..model.formula import Formula
 from ..model.noise import Term, alike, input_scatter, stacked, summed, terms
 from ..model.observe import Observed, Seen

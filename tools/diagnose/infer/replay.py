@@ -9,7 +9,7 @@ import numpy as np
 from scipy.optimize import least_squares
 from scipy.signal import lfilter
 
-from ...scenarios.measured.logs import Log
+from ....scenarios.measured.logs import Log
 from ..model.logs import Filter
 from ..model.windows import Windows, windows
 

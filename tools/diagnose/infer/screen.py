@@ -9,7 +9,7 @@ from itertools import product
 import numpy as np
 from scipy.special import logsumexp, ndtri
 
-from ...model.errors import SolveError
+from ....model.errors import SolveError
 from ..library.cause import Mostly
 from ..model.formula import Formula
 from .evidence import log_bayes_factors

@@ -11,7 +11,7 @@ import numpy as np
 from scipy.special import logsumexp
 from scipy.stats import chi2
 
-from ...model.errors import SolveError
+from ....model.errors import SolveError
 from ..model.formula import Formula
 from . import pairs, screen
 from .draws import correction

@@ -3,8 +3,8 @@
 The page `contributing/cause.md` of the documentation shows how to add a cause.
 """
 
-from ...model.machines.roles import Roles
-from ...scenarios.measured.table import Sensor
+from ....model.machines.roles import Roles
+from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size
 from .extras import Extras
 from .forms import Context

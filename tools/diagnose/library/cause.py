@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 from scipy.special import ndtr
 
-from ...model.machines.spec import PartSpec
+from ....model.machines.spec import PartSpec
 
 #: A number, an array or a CasADi expression.
 Num = Any

@@ -6,11 +6,11 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from ...model.core.declare import Parameter, declared
-from ...model.errors import suggestion
-from ...model.machines.spec import Spec
-from ...model.parts.free_form import EXTRA_PARTS
-from ...scenarios.measured.table import Sensor
+from ....model.core.declare import Parameter, declared
+from ....model.errors import suggestion
+from ....model.machines.spec import Spec
+from ....model.parts.free_form import EXTRA_PARTS
+from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Values, as_array
 
 #: Accuracy to which a form has to leave things as they are at size zero, relative.

@@ -7,10 +7,10 @@ from dataclasses import replace
 
 import casadi as ca
 
-from ...model.laws.smooth import smooth_abs
-from ...model.machines.roles import Roles
-from ...model.parts.free_form import step
-from ...scenarios.measured.table import Sensor
+from ....model.laws.smooth import smooth_abs
+from ....model.machines.roles import Roles
+from ....model.parts.free_form import step
+from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size, Theta, Values
 from .extras import Extras
 from .forms import SIDE, Context, Regime, shared

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 
-from ...model.laws.oil import kinematic_viscosity
-from ...model.machines.roles import Place
-from ...model.machines.spec import PartSpec
+from ....model.laws.oil import kinematic_viscosity
+from ....model.machines.roles import Place
+from ....model.machines.spec import PartSpec
 from .cause import Form, Num, Row, Shape, Theta, Values
 from .forms import BESIDE, MOST_PLACES, ONE_PLACE, SIDE, Context, Regime
 

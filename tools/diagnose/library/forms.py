@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from ...model.laws.smooth import smooth_abs
-from ...model.machines.roles import Roles
-from ...model.parts.free_form import step
-from ...scenarios.measured.table import Sensor
+from ....model.laws.smooth import smooth_abs
+from ....model.machines.roles import Roles
+from ....model.parts.free_form import step
+from ....scenarios.measured.table import Sensor
 from .cause import Form, Num, Ranges, Row, Shape, Size, Theta, Values
 
 #: What changes values of the machine.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
-from ...model.machines.roles import Roles
-from ...scenarios.measured.table import Sensor
+from ....model.machines.roles import Roles
+from ....scenarios.measured.table import Sensor
 from .cause import Cause, Mostly, Ranges, Shape, Small
 from .extras import Extras
 from .forms import SIDE, Context

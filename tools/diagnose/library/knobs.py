@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
-from ...model.machines.roles import Roles
-from ...model.parts.grey import GreyLoss
-from ...scenarios.measured.table import Sensor
+from ....model.machines.roles import Roles
+from ....model.parts.grey import GreyLoss
+from ....scenarios.measured.table import Sensor
 
 
 @dataclass(frozen=True)

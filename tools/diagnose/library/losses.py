@@ -13,8 +13,8 @@ from dataclasses import replace
 
 import casadi as ca
 
-from ...model.machines.roles import Place, Roles
-from ...scenarios.measured.table import Sensor
+from ....model.machines.roles import Place, Roles
+from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size, Small, Theta, Values
 from .extras import Extras
 from .forms import INNER_SHARE, Changes, Context, Regime, oil_share, shared

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from ...model.machines.roles import Roles
-from ...model.machines.spec import PartSpec
-from ...scenarios.scenario import Scenario
+from ....model.machines.roles import Roles
+from ....model.machines.spec import PartSpec
+from ....scenarios.scenario import Scenario
 from .cause import Nuisance
 from .extras import Extras
 from .forms import Context

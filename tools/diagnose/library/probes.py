@@ -7,8 +7,8 @@ from dataclasses import replace
 
 import casadi as ca
 
-from ...model.laws.smooth import smooth_abs
-from ...scenarios.measured.table import Sensor
+from ....model.laws.smooth import smooth_abs
+from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Num, Row, Shape, Size, Theta, Values
 from .forms import Context
 from .readings import one_of, wrong

@@ -6,9 +6,9 @@ from collections.abc import Callable, Iterator, Sequence
 
 import casadi as ca
 
-from ...model.laws.smooth import smooth_max
-from ...model.machines.roles import Roles
-from ...scenarios.measured.table import Sensor
+from ....model.laws.smooth import smooth_max
+from ....model.machines.roles import Roles
+from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 from .cooling import DAYS, factors
 from .forms import COURSES

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from ...scenarios.measured.table import Sensor
+from ....scenarios.measured.table import Sensor
 from .cause import Form, Num, Row, Theta, Values
 
 #: (size and shapes, row, the value the instrument should show) -> error of the reading over the size.

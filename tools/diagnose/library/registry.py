@@ -7,9 +7,9 @@ from collections.abc import Callable, Iterable, Iterator, Sequence
 from importlib.metadata import entry_points
 from pathlib import Path
 
-from ...model.errors import DataError, suggestion
-from ...model.machines.roles import Roles
-from ...scenarios.measured.table import Sensor
+from ....model.errors import DataError, suggestion
+from ....model.machines.roles import Roles
+from ....scenarios.measured.table import Sensor
 from . import cooling, heat, losses, procedure, thermal
 from . import sensors as instruments
 from .cause import Cause, Ranges
@@ -54,7 +54,9 @@ def library(
             continue
         for cause in added:
             if not isinstance(cause, Cause):
-                wrong.append(f"{name}: causes() gives {type(cause).__name__}. Give gearheat.diagnose.library.Cause.")
+                wrong.append(
+                    f"{name}: causes() gives {type(cause).__name__}. Give gearheat.tools.diagnose.library.Cause."
+                )
             elif cause.id in found:
                 wrong.append(f'{name}: there is a cause "{cause.id}" already. Give it another id.')
             else:

@@ -11,9 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ...model.machines.roles import Roles
-from ...model.parts.free_form import step
-from ...scenarios.measured.table import Sensor
+from ....model.machines.roles import Roles
+from ....model.parts.free_form import step
+from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Mostly, Num, Ranges, Row, Shape, Size, Theta
 from .forms import COURSES, FROM_THEN, PLACE, USUAL, WIDTH, Context, Course, since
 from .probes import heated, lag, position, swapped

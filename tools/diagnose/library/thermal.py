@@ -8,10 +8,10 @@ from dataclasses import replace
 import casadi as ca
 import numpy as np
 
-from ...model.machines.roles import Roles
-from ...model.machines.spec import PartSpec
-from ...model.parts.free_form import step
-from ...scenarios.measured.table import Sensor
+from ....model.machines.roles import Roles
+from ....model.machines.spec import PartSpec
+from ....model.parts.free_form import step
+from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 from .cooling import factors
 from .forms import Context

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...scenarios.measured.table import PLACES, Campaign
+from ....scenarios.measured.table import PLACES, Campaign
 from .march import Phases
 
 #: Shares of a dwell, of a stop and of the time to a steady state [s] where steps end.

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...scenarios.measured.table import PLACES, Campaign
+from ....scenarios.measured.table import PLACES, Campaign
 
 #: Scatter of a dwell as logged, as a share of the stated one.
 DWELL = 0.02

@@ -12,8 +12,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ...fmu import emit
-from ...fmu.batch_library import address, instructions, load, widened
+from ....fmu import emit
+from ....fmu.batch_library import address, instructions, load, widened
 
 
 class Compiled:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ...fmu.batch_library import shared
+from ....fmu.batch_library import shared
 from .many import library, record
 from .plant import Plant
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...scenarios.measured.table import Campaign
+from ....scenarios.measured.table import Campaign
 from ..library.cause import Nuisance
 from .duty import duty
 from .entries import Entries

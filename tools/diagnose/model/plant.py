@@ -10,12 +10,12 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ...fmu.batch_library import address
-from ...model.core.flat import FlatModel
-from ...model.core.flatten import flatten
-from ...model.errors import FmuError
-from ...model.machines.spec import Spec, assemble
-from ...model.parts.free_form import EXTRA_PARTS
+from ....fmu.batch_library import address
+from ....model.core.flat import FlatModel
+from ....model.core.flatten import flatten
+from ....model.errors import FmuError
+from ....model.machines.spec import Spec, assemble
+from ....model.parts.free_form import EXTRA_PARTS
 from ..library.cause import Form, Nuisance
 from .many import Compiled, library, record
 

@@ -6,11 +6,11 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...model.core.flatten import flatten
-from ...model.errors import SolveError
-from ...model.machines.roles import Roles
-from ...model.machines.spec import Spec, assemble
-from ...scenarios.measured.table import Campaign
+from ....model.core.flatten import flatten
+from ....model.errors import SolveError
+from ....model.machines.roles import Roles
+from ....model.machines.spec import Spec, assemble
+from ....scenarios.measured.table import Campaign
 from ..library.cause import Ranges
 from .observe import Observed
 from .plant import Plant

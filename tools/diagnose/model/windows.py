@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...scenarios.measured.logs import Log
+from ....scenarios.measured.logs import Log
 
 #: Samples of a window that count, and samples before them in which the filter settles.
 WINDOW, SETTLING = 250, 60

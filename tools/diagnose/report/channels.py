@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...scenarios.measured.table import Sensor
+from ....scenarios.measured.table import Sensor
 from .findings import Channel
 
 #: Kind of a sensor -> unit of a result, by how much its numbers are larger than SI, and what it measures in words.

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ...scenarios.measured.table import Campaign
+from ....scenarios.measured.table import Campaign
 from ..answer import estimate
 from ..answer.decide import UNEXPLAINED, Chance, Decision, Joint
 from ..answer.gain import Gain

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import numpy as np
 
-from ...scenarios.measured.table import Campaign
+from ....scenarios.measured.table import Campaign
 from ..answer import quality as answer
 from ..infer.found import Found, Hypothesis
 from ..setting import Setting

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from ...scenarios.measured.table import Sensor
+from ....scenarios.measured.table import Sensor
 from ..infer.logs import Fleet, Moved, Question
 from ..model.windows import Windows
 from . import channels

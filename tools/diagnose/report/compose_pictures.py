@@ -6,7 +6,7 @@ from collections.abc import Collection, Sequence
 
 import numpy as np
 
-from ...scenarios.measured.table import Campaign, Sensor
+from ....scenarios.measured.table import Campaign, Sensor
 from ..answer import views as answer
 from ..infer.found import Found, Hypothesis
 from . import channels

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...scenarios.measured.repeats import Repeat as Repeated
-from ...scenarios.measured.repeats import repeats, scatters
-from ...scenarios.measured.table import Campaign
+from ....scenarios.measured.repeats import Repeat as Repeated
+from ....scenarios.measured.repeats import repeats, scatters
+from ....scenarios.measured.table import Campaign
 from ..answer import predict
 from ..infer.found import Found
 from ..setting import Setting

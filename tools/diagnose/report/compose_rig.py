@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.parts.free_form import EXTRA_PARTS
-from ...model.units import from_si
+from ....model.parts.free_form import EXTRA_PARTS
+from ....model.units import from_si
 from ..answer.estimate import posterior
 from ..infer.found import Found, Hypothesis
 from ..library.cause import Cause, Form, Nuisance, Row, Size, Theta, Values

@@ -11,11 +11,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...model.core.component import Component
-from ...model.core.declare import Output, Parameter, declared
-from ...model.machines.spec import PartSpec
-from ...scenarios.scenario import Scenario
-from ...scenarios.write import DIAGNOSED, rig_text
+from ....model.core.component import Component
+from ....model.core.declare import Output, Parameter, declared
+from ....model.machines.spec import PartSpec
+from ....scenarios.scenario import Scenario
+from ....scenarios.write import DIAGNOSED, rig_text
 from ..library.cause import Cause, Form, Row, Theta
 from . import phrases
 from .names import name_of

@@ -7,7 +7,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 from matplotlib.axes import Axes
 
-from ...tools.show.drawing import COLOURS, empty, legend, svg
+from ...show.drawing import COLOURS, empty, legend, svg
 from . import phrases
 from .evidence import Picture, Rows, View
 from .findings import Channel, Findings

@@ -7,7 +7,7 @@ from typing import Any
 
 from markupsafe import Markup
 
-from ...tools.show import pages
+from ...show import pages
 from . import figures, phrases, tables
 from .findings import Findings
 from .names import name_of
@@ -19,7 +19,7 @@ MOST = 5000
 def render(findings: Findings) -> str:
     """The page as HTML text, the same bytes for the same findings."""
     return pages.page(
-        "gearheat.diagnose.report",
+        "gearheat.tools.diagnose.report",
         "diagnosis.html",
         findings=findings,
         said=findings.says,

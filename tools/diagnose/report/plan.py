@@ -7,7 +7,7 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from ...tools.show.drawing import COLOURS, empty, legend, png, svg
+from ...show.drawing import COLOURS, empty, legend, png, svg
 from . import phrases
 from .findings import Isolability
 from .names import listed, name_of, names_of

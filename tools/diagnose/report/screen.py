@@ -9,7 +9,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table as Drawn
 
-from ...model.screen import fitting
+from ....model.screen import fitting
 from . import phrases
 from .findings import Findings
 from .tables import Table, tables
