@@ -30,6 +30,13 @@ if TYPE_CHECKING:
     from .tools.describe.rig import rigs as rigs
     from .tools.describe.shipped import Shipped as Shipped
     from .tools.describe.shipped import shipped as shipped
+    from .tools.diagnose.api import CardText as CardText
+    from .tools.diagnose.api import card as card
+    from .tools.diagnose.api import diagnose as diagnose
+    from .tools.diagnose.api import plan as plan
+    from .tools.diagnose.asking import Diagnosis as Diagnosis
+    from .tools.diagnose.asking import Outputs as Outputs
+    from .tools.diagnose.asking import PlanAnswer as PlanAnswer
     from .tools.export.export import export as export
     from .tools.export.fmu import Exported as Exported
     from .tools.export.play import play as play
@@ -50,14 +57,18 @@ if TYPE_CHECKING:
 
 #: Public name -> module that has it.
 PUBLIC: dict[str, str] = {
+    "CardText": "tools.diagnose.api",
     "Component": "model.core.component",
     "Description": "tools.describe.description",
+    "Diagnosis": "tools.diagnose.asking",
     "DesignAnswer": "tools.solve.design",
     "Exported": "tools.export.fmu",
     "GearheatError": "model.errors",
     "Map": "tools.solve.maps",
     "NewRig": "tools.build.new",
+    "Outputs": "tools.diagnose.asking",
     "PartTypes": "tools.describe.parts",
+    "PlanAnswer": "tools.diagnose.asking",
     "Rating": "tools.solve.maps",
     "Rig": "tools.describe.rig",
     "Shipped": "tools.describe.shipped",
@@ -65,12 +76,15 @@ PUBLIC: dict[str, str] = {
     "Sweep": "tools.solve.sweep",
     "TimeSeries": "tools.solve.simulate",
     "assemble": "tools.describe.rig",
+    "card": "tools.diagnose.api",
     "design": "tools.solve.design",
+    "diagnose": "tools.diagnose.api",
     "export": "tools.export.export",
     "load": "tools.describe.rig",
     "map": "tools.solve.maps",
     "new": "tools.build.new",
     "parts": "tools.describe.parts",
+    "plan": "tools.diagnose.api",
     "play": "tools.export.play",
     "rating": "tools.solve.maps",
     "rigs": "tools.describe.rig",

@@ -24,8 +24,8 @@ def _logs(text: str) -> Any:
 
 @console.guarded
 def diagnose(
+    rig: Annotated[str, typer.Option(help="Name of a shipped rig, or path of a rig file.")],
     data: Annotated[Path | None, typer.Argument(help="Measured readings: CSV, one row per reading.")] = None,
-    rig: Annotated[str, typer.Option(help="Name of a shipped rig, or path of a rig file.")] = "planetary",
     card: Card = None,
     logs: Annotated[list[Path] | None, _logs("Logged samples of the machine.")] = None,
     reference: Annotated[Path | None, typer.Option(help="Readings of the same rig when healthy: CSV as DATA.")] = None,
@@ -51,29 +51,32 @@ def diagnose(
 ) -> None:
     """What the model gets wrong in measured data: causes by name, size and certainty, and what to measure next."""
     _one_thread()
-    from ..diagnose.request import Request
-    from . import diagnosing
+    import gearheat as gh
 
-    several = (tuple(paths or ()) for paths in (logs, reference_logs, sibling_logs, library))
-    own, healthy, siblings, libraries = several
-    request = Request(
-        rig,
+    outputs = gh.Outputs(predictions, json, report, extended)
+    findings = gh.diagnose(
         data,
-        own,
-        card,
-        reference,
-        healthy,
-        siblings,
-        libraries,
-        predict,
+        rig,
+        card=card,
+        logs=logs,
+        reference=reference,
+        reference_logs=reference_logs,
+        sibling_logs=sibling_logs,
+        library=library,
+        predict=predict,
         causes=causes,
         quick=quick,
         alpha=alpha,
         seed=seed,
         series=series,
         reference_series=reference_series,
+        outputs=outputs,
     )
-    diagnosing.diagnose_command(request, diagnosing.Outputs(predictions, json, report, extended), everything=everything)
+    findings.write(outputs)
+    if json == "-":
+        print(console.as_json(findings.as_dict()), end="")
+    else:
+        print(findings.text(everything=everything, width=console.screen_width()), end="")
 
 
 @console.guarded
@@ -96,11 +99,20 @@ def plan(
 ) -> None:
     """Which causes a campaign can tell apart on a rig, and which experiments would, before anything is measured."""
     _one_thread()
-    from ..diagnose.request import PlanRequest
-    from . import diagnosing
+    import gearheat as gh
 
-    request = PlanRequest(rig, separate, card, points, tuple(library or ()), reference)
-    diagnosing.plan_command(request, json, out, everything=everything)
+    causes = [name for name in map(str.strip, separate.split(",")) if name]
+    found = gh.plan(
+        rig, separate=causes, card=card, points=points, library=library, reference=reference, json=json, out=out
+    )
+    if out is not None:
+        found.save_picture(out)
+    if (path := console.file_of(json)) is not None:
+        found.save(path)
+    if json == "-":
+        print(console.as_json(found.as_dict()), end="")
+    else:
+        print(found.text(everything=everything, width=console.screen_width()), end="")
 
 
 @console.guarded
@@ -112,9 +124,14 @@ def card(
     json: Json = None,
 ) -> None:
     """A card for the campaigns of a rig: every key with its default and what it means."""
-    from . import cards
+    import gearheat as gh
 
-    cards.command(rig, out, json)
+    found = gh.card(rig)
+    if out is not None:
+        found.save(out)
+        console.note(f"wrote {out}")
+    if json is not None or out is None:
+        console.answer(found.as_dict(), json, lambda: print(found.as_toml(), end=""))
 
 
 def _one_thread() -> None:

@@ -13,9 +13,9 @@ from ...model.run.result import Result
 from ...model.run.steady import steady
 from ...model.sources import LawInfo, sources
 from ...model.units import from_si, in_unit, shown, text
+from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.display import Display
-from ..solve.rig import RigLike, scenario_of
 from ..solve.settings import flat_of
 from ..solve.steady import conditions, leading_outputs, outside_of
 from ..solve.unchecked import unchecked

@@ -14,13 +14,13 @@ from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError
 from ...model.machines.spec import PartSpec, Spec
 from ...model.units import in_unit
+from ...scenarios.given import Settings, assignments_of
 from ...scenarios.load import load as read_rig
 from ...scenarios.scenario import Scenario, parse_assignments
 from ...scenarios.shipped import list_rigs
 from ...scenarios.write import rig_text
 from ..show.console import write
 from ..show.display import Display
-from ..solve.rig import Settings, assignments_of
 from ..solve.settings import adjusted, choice_paths, flat_of
 from .description import Description, show
 

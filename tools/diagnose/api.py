@@ -1,15 +1,23 @@
-"""The public interface: what the model gets wrong in measured data."""
+"""What the model gets wrong in measured data, which experiments would tell, and the card of a campaign."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
-from .diagnosis import diagnosed
-from .planning import planned
-from .report.findings import Findings
-from .report.plan import Plan
-from .request import PlanRequest, Request, read, read_plan
+from ...model.errors import ScenarioError
+from ...model.files import flows
+from ...scenarios.given import RigLike, scenario_of
+from ...scenarios.measured.card import Card
+from ...scenarios.measured.write import as_json, as_toml, default_card
+from ..show.console import as_json as json_text
+from ..show.console import write
+from ..show.display import Display, lines_of
+from .asking import Diagnosis, Outputs, PlanAnswer, ask, ask_plan
+from .library.nuisances import usual_priors
+from .request import PlanRequest, Request
 
 File = str | Path
 Files = File | Sequence[File] | None
@@ -17,7 +25,7 @@ Files = File | Sequence[File] | None
 
 def diagnose(
     data: File | None,
-    rig: File,
+    rig: RigLike,
     *,
     card: File | None = None,
     logs: Files = None,
@@ -32,8 +40,8 @@ def diagnose(
     seed: int = 0,
     series: File | None = None,
     reference_series: File | None = None,
-    progress: Callable[[str, float], None] = lambda stage, share: None,
-) -> Findings:
+    outputs: Outputs | None = None,
+) -> Diagnosis:
     """Compare measured data with the model of a rig, and name what explains the difference.
 
     Args:
@@ -50,13 +58,18 @@ def diagnose(
         alpha: accepted rate of false alarms
         seed: of everything that is drawn
         series: logged courses of the tests of `data`, `reference_series` of those of `reference`
-        progress: told of each stage and the share done
+        outputs: files that will be written from the findings, checked before any work
 
     Raises:
         GearheatError: all problems of files and options at once
+
+    Example:
+        >>> import gearheat as gh
+        >>> found = gh.diagnose("readings.csv", "mine.toml", card="card.toml")  # doctest: +SKIP
+        >>> found.report("campaign.html")  # doctest: +SKIP
     """
     request = Request(
-        str(rig),
+        rig,
         _path(data),
         _paths(logs),
         _path(card),
@@ -72,19 +85,20 @@ def diagnose(
         series=_path(series),
         reference_series=_path(reference_series),
     )
-    return diagnosed(read(request), progress)
+    return ask(request, outputs)
 
 
 def plan(
-    rig: File,
+    rig: RigLike,
     *,
     separate: Sequence[str] = (),
     card: File | None = None,
     points: File | None = None,
     library: Files = None,
     reference: bool = False,
-    progress: Callable[[str, float], None] = lambda stage, share: None,
-) -> Plan:
+    json: str | None = None,
+    out: File | None = None,
+) -> PlanAnswer:
     """What a campaign will tell of every cause, and which experiments tell some causes apart; no data are needed.
 
     Args:
@@ -94,13 +108,81 @@ def plan(
         points: table of conditions; a grid over the rig's range without it
         library: files with further causes
         reference: whether there is a healthy campaign of the same points as well
-        progress: told of each stage and the share done
+        json: place of the JSON object, checked before any work
+        out: place of the picture of distances, checked before any work
 
     Raises:
         GearheatError: all problems of files and options at once
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.plan("planetary", separate=["losses.churning", "losses.seals"])  # doctest: +SKIP
     """
-    request = PlanRequest(str(rig), ",".join(separate), _path(card), _path(points), _paths(library), reference)
-    return planned(read_plan(request), progress)
+    request = PlanRequest(rig, ",".join(separate), _path(card), _path(points), _paths(library), reference)
+    return ask_plan(request, json=json, out=_path(out))
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class CardText(Display):
+    """A card of a rig's campaigns: every key with its default.
+
+    Attributes:
+        rig: its name
+        card: the card
+    """
+
+    rig: str
+    card: Card
+
+    @property
+    def title(self) -> str:
+        """What it is."""
+        return f"{self.rig}: card of a campaign"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[object]]]:
+        """Keys and defaults."""
+        return ("key", "default"), lines_of(self.as_dict())
+
+    def as_dict(self) -> dict[str, Any]:
+        """The card as JSON has it."""
+        return as_json(self.card)
+
+    def as_toml(self) -> str:
+        """The card with what every key means."""
+        return as_toml(self.card)
+
+    def save(self, path: File) -> Path:
+        """Write the card as .toml or .json.
+
+        Args:
+            path: file to write
+
+        Raises:
+            ScenarioError: another kind of file
+            DataError: it cannot be written
+        """
+        place = Path(path)
+        if place.suffix not in (".toml", ".json") and not flows(place):
+            raise ScenarioError(f"-o {place}: unknown kind of file. Its name must end in .toml or .json.")
+        write(place, json_text(self.as_dict()) if place.suffix == ".json" else self.as_toml())
+        return place
+
+
+def card(rig: RigLike) -> CardText:
+    """A card for the campaigns of a rig: accuracies, priors and protocol, every key with its default.
+
+    Args:
+        rig: name, file or rig
+
+    Raises:
+        ScenarioError: all that is wrong with the rig
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.card("planetary").save("card.toml")  # doctest: +SKIP
+    """
+    scenario = scenario_of(rig)
+    return CardText(scenario.name, default_card(scenario, usual_priors(scenario)))
 
 
 def _path(file: File | None) -> Path | None:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TypeVar
 
 from ...model.errors import DataError, GearheatError, suggestion
-from ...scenarios.load import load
+from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import Card, read_card
 from ...scenarios.measured.checks import outlying, same_as_reference, too_small
 from ...scenarios.measured.invisible import invisible
@@ -34,7 +34,7 @@ class Request:
     """Files and options of a diagnosis.
 
     Args:
-        rig: name of a shipped rig, or path of a rig file
+        rig: name, file or rig
         data: table of readings, one row each
         logs: tables of logged samples of the same machine
         card: accuracies, priors and protocol
@@ -49,7 +49,7 @@ class Request:
         series: logged courses of the tests of `data`, `reference_series` of those of `reference`
     """
 
-    rig: str
+    rig: RigLike
     data: Path | None = None
     logs: tuple[Path, ...] = ()
     card: Path | None = None
@@ -146,7 +146,7 @@ class PlanRequest:
     """Files and options of a plan.
 
     Args:
-        rig: name of a shipped rig, or path of a rig file
+        rig: name, file or rig
         separate: causes to tell apart, with commas between; empty for a table of all causes
         card: accuracies, priors and protocol
         points: conditions of the campaign there is or will be; the rig's own without them
@@ -154,7 +154,7 @@ class PlanRequest:
         reference: whether there is a healthy campaign of the same points as well
     """
 
-    rig: str
+    rig: RigLike
     separate: str = ""
     card: Path | None = None
     points: Path | None = None
@@ -227,10 +227,10 @@ def _lost(files: Iterable[tuple[str, Path]]) -> list[str]:
 class _Reader:
     """Reads rig, card and tables, collecting problems; nothing of it outlives the reading."""
 
-    def __init__(self, rig: str, card: Path | None, problems: list[str]) -> None:
+    def __init__(self, rig: RigLike, card: Path | None, problems: list[str]) -> None:
         self.problems = problems
         self.card = self._tried(lambda: read_card(card)) if card is None or card.is_file() else None
-        self.scenario = self._tried(lambda: load(rig))
+        self.scenario = self._tried(lambda: scenario_of(rig))
 
     def table(self, path: Path | None, *, points: bool = False) -> Campaign | None:
         """A table; None where there is none, or something is wrong with it."""

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...fmu.description import Owner
-from ..solve.rig import RigLike, Settings, assignments_of, scenario_of
+from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
 from .fmu import Asked, Exported, export_rig
 from .systems import export_system
 

@@ -23,11 +23,11 @@ from ...model.run.point import point
 from ...model.run.rows import evaluate_at
 from ...model.run.steady import steady
 from ...scenarios.entries import catalogue
+from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.console import folder, lasting, progress_bar, writable
 from ..show.display import Display
 from ..show.network import network_svg
-from ..solve.rig import RigLike, scenario_of
 from ..solve.settings import Drive, adjusted, driven_at, flat_of
 from ..solve.simulate import first_temperatures
 from ..solve.uncertainties import uncertain

@@ -9,8 +9,8 @@ from ...fmu.described import Described, described, settable
 from ...model.errors import FmuError, GearheatError, ScenarioError, suggestion
 from ...model.units import to_si
 from ...scenarios.duty import read_duty
+from ...scenarios.given import Settings, assignments_of
 from ..show.console import note
-from ..solve.rig import Settings, assignments_of
 from ..solve.simulate import Duty, TimeSeries, duty_file
 
 

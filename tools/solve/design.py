@@ -12,9 +12,9 @@ from ...model.errors import GearheatError, ScenarioError, SolveError, suggestion
 from ...model.run.design import Design
 from ...model.run.least import Target, least_change, rank, unchanged
 from ...model.units import from_si, in_unit, shown
+from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, written
 from ...scenarios.scenario import Scenario, parse_assignments
 from ..show.display import Display
-from .rig import RigLike, Settings, assignments_of, scenario_of, written
 from .settings import adjusted, flat_of
 from .steady import HEAD, conditions, first_of, point_of
 from .unchecked import unchecked

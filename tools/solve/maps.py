@@ -12,12 +12,12 @@ import numpy as np
 from ...model.errors import ScenarioError, SolveError
 from ...model.run.design import design
 from ...model.units import from_si, shown, text
+from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
 from ...scenarios.scenario import Scenario, parse_assignments
 from ..show.columns import table_text
 from ..show.console import write
 from ..show.display import Display, optional
 from . import sampling
-from .rig import RigLike, Settings, assignments_of, scenario_of
 from .settings import adjusted, flat_of
 from .steady import conditions, leading_outputs
 from .sweep_plan import Request, plan_sweep

@@ -14,8 +14,8 @@ from ...model.errors import GearheatError, ScenarioError, suggestion
 from ...model.laws.film_map import FilmMap
 from ...model.machines.spec import Spec, assemble
 from ...scenarios.film_map import map_named, names_map
+from ...scenarios.given import Settings, assignments_of
 from ...scenarios.scenario import Scenario, deduced, parse_assignments
-from .rig import Settings, assignments_of
 
 Drive = Mapping[str, tuple[str, ...]]
 

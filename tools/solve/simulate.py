@@ -17,11 +17,11 @@ from ...model.run.schedule import Schedule
 from ...model.run.simulate import simulate as integrate
 from ...model.units import from_si, in_unit, shown, si_of
 from ...scenarios.duty import duty_names, read_duty
+from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.columns import series
 from ..show.console import write
 from ..show.display import Display, optional
-from .rig import RigLike, Settings, scenario_of
 from .settings import adjusted, flat_of
 from .steady import outside_of
 from .unchecked import unchecked

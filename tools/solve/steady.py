@@ -13,10 +13,10 @@ from ...model.machines.spec import assemble
 from ...model.run.result import Result
 from ...model.run.steady import steady as solve
 from ...model.units import from_si, in_unit, shown
+from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.display import Display
 from ..show.heat_paths import heat_flows, heat_paths
-from .rig import RigLike, Settings, scenario_of
 from .settings import adjusted, flat_of
 from .unchecked import unchecked
 

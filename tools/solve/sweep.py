@@ -16,10 +16,10 @@ import numpy as np
 from ...fmu.batch import Status
 from ...model.errors import DataError, SolveError
 from ...model.units import from_si, shown
+from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, written
 from ..show.console import note
 from ..show.display import Display, optional
 from . import sampling
-from .rig import RigLike, Settings, assignments_of, scenario_of, written
 from .simulate import Duty, duty_file
 from .sweep_file import Column, Store, words, work_file, write_table
 from .sweep_plan import Plan, Request, plan_sweep

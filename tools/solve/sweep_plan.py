@@ -20,9 +20,9 @@ from ...model.run.simulate import simulate
 from ...model.run.steady import steady
 from ...model.units import to_si
 from ...scenarios.duty import duty_names, read_duty
+from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
 from . import sampling
-from .rig import RigLike, scenario_of
 from .settings import adjusted, flat_of
 from .simulate import first_temperatures
 from .steady import leading_outputs, outside_of

@@ -2,7 +2,7 @@
 
 from challenge import own
 from challenge.cases import make_case
-from gearheat.tools.diagnose import diagnose
+from gearheat import diagnose
 
 
 def test_readings_far_too_early_are_found_though_other_capacities_hide_them(tmp_path) -> None:

@@ -11,10 +11,11 @@ from fabricated_findings import explained
 from gearheat.model.errors import DataError
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.cli import app as cli
-from gearheat.tools.cli import diagnosing
-from gearheat.tools.cli.diagnosing import Outputs, Progress, diagnose_command
+from gearheat.tools.diagnose import asking
+from gearheat.tools.diagnose.asking import Outputs, Progress, ask
 from gearheat.tools.diagnose.report.findings import Findings, Prediction
 from gearheat.tools.diagnose.request import Inputs, Request
+from gearheat.tools.show.console import as_json
 from jsonschema import validate
 from typer.testing import CliRunner
 
@@ -30,6 +31,12 @@ def infer(inputs: Inputs, progress: Progress) -> Findings:
         predictions=(Prediction(point="1", nominal={"T_oil": 60.0}, extended={"T_oil": 61.5}),),
     )
     return said.model_copy(update={"about": said.about.model_copy(update={"readings": inputs.data.n})})  # type: ignore[union-attr]
+
+
+def diagnose_command(request: Request, outputs: Outputs, infer) -> None:
+    """What the command does with an inference."""
+    (found := ask(request, outputs, infer)).write(outputs)
+    print(as_json(found.as_dict()) if outputs.json == "-" else found.text(), end="")
 
 
 def test_everything_is_written_whole(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -96,7 +103,7 @@ def test_an_interrupted_run_writes_nothing(tmp_path: Path) -> None:
 
 
 def test_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(diagnosing, "_inference", lambda: infer)
+    monkeypatch.setattr(asking, "_inference", lambda: infer)
     done = CliRunner().invoke(cli.app, ["diagnose", str(DATA), "--rig", RIG, "--all", "--seed", "3"])
     assert done.exit_code == 0, done.output
     assert "Smallest size found in 80 of 100 such campaigns" in done.output

@@ -10,8 +10,8 @@ import pytest
 from fabricated_findings import AIR, CHURNING, EMISSIVITY, OFFSET, WINDAGE
 from gearheat.model.errors import DataError
 from gearheat.tools.cli import app as cli
-from gearheat.tools.cli import diagnosing
-from gearheat.tools.cli.diagnosing import Progress, plan_command
+from gearheat.tools.diagnose import asking
+from gearheat.tools.diagnose.asking import Progress
 from gearheat.tools.diagnose.report.findings import Isolability
 from gearheat.tools.diagnose.report.plan import (
     Outlook,
@@ -108,7 +108,7 @@ def find(inputs: PlanInputs, progress: Progress) -> Plan:
 
 
 def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(diagnosing, "_planning", lambda: find)
+    monkeypatch.setattr(asking, "_planning", lambda: find)
     out, file = tmp_path / "plan.svg", tmp_path / "plan.json"
     arguments = ["plan", "helical_two_stage", "--separate", ",".join(PAIR), "--out", str(out), "--json", str(file)]
     done = CliRunner().invoke(cli.app, arguments)
@@ -121,7 +121,7 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 def test_all_problems_at_once(tmp_path: Path) -> None:
     request = PlanRequest("nowhere", f"{AIR},{AIR}", card=tmp_path / "no.toml")
     with pytest.raises(DataError) as caught:
-        plan_command(request, str(tmp_path / "no" / "o.json"), tmp_path / "picture.gif", find)
+        ask_plan(request, json=str(tmp_path / "no" / "o.json"), out=tmp_path / "picture.gif", find=find)
     told = "\n".join(caught.value.problems)
     for word in ("picture.gif", "there twice", "nothing to tell it from", "no.toml", "nowhere", "o.json"):
         assert word in told

@@ -6,9 +6,9 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
-from ...model.core.flat import Quantity
-from ...scenarios.load import load
-from ...scenarios.scenario import Scenario
+from ..model.core.flat import Quantity
+from .load import load
+from .scenario import Scenario
 
 
 @runtime_checkable

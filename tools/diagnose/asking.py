@@ -1,0 +1,233 @@
+"""A diagnosis or a plan from files: all problems of files and options are named before any work."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, Literal, TypeVar
+
+from ...fmu.compiling import Progress
+from ...model.errors import DataError, GearheatError
+from ..show.console import as_json, file_of, progress_bar, writable, write
+from ..show.display import Display
+from .report import plan as plans
+from .report.findings import Findings, as_object
+from .report.page import render
+from .report.predictions import predictions_text
+from .report.screen import text
+from .request import Inputs, PlanInputs, PlanRequest, Request, read, read_plan
+
+#: What is read and a listener for progress -> what was found, with its words; the same of a plan.
+Infer = Callable[[Inputs, Progress], Findings]
+Find = Callable[[PlanInputs, Progress], plans.Plan]
+#: Kinds of pictures by the ending of their file's name.
+PICTURES: Mapping[str, Literal["png", "svg"]] = {".png": "png", ".svg": "svg"}
+T = TypeVar("T")
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """Where results go; None writes nothing, "-" as `json` is stdout."""
+
+    predictions: Path | None = None
+    json: str | None = None
+    report: Path | None = None
+    extended: Path | None = None
+
+    def files(self) -> dict[str, Path]:
+        """The files that are written, by the name of their option."""
+        given = {"--predictions": self.predictions, "--json": file_of(self.json), "--report": self.report}
+        given |= {"--extended": self.extended}
+        return {name: path for name, path in given.items() if path is not None}
+
+
+class Diagnosis(Display, Findings):
+    """Findings that show themselves and are written."""
+
+    @property
+    def title(self) -> str:
+        """The verdict in a sentence."""
+        return f"{self.about.rig}: {self.verdict}"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Answers with their probabilities."""
+        named = [(" + ".join(" or ".join(names) for names in a.causes), a.probability) for a in self.answers]
+        rows = [(names or "nothing wrong", probability) for names, probability in named]
+        return ("answer", "probability"), rows
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object, without what is not known."""
+        return as_object(self)
+
+    def text(self, *, everything: bool = False, width: int | None = None) -> str:
+        """The findings as text.
+
+        Args:
+            everything: with all tables
+            width: of the screen
+        """
+        return text(self, everything=everything, width=width)
+
+    def report(self, path: str | Path) -> Path:
+        """Write the HTML page.
+
+        Args:
+            path: file to write
+
+        Raises:
+            DataError: it cannot be written
+        """
+        write(Path(path), render(self))
+        return Path(path)
+
+    def write(self, outputs: Outputs) -> None:
+        """Write files when all of them are made: an interrupted run leaves none.
+
+        Args:
+            outputs: the files
+
+        Raises:
+            DataError: one cannot be written
+        """
+        made: dict[Path | None, str] = {
+            outputs.predictions: predictions_text(self),
+            outputs.extended: self.extended_rig,
+            outputs.report: render(self) if outputs.report is not None else "",
+            file_of(outputs.json): as_json(as_object(self)),
+        }
+        for path, content in made.items():
+            if path is not None:
+                write(path, content)
+
+
+class PlanAnswer(Display, plans.Plan):
+    """A plan that shows itself and is drawn."""
+
+    @property
+    def title(self) -> str:
+        """The answer in a sentence."""
+        return plans.sentence(self) or f"{self.rig}: which causes a campaign can tell apart"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Experiments in the order of what they tell."""
+        return ("experiment",), [(self.what(one.id),) for one in self.catalogue]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object, without what is not known."""
+        return plans.as_object(self)
+
+    def text(self, *, everything: bool = False, width: int | None = None) -> str:
+        """The plan as text.
+
+        Args:
+            everything: with all experiments and causes
+            width: of the screen
+        """
+        return plans.text(self, everything=everything, width=width)
+
+    def save_picture(self, path: str | Path) -> Path:
+        """Write the distances of the causes as a picture.
+
+        Args:
+            path: .png or .svg
+
+        Raises:
+            DataError: it cannot be written
+        """
+        write(Path(path), plans.picture(self, PICTURES[Path(path).suffix.lower()]))
+        return Path(path)
+
+
+def ask(request: Request, outputs: Outputs | None = None, infer: Infer | None = None) -> Diagnosis:
+    """Read and infer.
+
+    Args:
+        request: files and options
+        outputs: files that will be written, checked before any work
+        infer: the inference; the project's own if None
+
+    Raises:
+        GearheatError: all problems of files and options at once
+    """
+    problems, written = [], {} if outputs is None else outputs.files()
+    if outputs is not None and request.predict is not None and outputs.predictions is None:
+        problems.append("--predict needs a place for the result. Give --predictions FILE, too.")
+    if outputs is not None and outputs.predictions is not None and request.predict is None:
+        problems.append("--predictions needs the points to predict. Give --predict FILE, too.")
+    inputs = _checked(problems, request.files(), written, lambda: read(request))
+    with progress_bar() as progress:
+        return Diagnosis.model_construct(**dict((infer or _inference())(inputs, progress)))
+
+
+def _inference() -> Infer:
+    """The project's inference, imported when it is needed."""
+    from .diagnosis import diagnosed
+
+    return diagnosed
+
+
+def ask_plan(
+    request: PlanRequest, *, json: str | None = None, out: Path | None = None, find: Find | None = None
+) -> PlanAnswer:
+    """Read and plan.
+
+    Args:
+        request: files and options
+        json: place of the JSON object, checked before any work
+        out: place of the picture, checked before any work
+        find: what plans; the project's own if None
+
+    Raises:
+        GearheatError: all problems of files and options at once
+    """
+    problems = []
+    if out is not None and out.suffix.lower() not in PICTURES:
+        problems.append(f"--out {out}: is no picture that can be drawn. Give a name that ends in .png or .svg.")
+    if out is not None and not request.causes:
+        problems.append("--out draws the distances of causes. Name them with --separate CAUSE,CAUSE.")
+    given = {"--json": file_of(json), "--out": out}
+    files = {name: path for name, path in given.items() if path is not None}
+    inputs = _checked(problems, request.files(), files, lambda: read_plan(request))
+    with progress_bar() as progress:
+        return PlanAnswer.model_construct(**dict((find or _planning())(inputs, progress)))
+
+
+def _planning() -> Find:
+    """The project's planning, imported when it is needed."""
+    from .planning import planned
+
+    return planned
+
+
+def _checked(
+    problems: list[str], files: Iterable[tuple[str, Path]], written: Mapping[str, Path], step: Callable[[], T]
+) -> T:
+    """What is read, or all problems of files and options."""
+    problems = problems + shared(files, written)
+    found = None
+    try:
+        found = step()
+    except GearheatError as error:
+        problems += error.problems
+    try:
+        writable(*written.values())
+    except GearheatError as error:
+        problems += error.problems
+    if problems or found is None:
+        raise DataError(problems)
+    return found
+
+
+def shared(read: Iterable[tuple[str, Path]], written: Mapping[str, Path]) -> list[str]:
+    """Problems of files that are written over others.
+
+    Args:
+        read: option and file, of each that is read
+        written: option -> file that is written
+    """
+    taken, problems = {path.resolve(): name for name, path in read}, []
+    for name, path in written.items():
+        if (other := taken.setdefault(path.resolve(), name)) != name:
+            problems.append(f"{name} {path}: is the file of {other}, too. Give each its own.")
+    return problems
