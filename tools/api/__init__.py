@@ -19,6 +19,16 @@ if TYPE_CHECKING:
     from .model.errors import GearheatError as GearheatError
     from .tools.build.new import NewRig as NewRig
     from .tools.build.new import new as new
+    from .tools.compare.calibrate import Calibration as Calibration
+    from .tools.compare.calibrate import calibrate as calibrate
+    from .tools.compare.losses import LossTable as LossTable
+    from .tools.compare.losses import losses as losses
+    from .tools.compare.replay import Replays as Replays
+    from .tools.compare.replay import replay as replay
+    from .tools.compare.results import Errors as Errors
+    from .tools.compare.results import compare as compare
+    from .tools.compare.run import CampaignRun as CampaignRun
+    from .tools.compare.run import run as run
     from .tools.describe.description import Description as Description
     from .tools.describe.description import show as show
     from .tools.describe.parts import PartTypes as PartTypes
@@ -40,6 +50,8 @@ if TYPE_CHECKING:
     from .tools.export.export import export as export
     from .tools.export.fmu import Exported as Exported
     from .tools.export.play import play as play
+    from .tools.rating.rate import MethodRating as MethodRating
+    from .tools.rating.rate import rate_by_method as rate_by_method
     from .tools.solve.design import DesignAnswer as DesignAnswer
     from .tools.solve.design import design as design
     from .tools.solve.maps import Map as Map
@@ -57,43 +69,55 @@ if TYPE_CHECKING:
 
 #: Public name -> module that has it.
 PUBLIC: dict[str, str] = {
+    "assemble": "tools.describe.rig",
+    "calibrate": "tools.compare.calibrate",
+    "Calibration": "tools.compare.calibrate",
+    "CampaignRun": "tools.compare.run",
+    "card": "tools.diagnose.api",
     "CardText": "tools.diagnose.api",
+    "compare": "tools.compare.results",
     "Component": "model.core.component",
     "Description": "tools.describe.description",
-    "Diagnosis": "tools.diagnose.asking",
+    "design": "tools.solve.design",
     "DesignAnswer": "tools.solve.design",
+    "diagnose": "tools.diagnose.api",
+    "Diagnosis": "tools.diagnose.asking",
+    "Errors": "tools.compare.results",
+    "export": "tools.export.export",
     "Exported": "tools.export.fmu",
     "GearheatError": "model.errors",
+    "load": "tools.describe.rig",
+    "losses": "tools.compare.losses",
+    "LossTable": "tools.compare.losses",
     "Map": "tools.solve.maps",
+    "map": "tools.solve.maps",
+    "MethodRating": "tools.rating.rate",
+    "new": "tools.build.new",
     "NewRig": "tools.build.new",
     "Outputs": "tools.diagnose.asking",
-    "PartTypes": "tools.describe.parts",
-    "PlanAnswer": "tools.diagnose.asking",
-    "Rating": "tools.solve.maps",
-    "Rig": "tools.describe.rig",
-    "Shipped": "tools.describe.shipped",
-    "SteadyState": "tools.solve.steady",
-    "Sweep": "tools.solve.sweep",
-    "TimeSeries": "tools.solve.simulate",
-    "assemble": "tools.describe.rig",
-    "card": "tools.diagnose.api",
-    "design": "tools.solve.design",
-    "diagnose": "tools.diagnose.api",
-    "export": "tools.export.export",
-    "load": "tools.describe.rig",
-    "map": "tools.solve.maps",
-    "new": "tools.build.new",
     "parts": "tools.describe.parts",
+    "PartTypes": "tools.describe.parts",
     "plan": "tools.diagnose.api",
+    "PlanAnswer": "tools.diagnose.asking",
     "play": "tools.export.play",
+    "rate_by_method": "tools.rating.rate",
+    "Rating": "tools.solve.maps",
     "rating": "tools.solve.maps",
+    "replay": "tools.compare.replay",
+    "Replays": "tools.compare.replay",
+    "Rig": "tools.describe.rig",
     "rigs": "tools.describe.rig",
+    "run": "tools.compare.run",
     "schema": "tools.describe.parts",
+    "Shipped": "tools.describe.shipped",
     "shipped": "tools.describe.shipped",
     "show": "tools.describe.description",
     "simulate": "tools.solve.simulate",
     "steady": "tools.solve.steady",
+    "SteadyState": "tools.solve.steady",
+    "Sweep": "tools.solve.sweep",
     "sweep": "tools.solve.sweep",
+    "TimeSeries": "tools.solve.simulate",
 }
 #: Public names that their module spells otherwise, since it has another use for them.
 RENAMED = {"map": "map_outputs"}

@@ -2,18 +2,27 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 import typer
 
+from ...model.errors import ScenarioError
 from ..show import console
+from ..show.notes import print_outside, print_unchecked
 from .options import Extended, Jobs, Json, Rig, Set, Tests
+
+if TYPE_CHECKING:
+    from gearheat import Calibration, CampaignRun, Errors, LossTable, MethodRating, Replays
+
+#: Rows of the table of contacts for people; programs get all.
+CONTACTS = 19
 
 
 @console.guarded
 def run(
-    rig: Rig = "planetary",
+    rig: Rig,
     out: Annotated[
         Path, typer.Option("-o", "--out", help="Folder for results; a run that was interrupted goes on from there.")
     ] = Path("out"),
@@ -27,14 +36,16 @@ def run(
     json: Json = None,
 ) -> None:
     """The main job: export the FMU, play all measured tests, compare, report."""
-    from ..compare import run
+    import gearheat as gh
 
-    run.command(rig, out, tests, step, set_ or [], jobs, json, extended=extended, data=data, card=card)
+    console.writable(console.file_of(json))
+    done = gh.run(rig, out, tests=tests, step=step, set=set_ or [], jobs=jobs, extended=extended, data=data, card=card)
+    console.answer(done.as_dict(), json, lambda: print_run(done))
 
 
 @console.guarded
 def losses(
-    rig: Rig = "planetary",
+    rig: Rig,
     data: Annotated[Path | None, typer.Option(help="Measured table; the rig's own if left out.")] = None,
     card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
     temperature: Annotated[
@@ -65,28 +76,39 @@ def losses(
     json: Json = None,
 ) -> None:
     """Loss of every part at each measured reading, or beside those of a reference method."""
-    from ..compare import losses
-    from ..rating import command
+    import gearheat as gh
 
-    others = {"--data": data, "--card": card, "--power-flow": power_flow, "--contacts": contacts}
-    if command.asked(method, {"--limit": limit, "--k": k, "--dip": dip}, others):
-        command.command(rig, method or "", limit or "95 degC", k, dip or [], set_ or [], json)
+    if method is not None:
+        _refuse({"--data": data, "--card": card, "--power-flow": power_flow, "--contacts": contacts}, method)
+        rated = gh.rate_by_method(rig, method, limit=limit or "95 degC", k=k, dip=dip or [], set=set_ or [])
+        console.answer(rated.as_dict(), json, lambda: _print_method(rated))
         return
-    losses.command(rig, data, card, temperature, power_flow, set_ or [], json, contacts=contacts)
+    _refuse({"--limit": limit, "--k": k, "--dip": dip}, None)
+    table = gh.losses(
+        rig,
+        data=data,
+        card=card,
+        temperature=temperature,
+        power_flow=power_flow,
+        contacts=contacts,
+        set=set_ or [],
+    )
+    console.answer(table.as_dict(), json, lambda: _print_losses(table))
 
 
 @console.guarded
 def compare(
     result: Annotated[Path, typer.Argument(help="Simulated readings: CSV with test and direction, or point.")],
     data: Annotated[Path, typer.Argument(help="Measured readings: CSV.")],
-    rig: Annotated[str, typer.Option(help="Rig that was measured.")] = "planetary",
+    rig: Annotated[str, typer.Option(help="Rig that was measured.")],
     card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
     json: Json = None,
 ) -> None:
     """Errors of simulated readings by group, with the noise floor and statistical rivals."""
-    from ..compare import readings
+    import gearheat as gh
 
-    readings.command(result, data, rig, card, json)
+    errors = gh.compare(result, data, rig, card=card)
+    console.answer(errors.as_dict(), json, lambda: print_errors(errors))
 
 
 @console.guarded
@@ -105,9 +127,10 @@ def calibrate(
     json: Json = None,
 ) -> None:
     """Fit parameters to the measured oil temperatures of a table, or of one of its grids."""
-    from ..compare import calibrate
+    import gearheat as gh
 
-    calibrate.command(rig, grid, free, bounds or [], set_ or [], json, data=data, card=card)
+    fit = gh.calibrate(rig, free, grid=grid, bounds=bounds or [], set=set_ or [], data=data, card=card)
+    console.answer(fit.as_dict(), json, lambda: print_calibration(fit))
 
 
 @console.guarded
@@ -121,6 +144,109 @@ def replay(
     json: Json = None,
 ) -> None:
     """How well a rig predicts logs without correction, beside a one-node model, a regression and the last reading."""
-    from ..compare import replay as replaying
+    import gearheat as gh
 
-    replaying.command(rig, fit, until, logs or [], card, out, json)
+    console.writable(out)
+    found = gh.replay(rig, fit, until=until, logs=logs or [], card=card)
+    if out is not None:
+        found.save_picture(out)
+    console.answer(found.as_dict(), json, lambda: print_replays(found))
+
+
+def _refuse(options: Mapping[str, object], method: str | None) -> None:
+    """Refuse options that belong to the other kind of losses."""
+    wrong = [name for name, value in options.items() if value]
+    if wrong and method is None:
+        raise ScenarioError(f"{', '.join(wrong)} belongs to --method. Add --method iso14179-1, or leave it out.")
+    if wrong:
+        raise ScenarioError(f"{', '.join(wrong)} does not go with --method. Leave out one of them.")
+
+
+def print_errors(errors: CampaignRun | Errors) -> None:
+    """Print the tables of errors.
+
+    Args:
+        errors: of a run or of a comparison
+    """
+    console.table("Errors", *errors.table())
+    console.table("Errors by group, simulated minus measured", *errors.groups())
+
+
+def print_run(done: CampaignRun) -> None:
+    """Print errors, or the one point there is.
+
+    Args:
+        done: the run
+    """
+    if done.comparison is None:
+        console.table(done.title, *done.table())
+    else:
+        print_errors(done)
+    print_unchecked(done.found["unchecked"])
+    closed = f"energy balance closed within {done.found['energy_residual_max']:.1e} of the throughput"
+    console.say(f"{len(done.rows)} reading{'s' * (len(done.rows) > 1)}; {closed}")
+
+
+def _print_losses(table: LossTable) -> None:
+    console.table(table.title, *table.table())
+    if (contacts := table.contacts) is not None:
+        columns = list(contacts.columns)
+        every = max(1, (len(contacts.rows) - 1) // (CONTACTS - 1))
+        rows = [[row[c] for c in columns] for row in contacts.rows[::every]]
+        console.table(f"{table.found['rig']}: contacts over a mesh cycle", columns, rows)
+        for column, meaning in contacts.columns.items():
+            console.say(f"{column}: {meaning}")
+        for key, value in contacts.totals.items():
+            console.say(f"{key}: {value:.6g}")
+    print_outside(table.found.get("outside", ()))
+    print_unchecked(table.found["unchecked"])
+
+
+def _print_method(rated: MethodRating) -> None:
+    found = rated.found
+    console.table(rated.title, *rated.table())
+    if found["T_sump_C"] is None:
+        print("sump: the losses never equal the heat that leaves")
+    else:
+        print(f"sump by {rated.method}: {found['T_sump_C']:.1f} degC with {found['conductance_W_K']:.1f} W/K")
+    rating = found["rating"]
+    power = "none" if rating["power_W"] is None else f"{rating['power_W'] / 1000:.3g} kW at the input"
+    why = f" ({rating['why']})" if rating["why"] else f", {rating['load_share']:.3g} times the load"
+    print(f"thermal rating at {rating['limit_C']:.1f} degC: {power}{why}")
+    for u in found["not_treated"]:
+        print(f"not treated: {u['part']} ({u['type']}): {u['why']}; in the model {u['power']:.4g} W")
+    print_outside(found["outside"])
+    for assumption in found["assumptions"]:
+        print(f"assumed: {assumption}")
+
+
+def print_calibration(fit: Calibration) -> None:
+    """Print fitted values.
+
+    Args:
+        fit: the values
+    """
+    found = fit.found
+    console.table(fit.title, *fit.table())
+    body = [[n, *line.values()] for n, line in found["correlation"].items()]
+    console.table("Correlation", ("", *found["free"]), body)
+    for name in (n for n, f in found["free"].items() if f["at_bound"]):
+        console.say(f"{name} ended at its bound: the readings ask for more than it allows.")
+    console.say(f"root mean square: {found['rmse_before_K']:.3f} K before, {found['rmse_after_K']:.3f} K after")
+
+
+def print_replays(found: Replays) -> None:
+    """Print errors of free runs and by hours ahead, log by log.
+
+    Args:
+        found: the errors
+    """
+    sensors = list(next(iter(found.logs[0].free.values())))
+    hours = found.as_dict()["hours"]
+    for r in found.logs:
+        rows = [[m, *(f"{e[s]:.2f}" for s in sensors)] for m, e in r.free.items()]
+        title = f"{r.name}, free run from the first sample of each stretch: RMSE [K]"
+        console.table(title, ["method", *sensors], rows)
+        rows = [[m, *(f"{v:.2f}" for v in e[sensors[0]])] for m, e in r.ahead.items()]
+        title = f"{r.name}, {sensors[0]}: RMSE [K] by hours ahead"
+        console.table(title, ["method", *(f"{h:g} h" for h in hours)], rows)

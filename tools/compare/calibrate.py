@@ -1,4 +1,4 @@
-"""The command `calibrate`: fit parameters to the measured oil temperatures of one grid by playing the FMU."""
+"""Parameters fitted to the measured oil temperatures of one grid by playing the FMU."""
 
 from __future__ import annotations
 
@@ -16,8 +16,9 @@ from ...fmu.play import Player
 from ...model.core.flat import FlatModel, Quantity
 from ...model.errors import DataError, GearheatError, ScenarioError, SolveError
 from ...model.units import from_si, shown, to_si
-from ...scenarios.load import load
-from ..show.console import answer, note, say, table
+from ...scenarios.given import RigLike, Settings, scenario_of
+from ..show.console import note
+from ..show.display import Display
 from ..solve.settings import adjusted, flat_of
 from . import campaign
 from .measured import Measured, measured_of
@@ -44,19 +45,63 @@ class Fit:
     rmse_after: float
 
 
-def command(
-    rig: str,
-    grid: str | None,
+@dataclass(frozen=True, eq=False, repr=False)
+class Calibration(Display):
+    """Parameters fitted to measured oil temperatures.
+
+    Attributes:
+        fit: values in SI with standard errors and correlations
+        found: the JSON object
+    """
+
+    fit: Fit
+    found: Mapping[str, Any]
+
+    @property
+    def title(self) -> str:
+        """The rig and what it was fitted to."""
+        of = self.found["grid"] or "all tests"
+        return f"{self.found['rig']}: fitted to {self.found['readings']} oil temperatures of {of}"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Values with standard errors, and those before."""
+        rows = [(n, f["value"], f["standard_error"], f["unit"], f["start"]) for n, f in self.found["free"].items()]
+        return ("name", "value", "standard error", "unit", "before"), rows
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object."""
+        return dict(self.found)
+
+
+def calibrate(
+    rig: RigLike,
     free: Sequence[str],
-    bounds: Sequence[str],
-    assignments: Sequence[str],
-    json: str | None,
     *,
-    data: Path | None = None,
-    card: Path | None = None,
-) -> None:
-    """Print the fitted values."""
-    scenario = adjusted(load(rig), assignments, named=free)
+    grid: str | None = None,
+    bounds: Sequence[str] = (),
+    set: Settings = (),
+    data: str | Path | None = None,
+    card: str | Path | None = None,
+) -> Calibration:
+    """Fit parameters to the measured oil temperatures of a table, or of one of its grids.
+
+    Args:
+        rig: name, file or rig
+        free: parameters to fit
+        grid: value of the table's `mounting` or `grid` column to fit; all if None
+        bounds: ranges of free parameters, such as "cooling.A=0.4 m2..1.2 m2"
+        set: values by name: texts with units, quantities of pint, or numbers in SI
+        data: measured table; the rig's own if None
+        card: how that table was taken
+
+    Raises:
+        GearheatError: all that is wrong with what is asked; the readings do not determine the parameters
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.calibrate("planetary", ["cooling.A"], grid="PAOR-16")  # doctest: +SKIP
+    """
+    scenario = adjusted(scenario_of(rig), set, named=free)
     study = measured_of(scenario, data, card)
     if study is None:
         raise DataError(f"{scenario.name}: there are no measured data to fit to. Give them as --data FILE.")
@@ -64,7 +109,7 @@ def command(
     flat = flat_of(scenario)
     quantities = _bounded(_checked(flat, free), bounds)
     chosen = _of_grid(study, campaign.runs_of(scenario, flat, study), grid)
-    fit = fitted(study, flat, quantities, chosen)
+    fit = fit_parameters(study, flat, quantities, chosen)
     found = {
         "schema": "gearheat.calibrate/1",
         "rig": scenario.name,
@@ -87,7 +132,7 @@ def command(
         "rmse_before_K": fit.rmse_before,
         "rmse_after_K": fit.rmse_after,
     }
-    answer(found, json, lambda: _print(found))
+    return Calibration(fit, found)
 
 
 def _checked(flat: FlatModel, free: Sequence[str]) -> list[Quantity]:
@@ -139,7 +184,9 @@ def _of_grid(study: Measured, runs: Sequence[campaign.Run], grid: str | None) ->
     return found
 
 
-def fitted(study: Measured, flat: FlatModel, quantities: Sequence[Quantity], runs: Sequence[campaign.Run]) -> Fit:
+def fit_parameters(
+    study: Measured, flat: FlatModel, quantities: Sequence[Quantity], runs: Sequence[campaign.Run]
+) -> Fit:
     """Least squares on the first thermometer, that of the oil where there is one, over the readings of the tests.
 
     Raises:
@@ -213,16 +260,3 @@ def _settled(study: Measured, run: campaign.Run, values: Mapping[str, float]) ->
     known |= {name: float(course[0]) for name, course in run.schedule.values.items()}
     found = study.nominal.at({**known, **values}) or {}
     return {name: found[name] for name in states & found.keys() & run.start.keys()}
-
-
-def _print(found: Mapping[str, Any]) -> None:
-    body = [[n, f["value"], f["standard_error"], f["unit"], f["start"]] for n, f in found["free"].items()]
-    table(
-        f"{found['rig']}: fitted to {found['readings']} oil temperatures of {found['grid'] or 'all tests'}",
-        ("name", "value", "standard error", "unit", "before"),
-        body,
-    )
-    table("Correlation", ("", *found["free"]), [[n, *line.values()] for n, line in found["correlation"].items()])
-    for name in (n for n, f in found["free"].items() if f["at_bound"]):
-        say(f"{name} ended at its bound: the readings ask for more than it allows.")
-    say(f"root mean square: {found['rmse_before_K']:.3f} K before, {found['rmse_after_K']:.3f} K after")

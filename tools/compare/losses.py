@@ -1,9 +1,9 @@
-"""The command `losses`: every loss at every measured reading, without running the rig through its tests."""
+"""Every loss at every measured reading, without running the rig through its tests."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +17,11 @@ from ...model.run.point import point
 from ...model.run.rows import evaluate
 from ...model.run.steady import steady, steady_table
 from ...scenarios.entries import catalogue
-from ...scenarios.load import load
+from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
 from ...scenarios.measured.oils import bath_of
 from ...scenarios.scenario import Scenario
-from ..show.console import answer, table
-from ..show.notes import print_outside, print_unchecked
-from ..solve.contacts import contacts_at, part_with_contacts, print_contacts
+from ..show.display import Display
+from ..solve.contacts import contacts_at, part_with_contacts
 from ..solve.settings import adjusted, choice_paths, flat_of
 from ..solve.steady import conditions, outside_of
 from ..solve.unchecked import unchecked
@@ -30,26 +29,68 @@ from .measured import Measured, measured_of
 from .readings import about
 
 
-def command(
-    rig: str,
-    data: Path | None,
-    card: Path | None,
-    temperature: str,
-    power_flow: str | None,
-    assignments: Sequence[str],
-    json: str | None,
-    *,
-    contacts: bool = False,
-) -> None:
+@dataclass(frozen=True, eq=False, repr=False)
+class LossTable(Display):
     """Losses at all readings of a rig, or at the operating point of a rig without measured data.
 
-    With `contacts` the contacts at the operating point as well.
+    Attributes:
+        found: the JSON object
+        contacts: the contacts at the operating point, where they were asked for
     """
-    scenario = load(rig)
-    flows = [f"{path}={power_flow}" for path in choice_paths(scenario.spec) if path.endswith(".power_flow")]
+
+    found: Mapping[str, Any]
+    contacts: ContactTable | None = None
+
+    @property
+    def title(self) -> str:
+        """The rig and what is shown."""
+        return f"{self.found['rig']}: losses"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """A row per reading."""
+        rows = self.found["rows"]
+        return list(rows[0]), [list(row.values()) for row in rows]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object."""
+        return dict(self.found)
+
+
+def losses(
+    rig: RigLike,
+    *,
+    data: str | Path | None = None,
+    card: str | Path | None = None,
+    temperature: str = "measured",
+    power_flow: str | None = None,
+    contacts: bool = False,
+    set: Settings = (),
+) -> LossTable:
+    """Loss of every part at each measured reading, without running the rig through its tests.
+
+    Args:
+        rig: name, file or rig
+        data: measured table; the rig's own if None
+        card: how that table was taken
+        temperature: "measured": at the measured oil temperature; "model": at the one the model reaches
+        power_flow: "ideal": mesh forces from the input torque; "successive": each stage sees upstream losses
+        contacts: also every contact over a mesh cycle
+        set: values by name: texts with units, quantities of pint, or numbers in SI
+
+    Raises:
+        GearheatError: all that is wrong with what is asked
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.losses("helical_two_stage", temperature="model").found["temperature"]
+        'model'
+    """
+    scenario = scenario_of(rig)
+    flows = _flow_paths(scenario)
     if power_flow is not None and not flows:
         raise ScenarioError(f"{scenario.name}: no part has a choice of power flow. Leave out --power-flow.")
-    scenario = adjusted(scenario, [*assignments, *(flows if power_flow is not None else [])])
+    chosen = [f"{path}={power_flow}" for path in flows if power_flow is not None]
+    scenario = adjusted(scenario, [*assignments_of(set, scenario.settable()), *chosen])
     if not scenario.losses:
         raise ScenarioError(f"{scenario.path.name}: there is no table [losses]. Say which outputs each column sums.")
     study = measured_of(scenario, data, card)
@@ -70,20 +111,11 @@ def command(
         **at_point,
         "unchecked": unchecked(scenario, flat_of(scenario), oils_of(study)),
     }
-    columns = list(rows[0])
-    told = contacts_at_operating_point(scenario) if contacts else None
-    if told is not None:
-        found |= {"contacts": told.rows, "columns": told.columns, **told.totals}
-        found["cycle"] = [asdict(moment) for moment in told.cycle]
-
-    def human() -> None:
-        table(f"{scenario.name}: losses", columns, [[r[c] for c in columns] for r in rows])
-        if told is not None:
-            print_contacts(scenario.name, told)
-        print_outside(found.get("outside", ()))
-        print_unchecked(found["unchecked"])
-
-    answer(found, json, human)
+    cycle = contacts_at_operating_point(scenario) if contacts else None
+    if cycle is not None:
+        found |= {"contacts": cycle.rows, "columns": cycle.columns, **cycle.totals}
+        found["cycle"] = [asdict(moment) for moment in cycle.cycle]
+    return LossTable(found, cycle)
 
 
 def oils_of(study: Measured | None) -> list[tuple[str, str]]:

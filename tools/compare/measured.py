@@ -7,7 +7,7 @@ from functools import cached_property
 from pathlib import Path
 
 from ...model.errors import DataError
-from ...scenarios.load import load
+from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import Card, read_card
 from ...scenarios.measured.lubrication import lubricated
 from ...scenarios.measured.nominal import Nominal
@@ -77,7 +77,7 @@ class Measured:
         return int(names[test]) if all(name.isdigit() for name in names) else test + 1
 
 
-def measured_of(scenario: Scenario, data: Path | None = None, card: Path | None = None) -> Measured | None:
+def measured_of(scenario: Scenario, data: str | Path | None = None, card: str | Path | None = None) -> Measured | None:
     """A rig with the readings in a table, or with its own; None for a rig without any.
 
     Args:
@@ -90,28 +90,28 @@ def measured_of(scenario: Scenario, data: Path | None = None, card: Path | None 
     """
     if card is not None and data is None:
         raise DataError(f"--card {card} says how a measured table was taken. Give the table, too, as --data FILE.")
-    path = data or scenario.data
+    path = scenario.data if data is None else Path(data)
     if path is None:
         return None
-    told = Card() if card is None else read_card(card)
+    told = Card() if card is None else read_card(Path(card))
     campaign = read_campaign(path, scenario, told)
     diagnosed = any(source.startswith(DIAGNOSED) for source in scenario.value_sources.values())
     spec = scenario.spec if diagnosed else lubricated(scenario.spec, told.lubrication)
     return Measured(driven_by(replace(scenario, spec=spec), campaign.sensors), campaign, told)
 
 
-def loaded(rig: str, extended: Path | None = None) -> Scenario:
+def loaded(rig: RigLike, extended: str | Path | None = None) -> Scenario:
     """A rig, or its extension with the rig's own measured table.
 
     Args:
-        rig: name or file
+        rig: name, file or rig
         extended: rig file of the extension, which takes the rig's place
 
     Raises:
         GearheatError: all problems of the files
     """
-    scenario = load(rig)
+    scenario = scenario_of(rig)
     if extended is None:
         return scenario
-    found = load(extended)
+    found = scenario_of(extended)
     return replace(found, data=found.data or scenario.data, instruments=found.instruments or scenario.instruments)

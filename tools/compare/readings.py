@@ -1,4 +1,4 @@
-"""Readings as rows: measured tables and simulated results brought into one shape, and the command `compare`."""
+"""Readings as rows: measured tables and simulated results brought into one shape."""
 
 from __future__ import annotations
 
@@ -11,7 +11,6 @@ from typing import Any
 
 import numpy as np
 
-from ...model.errors import DataError
 from ...model.parts.shaft import Efficiency
 from ...model.units import from_si
 from ...scenarios.csv_table import Column, Table, parse, raise_all
@@ -19,11 +18,7 @@ from ...scenarios.measured.power import efficiency, loss, shaft_powers
 from ...scenarios.measured.sensors import SI
 from ...scenarios.measured.table import Sensor
 from ...scenarios.scenario import Scenario
-from ..show.console import answer, note
-from . import summary
-from .errors import compare
-from .measured import Measured, loaded, measured_of
-from .rivals import rivals
+from .measured import Measured
 
 #: Columns of a row that a machine with two shafts has, and the outputs of its efficiency that they show.
 LOSSES: Mapping[str, str] = {"loss_Nm": "tau_loss", "P_loss_W": "P_loss", "efficiency": "eta"}
@@ -210,17 +205,3 @@ def joined(table: Table, study: Measured) -> list[dict[str, Any]]:
     raise_all(problems, table.name)
     read = measured_rows(study)
     return [{**rows[row], **found[key], **read[row]} for key, row in known.items() if key in found]
-
-
-def command(result: Path, data: Path, rig: str, card: Path | None, json: str | None) -> None:
-    """Compare a table of simulated readings with a measured one."""
-    study = measured_of(loaded(rig), data, card)
-    assert study is not None  # there is a table
-    rows = joined(read_result(result, study), study)
-    for warning in study.campaign.warnings:
-        note(f"warning: {warning}")
-    if not rows:
-        raise DataError(f"{result.name} and {study.campaign.name} have no reading in common.")
-    comparison, scores = compare(rows), rivals(rows, [column_of(s) for s in drives(study)])
-    found = {"schema": "gearheat.compare/1", "result": result.name, "data": study.campaign.name, "rows": rows}
-    answer({**found, **summary.as_dict(comparison, scores)}, json, lambda: summary.show(comparison, scores))

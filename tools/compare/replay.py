@@ -1,54 +1,105 @@
-"""The command `replay`: how well a rig predicts logs without correction, beside plain rivals fitted on one of them."""
+"""How well a rig predicts logs without correction, beside plain rivals fitted on one of them."""
 
 from __future__ import annotations
 
 import io
 from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...model.errors import DataError
-from ...scenarios.load import load
+from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import read_card
 from ...scenarios.measured.logs import Log, read_log
 from ..diagnose.infer.logs import filter_of, year_of
-from ..diagnose.infer.replay import HOURS, Replayed, Rivals, replay
-from ..show.console import answer, note, table, writable, write
+from ..diagnose.infer.replay import HOURS, Replayed, Rivals
+from ..diagnose.infer.replay import replay as replay_log
+from ..show.console import note, write
+from ..show.display import Display
 
-#: Width and height of the picture [inch], and its longest stretch [samples].
-SIZE, LONGEST = (9.0, 4.5), 1000
+#: Width and height of the picture [inch].
+SIZE = (9.0, 4.5)
+#: Longest stretch of the picture [samples].
+LONGEST = 1000
 
 
-def command(
-    rig: str, fit: Path, until: int | None, logs: Sequence[Path], card: Path | None, out: Path | None, json: str | None
-) -> None:
-    """Replay logs.
+@dataclass(frozen=True, eq=False, repr=False)
+class Replays(Display):
+    """How well a rig predicts logs without correction, beside plain rivals.
+
+    Attributes:
+        logs: errors of each log
+    """
+
+    logs: tuple[Replayed, ...]
+
+    @property
+    def title(self) -> str:
+        """The logs."""
+        return f"{', '.join(log.name for log in self.logs)}: free runs, RMSE [K]"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Errors of free runs, a row for each log and method."""
+        sensors = list(next(iter(self.logs[0].free.values())))
+        rows = [(r.name, method, *(e[s] for s in sensors)) for r in self.logs for method, e in r.free.items()]
+        return ("log", "method", *sensors), rows
+
+    def as_dict(self) -> dict[str, Any]:
+        """Errors of free runs and by hours ahead."""
+        logs = [{"log": r.name, "rows": r.rows, "free_K": r.free, "ahead_K": r.ahead} for r in self.logs]
+        return {"hours": HOURS, "logs": logs}
+
+    def save_picture(self, path: str | Path) -> Path:
+        """Draw the longest stretch of the last log.
+
+        Args:
+            path: .svg or .png
+
+        Raises:
+            DataError: it cannot be written
+        """
+        write(Path(path), _picture(self.logs[-1], Path(path).suffix.removeprefix(".")))
+        return Path(path)
+
+
+def replay(
+    rig: RigLike,
+    fit: str | Path,
+    *,
+    until: int | None = None,
+    logs: Sequence[str | Path] = (),
+    card: str | Path | None = None,
+) -> Replays:
+    """How well a rig predicts logs without correction, beside a one-node model, a regression and the last reading.
 
     Args:
-        rig: name or file, whose parameters are used as they are
+        rig: name, file or rig, whose parameters are used as they are
         fit: log on which the rivals are fitted; it is replayed as well
         until: first year of that log which the rivals do not see; all of it without
         logs: further logs
         card: how the logs are written
-        out: picture of the longest stretch of the last log, .svg or .png
-        json: where the result goes as JSON
+
+    Raises:
+        GearheatError: all that is wrong with the files
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.replay("wind_turbine", "log.csv", until=2016)  # doctest: +SKIP
     """
-    writable(out)
-    scenario, known = load(rig), read_card(card)
-    first = read_log(fit, scenario, known)
+    scenario, known = scenario_of(rig), read_card(None if card is None else Path(card))
+    first = read_log(Path(fit), scenario, known)
     own, _ = filter_of(scenario, first)
     pieces = _split(first, until)
     rivals = Rivals(pieces[0], own.given, own.read)
-    others = [read_log(path, scenario, known) for path in logs]
+    others = [read_log(Path(path), scenario, known) for path in logs]
     found = []
     for log in (*pieces, *others):
         note(f"{log.name}: {log.n} samples")
-        found.append(replay(own, log, rivals))
-    if out is not None:
-        write(out, _picture(found[-1], out.suffix.removeprefix(".")))
-    answer({"hours": HOURS, "logs": [_plain(r) for r in found]}, json, lambda: _show(found))
+        found.append(replay_log(own, log, rivals))
+    return Replays(tuple(found))
 
 
 def _split(log: Log, until: int | None) -> list[Log]:
@@ -60,20 +111,6 @@ def _split(log: Log, until: int | None) -> list[Log]:
         raise DataError([f"{log.name}: has no samples before {until}. Give a later year as --until."])
     parts = [(years < until, f"{log.name} before {until}"), (years >= until, f"{log.name} from {until}")]
     return [log.rows(keep, name) for keep, name in parts if keep.any()]
-
-
-def _plain(r: Replayed) -> dict[str, Any]:
-    return {"log": r.name, "rows": r.rows, "free_K": r.free, "ahead_K": r.ahead}
-
-
-def _show(found: Sequence[Replayed]) -> None:
-    sensors = list(next(iter(found[0].free.values())))
-    sensor = sensors[0]
-    for r in found:
-        rows = [[m, *(f"{e[s]:.2f}" for s in sensors)] for m, e in r.free.items()]
-        table(f"{r.name}, free run from the first sample of each stretch: RMSE [K]", ["method", *sensors], rows)
-        rows = [[m, *(f"{v:.2f}" for v in e[sensor])] for m, e in r.ahead.items()]
-        table(f"{r.name}, {sensor}: RMSE [K] by hours ahead", ["method", *(f"{h:g} h" for h in HOURS)], rows)
 
 
 def _picture(r: Replayed, kind: str) -> bytes:

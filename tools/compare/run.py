@@ -1,10 +1,11 @@
-"""The command `run`: export the FMU, play all tests, compare with the readings, write a report."""
+"""The main job: export the FMU, play all tests, compare with the readings, write a report."""
 
 from __future__ import annotations
 
 import hashlib
 import time
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +13,13 @@ import numpy as np
 
 from ...model.core.flat import FlatModel
 from ...model.units import shown, to_si
+from ...scenarios.given import RigLike, Settings
 from ...scenarios.scenario import Scenario
 from ..describe import description as describe
 from ..export.fmu import write_fmu
-from ..show.console import answer, as_json, file_of, folder, note, say, table, writable, write
-from ..show.notes import print_unchecked, unchecked_lines
+from ..show.console import as_json, folder, note, write
+from ..show.display import Display
+from ..show.notes import unchecked_lines
 from ..solve.settings import adjusted, flat_of
 from ..solve.unchecked import unchecked
 from . import campaign, summary
@@ -31,25 +34,80 @@ from .rivals import Score, rivals
 ROW = ("point", "test", "direction", "oil", "T_oil_C", "T_wall_C", "T_amb_C", "loss_Nm", "P_loss_W", "efficiency")
 
 
-def command(
-    rig: str,
-    out: Path,
-    tests: str | None,
-    step: str,
-    assignments: Sequence[str],
-    workers: int,
-    json: str | None,
+@dataclass(frozen=True, eq=False, repr=False)
+class CampaignRun(Display):
+    """Measured tests that were played through the FMU, beside their readings.
+
+    Attributes:
+        rows: one per reading
+        comparison: errors by channel and group, None where nothing was measured
+        scores: of statistical rivals
+        found: the JSON object
+    """
+
+    rows: Rows
+    comparison: Comparison | None
+    scores: Sequence[Score]
+    found: Mapping[str, Any]
+
+    @property
+    def title(self) -> str:
+        """The rig and what is shown."""
+        return f"{self.found['rig']}: {'errors' if self.comparison else 'operating point'}"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Errors with those of the rivals, or the one point there is."""
+        if self.comparison is not None:
+            return summary.error_lines(self.comparison, self.scores)
+        return ("name", "value"), list(self.rows[0].items())
+
+    def groups(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Errors by group, simulated minus measured."""
+        return summary.group_lines(self.comparison) if self.comparison is not None else ((), ())
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object."""
+        return dict(self.found)
+
+
+def run(
+    rig: RigLike,
+    out: str | Path = "out",
     *,
-    extended: Path | None = None,
-    data: Path | None = None,
-    card: Path | None = None,
-) -> None:
-    """Everything from the rig file to the report; finished tests in the folder are used again."""
-    began = time.perf_counter()
-    writable(file_of(json))
+    tests: str | None = None,
+    step: str = "60 s",
+    set: Settings = (),
+    jobs: int = 0,
+    extended: str | Path | None = None,
+    data: str | Path | None = None,
+    card: str | Path | None = None,
+) -> CampaignRun:
+    """The main job: export the FMU, play all measured tests, compare, write a report.
+
+    Finished tests in the folder are used again.
+
+    Args:
+        rig: name, file or rig
+        out: folder for results
+        tests: only these, such as "1,13,22-26"
+        step: communication step of the FMU
+        set: values by name: texts with units, quantities of pint, or numbers in SI
+        jobs: how many to run at once, 0 for one per core
+        extended: rig file that a diagnosis wrote, which takes the rig's place
+        data: measured table; the rig's own if None
+        card: how that table was taken
+
+    Raises:
+        GearheatError: all that is wrong with what is asked
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.run("planetary", "out")  # doctest: +SKIP
+    """
+    began, out = time.perf_counter(), Path(out)
     dt = to_si(step, "s", name="--step")
-    with campaign.crew(workers) as pool:
-        scenario = adjusted(loaded(rig, extended), assignments)
+    with campaign.crew(jobs) as pool:
+        scenario = adjusted(loaded(rig, extended), set)
         study = measured_of(scenario, data, card)
         scenario = study.scenario if study else scenario
         flat = flat_of(scenario)
@@ -71,7 +129,7 @@ def command(
     write(out / "result.json", as_json(result))
     write(out / "report.html", render(shown, comparison, scores))
     note(f"{out / 'report.html'} after {time.perf_counter() - began:.1f} s")
-    answer(result, json, lambda: _print(rows, comparison, scores, result))
+    return CampaignRun(rows, comparison, scores, result)
 
 
 def _ordered(row: Mapping[str, Any]) -> dict[str, Any]:
@@ -171,14 +229,3 @@ def _csv(rows: Rows) -> str:
         return "" if value is None else f"{value:.9g}" if isinstance(value, float) else str(value)
 
     return "\n".join([",".join(head), *(",".join(cell(row.get(name)) for name in head) for row in rows)]) + "\n"
-
-
-def _print(rows: Rows, comparison: Comparison | None, scores: Sequence[Score], result: Mapping[str, Any]) -> None:
-    if comparison is None:
-        columns = list(rows[0])
-        table(f"{result['rig']}: operating point", ("name", "value"), [[c, rows[0][c]] for c in columns])
-    else:
-        summary.show(comparison, scores)
-    print_unchecked(result["unchecked"])
-    closed = f"energy balance closed within {result['energy_residual_max']:.1e} of the throughput"
-    say(f"{len(rows)} reading{'s' * (len(rows) > 1)}; {closed}")

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
-from ..show.console import table
 from .errors import GROUPINGS, Comparison
 from .rivals import Score
 
@@ -61,9 +60,3 @@ def group_lines(comparison: Comparison) -> tuple[list[str], list[list[Any]]]:
         )
         body.append([name, of["n"], *(hundredths(x) for pair in pairs for x in pair)])
     return ["group", "readings", *(f"{c.short} {what} [{c.unit}]" for c in channels for what in ("mean", "rms"))], body
-
-
-def show(comparison: Comparison, scores: Sequence[Score]) -> None:
-    """Print both tables."""
-    table("Errors", *error_lines(comparison, scores))
-    table("Errors by group, simulated minus measured", *group_lines(comparison))

@@ -8,10 +8,6 @@ from ...model.machines.spec import assemble
 from ...model.parts.contacts import ContactTable, TellsContacts, TellsFilmContact
 from ...model.run.result import Result
 from ...scenarios.scenario import Scenario
-from ..show.console import say, table
-
-#: Rows of the table for people; programs get all.
-SHOWN = 19
 
 
 def part_with_contacts(scenario: Scenario) -> TellsContacts:
@@ -61,14 +57,3 @@ def contacts_at(scenario: Scenario, flat: FlatModel, result: Result) -> ContactT
     """
     part = part_with_contacts(scenario)
     return part.contact_table(values_of(part, flat, result))
-
-
-def print_contacts(name: str, found: ContactTable) -> None:
-    """The table for people: some of the rows, the meaning of each column, the totals."""
-    columns = list(found.columns)
-    every = max(1, (len(found.rows) - 1) // (SHOWN - 1))
-    table(f"{name}: contacts over a mesh cycle", columns, [[row[c] for c in columns] for row in found.rows[::every]])
-    for column, meaning in found.columns.items():
-        say(f"{column}: {meaning}")
-    for key, value in found.totals.items():
-        say(f"{key}: {value:.6g}")

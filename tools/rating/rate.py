@@ -1,9 +1,9 @@
-"""`gearheat losses --method`: losses of the model beside those of a reference method, sump temperature and rating."""
+"""Losses of the model beside those of a reference method, sump temperature and rating."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from scipy.optimize import brentq
@@ -13,10 +13,9 @@ from ...model.errors import GearheatError, ScenarioError
 from ...model.parts.ports import COLDEST, HOTTEST
 from ...model.sources import LawInfo, LawUse, recording
 from ...model.units import from_si
-from ...scenarios.load import load
+from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.values import in_range
-from ..show.console import answer, table
-from ..show.notes import print_outside
+from ..show.display import Display
 from ..solve.settings import adjusted
 from .bearings import FACTORS
 from .gather import machine_of
@@ -31,55 +30,76 @@ K = Quantity("--k", "W/(m2.K)", "heat transfer coefficient", low=0.0, low_open=T
 DEPTH = Quantity("", "m", "depth to which a gear dips", low=0.0)
 
 
-def asked(method: str | None, own: Mapping[str, object], others: Mapping[str, object]) -> bool:
-    """Whether a reference method is asked for.
+@dataclass(frozen=True, eq=False, repr=False)
+class MethodRating(Display):
+    """Losses of the model beside those of a reference method, and what the method rates.
+
+    Attributes:
+        method: the method in words
+        found: the JSON object
+    """
+
+    method: str
+    found: Mapping[str, Any]
+
+    @property
+    def title(self) -> str:
+        """The rig and what is shown."""
+        return f"{self.found['rig']}: losses at the operating point"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Losses by kind, efficiency and oil temperature: model, method, method at its own sump temperature."""
+        found = self.found
+        names = {"model": "model", "method": self.method, "method_at_sump": f"{self.method}, own sump"}
+        columns = [name for name in names if name in found["losses_W"]]
+        kinds = list(dict.fromkeys(kind for name in columns for kind in found["losses_W"][name]))
+        kinds = [kind for kind in kinds if kind != "total" and any(found["losses_W"][n].get(kind) for n in columns)]
+        rows = [[f"{k} [W]", *(found["losses_W"][n].get(k) for n in columns)] for k in (*kinds, "total")]
+        rows.append(["efficiency", *(found["eta"][n] for n in columns)])
+        rows.append(["oil [degC]", *(found["T_oil_C"][n] for n in columns)])
+        return ("", *(names[n] for n in columns)), rows
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object."""
+        return dict(self.found)
+
+
+def rate_by_method(
+    rig: RigLike,
+    method: str,
+    *,
+    limit: str = "95 degC",
+    k: str | None = None,
+    dip: Sequence[str] = (),
+    set: Settings = (),
+) -> MethodRating:
+    """Losses by component of the model and of a reference method, and what the method rates.
 
     Args:
-        method: its name, None without one
-        own: option -> value, of those that only a method takes
-        others: option -> value, of those that no method takes
+        rig: name, file or rig
+        method: "iso14179-1" or "iso14179-2"
+        limit: temperature of the sump that the rating keeps
+        k: heat transfer coefficient of the bare housing in the place of the method's, "20 W/(m2.K)"
+        dip: depths to which gears dip, "stage_1.wheel=20 mm"
+        set: values by name: texts with units, quantities of pint, or numbers in SI
 
     Raises:
-        ScenarioError: options that do not go together
-    """
-    wrong = [name for name, value in (own if method is None else others).items() if value]
-    if wrong and method is None:
-        raise ScenarioError(
-            f"{', '.join(wrong)} belongs to --method. Add --method {next(iter(METHODS))}, or leave it out."
-        )
-    if wrong:
-        raise ScenarioError(f"{', '.join(wrong)} does not go with --method. Leave out one of them.")
-    return method is not None
+        GearheatError: all that is wrong with what is asked
 
-
-def command(
-    rig: str,
-    method: str,
-    limit: str,
-    k: str | None,
-    dips: Sequence[str],
-    assignments: Sequence[str],
-    json: str | None,
-) -> None:
-    """Losses by component of the model and of a method, and what the method rates.
-
-    Args:
-        rig: name or path
-        method: key of `METHODS`
-        limit: temperature of the sump that the rating keeps, as text
-        k: heat transfer coefficient in the place of the method's, as text
-        dips: texts "stage.wheel=30 mm"
-        assignments: what `--set` sets
-        json: where JSON goes
+    Example:
+        >>> import gearheat as gh
+        >>> gh.rate_by_method("helical_two_stage", "iso14179-1").found["rating"]["limit_C"]
+        95.0
     """
     known = METHODS[method]
     T_limit = in_range("", limit, LIMIT)
     k_given = None if k is None else in_range("", k, K)
-    scenario = adjusted(load(rig), assignments)
-    machine = machine_of(scenario, tuple(FACTORS), _depths(dips))
+    scenario = adjusted(scenario_of(rig), set)
+    machine = machine_of(scenario, tuple(FACTORS), _depths(dip))
     found = compared(machine, known, T_limit, k_given)
-    found = {"schema": "gearheat.reference/1", "rig": scenario.name, "method": method, **found}
-    answer(found, json, lambda: _print(known, found))
+    return MethodRating(
+        known.title, {"schema": "gearheat.reference/1", "rig": scenario.name, "method": method, **found}
+    )
 
 
 def compared(machine: Machine, method: Method, T_limit: float, k: float | None) -> dict[str, Any]:
@@ -192,27 +212,3 @@ def _depths(texts: Sequence[str]) -> dict[str, float]:
     if problems:
         raise ScenarioError(problems)
     return found
-
-
-def _print(method: Method, found: Mapping[str, Any]) -> None:
-    names = {"model": "model", "method": method.title, "method_at_sump": f"{method.title}, own sump"}
-    columns = [name for name in names if name in found["losses_W"]]
-    kinds = list(dict.fromkeys(kind for name in columns for kind in found["losses_W"][name]))
-    kinds = [kind for kind in kinds if kind != "total" and any(found["losses_W"][n].get(kind) for n in columns)]
-    rows = [[f"{k} [W]", *(found["losses_W"][n].get(k) for n in columns)] for k in (*kinds, "total")]
-    rows.append(["efficiency", *(found["eta"][n] for n in columns)])
-    rows.append(["oil [degC]", *(found["T_oil_C"][n] for n in columns)])
-    table(f"{found['rig']}: losses at the operating point", ("", *(names[n] for n in columns)), rows)
-    if found["T_sump_C"] is None:
-        print("sump: the losses never equal the heat that leaves")
-    else:
-        print(f"sump by {method.title}: {found['T_sump_C']:.1f} degC with {found['conductance_W_K']:.1f} W/K")
-    rating = found["rating"]
-    power = "none" if rating["power_W"] is None else f"{rating['power_W'] / 1000:.3g} kW at the input"
-    why = f" ({rating['why']})" if rating["why"] else f", {rating['load_share']:.3g} times the load"
-    print(f"thermal rating at {rating['limit_C']:.1f} degC: {power}{why}")
-    for u in found["not_treated"]:
-        print(f"not treated: {u['part']} ({u['type']}): {u['why']}; in the model {u['power']:.4g} W")
-    print_outside(found["outside"])
-    for assumption in found["assumptions"]:
-        print(f"assumed: {assumption}")
