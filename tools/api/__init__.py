@@ -50,6 +50,8 @@ if TYPE_CHECKING:
     from .tools.export.export import export as export
     from .tools.export.fmu import Exported as Exported
     from .tools.export.play import play as play
+    from .tools.films.film import FilmTable as FilmTable
+    from .tools.films.film import film as film
     from .tools.rating.rate import MethodRating as MethodRating
     from .tools.rating.rate import rate_by_method as rate_by_method
     from .tools.solve.design import DesignAnswer as DesignAnswer
@@ -64,6 +66,10 @@ if TYPE_CHECKING:
     from .tools.solve.steady import steady as steady
     from .tools.solve.sweep import Sweep as Sweep
     from .tools.solve.sweep import sweep as sweep
+    from .tools.verify.contact.command import ContactVerification as ContactVerification
+    from .tools.verify.contact.command import verify_contact as verify_contact
+    from .tools.verify.verify import Verification as Verification
+    from .tools.verify.verify import verify as verify
 
     map = map_outputs
 
@@ -77,6 +83,7 @@ PUBLIC: dict[str, str] = {
     "CardText": "tools.diagnose.api",
     "compare": "tools.compare.results",
     "Component": "model.core.component",
+    "ContactVerification": "tools.verify.contact.command",
     "Description": "tools.describe.description",
     "design": "tools.solve.design",
     "DesignAnswer": "tools.solve.design",
@@ -85,6 +92,8 @@ PUBLIC: dict[str, str] = {
     "Errors": "tools.compare.results",
     "export": "tools.export.export",
     "Exported": "tools.export.fmu",
+    "film": "tools.films.film",
+    "FilmTable": "tools.films.film",
     "GearheatError": "model.errors",
     "load": "tools.describe.rig",
     "losses": "tools.compare.losses",
@@ -118,6 +127,9 @@ PUBLIC: dict[str, str] = {
     "Sweep": "tools.solve.sweep",
     "sweep": "tools.solve.sweep",
     "TimeSeries": "tools.solve.simulate",
+    "Verification": "tools.verify.verify",
+    "verify": "tools.verify.verify",
+    "verify_contact": "tools.verify.contact.command",
 }
 #: Public names that their module spells otherwise, since it has another use for them.
 RENAMED = {"map": "map_outputs"}

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Annotated, Literal, cast
 
@@ -15,7 +14,7 @@ from .options import Json, Rig, Tests
 
 @console.guarded
 def bench(
-    rig: Rig = "planetary",
+    rig: Rig,
     tests: Tests = None,
     fmu: Annotated[bool, typer.Option("--fmu", help="The FMU against its peers, and the batch, instead.")] = False,
     batch: Annotated[bool, typer.Option("--batch", help="Many rows in one call, instead.")] = False,
@@ -29,7 +28,7 @@ def bench(
     """Time and memory of the main job, beside SciPy's LSODA on the same equations."""
     asked = {"contact": contact, "fmu": fmu, "batch": batch, "uncertainty": uncertainty}
     if contact:
-        os.environ.setdefault("OMP_NUM_THREADS", "1")
+        console.use_one_thread()
     from ..bench import bench
 
     bench.command(rig, tests, json, next((name for name, given in asked.items() if given), "job"), draws)

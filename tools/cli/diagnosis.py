@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -50,7 +49,7 @@ def diagnose(
     extended: Annotated[Path | None, typer.Option(help="Rig file to write: the rig with what was found.")] = None,
 ) -> None:
     """What the model gets wrong in measured data: causes by name, size and certainty, and what to measure next."""
-    _one_thread()
+    console.use_one_thread()
     import gearheat as gh
 
     outputs = gh.Outputs(predictions, json, report, extended)
@@ -98,7 +97,7 @@ def plan(
     json: Json = None,
 ) -> None:
     """Which causes a campaign can tell apart on a rig, and which experiments would, before anything is measured."""
-    _one_thread()
+    console.use_one_thread()
     import gearheat as gh
 
     causes = [name for name in map(str.strip, separate.split(",")) if name]
@@ -132,9 +131,3 @@ def card(
         console.note(f"wrote {out}")
     if json is not None or out is None:
         console.answer(found.as_dict(), json, lambda: print(found.as_toml(), end=""))
-
-
-def _one_thread() -> None:
-    """Its matrices are small: more threads only wait for each other."""
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
-        os.environ.setdefault(name, "1")

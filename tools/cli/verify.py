@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-import os
+import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from ..show import console
 from .options import Json, Set
+
+if TYPE_CHECKING:
+    from gearheat import FilmTable, Verification
+
+#: Exit code where a number is not reproduced.
+FAILED = 1
 
 
 @console.guarded
@@ -28,11 +34,12 @@ def film(
     json: Json = None,
 ) -> None:
     """Solve a lubricated contact over load, speed and temperature; fit the film law that parts can use."""
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # its matrices are small
-        os.environ.setdefault(name, "1")
-    from ..films import film
+    console.use_one_thread()
+    import gearheat as gh
 
-    film.command(film.Request(rig, out, part, vary or [], grid, nodes, plot, set_ or [], json))
+    console.writable(console.file_of(json))
+    films = gh.film(rig, out, part=part, vary=vary or [], grid=grid, nodes=nodes, plot=plot, set=set_ or [])
+    console.answer(films.as_dict(), json, lambda: print_films(films))
 
 
 @console.guarded
@@ -44,9 +51,15 @@ def verify(
     html: Annotated[Path | None, typer.Option(metavar="FILE", help="HTML page to write.")] = None,
 ) -> None:
     """Published numbers of each machine beside what the model gives."""
-    from ..verify import verify
+    import gearheat as gh
 
-    verify.command(rig, json, html)
+    console.writable(console.file_of(json), html)
+    numbers = gh.verify(rig)
+    if html is not None:
+        numbers.report(html)
+    console.answer(numbers.as_dict(), json, lambda: _print_verification(numbers))
+    if numbers.failed:
+        sys.exit(FAILED)
 
 
 @console.guarded
@@ -62,8 +75,32 @@ def verify_contact(
     json: Json = None,
 ) -> None:
     """Check the contact solver against published films, Hertz and measurements."""
-    for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):  # times are those of one core
-        os.environ.setdefault(name, "1")
-    from ..verify.contact import command
+    console.use_one_thread()
+    import gearheat as gh
 
-    command.command(out, quick, cycle, json)
+    found = gh.verify_contact(out, quick=quick, cycle=cycle)
+    console.answer(found.as_dict(), json, lambda: console.table(found.title, *found.table()))
+
+
+def print_films(films: FilmTable) -> None:
+    """Print what was varied and how well the law fits.
+
+    Args:
+        films: the films
+    """
+    found = films.found
+    console.table(films.title, *films.table())
+    for name in found["failed"]:
+        console.say(f"without a film: {name}")
+    for key, error in found["fit"].items():
+        largest, rms = 100 * error["largest"], 100 * error["rms"]
+        console.say(f"law of {key}, {found['terms']} terms: error {largest:.2g} % at most, {rms:.2g} % rms")
+    console.say(f'{found["out"]}: film = "map:{found["out"]}" in a rig file')
+
+
+def _print_verification(numbers: Verification) -> None:
+    for title, head, rows in numbers.details():
+        console.table(title, head, rows, wrapped=True)
+    console.table(numbers.title, *numbers.table())
+    for remark in numbers.remarks():
+        console.say(remark)

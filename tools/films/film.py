@@ -1,12 +1,11 @@
-"""The command `film`: films of one contact over load, speed and temperature in a table, and the law fitted to it."""
+"""Films of one contact over load, speed and temperature in a table, and the law fitted to it."""
 
 from __future__ import annotations
 
 import hashlib
 import io
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -21,17 +20,28 @@ from ...model.laws.film_point import point_film_central
 from ...model.units import from_si, shown
 from ...scenarios.film_map import COLUMNS, FAILED, OK, FittedMap, read_film_map
 from ...scenarios.load import load
-from ..show import console
+from ..show.console import note, writable, write
+from ..show.display import Display
 from ..solve.settings import adjusted
 from ..solve.sweep_file import Store, work_file
 from .case import AXES, MapCase, from_file, from_rig
 
-#: Points along load, speed and temperature, and nodes of a line contact and along a side of an elliptical one.
-POINTS, NODES = {"F": 6, "u_m": 6, "T": 4}, (201, 129)
+#: Points along load, speed and temperature.
+POINTS = {"F": 6, "u_m": 6, "T": 4}
+#: Nodes of a line contact.
+NODES_LINE = 201
+#: Nodes along a side of an elliptical contact.
+NODES_SIDE = 129
 #: Numbers kept of each point: films, friction, share on asperities, pressure, and whether there is a solution.
 KEPT = ("h_c", "h_min", "mu_fluid", "share", "p_max", "found")
-#: Whether a film was found: none, one, or one on too coarse a grid; and the largest error of a film on a grid [1].
-LOST, FOUND, COARSE, ROUGHEST = 0.0, 1.0, 2.0, 0.1
+#: Status of a point without a film.
+LOST = 0.0
+#: Status of a point with a film.
+FOUND = 1.0
+#: Status of a point whose grid is too coarse.
+COARSE = 2.0
+#: Largest error of a film on a grid, relative; above it the grid is too coarse.
+ROUGHEST = 0.1
 #: Fewest nodes along a side of an elliptical contact.
 FINER = 65
 #: What the table and a person are told of a point without a film.
@@ -50,12 +60,70 @@ class Request:
     nodes: int | None = None
     plot: Path | None = None
     assignments: Sequence[str] = ()
-    json: str | None = None
 
 
-def command(request: Request) -> None:
-    """Solve what an earlier run has not finished, write the table, fit the law."""
-    console.writable(request.out, request.plot, console.file_of(request.json))
+@dataclass(frozen=True, eq=False, repr=False)
+class FilmTable(Display):
+    """Films of a contact over load, speed and temperature, and the law fitted to them.
+
+    Attributes:
+        found: the JSON object
+    """
+
+    found: Mapping[str, Any]
+
+    @property
+    def title(self) -> str:
+        """The contact and the number of points."""
+        found = self.found
+        of = f"{found['case']}: {found['part']}" if found["part"] else found["case"]
+        return f"{of}: {found['contacts']} {found['shape']} contacts"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """What is varied."""
+        rows = [(k, v["low"], v["high"], v["unit"]) for k, v in self.found["varied"].items()]
+        return ("varied", "low", "high", "unit"), rows
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object."""
+        return dict(self.found)
+
+
+def film(
+    rig: str | Path,
+    out: str | Path,
+    *,
+    part: str | None = None,
+    vary: Sequence[str] = (),
+    grid: str | None = None,
+    nodes: int | None = None,
+    plot: str | Path | None = None,
+    set: Sequence[str] = (),
+) -> FilmTable:
+    """Solve a lubricated contact over load, speed and temperature; fit the film law that parts can use.
+
+    What an earlier run has not finished is solved, the table is written, and the law is fitted to it.
+
+    Args:
+        rig: name of a shipped rig, rig file, or TOML file of one contact
+        out: CSV file to write
+        part: part of the rig whose contact it is
+        vary: ranges of F, u_m or T, such as "F=100..2000 N"
+        grid: points along each axis that is varied, such as "6x6x4"
+        nodes: of the contact solver, along a side
+        plot: picture to write, .png or .svg
+        set: texts "NAME=VALUE"
+
+    Raises:
+        GearheatError: all that is wrong with what is asked
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.film("planetary", "film.csv", part="gear_set")  # doctest: +SKIP
+    """
+    drawn = None if plot is None else Path(plot)
+    request = Request(str(rig), Path(out), part, vary, grid, nodes, drawn, set)
+    writable(request.out, request.plot)
     problems = [
         f"{option} {path}: unknown kind of file. Its name must end in {' or '.join(kinds)}."
         for option, path, kinds in (("-o", request.out, (".csv",)), ("--plot", request.plot, (".png", ".svg")))
@@ -65,20 +133,19 @@ def command(request: Request) -> None:
         raise ScenarioError(problems)
     case = case_of(request)
     points = grid_of(case, request.grid)
-    nodes = request.nodes or NODES[0 if _is_line(case.contact) else 1]
-    if not _is_line(case.contact) and (nodes < FINER or (nodes - 1) & (nodes - 2)):
+    count = request.nodes or (NODES_LINE if _is_line(case.contact) else NODES_SIDE)
+    if not _is_line(case.contact) and (count < FINER or (count - 1) & (count - 2)):
         raise ScenarioError(
-            f"--nodes {nodes}: give 2^k + 1, at least {FINER}: a film is compared with that on half of them."
+            f"--nodes {count}: give 2^k + 1, at least {FINER}: a film is compared with that on half of them."
         )
-    kept = solved(case, points, nodes, request.out)
-    console.write(request.out, table_of(case, points, kept))
+    kept = solved(case, points, count, request.out)
+    write(request.out, table_of(case, points, kept))
     wrong = [(p, k[-1]) for p, k in zip(points, kept, strict=True) if k[-1] != FOUND]
-    failed = [f"{_named(case, point)}: {WRONG[found][1]}" for point, found in wrong]
+    failed = [f"{_named(case, point)}: {WRONG[status][1]}" for point, status in wrong]
     law = read_film_map(request.out)
     if request.plot is not None:
-        console.write(request.plot, _plot(case, points, kept, request.plot.suffix))
-    payload = _payload(case, request, law, failed)
-    console.answer(payload, request.json, partial(_print, case, payload))
+        write(request.plot, _plot(case, points, kept, request.plot.suffix))
+    return FilmTable(_payload(case, request, law, failed))
 
 
 def case_of(request: Request) -> MapCase:
@@ -154,7 +221,7 @@ def solved(case: MapCase, points: np.ndarray, nodes: int, out: Path) -> np.ndarr
     with Store(work_file(out), key, len(KEPT)) as store:
         left = [i for i in range(len(points)) if i not in store.places]
         if len(left) < len(points):
-            console.note(f"{len(points) - len(left)} of {len(points)} contacts were solved before: {store.path}")
+            note(f"{len(points) - len(left)} of {len(points)} contacts were solved before: {store.path}")
         for i in _watched(left, len(points)):
             store.put(i, np.array([_solution(contacts[i], nodes)]))
         found = np.concatenate([store.get(i) for i in range(len(points))])
@@ -283,18 +350,6 @@ def _payload(case: MapCase, request: Request, found: FittedMap, failed: Sequence
         "fit": {k: {"largest": f.error, "rms": found.rms[k]} for k, f in fits.items()},
         "plot": None if request.plot is None else str(request.plot),
     }
-
-
-def _print(case: MapCase, found: dict[str, Any]) -> None:
-    of = f"{case.name}: {case.part}" if case.part else case.name
-    rows = [(k, v["low"], v["high"], v["unit"]) for k, v in found["varied"].items()]
-    console.table(f"{of}: {found['contacts']} {found['shape']} contacts", ("varied", "low", "high", "unit"), rows)
-    for name in found["failed"]:
-        console.say(f"without a film: {name}")
-    for key, error in found["fit"].items():
-        largest, rms = 100 * error["largest"], 100 * error["rms"]
-        console.say(f"law of {key}, {found['terms']} terms: error {largest:.2g} % at most, {rms:.2g} % rms")
-    console.say(f'{found["out"]}: film = "map:{found["out"]}" in a rig file')
 
 
 def _plot(case: MapCase, points: np.ndarray, kept: np.ndarray, suffix: str) -> str | bytes:

@@ -1,40 +1,57 @@
-"""Verdicts as tables on a terminal."""
+"""Verdicts as tables."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from ..show.console import say, table
 from .verdicts import NOT_REPRODUCED, VERDICTS, Machine, Verdict, as_printed
 
 HEAD = ("number", "place", "published", "corrected", "model", "allowed", "verdict")
 
 
-def show(machines: Sequence[Machine], laws: Sequence[Verdict], found: Mapping[str, Any]) -> None:
-    """Print a table for each machine and for the laws, then the counts, and by name what fails.
+def details(
+    machines: Sequence[Machine], laws: Sequence[Verdict]
+) -> Iterator[tuple[str, Sequence[str], Sequence[Sequence[Any]]]]:
+    """Title, head and rows of the numbers of each machine, then of the laws.
 
     Args:
         machines: the rigs
         laws: verdicts on the golden rows of laws
-        found: the object of `--json`
     """
     for machine in machines:
         if machine.verdicts:
-            table(f"{machine.name}: {machine.doc}", HEAD, _lines(machine.verdicts), wrapped=True)
+            yield f"{machine.name}: {machine.doc}", HEAD, _lines(machine.verdicts)
     if laws:
-        table("Laws", HEAD, _lines(laws), wrapped=True)
+        yield "Laws", HEAD, _lines(laws)
+
+
+def counts_table(found: Mapping[str, Any]) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+    """Head and rows of the counts by verdict and by kind.
+
+    Args:
+        found: the object of `--json`
+    """
     named = [*((m["name"], m) for m in found["machines"] if m["rows"]), ("laws", found["laws"]), ("in all", found)]
     body = [[name, *part["counts"].values(), *part["kinds"].values()] for name, part in named]
-    table("Numbers by verdict and by kind", ("", *VERDICTS, *found["kinds"]), body)
+    return ("", *VERDICTS, *found["kinds"]), body
+
+
+def remarks(machines: Sequence[Machine], laws: Sequence[Verdict]) -> Iterator[str]:
+    """Machines without published numbers, and by name what fails.
+
+    Args:
+        machines: the rigs
+        laws: verdicts on the golden rows of laws
+    """
     for machine in machines:
         if not machine.verdicts:
-            say(f"{machine.name}: has no published numbers. {machine.reproduces}".strip())
+            yield f"{machine.name}: has no published numbers. {machine.reproduces}".strip()
     failed = [f"{m.name}: {v.row.name}" for m in machines for v in m.verdicts if v.verdict == NOT_REPRODUCED]
     failed += [f"{v.row.law}: {v.row.name}" for v in laws if v.verdict == NOT_REPRODUCED]
     if failed:
         numbers = "1 published number is" if len(failed) == 1 else f"{len(failed)} published numbers are"
-        say(f"{numbers} not reproduced: {'; '.join(failed)}.")
+        yield f"{numbers} not reproduced: {'; '.join(failed)}."
 
 
 def _lines(verdicts: Sequence[Verdict]) -> list[list[Any]]:

@@ -1,4 +1,4 @@
-"""The command `verify`: every published number of every machine, what the model gives for it, and the verdict."""
+"""Every published number of every machine, what the model gives for it, and the verdict."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ import re
 import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
+from functools import cached_property
 from importlib import import_module
 from pathlib import Path
 from typing import Any, TypeVar
@@ -13,40 +15,99 @@ from typing import Any, TypeVar
 from ...model.errors import GearheatError, ScenarioError
 from ...model.sources import LawInfo, sources
 from ...model.units import si_of
+from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.golden import golden_rows
-from ...scenarios.load import load
 from ...scenarios.published import Row, read_published
 from ...scenarios.scenario import Scenario
 from ...scenarios.shipped import list_rigs
 from ..describe.description import errata_of
-from ..show.console import answer, file_of, writable, write
+from ..show.console import write
+from ..show.display import Display
 from ..show.pages import page
 from .model_values import RigValues, single
-from .table import show
+from .table import counts_table, details, remarks
 from .verdicts import NOT_REPRODUCED, VERDICTS, Machine, Value, Verdict, counts, judged, kinds
 
 A = TypeVar("A")
 B = TypeVar("B")
 
-#: Exit code where a number is not reproduced.
-FAILED = 1
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Verification(Display):
+    """Published numbers beside what the model gives.
+
+    Attributes:
+        machines: the rigs with their verdicts
+        laws: verdicts on the golden rows of laws
+    """
+
+    machines: Sequence[Machine]
+    laws: Sequence[Verdict]
+
+    @cached_property
+    def found(self) -> dict[str, Any]:
+        """The JSON object."""
+        return as_dict(self.machines, self.laws)
+
+    @property
+    def failed(self) -> int:
+        """Numbers that are not reproduced."""
+        return int(self.found["counts"][NOT_REPRODUCED])
+
+    @property
+    def title(self) -> str:
+        """What is shown."""
+        return "Numbers by verdict and by kind"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Counts of each rig, of the laws and of all."""
+        return counts_table(self.found)
+
+    def details(self) -> Iterator[tuple[str, Sequence[str], Sequence[Sequence[Any]]]]:
+        """Title, head and rows of the numbers of each rig, then of the laws."""
+        return details(self.machines, self.laws)
+
+    def remarks(self) -> Iterator[str]:
+        """Rigs without published numbers, and by name what fails."""
+        return remarks(self.machines, self.laws)
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object."""
+        return self.found
+
+    def report(self, path: str | Path) -> Path:
+        """Write the HTML page.
+
+        Args:
+            path: file to write
+
+        Raises:
+            DataError: it cannot be written
+        """
+        write(Path(path), page("gearheat.tools.verify", "verify.html", found=self.found, verdicts=VERDICTS))
+        return Path(path)
 
 
-def command(rig: str | None, json: str | None, html: Path | None) -> None:
-    """Verify one rig with the laws it uses, or all shipped rigs and all laws; exit code 1 if a number fails."""
-    writable(file_of(json), html)
-    rigs = [RigValues(load(name)) for name in ([rig] if rig else list_rigs())]
+def verify(rig: RigLike | None = None) -> Verification:
+    """Published numbers of a rig and the laws it uses, or of all shipped rigs and all laws.
+
+    Args:
+        rig: name, file or rig; all shipped rigs if None
+
+    Raises:
+        ScenarioError: everything wrong with the tables of published numbers at once
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.verify("fzg_four_square").failed
+        0
+    """
+    rigs = [RigValues(scenario_of(name)) for name in ([rig] if rig is not None else list_rigs())]
     rows = _each(published_of, [values.scenario for values in rigs])
     laws = [row for row in golden_rows() if rig is None or law_of(row) in rigs[0].laws]
     with _progress(sum(map(len, rows)) + len(laws)) as advance:
         machines = _each(lambda pair: _machine(pair[0], pair[1], advance), list(zip(rigs, rows, strict=True)))
-        verdicts = verified(laws, None, advance)
-    found = as_dict(machines, verdicts)
-    if html is not None:
-        write(html, page("gearheat.tools.verify", "verify.html", found=found, verdicts=VERDICTS))
-    answer(found, json, lambda: show(machines, verdicts, found))
-    if found["counts"][NOT_REPRODUCED]:
-        sys.exit(FAILED)
+        return Verification(machines, verified(laws, None, advance))
 
 
 def _each(work: Callable[[A], B], items: Sequence[A]) -> list[B]:

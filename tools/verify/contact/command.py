@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...show.console import answer, folder, table, write
-from . import cycle, figures, lines, moving, pages, steady, store, studies
+from ...show.console import folder, write
+from ...show.display import Display
+from . import cycle as cycles
+from . import figures, lines, moving, pages, steady, store, studies
 from .rows import Found, Job
 
 #: File of each figure.
@@ -21,25 +24,55 @@ FILES = {
 }
 
 
-def command(out: Path, quick: bool, rig: str | None, json: str | None) -> None:
-    """Verify the contact solver and write the pages.
+@dataclass(frozen=True, eq=False, repr=False)
+class ContactVerification(Display):
+    """The contact solver beside published films, Hertz and measurements.
+
+    Attributes:
+        rows: of the table
+    """
+
+    rows: Sequence[Mapping[str, Any]]
+
+    @property
+    def title(self) -> str:
+        """What is shown."""
+        return "The contact solver, verified"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """A row for each item that is compared."""
+        return pages.SUMMARY, pages.summary(self.rows)
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object."""
+        return {"schema": "gearheat.ehl/1", "rows": self.rows}
+
+
+def verify_contact(out: str | Path, *, quick: bool = False, cycle: str | None = None) -> ContactVerification:
+    """Check the contact solver and write pages and figures. An interrupted run goes on.
 
     Args:
         out: folder for pages, figures and kept results
         quick: a subset on coarse grids
-        rig: whose mesh cycle is solved as well
-        json: where the rows go as JSON
+        cycle: rig whose mesh cycle is solved as well
+
+    Raises:
+        GearheatError: the rig or the folder is wrong
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.verify_contact("contact", quick=True)  # doctest: +SKIP
     """
-    found = store.run([*jobs(quick), *(cycle.jobs(rig) if rig else [])], folder(out))
+    place = folder(Path(out))
+    found = store.run([*jobs(quick), *(cycles.jobs(cycle) if cycle else [])], place)
     rows = pages.rows(found)
     drawn = draw(found, rows)
     for title, text in drawn.items():
-        write(out / FILES[title], text)
-    write(out / "verification.md", pages.markdown(rows, {title: FILES[title] for title in drawn}))
-    write(out / "verification.html", pages.html(rows, drawn))
-    write(out / "verification.csv", pages.as_csv(rows))
-    result: dict[str, Any] = {"schema": "gearheat.ehl/1", "rows": rows}
-    answer(result, json, lambda: table("The contact solver, verified", pages.SUMMARY, pages.summary(rows)))
+        write(place / FILES[title], text)
+    write(place / "verification.md", pages.markdown(rows, {title: FILES[title] for title in drawn}))
+    write(place / "verification.html", pages.html(rows, drawn))
+    write(place / "verification.csv", pages.as_csv(rows))
+    return ContactVerification(rows)
 
 
 def jobs(quick: bool) -> list[Job]:
@@ -72,6 +105,6 @@ def draw(found: Sequence[tuple[Job, Found]], rows: Sequence[Mapping[str, Any]]) 
     if "Moving dent" in by_item:
         drawn["Moving dent"] = figures.dent(by_item["Moving dent"])
     if "Mesh cycle" in by_item:
-        bands = {"ratio": cycle.LAMBDA_BAND, "share": cycle.SHARE_BAND}
+        bands = {"ratio": cycles.LAMBDA_BAND, "share": cycles.SHARE_BAND}
         drawn["Mesh cycle"] = figures.cycle(next(iter(by_item["Mesh cycle"].values())), bands)
     return drawn
