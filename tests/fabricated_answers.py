@@ -6,18 +6,17 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 from challenge.printing import show as show_challenge
 from challenge.scoring import Outcome, report
+from gearheat import Calibration, CampaignRun, FilmTable, Replays
 from gearheat.tools.bench import bench
 from gearheat.tools.cli import fmu as exporting
+from gearheat.tools.cli import measured, verify
 from gearheat.tools.cli.solve import print_end
-from gearheat.tools.compare import calibrate, replay, run
 from gearheat.tools.diagnose.infer.replay import HOURS, Replayed
-from gearheat.tools.films import film
 
 SENSORS = ("T_oil", "T_bearing_high_speed_rotor_side", "T_bearing_high_speed_generator_side")
 
@@ -25,7 +24,8 @@ SENSORS = ("T_oil", "T_bearing_high_speed_rotor_side", "T_bearing_high_speed_gen
 def run_of_one_point() -> None:
     columns = {"point": 1, "test": 1, "oil": "ISO VG 220 mineral", "n_input_rpm": 1450.0, "T_output_Nm": -592.5}
     row = columns | {"T_oil_C": 40.27, "T_wall_C": 38.3, "P_mesh_W": 98.23, "efficiency": 0.975, "time_s": 28800.0}
-    run._print([row], None, (), {"rig": "mine", "unchecked": [], "energy_residual_max": 1.4e-16})
+    found = {"rig": "mine", "unchecked": [], "energy_residual_max": 1.4e-16}
+    measured.print_run(CampaignRun([row], None, (), found))
 
 
 def calibration() -> None:
@@ -37,7 +37,8 @@ def calibration() -> None:
     }
     correlation = {a: {b: 1.0 if a == b else -0.95 for b in free} for a in free}
     made = {"rig": "planetary", "readings": 72, "grid": None, "free": free, "correlation": correlation}
-    calibrate._print(made | {"rmse_before_K": 4.25, "rmse_after_K": 0.875})
+    made |= {"rmse_before_K": 4.25, "rmse_after_K": 0.875}
+    measured.print_calibration(Calibration(None, made))  # type: ignore[arg-type]
 
 
 def replayed() -> None:
@@ -45,7 +46,7 @@ def replayed() -> None:
     free = {m: {s: 1.25 * (k + 1) + j for j, s in enumerate(SENSORS)} for k, m in enumerate(methods)}
     ahead = {m: {s: tuple(0.5 * h**0.5 for h in HOURS) for s in SENSORS} for m in methods}
     logs = [Replayed(name, 1000, free, ahead, {}, np.zeros(1)) for name in ("R80711 before 2016", "R80721")]
-    replay._show(logs)
+    measured.print_replays(Replays(tuple(logs)))
 
 
 def film_of_a_part() -> None:
@@ -54,7 +55,7 @@ def film_of_a_part() -> None:
     found = {"contacts": 144, "shape": "ellipse", "varied": varied, "terms": 10, "out": "map.csv"}
     found["failed"] = ["F = 2000 N, u_m = 0.5 m/s, T = 100 degC: the film is thinner than the solver can tell"]
     found["fit"] = {"h_c": {"largest": 0.021, "rms": 0.008}, "h_min": {"largest": 0.043, "rms": 0.017}}
-    film._print(SimpleNamespace(name="planetary", part="gear_set"), found)  # type: ignore[arg-type]
+    verify.print_films(FilmTable({"case": "planetary", "part": "gear_set", **found}))
 
 
 def exported() -> None:

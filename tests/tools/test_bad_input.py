@@ -142,7 +142,7 @@ def test_results_that_cannot_be_compared(gearheat, rig, tmp_path):
         ("point,T_oil_C\n1,50\n1,51\n999,50\n", ("line 3", "twice", "line 4", "no reading")),
     ):
         result.write_text(text)
-        refused(gearheat("compare", result, data), "result.csv", *words)
+        refused(gearheat("compare", result, data, "--rig", "planetary"), "result.csv", *words)
 
 
 def test_output_that_cannot_be_written_is_refused_before_the_work(gearheat, tmp_path):
@@ -200,5 +200,5 @@ def test_a_process_ends_with_two_and_an_empty_stdout():
 
 
 def test_a_path_that_no_system_has(gearheat, tmp_path):
-    refused(gearheat("diagnose", "y" * 300), "File name too long. Check the path.")
+    refused(gearheat("diagnose", "y" * 300, "--rig", "planetary"), "File name too long. Check the path.")
     refused(gearheat("card", "planetary", "-o", tmp_path / "card.xml"), "must end in .toml or .json")

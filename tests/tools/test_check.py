@@ -14,7 +14,7 @@ def test_types_are_checked_through_links_to_every_package(tmp_path):
 
 
 def test_all_kinds_of_check_are_there():
-    assert [name for name, _ in steps()] == ["lint", "format", "types", "tests"]
+    assert list(steps()) == ["lint", "format", "types", "lock", "tests", "matrix"]
 
 
 def test_a_check_that_does_not_exist(capfd):

@@ -98,7 +98,7 @@ def test_the_report_is_one_file_that_needs_no_other(ran):
 
 def test_compare_reads_the_rows_back(ran, gearheat, rig):
     out, found, _ = ran
-    again = gearheat("compare", out / "rows.csv", rig.folder / "measured.csv", "--json", "-").json
+    again = gearheat("compare", out / "rows.csv", rig.folder / "measured.csv", "--rig", "planetary", "--json", "-").json
     assert again["rmse"]["overall"] == pytest.approx(found["rmse"]["overall"], rel=1e-6)
     known = {key: pytest.approx(value, rel=1e-6) for key, value in found["noise_floor"].items() if key != "repeated"}
     assert again["noise_floor"] == {**known, "repeated": found["noise_floor"]["repeated"]}

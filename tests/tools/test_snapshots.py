@@ -16,15 +16,14 @@ from typing import Any
 import fabricated_findings
 import pytest
 from fabricated_answers import ANSWERS
+from gearheat import Errors
+from gearheat.tools.cli.measured import print_errors
 from gearheat.tools.cli.rigs import schema as gearheat_schema
-from gearheat.tools.compare import losses, summary
 from gearheat.tools.compare.errors import compare
 from gearheat.tools.compare.rivals import rivals
 from gearheat.tools.diagnose.report.screen import text
-from gearheat.tools.rating import command as reference
 from gearheat.tools.show import console
 from gearheat.tools.show.console import cell, table
-from gearheat.tools.verify import verify
 
 FOLDER = Path(__file__).parent / "snapshots"
 WIDTHS = (80, 120)
@@ -107,8 +106,7 @@ def test_commands_print_what_they_did(gearheat, at_both, tmp_path, monkeypatch, 
     monkeypatch.chdir(tmp_path)
     Path("duty.csv").write_text(DUTY, encoding="utf-8")
     answered = []
-    for module in (console, losses, reference, verify):
-        monkeypatch.setattr(module, "answer", lambda payload, to, human: answered.append(human))
+    monkeypatch.setattr(console, "answer", lambda payload, to, human: answered.append(human))
     done = gearheat(*COMMANDS[name])
     assert done.code == 0, done.err
     at_both(name, answered[0])
@@ -125,7 +123,8 @@ def test_schema_says_what_to_do_with_it(at_both, tmp_path, monkeypatch):
 
 
 def test_a_comparison_prints_what_it_did(at_both, rows):
-    at_both("compare", lambda: summary.show(compare(rows), rivals(rows, ["n_carrier_rpm", "T_carrier_Nm"])))
+    errors = Errors(compare(rows), rivals(rows, ["n_carrier_rpm", "T_carrier_Nm"]), {})
+    at_both("compare", lambda: print_errors(errors))
 
 
 @pytest.mark.parametrize("kind", ["clean", "explained", "ambiguous", "unexplained"])

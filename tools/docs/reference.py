@@ -35,7 +35,9 @@ from .laws import facts, law_modules, laws_of, title
 from .markdown import arguments, code, docstring, fenced, listing, table, words
 
 #: Where the pages of the contact solver and of the reference methods stand.
-CONTACT, METHODS = (Path(str(files(f"gearheat.{name}"))) for name in ("model.contact", "tools.reference"))
+CONTACT = Path(str(files("gearheat.model.contact")))
+#: Folder of the reference methods.
+METHODS = Path(str(files("gearheat.tools.rating")))
 
 
 def pages() -> Iterator[tuple[str, str]]:

@@ -21,7 +21,7 @@ from gearheat.tools.diagnose.setting import Setting, setting
 from gearheat.tools.solve.settings import flat_of
 from gearheat.tools.solve.uncertainties import reasons
 
-CASE = Path(__file__).parents[2] / "tools" / "practice" / "foreign_006"
+CASE = Path(__file__).parents[2] / "challenge" / "practice_cases" / "foreign_006"
 CAUSE = "losses.churning"
 
 

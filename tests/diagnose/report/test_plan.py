@@ -11,7 +11,7 @@ from fabricated_findings import AIR, CHURNING, EMISSIVITY, OFFSET, WINDAGE
 from gearheat.model.errors import DataError
 from gearheat.tools.cli import app as cli
 from gearheat.tools.diagnose import asking
-from gearheat.tools.diagnose.asking import Progress
+from gearheat.tools.diagnose.asking import Progress, ask_plan
 from gearheat.tools.diagnose.report.findings import Isolability
 from gearheat.tools.diagnose.report.plan import (
     Outlook,
