@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from challenge import cases, foreign, forms, own, practice, rig, scoring
+from challenge import cases, foreign, forms, model_rig, practice, rig, scoring
+from challenge.__main__ import app
 from challenge.answers import Answer, Hypothesis, ask_command, read_answer
 from challenge.bench import run, tasks
 from challenge.classes import classes_of
-from challenge.command import show
 from challenge.hide import APART, KINDS, SHARES, schedule
 from challenge.plan import draw_plan
+from challenge.printing import show
 from challenge.scoring import Outcome, metrics, report, score, wilson
 from challenge.sheets import SHEETS
 from challenge.signal_to_noise import Noise, Rivals, snr_of
@@ -27,6 +28,7 @@ from gearheat.model.machines.spec import assemble
 from gearheat.model.run.schedule import stepped
 from gearheat.model.run.simulate import simulate as run_model
 from gearheat.scenarios.load import load
+from typer.testing import CliRunner
 
 KELVIN = 273.15
 PRACTICE = Path(__file__).parent / "practice_cases"
@@ -37,7 +39,7 @@ PRACTICE = Path(__file__).parent / "practice_cases"
 def test_own_rig_is_the_model() -> None:
     """Without faults the columns are what the project's integrator gives for the same protocol."""
     plan = draw_plan(np.random.default_rng(3), warm_start=True)
-    shown = rig.run(own.own_rig(), 7, plan, {}, ())
+    shown = rig.run(model_rig.rig_of("planetary"), 7, plan, {}, ())
     scenario = load("planetary")
     flat = flatten(assemble(scenario.spec.driven({"carrier": ("w", "tau")})))
     j = 6
@@ -386,15 +388,15 @@ def test_wilson_intervals() -> None:
     assert wilson(0, 0) == (0.0, 1.0)
 
 
-def test_command_refuses_what_it_cannot_do(gearheat, tmp_path: Path) -> None:
+def test_command_refuses_what_it_cannot_do(tmp_path: Path) -> None:
     for words, said in (
         (["--sheet", "own", "--only", "claen"], 'Did you mean "clean"'),
         (["--sheet", "own", "--n", "0"], "at least one case"),
         (["--sheet", "practice"], "--practice FOLDER"),
         (["--sheet", "practice", "--practice", str(tmp_path)], "no campaigns"),
     ):
-        found = gearheat("challenge", *words)
-        assert found.code == 2 and said in found.err
+        found = CliRunner().invoke(app, words)
+        assert found.exit_code == 2 and said in found.stderr
 
 
 def test_report_counts(capsys: pytest.CaptureFixture[str]) -> None:
