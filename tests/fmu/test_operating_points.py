@@ -26,6 +26,7 @@ from gearheat.model.run.schedule import stepped
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import list_rigs, load
 from one_part import between_sources, oil_at
+from selection import one_of_each
 
 TEMPERATURES = (-40.0, -20.0, 20.0, 80.0, 150.0)
 SPEEDS = (-2.0, -1.0, 0.0, 0.1, 1.0, 2.0)
@@ -149,7 +150,7 @@ def agree(flat: FlatModel, one: np.ndarray, other: np.ndarray) -> bool:
     return bool((np.abs(one - other) <= SAME * (nominal + np.abs(one))).all())
 
 
-@pytest.mark.parametrize(("rig", "drive"), CASES)
+@pytest.mark.parametrize(("rig", "drive"), one_of_each(CASES, lambda case: case[0]))
 def test_every_point_converges_alike_or_is_refused_by_name(
     rig: str, drive: str, tmp_path: Path, opened: Callable[..., Any]
 ) -> None:
@@ -194,7 +195,9 @@ def test_the_table_is_large_enough(rig: str) -> None:
     assert sum(points(rig, drive)[0].shape[1] for name, drive in CASES if name == rig) >= 60
 
 
-@pytest.mark.parametrize(("rig", "drive"), [c for c in CASES if c[1] not in ("torque", "torques")])
+@pytest.mark.parametrize(
+    ("rig", "drive"), one_of_each([c for c in CASES if c[1] not in ("torque", "torques")], lambda case: case[0])
+)
 def test_steady_states_of_python_and_batch_are_the_same(rig: str, drive: str) -> None:
     """Where the machine settles in a cold and in a hot room; what one refuses the other refuses, and says where."""
     flat = model(rig, drive)
