@@ -15,6 +15,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from for_each import ALL
 from gearheat.fmu.batch import Batch, Status
 from gearheat.fmu.export import export
 from gearheat.model.core.flat import FlatModel, Quantity
@@ -27,7 +28,6 @@ from gearheat.model.run.rows import evaluate
 from gearheat.model.run.schedule import stepped
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import list_rigs, load
-from for_each import ALL
 from one_part import between_sources, oil_at
 
 TEMPERATURES = (-40.0, -20.0, 20.0, 80.0, 150.0)
