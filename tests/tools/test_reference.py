@@ -176,8 +176,8 @@ def test_refusals(gearheat):
 
 
 def test_the_table_of_the_page(compared):
-    """`tools/reference/README.md` prints what the command does."""
-    page = (Path(__file__).parents[2] / "tools" / "reference" / "README.md").read_text(encoding="utf-8")
+    """`tools/rating/README.md` prints what the command does."""
+    page = (Path(__file__).parents[2] / "tools" / "rating" / "README.md").read_text(encoding="utf-8")
     rows = dict(re.findall(r"^\| (mesh|churning|bearings|seals|total) \|((?: [\d.]+ \|){5})$", page, re.MULTILINE))
     found = [compared(method)["losses_W"] for method in METHODS]
     for kind in ("mesh", "churning", "bearings", "seals", "total"):

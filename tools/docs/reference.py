@@ -35,7 +35,7 @@ from .laws import facts, law_modules, laws_of, title
 from .markdown import arguments, code, docstring, fenced, listing, table, words
 
 #: Where the pages of the contact solver and of the reference methods stand.
-CONTACT, METHODS = (Path(str(files(f"gearheat.{name}"))) for name in ("model.contact", "tools.reference"))
+CONTACT, METHODS = (Path(str(files(f"gearheat.{name}"))) for name in ("model.contact", "tools.rating"))
 
 
 def pages() -> Iterator[tuple[str, str]]:
