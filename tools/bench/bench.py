@@ -109,7 +109,7 @@ def _gearheat(*arguments: str) -> None:
 
 def _imports(module: str) -> bool:
     """Whether the program as started for its help loads a module."""
-    code = f"import sys, gearheat.tools.cli; sys.exit({module!r} in sys.modules)"
+    code = f"import sys, gearheat.tools.cli.app; sys.exit({module!r} in sys.modules)"
     return bool(subprocess.run([sys.executable, "-c", code], check=False).returncode)
 
 
