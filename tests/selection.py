@@ -1,8 +1,9 @@
 """Which cases of a long table run: some of each kind by default, all of them where `GEARHEAT_TESTS=all`."""
 
-import os
 from collections.abc import Callable, Hashable, Iterable
 from typing import TypeVar
+
+from for_each import ALL
 
 T = TypeVar("T")
 
@@ -15,7 +16,7 @@ def one_of_each(cases: Iterable[T], kind: Callable[[T], Hashable]) -> list[T]:
         kind: what cases have in common of which one is enough
     """
     every = list(cases)
-    if os.environ.get("GEARHEAT_TESTS") == "all":
+    if ALL:
         return every
     groups: dict[Hashable, list[T]] = {}
     for case in every:
