@@ -40,8 +40,10 @@ START = 293.15
 AUDIT = (SUPPLIED, THROUGHPUT, STORED)
 
 
-#: How long a steady state is held that a test begins with, and one that it comes to from another [s].
-SETTLED, SETTLING = 3600.0, 72 * 3600.0
+#: How long a steady state is held that a test begins with [s].
+SETTLED = 3600.0
+#: How long a steady state is held that a test comes to from another [s].
+SETTLING = 72 * 3600.0
 
 
 @dataclass(frozen=True)
