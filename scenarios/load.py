@@ -71,7 +71,7 @@ from .assemblies import assembled
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
 from .instruments import Instrument, instruments
-from .own_parts import own_type
+from .own_parts import installed_types, own_type
 from .protocol import Driven, Protocol
 from .repeats import expanded
 from .scenario import Erratum, Scenario
@@ -91,18 +91,20 @@ LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
 }
 
 
-def load(name_or_path: str | Path, types: Mapping[str, type[Component]] = PARTS | EXTRA_PARTS) -> Scenario:
+def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None = None) -> Scenario:
     """The scenario of a shipped rig, or of a rig file.
 
     Args:
         name_or_path: a name of `list_rigs`, a TOML file, or a folder with a `rig.toml`
-        types: name -> class of every type a part of the rig may have
+        types: name -> class of every type a part of the rig may have; those of the project and of installed packages if
+            None
 
     Raises:
         ScenarioError: everything wrong with the file at once
     """
     path = _find(name_or_path)
-    return _Loader(path, read_toml(path), types).scenario()
+    known = installed_types() | PARTS | EXTRA_PARTS if types is None else types
+    return _Loader(path, read_toml(path), known).scenario()
 
 
 def _find(name_or_path: str | Path) -> Path:

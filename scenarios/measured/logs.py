@@ -28,11 +28,16 @@ from .table import Sensor
 TIMES = ("time", "time_utc", "timestamp", "datetime", "date_time", "t")
 #: A gap of more than so many samples starts a new stretch.
 GAP = 1.5
-#: A single sample further than all of these from both its neighbours is a gross reading: standard deviations of steps,
-#: [K], and times what one sample in a thousand exceeds.
-SPIKE_SD, SPIKE_K, SPIKE_TAIL = 12.0, 8.0, 2.5
-#: Temperatures outside of this are none of a machine that runs [K].
-COLDEST, HOTTEST = 213.15, 473.15
+#: A single sample further than all of these from both its neighbours is a gross reading: standard deviations of steps.
+SPIKE_SD = 12.0
+#: [K].
+SPIKE_K = 8.0
+#: Times what one sample in a thousand exceeds.
+SPIKE_TAIL = 2.5
+#: Temperatures below this are none of a machine that runs [K].
+COLDEST = 213.15
+#: Temperatures above this are none of a machine that runs [K].
+HOTTEST = 473.15
 
 
 @dataclass(frozen=True)

@@ -39,9 +39,10 @@ class Sensor:
         return np.where(direction < 0, self.signs[1], self.signs[0])
 
 
-#: Last tests in which a sensor that hangs shows the same, and how far apart scatter brings their readings, in
-#: standard deviations.
-STILL, SPREAD = 3, 6.0
+#: Last tests in which a sensor that hangs shows the same.
+STILL = 3
+#: How far apart scatter brings their readings, in standard deviations.
+SPREAD = 6.0
 #: Places in a dwell at which its logged course is compared, as shares of the stated dwell.
 PLACES = (0.08, 0.25, 0.6)
 

@@ -34,8 +34,10 @@ from ...scenarios.load import load
 from ..solve.settings import flat_of
 from .costs import from_c, growth, growth_rows, massless
 
-#: The warm-up: five stages of 66 min at these parts of the speed; the same as in `importer/measure.c`.
-PARTS_OF_SPEED, STAGE = (0.4, 0.6, 0.8, 1.0, 0.2), 3960.0
+#: The warm-up: five stages of 66 min at these parts of the speed.
+PARTS_OF_SPEED = (0.4, 0.6, 0.8, 1.0, 0.2)
+#: The same as in `importer/measure.c`.
+STAGE = 3960.0
 #: Thermal nodes of the chains by which growth is measured.
 CHAINS = (4, 20, 100, 400, 1000)
 #: Conductors of the chains without masses between them.

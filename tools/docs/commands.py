@@ -136,7 +136,8 @@ def _keys(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
 
 def _public() -> str:
     """All public names, functions first."""
-    classes = {name: isinstance(getattr(gearheat, name), type) for name in gearheat.PUBLIC}
+    names = [name for name, module in gearheat.PUBLIC.items() if module not in MODULES]
+    classes = {name: isinstance(getattr(gearheat, name), type) for name in names}
     blocks = []
     for name in sorted(classes, key=lambda name: (classes[name], name)):
         kind = "class" if classes[name] else "function"
