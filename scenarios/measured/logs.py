@@ -22,7 +22,7 @@ from ..csv_table import raise_all
 from ..scenario import Scenario
 from .card import Card
 from .sensors import SI, sensors_of
-from .table import Sensor
+from .table import Sensed, Sensor
 
 #: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
 TIMES = ("time", "time_utc", "timestamp", "datetime", "date_time", "t")
@@ -52,7 +52,7 @@ class Gross:
 
 
 @dataclass(frozen=True, eq=False)
-class Log:
+class Log(Sensed):
     """Samples of one machine.
 
     Args:
@@ -81,16 +81,6 @@ class Log:
     def n(self) -> int:
         """Number of rows."""
         return len(self.time)
-
-    @property
-    def given(self) -> tuple[Sensor, ...]:
-        """Sensors that drive the model."""
-        return tuple(s for s in self.sensors if s.role == "given")
-
-    @property
-    def read(self) -> tuple[Sensor, ...]:
-        """Sensors that are compared."""
-        return tuple(s for s in self.sensors if s.role == "read")
 
     def rows(self, keep: np.ndarray, name: str = "") -> Log:
         """Some of the rows; a hole ends a stretch.

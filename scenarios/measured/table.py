@@ -47,6 +47,22 @@ SPREAD = 6.0
 PLACES = (0.08, 0.25, 0.6)
 
 
+class Sensed:
+    """What holds readings of sensors."""
+
+    sensors: tuple[Sensor, ...]
+
+    @property
+    def given(self) -> tuple[Sensor, ...]:
+        """Sensors that drive the model."""
+        return tuple(s for s in self.sensors if s.role == "given")
+
+    @property
+    def read(self) -> tuple[Sensor, ...]:
+        """Sensors that are compared."""
+        return tuple(s for s in self.sensors if s.role == "read")
+
+
 @dataclass(frozen=True, eq=False)
 class Course:
     """What one compared sensor showed along the dwell of one row, at the k `PLACES`.
@@ -82,7 +98,7 @@ class Series:
 
 
 @dataclass(frozen=True, eq=False)
-class Campaign:
+class Campaign(Sensed):
     """Steady or timed readings of one rig: n rows in n_tests tests, tests in running order, rows of a test in sequence.
 
     Args:
@@ -150,16 +166,6 @@ class Campaign:
     def sensor(self, name: str) -> Sensor:
         """The sensor of a name."""
         return next(s for s in self.sensors if s.name == name)
-
-    @property
-    def given(self) -> tuple[Sensor, ...]:
-        """Sensors that drive the model."""
-        return tuple(s for s in self.sensors if s.role == "given")
-
-    @property
-    def read(self) -> tuple[Sensor, ...]:
-        """Sensors that are compared."""
-        return tuple(s for s in self.sensors if s.role == "read")
 
     def still(self, sensor: Sensor) -> bool:
         """Whether a sensor shows about the same in the last tests, or what it shows is not known."""

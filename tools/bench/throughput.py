@@ -17,16 +17,12 @@ from ...model.run.simulate import simulate
 from ...scenarios.load import load
 from ..solve.settings import adjusted, flat_of
 from ..solve.sweep import sweep
+from .costs import STAGE, STAGES
 
 #: What varies from row to row: the load by this much of its value.
 LOAD = (0.2, 1.08)
 #: The room by this much [K].
 ROOM = (-15.0, 10.0)
-
-#: Speed in each stage of the warm-up, in parts of that of the operating point [1].
-STAGES = (0.4, 0.6, 0.8, 1.0, 0.2)
-#: Length of a stage, 66 min [s].
-STAGE = 3960.0
 
 #: Tolerance of the run that errors are measured against.
 REFERENCE = 1e-11
