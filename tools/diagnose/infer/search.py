@@ -22,32 +22,20 @@ from .gross import cleaned, set_aside
 from .prior import OUTSIDE, Prior
 from .problem import Acting, Problem
 
-#: Causes fitted: within so many nats of the best or a share of it.
-WITHIN = 12.0
-#: As a first look is off by a share of what it finds; at most.
-SHARE = 0.7
-#: At least.
-CAUSES = 20
-#: So many.
-LEAST = 4
-#: Further forms of those that fit well: at most so many.
-FURTHER = 8
-#: Forms of one cause.
-EACH = 4
-#: How much more than it looks one may be.
-MORE = 4.0
-#: Forms of one side of a quantity that are fitted where the leader acts there.
-SAME = 6
-#: Pairs that look best.
-COUPLES = 40
-#: Those fitted of them.
-PAIRS = 5
-#: Of such as are grown from some singles.
-GROWN = 3
-#: Those fitted because they are like the best one.
-LIKE = 4
-#: How far behind the best hypothesis a pair may promise to be.
-BEHIND = 5.0
+#: Which causes, forms and pairs are fitted, by their first-order scores.
+WITHIN = 12.0  # causes within so many nats of the best
+SHARE = 0.7  # or with this share of its score, as a first look is off by a share of what it finds
+CAUSES = 20  # causes at most
+LEAST = 4  # causes at least
+FURTHER = 8  # further forms of causes that fit well, at most
+EACH = 4  # forms of one cause
+MORE = 4.0  # fitted over first-order score, at most
+SAME = 6  # forms of one side of a quantity where the leader acts there
+COUPLES = 40  # pairs whose first-order score is looked at
+PAIRS = 5  # pairs fitted of them
+GROWN = 3  # single causes from which pairs are grown
+LIKE = 4  # pairs fitted because they are like the best one
+BEHIND = 5.0  # nats behind the best hypothesis at which a pair is still fitted
 #: p of any cause above which little is fitted.
 QUIET = 0.3
 #: Hypotheses within so many nats of the best are weighed by draws of the exact model.
