@@ -36,12 +36,9 @@ PAIRS = 5  # pairs fitted of them
 GROWN = 3  # single causes from which pairs are grown
 LIKE = 4  # pairs fitted because they are like the best one
 BEHIND = 5.0  # nats behind the best hypothesis at which a pair is still fitted
-#: p of any cause above which little is fitted.
-QUIET = 0.3
-#: Hypotheses within so many nats of the best are weighed by draws of the exact model.
-NEAR = 3.0
-#: Searches at most, where the leading hypothesis changes which readings are gross.
-LOOKS = 2
+QUIET = 0.3  # p of any cause above which little is fitted
+NEAR = 3.0  # hypotheses within so many nats of the best are weighed by draws of the exact model
+LOOKS = 2  # searches at most, where the leading hypothesis changes which readings are gross
 
 
 def searched(
