@@ -45,7 +45,7 @@ def test_what_is_kept_is_not_computed_again_and_gives_the_same_bytes(
     assert problems_of(before["verification.html"].decode()) == []
     assert all(len(content) < 200_000 for name, content in before.items() if name.endswith(".svg"))
     monkeypatch.setattr(steady, "solve", lambda *_, **__: pytest.fail("solved again"))
-    command.command(out, True, None, None)
+    command.verify_contact(out, quick=True)
     assert {p.name: p.read_bytes() for p in out.iterdir() if p.is_file()} == before
 
 
