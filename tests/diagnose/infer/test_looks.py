@@ -1,12 +1,12 @@
 """Causes that nuisances far off take up where no cause is fitted, and so do not show there."""
 
-from challenge import own
+from challenge import model_rig
 from challenge.cases import make_case
 from gearheat import diagnose
 
 
 def test_readings_far_too_early_are_found_though_other_capacities_hide_them(tmp_path) -> None:
-    make_case(own.draw, 0, 10001, 27, tmp_path, kind=None)
+    make_case(model_rig.draw, 0, 10001, 27, tmp_path, kind=None)
     case = tmp_path / "case"
     found = diagnose(case / "DATA.csv", "planetary", card=case / "CARD.json", quick=True)
     assert found.answers[0].causes == (("procedure.not_stationary",),)
