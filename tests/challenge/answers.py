@@ -1,4 +1,4 @@
-"""Asking a diagnosis about a case, and reading what it answers: only the command, and stable fields of its JSON."""
+"""Asking a diagnosis about a case, and reading what it answers: stable fields of its JSON only."""
 
 from __future__ import annotations
 
@@ -66,8 +66,8 @@ def ask_command(rig: str, files: Mapping[str, Path], place: Path) -> None:
     except subprocess.TimeoutExpired:
         raise DataError(f"diagnose took more than {TIMEOUT:g} s") from None
     if done.returncode != 0:
-        said = done.stderr.strip().splitlines()[-1:] or ["no message"]
-        raise DataError(f"diagnose ended with code {done.returncode}: {said[0]}")
+        message = (done.stderr.strip().splitlines() or ["no message"])[-1]
+        raise DataError(f"diagnose ended with code {done.returncode}: {message}")
 
 
 def ask_here(rig: str, files: Mapping[str, Path], place: Path) -> None:
@@ -81,8 +81,11 @@ def ask_here(rig: str, files: Mapping[str, Path], place: Path) -> None:
     place.mkdir(parents=True, exist_ok=True)
     predictions = place / "PREDICTIONS.csv" if "points" in files else None
     outputs = gearheat.Outputs(predictions=predictions, json=str(place / "RESULT.json"))
-    options = {"card": files.get("card"), "reference": files.get("reference"), "predict": files.get("points")}
-    gearheat.diagnose(files["data"], rig, quick=True, outputs=outputs, **options).write(outputs)
+    card, reference, points = (files.get(what) for what in ("card", "reference", "points"))
+    diagnosis = gearheat.diagnose(
+        files["data"], rig, card=card, reference=reference, predict=points, quick=True, outputs=outputs
+    )
+    diagnosis.write(outputs)
 
 
 @dataclass(frozen=True)
@@ -100,7 +103,7 @@ class Hypothesis:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a diagnosis said: look-alikes that count as one are class_of, likeliest hypothesis first.
+    """The answer of a diagnosis: causes of one class are merged, likeliest hypothesis first.
 
     Args:
         verdict: its word; anything but "consistent" is an alarm
@@ -129,30 +132,30 @@ class Answer:
 
     def credible(self, level: float = 0.9) -> list[Hypothesis]:
         """The smallest set of hypotheses whose probabilities reach the level; all if they do not."""
-        total, found = 0.0, []
+        total, credible = 0.0, []
         for hypothesis in self.hypotheses:
-            found.append(hypothesis)
+            credible.append(hypothesis)
             total += hypothesis.probability
             if total >= level:
                 break
-        return found
+        return credible
 
 
 def read_answer(place: Path) -> Answer:
-    """The answer in a folder; of a hypothesis with a remainder beside causes, the causes count.
+    """The answer in a folder; a remainder does not count where a hypothesis names causes as well.
 
     Raises:
         DataError: the result is no JSON of the schema
     """
     try:
-        said = json.loads((place / "RESULT.json").read_text(encoding="utf-8"))
+        result = json.loads((place / "RESULT.json").read_text(encoding="utf-8"))
         weights: dict[frozenset[str], float] = {}
-        for h in said["hypotheses"]:
+        for h in result["hypotheses"]:
             names = classes_of(h["causes"])
             names = names - UNNAMED or names
             weights[names] = weights.get(names, 0.0) + float(h["probability"])
-        verdict, impact = str(said["verdict"]), {k: _estimate(v) for k, v in said.get("impact", {}).items()}
-        gross = _gross(said)
+        verdict, impact = str(result["verdict"]), {k: _estimate(v) for k, v in result.get("impact", {}).items()}
+        gross = _gross(result)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise DataError(f"{place.name}: not a result of a diagnosis ({type(error).__name__}: {error})") from None
     ranked = sorted(weights.items(), key=lambda item: (-item[1], sorted(item[0])))
@@ -164,13 +167,13 @@ def _estimate(value: Any) -> float:
     return float(value["value"] if isinstance(value, Mapping) else value)
 
 
-def _gross(said: Mapping[str, Any]) -> frozenset[tuple[int, str]] | None:
+def _gross(result: Mapping[str, Any]) -> frozenset[tuple[int, str]] | None:
     """Rows of the data, from 1, and columns."""
-    if "data_quality" not in said:
+    if "data_quality" not in result:
         return None
-    columns = {c["name"]: c.get("column") or c["name"] for c in said.get("channels", ())}
-    found = said["data_quality"].get("gross", ())
-    return frozenset((int(g["row"]), str(columns.get(g["channel"], g["channel"]))) for g in found)
+    columns = {c["name"]: c.get("column") or c["name"] for c in result.get("channels", ())}
+    gross = result["data_quality"].get("gross", ())
+    return frozenset((int(g["row"]), str(columns.get(g["channel"], g["channel"]))) for g in gross)
 
 
 def _predictions(path: Path) -> tuple[dict[int, float], dict[int, float]]:

@@ -44,7 +44,7 @@ PARAMETERS: Mapping[str, str] = {
     "cap_oil": "oil.c_p",
 }
 
-#: Factors that belong together, and how uncertain the card says they are.
+#: Factors that differ together -> relative standard deviation on the card [1].
 PRIOR_SD: Mapping[str, float] = {
     "mesh": files.PRIOR_SD["mu"],
     "bearing": files.PRIOR_SD["brg"],
@@ -55,7 +55,7 @@ PRIOR_SD: Mapping[str, float] = {
     "contact": files.PRIOR_SD["gwh"],
     "cap_oil cap_in cap_out": files.PRIOR_SD["cap"],
 }
-#: The same of the other rigs, whose churning counts.
+#: The same of the other rigs, which churn more.
 STEADY_PRIOR_SD = {**PRIOR_SD, "churning": files.PRIOR_SD["seal"]}
 
 

@@ -32,10 +32,10 @@ def folders(path: Path) -> list[Path]:
     Raises:
         DataError: there are none
     """
-    found = [path] if (path / "key.json").exists() else sorted(p.parent for p in path.glob("*/key.json"))
-    if not found:
+    cases = [path] if (path / "key.json").exists() else sorted(p.parent for p in path.glob("*/key.json"))
+    if not cases:
         raise DataError(f"{path}: no campaigns. Expected folders with data.csv, card.json and key.json.")
-    return found
+    return cases
 
 
 def files(folder: Path, made: bool = False) -> dict[str, Path]:

@@ -255,7 +255,7 @@ class _Mixture:
         self.gram = self.columns.T @ self.columns
 
     def beside(self, q: np.ndarray) -> Callable[[np.ndarray], tuple[float, Callable[[], float]]]:
-        """What of a vector is left, beside what orthonormal columns q take up: a lower bound, and how to get it."""
+        """What the mixture leaves of a vector beside orthonormal columns q: a lower bound, and how to get the value."""
         inside = self.columns.T @ q
         R = np.linalg.cholesky(self.gram - inside @ inside.T + 1e-9 * np.eye(len(inside))).T
 

@@ -1,4 +1,4 @@
-"""The bench hides what it says it hides, tells nothing of it, and scores answers as the bars are meant."""
+"""The bench hides what its truth says, shows nothing of it, and scores answers as the bars are meant."""
 
 import csv
 import json
