@@ -150,7 +150,7 @@ def _write(d: Drawn, hidden: Sequence[Hidden], folder: Path, rng: np.random.Gene
     else:
         card = files.card(i, bearing_oil=d.bearing_oil, room_drift=d.room_drift)
     (case / "CARD.json").write_text(json.dumps(card, indent=1) + "\n", encoding="utf-8")
-    at = [i.fixed(_simulate(d, d.points, faults)) for faults in (hidden, ())]
+    at = [i.without_noise(_simulate(d, d.points, faults)) for faults in (hidden, ())]
     files.write_points(case / "POINTS.csv", d.points, at[0], i.channels, d.layout)
     impact, repeat_sd = _impact(d, ill - well)
     oil = [d.oil(a).T.ravel() for a in at]

@@ -73,7 +73,7 @@ class Instruments:
         """Columns."""
         return tuple(self.repeat_sd)
 
-    def fixed(self, values: np.ndarray) -> np.ndarray:
+    def without_noise(self, values: np.ndarray) -> np.ndarray:
         """Readings (channels, 2, tests) with the fixed tolerances, without noise."""
         return np.asarray(values + np.array([self.offset[c] for c in self.channels])[:, None, None])
 
@@ -84,7 +84,7 @@ class Instruments:
         else:
             z = rng.normal(0.0, 1.0, values.shape)
         sd = np.array([self.repeat_sd[c] for c in self.channels])
-        return np.asarray(self.fixed(values) + z * sd[:, None, None])
+        return np.asarray(self.without_noise(values) + z * sd[:, None, None])
 
 
 def draw_instruments(rng: np.random.Generator, octaves: float, *, second_oil: bool, **rough: float) -> Instruments:

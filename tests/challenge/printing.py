@@ -13,7 +13,7 @@ CASES = ("case", "kind", "S/N", "rival", "truth (p)", "answer (p)", "remarks")
 
 def show(result: Mapping[str, Any]) -> None:
     """Print the report as tables."""
-    wrong = [_case(c) for c in result["cases"] if _missed(c)]
+    wrong = [_case(c) for c in result["cases"] if _is_missed(c)]
     console.table("cases that are not as they should be", CASES, wrong, wrapped=True)
     head = ("metric", "value", "95 % interval", "cases", "must", "ambitious")
     sheets = ", ".join(f"{count} {sheet}" for sheet, count in result["sheets"].items())
@@ -36,7 +36,7 @@ def show(result: Mapping[str, Any]) -> None:
         console.say(f"without an answer, counted as missed: {missing}")
 
 
-def _missed(c: Mapping[str, Any]) -> bool:
+def _is_missed(c: Mapping[str, Any]) -> bool:
     if not c["answered"] or c["sure_wrong"]:
         return True
     if c["kind"] in ("clean", "weak", "outside"):

@@ -268,7 +268,9 @@ def test_gross_readings_stand_where_the_truth_says(tmp_path: Path) -> None:
 # ------------------------------------------------------------------------------------------------------------ scores
 
 
-def tell(place: Path, verdict: str, hypotheses: list, impact: dict, points: list, quality: dict | None = None) -> None:
+def write_answer(
+    place: Path, verdict: str, hypotheses: list, impact: dict, points: list, quality: dict | None = None
+) -> None:
     said = {"verdict": verdict, "hypotheses": hypotheses, "impact": impact}
     said |= {"data_quality": quality} if quality else {}
     (place / "RESULT.json").write_text(json.dumps(said), encoding="utf-8")
@@ -282,12 +284,12 @@ def oracle(rig: str, files: Mapping[str, Path], place: Path) -> None:
     hypotheses = [{"causes": truth["answer"] + ["model.unexplained"], "probability": 0.97}]
     points = [(p["point"], p["T_oil_without_C"], p["T_oil_C"]) for p in truth["points"]]
     gross = [{"row": g["row"], "channel": g["channel"]} for g in truth["gross"].values()]
-    tell(place, "explained", hypotheses, truth["impact"], points, {"gross": gross})
+    write_answer(place, "explained", hypotheses, truth["impact"], points, {"gross": gross})
 
 
 def always_sure(rig: str, files: Mapping[str, Path], place: Path) -> None:
     """Is always sure of the same wrong thing."""
-    tell(place, "explained", [{"causes": ["model.nonsense"], "probability": 0.99}], {"T_oil_K": 5.0}, [])
+    write_answer(place, "explained", [{"causes": ["model.nonsense"], "probability": 0.99}], {"T_oil_K": 5.0}, [])
 
 
 def fail(rig: str, files: Mapping[str, Path], place: Path) -> None:
@@ -295,14 +297,14 @@ def fail(rig: str, files: Mapping[str, Path], place: Path) -> None:
     raise RuntimeError("no idea")
 
 
-def played(who: object, place: Path) -> dict[str, scoring.Metric]:
+def score_practice(who: object, place: Path) -> dict[str, scoring.Metric]:
     found = run(tasks("practice", 9, 0, place, given=PRACTICE, diagnose=who), jobs=2)
     assert [o.case for o in found] == sorted(p.name for p in PRACTICE.iterdir())
     return {m.name: m for m in metrics(found)}
 
 
 def test_the_oracle_reaches_every_bar(tmp_path: Path) -> None:
-    found = played(oracle, tmp_path)
+    found = score_practice(oracle, tmp_path)
     assert all(m.ambitious_met in (True, None) for m in found.values())
     assert found["exact name first"].value == 1.0
     assert found["gross reading named by row and channel"].value == 1.0
@@ -310,7 +312,7 @@ def test_the_oracle_reaches_every_bar(tmp_path: Path) -> None:
 
 
 def test_sure_and_wrong_costs(tmp_path: Path) -> None:
-    found = played(always_sure, tmp_path)
+    found = score_practice(always_sure, tmp_path)
     assert found["detection"].value == 1.0
     assert found["exact name first"].value == 0.0
     assert found["single or regime wrong with > .9"].value == 1.0
@@ -318,7 +320,7 @@ def test_sure_and_wrong_costs(tmp_path: Path) -> None:
 
 
 def test_no_answer_counts_as_missed(tmp_path: Path) -> None:
-    found = played(fail, tmp_path)
+    found = score_practice(fail, tmp_path)
     assert found["detection"].value == 0.0
     assert found["size of the 90 % set, mean"].value is None
 
@@ -328,7 +330,7 @@ def test_a_run_goes_on_where_it_stopped(tmp_path: Path) -> None:
 
     def counted(rig: str, files: Mapping[str, Path], place: Path) -> None:
         asked.append(place.parent.name)
-        tell(place, "consistent", [{"causes": [], "probability": 1.0}], {}, [])
+        write_answer(place, "consistent", [{"causes": [], "probability": 1.0}], {}, [])
 
     first = run(tasks("textbook", 2, 6, tmp_path, kind="clean", diagnose=counted), jobs=1)
     again = run(tasks("textbook", 3, 6, tmp_path, kind="clean", diagnose=counted), jobs=1)
@@ -377,7 +379,7 @@ def test_look_alikes_are_one_answer(tmp_path: Path) -> None:
         {"causes": ["losses.seal_drag"], "probability": 0.3},
         {"causes": ["losses.bearing_preload", "model.unexplained"], "probability": 0.25},
     ]
-    tell(tmp_path, "ambiguous", hypotheses, {"T_oil_K": {"value": 2.5}, "loss_Nm": 0.0}, [])
+    write_answer(tmp_path, "ambiguous", hypotheses, {"T_oil_K": {"value": 2.5}, "loss_Nm": 0.0}, [])
     found = score(truth_of("losses.seal_drag"), read_answer(tmp_path), 1.0)
     assert found.exact and found.covered and found.size == 2
     assert found.p_truth == pytest.approx(0.55)

@@ -93,7 +93,7 @@ def test_every_fault_changes_what_it_changed_when_frozen(drawn: tuple[Drawn, np.
         (fault, slice(k * columns, (k + 1) * columns), np.full(columns, 0.3 * fault.high))
         for k, fault in enumerate(faults)
     ]
-    readings = d.run(d.plan.tiled(len(faults)), d.base, acting).reshape(6, 2, len(faults), columns)
+    readings = d.run(d.plan.tile(len(faults)), d.base, acting).reshape(6, 2, len(faults), columns)
     change = np.sqrt(((readings - healthy[:, :, None]) ** 2).mean(axis=(1, 3))).T
     assert set(names) == set(CHANGES)
     wrong = {n: c for n, c in zip(names, change, strict=True) if c != pytest.approx(CHANGES[n], rel=0.01, abs=1e-6)}
