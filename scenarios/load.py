@@ -2,51 +2,23 @@
 
     kind = "planetary"                    # a machine: a name in `LAYOUTS`, or "network"
     doc = "..."
-    reproduces = "..."                    # the published results it reproduces, or that nothing of it is published
 
-    [drive]                               # what is given at the shaft ends
+    [drive]
     carrier = ["w", "tau"]
 
-    [operating_point]                     # values of inputs, when nothing else is asked
+    [operating_point]
     source = "Dias2014, section 3.2"
     carrier.w = "250 rpm"
 
-    [part.oil]                            # a table per part of the machine
+    [part.oil]
     oil = "PAOR"                          # a catalogue entry; a value beside it overrides it
     V = "1 l"
-    source = "Dias2014, section 4.2"      # of every value of the table ...
-    sources = { V = "assumed: one litre" }  # ... that has none of its own
-    uncertainties = { V = "0.1 l" }       # one standard deviation, where it is known
+    source = "Dias2014, section 4.2"
+    sources = { V = "assumed: one litre" }
 
-    [part.cooler]                         # a part of one's own has a type; a "network" has no others
-    type = "ThermalConductor"             # or "my_module:MyClass", see `own_parts`
-
-    [connect]                             # nets of one's own: name = ports that meet
-    cooler_in = ["oil.heat", "cooler.a"]
-
-    [template.bearing]                    # what parts with use = "bearing" share; "x_{a,b}" names two parts: `repeats`
-    [assembly.shaft]                      # parts and nets that are met by a few ports, for use = "shaft": `assemblies`
-
-    [sensors]                             # column of a measured table = path in the model
-    T_oil_C = "oil.T"
-
-    [sensors.T_sun]                       # the same in full; what is left out follows from what it reads
-    column = "T_sun_Nm"
-    reads = "sun.tau"
-    signs = [-1, 1]                       # the column holds magnitudes: the model's sign in direction 1 and 2
-    repeat_sd = "0.25 N.m"
-
-    [losses]                              # column of the losses table = outputs that are summed
-    P_seal_W = ["carrier_seal.P_loss", "sun_seal.P_loss"]
-
-
-    [uncertainties.loss]                  # values that are uncertain together, beside the single ones of their parts:
-    "gears.k_mu" = 0.03                   # what each changes by at one standard deviation of one reason, which is
-    "cooling.A" = "-0.01 m2"              # independent of all others
-
-    [campaign]                            # measured data; see `tables.CampaignTable`
-    [[errata]]                            # where the source is wrong; see `tables.ErratumTable`
-
+Every table and key stands in `tables`: those of the file in `RigTable`, those that each part has in `PartTable`.
+A part's values are those of its type; one of your own is "my_module:MyClass", see `own_parts`. A name "x_{a,b}" stands
+for two parts, see `repeats`; what use = NAME stands for, in `repeats` and `assemblies`.
 A source is a citation ("Dias2014, table 5.7") or one of "assumed: ...", "inferred: ...", "calibrated: ...".
 """
 
@@ -71,7 +43,7 @@ from .assemblies import assembled
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
 from .instruments import Instrument, instruments
-from .own_parts import own_type
+from .own_parts import installed_types, own_type
 from .protocol import Driven, Protocol
 from .repeats import expanded
 from .scenario import Erratum, Scenario
@@ -91,18 +63,20 @@ LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
 }
 
 
-def load(name_or_path: str | Path, types: Mapping[str, type[Component]] = PARTS | EXTRA_PARTS) -> Scenario:
+def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None = None) -> Scenario:
     """The scenario of a shipped rig, or of a rig file.
 
     Args:
         name_or_path: a name of `list_rigs`, a TOML file, or a folder with a `rig.toml`
-        types: name -> class of every type a part of the rig may have
+        types: name -> class of every type a part of the rig may have; those of the project and of installed packages if
+            None
 
     Raises:
         ScenarioError: everything wrong with the file at once
     """
     path = _find(name_or_path)
-    return _Loader(path, read_toml(path), types).scenario()
+    known = installed_types() | PARTS | EXTRA_PARTS if types is None else types
+    return _Loader(path, read_toml(path), known).scenario()
 
 
 def _find(name_or_path: str | Path) -> Path:

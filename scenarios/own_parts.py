@@ -7,10 +7,37 @@ file of somebody else brings no code of its own.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from importlib import import_module
+from importlib.metadata import entry_points
 
 from ..model.core.component import Component
 from ..model.errors import ScenarioError, suggestion
+
+#: Entry points under which installed packages offer part types, "Cooler = my_package.parts:Cooler".
+GROUP = "gearheat.parts"
+
+
+@cache
+def installed_types() -> dict[str, type[Component]]:
+    """Part types of installed packages, by name.
+
+    Raises:
+        ScenarioError: all that cannot be loaded, is no part or has another name than its class
+    """
+    found: dict[str, type[Component]] = {}
+    problems: list[str] = []
+    for entry in sorted(entry_points(group=GROUP), key=lambda e: e.name):
+        try:
+            found[entry.name] = own_type(entry.value, {})
+        except ScenarioError as error:
+            problems += [f"package {entry.name}: {problem}" for problem in error.problems]
+    problems += [
+        f'package {n}: its class is "{c.__name__}". Give both one name.' for n, c in found.items() if n != c.__name__
+    ]
+    if problems:
+        raise ScenarioError(problems)
+    return found
 
 
 def own_type(kind: str, known: Mapping[str, type[Component]]) -> type[Component]:

@@ -62,6 +62,16 @@ class ErratumTable(Strict):
     evidence: str = Field(description="how we know")
 
 
+class PartTable(Strict):
+    """What every table [part.NAME] may say beside the values of its type, which are checked against the part."""
+
+    type: str = Field("", description='part type, or "my_module:MyClass"; a part of the machine has its own')
+    use: str = Field("", description="template of its values, or assembly in its place")
+    source: str = Field("", description="where the values are from: a citation, or assumed:, inferred:, calibrated:")
+    sources: dict[str, str] = Field({}, description="the same of single values")
+    uncertainties: dict[str, Any] = Field({}, description="standard uncertainties of values, with their units")
+
+
 class RigTable(Strict):
     """A rig file. Values are checked later, against the parts."""
 
@@ -84,6 +94,8 @@ class RigTable(Strict):
         description="[uncertainties.NAME]: what values change by together at one standard deviation, with their units",
     )
     errata: list[ErratumTable] = Field([], description="places where the source is wrong")
+    template: dict[str, dict[str, Any]] = Field({}, description="values that parts share by use = NAME")
+    assembly: dict[str, dict[str, Any]] = Field({}, description="parts and nets that use = NAME stands for")
 
     @field_validator("sensors", mode="before")
     @classmethod

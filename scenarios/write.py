@@ -18,6 +18,8 @@ from .values import UNCERTAINTIES, settable
 #: Choices that follow from [drive].
 _DRIVEN = ("given", "dynamic")
 
+#: Source of the values that the user sets; they hold for every test, whatever oil it ran with.
+SET = "set on the command line"
 #: Beginning of the source of a value that a diagnosis changed; it holds for every test, whatever oil it ran with.
 DIAGNOSED = "inferred: diagnosis of"
 #: Source of a value that an extension set without saying more.

@@ -2,8 +2,12 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Iterable
 from typing import Any
+
+#: Whether every case of a check is tried, also where a few stand for all of them.
+ALL = os.environ.get("GEARHEAT_TESTS") == "all"
 
 Check = Callable[..., None]
 

@@ -18,11 +18,16 @@ from .ports import Flange, HeatPort, Lubricant, ShaftReading
 
 #: How gradually thin films set in: logarithm of speed times viscosity.
 FILM_STEP = 0.3
-#: Parts of the reference speed: below the first a brake fades, below the second a power that falls with the speed no
-#: longer does so, below the third cooling no longer changes with speed.
-W_REST, W_SLOW, W_STILL = 3e-4, 0.07, 0.2
-#: Rounding of the torque's magnitude, and of the direction of power, as parts of their references.
-TAU_REST, P_REST = 3e-4, 1e-4
+#: Parts of the reference speed: below the first a brake fades.
+W_REST = 3e-4
+#: Below the second a power that falls with the speed no longer does so.
+W_SLOW = 0.07
+#: Below the third cooling no longer changes with speed.
+W_STILL = 0.2
+#: Rounding of the torque's magnitude.
+TAU_REST = 3e-4
+#: Of the direction of power, as parts of their references.
+P_REST = 1e-4
 
 
 class ExtraHeat(Component):

@@ -17,18 +17,28 @@ from .table import Campaign, Sensor
 #: Name of an oil -> values by path.
 Oils = Mapping[str, Mapping[str, float]]
 
-#: Fewer rows or tests than these say nothing about any cause.
-LEAST_ROWS, LEAST_TESTS = 6, 3
-#: Readings of temperature beyond these [K] are taken for another unit.
-COLDEST, HOTTEST = 213.15, 473.15
+#: Fewer rows than these say nothing about any cause.
+LEAST_ROWS = 6
+#: Fewer tests than these say nothing about any cause.
+LEAST_TESTS = 3
+#: Readings of temperature below this are taken for another unit [K].
+COLDEST = 213.15
+#: Readings of temperature above this are taken for another unit [K].
+HOTTEST = 473.15
 #: A given speed or torque this many times the largest, or less than this part of the rig's, has another unit.
 FAR = 50.0
-#: Readings that differ from the nominal model's by more than this factor, in most rows, have another unit or sign.
-TORQUE_FACTOR, LOSS_FACTOR, RISE_FACTOR = 2.0, 10.0, 5.0
+#: Readings that differ from the nominal model's by more than this factor.
+TORQUE_FACTOR = 2.0
+#: In most rows.
+LOSS_FACTOR = 10.0
+#: Have another unit or sign.
+RISE_FACTOR = 5.0
 #: A rise over the room below this [K] says nothing about a unit.
 SMALL_RISE = 2.0
-#: Efficiencies outside of these in most rows cannot be.
-POOREST, BEST = 0.2, 1.0
+#: Efficiencies below this in most rows cannot be [1].
+POOREST = 0.2
+#: Efficiencies above this in most rows cannot be [1].
+BEST = 1.0
 #: Accuracies further than this factor from the usual ones are a slip.
 ODD = 300.0
 #: Rows that are held against the nominal model.

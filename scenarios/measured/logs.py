@@ -22,17 +22,22 @@ from ..csv_table import raise_all
 from ..scenario import Scenario
 from .card import Card
 from .sensors import SI, sensors_of
-from .table import Sensor
+from .table import Sensed, Sensor
 
 #: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
 TIMES = ("time", "time_utc", "timestamp", "datetime", "date_time", "t")
 #: A gap of more than so many samples starts a new stretch.
 GAP = 1.5
-#: A single sample further than all of these from both its neighbours is a gross reading: standard deviations of steps,
-#: [K], and times what one sample in a thousand exceeds.
-SPIKE_SD, SPIKE_K, SPIKE_TAIL = 12.0, 8.0, 2.5
-#: Temperatures outside of this are none of a machine that runs [K].
-COLDEST, HOTTEST = 213.15, 473.15
+#: A single sample further than all of these from both its neighbours is a gross reading: standard deviations of steps.
+SPIKE_SD = 12.0
+#: [K].
+SPIKE_K = 8.0
+#: Times what one sample in a thousand exceeds.
+SPIKE_TAIL = 2.5
+#: Temperatures below this are none of a machine that runs [K].
+COLDEST = 213.15
+#: Temperatures above this are none of a machine that runs [K].
+HOTTEST = 473.15
 
 
 @dataclass(frozen=True)
@@ -47,7 +52,7 @@ class Gross:
 
 
 @dataclass(frozen=True, eq=False)
-class Log:
+class Log(Sensed):
     """Samples of one machine.
 
     Args:
@@ -76,16 +81,6 @@ class Log:
     def n(self) -> int:
         """Number of rows."""
         return len(self.time)
-
-    @property
-    def given(self) -> tuple[Sensor, ...]:
-        """Sensors that drive the model."""
-        return tuple(s for s in self.sensors if s.role == "given")
-
-    @property
-    def read(self) -> tuple[Sensor, ...]:
-        """Sensors that are compared."""
-        return tuple(s for s in self.sensors if s.role == "read")
 
     def rows(self, keep: np.ndarray, name: str = "") -> Log:
         """Some of the rows; a hole ends a stretch.

@@ -9,8 +9,10 @@ import numpy as np
 
 from .table import Campaign, Sensor
 
-#: Given conditions nearer than this part of their range, or of their size, are the same point.
-NEAR_RANGE, NEAR_SIZE = 0.05, 0.02
+#: Given conditions nearer than this part of their range are the same point [1].
+NEAR_RANGE = 0.05
+#: Given conditions nearer than this part of their size are the same point [1].
+NEAR_SIZE = 0.02
 #: Fewer degrees of freedom say nothing about a scatter.
 LEAST = 3
 

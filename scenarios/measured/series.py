@@ -16,8 +16,10 @@ from .table import PLACES, Campaign, Course, Series
 
 #: Shares of the logged time where the pieces of a curve meet, which are cubic.
 KNOTS = (0.04, 0.12, 0.3, 0.55)
-#: Least samples of a dwell, and those from which there is a curve; below, places lie on the lines between samples.
-LEAST, MANY = 7, 14
+#: Least samples of a dwell, and those from which there is a curve.
+LEAST = 7
+#: Below, places lie on the lines between samples.
+MANY = 14
 #: A piece of a curve has so many samples at least.
 PIECE = 2
 #: More samples of a dwell than that are averaged in groups first.

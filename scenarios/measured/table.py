@@ -39,11 +39,28 @@ class Sensor:
         return np.where(direction < 0, self.signs[1], self.signs[0])
 
 
-#: Last tests in which a sensor that hangs shows the same, and how far apart scatter brings their readings, in
-#: standard deviations.
-STILL, SPREAD = 3, 6.0
+#: Last tests in which a sensor that hangs shows the same.
+STILL = 3
+#: How far apart scatter brings their readings, in standard deviations.
+SPREAD = 6.0
 #: Places in a dwell at which its logged course is compared, as shares of the stated dwell.
 PLACES = (0.08, 0.25, 0.6)
+
+
+class Sensed:
+    """What holds readings of sensors."""
+
+    sensors: tuple[Sensor, ...]
+
+    @property
+    def given(self) -> tuple[Sensor, ...]:
+        """Sensors that drive the model."""
+        return tuple(s for s in self.sensors if s.role == "given")
+
+    @property
+    def read(self) -> tuple[Sensor, ...]:
+        """Sensors that are compared."""
+        return tuple(s for s in self.sensors if s.role == "read")
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +98,7 @@ class Series:
 
 
 @dataclass(frozen=True, eq=False)
-class Campaign:
+class Campaign(Sensed):
     """Steady or timed readings of one rig: n rows in n_tests tests, tests in running order, rows of a test in sequence.
 
     Args:
@@ -149,16 +166,6 @@ class Campaign:
     def sensor(self, name: str) -> Sensor:
         """The sensor of a name."""
         return next(s for s in self.sensors if s.name == name)
-
-    @property
-    def given(self) -> tuple[Sensor, ...]:
-        """Sensors that drive the model."""
-        return tuple(s for s in self.sensors if s.role == "given")
-
-    @property
-    def read(self) -> tuple[Sensor, ...]:
-        """Sensors that are compared."""
-        return tuple(s for s in self.sensors if s.role == "read")
 
     def still(self, sensor: Sensor) -> bool:
         """Whether a sensor shows about the same in the last tests, or what it shows is not known."""

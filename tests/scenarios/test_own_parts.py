@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import re
+from importlib.metadata import EntryPoint
 
 import pytest
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.steady import steady
+from gearheat.scenarios import own_parts
 from gearheat.scenarios.load import RIGS, load
 
 WHOLE = (RIGS / "helical_two_stage" / "rig.toml").read_text(encoding="utf-8")
@@ -84,3 +86,23 @@ def test_what_is_wrong_is_said_once(rig, kind, words):
     with pytest.raises(ScenarioError, match=re.escape(words)) as error:
         load(rig(kind))
     assert sum(kind in problem for problem in error.value.problems) == 1
+
+
+def test_parts_of_installed_packages_are_known_by_name(monkeypatch, tmp_path):
+    module = tmp_path / "shop_parts.py"
+    module.write_text(
+        'from gearheat.model.parts import PARTS\n\n\nclass Stone(PARTS[\'HeatCapacity\']):\n    """A body."""\n',
+        encoding="utf-8",
+    )
+    monkeypatch.syspath_prepend(str(tmp_path))
+    offered = [EntryPoint("Stone", "shop_parts:Stone", own_parts.GROUP)]
+    monkeypatch.setattr(own_parts, "entry_points", lambda group: offered)
+    own_parts.installed_types.cache_clear()
+    try:
+        assert own_parts.installed_types()["Stone"].__name__ == "Stone"
+        own_parts.installed_types.cache_clear()
+        offered.append(EntryPoint("Rock", "shop_parts:Rock", own_parts.GROUP))
+        with pytest.raises(ScenarioError, match=r'package Rock: .*has no part "Rock"'):
+            load("planetary")
+    finally:
+        own_parts.installed_types.cache_clear()

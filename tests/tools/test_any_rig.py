@@ -6,7 +6,7 @@ import csv
 
 import pytest
 from gearheat.scenarios.load import load
-from gearheat.tools.compare.measured import measured_of
+from gearheat.scenarios.measured.study import measured_of
 from gearheat.tools.compare.readings import measured_rows
 from made_tables import made, written
 

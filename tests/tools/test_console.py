@@ -17,12 +17,25 @@ from gearheat.model.errors import DataError, SolveError
 from gearheat.model.files import reading
 from gearheat.tools.cli import __main__ as entry
 from gearheat.tools.cli import app as cli
-from gearheat.tools.show.console import as_json, cell, folder, guarded, table, writable, write
+from gearheat.tools.show import console
+from gearheat.tools.show.console import EVERY, as_json, cell, counting, folder, guarded, table, writable, write
 
 
 def test_json_holds_no_value_that_is_no_json():
     text = as_json({"a": np.array([1.0, math.nan]), "b": (np.float64(2.5), np.int64(3)), "c": {4: math.inf}, "d": None})
     assert json.loads(text) == {"a": [1.0, None], "b": [2.5, 3], "c": {"4": None}, "d": None}
+
+
+def test_progress_without_a_terminal_is_a_line_now_and_then(capsys, monkeypatch):
+    now = [100.0]
+    monkeypatch.setattr(console, "time", SimpleNamespace(monotonic=lambda: now[0]))
+    with counting("rows", 20, done=2) as advance:
+        for _ in range(9):
+            now[0] += EVERY / 3
+            advance(2)
+    told = capsys.readouterr()
+    assert told.err.splitlines() == ["8 of 20 rows (40%)", "14 of 20 rows (70%)", "20 of 20 rows (100%)"]
+    assert told.out == ""
 
 
 def test_a_file_is_there_whole_or_not_at_all(tmp_path):

@@ -5,8 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gearheat.scenarios.load import load
+from gearheat.scenarios.measured.study import Measured, measured_of
 from gearheat.tools.compare.campaign import Run, runs_of
-from gearheat.tools.compare.measured import Measured, measured_of
 from gearheat.tools.solve.settings import flat_of
 
 HEADER = "point,test,order,direction,dwell_min,oil,n_carrier_rpm,T_carrier_Nm,T_sun_Nm,T_oil_C,T_wall_C,T_amb_C"

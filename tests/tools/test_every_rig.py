@@ -10,8 +10,9 @@ from fmpy.validation import validate_fmu
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
 from gearheat.scenarios.load import list_rigs, load
+from selection import one_of_each
 
-RIGS = tuple(list_rigs())
+RIGS = tuple(one_of_each(list_rigs(), lambda rig: tuple(part.type for part in load(rig).spec.parts)))
 END = 7200.0
 
 

@@ -13,8 +13,8 @@ from gearheat.fmu.play import Player
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
+from gearheat.scenarios.measured.study import measured_of
 from gearheat.tools.compare.campaign import runs_of
-from gearheat.tools.compare.measured import measured_of
 from gearheat.tools.docs.blocks import PAGES
 from gearheat.tools.solve.settings import flat_of
 

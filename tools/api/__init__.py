@@ -33,11 +33,11 @@ if TYPE_CHECKING:
     from .tools.describe.description import show as show
     from .tools.describe.parts import PartTypes as PartTypes
     from .tools.describe.parts import parts as parts
-    from .tools.describe.parts import schema as schema
     from .tools.describe.rig import Rig as Rig
     from .tools.describe.rig import assemble as assemble
     from .tools.describe.rig import load as load
     from .tools.describe.rig import rigs as rigs
+    from .tools.describe.schema import schema as schema
     from .tools.describe.shipped import Shipped as Shipped
     from .tools.describe.shipped import shipped as shipped
     from .tools.diagnose.api import CardText as CardText
@@ -117,7 +117,7 @@ PUBLIC: dict[str, str] = {
     "Rig": "tools.describe.rig",
     "rigs": "tools.describe.rig",
     "run": "tools.compare.run",
-    "schema": "tools.describe.parts",
+    "schema": "tools.describe.schema",
     "Shipped": "tools.describe.shipped",
     "shipped": "tools.describe.shipped",
     "show": "tools.describe.description",

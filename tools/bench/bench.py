@@ -21,8 +21,8 @@ from ...fmu.play import Player
 from ...model.core.flat import FlatModel
 from ...model.run.simulate import simulate
 from ...scenarios.load import load
+from ...scenarios.measured.study import measured_of
 from ..compare import campaign
-from ..compare.measured import measured_of
 from ..show.console import answer, note, say, table
 from ..solve.settings import flat_of
 from . import fmu as bench_fmu

@@ -50,8 +50,10 @@ CASE = {
     "p_r": 1 / 5.1e-9,
     "z": 0.68,
 }
-#: Nodes a side of slippy and of this project; width of slippy's domain over a, relaxation and tolerance as its example.
-PEER_GRIDS, GRIDS = (65, 97), (33, 65, 129, 257)
+#: Nodes a side of slippy and of this project.
+PEER_GRIDS = (65, 97)
+#: Width of slippy's domain over a, relaxation and tolerance as its example.
+GRIDS = (33, 65, 129, 257)
 OPTIONS = {"width": 6.0, "relax": 0.1, "tolerance": 1e-6, "steps": 20000}
 #: One core for all libraries.
 ONE = {name: "1" for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "NUMBA_NUM_THREADS", "MKL_NUM_THREADS")}

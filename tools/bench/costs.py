@@ -26,6 +26,11 @@ from ...model.core.flatten import flatten
 from ...model.parts import PARTS
 from .c_importer import HERE, Compiler, includes, program, unpack
 
+#: Speed in each stage of the warm-up, in parts of that of the operating point [1]; as in `importer/measure.c`.
+STAGES = (0.4, 0.6, 0.8, 1.0, 0.2)
+#: Length of a stage, 66 min [s]; as in `importer/measure.c`.
+STAGE = 3960.0
+
 
 def from_c(fmu: Path, folder: Path, speed: str, truth: np.ndarray, flat: FlatModel) -> dict[str, Any]:
     """Figures of an importer in C that warms the model up by five stages of one input.

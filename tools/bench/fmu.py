@@ -32,10 +32,8 @@ from ...model.run.schedule import Schedule, stepped
 from ...model.run.simulate import simulate
 from ...scenarios.load import load
 from ..solve.settings import flat_of
-from .costs import from_c, growth, growth_rows, massless
+from .costs import STAGE, STAGES, from_c, growth, growth_rows, massless
 
-#: The warm-up: five stages of 66 min at these parts of the speed; the same as in `importer/measure.c`.
-PARTS_OF_SPEED, STAGE = (0.4, 0.6, 0.8, 1.0, 0.2), 3960.0
 #: Thermal nodes of the chains by which growth is measured.
 CHAINS = (4, 20, 100, 400, 1000)
 #: Conductors of the chains without masses between them.
@@ -75,8 +73,8 @@ def measure(
     scenario = load(rig)
     flat = flat_of(scenario)
     speed = next(q.name for q in flat.inputs if q.name.endswith(".w"))
-    duty = stepped([(STAGE, {speed: share * flat.quantity(speed).start}) for share in PARTS_OF_SPEED])
-    ends = [STAGE * (k + 1) for k in range(len(PARTS_OF_SPEED))]
+    duty = stepped([(STAGE, {speed: share * flat.quantity(speed).start}) for share in STAGES])
+    ends = [STAGE * (k + 1) for k in range(len(STAGES))]
     reference = simulate(flat, duty, times=ends, tolerance=1e-12)
     truth = np.stack([reference[q.name] for q in flat.states], axis=1)
     with tempfile.TemporaryDirectory() as folder:
@@ -165,7 +163,7 @@ def _scipy(flat: FlatModel, ends: list[float], speed: str, method: str) -> Run:
 
     def run(tolerance: float) -> np.ndarray:
         x, t, rows = flat.starts("state"), 0.0, []
-        for end, share in zip(ends, PARTS_OF_SPEED, strict=True):
+        for end, share in zip(ends, STAGES, strict=True):
             u = flat.starts("input")
             u[place] *= share
             solved = solve_ivp(
@@ -285,7 +283,7 @@ def _pythonfmu(
     subprocess.run(
         [str(python), "-m", "pythonfmu", "build", "-f", "peer.py"], cwd=folder, check=True, capture_output=True
     )
-    command = [str(python), "play.py", "Peer.fmu", json.dumps(PARTS_OF_SPEED), str(speed), str(n)]
+    command = [str(python), "play.py", "Peer.fmu", json.dumps(STAGES), str(speed), str(n)]
     out = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
     seconds, rows = json.loads(out.stdout.splitlines()[-1])
     return float(seconds), float(np.abs(np.array(rows) - truth).max())

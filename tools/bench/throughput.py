@@ -17,15 +17,17 @@ from ...model.run.simulate import simulate
 from ...scenarios.load import load
 from ..solve.settings import adjusted, flat_of
 from ..solve.sweep import sweep
+from .costs import STAGE, STAGES
 
-#: What varies from row to row: the load by this much of its value, the room by this much [K].
-LOAD, ROOM = (0.2, 1.08), (-15.0, 10.0)
+#: What varies from row to row: the load by this much of its value.
+LOAD = (0.2, 1.08)
+#: The room by this much [K].
+ROOM = (-15.0, 10.0)
 
-#: The warm-up: five stages of 66 min at these parts of the speed.
-STAGES, STAGE = (0.4, 0.6, 0.8, 1.0, 0.2), 3960.0
-
-#: Tolerance of the run that errors are measured against, and how often the rows are looked at for that [s].
-REFERENCE, EVERY = 1e-11, 600.0
+#: Tolerance of the run that errors are measured against.
+REFERENCE = 1e-11
+#: How often the rows are looked at for that [s].
+EVERY = 600.0
 
 
 def measure(

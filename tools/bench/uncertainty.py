@@ -27,8 +27,12 @@ from ..solve.simulate import first_temperatures
 from ..solve.uncertainties import sampled, shares, uncertain
 from .costs import run_in_rhs
 
-#: The warm-up, how often it is looked at, and the communication step of the FMU [s].
-DURATION, EVERY, STEP = 14_400.0, 300.0, 60.0
+#: The warm-up.
+DURATION = 14_400.0
+#: How often it is looked at.
+EVERY = 300.0
+#: The communication step of the FMU [s].
+STEP = 60.0
 #: Rows that are drawn at a time, which bounds the memory.
 BLOCK = 1000
 #: Fewest draws that have a scatter, and a standard error of it.

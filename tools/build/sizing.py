@@ -15,15 +15,22 @@ from ...model.units import si_of
 from ...scenarios.entries import catalogue
 from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, PlanetaryStage, Stage, WormStage
 
-#: Shear stress of shafts [Pa], wanted life of bearings [h].
-SHEAR, LIFE = 25e6, 20_000.0
-#: Least load of a bearing [N], and kinds of stages that stand alone.
-LIGHT, ALONE = 100.0, ("worm", "planetary")
-#: From the middle of a bearing to a gear, and between gears [m].
-SIDE, GAP = 0.020, 0.010
-#: Distance of the bearings of a bevel pinion over how far its mid face overhangs; of those of a worm over its wheel's
-#: diameter.
-OVERHANG, APART = 2.5, 0.9
+#: Shear stress of shafts [Pa].
+SHEAR = 25e6
+#: Wanted life of bearings [h].
+LIFE = 20_000.0
+#: Least load of a bearing [N].
+LIGHT = 100.0
+#: Kinds of stages that stand alone.
+ALONE = ("worm", "planetary")
+#: From the middle of a bearing to a gear [m].
+SIDE = 0.020
+#: Between gears [m].
+GAP = 0.010
+#: Distance of the bearings of a bevel pinion over how far its mid face overhangs [1].
+OVERHANG = 2.5
+#: Distance of the bearings of a worm over its wheel's diameter [1].
+APART = 0.9
 RATINGS = {
     "SKF 6205": 14.8e3,
     "SKF 6206": 20.3e3,

@@ -14,26 +14,40 @@ from ...model.parts.gears import HelicalGearPair, InternalGearPair
 KINDS = {"spur": 0.0, "helical": math.radians(14.0), "bevel": math.radians(35.0), "worm": 0.0, "planetary": 0.0}
 LEAST = {"worm": 7.0, "planetary": 3.0}
 MOST = {"spur": 8.0, "helical": 8.0, "bevel": 4.0, "worm": 60.0, "planetary": 10.0}
-#: Load intensity F_t / (b d_1) (u + 1)/u of case-hardened gears [Pa], face width over the pinion's diameter, and its
-#: least number of teeth.
-K_STAR, WIDTH, TEETH = 2.5e6, 0.8, 19
-#: The same of case-hardened bevel gears [Pa] on their virtual gears, and face width over outer cone distance.
-K_BEVEL, FACE = 2.0e6, 0.3
+#: Load intensity F_t / (b d_1) (u + 1)/u of case-hardened gears [Pa].
+K_STAR = 2.5e6
+#: Face width over the pinion's diameter [1].
+WIDTH = 0.8
+#: Least number of teeth of a pinion.
+TEETH = 19
+#: Load intensity of case-hardened bevel gears on their virtual gears [Pa].
+K_BEVEL = 2.0e6
+#: Face width of bevel gears over the outer cone distance [1].
+FACE = 0.3
 #: Teeth of a bevel pinion: largest ratio -> number.
 BEVEL_TEETH = {1.5: 24, 2.5: 20, 3.5: 16, 4.0: 13}
-#: Torque of a worm wheel over the cube of the centre distance, as makers rate units of bronze and steel [Pa]; starts by
-#: largest ratio; mean diameter of the worm over the centre distance.
-T_WORM, STARTS, SLIM = 5.5e5, {10.0: 4, 28.0: 2, 60.0: 1}, 0.4
-#: Planets, teeth of suns to choose from, least teeth of a planet.
-PLANETS, SUNS, LEAST_PLANET = 3, range(18, 61), 24
+#: Torque of a worm wheel over the cube of the centre distance, as makers rate units of bronze and steel [Pa].
+T_WORM = 5.5e5
+#: Largest ratio -> starts of a worm.
+STARTS = {10.0: 4, 28.0: 2, 60.0: 1}
+#: Mean diameter of a worm over the centre distance [1].
+SLIM = 0.4
+#: Number of planets.
+PLANETS = 3
+#: Numbers of teeth of suns to choose from.
+SUNS = range(18, 61)
+#: Least number of teeth of a planet.
+LEAST_PLANET = 24
 #: Standard modules and centre distances (preferred numbers R 20) [mm].
 MODULES = (0.5, 0.6, 0.8, 1.0, 1.25, 1.5, 2.0, 2.5, 3.0, 4.0, 5.0, 6.0, 8.0, 10.0, 12.0, 16.0, 20.0)
 R_20 = (1, 1.12, 1.25, 1.4, 1.6, 1.8, 2, 2.24, 2.5, 2.8, 3.15, 3.55, 4, 4.5, 5, 5.6, 6.3, 7.1, 8, 9)
 CENTRES = tuple(m * 10**k for k in (1, 2) for m in R_20)
 #: How far below the wanted centre distance a standard one may lie.
 SHORT = 0.93
-#: Efficiency of a stage with its bearings, for the load at the output; pressure angle [rad].
-STAGE, ALPHA = 0.985, math.radians(20.0)
+#: Efficiency of a stage with its bearings, for the load at the output [1].
+STAGE = 0.985
+#: Pressure angle [rad].
+ALPHA = math.radians(20.0)
 
 #: Tangential, radial and axial force [N].
 Forces = tuple[float, float, float]

@@ -10,12 +10,18 @@ from ...scenarios.entries import catalogue
 from .sizing import Unit
 from .stages import PlanetaryStage, Stage, WormStage
 
-#: How deep the smallest wheel dips, in modules; share of what is below the level that is oil; room below the tips [m].
-DIP, FILLED, BELOW = 3.0, 0.8, 0.040
+#: How deep the smallest wheel dips, in modules.
+DIP = 3.0
+#: Share of what is below the level that is oil [1].
+FILLED = 0.8
+#: Room below the tips [m].
+BELOW = 0.040
 #: Share of the housing's volume that is oil where no level follows from wheels.
 SHARE = 0.16
-#: Share of the walls that bath and splash reach, and speed of the oil along them over that of the pitch line.
-REACHED, ALONG = 0.55, 0.5
+#: Share of the walls that bath and splash reach [1].
+REACHED = 0.55
+#: Speed of the oil along the walls over that of the pitch line [1].
+ALONG = 0.5
 
 
 def wheels_dip(made: Unit) -> bool:

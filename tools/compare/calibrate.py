@@ -17,11 +17,11 @@ from ...model.core.flat import FlatModel, Quantity
 from ...model.errors import DataError, GearheatError, ScenarioError, SolveError
 from ...model.units import from_si, shown, to_si
 from ...scenarios.given import RigLike, Settings, scenario_of
+from ...scenarios.measured.study import Measured, measured_of
 from ..show.console import note
 from ..show.display import Display
 from ..solve.settings import adjusted, flat_of
 from . import campaign
-from .measured import Measured, measured_of
 
 #: Relative step of the difference quotients; well above what the FMU's own tolerance leaves.
 STEP = 1e-3

@@ -24,10 +24,10 @@ from ...model.run.point import point
 from ...model.run.result import Outside
 from ...model.run.rows import evaluate, outside
 from ...model.run.schedule import Schedule, stepped
+from ...scenarios.measured.study import Measured
 from ...scenarios.scenario import Scenario
 from ..show.console import note
 from . import playing, readings
-from .measured import Measured
 from .playing import Job
 
 #: How long a rig without measured data is run at its operating point [s].
@@ -40,8 +40,10 @@ START = 293.15
 AUDIT = (SUPPLIED, THROUGHPUT, STORED)
 
 
-#: How long a steady state is held that a test begins with, and one that it comes to from another [s].
-SETTLED, SETTLING = 3600.0, 72 * 3600.0
+#: How long a steady state is held that a test begins with [s].
+SETTLED = 3600.0
+#: How long a steady state is held that a test comes to from another [s].
+SETTLING = 72 * 3600.0
 
 
 @dataclass(frozen=True)

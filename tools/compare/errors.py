@@ -40,8 +40,10 @@ class Channel:
 #: The channel of the losses, beside those of the thermometers.
 LOSS = Channel("loss_Nm", "loss_Nm", "loss torque", "loss", "N.m")
 
-#: Column of the room, and how far apart rooms of repeats may be [K]: further apart, the model would be compared.
-ROOM, NEAR_ROOM = "T_amb_C", 5.0
+#: Column of the room.
+ROOM = "T_amb_C"
+#: Largest difference of the rooms of repeats [K]: beyond it, the model would be compared.
+NEAR_ROOM = 5.0
 #: What readings are grouped by, with the words for it.
 GROUPINGS = {
     "grid": "grid",

@@ -16,9 +16,9 @@ from ...model.units import from_si
 from ...scenarios.csv_table import Column, Table, parse, raise_all
 from ...scenarios.measured.power import efficiency, loss, shaft_powers
 from ...scenarios.measured.sensors import SI
+from ...scenarios.measured.study import Measured
 from ...scenarios.measured.table import Sensor
 from ...scenarios.scenario import Scenario
-from .measured import Measured
 
 #: Columns of a row that a machine with two shafts has, and the outputs of its efficiency that they show.
 LOSSES: Mapping[str, str] = {"loss_Nm": "tau_loss", "P_loss_W": "P_loss", "efficiency": "eta"}

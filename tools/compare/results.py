@@ -9,12 +9,12 @@ from typing import Any
 
 from ...model.errors import DataError
 from ...scenarios.given import RigLike
+from ...scenarios.measured.study import loaded, measured_of
 from ..show.console import note
 from ..show.display import Display
 from . import summary
 from .errors import Comparison
 from .errors import compare as compare_rows
-from .measured import loaded, measured_of
 from .readings import column_of, drives, joined, read_result
 from .rivals import Score, rivals
 

@@ -1,4 +1,4 @@
-"""What rigs are built of: all about a part type, and the schema of rig files that editors read."""
+"""What rigs are built of: all about a part type."""
 
 from __future__ import annotations
 
@@ -17,17 +17,13 @@ from ...model.core.flat import Quantity
 from ...model.errors import ScenarioError, suggestion
 from ...model.parts import PARTS
 from ...model.sources import recording, sources
-from ...model.units import example, from_si, shown, text, to_si
+from ...model.units import from_si, shown, text, to_si
 from ...scenarios.entries import DESCRIPTIVE, Entry, catalogue
 from ...scenarios.load import load
 from ...scenarios.scenario import Scenario
 from ...scenarios.shipped import FILES, list_rigs
-from ...scenarios.tables import RigTable
-from ...scenarios.values import UNCERTAINTIES, settable
+from ...scenarios.values import settable
 from ..show.display import Display
-
-#: Parameters that a catalogue entry of a kind brings.
-ENTRIES: Mapping[str, str] = {kind: f"name of an entry, see `gearheat list`: values of {kind}s" for kind in FILES}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -72,7 +68,7 @@ def parts(kind: str | None = None) -> PartTypes:
         'C'
     """
     if kind is None:
-        types = [{"type": name, "role": cls.role, "doc": _doc(cls)} for name, cls in PARTS.items()]
+        types = [{"type": name, "role": cls.role, "doc": first_line(cls)} for name, cls in PARTS.items()]
         return PartTypes({"schema": "gearheat.parts/1", "types": types})
     if kind not in PARTS:
         raise ScenarioError(f'there is no part type "{kind}".{suggestion(kind, PARTS)} See `gearheat parts`.')
@@ -117,11 +113,11 @@ def _port(name: str, port: Port) -> dict[str, Any]:
 
 
 def _meaning(port: Port) -> str:
-    return port.doc or _doc(type(port))
+    return port.doc or first_line(type(port))
 
 
 def _line(name: str, d: Declaration) -> dict[str, Any]:
-    return {"name": name, "unit": shown(d.unit), "range": _range(d.quantity(name)), "doc": d.doc}
+    return {"name": name, "unit": shown(d.unit), "range": range_of(d.quantity(name)), "doc": d.doc}
 
 
 def _parameter(name: str, d: Parameter) -> dict[str, Any]:
@@ -130,7 +126,7 @@ def _parameter(name: str, d: Parameter) -> dict[str, Any]:
     return {**_line(name, d), "default": default}
 
 
-def _range(q: Quantity) -> str:
+def range_of(q: Quantity) -> str:
     """The values that a quantity may have, in the unit shown."""
     low, high = (f"{from_si(bound, q.unit):.6g}" for bound in (q.low, q.high))
     words = [f"{'above' if q.low_open else 'from'} {low}"] if math.isfinite(q.low) else []
@@ -223,56 +219,6 @@ def _told(value: Any) -> str:
     return "" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
 
 
-def _doc(cls: type) -> str:
+def first_line(cls: type) -> str:
+    """What a class is, in a line."""
     return inspect.cleandoc(cls.__doc__ or "").splitlines()[0]
-
-
-# ------------------------------------------------------------------------------------------------------ schema
-
-
-def schema() -> dict[str, Any]:
-    """JSON schema of a rig file, in which editors check and complete what is typed."""
-    found = RigTable.model_json_schema()
-    found["$defs"] |= {f"part_{kind}": _part_schema(kind) for kind in PARTS}
-    own = [{"$ref": f"#/$defs/part_{kind}"} for kind in PARTS]
-    named = {"type": "object", "not": {"required": ["type"]}, "description": "a part of the machine named by `kind`"}
-    found["properties"]["part"]["additionalProperties"] = {"anyOf": [*own, named]}
-    found["properties"]["template"] = {"type": "object", "description": "values that parts share by use = NAME"}
-    found["properties"]["assembly"] = {"type": "object", "description": "parts and nets that use = NAME stands for"}
-    found["properties"]["sensors"]["additionalProperties"] = {
-        "anyOf": [{"type": "string"}, found["properties"]["sensors"]["additionalProperties"]]
-    }
-    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "gearheat rig file", **found}
-
-
-def _part_schema(kind: str) -> dict[str, Any]:
-    cls = PARTS[kind]
-    properties: dict[str, Any] = {
-        "type": {"const": kind, "description": _doc(cls)},
-        "use": {
-            "type": "string",
-            "description": "template of its values, or assembly in its place",
-        },
-    }
-    for key, d in settable(cls).items():
-        about = ", ".join(filter(None, (d.doc, _range(d.quantity(key)), shown(d.unit) if d.unit != "1" else "")))
-        taken = ["number", "string"] if d.unit == "1" else ["string"]
-        properties[key] = {"type": taken, "description": about, "examples": [example(d.unit)]}
-    for key, c in declared(cls, Choice).items():
-        plain = [o for o in c.options if isinstance(o, str | bool | int | float)]
-        options = {"enum": plain} if plain and len(plain) == len(c.options) and c.also is None else {}
-        properties[key] = {"description": c.doc, **options}
-    words = {"type": "string"}
-    properties |= {
-        entry: {**words, "description": about, "examples": list(catalogue(entry))[:3]}
-        for entry, about in ENTRIES.items()
-    }
-    properties |= {
-        "source": {
-            **words,
-            "description": "where the values are from: a citation, or assumed:, inferred:, calibrated:",
-        },
-        "sources": {"type": "object", "additionalProperties": words, "description": "the same of single values"},
-        UNCERTAINTIES: {"type": "object", "description": "standard uncertainties of values, with their units"},
-    }
-    return {"type": "object", "properties": properties, "required": ["type"], "additionalProperties": False}

@@ -11,6 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
+import gearheat
 from typer.core import TyperGroup
 
 from ...model.errors import GearheatError
@@ -18,7 +19,7 @@ from .blocks import called
 from .markdown import code, fenced, table, words
 from .reference import toctree
 
-#: What Python programs call.
+#: What parts, machines and causes of one's own are made with.
 MODULES = (
     "scenarios.load",
     "model.machines.spec",
@@ -38,8 +39,7 @@ MODULES = (
     "model.units",
     "fmu.export",
     "fmu.play",
-    "diagnose.api",
-    "diagnose.library.cause",
+    "tools.diagnose.library.cause",
 )
 #: Commands whose JSON is shown: quick ones, on a rig that comes with gearheat.
 ASKED = (
@@ -65,7 +65,11 @@ def pages(program: TyperGroup) -> Iterator[tuple[str, str]]:
     """Path below the folder of generated pages, and text, of every page."""
     yield "commands.md", _commands(program)
     yield "json.md", _json(program)
-    yield "api/index.md", f"# Python\n\nWhat programs call; every module has docstrings.\n\n{toctree(list(MODULES))}"
+    about = (
+        "`import gearheat` has all that the commands do; the modules below it are for parts and machines of one's own."
+    )
+    yield "api/index.md", f"# Python\n\n{about}\n\n{toctree(['gearheat', *MODULES])}"
+    yield "api/gearheat.md", _public()
     for module in MODULES:
         yield f"api/{module}.md", _module(module)
 
@@ -128,6 +132,19 @@ def _keys(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
     else:
         kinds = {"str": "text", "NoneType": "null", "bool": "true or false", "int": "number", "float": "number"}
         yield path, kinds.get(type(value).__name__, f"empty {type(value).__name__}")
+
+
+def _public() -> str:
+    """All public names, functions first."""
+    names = [name for name, module in gearheat.PUBLIC.items() if module not in MODULES]
+    classes = {name: isinstance(getattr(gearheat, name), type) for name in names}
+    blocks = []
+    for name in sorted(classes, key=lambda name: (classes[name], name)):
+        kind = "class" if classes[name] else "function"
+        member = f"gearheat.{gearheat.PUBLIC[name]}.{gearheat.RENAMED.get(name, name)}"
+        options = "\n   :members:" if classes[name] else ""
+        blocks.append(f"## {name}\n\n" + fenced("{eval-rst}", f".. auto{kind}:: {member}{options}"))
+    return "# gearheat\n\n" + "\n".join(blocks)
 
 
 def _module(name: str) -> str:

@@ -26,8 +26,10 @@ from ...scenarios.entries import catalogue
 from ...scenarios.scenario import Scenario
 from ...scenarios.values import oil_values
 
-#: Communication step and rows of the reference result of a model driven by speed, and of one driven by torques [s].
-STEP, SHORT_STEP = 60.0, 0.5
+#: Communication step of the reference result of a model driven by speed [s].
+STEP = 60.0
+#: The same of a model driven by torques [s].
+SHORT_STEP = 0.5
 
 #: What is below this is round-off, which differs between machines.
 _ROUND_OFF = 5e-13

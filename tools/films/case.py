@@ -37,8 +37,10 @@ NEEDED = {"R_x": "m", "length": "m", "E_eff": "Pa"}
 MAY_BE = {"F": "N", "u_m": "m/s", "R_y": "m", "edge_radius": "m", "slide_roll": "1", "sigma": "m", "mu_boundary": "1"}
 OIL = {"eta_0": "Pa.s", "alpha_p": "1/Pa"}
 OIL_MAY_BE = {"T": "K", "p_r": "Pa", "tau_eyring": "Pa"}
-#: Ranges of the map of a part over the value at the operating point, and its temperatures [K].
-ABOUT, WARM = {"F": (0.05, 2.0), "u_m": (0.25, 2.0)}, (313.15, 373.15)
+#: Ranges of load and speed of the map of a part, over the value at the operating point [1].
+ABOUT = {"F": (0.05, 2.0), "u_m": (0.25, 2.0)}
+#: Temperatures of the map of a part [K].
+WARM = (313.15, 373.15)
 
 #: Load [N] and mean speed [m/s] at the operating point below which there is none but what blurs its sign.
 LEAST = (1.0, 1e-3)

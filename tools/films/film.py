@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import hashlib
 import io
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
 from pathlib import Path
@@ -20,7 +20,7 @@ from ...model.laws.film_point import point_film_central
 from ...model.units import from_si, shown
 from ...scenarios.film_map import COLUMNS, FAILED, OK, FittedMap, read_film_map
 from ...scenarios.load import load
-from ..show.console import note, writable, write
+from ..show.console import counting, note, writable, write
 from ..show.display import Display
 from ..solve.settings import adjusted
 from ..solve.sweep_file import Store, work_file
@@ -222,8 +222,10 @@ def solved(case: MapCase, points: np.ndarray, nodes: int, out: Path) -> np.ndarr
         left = [i for i in range(len(points)) if i not in store.places]
         if len(left) < len(points):
             note(f"{len(points) - len(left)} of {len(points)} contacts were solved before: {store.path}")
-        for i in _watched(left, len(points)):
-            store.put(i, np.array([_solution(contacts[i], nodes)]))
+        with counting("contacts", len(points), len(points) - len(left)) as advance:
+            for i in left:
+                store.put(i, np.array([_solution(contacts[i], nodes)]))
+                advance(1)
         found = np.concatenate([store.get(i) for i in range(len(points))])
         store.remove()
     return found
@@ -251,20 +253,6 @@ def _error(contact: Contact, nodes: int, h_c: float) -> float:
         return abs(h_c - solve(contact, n=(nodes + 1) // 2).h_c) / (3 * h_c)
     except SolveError:
         return 1.0
-
-
-def _watched(left: Sequence[int], total: int) -> Iterator[int]:
-    """The numbers of the points that are left, with progress on a terminal."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    screen = Console(stderr=True)
-    parts = (TextColumn("contacts"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*parts, console=screen, disable=not screen.is_terminal) as progress:
-        task = progress.add_task("contacts", total=total, completed=total - len(left))
-        for i in left:
-            yield i
-            progress.advance(task)
 
 
 def table_of(case: MapCase, points: np.ndarray, kept: np.ndarray) -> str:

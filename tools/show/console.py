@@ -14,6 +14,7 @@ import shutil
 import sys
 import tempfile
 import textwrap
+import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
@@ -36,6 +37,8 @@ NO_WAY = (errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOOP, errno.ENOT
 PICTURES = (".html", ".svg", ".png")
 #: Width that a column of words gets at least.
 LEAST = 14
+#: s, between two lines of progress where stderr is no terminal: a log stays short, and a long run is seen to live.
+EVERY = 30.0
 
 
 def guarded(command: Callable[P, None]) -> Callable[P, None]:
@@ -83,15 +86,44 @@ def note(text: str) -> None:
 
 @contextmanager
 def progress_bar() -> Iterator[Progress]:
-    """A bar on stderr while work goes on; nothing where stderr is no terminal."""
+    """Progress on stderr while work goes on: a bar on a terminal, elsewhere a line at most every `EVERY` seconds."""
     from rich.console import Console
-    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+    from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
     console = Console(stderr=True)
-    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn())
+    columns = (TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), TimeRemainingColumn())
     with Progress(*columns, console=console, transient=True, disable=not console.is_terminal) as bar:
         task = bar.add_task("", total=1.0)
-        yield lambda stage, share: bar.update(task, description=stage, completed=share)
+        told = time.monotonic()
+
+        def tell(stage: str, share: float) -> None:
+            nonlocal told
+            bar.update(task, description=stage, completed=share)
+            if bar.disable and time.monotonic() - told >= EVERY:
+                told = time.monotonic()
+                note(f"{stage} ({share:.0%})")
+
+        yield tell
+
+
+@contextmanager
+def counting(things: str, total: int, done: int = 0) -> Iterator[Callable[[int], None]]:
+    """Progress of work on many things alike; what it gives is called with the number of things finished since.
+
+    Args:
+        things: what they are, for example "rows"
+        total: how many there are
+        done: how many were finished before
+    """
+    with progress_bar() as tell:
+
+        def advance(more: int) -> None:
+            nonlocal done
+            done += more
+            tell(f"{done} of {total} {things}", done / max(total, 1))
+
+        advance(0)
+        yield advance
 
 
 def use_one_thread() -> None:

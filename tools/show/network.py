@@ -11,8 +11,14 @@ from ...model.core.connect import Assembly, nets
 from ...model.core.declare import Port
 from ...model.parts.ports import Flange, HeatPort, OilPort
 
-#: Width of a column and of a box in it, height of a line of text, space between boxes and at the edge.
-_COLUMN, _BOX, _LINE, _GAP = 152.0, 128.0, 15.0, 16.0
+#: Width of a column [px].
+_COLUMN = 152.0
+#: Width of a box in it [px].
+_BOX = 128.0
+#: Height of a line of text [px].
+_LINE = 15.0
+#: Space between boxes and at the edge [px].
+_GAP = 16.0
 
 #: Fill and stroke of the nets of a kind of port, in the order in which they are drawn.
 _COLOURS = {Flange: ("#eaf1f8", "#2f6597"), OilPort: ("#f6f3e0", "#857400"), HeatPort: ("#fdf0e7", "#c65a1e")}

@@ -15,8 +15,16 @@ from .drawing import COLOURS, empty
 from .heat_paths import Path
 from .plotting import Picture
 
-#: Inches of a column, a bar, a line of text, the space between places, and the height of the most heat.
-COLUMN, BAR, LINE, GAP, TALL = 1.75, 0.12, 0.18, 0.12, 3.2
+#: Width of a column [inch].
+COLUMN = 1.75
+#: Width of a bar [inch].
+BAR = 0.12
+#: Height of a line of text [inch].
+LINE = 0.18
+#: Space between places [inch].
+GAP = 0.12
+#: Height of the largest heat flow [inch].
+TALL = 3.2
 #: Colours of the bands: words stand on them, so no black.
 BANDS = COLOURS[:-1]
 

@@ -8,10 +8,14 @@ from typing import Any
 
 from .console import cell, is_number, say, screen_width, table
 
-#: Width that a column of sentences needs beside others, and how far it stands in under its row.
-READABLE, INDENT = 30, 4
-#: Between columns, and before the first.
-GAP, MARGIN = 3, 2
+#: Width that a column of sentences needs beside others [characters].
+READABLE = 30
+#: Indent of sentences under their row [characters].
+INDENT = 4
+#: Between columns [characters].
+GAP = 3
+#: Before the first column [characters].
+MARGIN = 2
 
 
 def stacked(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]], below: int) -> None:

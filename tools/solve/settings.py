@@ -16,11 +16,9 @@ from ...model.machines.spec import Spec, assemble
 from ...scenarios.film_map import map_named, names_map
 from ...scenarios.given import Settings, assignments_of
 from ...scenarios.scenario import Scenario, deduced, parse_assignments
+from ...scenarios.write import SET
 
 Drive = Mapping[str, tuple[str, ...]]
-
-#: Source of the values that the user sets; they hold for every test, whatever oil it ran with.
-SET = "set on the command line"
 
 
 def adjusted(

@@ -17,7 +17,7 @@ from ...fmu.batch import Status
 from ...model.errors import DataError, SolveError
 from ...model.units import from_si, shown
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, written
-from ..show.console import note
+from ..show.console import counting, note
 from ..show.display import Display, optional
 from . import sampling
 from .simulate import Duty, duty_file
@@ -196,8 +196,8 @@ def run_sweep(request: Request, folder: Path) -> Sweep:
     out, blocks = request.out, plan.blocks
     with Store(work_file(out or folder / "rows.csv"), plan.key, len(plan.job.outputs) + len(TELLING)) as store:
         left = [k for k in range(len(blocks)) if k not in store.places]
+        done = len(plan.values) - sum(blocks[k].stop - blocks[k].start for k in left)
         if len(left) < len(blocks):
-            done = len(plan.values) - sum(blocks[k].stop - blocks[k].start for k in left)
             note(f"{done} of {len(plan.values)} rows were finished before: {store.path}")
         todo: Iterable[Block] = ((k, plan.values[blocks[k]]) for k in left)
         if request.scheduler is not None:
@@ -206,8 +206,10 @@ def run_sweep(request: Request, folder: Path) -> Sweep:
             solved = local(plan.job, todo, request.jobs)
         began = time.perf_counter()
         try:
-            for k, found in _watched(solved, [blocks[k] for k in left], blocks):
-                store.put(k, found)
+            with counting("rows", len(plan.values), done) as advance:
+                for k, found in solved:
+                    store.put(k, found)
+                    advance(blocks[k].stop - blocks[k].start)
         except KeyboardInterrupt:
             note(f"The finished rows are kept in {store.path}: the same command goes on from there.")
             raise
@@ -222,22 +224,6 @@ def run_sweep(request: Request, folder: Path) -> Sweep:
         rows = np.concatenate([store.get(k) for k in range(len(blocks))]) if keep else None
         store.remove()
     return Sweep(plan, summary, seconds, rows, out)
-
-
-def _watched(solved: Iterator[Block], left: Sequence[slice], blocks: Sequence[slice]) -> Iterator[Block]:
-    """The blocks as they come, with progress on a terminal."""
-    from rich.console import Console
-    from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
-
-    screen = Console(stderr=True)
-    total = sum(b.stop - b.start for b in blocks)
-    done = total - sum(b.stop - b.start for b in left)
-    parts = (TextColumn("rows"), BarColumn(), MofNCompleteColumn(), TimeRemainingColumn())
-    with Progress(*parts, console=screen, disable=not screen.is_terminal) as progress:
-        task = progress.add_task("rows", total=total, completed=done)
-        for k, found in solved:
-            yield k, found
-            progress.advance(task, blocks[k].stop - blocks[k].start)
 
 
 class Summary:

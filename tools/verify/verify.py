@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import re
-import sys
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import cached_property
 from importlib import import_module
@@ -21,7 +19,7 @@ from ...scenarios.published import Row, read_published
 from ...scenarios.scenario import Scenario
 from ...scenarios.shipped import list_rigs
 from ..describe.description import errata_of
-from ..show.console import write
+from ..show.console import counting, write
 from ..show.display import Display
 from ..show.pages import page
 from .model_values import RigValues, single
@@ -105,7 +103,7 @@ def verify(rig: RigLike | None = None) -> Verification:
     rigs = [RigValues(scenario_of(name)) for name in ([rig] if rig is not None else list_rigs())]
     rows = _each(published_of, [values.scenario for values in rigs])
     laws = [row for row in golden_rows() if rig is None or law_of(row) in rigs[0].laws]
-    with _progress(sum(map(len, rows)) + len(laws)) as advance:
+    with counting("values", sum(map(len, rows)) + len(laws)) as advance:
         machines = _each(lambda pair: _machine(pair[0], pair[1], advance), list(zip(rigs, rows, strict=True)))
         return Verification(machines, verified(laws, None, advance))
 
@@ -168,19 +166,21 @@ def _cited(places: Iterable[str]) -> dict[str, str]:
     return {key: s.cited for key, s in sources().items() if key in words}
 
 
-def _machine(values: RigValues, rows: Sequence[Row], advance: Any) -> Machine:
+def _machine(values: RigValues, rows: Sequence[Row], advance: Callable[[int], None]) -> Machine:
     scenario = values.scenario
     verdicts = verified(rows, values, advance)
     return Machine(scenario.name, scenario.doc, scenario.reproduces, verdicts, tuple(errata_of(scenario)))
 
 
-def verified(rows: Sequence[Row], rig: RigValues | None, advance: Any = lambda: None) -> tuple[Verdict, ...]:
+def verified(
+    rows: Sequence[Row], rig: RigValues | None, advance: Callable[[int], None] = lambda _: None
+) -> tuple[Verdict, ...]:
     """The verdict on each row.
 
     Args:
         rows: published numbers
         rig: what the model of their rig gives; None for rows of laws alone
-        advance: called after each row
+        advance: called with 1 after each row
 
     Raises:
         ScenarioError: all rows that name what does not exist, or do not fit together, at once
@@ -197,7 +197,7 @@ def verified(rows: Sequence[Row], rig: RigValues | None, advance: Any = lambda: 
             found.append((row, verdict))
         except GearheatError as error:
             problems += [p if p.startswith(row.name) else f"{row.name}: {p}" for p in error.problems]
-        advance()
+        advance(1)
     if problems:
         where = f"{rig.scenario.name}: " if rig else ""
         raise ScenarioError([f"{where}{problem}" for problem in problems])
@@ -254,17 +254,3 @@ def _function(name: str) -> Any:
         return getattr(import_module(f"gearheat.model.laws.{module}"), law)
     except (ImportError, AttributeError):
         raise ScenarioError(f'there is no law "{name}". Write "module.function" of gearheat.model.laws.') from None
-
-
-def _progress(total: int) -> Any:
-    """Rows done, on a terminal; nothing elsewhere."""
-    from rich.console import Console
-    from rich.progress import Progress
-
-    @contextmanager
-    def shown() -> Iterator[Callable[[], None]]:
-        with Progress(console=Console(stderr=True), transient=True, disable=not sys.stderr.isatty()) as bar:
-            task = bar.add_task("verify", total=total)
-            yield lambda: bar.advance(task)
-
-    return shown()

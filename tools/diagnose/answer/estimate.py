@@ -21,10 +21,14 @@ from ..model.observe import Observed
 from .decide import Member
 
 Bound = Literal["", "low", "high"]
-#: Half width of a 95 % interval in standard deviations, and the power of the detectable size.
-WIDE, POWER = 1.96, 0.8
-#: How near to a bound a value sits on it, as a share of its range; hypotheses that share an estimate, as a share.
-NEAR, COUNTS = 0.02, 0.01
+#: Half width of a 95 % interval in standard deviations.
+WIDE = 1.96
+#: The power of the detectable size.
+POWER = 0.8
+#: How near to a bound a value sits on it, as a share of its range.
+NEAR = 0.02
+#: Hypotheses that share an estimate, as a share.
+COUNTS = 0.01
 #: Standard deviations of a spread that are weighed, in half widths of the prior.
 SPREADS = np.geomspace(0.1, 8.0, 25)
 

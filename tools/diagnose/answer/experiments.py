@@ -9,16 +9,32 @@ import numpy as np
 
 from ....scenarios.measured.table import Campaign, Sensor
 
-#: A cold room [K], and how much colder than in the campaign it is at least.
-COLD, COLDER = 278.15, 15.0
-#: Speeds and loads outside of the campaign's, as shares of its least or largest, and loads of each.
-SLOWER, FASTER, LIGHTER = 0.4, 1.6, 0.2
-FAST_LOADS, SLOW_LOADS = (0.25, 0.45, 0.6, 0.75), (0.6, 0.75, 0.9, 1.0)
-#: Samples of a logged dwell, and its length where the campaign holds steady states [s].
-SAMPLES, DWELL = 8, 4 * 3600.0
-#: Temperatures of a bath [K], scatter in it, accuracy of a reference thermometer [K], of a tare (share of the sensor's
-#: own scatter), of a stroboscope (share of the speed).
-BATH, BESIDE, THERMOMETER, TARE, STROBOSCOPE = (293.15, 333.15), 0.05, 0.1, 0.3, 5e-4
+#: A cold room [K].
+COLD = 278.15
+#: How much colder than in the campaign it is at least.
+COLDER = 15.0
+#: Speeds and loads outside of the campaign's.
+SLOWER = 0.4
+#: As shares of its least or largest.
+FASTER = 1.6
+#: Loads of each.
+LIGHTER = 0.2
+FAST_LOADS = (0.25, 0.45, 0.6, 0.75)
+SLOW_LOADS = (0.6, 0.75, 0.9, 1.0)
+#: Samples of a logged dwell.
+SAMPLES = 8
+#: Its length where the campaign holds steady states [s].
+DWELL = 4 * 3600.0
+#: Temperatures of a bath [K].
+BATH = (293.15, 333.15)
+#: Scatter in it.
+BESIDE = 0.05
+#: Accuracy of a reference thermometer [K].
+THERMOMETER = 0.1
+#: Of a tare (share of the sensor's own scatter).
+TARE = 0.3
+#: Of a stroboscope (share of the speed).
+STROBOSCOPE = 5e-4
 
 
 @dataclass(frozen=True)

@@ -10,8 +10,12 @@ from ....scenarios.measured.table import Campaign
 
 #: Levels further apart than this share of their range are different ones.
 GAP = 0.06
-#: Rows of a small campaign, of which tests are left out only; folds of its one scheme, and of each scheme of others.
-SMALL, FEW, MOST = 48, 4, 3
+#: Rows of a small campaign, of which tests are left out only.
+SMALL = 48
+#: Folds of its one scheme.
+FEW = 4
+#: Of each scheme of others.
+MOST = 3
 #: Fewer rows than these cannot be kept.
 LEAST = 6
 

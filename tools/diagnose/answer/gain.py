@@ -26,8 +26,14 @@ from ..model.formula import Formula
 from .folds import schemes
 from .rivals import RIVALS
 
-#: Causes that are looked at again in a fold, forms of each, and causes that are fitted; draws of the bootstrap.
-LEADING, FORMS, FITTED, DRAWS = 6, 2, 2, 2000
+#: Causes that are looked at again in a fold.
+LEADING = 6
+#: Forms of each.
+FORMS = 2
+#: Causes that are fitted.
+FITTED = 2
+#: Draws of the bootstrap.
+DRAWS = 2000
 #: Steps of a fit in each of its rounds: it begins near its end.
 STEPS = 4
 

@@ -13,8 +13,12 @@ from ....scenarios.measured.sensors import driven_by, sensors_of
 from ....scenarios.measured.table import Campaign, Sensor
 from ....scenarios.scenario import Scenario
 
-#: Speeds and loads of the grid, as shares of those at the operating point, and a change of the room along it [K].
-SPEEDS, LOADS, ROOM = (0.4, 0.6, 0.8, 1.0), (0.55, 0.7, 0.85, 1.0), 4.0
+#: Speeds and loads of the grid.
+SPEEDS = (0.4, 0.6, 0.8, 1.0)
+#: As shares of those at the operating point.
+LOADS = (0.55, 0.7, 0.85, 1.0)
+#: A change of the room along it [K].
+ROOM = 4.0
 #: Dwells where power flows both ways and no card says it [min].
 DWELLS = (240.0, 90.0)
 

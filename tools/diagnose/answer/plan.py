@@ -10,8 +10,10 @@ from .design import Design, Pair, gain
 from .experiments import Experiment
 from .sets import APART
 
-#: Experiments that are done together, at most; what another one has to add to the smallest distance or to all.
-TOGETHER, WORTH = 3, 0.1
+#: Experiments that are done together, at most.
+TOGETHER = 3
+#: What another one has to add to the smallest distance or to all.
+WORTH = 0.1
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,10 @@ from .evidence import White
 from .fit import Fit, prior_precision
 from .problem import Problem
 
-#: Draws of a hypothesis, and how much wider than the fit says they are taken.
-DRAWS, WIDER = 32, 1.3
+#: Draws of a hypothesis.
+DRAWS = 32
+#: How much wider than the fit says they are taken.
+WIDER = 1.3
 #: Draws are taken about where the fit would end by its slopes, unless it is less likely there by so much than where it
 #: stands: a fit that stands at a bend goes nowhere by them.
 MUCH = 1.0

@@ -15,15 +15,28 @@ from ....model.errors import SolveError
 from .evidence import WIDTHS, White, log_bayes_factor
 from .problem import Acting, Look, Noise, Problem
 
-#: Steps at most, tries of each with more damping, gain in log likelihood that the last step brings or a further one
-#: promises, and the share of what was promised that a step must bring if the next one is to be damped less.
-STEPS, TRIES, LITTLE, TRUSTED = 12, 5, 0.05, 0.7
-#: Rounds of point and scatter in turn at most, and change of a scale's logarithm below which the last is done.
-ROUNDS, SETTLED = 4, 0.1
+#: Steps at most.
+STEPS = 12
+#: Tries of each with more damping.
+TRIES = 5
+#: Gain in log likelihood that the last step brings or a further one promises.
+LITTLE = 0.05
+#: The share of what was promised that a step must bring if the next one is to be damped less.
+TRUSTED = 0.7
+#: Rounds of point and scatter in turn at most.
+ROUNDS = 4
+#: Change of a scale's logarithm below which the last is done.
+SETTLED = 0.1
 #: A fit whose slopes promise more than this has stalled at a bend or a bound, and what they promise does not come.
 STALLED = 0.5
-#: Longest step of a nuisance, a size (or that share of it) and a shape; shapes stay inside so many deviations.
-LONGEST, LONGEST_SIZE, LONGEST_SHAPE, FAR = 1.5, 1.0, 0.8, 2.4
+#: Longest step of a nuisance.
+LONGEST = 1.5
+#: A size (or that share of it).
+LONGEST_SIZE = 1.0
+#: A shape.
+LONGEST_SHAPE = 0.8
+#: Shapes stay inside so many deviations.
+FAR = 2.4
 #: A scale whose logarithm is beyond this has grown.
 GROWN = 0.2
 #: Share of the variance of what a form leaves that all channels have together; each has the rest for itself.

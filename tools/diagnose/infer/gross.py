@@ -12,17 +12,22 @@ import numpy as np
 from .fit import Fit, fitted
 from .problem import Aside, Problem
 
-#: Standard deviations from what the others say beyond which a reading is gross, and so many times those which nine of
-#: ten readings keep within.
-GROSS, OUT = 5.0, 2.5
-#: Half of a normal scatter lies within so many standard deviations; no scatter is taken for less than that share.
-HALF, LEAST = 0.6745, 0.2
+#: Standard deviations from what the others say beyond which a reading is gross.
+GROSS = 5.0
+#: So many times those which nine of ten readings keep within.
+OUT = 2.5
+#: Half of a normal scatter lies within so many standard deviations.
+HALF = 0.6745
+#: No scatter is taken for less than that share.
+LEAST = 0.2
 #: A given reading is suspected before a compared one only where it stands out by so much more.
 GIVEN = 0.9
 #: A reading that a hypothesis brings within this is none.
 FINE = 4.0
-#: Readings set aside at most: as a share of all, and of one sensor of a campaign. More of one sensor have a cause.
-MOST, ALIKE = 0.05, 2
+#: Readings set aside at most: as a share of all.
+MOST = 0.05
+#: Of one sensor of a campaign. More of one sensor have a cause.
+ALIKE = 2
 #: Of so many that are set aside, those that lie nearest to a hypothesis, all sets are weighed.
 TOGETHER = 6
 

@@ -12,9 +12,12 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-#: Standard deviations of seasons and windows that are expected before any data, as shares of that of machines, and how
-#: many deviations this expectation counts for.
-SEASON, WINDOW, COUNTS = 0.25, 0.25, 2.0
+#: Standard deviations of seasons and windows that are expected before any data.
+SEASON = 0.25
+#: As shares of that of machines.
+WINDOW = 0.25
+#: How many deviations this expectation counts for.
+COUNTS = 2.0
 #: Rounds of the estimate of the variances.
 ROUNDS = 40
 

@@ -19,19 +19,28 @@ from ..model.plant import Plant
 from ..model.windows import Windows, windows
 from .levels import Effect, Levels, Quadratics, Target, estimate, first_levels
 
-#: Passes over the healthy logs, and over those in question; each begins where the last one ended.
-PASSES, TARGET_PASSES = 4, 4
-#: State noise [K] of one sample of bodies that no sensor reads, and of states that are no body's.
-QUIET, SWITCH = 0.05, 0.8
-#: Dates from which on something may have moved: at most so many, and windows on either side at least.
-DATES, SIDE = 6, 3
-#: Prior probabilities of no cause, as most years of most machines have none, and of two.
-NOTHING, TWO = 0.8, 0.03
+#: Passes over the healthy logs, and over those in question.
+PASSES = 4
+#: Each begins where the last one ended.
+TARGET_PASSES = 4
+#: State noise [K] of one sample of bodies that no sensor reads.
+QUIET = 0.05
+#: Of states that are no body's.
+SWITCH = 0.8
+#: Dates from which on something may have moved: at most so many.
+DATES = 6
+#: Windows on either side at least.
+SIDE = 3
+#: Prior probabilities of no cause, as most years of most machines have none.
+NOTHING = 0.8
+#: Of two.
+TWO = 0.03
 #: Causes that are tried together with others.
 LEADING = 4
-#: Correlations of errors are summed over so many samples at most, and down to so much; what lasts longer is a matter
-#: of windows and years.
-MEMORY, CORRELATED = 36, 0.05
+#: Correlations of errors are summed over so many samples at most, and down to so much.
+MEMORY = 36
+#: What lasts longer is a matter of windows and years.
+CORRELATED = 0.05
 #: Length of a year in time that is no calendar's [s].
 YEAR = 365.25 * 86400.0
 

@@ -8,8 +8,12 @@ import numpy as np
 
 from ..library.cause import Cause
 
-#: Prior odds of two causes against one, of each further one, and of one more of the same kind of instrument.
-TWO, MORE, SAME = 0.22, 0.25, 0.2
+#: Prior odds of two causes against one.
+TWO = 0.22
+#: Of each further one.
+MORE = 0.25
+#: Of one more of the same kind of instrument.
+SAME = 0.2
 #: Prior odds of a remainder beside a hypothesis.
 OUTSIDE = 0.06
 

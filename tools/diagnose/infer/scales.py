@@ -17,8 +17,14 @@ from .evidence import White
 BOUNDS = (-1.5, 2.5)
 #: Loose terms with fewer columns than this share of the entries are weighed by their columns.
 FEW = 0.8
-#: Steps at most, times one is halved, what the last one promises of log density, and the longest step.
-STEPS, HALVED, LITTLE, LONGEST = 25, 6, 1e-4, 1.0
+#: Steps at most.
+STEPS = 25
+#: Times one is halved.
+HALVED = 6
+#: What the last one promises of log density.
+LITTLE = 1e-4
+#: The longest step.
+LONGEST = 1.0
 
 
 class _Cost(Protocol):

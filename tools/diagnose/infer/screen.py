@@ -16,9 +16,14 @@ from .evidence import log_bayes_factors
 from .fit import Fit, Start, View, bounds, fitted, weighed
 from .problem import Acting, Problem
 
-#: Samples of a form: one in the middle of its shapes, and so many more for the first shape and for each further one; of
-#: one with a threshold, of which each place may have a best fit of its own, so many places: of physics, of instruments.
-FIRST, FURTHER, MOST, THRESHOLDS = 3, 1, 6, (6, 8)
+#: Start points of a form for its first shape, beside the one in the middle.
+FIRST = 3
+#: Start points for each further shape.
+FURTHER = 1
+#: Start points of a form at most.
+MOST = 6
+#: Start points along a threshold, whose fits may each have an optimum of their own: of physics, of instruments.
+THRESHOLDS = (6, 8)
 #: Places of a shape that mostly stands at its bound: there, between, and at the other bound.
 MOSTLY = (0.0, 0.6, 0.8, 1.2)
 #: Sizes up to which causes that shorten dwells are judged: readings that end a dwell hardly follow its last minutes.

@@ -22,16 +22,32 @@ from .gross import cleaned, set_aside
 from .prior import OUTSIDE, Prior
 from .problem import Acting, Problem
 
-#: Causes fitted: within so many nats of the best or a share of it, as a first look is off by a share of what it finds;
-#: at most, and at least, so many.
-WITHIN, SHARE, CAUSES, LEAST = 12.0, 0.7, 20, 4
-#: Further forms of those that fit well: at most so many, forms of one cause; how much more than it looks one may be.
-FURTHER, EACH, MORE = 8, 4, 4.0
+#: Causes fitted: within so many nats of the best or a share of it.
+WITHIN = 12.0
+#: As a first look is off by a share of what it finds; at most.
+SHARE = 0.7
+#: At least.
+CAUSES = 20
+#: So many.
+LEAST = 4
+#: Further forms of those that fit well: at most so many.
+FURTHER = 8
+#: Forms of one cause.
+EACH = 4
+#: How much more than it looks one may be.
+MORE = 4.0
 #: Forms of one side of a quantity that are fitted where the leader acts there.
 SAME = 6
-#: Pairs that look best, those fitted of them and of such as are grown from some singles, those fitted because they are
-#: like the best one, and how far behind the best hypothesis a pair may promise to be.
-COUPLES, PAIRS, GROWN, LIKE, BEHIND = 40, 5, 3, 4, 5.0
+#: Pairs that look best.
+COUPLES = 40
+#: Those fitted of them.
+PAIRS = 5
+#: Of such as are grown from some singles.
+GROWN = 3
+#: Those fitted because they are like the best one.
+LIKE = 4
+#: How far behind the best hypothesis a pair may promise to be.
+BEHIND = 5.0
 #: p of any cause above which little is fitted.
 QUIET = 0.3
 #: Hypotheses within so many nats of the best are weighed by draws of the exact model.

@@ -17,8 +17,10 @@ from .forms import SIDE, Context, Regime, shared
 
 AIR = "moving air: a better coefficient and faster air are one answer"
 DAYS = "day to day: humidity and other scatter of the days are one answer unless humidity is measured"
-#: Change of relative humidity at which the size of its effect is stated [1], and a reference.
-HUMIDITY_SPAN, HUMIDITY = 0.15, 0.5
+#: Change of relative humidity at which the size of its effect is stated [1].
+HUMIDITY_SPAN = 0.15
+#: A reference.
+HUMIDITY = 0.5
 
 
 def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:

@@ -15,8 +15,10 @@ from .forms import BESIDE, MOST_PLACES, ONE_PLACE, SIDE, Context, Regime
 Made = tuple[PartSpec, tuple[tuple[str, ...], ...]]
 #: Size, shapes and row -> parameters of an extra part.
 Keys = Callable[[Theta, Row], Mapping[str, Num]]
-#: So far below everything that its side does not matter, and a film above every other.
-NEVER, THICK = -1e9, 1e9
+#: So far below everything that its side does not matter.
+NEVER = -1e9
+#: A film above every other.
+THICK = 1e9
 #: References of speed and torque are not below this [rad/s, N.m].
 LEAST = 1e-3
 #: Parameters of an extra part that shapes of a form may hold.

@@ -18,8 +18,10 @@ Changes = Callable[[Theta, Row], Values]
 
 #: Share of a cause's prior of the forms that act in one of several parts only.
 ONE_PLACE = 0.5
-#: The same beside regimes, and of each side of a regime: as likely for every cause.
-BESIDE, SIDE = 0.25, 0.05
+#: The same beside regimes.
+BESIDE = 0.25
+#: Of each side of a regime: as likely for every cause.
+SIDE = 0.05
 #: How gradually a form usually sets in at a threshold, over the range of its quantity.
 USUAL = 0.04
 #: Share of the middle speed below which what follows the speed no longer does.

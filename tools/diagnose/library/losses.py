@@ -21,7 +21,12 @@ from .forms import INNER_SHARE, Changes, Context, Regime, oil_share, shared
 
 NO_LOAD = "no-load oil loss: churning, windage and oil level differ only in how the oil is reached"
 SHAFTS = "friction of shafts: preload and seal drag are the same torque to every steady instrument"
-TEETH, LIPS, MIST = oil_share(0.8, 0.15), oil_share(0.6, 0.25), oil_share(0.4, 0.25)
+#: Share of the heat of teeth that goes into the oil: mean and spread.
+TEETH = oil_share(0.8, 0.15)
+#: The same of seal lips.
+LIPS = oil_share(0.6, 0.25)
+#: The same of oil mist.
+MIST = oil_share(0.4, 0.25)
 WET = Shape(
     "wet", "1", "relative change of the oil's conductance to the housing, over that of all losses", 0.0, 1.5, 0.3, 0.4
 )

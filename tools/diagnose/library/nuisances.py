@@ -12,9 +12,10 @@ from .cause import Nuisance
 from .extras import Extras
 from .forms import Context
 
-#: Friction in thin films that is the machine's own: share of the typical loss, and its exponents of speed, viscosity
-#: and load, in the middle of what starved teeth do.
-THIN_FILMS, EXPONENTS = 0.057, {"a": -0.35, "b": -1.2, "c": 1.2, "oil_share": 0.8}
+#: Friction in thin films that is the machine's own: share of the typical loss.
+THIN_FILMS = 0.057
+#: Its exponents of speed, viscosity and load, in the middle of what starved teeth do.
+EXPONENTS = {"a": -0.35, "b": -1.2, "c": 1.2, "oil_share": 0.8}
 
 #: Relative standard deviations where neither card nor rig file says more, by the key of a card.
 DEFAULT_SD: Mapping[str, float] = {

@@ -13,8 +13,10 @@ from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 from .cooling import DAYS, factors
 from .forms import COURSES
 
-#: What early readings are a share of where they are early by a time [s], and rounding of a pace near zero.
-EARLY, ROUND = 7200.0, 0.1
+#: What early readings are a share of where they are early by a time [s].
+EARLY = 7200.0
+#: Rounding of a pace near zero.
+ROUND = 0.1
 #: Share of the form in which each test is early by a share of its own.
 AT_RANDOM = 0.15
 #: How much of the size each half has, by the form's name, and the forms' weights.

@@ -9,8 +9,10 @@ from .observe import Observed
 
 #: Variance of a smoothed course over that of independent samples, which those of a probe are not quite.
 ALLOWED = 1.5
-#: What the model leaves of a course [K], and over how long a share of the dwell.
-LEFT, LENGTH = 0.25, 0.3
+#: What the model leaves of a course [K].
+LEFT = 0.25
+#: Over how long a share of the dwell.
+LENGTH = 0.3
 #: Decay, per dwell, of what a start at another temperature than that of the room as read leaves in a course.
 BEGUN = 3.0
 #: Powers of the share of the dwell to come by which a remainder fades along a course: the highest are the first

@@ -18,17 +18,25 @@ from .windows import Windows
 
 #: The method: two implicit stages of second order, L-stable and stiffly accurate.
 GAMMA = 1.0 - 0.5**0.5
-#: Newton's corrections at most, and size over the nominals at which they end.
-MOST, SETTLED = 30, 1e-5
-#: A correction is no longer than so many nominals, at first and from the given one on: a relay may throw it about.
-LONG, SHORT, SHORTER = 2.0, 0.3, 6
+#: Newton's corrections at most.
+MOST = 30
+#: Size over the nominals at which they end.
+SETTLED = 1e-5
+#: A correction is no longer than so many nominals.
+LONG = 2.0
+#: At first.
+SHORT = 0.3
+#: From the given one on: a relay may throw it about.
+SHORTER = 6
 #: Degrees of freedom of the prediction errors: switching and standing pumps make their tails heavy.
 TAILS = 4.0
 #: Standard deviation at the start of a state that no sensor reads [K].
 UNREAD = 6.0
-#: Scatter of a reading about the model before it is estimated [K], and state noise of one sample over it: the filter
-#: follows what is read over some hours, so that it is the slow course of a temperature that the knobs explain.
-SCATTER, FOLLOWS = 1.0, 0.04
+#: Scatter of a reading about the model before it is estimated [K].
+SCATTER = 1.0
+#: State noise of one sample over it: the filter follows what is read over some hours, so that it is the slow course of
+#: a temperature that the knobs explain.
+FOLLOWS = 0.04
 #: A reading that is missing scatters so much [K].
 MISSING = 1e4
 

@@ -16,8 +16,12 @@ from scipy.linalg import block_diag
 from .course_noise import LENGTH, dwells, fading, model_error, shares, smoothed, start_error
 from .observe import Observed, Seen
 
-#: Prior standard deviations of the logarithms of scales: readings of a sensor, of the room, days.
-READING, INPUT, DAY = 0.25, 0.35, 0.35
+#: Prior standard deviations of the logarithms of scales: readings of a sensor.
+READING = 0.25
+#: Of the room.
+INPUT = 0.35
+#: Days.
+DAY = 0.35
 #: Share of a nuisance's prior by which another filling or mounting changes it.
 REFILLED = 0.5
 #: A further probe of the same body stands elsewhere: standard deviation of the share of the wall or room it sees.

@@ -9,8 +9,10 @@ import numpy as np
 
 from ....scenarios.measured.logs import Log
 
-#: Samples of a window that count, and samples before them in which the filter settles.
-WINDOW, SETTLING = 250, 60
+#: Samples of a window that count.
+WINDOW = 250
+#: Samples before them in which the filter settles.
+SETTLING = 60
 
 
 @dataclass(frozen=True, eq=False)

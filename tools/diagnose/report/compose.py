@@ -16,8 +16,10 @@ from ..setting import Setting
 from . import channels, findings
 from .estimate import Estimate
 
-#: Hypotheses that are listed, and the least probability of one.
-MOST, LISTED = 12, 0.005
+#: Hypotheses that are listed.
+MOST = 12
+#: The least probability of one.
+LISTED = 0.005
 #: Changes of the loss by name, with their units.
 LOSS = {"loss_Nm": "N.m", "heat_W": "W"}
 

@@ -14,8 +14,12 @@ from ..library.cause import Cause
 from ..setting import Setting
 from . import channels, findings
 
-#: Causes between which experiments are judged, the least weight of one, and experiments that are listed.
-JUDGED, LEAST, LISTED = 4, 0.02, 6
+#: Causes between which experiments are judged.
+JUDGED = 4
+#: The least weight of one.
+LEAST = 0.02
+#: Experiments that are listed.
+LISTED = 6
 
 
 def leading(decision: Decision) -> list[str]:

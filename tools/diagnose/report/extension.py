@@ -20,12 +20,16 @@ from ..library.cause import Cause, Form, Row, Theta
 from . import phrases
 from .names import name_of
 
-#: Names of the parts that causes add, here and in the extended rig: a found part can stand beside that of a new search.
-ADDED, FOUND = "extra_", "found_"
+#: Names of the parts that causes add.
+ADDED = "extra_"
+#: Here and in the extended rig: a found part can stand beside that of a new search.
+FOUND = "found_"
 
 
-#: Part of a standard deviation that its derivative is taken over; share of a value below which a change is left out.
-STEP, LITTLE = 0.05, 1e-5
+#: Part of a standard deviation that its derivative is taken over.
+STEP = 0.05
+#: Share of a value below which a change is left out.
+LITTLE = 1e-5
 
 
 @dataclass(frozen=True)

@@ -12,12 +12,17 @@ from . import phrases
 from .evidence import Picture, Rows, View
 from .findings import Channel, Findings
 
-BEFORE, AFTER = COLOURS[1], COLOURS[0]
+#: Colour of residuals of the nominal rig.
+BEFORE = COLOURS[1]
+#: Colour of residuals of the extended rig.
+AFTER = COLOURS[0]
 #: Direction -> its mark.
 MARKS = {1: "o", -1: "^", 0: "s"}
 DIRECTIONS = {1: "direction +1", -1: "direction -1", 0: ""}
-#: Readings that are drawn, at most; more than these groups of readings have no line through their means.
-MOST, GROUPS = 600, 8
+#: Readings that are drawn, at most.
+MOST = 600
+#: More than these groups of readings have no line through their means.
+GROUPS = 8
 #: Values of a quantity that each have a tick.
 FEW = 3
 

@@ -8,8 +8,10 @@ from typing import Annotated, Any
 
 from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field
 
-#: Significant digits of a number and of the numbers of an array: beyond them the order of sums shows.
-DIGITS, ARRAY_DIGITS = 6, 5
+#: Significant digits of a number.
+DIGITS = 6
+#: Of the numbers of an array: beyond them the order of sums shows.
+ARRAY_DIGITS = 5
 #: No null is known further out than this: smaller p are held as this and printed as "< 1e-6".
 LEAST_P = 1e-6
 

@@ -17,10 +17,14 @@ from .tables import Table
 
 #: Standard deviations from which two causes are told apart.
 APART = 3.0
-#: Experiments on the screen and in the picture; what they have to add to count.
-SHOWN, LEAST = 10, 0.05
-#: More pairs than these are drawn by their smallest distance alone; the axis ends here [standard deviations].
-PAIRS, END = 3, 12.0
+#: Experiments on the screen and in the picture.
+SHOWN = 10
+#: What they have to add to count.
+LEAST = 0.05
+#: More pairs than these are drawn by their smallest distance alone.
+PAIRS = 3
+#: The axis ends here [standard deviations].
+END = 12.0
 
 
 class PlannedCause(Model):

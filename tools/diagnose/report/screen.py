@@ -14,9 +14,14 @@ from . import phrases
 from .findings import Findings
 from .tables import Table, tables
 
-#: Width of the text at most, of tables where no screen limits them, of the words before each paragraph; warnings on
-#: the first screen.
-WIDTH, WIDE, LEFT, WARNINGS = 110, 150, 11, 3
+#: Width of the text at most.
+WIDTH = 110
+#: Of tables where no screen limits them.
+WIDE = 150
+#: Of the words before each paragraph.
+LEFT = 11
+#: Warnings on the first screen.
+WARNINGS = 3
 
 
 def text(findings: Findings, *, everything: bool = False, width: int | None = None) -> str:

@@ -10,8 +10,10 @@ from .evidence import View
 from .findings import Findings, Hypothesis
 from .names import name_of, names_of
 
-#: Causes and hypotheses in a table have at least this probability; experiments and rows at most this many.
-LEAST, MOST = 0.01, 10
+#: Causes and hypotheses in a table have at least this probability.
+LEAST = 0.01
+#: Experiments and rows at most this many.
+MOST = 10
 
 
 @dataclass(frozen=True)

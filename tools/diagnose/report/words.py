@@ -9,15 +9,20 @@ from . import phrases
 from .findings import UNEXPLAINED, Answer, Cause, Findings, Said
 from .names import name_of, names_of, sentence
 
-#: Below this probability a cause that would be seen is ruled out; the tail of p where what is left is not noise, and
-#: the other tail.
-RULED_OUT, ADEQUATE, TOO_GOOD = 0.01, 0.01, 0.99
+#: Below this probability a cause that would be seen is ruled out.
+RULED_OUT = 0.01
+#: The tail of p where what is left is not noise.
+ADEQUATE = 0.01
+#: The other tail.
+TOO_GOOD = 0.99
 #: A scatter is told where it is so many times the card's, or as much less.
 SCATTER = 1.5
 #: Distances below this are none [standard deviations].
 APART = 3.0
-#: What is listed on the first screen.
-MOST, FEW = 6, 3
+#: Longest list on the first screen.
+MOST = 6
+#: The same of lists of little weight.
+FEW = 3
 
 
 def with_words(findings: Findings) -> Findings:

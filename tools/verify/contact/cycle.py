@@ -20,16 +20,28 @@ from ...solve.settings import flat_of
 from ...solve.steady import conditions
 from .rows import Found, Job, row
 
-#: Angles of the cycle [deg] and their number, as in the article; nodes, and time steps between two angles.
-ANGLES, POINTS, NODES, STEPS = (30.0, 120.0), 15, 321, 2
+#: First and last angle of the cycle, as in the article [deg].
+ANGLES = (30.0, 120.0)
+#: Number of angles, as in the article.
+POINTS = 15
+#: Nodes of the line contact.
+NODES = 321
+#: Time steps between two angles.
+STEPS = 2
 #: Domain of the transient over the half width of each Hertz contact.
 DOMAIN = (-4.0, 1.5)
 #: What a part with contacts has to tell beside its table.
 KEYS = ("eta_oil", "alpha_p", "E_eff", "b", "sigma", "w_crank")
-#: Bands of the article: specific film thickness, and share of the load on asperities.
-LAMBDA_BAND, SHARE_BAND = (0.65, 0.75), (0.25, 0.35)
-#: The article's films [nm] over reduced radii [mm], and its exponent of the largest pressure over the load.
-RADII, FILMS, EXPONENT = (1.0, 3.0, 5.0, 8.0), (225.0, 180.0, 155.0, 130.0), 0.10
+#: Specific film thickness of the article [1].
+LAMBDA_BAND = (0.65, 0.75)
+#: Share of the load on asperities in the article [1].
+SHARE_BAND = (0.25, 0.35)
+#: Reduced radii of the article's films [mm].
+RADII = (1.0, 3.0, 5.0, 8.0)
+#: The article's films [nm].
+FILMS = (225.0, 180.0, 155.0, 130.0)
+#: The article's exponent of the largest pressure over the load [1].
+EXPONENT = 0.10
 
 
 @dataclass(frozen=True)

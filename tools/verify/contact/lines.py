@@ -17,10 +17,16 @@ from . import cases
 from .rows import Found, Job, bound, row
 from .studies import SECOND
 
-#: Nodes of the coarser of two grids, and of the four grids of the study.
-NODES, GRIDS, QUICK_GRIDS = 201, (101, 201, 401, 801), (51, 101, 201)
-#: Domain of the study, and of the rigid limit, over the half width of the Hertz contact.
-DOMAIN, WIDE = (-4.0, 2.0), (-60.0, 10.0)
+#: Nodes of the coarser of two grids.
+NODES = 201
+#: Nodes of the grids of the study.
+GRIDS = (101, 201, 401, 801)
+#: The same of the quick subset.
+QUICK_GRIDS = (51, 101, 201)
+#: Domain of the study over the half width of the Hertz contact [1].
+DOMAIN = (-4.0, 2.0)
+#: Domain of the rigid limit over that half width [1].
+WIDE = (-60.0, 10.0)
 
 
 def jobs(quick: bool) -> list[Job]:

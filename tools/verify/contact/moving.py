@@ -12,10 +12,16 @@ from . import cases
 from .rows import Found, Job, row
 from .studies import DOMAIN, L_STUDY, M_STUDY
 
-#: Depth of the dent over the central film, its width over a, and where it starts, over a.
-DEPTH, WIDTH, START = 0.3, 0.25, -2.5
-#: Part of the contact, over a, in which the disturbance is followed, and how far ahead of a slower dent.
-FOLLOWED, AHEAD = (-0.6, 0.6), 0.4
+#: Depth of the dent over the central film [1].
+DEPTH = 0.3
+#: Width of the dent over a [1].
+WIDTH = 0.25
+#: Where the dent starts, over a [1].
+START = -2.5
+#: Part of the contact, over a, in which the disturbance is followed [1].
+FOLLOWED = (-0.6, 0.6)
+#: How far ahead of a slower dent it is followed, over a [1].
+AHEAD = 0.4
 #: Speed of the dented surface over the mean speed -> accepted distance of the disturbance's speed from the mean speed.
 SPEEDS = {1.0: 0.03, 0.5: 0.05}
 

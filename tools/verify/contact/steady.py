@@ -15,9 +15,14 @@ from ....model.units import to_si
 from . import cases
 from .rows import Found, Job, row
 
-#: Nodes along a side of the finer of two grids, for the films and for the quick subset. Heavy contacts, with loads from
-#: HEAVY on in the numbers of Moes, need the finest.
-NODES, QUICK, FINEST, HEAVY = 129, 65, 257, 200
+#: Nodes along a side of the finer of two grids, for the films.
+NODES = 129
+#: The same of the quick subset.
+QUICK = 65
+#: The same of heavy contacts.
+FINEST = 257
+#: Load number of Moes from which a contact is heavy and needs the finest grid [1].
+HEAVY = 200
 #: Part of the plane in half widths in which the rolling moment is taken: first x, last x, largest y.
 MOMENT_DOMAIN = (-4.5, 1.5, 3.0)
 

@@ -12,16 +12,23 @@ from ....model.contact import Film, hertz, solve
 from . import cases
 from .rows import Found, Job, bound
 
-#: The contact of the studies, by the numbers of Moes, and the part of the plane it is solved in.
-M_STUDY, L_STUDY = 20.0, 10.0
+#: Load number of Moes of the contact of the studies [1].
+M_STUDY = 20.0
+#: Material number of Moes of the contact of the studies [1].
+L_STUDY = 10.0
 DOMAIN = (-4.5, 1.5, 3.0)
-GRIDS, QUICK_GRIDS = (65, 129, 257, 513), (33, 65, 129)
+#: Nodes along a side of the grids of the study.
+GRIDS = (65, 129, 257, 513)
+#: The same of the quick subset.
+QUICK_GRIDS = (33, 65, 129)
 #: What is of second order; the pressure has a spike that grows with every grid, and the moment contains it.
 FILMS = ("h_c", "h_min", "h, rms")
 #: Least order that counts as the second.
 SECOND = 1.7
-#: Largest processor time of a contact on 257 x 257 nodes [s], and largest growth of the cost of an unknown.
-MOST_SECONDS, MOST_GROWTH = 10.0, 2.0
+#: Largest processor time of a contact on 257 x 257 nodes [s].
+MOST_SECONDS = 10.0
+#: Largest growth of the cost of an unknown from grid to grid [1].
+MOST_GROWTH = 2.0
 
 
 def jobs(quick: bool) -> list[Job]:

@@ -7,17 +7,16 @@ from functools import cached_property
 from pathlib import Path
 
 from ...model.errors import DataError
-from ...scenarios.given import RigLike, scenario_of
-from ...scenarios.measured.card import Card, read_card
-from ...scenarios.measured.lubrication import lubricated
-from ...scenarios.measured.nominal import Nominal
-from ...scenarios.measured.oils import oil_values
-from ...scenarios.measured.read import read_campaign
-from ...scenarios.measured.sensors import driven_by
-from ...scenarios.measured.table import Campaign, Sensor
-from ...scenarios.scenario import Scenario
-from ...scenarios.write import DIAGNOSED
-from ..solve.settings import SET
+from ..given import RigLike, scenario_of
+from ..scenario import Scenario
+from ..write import DIAGNOSED, SET
+from .card import Card, read_card
+from .lubrication import lubricated
+from .nominal import Nominal
+from .oils import oil_values
+from .read import read_campaign
+from .sensors import driven_by
+from .table import Campaign, Sensor
 
 
 @dataclass(frozen=True)
