@@ -1,12 +1,12 @@
-"""The blind test bench of `gearheat diagnose`: hides effects in simulated campaigns, asks, and scores the answers.
+"""The blind test bench of the diagnosis: hides effects in simulated campaigns, has them diagnosed, scores the answers.
 
-Two sheets of cases: "own", where the rig behaves as the project's model does, with unequal parameters and hidden
-effects of free forms around its equations; and "foreign", where another gearbox is simulated with laws of its own and
-a healthy reference campaign is given.
+Sheets of cases: "own" is the planetary rig as the project's model has it, with unequal parameters; "foreign" another
+gearbox with laws of its own and a healthy reference campaign; "textbook" a frozen third one with rough readings; "rigs"
+steady points of other shipped rigs; "practice" campaigns in a folder with their keys.
 
-Cases are clean, hide one cause (everywhere or in a regime) or two, something without a name, or something too weak to
-see. Causes to be told by their name lie far from whatever a cause of another class could do (`rivals`); a few cases
-are "alike": they hide one cause with a rival so near that nobody could tell which it is, and the right answer is a set.
+A case is clean, or hides one cause (everywhere or in a regime), two, one without a name, or one too weak to be seen.
+Causes that must be named are far from all that a cause of another class could do (`signal_to_noise.Rivals`). An "alike"
+case hides a cause with a rival so near that the two cannot be separated: the right answer is a set.
 
-`case.make_case` writes one case, `scoring` scores answers, `bench` runs a sheet.
+`cases.make_case` writes one case, `scoring` scores answers, `bench` runs a sheet, `python -m tests.challenge` all.
 """

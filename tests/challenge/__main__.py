@@ -1,4 +1,4 @@
-"""`python -m tests.challenge`: hides faults, has them diagnosed without telling what they are, and scores the answers.
+"""`python -m tests.challenge`: hides faults, has them diagnosed, and scores the answers.
 
 To be run in a checkout. An interrupted run with a folder (`-o`) goes on where it stopped.
 """

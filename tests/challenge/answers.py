@@ -1,4 +1,4 @@
-"""Asking a diagnosis about a case, and reading what it answers: only the command, and stable fields of its JSON."""
+"""Asking a diagnosis about a case, and reading what it answers: stable fields of its JSON only."""
 
 from __future__ import annotations
 
@@ -12,13 +12,14 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+import gearheat
 from gearheat.model.errors import DataError
 
 from .classes import classes_of
 
-#: Gets the files of a case by what they are, and a folder for answers; writes RESULT.json there, and
+#: Gets the name of a rig, the files of a case by what they are, and a folder for answers; writes RESULT.json there, and
 #: PREDICTIONS.csv and SECONDS (its processor time) if it can.
-Diagnoser = Callable[[Mapping[str, Path], Path], None]
+Diagnoser = Callable[[str, Mapping[str, Path], Path], None]
 
 #: The command, in a process that notes its processor time [s].
 PROGRAM = """
@@ -28,24 +29,31 @@ atexit.register(lambda: pathlib.Path(os.environ["SECONDS_FILE"]).write_text(str(
 main()
 """
 
-#: Longest time for one case [s].
-PATIENCE = 1800.0
+#: Longest time for one case [s]: a hundred times the usual one.
+TIMEOUT = 1800.0
 
 #: Variables that tell linear algebra how many threads to use.
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
+#: What stands in a hypothesis for effects without a name.
 UNNAMED = frozenset({"model.unexplained"})
 
+#: Files of a case -> option of the command.
 OPTIONS: Mapping[str, str] = {"card": "--card", "reference": "--reference", "points": "--predict"}
 
 
-def ask_command(files: Mapping[str, Path], place: Path, seed: int = 0) -> None:
+def ask_command(rig: str, files: Mapping[str, Path], place: Path) -> None:
     """Run `gearheat diagnose` on the files of a case, in a process of its own with one thread.
+
+    Args:
+        rig: its name
+        files: of the case, by what they are
+        place: folder for the answer
 
     Raises:
         DataError: it ends with another exit code than 0, or takes too long
     """
-    words = ["diagnose", str(files["data"]), "--rig", "planetary", "--quick", "--seed", str(seed)]
+    words = ["diagnose", str(files["data"]), "--rig", rig, "--quick", "--seed", "0"]
     words += ["--json", str(place / "RESULT.json")]
     for name, option in OPTIONS.items():
         if name in files:
@@ -54,12 +62,30 @@ def ask_command(files: Mapping[str, Path], place: Path, seed: int = 0) -> None:
     program = [sys.executable, "-c", PROGRAM, *words]
     env = {**os.environ, **dict.fromkeys(THREADS, "1"), "SECONDS_FILE": str(place / "SECONDS")}
     try:
-        done = subprocess.run(program, env=env, capture_output=True, text=True, timeout=PATIENCE, check=False)
+        done = subprocess.run(program, env=env, capture_output=True, text=True, timeout=TIMEOUT, check=False)
     except subprocess.TimeoutExpired:
-        raise DataError(f"diagnose took more than {PATIENCE:g} s") from None
+        raise DataError(f"diagnose took more than {TIMEOUT:g} s") from None
     if done.returncode != 0:
-        said = done.stderr.strip().splitlines()[-1:] or ["no message"]
-        raise DataError(f"diagnose ended with code {done.returncode}: {said[0]}")
+        message = (done.stderr.strip().splitlines() or ["no message"])[-1]
+        raise DataError(f"diagnose ended with code {done.returncode}: {message}")
+
+
+def ask_here(rig: str, files: Mapping[str, Path], place: Path) -> None:
+    """Diagnose a case in this process: cheaper for a few.
+
+    Args:
+        rig: its name
+        files: of the case, by what they are
+        place: folder for the answer
+    """
+    place.mkdir(parents=True, exist_ok=True)
+    predictions = place / "PREDICTIONS.csv" if "points" in files else None
+    outputs = gearheat.Outputs(predictions=predictions, json=str(place / "RESULT.json"))
+    card, reference, points = (files.get(what) for what in ("card", "reference", "points"))
+    diagnosis = gearheat.diagnose(
+        files["data"], rig, card=card, reference=reference, predict=points, quick=True, outputs=outputs
+    )
+    diagnosis.write(outputs)
 
 
 @dataclass(frozen=True)
@@ -77,7 +103,7 @@ class Hypothesis:
 
 @dataclass(frozen=True)
 class Answer:
-    """What a diagnosis said: look-alikes that count as one are class_of, likeliest hypothesis first.
+    """The answer of a diagnosis: causes of one class are merged, likeliest hypothesis first.
 
     Args:
         verdict: its word; anything but "consistent" is an alarm
@@ -106,30 +132,30 @@ class Answer:
 
     def credible(self, level: float = 0.9) -> list[Hypothesis]:
         """The smallest set of hypotheses whose probabilities reach the level; all if they do not."""
-        total, found = 0.0, []
+        total, credible = 0.0, []
         for hypothesis in self.hypotheses:
-            found.append(hypothesis)
+            credible.append(hypothesis)
             total += hypothesis.probability
             if total >= level:
                 break
-        return found
+        return credible
 
 
 def read_answer(place: Path) -> Answer:
-    """The answer in a folder; of a hypothesis with a remainder beside causes, the causes count.
+    """The answer in a folder; a remainder does not count where a hypothesis names causes as well.
 
     Raises:
         DataError: the result is no JSON of the schema
     """
     try:
-        said = json.loads((place / "RESULT.json").read_text(encoding="utf-8"))
+        result = json.loads((place / "RESULT.json").read_text(encoding="utf-8"))
         weights: dict[frozenset[str], float] = {}
-        for h in said["hypotheses"]:
+        for h in result["hypotheses"]:
             names = classes_of(h["causes"])
             names = names - UNNAMED or names
             weights[names] = weights.get(names, 0.0) + float(h["probability"])
-        verdict, impact = str(said["verdict"]), {k: _estimate(v) for k, v in said.get("impact", {}).items()}
-        gross = _gross(said)
+        verdict, impact = str(result["verdict"]), {k: _estimate(v) for k, v in result.get("impact", {}).items()}
+        gross = _gross(result)
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise DataError(f"{place.name}: not a result of a diagnosis ({type(error).__name__}: {error})") from None
     ranked = sorted(weights.items(), key=lambda item: (-item[1], sorted(item[0])))
@@ -141,13 +167,13 @@ def _estimate(value: Any) -> float:
     return float(value["value"] if isinstance(value, Mapping) else value)
 
 
-def _gross(said: Mapping[str, Any]) -> frozenset[tuple[int, str]] | None:
+def _gross(result: Mapping[str, Any]) -> frozenset[tuple[int, str]] | None:
     """Rows of the data, from 1, and columns."""
-    if "data_quality" not in said:
+    if "data_quality" not in result:
         return None
-    columns = {c["name"]: c.get("column") or c["name"] for c in said.get("channels", ())}
-    found = said["data_quality"].get("gross", ())
-    return frozenset((int(g["row"]), str(columns.get(g["channel"], g["channel"]))) for g in found)
+    columns = {c["name"]: c.get("column") or c["name"] for c in result.get("channels", ())}
+    gross = result["data_quality"].get("gross", ())
+    return frozenset((int(g["row"]), str(columns.get(g["channel"], g["channel"]))) for g in gross)
 
 
 def _predictions(path: Path) -> tuple[dict[int, float], dict[int, float]]:

@@ -6,7 +6,7 @@ import hashlib
 import json
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
@@ -22,12 +22,10 @@ from .sheets import SHEETS
 
 ROOT = Path(__file__).resolve().parents[2]
 
-#: What the cases follow from, and what the answers follow from besides them.
-CASE_SOURCES = ("model", "scenarios", "tools/challenge")
+#: Folders that the cases follow from.
+CASE_SOURCES = ("model", "scenarios", "tests/challenge")
+#: Folders that the answers follow from besides them.
 ANSWER_SOURCES = ("fmu", "tools")
-
-#: Files of a made case by what they are.
-FILES = {"data": "DATA.csv", "card": "CARD.json", "reference": "REF.csv", "points": "POINTS.csv"}
 
 #: Cases are made one at a time: simulators keep buffers.
 _MAKING = threading.Lock()
@@ -69,8 +67,8 @@ def tasks(
     case_stamp = f"{fingerprint(*CASE_SOURCES)} {sheet} {seed} {kind}"
     stamps = case_stamp, f"{case_stamp} {diagnose.__module__} {fingerprint(*ANSWER_SOURCES)}"
     if given is not None:
-        found = practice.folders(given)[:n]
-        return [Task(sheet, k, seed, None, out / p.name, p, stamps, diagnose) for k, p in enumerate(found)]
+        folders = practice.folders(given)[:n]
+        return [Task(sheet, k, seed, None, out / p.name, p, stamps, diagnose) for k, p in enumerate(folders)]
     return [Task(sheet, k, seed, kind, out / f"{k:04d}", None, stamps, diagnose) for k in range(n)]
 
 
@@ -99,11 +97,14 @@ def run(todo: list[Task], jobs: int, progress: Callable[[int, Outcome], None] = 
 
 def solve(task: Task) -> Outcome:
     """Make a case unless it is there, ask unless it is answered, and score."""
-    truth = practice.truth(task.given) if task.given else _truth(task)
+    if task.given:
+        truth, case = practice.truth(task.given), practice.files(task.given)
+    else:
+        truth, case = _make(task), practice.files(task.folder / "case", made=True)
     place = task.folder / "answer"
     state = _read(place / "DONE.json")
     if state.get("stamp") != task.stamps[1]:
-        state = _ask(task, place)
+        state = _ask(task, rig_of(truth), case, place)
         (place / "DONE.json").write_text(json.dumps(state) + "\n", encoding="utf-8")
     answer: Answer | None = None
     problem = str(state["problem"])
@@ -115,7 +116,13 @@ def solve(task: Task) -> Outcome:
     return score({**truth, "sheet": task.sheet}, answer, float(state["seconds"]), problem)
 
 
-def _truth(task: Task) -> dict[str, Any]:
+def rig_of(truth: Mapping[str, Any]) -> str:
+    """Name of the rig of a case."""
+    return str(truth.get("rig", {}).get("name", "planetary"))
+
+
+def _make(task: Task) -> dict[str, Any]:
+    """The truth of a case, which is made unless it is there."""
     stamp = task.folder / "STAMP"
     if not stamp.exists() or stamp.read_text(encoding="utf-8") != task.stamps[0]:
         stamp.unlink(missing_ok=True)
@@ -126,16 +133,14 @@ def _truth(task: Task) -> dict[str, Any]:
     return _read(task.folder / "TRUTH.json")
 
 
-def _ask(task: Task, place: Path) -> dict[str, Any]:
+def _ask(task: Task, rig: str, case: Mapping[str, Path], place: Path) -> dict[str, Any]:
     """Ask, and note the processor time (of the clock, where the diagnosis does not state it) and what went wrong."""
     place.mkdir(parents=True, exist_ok=True)
     for old in place.glob("*"):
         old.unlink()
-    case = task.folder / "case"
-    made = {what: case / name for what, name in FILES.items() if (case / name).exists()}
     problem, began, noted = "", time.perf_counter(), place / "SECONDS"
     try:
-        task.diagnose(practice.files(task.given) if task.given else made, place)
+        task.diagnose(rig, case, place)
     except Exception as error:  # whatever goes wrong in a diagnosis is an answer that is missing
         problem = f"{type(error).__name__}: {error}"
     seconds = float(noted.read_text()) if noted.exists() else time.perf_counter() - began
@@ -143,8 +148,8 @@ def _ask(task: Task, place: Path) -> dict[str, Any]:
 
 
 def _read(path: Path) -> dict[str, Any]:
+    """A JSON object; an empty one where there is none."""
     try:
-        found: dict[str, Any] = json.loads(path.read_text(encoding="utf-8"))
+        return dict(json.loads(path.read_text(encoding="utf-8")))
     except (OSError, ValueError):
         return {}
-    return found

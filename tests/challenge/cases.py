@@ -48,7 +48,7 @@ class Drawn:
         reference: tests of the healthy campaign, if there is one
         base: factors of the rig
         day_sd: scatter of the days as it is
-        bearing_oil, room_drift: told by the card
+        bearing_oil, room_drift: that the card states
     """
 
     run: Run
@@ -150,7 +150,7 @@ def _write(d: Drawn, hidden: Sequence[Hidden], folder: Path, rng: np.random.Gene
     else:
         card = files.card(i, bearing_oil=d.bearing_oil, room_drift=d.room_drift)
     (case / "CARD.json").write_text(json.dumps(card, indent=1) + "\n", encoding="utf-8")
-    at = [i.fixed(_simulate(d, d.points, faults)) for faults in (hidden, ())]
+    at = [i.without_noise(_simulate(d, d.points, faults)) for faults in (hidden, ())]
     files.write_points(case / "POINTS.csv", d.points, at[0], i.channels, d.layout)
     impact, repeat_sd = _impact(d, ill - well)
     oil = [d.oil(a).T.ravel() for a in at]
@@ -164,7 +164,7 @@ def _write(d: Drawn, hidden: Sequence[Hidden], folder: Path, rng: np.random.Gene
             {"point": p + 1, "T_oil_C": round(float(a), 4), "T_oil_without_C": round(float(b), 4)}
             for p, (a, b) in enumerate(zip(*oil, strict=True))
         ],
-        "gross": {name: found for name, found in gross.items() if found},
+        "gross": {name: one for name, one in gross.items() if one},
         "rig": dict(d.facts),
     }
 
@@ -180,7 +180,7 @@ def _simulate(d: Drawn, plan: Plan, faults: Sequence[Hidden], days: np.ndarray |
 def _impact(d: Drawn, change: np.ndarray) -> tuple[dict[str, float], dict[str, float]]:
     """Mean change of the readings, and repeatability of each; losses of a rig in its own units only."""
     by, sd = dict(zip(d.instruments.channels, change, strict=True)), d.instruments.repeat_sd
-    impact, repeat_sd = {"T_oil_K": by["T_oil_C"], "T_wall_K": by["T_wall_C"]}, {}
+    impact = {"T_oil_K": by["T_oil_C"], "T_wall_K": by["T_wall_C"]}
     repeat_sd = {"T_oil_K": sd["T_oil_C"], "T_wall_K": sd["T_wall_C"]}
     if not d.layout.shown:
         impact["loss_Nm"] = np.array([[1.0], [-1.0]]) * (by["T_carrier_Nm"] - RATIO * by["T_sun_Nm"])

@@ -13,14 +13,14 @@ CLASSES: tuple[tuple[str, ...], ...] = (
     ("sensor.ambient.bias", "sensor.ambient.offset"),
     ("cooling.air", "cooling.fan"),
 )
-_FIRST = {name: names[0] for names in CLASSES for name in names}
+_NAME = {name: names[0] for names in CLASSES for name in names}
 
 
 def class_of(cause: str) -> str:
-    """The name that a cause counts as."""
-    return _FIRST.get(cause, cause)
+    """The name that stands for the class of a cause."""
+    return _NAME.get(cause, cause)
 
 
 def classes_of(causes: Iterable[str]) -> frozenset[str]:
-    """The names that causes count as."""
+    """The names that stand for the classes of causes."""
     return frozenset(class_of(c) for c in causes)

@@ -73,7 +73,7 @@ class Instruments:
         """Columns."""
         return tuple(self.repeat_sd)
 
-    def fixed(self, values: np.ndarray) -> np.ndarray:
+    def without_noise(self, values: np.ndarray) -> np.ndarray:
         """Readings (channels, 2, tests) with the fixed tolerances, without noise."""
         return np.asarray(values + np.array([self.offset[c] for c in self.channels])[:, None, None])
 
@@ -84,7 +84,7 @@ class Instruments:
         else:
             z = rng.normal(0.0, 1.0, values.shape)
         sd = np.array([self.repeat_sd[c] for c in self.channels])
-        return np.asarray(self.fixed(values) + z * sd[:, None, None])
+        return np.asarray(self.without_noise(values) + z * sd[:, None, None])
 
 
 def draw_instruments(rng: np.random.Generator, octaves: float, *, second_oil: bool, **rough: float) -> Instruments:
@@ -100,7 +100,7 @@ def draw_instruments(rng: np.random.Generator, octaves: float, *, second_oil: bo
 
 
 def card(instruments: Instruments, *, bearing_oil: bool, room_drift: float) -> dict[str, Any]:
-    """What the diagnosis is told of the campaign."""
+    """The card of a campaign of the planetary rig."""
     channels: dict[str, dict[str, float]] = {}
     for c in instruments.channels:
         channels[c] = {"repeat_sd": instruments.repeat_sd[c], "offset_sd": instruments.offset_sd[c]}
@@ -128,7 +128,7 @@ def card(instruments: Instruments, *, bearing_oil: bool, room_drift: float) -> d
 
 @dataclass(frozen=True)
 class Column:
-    """How a table shows a channel in the user's own words.
+    """A channel in a table with columns of its own.
 
     Args:
         sensor: its name on the card
@@ -150,7 +150,7 @@ class Layout:
     Args:
         humidity, start, date: whether there are such columns
         earlier: how long before the campaign of the data this one began
-        shown: channel -> column of steady points in own words; none for the planetary rig's own
+        shown: channel -> its column, in a table with columns of its own; empty where channels are columns
     """
 
     humidity: bool = False
@@ -171,7 +171,7 @@ class Layout:
 
 
 def card_of_steady_points(instruments: Instruments, columns: Mapping[str, Column]) -> dict[str, Any]:
-    """What the diagnosis is told of a campaign in own words.
+    """The card of a campaign with columns of its own.
 
     Args:
         instruments: of the campaign
@@ -216,15 +216,15 @@ def write_table(
 
 
 def _extra(plan: Plan, layout: Layout, j: int, half: int) -> dict[str, str]:
-    found: dict[str, str] = {}
+    cells: dict[str, str] = {}
     if layout.date:
-        found["date"] = (FIRST_DAY - layout.earlier + timedelta(days=int(plan.order[j]) - 1)).isoformat()
+        cells["date"] = (FIRST_DAY - layout.earlier + timedelta(days=int(plan.order[j]) - 1)).isoformat()
     if layout.humidity:
-        found["humidity_pct"] = f"{plan.humidity[j]:.1f}"
+        cells["humidity_pct"] = f"{plan.humidity[j]:.1f}"
     if layout.start:
         begin = (f"{plan.start[j]:.2f}", f"{plan.room[0, j]:.2f}", "") if half == 0 else ("", "", f"{plan.stop[j]:g}")
-        found |= dict(zip(("T_start_C", "T_amb_start_C", "stop_min"), begin, strict=True))
-    return found
+        cells |= dict(zip(("T_start_C", "T_amb_start_C", "stop_min"), begin, strict=True))
+    return cells
 
 
 def write_points(path: Path, plan: Plan, shown: np.ndarray, channels: Sequence[str], layout: Layout) -> None:

@@ -274,7 +274,7 @@ def draw(plan: Plan, inner: float, cause: str, kind: str, oil: np.ndarray, rng: 
     return _limit(fault, d) if kind == "regime" else fault
 
 
-#: Where a regime may end, and how soft; of a direction between 1 and 2.
+#: Where a regime may end, and the width of its border; of a direction between 1 and 2.
 BORDERS: Mapping[str, tuple[Any, tuple[float, float]]] = {
     "speed": ("n", (2.0, 14.0)),
     "load": ("load", (20.0, 130.0)),

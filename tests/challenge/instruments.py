@@ -81,7 +81,7 @@ def by_order(table: np.ndarray, order: np.ndarray) -> np.ndarray:
     return np.asarray(table[order.astype(int) - 1])
 
 
-#: Columns of a kind of instrument with their scale, and its largest error.
+#: Kind of instrument -> its columns, each with the scale of its error, and its largest error [N.m, K, rpm].
 KINDS: Mapping[str, tuple[list[tuple[str, float]], float]] = {
     "torque": ([("T_carrier_Nm", 1.0), ("T_sun_Nm", 1.0 / RATIO)], 22.0),
     "oil_temp": ([("T_oil_C", 1.0)], 9.0),

@@ -36,6 +36,7 @@ NEWTON_STEPS = 3
 PARAMETERS: Mapping[str, str] = {
     "bearing": "*_bearing*.k_loss",
     "seal": "*_seal.k_loss",
+    "churning": "churning*.k_loss",
     "viscosity": "oil.nu_*",
     "conv": "cooling.A",
     "rad": "cooling.emissivity",
@@ -43,7 +44,7 @@ PARAMETERS: Mapping[str, str] = {
     "cap_oil": "oil.c_p",
 }
 
-#: Factors that belong together, and how uncertain the card says they are.
+#: Factors that differ together -> relative standard deviation on the card [1].
 PRIOR_SD: Mapping[str, float] = {
     "mesh": files.PRIOR_SD["mu"],
     "bearing": files.PRIOR_SD["brg"],
@@ -54,6 +55,8 @@ PRIOR_SD: Mapping[str, float] = {
     "contact": files.PRIOR_SD["gwh"],
     "cap_oil cap_in cap_out": files.PRIOR_SD["cap"],
 }
+#: The same of the other rigs, which churn more.
+STEADY_PRIOR_SD = {**PRIOR_SD, "churning": files.PRIOR_SD["seal"]}
 
 
 @dataclass(frozen=True)
@@ -127,6 +130,7 @@ PLANETARY = Machine(
     bodies=("oil", "gears", "carrier_body", "wall", "surface"),
     parameters={
         "mesh": "gear_set.k_mu",
+        "churning": "",
         "contact": "wall_surface.G",
         "oil_wall": "oil_wall.G",
         "oil_inner": "oil_gears.G oil_carrier_body.G",
@@ -269,7 +273,7 @@ def draw(rng: np.random.Generator) -> Drawn:
     rig, second = rig_of("planetary"), bool(rng.random() < 0.5)
     warm = bool(rng.random() < 0.15)
     plan = draw_plan(rng, warm_start=warm)
-    base = _draw_base(rng)
+    base = _draw_base(rng, PRIOR_SD)
     day = np.exp(rng.normal(0.0, files.DAY_COOLING_SD, plan.columns))
     return Drawn(
         run=partial(run, rig, len(CHANNELS) - (not second)),
@@ -291,7 +295,7 @@ def draw_steady(rng: np.random.Generator, machine: str = "") -> Drawn:
     """A case of the sheet "rigs": steady points of a machine, or of one that is drawn."""
     name = machine or str(rng.choice([HELICAL.rig, HARMONIC.rig]))
     rig, plan = rig_of(name), hold(draw_plan(rng), rng)
-    base = _draw_base(rng)
+    base = _draw_base(rng, STEADY_PRIOR_SD)
     day = np.exp(rng.normal(0.0, files.DAY_COOLING_SD, plan.columns))
     return Drawn(
         run=partial(run, rig, len(CHANNELS) - 1),
@@ -299,7 +303,7 @@ def draw_steady(rng: np.random.Generator, machine: str = "") -> Drawn:
         points=hold(draw_points(rng, plan), rng),
         base=base,
         days=(day, day),
-        prior=PRIOR_SD,
+        prior=STEADY_PRIOR_SD,
         instruments=files.draw_instruments(rng, 0.25, second_oil=False, gross=0.4),
         layout=files.Layout(shown=rig.machine.columns),
         band=(5.0, 40.0),
@@ -309,6 +313,6 @@ def draw_steady(rng: np.random.Generator, machine: str = "") -> Drawn:
     )
 
 
-def _draw_base(rng: np.random.Generator) -> dict[str, float]:
+def _draw_base(rng: np.random.Generator, prior_sd: Mapping[str, float]) -> dict[str, float]:
     """Factors of a rig's parameters, as uncertain as the card says."""
-    return {name: f for names, sd in PRIOR_SD.items() for f in [np.exp(rng.normal(0.0, sd))] for name in names.split()}
+    return {name: f for names, sd in prior_sd.items() for f in [np.exp(rng.normal(0.0, sd))] for name in names.split()}

@@ -60,7 +60,7 @@ class Plan:
         progress: np.ndarray = (self.order - 1.0) / max(self.tests - 1.0, 1.0)
         return progress
 
-    def tiled(self, copies: int) -> Plan:
+    def tile(self, copies: int) -> Plan:
         """The same tests several times over, one copy behind the other."""
         names = ("n", "load", "order", "room", "start", "dwell", "stop", "humidity")
         several: dict[str, Any] = {name: np.concatenate([getattr(self, name)] * copies, axis=-1) for name in names}

@@ -14,11 +14,12 @@ from gearheat.model.errors import DataError
 
 from .classes import classes_of
 
-FILES: Mapping[str, str] = {
-    "data": "data.csv",
-    "card": "card.json",
-    "reference": "reference.csv",
-    "points": "points.csv",
+#: Files of a campaign by what they are: of one in a folder, and of one that the bench made.
+FILES: Mapping[str, tuple[str, str]] = {
+    "data": ("data.csv", "DATA.csv"),
+    "card": ("card.json", "CARD.json"),
+    "reference": ("reference.csv", "REF.csv"),
+    "points": ("points.csv", "POINTS.csv"),
 }
 
 #: Kinds of the keys, as the bench names them.
@@ -31,15 +32,16 @@ def folders(path: Path) -> list[Path]:
     Raises:
         DataError: there are none
     """
-    found = [path] if (path / "key.json").exists() else sorted(p.parent for p in path.glob("*/key.json"))
-    if not found:
+    cases = [path] if (path / "key.json").exists() else sorted(p.parent for p in path.glob("*/key.json"))
+    if not cases:
         raise DataError(f"{path}: no campaigns. Expected folders with data.csv, card.json and key.json.")
-    return found
+    return cases
 
 
-def files(folder: Path) -> dict[str, Path]:
-    """Files of a case that exist, by what they are."""
-    return {what: folder / name for what, name in FILES.items() if (folder / name).exists()}
+def files(folder: Path, made: bool = False) -> dict[str, Path]:
+    """Files of a case that exist, by what they are; `made` by the bench."""
+    paths = {what: folder / names[made] for what, names in FILES.items()}
+    return {what: path for what, path in paths.items() if path.exists()}
 
 
 def truth(folder: Path) -> dict[str, Any]:

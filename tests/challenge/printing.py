@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from typing import Any
 
 from gearheat.tools.show import console
@@ -11,32 +11,32 @@ from gearheat.tools.show import console
 CASES = ("case", "kind", "S/N", "rival", "truth (p)", "answer (p)", "remarks")
 
 
-def show(found: Mapping[str, Any]) -> None:
+def show(result: Mapping[str, Any]) -> None:
     """Print the report as tables."""
-    wrong = [_case(c) for c in found["cases"] if _missed(c)]
+    wrong = [_case(c) for c in result["cases"] if _is_missed(c)]
     console.table("cases that are not as they should be", CASES, wrong, wrapped=True)
     head = ("metric", "value", "95 % interval", "cases", "must", "ambitious")
-    sheets = ", ".join(f"{count} {sheet}" for sheet, count in found["sheets"].items())
-    kinds = ", ".join(f"{count} {kind}" for kind, count in found["kinds"].items())
-    if len(found["sheets"]) > 1:
-        by_sheet = [(m["name"], *(_value(f[i]) for f in found["by_sheet"].values())) for i, m in _all(found)]
-        console.table("by sheet: value (cases)", ("metric", *found["sheets"]), by_sheet)
-    console.table(f"{sheets}, seed {found['seed']} ({kinds})", head, [_row(m) for m in found["metrics"]], wrapped=True)
-    far = f"{found['by_name']} single causes lie 3 sigma or more from every rival"
-    console.say(f"{far}; {found['by_set']} are told by a set")
-    seconds = found["seconds"]
+    sheets = ", ".join(f"{count} {sheet}" for sheet, count in result["sheets"].items())
+    kinds = ", ".join(f"{count} {kind}" for kind, count in result["kinds"].items())
+    if len(result["sheets"]) > 1:
+        by_sheet = [
+            (m["name"], *(_value(f[i]) for f in result["by_sheet"].values())) for i, m in enumerate(result["metrics"])
+        ]
+        console.table("by sheet: value (cases)", ("metric", *result["sheets"]), by_sheet)
+    console.table(
+        f"{sheets}, seed {result['seed']} ({kinds})", head, [_row(m) for m in result["metrics"]], wrapped=True
+    )
+    far = f"{result['by_name']} single causes lie 3 sigma or more from every rival"
+    console.say(f"{far}; {result['by_set']} are told by a set")
+    seconds = result["seconds"]
     if seconds["median"] is not None:
         console.say(f"processor time per case: median {seconds['median']:.1f} s, longest {seconds['longest']:.1f} s")
-    missing = sum(found["sheets"].values()) - found["answered"]
+    missing = sum(result["sheets"].values()) - result["answered"]
     if missing:
         console.say(f"without an answer, counted as missed: {missing}")
 
 
-def _all(found: Mapping[str, Any]) -> Iterator[tuple[int, Mapping[str, Any]]]:
-    return iter(enumerate(found["metrics"]))
-
-
-def _missed(c: Mapping[str, Any]) -> bool:
+def _is_missed(c: Mapping[str, Any]) -> bool:
     if not c["answered"] or c["sure_wrong"]:
         return True
     if c["kind"] in ("clean", "weak", "outside"):

@@ -16,6 +16,7 @@ FACTORS = (
     "mesh",
     "bearing",
     "seal",
+    "churning",
     "viscosity",
     "conv",
     "rad",
@@ -37,8 +38,10 @@ RATIO = 4.0
 #: Readings, in the order of the rows of what is shown.
 CHANNELS = ("n_carrier_rpm", "T_carrier_Nm", "T_sun_Nm", "T_oil_C", "T_wall_C", "T_amb_C", "T_oil2_C")
 
-#: L-stable choice of the two-stage method, and every how many steps its matrix is refreshed.
-GAMMA, REFRESH = 1.0 - 1.0 / np.sqrt(2.0), 4
+#: Coefficient of the two-stage method that makes it L-stable.
+GAMMA = 1.0 - 1.0 / np.sqrt(2.0)
+#: Steps after which its matrix is refreshed.
+REFRESH = 4
 
 
 @dataclass
@@ -147,9 +150,10 @@ def run(rig: Rig, channels: int, plan: Plan, base: Mapping[str, Any], acting: Se
     rooms = [(begin, first), (first, restart), (restart, second)]
     shown = np.empty((len(CHANNELS), 2, m))
     T = np.tile(plan.start, (rig.nodes, 1))
+    ends = STEADY_ENDS if plan.steady else ENDS
     for stretch, (half, minutes) in enumerate(((0, dwell[0]), (None, plan.stop), (1, dwell[1]))):
         stage = _Stage(rig, plan, base, acting, half, rooms[stretch])
-        T = march(stage.rate, T, _ENDS[stretch], 60.0 * minutes)
+        T = march(stage.rate, T, ends[stretch], 60.0 * minutes)
         if half is not None:
             shown[:, half] = stage.read(T)
     for fault, s, amount in acting:
@@ -216,8 +220,14 @@ class _Stage:
         return np.array([scene.n, scene.load, sun, places["oil"], places["wall"], scene.room, second])
 
 
-def graded(duration: float, first: float, growth: float, largest: float) -> np.ndarray:
-    """Shares of a stretch [s] at which steps end: small after the jump at its beginning, growing to `largest`."""
+def grade(duration: float, first: float, growth: float, largest: float) -> np.ndarray:
+    """Shares of a stretch at which steps end: small after the jump at its beginning, then growing.
+
+    Args:
+        duration: of the stretch [s]
+        first, largest: steps [s]
+        growth: of a step over the one before
+    """
     ends, step = [0.0], first
     while ends[-1] < duration:
         ends.append(ends[-1] + step)
@@ -225,7 +235,10 @@ def graded(duration: float, first: float, growth: float, largest: float) -> np.n
     return np.array(ends) / ends[-1]
 
 
-_ENDS = (graded(14400.0, 15.0, 1.45, 700.0), graded(300.0, 25.0, 1.7, 700.0), graded(5400.0, 15.0, 1.45, 600.0))
+#: Steps of the first half, the stop and the second half.
+ENDS = (grade(14400.0, 15.0, 1.45, 700.0), grade(300.0, 25.0, 1.7, 700.0), grade(5400.0, 15.0, 1.45, 600.0))
+#: The same of steady points, of which only the end counts.
+STEADY_ENDS = tuple(grade(duration, 100.0, 2.0, 40000.0) for duration in (180000.0, 300.0, 180000.0))
 
 
 def march(

@@ -3,8 +3,8 @@
 Names count by class: causes that no data of this kind can separate are one answer. "Exact" is equality of sets of
 names: a true cause with a second one beside it is not exact.
 
-Single and regime-limited causes at least 3 sigma from every rival must be told by their name. Of the others nobody
-could tell more than a set that holds the cause: there the set counts, and not to be sure of the wrong name.
+Single and regime-limited causes at least 3 sigma from every rival must be named. The others cannot be separated from
+their rivals: a set that holds the cause counts, and not to be sure of a wrong name.
 """
 
 from __future__ import annotations
@@ -17,12 +17,10 @@ from typing import Any
 import numpy as np
 
 from .answers import Answer
+from .hide import APART
 
 #: Probability above which an answer is sure.
 SURE = 0.9
-
-#: Distance to the nearest rival from which a cause must be told by its name [sigma].
-APART = 3.0
 
 #: Kinds of cases whose causes have names.
 NAMED = ("single", "regime", "pair", "alike")
@@ -73,12 +71,12 @@ class Outcome:
 
     @property
     def by_name(self) -> bool:
-        """Whether a single cause must be told by its name."""
+        """Whether a single cause must be named."""
         return self.kind in ("single", "regime") and (self.distance is None or self.distance >= APART)
 
     @property
     def by_set(self) -> bool:
-        """Whether nobody could tell more than a set that holds the single cause."""
+        """Whether a single cause cannot be separated from a rival, so that a set is the right answer."""
         return self.kind in ("single", "regime", "alike") and not self.by_name
 
 
@@ -86,8 +84,8 @@ def score(truth: Mapping[str, Any], answer: Answer | None, seconds: float, probl
     """The outcome of one case."""
     names = frozenset(str(n) for n in truth["answer"])
     right = [names, *({n} for n in truth.get("fair", ()))]
-    told = answer or Answer("consistent", ())
-    top, credible = told.top, told.credible()
+    given = answer or Answer("consistent", ())
+    top, credible = given.top, given.credible()
     named = truth["kind"] in NAMED
     gross = truth.get("gross", {}).get("DATA")
     return Outcome(
@@ -96,40 +94,40 @@ def score(truth: Mapping[str, Any], answer: Answer | None, seconds: float, probl
         kind=str(truth["kind"]),
         snr=min((float(e["snr"]) for e in truth["effects"]), default=0.0),
         distance=float(truth["rival"]["distance"]) if truth.get("rival") else None,
-        truth=_joined(names),
-        top=_joined(top.names) if told.alarm or not top.claims else "nothing",
-        p_truth=sum(h.probability for h in told.hypotheses if h.names == names),
+        truth=_join(names),
+        top=_join(top.names) if given.alarm or not top.claims else "nothing",
+        p_truth=sum(h.probability for h in given.hypotheses if h.names == names),
         p_top=top.probability,
         answered=answer is not None,
-        alarm=told.alarm,
-        exact=told.alarm and top.names in right,
-        shared=len(top.names & names) if told.alarm else 0,
+        alarm=given.alarm,
+        exact=given.alarm and top.names in right,
+        shared=len(top.names & names) if given.alarm else 0,
         covered=any(h.names in right for h in credible),
         size=len(credible),
-        sure_wrong=top.claims and told.alarm and top.probability > SURE and top.names not in right,
-        impact_error=_impact_error(truth, told) if named else None,
-        gain=_gain(truth, told) if named else None,
-        gross=(int(gross["row"]), str(gross["channel"])) in (told.gross or ()) if gross else None,
+        sure_wrong=top.claims and given.alarm and top.probability > SURE and top.names not in right,
+        impact_error=_impact_error(truth, given) if named else None,
+        gain=_gain(truth, given) if named else None,
+        gross=(int(gross["row"]), str(gross["channel"])) in (given.gross or ()) if gross else None,
         seconds=seconds,
         problem=problem,
     )
 
 
-def _joined(names: frozenset[str]) -> str:
+def _join(names: frozenset[str]) -> str:
     return " + ".join(sorted(names)) or "nothing"
 
 
-def _impact_error(truth: Mapping[str, Any], told: Answer) -> float | None:
+def _impact_error(truth: Mapping[str, Any], given: Answer) -> float | None:
     """Error of the impact over the impact, each channel by its repeatability; None below one repeatability."""
     sd = truth["repeat_sd"]
     true = np.array([truth["impact"][c] / sd[c] for c in sd])
     if np.abs(true).max() < 1.0:
         return None
-    said = np.array([(told.impact.get(c, 0.0) if told.alarm else 0.0) / sd[c] for c in sd])
+    said = np.array([(given.impact.get(c, 0.0) if given.alarm else 0.0) / sd[c] for c in sd])
     return float(np.linalg.norm(said - true) / np.linalg.norm(true))
 
 
-def _gain(truth: Mapping[str, Any], told: Answer) -> float | None:
+def _gain(truth: Mapping[str, Any], given: Answer) -> float | None:
     """Error of the extended over that of the nominal prediction; None where the oil changes by less than its noise.
 
     Points at which the rig runs away count for nothing.
@@ -137,10 +135,10 @@ def _gain(truth: Mapping[str, Any], told: Answer) -> float | None:
     points = [p for p in truth["points"] if math.isfinite(p["T_oil_C"])]
     if _rms([p["T_oil_C"] - p["T_oil_without_C"] for p in points]) < truth["repeat_sd"]["T_oil_K"]:
         return None
-    if any(p["point"] not in told.nominal or p["point"] not in told.extended for p in points):
+    if any(p["point"] not in given.nominal or p["point"] not in given.extended for p in points):
         return 1.0
-    before = _rms([told.nominal[p["point"]] - p["T_oil_C"] for p in points])
-    after = _rms([told.extended[p["point"]] - p["T_oil_C"] for p in points])
+    before = _rms([given.nominal[p["point"]] - p["T_oil_C"] for p in points])
+    after = _rms([given.extended[p["point"]] - p["T_oil_C"] for p in points])
     return after / max(before, 1e-6)
 
 
@@ -232,14 +230,14 @@ class Metric:
 def metrics(outcomes: Sequence[Outcome]) -> list[Metric]:
     """All metrics of some cases; the ambition is that of the own sheet where all of them are of it."""
     column = 1 if {o.sheet for o in outcomes} == {"own"} else 2
-    found = []
+    pooled = []
     for bar in BARS:
         values = [float(v) for v in map(bar.take, outcomes) if v is not None]
         value, interval = _summary(values, bar.how)
         must, ambitious = (bar.bars[0], bar.bars[column]) if bar.bars else (None, None)
-        met = [_reached(value, b, bar.at_most) for b in (must, ambitious)]
-        found.append(Metric(bar.name, value, interval, len(values), bar.at_most, must, met[0], ambitious, met[1]))
-    return found
+        met = [_reaches(value, b, bar.at_most) for b in (must, ambitious)]
+        pooled.append(Metric(bar.name, value, interval, len(values), bar.at_most, must, met[0], ambitious, met[1]))
+    return pooled
 
 
 def _summary(values: Sequence[float], how: str) -> tuple[float | None, tuple[float, float] | None]:
@@ -253,7 +251,7 @@ def _summary(values: Sequence[float], how: str) -> tuple[float | None, tuple[flo
     return mean, (mean - half, mean + half)
 
 
-def _reached(value: float | None, bar: float | None, at_most: bool) -> bool | None:
+def _reaches(value: float | None, bar: float | None, at_most: bool) -> bool | None:
     if value is None or bar is None:
         return None
     return value <= bar + 1e-12 if at_most else value >= bar - 1e-12

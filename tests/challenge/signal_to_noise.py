@@ -127,7 +127,7 @@ class Noise:
         names = [*s.prior, " ".join(s.days)]
         moves = [(name, rows) for name in ("n", "load") for rows in ((0,), (1,))] + [("room", (0, 1)), ("room", (2,))]
         m, copies = plan.columns, 1 + len(names) + len(moves)
-        big, base = plan.tiled(copies), tile(s.base, copies)
+        big, base = plan.tile(copies), tile(s.base, copies)
         here = [slice(i * m, (i + 1) * m) for i in range(copies)]
         for part, joined in zip(here[1:], names, strict=False):
             for name in joined.split():
@@ -162,7 +162,7 @@ class Noise:
         for some in (physical[k : k + size] for k in range(0, len(physical), size)):
             acting = [(faults[i], slice(k * m, (k + 1) * m), np.full(m, amounts[i])) for k, i in enumerate(some)]
             with np.errstate(all="ignore"):
-                y = s.run(s.plan.tiled(len(some)), tile(s.base, len(some)), acting)
+                y = s.run(s.plan.tile(len(some)), tile(s.base, len(some)), acting)
             changes[some] = np.moveaxis(y.reshape(*y.shape[:2], len(some), m) - self.healthy[:, :, None], 2, 0)
         return changes
 
@@ -255,7 +255,7 @@ class _Mixture:
         self.gram = self.columns.T @ self.columns
 
     def beside(self, q: np.ndarray) -> Callable[[np.ndarray], tuple[float, Callable[[], float]]]:
-        """What of a vector is left, beside what orthonormal columns q take up: a lower bound, and how to get it."""
+        """What the mixture leaves of a vector beside orthonormal columns q: a lower bound, and how to get the value."""
         inside = self.columns.T @ q
         R = np.linalg.cholesky(self.gram - inside @ inside.T + 1e-9 * np.eye(len(inside))).T
 

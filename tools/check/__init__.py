@@ -145,7 +145,7 @@ def run(*words: str) -> int:
     """Run a command in the checkout, one thread a process; its exit code."""
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     note(f"== {' '.join(words[1:])}")
-    environment = {**threads, **os.environ, "MYPYPATH": str(links())}
+    environment = {**threads, **os.environ, "MYPYPATH": f"{links()}{os.pathsep}{ROOT / 'tests'}"}
     return subprocess.run(words, cwd=ROOT, env=environment, check=False).returncode
 
 
@@ -156,7 +156,7 @@ def steps() -> dict[str, Callable[[], int]]:
     return {
         "lint": lambda: run(python, "-m", "ruff", "check", "."),
         "format": lambda: run(python, "-m", "ruff", "format", "--check", "."),
-        "types": lambda: run(python, "-m", "mypy", "-p", "gearheat"),
+        "types": lambda: run(python, "-m", "mypy", "-p", "gearheat", "-p", "challenge"),
         "lock": check_lock,
         "tests": lambda: run(python, "-m", "pytest", *parallel, "--durations=20"),
         "matrix": run_matrix,

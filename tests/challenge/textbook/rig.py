@@ -15,7 +15,8 @@ import numpy as np
 
 from ..plan import OIL, Plan
 
-N0, LOAD0 = 190.0, 2100.0  # middling speed [rpm] and torque [N.m]
+N0 = 190.0  # middling speed [rpm]
+LOAD0 = 2100.0  # middling torque [N.m]
 BODIES = ("oil", "gears", "carrier", "wall", "skin", "bed")
 RATIO = 4.0
 

@@ -4,11 +4,11 @@ import csv
 import json
 import re
 import shutil
+from functools import partial
 
 import pytest
-from diagnose.hidden.benches import HELICAL
-from diagnose.hidden.cases import HIDDEN
-from diagnose.hidden.maker import make
+from challenge.cases import make_case
+from challenge.model_rig import draw_steady
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.cli.app import app
 from gearheat.tools.docs.blocks import PAGES
@@ -24,15 +24,16 @@ def block(language: str) -> str:
 
 
 def test_the_page_for_ones_own_gearbox(tmp_path, monkeypatch) -> None:
-    case = make(HELICAL, [HIDDEN["helical"]["churning"]], 7, tmp_path / "made")
-    with case.data.open(encoding="utf-8", newline="") as file:
+    sheet = partial(draw_steady, machine="helical_two_stage")
+    make_case(sheet, 3, 7, 0, tmp_path / "made", kind="single", cause="losses.churning", apart=False)
+    with (tmp_path / "made" / "case" / "DATA.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))
     head, *examples = block("csv").splitlines()
     columns = head.split(",")
     with (tmp_path / "points.csv").open("w", encoding="utf-8", newline="") as file:
         table = csv.DictWriter(file, columns, extrasaction="ignore")
         table.writeheader()
-        table.writerows(rows)
+        table.writerows(rows[:20])
     assert all(len(line.split(",")) == len(columns) for line in examples)
     (tmp_path / "card.toml").write_text(block("toml"), "utf-8")
     shutil.copytree(RIGS / "helical_two_stage", tmp_path / "gearbox")
@@ -57,7 +58,7 @@ def campaign(tmp_path_factory: pytest.TempPathFactory):
     """The measured campaign of the planetary rig, diagnosed, and the page's section about it."""
     out = tmp_path_factory.mktemp("campaign") / "found.json"
     files = [str(RIGS / "planetary" / name) for name in ("measured.csv", "card.json")]
-    run = CliRunner().invoke(app, ["diagnose", files[0], "--card", files[1], "--json", str(out)])
+    run = CliRunner().invoke(app, ["diagnose", files[0], "--rig", "planetary", "--card", files[1], "--json", str(out)])
     assert run.exit_code == 0, run.output
     page = (PAGES / "trust" / "diagnosis.md").read_text("utf-8")
     return json.loads(out.read_text("utf-8")), page.partition("## The measured campaign\n")[2]

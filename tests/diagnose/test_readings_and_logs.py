@@ -2,12 +2,12 @@
 
 import csv
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-from diagnose.hidden.benches import HELICAL
-from diagnose.hidden.cases import HIDDEN
-from diagnose.hidden.maker import make
+from challenge.cases import Drawn, make_case
+from challenge.model_rig import draw_steady
 from gearheat.tools.cli.app import app
 from typer.testing import CliRunner
 
@@ -57,9 +57,16 @@ def log(folder: Path, name: str, seed: int, *changes: str) -> Path:
     )
 
 
+def draw(rng: np.random.Generator) -> Drawn:
+    """Readings of a rig whose foot conducts three times as much."""
+    drawn = draw_steady(rng, "helical_two_stage")
+    return replace(drawn, base={**drawn.base, "foot": 3.0})
+
+
 def test_a_foot_that_conducts_more_is_told_by_both(tmp_path: Path) -> None:
-    case = make(HELICAL, [HIDDEN["helical"]["foundation"]], 7, tmp_path / "made")
-    asked = ["diagnose", case.data, "--rig", "helical_two_stage", "--card", case.card, "--quick", "--json", "-"]
+    make_case(draw, 3, 7, 0, tmp_path, kind="clean")
+    data, card = (tmp_path / "case" / name for name in ("DATA.csv", "CARD.json"))
+    asked = ["diagnose", data, "--rig", "helical_two_stage", "--card", card, "--quick", "--json", "-"]
     logs = ["--logs", log(tmp_path, "now", 2, "foot.G=9 W/K"), "--reference-logs", log(tmp_path, "past", 1)]
     alone, both = (json.loads(called(*asked, *more)) for more in ([], logs))
     cause = ["cooling.foundation"]
