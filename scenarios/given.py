@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol, runtime_checkable
 
@@ -55,13 +55,14 @@ def written(value: Any, quantity: Quantity | None = None) -> str:
     return repr(float(value)) if unit == "1" else f"{float(value)!r} {unit}"
 
 
-def assignments_of(given: Settings, known: Mapping[str, Quantity]) -> list[str]:
+def assignments_of(given: Settings, known: Callable[[], Mapping[str, Quantity]]) -> list[str]:
     """What is set as texts "NAME=VALUE".
 
     Args:
         given: by name, or such texts
-        known: the quantity of each name that may be set
+        known: tells the quantity of each name that may be set; asked where values have names
     """
     if not isinstance(given, Mapping):
         return list(given)
-    return [f"{name}={written(value, known.get(name))}" for name, value in given.items()]
+    quantities = known()
+    return [f"{name}={written(value, quantities.get(name))}" for name, value in given.items()]

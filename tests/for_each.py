@@ -1,15 +1,16 @@
-"""One test of many cases, for checks so small that a test each would cost more than what it asks."""
+"""Tests of many cases: one test of all of them where each is small, one case of each kind where each is large."""
 
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Iterable
-from typing import Any
+from collections.abc import Callable, Hashable, Iterable
+from typing import Any, TypeVar
 
 #: Whether every case of a check is tried, also where a few stand for all of them.
 ALL = os.environ.get("GEARHEAT_TESTS") == "all"
 
 Check = Callable[..., None]
+T = TypeVar("T")
 
 
 def for_each(
@@ -38,3 +39,19 @@ def for_each(
         return test
 
     return join
+
+
+def one_of_each(cases: Iterable[T], kind: Callable[[T], Hashable]) -> list[T]:
+    """The cases, or one of each kind: the first, second, third ... in turn, so that all positions are met.
+
+    Args:
+        cases: all of them
+        kind: what cases have in common of which one is enough
+    """
+    every = list(cases)
+    if ALL:
+        return every
+    groups: dict[Hashable, list[T]] = {}
+    for case in every:
+        groups.setdefault(kind(case), []).append(case)
+    return [group[k % len(group)] for k, group in enumerate(groups.values())]

@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from fmpy import simulate_fmu
 from fmpy.validation import validate_fmu
+from for_each import one_of_each
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
 from gearheat.scenarios.load import list_rigs, load
-from selection import one_of_each
 
 RIGS = tuple(one_of_each(list_rigs(), lambda rig: tuple(part.type for part in load(rig).spec.parts)))
 END = 7200.0

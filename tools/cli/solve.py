@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
@@ -10,6 +10,7 @@ import typer
 
 from ...model.errors import ScenarioError
 from ..show import console
+from ..show.display import Display
 from ..show.notes import print_outside, print_unchecked
 from .options import Everything, Extended, Jobs, Json, Plot, Rig, Set
 
@@ -31,7 +32,7 @@ def steady(
 
     console.plottable(plot)
     state = gh.steady(extended or rig, set_ or [])
-    found = _drawn(state.as_dict(), plot, state.heat)
+    found = _drawn(state.as_dict(), plot, state)
     shows = list(state.result.columns) if everything else state.first
     console.answer(found, json, lambda: _print_point(state.title, state.rows(shows), found))
 
@@ -143,7 +144,7 @@ def sweep(
     )
     found = rows.as_dict()
     if plot is not None:
-        found = _drawn(found, plot, rows.contours if rows.summary.count else None, say=False)
+        found = _drawn(found, plot, rows, say=False)
     console.answer(found, json, lambda: _print_sweep(rows, found))
     rows.check()
 
@@ -167,7 +168,7 @@ def map_(
     console.plottable(plot)
     points = gh.map(rig, speed=speed, torque=torque, grid=grid, output=output or [], set=set_ or [])
     points.save(out)
-    found = _drawn({**points.as_dict(), "out": str(out)}, plot, points.contours, say=False)
+    found = _drawn({**points.as_dict(), "out": str(out)}, plot, points, say=False)
     console.answer(found, json, lambda: _print_map(points, found))
 
 
@@ -193,16 +194,14 @@ def rating(
     console.answer(found, json, lambda: _print_rating(powers))
 
 
-def _drawn(
-    found: dict[str, Any], plot: Path | None, picture: Callable[[], Any] | None, *, say: bool = True
-) -> dict[str, Any]:
+def _drawn(found: dict[str, Any], plot: Path | None, result: Display, *, say: bool = True) -> dict[str, Any]:
     """The object with the place of its picture, which is written."""
     if plot is None:
         return found
-    if picture is not None:
+    if (picture := result.drawing()) is not None:
         from ..show.plotting import write_picture
 
-        write_picture(plot, picture())
+        write_picture(plot, picture)
         if say:
             console.note(f"wrote {plot}")
     return found | {"plot": str(plot)}
@@ -218,7 +217,7 @@ def print_run(run: TimeSeries, out: Path, plot: Path | None, json: str | None) -
         json: where the JSON object goes
     """
     run.save(out)
-    found = _drawn({**run.as_dict(), "out": str(out)}, plot, run.courses)
+    found = _drawn({**run.as_dict(), "out": str(out)}, plot, run)
     console.answer(found, json, lambda: print_end(out, found))
 
 

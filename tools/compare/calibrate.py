@@ -19,7 +19,7 @@ from ...model.units import from_si, shown, to_si
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.measured.study import Measured, measured_of
 from ..show.console import note
-from ..show.display import Display
+from ..show.display import Answer
 from ..solve.settings import adjusted, flat_of
 from . import campaign
 
@@ -46,7 +46,7 @@ class Fit:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Calibration(Display):
+class Calibration(Answer):
     """Parameters fitted to measured oil temperatures.
 
     Attributes:
@@ -67,10 +67,6 @@ class Calibration(Display):
         """Values with standard errors, and those before."""
         rows = [(n, f["value"], f["standard_error"], f["unit"], f["start"]) for n, f in self.found["free"].items()]
         return ("name", "value", "standard error", "unit", "before"), rows
-
-    def as_dict(self) -> dict[str, Any]:
-        """The JSON object."""
-        return dict(self.found)
 
 
 def calibrate(

@@ -21,7 +21,7 @@ from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
 from ...scenarios.measured.oils import bath_of
 from ...scenarios.measured.study import Measured, measured_of
 from ...scenarios.scenario import Scenario
-from ..show.display import Display
+from ..show.display import Answer
 from ..solve.contacts import contacts_at, part_with_contacts
 from ..solve.settings import adjusted, choice_paths, flat_of
 from ..solve.steady import conditions, outside_of
@@ -30,7 +30,7 @@ from .readings import about
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class LossTable(Display):
+class LossTable(Answer):
     """Losses at all readings of a rig, or at the operating point of a rig without measured data.
 
     Attributes:
@@ -50,10 +50,6 @@ class LossTable(Display):
         """A row per reading."""
         rows = self.found["rows"]
         return list(rows[0]), [list(row.values()) for row in rows]
-
-    def as_dict(self) -> dict[str, Any]:
-        """The JSON object."""
-        return dict(self.found)
 
 
 def losses(
@@ -90,7 +86,7 @@ def losses(
     if power_flow is not None and not flows:
         raise ScenarioError(f"{scenario.name}: no part has a choice of power flow. Leave out --power-flow.")
     chosen = [f"{path}={power_flow}" for path in flows if power_flow is not None]
-    scenario = adjusted(scenario, [*assignments_of(set, scenario.settable()), *chosen])
+    scenario = adjusted(scenario, [*assignments_of(set, scenario.settable), *chosen])
     if not scenario.losses:
         raise ScenarioError(f"{scenario.path.name}: there is no table [losses]. Say which outputs each column sums.")
     study = measured_of(scenario, data, card)

@@ -11,7 +11,7 @@ from ...model.errors import DataError
 from ...scenarios.given import RigLike
 from ...scenarios.measured.study import loaded, measured_of
 from ..show.console import note
-from ..show.display import Display
+from ..show.display import Answer
 from . import summary
 from .errors import Comparison
 from .errors import compare as compare_rows
@@ -20,7 +20,7 @@ from .rivals import Score, rivals
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Errors(Display):
+class Errors(Answer):
     """Errors of simulated readings, with the noise floor and statistical rivals.
 
     Attributes:
@@ -45,10 +45,6 @@ class Errors(Display):
     def groups(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """Errors by group, simulated minus measured."""
         return summary.group_lines(self.comparison)
-
-    def as_dict(self) -> dict[str, Any]:
-        """The JSON object."""
-        return dict(self.found)
 
 
 def compare(result: str | Path, data: str | Path, rig: RigLike, *, card: str | Path | None = None) -> Errors:

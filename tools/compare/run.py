@@ -19,7 +19,7 @@ from ...scenarios.scenario import Scenario
 from ..describe import description as describe
 from ..export.fmu import write_fmu
 from ..show.console import as_json, folder, note, write
-from ..show.display import Display
+from ..show.display import Answer
 from ..show.notes import unchecked_lines
 from ..solve.settings import adjusted, flat_of
 from ..solve.unchecked import unchecked
@@ -35,7 +35,7 @@ ROW = ("point", "test", "direction", "oil", "T_oil_C", "T_wall_C", "T_amb_C", "l
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CampaignRun(Display):
+class CampaignRun(Answer):
     """Measured tests that were played through the FMU, beside their readings.
 
     Attributes:
@@ -64,10 +64,6 @@ class CampaignRun(Display):
     def groups(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """Errors by group, simulated minus measured."""
         return summary.group_lines(self.comparison) if self.comparison is not None else ((), ())
-
-    def as_dict(self) -> dict[str, Any]:
-        """The JSON object."""
-        return dict(self.found)
 
 
 def run(

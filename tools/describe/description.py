@@ -15,7 +15,7 @@ from ...model.sources import LawInfo, sources
 from ...model.units import from_si, in_unit, shown, text
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
-from ..show.display import Display
+from ..show.display import Answer
 from ..solve.settings import flat_of
 from ..solve.steady import conditions, leading_outputs, outside_of
 from ..solve.unchecked import unchecked
@@ -26,7 +26,7 @@ TEMPERATURE_AND_SPEED = ("K", "rad/s")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Description(Display):
+class Description(Answer):
     """What a rig is.
 
     Attributes:
@@ -51,10 +51,6 @@ class Description(Display):
         head = ("name", "value", "unit", "doc", "source")
         lines = [{**p, **(p["written"] or {})} for p in self.found["parameters"]]
         return head, [[line[key] for key in head] for line in lines]
-
-    def as_dict(self) -> dict[str, Any]:
-        """Everything the rig file says, parameters in the units of the file and in those of all."""
-        return self.found
 
     def effects(self) -> tuple[str, Sequence[str], list[list[Any]]] | None:
         """Title, head and rows of the parameters that matter most; None without a steady state or an effect."""

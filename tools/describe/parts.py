@@ -23,11 +23,11 @@ from ...scenarios.load import load
 from ...scenarios.scenario import Scenario
 from ...scenarios.shipped import FILES, list_rigs
 from ...scenarios.values import settable
-from ..show.display import Display
+from ..show.display import Answer
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class PartTypes(Display):
+class PartTypes(Answer):
     """All part types, or everything about one of them.
 
     Attributes:
@@ -47,10 +47,6 @@ class PartTypes(Display):
             return ("type", "role", "what it is"), [(t["type"], t["role"], t["doc"]) for t in self.found["types"]]
         head = ("name", "unit", "range", "default", "doc")
         return head, [[line[key] for key in head] for line in self.found["parameters"]]
-
-    def as_dict(self) -> dict[str, Any]:
-        """The JSON object."""
-        return dict(self.found)
 
 
 def parts(kind: str | None = None) -> PartTypes:

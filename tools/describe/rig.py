@@ -13,14 +13,13 @@ from ...model.core.declare import Choice, declared
 from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError
 from ...model.machines.spec import PartSpec, Spec
-from ...model.units import in_unit
 from ...scenarios.given import Settings, assignments_of
 from ...scenarios.load import load as read_rig
 from ...scenarios.scenario import Scenario, parse_assignments
 from ...scenarios.shipped import list_rigs
 from ...scenarios.write import rig_text
 from ..show.console import write
-from ..show.display import Display
+from ..show.display import Quantities
 from ..solve.settings import adjusted, choice_paths, flat_of
 from .description import Description, show
 
@@ -29,7 +28,7 @@ ADDED = "set in Python"
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Rig(Display):
+class Rig(Quantities):
     """A gearbox with all its values. Nothing changes it: `with_` and `join` give new rigs.
 
     Attributes:
@@ -63,18 +62,6 @@ class Rig(Display):
             choice = declared(self.scenario.spec.types[self.parts[part]], Choice)[key]
             return self.scenario.spec.part(part).values.get(key, choice.default)
         return self.flat.quantity(name).start
-
-    def to(self, name: str, unit: str) -> float:
-        """A value in a unit.
-
-        Args:
-            name: path, such as "cooling.A"
-            unit: such as "m2"
-
-        Raises:
-            ScenarioError: there is no such value, or the unit does not fit
-        """
-        return in_unit(float(self[name]), unit)
 
     def with_(self, set: Settings) -> Rig:
         """The rig with other values.
@@ -167,8 +154,8 @@ def assemble(
     """
     scenario = Scenario(name, name, "network", Path(f"{name}.toml"), Spec(name, name, (), ()), {}, {})
     joined = Rig(scenario).join(*parts, nets=nets).scenario.driven(drive)
-    values = parse_assignments(joined, assignments_of(point, joined.settable()))
-    return Rig(replace(joined.with_values(values, ADDED), operating_point=values))
+    values = parse_assignments(joined, assignments_of(point, joined.settable))
+    return Rig(joined.with_values(values, ADDED))
 
 
 def load(rig: str | Path) -> Rig:

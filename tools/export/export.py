@@ -63,7 +63,7 @@ def export(
     asked = Asked(
         scenario,
         Path(out),
-        assignments_of(set, scenario.settable()),
+        assignments_of(set, scenario.settable),
         drive,
         given,
         platform,

@@ -26,7 +26,7 @@ from ...scenarios.entries import catalogue
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.console import folder, lasting, progress_bar, writable
-from ..show.display import Display
+from ..show.display import Answer
 from ..show.network import network_svg
 from ..solve.settings import Drive, adjusted, driven_at, flat_of
 from ..solve.simulate import first_temperatures
@@ -80,7 +80,7 @@ class Asked:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Exported(Display):
+class Exported(Answer):
     """What was written.
 
     Attributes:
@@ -105,10 +105,6 @@ class Exported(Display):
             fmus = self.found["fmus"].items()
             return ("FMU", "inputs", "outputs"), [(n, len(f["inputs"]), len(f["outputs"])) for n, f in fmus]
         return ("name", "causality"), [(n, kind[:-1]) for kind in ("inputs", "outputs") for n in self.found[kind]]
-
-    def as_dict(self) -> dict[str, Any]:
-        """The JSON object."""
-        return dict(self.found)
 
 
 def export_rig(asked: Asked) -> Exported:

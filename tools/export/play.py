@@ -47,7 +47,7 @@ def play(fmu: str | Path, duty: Duty, *, step: str = "60 s", set: Settings = (),
         note(f"{fmu}: running native code of {made_by}")
     with Player(about) as player, duty_file(duty) as path:
         schedule = read_duty(path, about.quantities("input"))
-        start = _start(about, assignments_of(set, about.quantities("start")))
+        start = _start(about, assignments_of(set, lambda: about.quantities("start")))
         first = start | {name: float(values[0]) for name, values in schedule.values.items()}
         start = _at_room(about, first) | start
         inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}

@@ -21,7 +21,7 @@ from ...model.units import from_si, shown
 from ...scenarios.film_map import COLUMNS, FAILED, OK, FittedMap, read_film_map
 from ...scenarios.load import load
 from ..show.console import counting, note, writable, write
-from ..show.display import Display
+from ..show.display import Answer
 from ..solve.settings import adjusted
 from ..solve.sweep_file import Store, work_file
 from .case import AXES, MapCase, from_file, from_rig
@@ -63,7 +63,7 @@ class Request:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class FilmTable(Display):
+class FilmTable(Answer):
     """Films of a contact over load, speed and temperature, and the law fitted to them.
 
     Attributes:
@@ -83,10 +83,6 @@ class FilmTable(Display):
         """What is varied."""
         rows = [(k, v["low"], v["high"], v["unit"]) for k, v in self.found["varied"].items()]
         return ("varied", "low", "high", "unit"), rows
-
-    def as_dict(self) -> dict[str, Any]:
-        """The JSON object."""
-        return dict(self.found)
 
 
 def film(

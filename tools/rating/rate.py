@@ -15,7 +15,7 @@ from ...model.sources import LawInfo, LawUse, recording
 from ...model.units import from_si
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.values import in_range
-from ..show.display import Display
+from ..show.display import Answer
 from ..solve.settings import adjusted
 from .bearings import FACTORS
 from .gather import machine_of
@@ -31,7 +31,7 @@ DEPTH = Quantity("", "m", "depth to which a gear dips", low=0.0)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class MethodRating(Display):
+class MethodRating(Answer):
     """Losses of the model beside those of a reference method, and what the method rates.
 
     Attributes:
@@ -58,10 +58,6 @@ class MethodRating(Display):
         rows.append(["efficiency", *(found["eta"][n] for n in columns)])
         rows.append(["oil [degC]", *(found["T_oil_C"][n] for n in columns)])
         return ("", *(names[n] for n in columns)), rows
-
-    def as_dict(self) -> dict[str, Any]:
-        """The JSON object."""
-        return dict(self.found)
 
 
 def rate_by_method(

@@ -6,10 +6,14 @@ import importlib
 from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from ...model.errors import DataError
+from ...model.units import in_unit
 from .console import as_json, cell, write
+
+if TYPE_CHECKING:
+    from .plotting import Picture
 
 #: Lines of a result in a console; a notebook shows all.
 LINES = 10
@@ -43,9 +47,9 @@ class Display:
         """The JSON object that the command prints."""
         raise NotImplementedError
 
-    def picture(self) -> str:
-        """The result drawn as SVG, "" where there is nothing to draw."""
-        return ""
+    def drawing(self) -> Picture | None:
+        """The result as a picture, None where there is nothing to draw."""
+        return None
 
     def __repr__(self) -> str:
         head, rows = self.table()
@@ -56,10 +60,13 @@ class Display:
         return "\n".join([self.title, *lines, *more])
 
     def _repr_html_(self) -> str:
+        from .drawing import svg
+        from .pages import html_table
+
         head, rows = self.table()
-        body = [f"<tr>{''.join(f'<td>{escape(cell(value))}</td>' for value in row)}</tr>" for row in rows]
-        heads = "".join(f"<th>{escape(name)}</th>" for name in head)
-        return f"<b>{escape(self.title)}</b>\n<table><tr>{heads}</tr>\n{''.join(body)}</table>\n{self.picture()}"
+        drawn = self.drawing()
+        table = html_table(head, [[cell(value) for value in row] for row in rows])
+        return f"<b>{escape(self.title)}</b>\n{table}\n{svg(drawn.figure) if drawn is not None else ''}"
 
     def to_pandas(self) -> Any:
         """The table as a DataFrame.
@@ -81,6 +88,40 @@ class Display:
         """
         write(Path(path), as_json(self.as_dict()))
         return Path(path)
+
+
+class Answer(Display):
+    """Base of results that are their JSON object.
+
+    Attributes:
+        found: the JSON object
+    """
+
+    found: Mapping[str, Any]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object that the command prints."""
+        return dict(self.found)
+
+
+class Quantities(Display):
+    """Base of results that hold values by name in SI."""
+
+    def __getitem__(self, name: str) -> Any:
+        """A value in SI."""
+        raise NotImplementedError
+
+    def to(self, name: str, unit: str) -> float:
+        """A value in a unit.
+
+        Args:
+            name: path, such as "oil.T"
+            unit: such as "degC"
+
+        Raises:
+            ScenarioError: there is no such value, or the unit does not fit
+        """
+        return in_unit(float(self[name]), unit)
 
 
 def lines_of(values: Mapping[str, Any]) -> list[tuple[str, Any]]:

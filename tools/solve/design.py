@@ -11,10 +11,10 @@ from ...model.core.flat import FlatModel, Quantity
 from ...model.errors import GearheatError, ScenarioError, SolveError, suggestion
 from ...model.run.design import Design
 from ...model.run.least import Target, least_change, rank, unchanged
-from ...model.units import from_si, in_unit, shown
+from ...model.units import from_si, shown
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, written
 from ...scenarios.scenario import Scenario, parse_assignments
-from ..show.display import Display
+from ..show.display import Answer, Quantities
 from .settings import adjusted, flat_of
 from .steady import HEAD, conditions, first_of, point_of
 from .unchecked import unchecked
@@ -48,7 +48,7 @@ class _Case:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class DesignAnswer(Display):
+class DesignAnswer(Quantities, Answer):
     """What has to change for outputs to be as asked, or the alternatives of a catalogue, the best first.
 
     Attributes:
@@ -68,18 +68,6 @@ class DesignAnswer(Display):
         if name not in self.state:
             raise ScenarioError(f'{self.setting.name}: the design has no "{name}".{suggestion(name, self.state)}')
         return self.state[name]
-
-    def to(self, name: str, unit: str) -> float:
-        """A value in a unit.
-
-        Args:
-            name: path, such as "cooling.A"
-            unit: such as "m2"
-
-        Raises:
-            ScenarioError: the unit does not fit
-        """
-        return in_unit(self[name], unit)
 
     @property
     def title(self) -> str:
@@ -105,10 +93,6 @@ class DesignAnswer(Display):
     def first(self) -> list[str]:
         """What a first answer holds of the steady state."""
         return first_of(self.setting, self.flat, self.found["values"])
-
-    def as_dict(self) -> dict[str, Any]:
-        """The JSON object."""
-        return dict(self.found)
 
 
 def alternatives_table(found: Mapping[str, Any]) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
@@ -156,7 +140,7 @@ def design(
     """
     scenario = scenario_of(rig)
     part, names = _alternatives(scenario, among)
-    targets, assignments = list(target), assignments_of(set, scenario.settable())
+    targets, assignments = list(target), assignments_of(set, scenario.settable)
     if isinstance(target, Mapping):
         known = scenario.readable()
         targets = [_written_target(name, value, known.get(name)) for name, value in target.items()]

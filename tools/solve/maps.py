@@ -116,18 +116,12 @@ class Map(Display):
         write(Path(path), table_text(self.head, list(self.columns.values())))
         return Path(path)
 
-    def contours(self) -> Picture:
+    def drawing(self) -> Picture:
         """A panel of contours for each output."""
         from ..show.fields import Field, fields
 
         drawn = [Field(n, self.units[n], c) for n, c in self.columns.items()]
         return fields(f"{self.rig}: {drawn[0].name} and {drawn[1].name}", drawn[:2], drawn[2:])
-
-    def picture(self) -> str:
-        """The contours as SVG."""
-        from ..show.drawing import svg
-
-        return svg(self.contours().figure)
 
 
 def map_outputs(
@@ -162,7 +156,7 @@ def map_outputs(
     ranges = zip(paths, (speed, torque), strict=True)
     vary = [f"{path}={written or usual_range(scenario, path)}" for path, written in ranges]
     shows = list(output) or leading_outputs(scenario)
-    assignments = assignments_of(set, scenario.settable())
+    assignments = assignments_of(set, scenario.settable)
     plan = plan_sweep(Request(scenario, vary, None, grid=grid, assignments=assignments, outputs=shows))
     rows = np.concatenate([found for _, found in sorted(local(plan.job, enumerate([plan.values]), 0))])
     rows[rows[:, len(shows)] != 0, : len(shows)] = np.nan
@@ -270,7 +264,7 @@ def rating(
     varied = sampling.read([f"{place}={room or '0..40 degC'}", f"{driven}={speed or usual_range(scenario, driven)}"])
     setting = adjusted(scenario, set, named=[place, driven])
     flat = flat_of(setting)
-    (written,) = [limit] if isinstance(limit, str) else assignments_of(limit, scenario.readable())
+    (written,) = [limit] if isinstance(limit, str) else assignments_of(limit, scenario.readable)
     aim = parse_assignments(flat, [written])
     axes = sampling.axes(varied, {name: flat.quantity(name) for name in (place, driven)})
     values = sampling.gridded(axes, grid)

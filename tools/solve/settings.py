@@ -43,7 +43,7 @@ def adjusted(
     Raises:
         ScenarioError: all problems of all assignments at once
     """
-    assignments = assignments_of(assignments, scenario.settable())
+    assignments = assignments_of(assignments, scenario.settable)
     choices, problems = _choices(scenario.spec, assignments)
     problems += _doubled(assignments)
     values: dict[str, float] = {}

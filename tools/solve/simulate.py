@@ -15,7 +15,7 @@ from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError, suggestion
 from ...model.run.schedule import Schedule
 from ...model.run.simulate import simulate as integrate
-from ...model.units import from_si, in_unit, shown, si_of
+from ...model.units import from_si, in_unit, shown
 from ...scenarios.duty import duty_names, read_duty
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
@@ -139,36 +139,22 @@ class TimeSeries(Display):
         Raises:
             DataError: it cannot be read
         """
-        from ...scenarios.columns import split_unit
+        from ...scenarios.columns import in_si, split_unit
         from ...scenarios.csv_table import read_cells
 
         header, rows = read_cells(Path(path))
         numbers = np.array([[float(text) for text in cells] for _, cells in rows])
         names, units = zip(*map(split_unit, header), strict=True)
-        si = {unit: (si_of(f"0 {unit}"), si_of(f"1 {unit}")) for unit in set(units) if unit not in ("", "1")}
-        columns = {
-            name: numbers[:, k] if unit not in si else si[unit][0] + numbers[:, k] * (si[unit][1] - si[unit][0])
-            for k, (name, unit) in enumerate(zip(names, units, strict=True))
-        }
-        kept = {"degC": "K", "rpm": "rad/s"}
-        return cls(
-            Path(path).stem,
-            columns.pop(names[0]),
-            columns,
-            {n: kept.get(u, u) for n, u in zip(names, units, strict=True)},
-        )
+        si = [{"degC": "K", "rpm": "rad/s"}.get(unit, unit or "1") for unit in units]
+        kinds = zip(names, units, si, strict=True)
+        columns = {name: in_si(numbers[:, k], unit, kind, name=name) for k, (name, unit, kind) in enumerate(kinds)}
+        return cls(Path(path).stem, columns.pop(names[0]), columns, dict(zip(names, si, strict=True)))
 
-    def courses(self) -> Picture:
+    def drawing(self) -> Picture:
         """The temperatures as a picture that a page can zoom."""
         from ..show.courses import courses
 
         return courses(self.name, self.time, self.columns, self.units)
-
-    def picture(self) -> str:
-        """The temperatures as SVG."""
-        from ..show.drawing import svg
-
-        return svg(self.courses().figure)
 
     def plot(self, *names: str, axes: Axes | None = None) -> Axes:
         """Draw columns over time, in the units shown to a person.

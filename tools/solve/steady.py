@@ -12,10 +12,10 @@ from ...model.core.flatten import flatten
 from ...model.machines.spec import assemble
 from ...model.run.result import Result
 from ...model.run.steady import steady as solve
-from ...model.units import from_si, in_unit, shown
+from ...model.units import from_si, shown
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
-from ..show.display import Display
+from ..show.display import Quantities
 from ..show.heat_paths import heat_flows, heat_paths
 from .settings import adjusted, flat_of
 from .unchecked import unchecked
@@ -30,7 +30,7 @@ HEAD = ("name", "value", "unit", "meaning")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SteadyState(Display):
+class SteadyState(Quantities):
     """A rig at rest with its surroundings.
 
     Attributes:
@@ -46,18 +46,6 @@ class SteadyState(Display):
     def __getitem__(self, name: str) -> float:
         """Value of a state, input or output in SI. Raises KeyError with suggestions for an unknown name."""
         return float(self.result[name][0])
-
-    def to(self, name: str, unit: str) -> float:
-        """A value in a unit.
-
-        Args:
-            name: path, such as "oil.T"
-            unit: such as "degC"
-
-        Raises:
-            ScenarioError: the unit does not fit
-        """
-        return in_unit(self[name], unit)
 
     def losses(self) -> dict[str, float]:
         """Loss power of each part that has one [W]; of a part with several kinds their sum."""
@@ -102,7 +90,7 @@ class SteadyState(Display):
             "unchecked": unchecked(self.scenario, self.flat),
         }
 
-    def heat(self) -> Picture:
+    def drawing(self) -> Picture:
         """Where the heat comes from and where it goes, as a Sankey diagram."""
         from ..show.sankey import heat_picture
 
@@ -112,12 +100,6 @@ class SteadyState(Display):
         there = solve(with_flows, conditions(self.scenario, with_flows), guess=guess)
         values = {name: float(column[0]) for name, column in there.columns.items()}
         return heat_picture(self.scenario.name, heat_paths(assembly, values), values)
-
-    def picture(self) -> str:
-        """The Sankey diagram as SVG."""
-        from ..show.drawing import svg
-
-        return svg(self.heat().figure)
 
     def plot(self, axes: Axes | None = None) -> Axes:
         """Draw the losses of the parts as bars.

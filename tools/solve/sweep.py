@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ...fmu.batch import Status
-from ...model.errors import DataError, SolveError
+from ...model.errors import SolveError
 from ...model.units import from_si, shown
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, written
 from ..show.console import counting, note
@@ -22,7 +22,7 @@ from ..show.display import Display, optional
 from . import sampling
 from .simulate import Duty, duty_file
 from .sweep_file import Column, Store, words, work_file, write_table
-from .sweep_plan import Plan, Request, plan_sweep
+from .sweep_plan import MOST_DRAWN, Plan, Request, plan_sweep
 from .sweep_rows import TELLING, Block, clustered, local
 
 if TYPE_CHECKING:
@@ -91,13 +91,13 @@ class Sweep(Display):
         cells = zip(self.plan.columns, self.plan.cells(whole, self.rows), strict=True)
         return pandas.DataFrame({c.title: words(n) if c.name == "status" else c.values(n) for c, n in cells})
 
-    def contours(self) -> Picture:
-        """Lines over one quantity that is varied, contours over two; of a warm-up its end."""
+    def drawing(self) -> Picture | None:
+        """Lines over one quantity that is varied, contours over two; of a warm-up its end. None without rows."""
         from ..show.fields import Field, fields
 
         plan, found = self.plan, self.rows
-        if found is None:
-            raise DataError("the rows of this sweep are in its table alone; ask for the picture with the sweep.")
+        if found is None or not 1 <= len(plan.axes) <= MOST_DRAWN:
+            return None
         every = len(plan.job.times) or 1
         ends = found[every - 1 :: every]
         ends = np.where(ends[:, [len(plan.job.outputs)]] == Status.OK, ends, np.nan)
@@ -158,9 +158,10 @@ def sweep(
         >>> len(rows.plan.values)
         5
     """
-    known = (scenario := scenario_of(rig)).settable()
+    scenario = scenario_of(rig)
     texts, counts = list(vary), []
     if isinstance(vary, Mapping):
+        known = scenario.settable()
         texts = [f"{n}={written(ends[0], known.get(n))}..{written(ends[1], known.get(n))}" for n, ends in vary.items()]
         counts = [str(ends[2]) for ends in vary.values() if len(ends) > 2]
     with duty_file(duty) if duty is not None else nullcontext() as path, tempfile.TemporaryDirectory() as folder:
@@ -172,7 +173,7 @@ def sweep(
             grid or ("x".join(counts) if counts else None),
             method,
             seed,
-            assignments_of(set, known),
+            assignments_of(set, scenario.settable),
             output,
             kind,
             path,
