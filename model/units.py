@@ -5,12 +5,20 @@ from __future__ import annotations
 import functools
 import math
 import re
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from .errors import ScenarioError
 
+if TYPE_CHECKING:
+    import numpy as np
+
+#: A number, or an array of numbers.
+N = TypeVar("N", float, "np.ndarray[Any, Any]")
+
 #: Unit shown to a person for an SI unit of the model, with pint's name for it.
 DISPLAY = {"K": "degC", "rad/s": "rpm"}
+#: The SI unit of each of them.
+SHOWN = {unit: si for si, unit in DISPLAY.items()}
 
 #: Spellings met in practice -> the one that is used here.
 SPELLINGS = {
@@ -151,8 +159,8 @@ def kind_of(unit: str) -> str:
         raise ScenarioError(f'there is no unit "{unit}". Write for example "N.m", "degC" or "mPa.s".') from None
 
 
-def in_unit(number: float, unit: str) -> float:
-    """An SI number in a unit of its kind.
+def in_unit(number: N, unit: str) -> N:
+    """An SI number in a unit of its kind, or an array of them.
 
     Args:
         number: in SI
@@ -165,7 +173,8 @@ def in_unit(number: float, unit: str) -> float:
     base = _magnitude(unit).to_base_units()
     if " at " in unit:
         return number / float(base.magnitude)
-    return float(_registry().Quantity(number, base.units).to(_pint_unit(unit)).magnitude)
+    found: N = _registry().Quantity(number, base.units).to(_pint_unit(unit)).magnitude
+    return found
 
 
 def si_of(value: float | str) -> float:
@@ -198,11 +207,11 @@ def shown(unit: str) -> str:
     return "K" if unit.endswith("(difference)") else DISPLAY.get(unit, unit)
 
 
-def from_si(number: float, unit: str) -> float:
+def from_si(number: N, unit: str) -> N:
     """An SI number in the unit it is shown in: K -> degC, rad/s -> rpm, else unchanged.
 
     Args:
-        number: a value in SI
+        number: a value in SI, or an array of them
         unit: its SI unit, such as "K"
     """
     if unit == "K":

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +13,7 @@ from ...model.units import from_si, shown
 def series(time: np.ndarray, columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> str:
     """A table over time as CSV, in the units shown to a person, named in the header like those of a duty."""
     head = ["time [s]", *(f"{name} [{shown(units[name])}]" for name in columns)]
-    return table_text(head, [time, *(from_si(cast(Any, column), units[name]) for name, column in columns.items())])
+    return table_text(head, [time, *(from_si(column, units[name]) for name, column in columns.items())])
 
 
 def table_text(head: Sequence[str], columns: Sequence[Any]) -> str:

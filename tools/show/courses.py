@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 
@@ -29,7 +29,7 @@ def courses(title: str, time: np.ndarray, columns: Mapping[str, np.ndarray], uni
         units: SI unit of each column
     """
     unit, size, _ = next(u for u in UNITS if time[-1] - time[0] >= u[2])
-    warm = {name: np.asarray(from_si(cast(Any, c), "K")) for name, c in columns.items() if units[name] == "K"}
+    warm = {name: from_si(c, "K") for name, c in columns.items() if units[name] == "K"}
     figure, (panel,) = empty(12.0, 5.0 + 0.25 * (len(warm) // 4), 1, 1)
     colours = [COLOURS[i % len(COLOURS)] for i in range(len(warm))]
     for i, (name, values) in enumerate(warm.items()):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -167,13 +167,8 @@ def map_outputs(
         )
     names = [*paths, *shows]
     columns = [*plan.values.T, *rows[:, : len(shows)].T]
-    found = {n: _shown(c, plan.flat.quantity(n).unit) for n, c in zip(names, columns, strict=True)}
+    found = {n: from_si(c, plan.flat.quantity(n).unit) for n, c in zip(names, columns, strict=True)}
     return Map(plan.rig, found, {n: shown(plan.flat.quantity(n).unit) for n in names})
-
-
-def _shown(values: np.ndarray, unit: str) -> np.ndarray:
-    """SI values in the unit they are shown in."""
-    return np.asarray(from_si(cast(Any, values), unit))
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -284,6 +279,6 @@ def rating(
         powers[k] = abs(float(found.result[f"{torque.partition('.')[0]}.P"][0]))
     if np.isnan(powers).all():
         raise SolveError([f"{point}: {reason}" for point, reason in list(why.items())[:3]])
-    columns = [*(_shown(values[:, k], unit) for k, unit in enumerate(("K", "rad/s"))), torques, powers / 1000]
+    columns = [*(from_si(values[:, k], unit) for k, unit in enumerate(("K", "rad/s"))), torques, powers / 1000]
     head = [f"{place} [degC]", f"{driven} [rpm]", f"{torque} [N.m]", "power [kW]"]
     return Rating(scenario.name, written, dict(zip(head, columns, strict=True)), why)

@@ -15,7 +15,7 @@ from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError, suggestion
 from ...model.run.schedule import Schedule
 from ...model.run.simulate import simulate as integrate
-from ...model.units import from_si, in_unit, shown
+from ...model.units import SHOWN, from_si, in_unit, shown
 from ...scenarios.duty import duty_names, read_duty
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
@@ -69,7 +69,7 @@ class TimeSeries(Display):
         Raises:
             ScenarioError: the unit does not fit
         """
-        return np.array([in_unit(float(value), unit) for value in self[name]])
+        return in_unit(self[name], unit)
 
     @property
     def title(self) -> str:
@@ -114,8 +114,7 @@ class TimeSeries(Display):
 
     def _titled(self) -> dict[str, np.ndarray]:
         """Columns in the units shown to a person, by their titles."""
-        shows = {name: np.asarray(from_si(c, self.units[name])) for name, c in self.columns.items()}  # type: ignore[arg-type]
-        return {f"{name} [{shown(self.units[name])}]": values for name, values in shows.items()}
+        return {f"{n} [{shown(self.units[n])}]": from_si(c, self.units[n]) for n, c in self.columns.items()}
 
     def save(self, path: str | Path) -> Path:
         """Write the series as CSV, units in the header.
@@ -145,7 +144,7 @@ class TimeSeries(Display):
         header, rows = read_cells(Path(path))
         numbers = np.array([[float(text) for text in cells] for _, cells in rows])
         names, units = zip(*map(split_unit, header), strict=True)
-        si = [{"degC": "K", "rpm": "rad/s"}.get(unit, unit or "1") for unit in units]
+        si = [SHOWN.get(unit, unit or "1") for unit in units]
         kinds = zip(names, units, si, strict=True)
         columns = {name: in_si(numbers[:, k], unit, kind, name=name) for k, (name, unit, kind) in enumerate(kinds)}
         return cls(Path(path).stem, columns.pop(names[0]), columns, dict(zip(names, si, strict=True)))
@@ -168,7 +167,7 @@ class TimeSeries(Display):
         panel = axes_or_new(axes)
         drawn = names or [name for name in self.columns if self.units[name] == "K"]
         for name in drawn:
-            panel.plot(self.time / 60, from_si(self[name], self.units[name]), label=name)  # type: ignore[arg-type]
+            panel.plot(self.time / 60, from_si(self[name], self.units[name]), label=name)
         units = dict.fromkeys(shown(self.units[name]) for name in drawn)
         panel.set(title=self.name, xlabel="time [min]", ylabel=", ".join(units))
         panel.legend()

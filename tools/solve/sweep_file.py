@@ -142,7 +142,7 @@ class Column:
 
     def values(self, numbers: np.ndarray) -> np.ndarray:
         """Numbers in SI as the table shows them."""
-        return numbers if self.unit is None else np.asarray(from_si(numbers, self.unit))  # type: ignore[arg-type]
+        return numbers if self.unit is None else from_si(numbers, self.unit)
 
 
 def words(status: np.ndarray) -> list[str]:
