@@ -97,12 +97,9 @@ class BeltContact(Conductor):
         """Of the contact."""
         return self.h * self.A
 
-    def equations(self) -> Iterator[Equation]:
-        """What enters at a leaves at b."""
-        dT = self.a.T - self.b.T - self.dT_belt
-        yield equation("conduction", self.Q_flow, self.conductance() * dT)
-        yield equation("enters at a", self.a.Q_flow, self.Q_flow)
-        yield equation("leaves at b", self.b.Q_flow, -self.Q_flow)
+    def difference(self) -> Num:
+        """To the belt."""
+        return super().difference() - self.dT_belt
 
 
 class BeltPull(Component):

@@ -15,6 +15,7 @@ from ..core.component import Component, Equation, equation
 from ..core.declare import Output, Parameter
 from ..laws.smooth import Num, smooth_abs, smooth_sign
 from .ports import Flange, HeatPort, Lubricant, ShaftReading
+from .thermal import HeatPath
 
 #: How gradually thin films set in: logarithm of speed times viscosity.
 FILM_STEP = 0.3
@@ -158,15 +159,13 @@ class ExtraHabit(ExtraLoss):
         return super().power() * ca.log(self.k)
 
 
-class ExtraConductor(Component):
+class ExtraConductor(HeatPath):
     """A conductance beside another: it follows powers of the temperature difference and of a shaft's speed.
 
     `forward` and `backward` weigh it where the shaft drives and is driven. A threshold of the temperature at a has a
     side: +1 acts above it, -1 below.
     """
 
-    a = HeatPort()
-    b = HeatPort()
     reading = ShaftReading()
 
     G_ref = Parameter("W/K", "conductance at the reference difference")
@@ -190,15 +189,12 @@ class ExtraConductor(Component):
         weight = by_direction(self.reading, self.w_ref * self.tau_ref, self.forward, self.backward)
         weight *= step(self.T_side * (self.a.T - self.T_on) / self.T_width)
         yield equation("conduction", self.Q_flow, self.G_ref * dT * ca.exp(form + speed) * weight)
-        yield equation("enters at a", self.a.Q_flow, self.Q_flow)
-        yield equation("leaves at b", self.b.Q_flow, -self.Q_flow)
+        yield from super().equations()
 
 
-class HeatMove(Component):
+class HeatMove(HeatPath):
     """Takes a share of the power that two shafts bring in more than they take out, from one body to another."""
 
-    a = HeatPort()
-    b = HeatPort()
     first = ShaftReading()
 
     share = Parameter("1", "share of the loss that is moved from a to b")
@@ -211,8 +207,7 @@ class HeatMove(Component):
     def equations(self) -> Iterator[Equation]:
         """What enters at a leaves at b."""
         yield equation("heat moved", self.Q_flow, self.share * self.loss())
-        yield equation("enters at a", self.a.Q_flow, self.Q_flow)
-        yield equation("leaves at b", self.b.Q_flow, -self.Q_flow)
+        yield from super().equations()
 
 
 class HeatMoveOfTwo(HeatMove):

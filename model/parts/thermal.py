@@ -50,25 +50,37 @@ class HeatCapacity(Component):
         return (self.Q_flow_external,)
 
 
-class Conductor(Component):
-    """Base of all that conducts: a heat flow proportional to a temperature difference."""
-
-    role: ClassVar[str] = "conductor"
+class HeatPath(Component):
+    """Base of all between two bodies that stores no heat."""
 
     a = HeatPort()
     b = HeatPort()
 
     Q_flow = Output("W", "heat flow rate from a to b", nominal=100.0)
 
+    def equations(self) -> Iterator[Equation]:
+        """What enters at a leaves at b."""
+        yield equation("enters at a", self.a.Q_flow, self.Q_flow)
+        yield equation("leaves at b", self.b.Q_flow, -self.Q_flow)
+
+
+class Conductor(HeatPath):
+    """Base of all that conducts: a heat flow proportional to a temperature difference."""
+
+    role: ClassVar[str] = "conductor"
+
     def conductance(self) -> Num:
         """Thermal conductance [W/K]."""
         raise AttributeError(f"{type(self).__name__} has no conductance")
 
+    def difference(self) -> Num:
+        """Temperature difference that drives the heat [K]."""
+        return self.a.T - self.b.T
+
     def equations(self) -> Iterator[Equation]:
         """What enters at a leaves at b."""
-        yield equation("conduction", self.Q_flow, self.conductance() * (self.a.T - self.b.T))
-        yield equation("enters at a", self.a.Q_flow, self.Q_flow)
-        yield equation("leaves at b", self.b.Q_flow, -self.Q_flow)
+        yield equation("conduction", self.Q_flow, self.conductance() * self.difference())
+        yield from super().equations()
 
 
 class ThermalConductor(Conductor):
