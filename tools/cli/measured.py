@@ -140,13 +140,13 @@ def replay(
     until: Annotated[int | None, typer.Option(help="First year of that log that they do not see.")] = None,
     logs: Annotated[list[Path] | None, typer.Option(help="Further logs to predict. Repeatable.")] = None,
     card: Annotated[Path | None, typer.Option(help="How the logs are written: TOML or JSON.")] = None,
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="Picture to write, .png or .svg.")] = None,
+    out: Annotated[Path | None, typer.Option("-o", "--out", help="Picture to write, .svg, .png or .html.")] = None,
     json: Json = None,
 ) -> None:
     """How well a rig predicts logs without correction, beside a one-node model, a regression and the last reading."""
     import gearheat as gh
 
-    console.writable(out)
+    console.plottable(out, "--out")
     found = gh.replay(rig, fit, until=until, logs=logs or [], card=card)
     if out is not None:
         found.save_picture(out)

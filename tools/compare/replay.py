@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-import io
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
-
-import numpy as np
+from typing import TYPE_CHECKING, Any
 
 from ...model.errors import DataError
+from ...model.units import from_si
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import read_card
 from ...scenarios.measured.logs import Log, read_log
 from ..diagnose.infer.logs import filter_of, year_of
 from ..diagnose.infer.replay import HOURS, Replayed, Rivals
 from ..diagnose.infer.replay import replay as replay_log
-from ..show.console import note, write
+from ..show.console import note
 from ..show.display import Display
+
+if TYPE_CHECKING:
+    from ..show.plotting import Picture
 
 #: Width and height of the picture [inch].
 SIZE = (9.0, 4.5)
@@ -52,16 +53,37 @@ class Replays(Display):
         logs = [{"log": r.name, "rows": r.rows, "free_K": r.free, "ahead_K": r.ahead} for r in self.logs]
         return {"hours": HOURS, "logs": logs}
 
+    def drawing(self) -> Picture:
+        """Free run and readings of the longest stretch of the last log."""
+        from ..show.drawing import empty
+        from ..show.plotting import Picture
+
+        r = self.logs[-1]
+        title = f"{r.name}, free run"
+        figure, panels = empty(*SIZE, len(r.shown), 1, sharex=True)
+        days = (r.time - r.time[0])[:LONGEST] / 86400
+        for panel, (name, (model, read)) in zip(panels, r.shown.items(), strict=True):
+            panel.plot(days, from_si(read[:LONGEST], "K"), color="0.6", lw=0.8, label="measured")
+            panel.plot(days, from_si(model[:LONGEST], "K"), color="C0", lw=0.8, label="free run of the rig")
+            panel.set_ylabel(f"{name} [degC]", fontsize=7)
+            panel.tick_params(labelsize=7)
+        panels[0].legend(fontsize=7, ncols=2)
+        panels[0].set_title(title, fontsize=8)
+        panels[-1].set_xlabel("days", fontsize=7)
+        return Picture(figure, title)
+
     def save_picture(self, path: str | Path) -> Path:
-        """Draw the longest stretch of the last log.
+        """Write the picture.
 
         Args:
-            path: .svg or .png
+            path: .svg, .png or .html
 
         Raises:
             DataError: it cannot be written
         """
-        write(Path(path), _picture(self.logs[-1], Path(path).suffix.removeprefix(".")))
+        from ..show.plotting import write_picture
+
+        write_picture(Path(path), self.drawing())
         return Path(path)
 
 
@@ -111,23 +133,3 @@ def _split(log: Log, until: int | None) -> list[Log]:
         raise DataError([f"{log.name}: has no samples before {until}. Give a later year as --until."])
     parts = [(years < until, f"{log.name} before {until}"), (years >= until, f"{log.name} from {until}")]
     return [log.rows(keep, name) for keep, name in parts if keep.any()]
-
-
-def _picture(r: Replayed, kind: str) -> bytes:
-    """Free run and readings of one stretch."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(SIZE, layout="constrained")
-    panels = np.ravel(figure.subplots(len(r.shown), 1, sharex=True))
-    days = (r.time - r.time[0])[:LONGEST] / 86400
-    for panel, (name, (model, read)) in zip(panels, r.shown.items(), strict=True):
-        panel.plot(days, read[:LONGEST] - 273.15, color="0.6", lw=0.8, label="measured")
-        panel.plot(days, model[:LONGEST] - 273.15, color="C0", lw=0.8, label="free run of the rig")
-        panel.set_ylabel(f"{name} [degC]", fontsize=7)
-        panel.tick_params(labelsize=7)
-    panels[0].legend(fontsize=7, ncols=2)
-    panels[0].set_title(f"{r.name}, free run", fontsize=8)
-    panels[-1].set_xlabel("days", fontsize=7)
-    file = io.BytesIO()
-    figure.savefig(file, format=kind or "png", dpi=80, metadata={"Date": None} if kind == "svg" else None)
-    return file.getvalue()

@@ -207,7 +207,7 @@ def lasting(path: Path) -> None:
         raise DataError(f"{path}: cannot be read again (it is a device). Give the output another name.")
 
 
-def plottable(path: Path | None) -> None:
+def plottable(path: Path | None, option: str = "--plot") -> None:
     """Check before long work that a picture can be written to a place.
 
     Raises:
@@ -215,7 +215,7 @@ def plottable(path: Path | None) -> None:
         DataError: it cannot be written
     """
     if path is not None and path.suffix.lower() not in PICTURES:
-        raise ScenarioError(f"--plot {path}: unknown kind of picture. Its name must end in {' or '.join(PICTURES)}.")
+        raise ScenarioError(f"{option} {path}: unknown kind of picture. Its name must end in {' or '.join(PICTURES)}.")
     writable(path)
 
 
