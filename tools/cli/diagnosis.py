@@ -37,7 +37,7 @@ def diagnose(
     library: Libraries = None,
     predict: Annotated[Path | None, typer.Option(help="Points whose readings are predicted: CSV.")] = None,
     predictions: Annotated[Path | None, typer.Option(help="CSV to write with the predictions.")] = None,
-    causes: Annotated[int, typer.Option(help="Largest number of simultaneous causes.")] = 2,
+    causes: Annotated[int, typer.Option(help="Largest number of simultaneous causes.")] = 8,
     alpha: Annotated[float, typer.Option(help="Accepted rate of false alarms.")] = 0.05,
     seed: Annotated[int, typer.Option(help="The same seed gives the same result.")] = 0,
     quick: Annotated[

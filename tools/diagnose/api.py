@@ -17,7 +17,7 @@ from ..show.console import write
 from ..show.display import Display, lines_of
 from .asking import Diagnosis, Outputs, PlanAnswer, ask, ask_plan
 from .library.nuisances import usual_priors
-from .request import PlanRequest, Request
+from .request import MOST, PlanRequest, Request
 
 File = str | Path
 Files = File | Sequence[File] | None
@@ -34,7 +34,7 @@ def diagnose(
     sibling_logs: Files = None,
     library: Files = None,
     predict: File | None = None,
-    causes: int = 2,
+    causes: int = MOST,
     quick: bool = False,
     alpha: float = 0.05,
     seed: int = 0,

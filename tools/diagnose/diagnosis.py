@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 from .answer.decide import Decision, calmed, decided
 from .answer.gain import Gain, gains
 from .infer.found import Found
-from .infer.search import searched
+from .infer.weigh import weigh
 from .library.cause import Cause
 from .logs import LogDiagnosis, logged
 from .report import compose, compose_data, compose_design, compose_pictures, compose_points, compose_rig
@@ -47,7 +47,7 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
     then("compiling the rig", 0.01)
     others = [inputs.points] if inputs.points is not None else []
     made = setting(inputs.scenario, inputs.card, data, inputs.reference, request.libraries, others)
-    found = searched(
+    found = weigh(
         made.problem,
         made.formulas,
         request.alpha,

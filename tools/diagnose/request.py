@@ -58,7 +58,7 @@ class Request:
     sibling_logs: tuple[Path, ...] = ()
     libraries: tuple[Path, ...] = ()
     predict: Path | None = None
-    causes: int = 2
+    causes: int = MOST
     quick: bool = False
     alpha: float = 0.05
     seed: int = 0

@@ -97,7 +97,7 @@ def decided(found: Found) -> Decision:
             ("explained", wrong[:1]) if sure else ("ambiguous", _needed(wrong, SURE * (1 - chances.nothing)))
         )
         verdict = "unexplained" if wrong[0].causes == (UNEXPLAINED,) else verdict
-    leader = answers[0].best if answers else next(h for h in found.hypotheses if not h.causes and h.extra is None)
+    leader = answers[0].best if answers else next(h for h in found.hypotheses if not h.causes and not h.extras)
     members: dict[str, list[Member]] = {}
     for h, p, causes in zip(found.hypotheses, found.probabilities, asked, strict=True):
         for cause in (*causes, UNEXPLAINED) if beyond(h) else causes:
@@ -143,11 +143,11 @@ def _lifts(found: Found) -> np.ndarray:
     deviation of d. Evidence beyond that is due to widths of priors, which nobody knows so well.
     """
     top, lifts = found.hypotheses[0], np.zeros(len(found.hypotheses))
-    if not top.causes or top.extra is not None:
+    if not top.causes or top.extras:
         return lifts
     white, evidence = White.of(top.fit.noise.covariance), top.log_joint - found.prior(top.causes)
     for k, h in enumerate(found.hypotheses):
-        if h.extra is None and len(h.causes) == len(top.causes):
+        if not h.extras and len(h.causes) == len(top.causes):
             apart = float(np.linalg.norm(white(h.fit.look.shown - top.fit.look.shown)))
             behind = evidence - (h.log_joint - found.prior(h.causes))
             lifts[k] = max(behind - 0.5 * apart**2 - apart, 0.0)
@@ -167,7 +167,7 @@ def _shown(h: Hypothesis, asked: tuple[str, ...]) -> tuple[str, ...]:
 
 def beyond(h: Hypothesis) -> bool:
     """Whether a hypothesis holds a remainder that the library lacks."""
-    return h.extra is not None and h.extra.cause is None
+    return any(e.cause is None for e in h.extras)
 
 
 class _Chances:
@@ -276,8 +276,6 @@ def p_adequacy(found: Found, h: Hypothesis, entries: np.ndarray | None = None) -
         kept &= np.isin(np.arange(problem.m), entries)
     fixed = [t for t in fit.noise.terms if t.loose == 0 and t.columns is not None]
     V = fit.noise.covariance - sum((t.matrix for t in fixed), np.zeros((problem.m, problem.m)))
-    if h.extra is not None:
-        V = V + h.extra.covariance
     known = np.concatenate([fit.look.jacobian, *(t.columns for t in fixed if t.columns is not None)], axis=1)
     r = problem.measured - fit.look.shown + fit.look.jacobian @ fit.look.x
     white = White.of(V[np.ix_(kept, kept)])

@@ -56,16 +56,13 @@ class Impact:
 def posterior(problem: Problem, h: Hypothesis) -> tuple[np.ndarray, np.ndarray]:
     """Mean (d,) and covariance (d, d) of the vector of a hypothesis, linearised where it was fitted."""
     fit, J = h.fit, h.fit.look.jacobian
-    V = fit.noise.covariance if h.extra is None else fit.noise.covariance + h.extra.covariance
-    white = White.of(V)
+    white = White.of(fit.noise.covariance)
     precision = np.ones(J.shape[1])
     sizes = places(problem, h)
     precision[sizes] = WIDTHS[-1] ** -2
     G = white(J)
     covariance = np.linalg.inv(G.T @ G + np.diag(precision))
     x = fit.look.x
-    if h.extra is not None:
-        x = covariance @ (G.T @ white(problem.measured - fit.look.shown + J @ x))
     covariance[sizes, sizes] += (fit.form * x[sizes]) ** 2
     return x, covariance
 
@@ -141,13 +138,13 @@ def at_bound(value: float, low: float, high: float) -> Bound:
 
 def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estimate, ...]:
     """The standard deviation of sizes that differ, as the most probable hypothesis has it."""
-    own = [h for h, _ in members if h.extra is not None and h.extra.cause == cause]
+    own = [(h, e) for h, _ in members for e in h.extras if e.cause == cause]
     if not own:
         return ()
-    h = own[0]
-    assert h.extra is not None
+    h, extra = own[0]
     white, e = h.fit.linear(found.problem)
-    V, r, one = white.L @ white.L.T, white.L @ e, h.extra.covariance / h.extra.size**2
+    V, r, one = white.L @ white.L.T, white.L @ e, extra.columns @ extra.columns.T
+    V = V - extra.size**2 * one
     logs = []
     for size in SPREADS:
         beside = White.of(V + size**2 * one)
@@ -164,8 +161,8 @@ def form_shares(cause: str, members: Sequence[Member]) -> dict[str, float]:
     """Form -> its share of the cause's probability, most probable first."""
     total: dict[str, float] = {}
     for h, p in members:
-        if h.extra is not None and h.extra.cause == cause:
-            own = {h.extra.form: 1.0}
+        if spread := next((e for e in h.extras if e.cause == cause), None):
+            own = {spread.form: 1.0}
         elif cause in h.forms:
             logs = h.forms[cause]
             scale = logsumexp(list(logs.values()))

@@ -18,10 +18,10 @@ from scipy.special import logsumexp
 from ....model.errors import SolveError
 from ..infer import screen
 from ..infer.evidence import White
-from ..infer.extra import REMAINDERS
 from ..infer.fit import Fit, Start, fitted, joined, prior_precision
 from ..infer.found import Found
 from ..infer.problem import Aside, Problem
+from ..infer.terms import REMAINDERS
 from ..model.formula import Formula
 from .folds import schemes
 from .rivals import RIVALS

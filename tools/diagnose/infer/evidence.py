@@ -63,16 +63,19 @@ class White:
         return float(-0.5 * e @ e - 0.5 * self.log_det)
 
 
-def log_bayes_factors(s: np.ndarray, q: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+def log_bayes_factors(
+    s: np.ndarray, q: np.ndarray, low: np.ndarray, high: np.ndarray, widths: np.ndarray = WIDTHS
+) -> np.ndarray:
     """Log Bayes factors of k signatures against none, each alone.
 
     Args:
         s: signature times residual (..., k)
         q: squared length of the signature (k,)
         low, high: bounds of the size (k,)
+        widths: standard deviations of the size's prior, all as likely
     """
     found = []
-    for width in WIDTHS:
+    for width in widths:
         v = width**2
         post = v / (1 + v * q)
         mean = post * s
@@ -80,7 +83,7 @@ def log_bayes_factors(s: np.ndarray, q: np.ndarray, low: np.ndarray, high: np.nd
         prior = _mass(np.zeros_like(low), np.full_like(low, width), low, high)
         log = 0.5 * s * mean - 0.5 * np.log1p(v * q)
         found.append(log + np.log(np.maximum(inside, 1e-300)) - np.log(np.maximum(prior, 1e-300)))
-    return np.asarray(np.logaddexp.reduce(found) - np.log(len(WIDTHS)))
+    return np.asarray(np.logaddexp.reduce(found) - np.log(len(widths)))
 
 
 def log_bayes_factor(g: np.ndarray, e: np.ndarray, low: np.ndarray, high: np.ndarray) -> float:

@@ -10,10 +10,30 @@ from scipy.special import logsumexp
 
 from ..model.formula import Formula
 from . import screen
-from .extra import Extra
 from .fit import Fit
 from .prior import Prior
 from .problem import Problem
+
+
+@dataclass(frozen=True, eq=False)
+class Extra:
+    """What scatters beside the causes of a hypothesis: sizes that differ, or a remainder where `cause` is None.
+
+    Args:
+        cause: id
+        form: name of its form, or of the remainder
+        size: standard deviation, in half widths of the prior or standard deviations of a reading
+        channels: sensors in which a remainder acts
+        columns: at size one (M, k)
+        log_prior: of its form, or of the remainder beside a hypothesis
+    """
+
+    cause: str | None
+    form: str
+    size: float
+    channels: tuple[str, ...]
+    columns: np.ndarray
+    log_prior: float
 
 
 @dataclass(frozen=True)
@@ -24,7 +44,7 @@ class Hypothesis:
         causes: ids; none: nothing is wrong
         fit: at the most likely forms
         log_joint: log evidence, all forms counted, plus log prior
-        extra: a spread of sizes or a remainder beside them
+        extras: spreads of sizes and remainders beside them; the scatter of the fit holds them
         forms: log weight of each form of each cause, by id and name
         error: standard error of the log evidence by importance sampling; 0 where none was needed
     """
@@ -32,7 +52,7 @@ class Hypothesis:
     causes: tuple[str, ...]
     fit: Fit
     log_joint: float
-    extra: Extra | None = None
+    extras: tuple[Extra, ...] = ()
     forms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     error: float = 0.0
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 
 import numpy as np
 
@@ -16,6 +16,8 @@ MORE = 0.25
 SAME = 0.2
 #: Prior odds of a remainder beside a hypothesis.
 OUTSIDE = 0.06
+#: Of one reading to be gross.
+GROSS = 0.002
 
 
 class Prior:
@@ -42,8 +44,20 @@ class Prior:
     def __call__(self, causes: Iterable[str]) -> float:
         """Log prior odds of a hypothesis against those of one cause, all together 1."""
         names = list(causes)
-        orders = float(np.prod(np.arange(1, len(names) + 1)))
-        pairs = sum(np.log(TWO if k == 1 else MORE) for k in range(1, len(names)))
-        kinds = [c.rpartition(".")[0] for c in names if c.startswith("sensor.")]
-        same = (len(kinds) - len(set(kinds))) * np.log(SAME)
-        return float(sum(self.share[c] for c in names) + pairs + same + np.log(orders))
+        return float(sum(self.share[c] for c in names) + self.number(names))
+
+    def number(self, causes: Sequence[str]) -> float:
+        """The part of it that follows from how many causes act, and how many of them in one kind of instrument."""
+        pairs = sum(self.further(k) for k in range(len(causes)))
+        kinds = [kind(c) for c in causes if kind(c)]
+        return float(pairs + (len(kinds) - len(set(kinds))) * np.log(SAME))
+
+    @staticmethod
+    def further(n: int) -> float:
+        """Log prior odds of one cause more beside n."""
+        return float(np.log((n + 1) * (TWO if n == 1 else MORE))) if n else 0.0
+
+
+def kind(cause: str) -> str:
+    """Kind of the instrument that a cause is an error of, "" for others."""
+    return cause.rpartition(".")[0] if cause.startswith("sensor.") else ""

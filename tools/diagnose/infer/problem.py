@@ -98,13 +98,21 @@ class Problem:
     Args:
         campaigns: the data, then a healthy reference where there is one
         day_sd: standard deviation of the cooling from day to day; its direction is the last nuisance of a campaign
+        aside: readings that count for nothing
+        more: what scatters beside all that is known
     """
 
     #: A reading that is set aside scatters by so many of its standard deviations.
     FAR = 1e3
 
-    def __init__(self, campaigns: Sequence[Observed], day_sd: float, aside: frozenset[Aside] = frozenset()) -> None:
-        self.campaigns, self.day_sd, self.aside = tuple(campaigns), day_sd, aside
+    def __init__(
+        self,
+        campaigns: Sequence[Observed],
+        day_sd: float,
+        aside: frozenset[Aside] = frozenset(),
+        more: tuple[Term, ...] = (),
+    ) -> None:
+        self.campaigns, self.day_sd, self.aside, self.more = tuple(campaigns), day_sd, aside, more
         self.data = campaigns[0]
         self.nz = len(self.data.nuisances) - 1
         self.measured = np.concatenate([o.measured for o in campaigns])
@@ -131,7 +139,11 @@ class Problem:
 
     def without(self, aside: frozenset[Aside]) -> Problem:
         """The same with some readings set aside."""
-        return Problem(self.campaigns, self.day_sd, aside)
+        return Problem(self.campaigns, self.day_sd, aside, self.more)
+
+    def beside(self, more: tuple[Term, ...]) -> Problem:
+        """The same with further scatter."""
+        return Problem(self.campaigns, self.day_sd, self.aside, more)
 
     def look(self, z: np.ndarray, acting: Sequence[Acting] = ()) -> Look:
         """Readings and Jacobian.
@@ -164,7 +176,7 @@ class Problem:
     def noise(self, look: Look, scales: np.ndarray | None = None) -> Noise:
         """The scatter at a look."""
         found = terms(self.campaigns, look.seen, self.day_sd, self.nz)
-        found += [self.far(aside, look) for aside in sorted(self.aside)]
+        found += [*(self.far(aside, look) for aside in sorted(self.aside)), *self.more]
         n = sum(t.loose > 0 for t in found)
         return Noise(tuple(found), np.zeros(n) if scales is None else scales)
 

@@ -131,14 +131,14 @@ def impacts(made: Setting, found: Found, h: Hypothesis, only: str | None = None)
 def remainder(found: Found, decision: Decision) -> findings.Remainder | None:
     """What the library lacks, by channel: beside the most probable hypothesis that holds it."""
     chance = decision.marginal.get(UNEXPLAINED)
-    own = [h.extra for h, _ in decision.members.get(UNEXPLAINED, ()) if h.extra is not None]
+    own = [e for h, _ in decision.members.get(UNEXPLAINED, ()) for e in h.extras if e.cause is None]
     if chance is None or chance.probability < LISTED or not own:
         return None
     o, told = found.problem.data, []
     for i, s in enumerate(o.read):
         rows = np.flatnonzero(o.kind == i)
         if s.name in own[0].channels and len(rows):
-            rms = float(np.sqrt(np.mean(np.diag(own[0].covariance)[rows])))
+            rms = float(np.sqrt(np.mean((own[0].size * own[0].columns[rows]) ** 2 @ np.ones(own[0].columns.shape[1]))))
             value = channels.difference(s, rms)
             one = findings.RemainderChannel(channel=s.name, rms=value, unit=channels.unit_of_difference(s))
             told.append((rms / s.repeat_sd, one))

@@ -1,0 +1,314 @@
+"""Sets of terms that act together, weighed to first order.
+
+A residual is r ~ N(G t, V + sum of w^2 C C'): t are the sizes of causes and gross readings, C the columns of what
+scatters. The scatter, its scales and what scatters beside it, whitens everything; in each whitening the likeliest sets
+of sizes grow, shrink and exchange members, and the likeliest set says which scatter is worth a look next.
+"""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.special import logsumexp, ndtr
+
+from .evidence import White, log_bayes_factors
+from .prior import SAME, Prior, kind
+from .terms import Term
+
+#: Sizes that may act together, gross readings among them.
+MOST = 12
+#: Sets beside which all sizes are weighed, in the first scatters and in further ones.
+LOOKS = (40, 15)
+#: Neighbours kept of each.
+KEPT = 30
+#: Of one family.
+ALIKE = 3
+#: Nats behind the likeliest at which a set or a scatter is no longer looked at.
+WINDOW = 7.0
+#: Scatters looked at.
+SCATTERS = 8
+#: Rounds of choosing the widths of a set's members in turn.
+ROUNDS = 2
+
+
+@dataclass(frozen=True)
+class Scatter:
+    """What whitens: logarithms of the scales of the loose terms, and widths of the scatters beside them by number."""
+
+    scales: tuple[float, ...]
+    beside: tuple[tuple[int, float], ...] = ()
+
+
+#: Minus a log joint density, members and widths of a set that is worth a look.
+_Offer = tuple[float, tuple[int, ...], tuple[float, ...]]
+
+
+@dataclass(frozen=True)
+class TermSet:
+    """Sizes that act together in a scatter.
+
+    Attributes:
+        members: numbers of the terms, in order
+        widths: standard deviation of each
+        scatter: beside them
+        log: log joint density with the residual
+    """
+
+    members: tuple[int, ...]
+    widths: tuple[float, ...]
+    scatter: Scatter
+    log: float
+
+    @property
+    def terms(self) -> tuple[int, ...]:
+        """Numbers of all terms, scatters too."""
+        return tuple(sorted((*self.members, *(k for k, _ in self.scatter.beside))))
+
+
+@dataclass(frozen=True, eq=False)
+class Linear:
+    """A problem to first order.
+
+    Attributes:
+        terms: all that may act, sizes and gross readings before scatters
+        residual: (M,)
+        covariance: of scales -> what is uncertain without them (M, M), and the log prior of the scales
+        scaled: what is uncertain beside them (M, M), scales where it begins -> the likeliest scales
+        prior: of causes
+        critical: log prior odds of nothing against one cause
+        most: causes that may act together
+    """
+
+    terms: Sequence[Term]
+    residual: np.ndarray
+    covariance: Callable[[Sequence[float]], tuple[np.ndarray, float]]
+    scaled: Callable[[np.ndarray, Sequence[float]], Sequence[float]]
+    prior: Prior
+    critical: float
+    most: int
+
+    @property
+    def n(self) -> int:
+        """Number of sizes and gross readings."""
+        return next((k for k, t in enumerate(self.terms) if t.scatters), len(self.terms))
+
+
+class Table:
+    """What all terms have in common, whatever the scatter: their columns, priors and bounds as arrays."""
+
+    def __init__(self, linear: Linear) -> None:
+        self.linear, self.n = linear, linear.n
+        own = linear.terms[: self.n]
+        self.columns = np.concatenate([t.columns for t in own], axis=1)
+        self.low, self.high = np.array([t.low for t in own]), np.array([t.high for t in own])
+        self.shares = np.array([t.log_prior for t in linear.terms])
+        self.causes = np.array([t.formula is not None for t in linear.terms])
+        self.families = np.array([t.family for t in linear.terms])
+        self.kinds = np.array([kind(t.name) if t.formula else "" for t in linear.terms])
+        gross = np.array([t.aside is not None for t in own])
+        self.groups = [np.flatnonzero(group) for group in (~gross, gross) if group.any()]
+
+    def named(self, members: Sequence[int]) -> list[str]:
+        """The causes of a set."""
+        return [self.linear.terms[k].name for k in members if self.causes[k]]
+
+    def log_prior(self, members: Sequence[int]) -> float:
+        """Of a set, over that of one cause."""
+        causes = self.named(members)
+        number = self.linear.prior.number(causes) if causes else self.linear.critical
+        return float(self.shares[list(members)].sum() + number)
+
+    def log_priors(self, members: Sequence[int]) -> np.ndarray:
+        """Of a set with each of the terms (k,); -inf where they do not go together."""
+        causes, prior = self.named(members), self.linear.prior
+        like = np.isin(self.kinds, [kind(c) for c in causes if kind(c)])
+        number = prior.number(causes) + prior.further(len(causes)) + like * np.log(SAME)
+        logs = self.shares + np.where(self.causes, number, prior.number(causes) if causes else self.linear.critical)
+        taken = np.isin(self.families, self.families[list(members)])
+        taken |= self.causes & (len(causes) >= self.linear.most)
+        return np.where(taken, -np.inf, logs + self.shares[list(members)].sum())
+
+
+class Whitened:
+    """All terms in the units of one scatter."""
+
+    def __init__(self, table: Table, scatter: Scatter) -> None:
+        self.table, self.scatter, linear = table, scatter, table.linear
+        self.V, log_prior = linear.covariance(scatter.scales)
+        for k, width in scatter.beside:
+            self.V = self.V + width**2 * linear.terms[k].columns @ linear.terms[k].columns.T
+        self.white = White.of(self.V)
+        self.W, self.e = self.white(table.columns), self.white(linear.residual)
+        self.length, self.along = (self.W**2).sum(axis=0), self.W.T @ self.e
+        #: Log density of the residual without any size.
+        self.log = self.white.log_density(self.e) + log_prior
+
+    def beside(self, members: Sequence[int], widths: Sequence[float]) -> tuple[np.ndarray, np.ndarray, float]:
+        """Beside a set: what ties other columns to it (M, j), what it explains (j,), log density over none."""
+        U = self.W[:, list(members)] * np.array(widths)
+        A = U.T @ U + np.eye(U.shape[1])
+        root = np.linalg.cholesky(A)
+        turned = np.linalg.solve(root, U.T).T
+        b = turned.T @ self.e
+        return turned, b, float(0.5 * b @ b - np.log(np.diag(root)).sum())
+
+    def each(self, members: Sequence[int], widths: Sequence[float]) -> tuple[np.ndarray, np.ndarray, float]:
+        """s and q of every size beside a set (n,), and log density over none."""
+        turned, b, log = self.beside(members, widths)
+        tie = turned.T @ self.W
+        return self.along - b @ tie, np.maximum(self.length - (tie**2).sum(axis=0), 1e-12), log
+
+    def gains(self, members: Sequence[int], widths: Sequence[float]) -> tuple[np.ndarray, np.ndarray, float]:
+        """Log Bayes factor of every size beside a set (n,), its likeliest width (n,), and log density over none."""
+        s, q, log = self.each(members, widths)
+        logs, at = np.empty(len(s)), np.empty(len(s))
+        for k in self.table.groups:
+            tried = self.table.linear.terms[int(k[0])].widths
+            logs[k] = log_bayes_factors(s[k], q[k], self.table.low[k], self.table.high[k], tried)
+            each = [0.5 * (s[k] * w) ** 2 / (1 + w**2 * q[k]) - 0.5 * np.log1p(w**2 * q[k]) for w in tried]
+            at[k] = tried[np.argmax(each, axis=0)]
+        return logs, at, log
+
+    def scored(self, members: Sequence[int], widths: Sequence[float]) -> TermSet:
+        """A set with the widths of its members chosen in turn, and its log joint density."""
+        own, more = list(widths), np.zeros(len(widths))
+        for _ in range(ROUNDS):
+            for i, k in enumerate(members):
+                s, q = self._one(k, [*members[:i], *members[i + 1 :]], [*own[:i], *own[i + 1 :]])
+                tried, low, high = self.table.linear.terms[k].widths, self.table.low[k], self.table.high[k]
+                v = tried**2
+                logs = 0.5 * s**2 * v / (1 + v * q) - 0.5 * np.log1p(v * q)
+                post = v / (1 + v * q)
+                inside = _mass(post * s, np.sqrt(post), low, high) / _mass(0.0, tried, low, high)
+                logs = logs + np.log(np.maximum(inside, 1e-300))
+                best = int(np.argmax(logs))
+                own[i] = float(tried[best])
+                more[i] = float(logsumexp(logs) - np.log(len(logs)) - logs[best]) + np.log(max(inside[best], 1e-300))
+        _, _, log = self.beside(members, own)
+        beside = [k for k, _ in self.scatter.beside]
+        whole = self.log + log + float(more.sum()) + self.table.log_prior([*members, *beside])
+        return TermSet(tuple(members), tuple(own), self.scatter, whole)
+
+    def _one(self, k: int, members: Sequence[int], widths: Sequence[float]) -> tuple[float, float]:
+        turned, b, _ = self.beside(members, widths)
+        tie = turned.T @ self.W[:, k]
+        return float(self.along[k] - b @ tie), float(max(self.length[k] - tie @ tie, 1e-12))
+
+    def search(self, starts: Sequence[TermSet], looks: int) -> list[TermSet]:
+        """The likeliest sets in this scatter, best first.
+
+        Args:
+            starts: sets to begin from beside the empty one
+            looks: sets at most beside which all sizes are weighed
+        """
+        known: dict[frozenset[int], TermSet] = {}
+        seen = set[frozenset[int]]()
+        queue: list[_Offer] = [(-np.inf, (), ())]
+        queue += [(-np.inf, s.members, s.widths) for s in starts]
+        best = -np.inf
+        while queue and len(seen) < looks:
+            log, members, widths = heapq.heappop(queue)
+            if frozenset(members) in known or -log < best - WINDOW:
+                continue
+            own = known[frozenset(members)] = self.scored(members, widths)
+            best = max(best, own.log)
+            if members and own.log < best - WINDOW:
+                continue
+            fewer = [(members[:i] + members[i + 1 :], own.widths[:i] + own.widths[i + 1 :]) for i in range(len(members))]
+            for base in [(own.members, own.widths), *fewer]:
+                if frozenset(base[0]) not in seen and len(base[0]) < MOST:
+                    seen.add(frozenset(base[0]))
+                    for offer in self._offers(*base):
+                        if frozenset(offer[1]) not in known and -offer[0] > best - WINDOW:
+                            heapq.heappush(queue, offer)
+        return sorted(known.values(), key=lambda s: (-s.log, s.members))
+
+    def _offers(self, members: tuple[int, ...], widths: tuple[float, ...]) -> Iterator[_Offer]:
+        """A set, and it with each of the likeliest further members."""
+        gains, at, log = self.gains(members, widths)
+        whole, beside = self.log + log, [k for k, _ in self.scatter.beside]
+        yield -(whole + self.table.log_prior([*members, *beside])), members, widths
+        logs = whole + gains + self.table.log_priors([*members, *beside])[: self.table.n]
+        count: dict[str, int] = {}
+        for k in np.argsort(-logs)[: 2 * KEPT]:
+            family = str(self.table.families[k])
+            if np.isfinite(logs[k]) and count.get(family, 0) < ALIKE:
+                count[family] = count.get(family, 0) + 1
+                yield -float(logs[k]), (*members, int(k)), (*widths, float(at[k]))
+
+    def scatters(self, own: TermSet) -> Iterator[tuple[float, Scatter]]:
+        """What other scatters promise beside a set: log joint density, scatter."""
+        linear, terms = self.table.linear, self.table.linear.terms
+        kept = [k for k, _ in self.scatter.beside]
+        for k, width in self.scatter.beside:
+            rest = tuple(b for b in self.scatter.beside if b[0] != k)
+            yield own.log, Scatter(self.scatter.scales, rest)
+            tried = terms[k].widths
+            place = int(np.flatnonzero(tried == width)[0])
+            for near in (place - 1, place + 1):
+                if 0 <= near < len(tried):
+                    yield own.log, Scatter(self.scatter.scales, tuple(sorted((*rest, (k, float(tried[near]))))))
+        turned, b, _ = self.beside(own.members, own.widths)
+        logs = self.table.log_priors([*own.members, *kept]) - self.table.log_prior([*own.members, *kept])
+        for k in range(self.table.n, len(terms)):
+            if not np.isfinite(logs[k]):
+                continue
+            C = self.white(terms[k].columns)
+            tie = turned.T @ C
+            q, turn = np.linalg.eigh(C.T @ C - tie.T @ tie)
+            s = turn.T @ (C.T @ self.e - b @ tie)
+            v = terms[k].widths[:, None] ** 2
+            q = np.maximum(q, 0.0)
+            found = (0.5 * s**2 * v / (1 + v * q) - 0.5 * np.log1p(v * q)).sum(axis=1)
+            best = int(np.argmax(found))
+            beside = tuple(sorted((*self.scatter.beside, (k, float(terms[k].widths[best])))))
+            yield own.log + float(found[best] + logs[k]), Scatter(self.scatter.scales, beside)
+        columns = self.table.columns[:, list(own.members)] * np.array(own.widths)
+        known = columns @ columns.T
+        for k, width in self.scatter.beside:
+            known = known + width**2 * terms[k].columns @ terms[k].columns.T
+        scales = linear.scaled(known, self.scatter.scales)
+        if np.abs(np.subtract(scales, self.scatter.scales)).max(initial=0.0) > 0.05:
+            yield own.log + 1.0, Scatter(tuple(np.round(scales, 3)), self.scatter.beside)
+
+
+def _mass(mean: np.ndarray | float, sd: np.ndarray | float, low: float, high: float) -> np.ndarray:
+    return np.asarray(ndtr((high - mean) / sd) - ndtr((low - mean) / sd))
+
+
+def search(
+    linear: Linear, scales: Sequence[Sequence[float]], progress: Callable[[float], None], scatters: int = SCATTERS
+) -> list[TermSet]:
+    """The likeliest sets of terms in all scatters looked at, best first; one of each set of terms.
+
+    Args:
+        linear: the problem
+        scales: of the scatters to begin with
+        progress: told the share done
+        scatters: looked at, at most
+    """
+    table, found = Table(linear), dict[tuple[int, ...], TermSet]()
+    queue: list[tuple[float, int, Scatter, tuple[TermSet, ...]]] = []
+    for k, own in enumerate(scales):
+        heapq.heappush(queue, (-np.inf, k, Scatter(tuple(own)), ()))
+    seen, best, number = set[Scatter](), -np.inf, len(scales)
+    while queue and len(seen) < scatters:
+        promise, _, scatter, starts = heapq.heappop(queue)
+        if scatter in seen or -promise < best - WINDOW:
+            continue
+        seen.add(scatter)
+        progress(len(seen) / scatters)
+        white = Whitened(table, scatter)
+        sets = white.search(starts, LOOKS[bool(starts)])
+        for s in sets:
+            if s.terms not in found or found[s.terms].log < s.log:
+                found[s.terms] = s
+        best = max(best, sets[0].log)
+        for log, other in white.scatters(sets[0]):
+            if other not in seen and log > best - WINDOW:
+                number += 1
+                heapq.heappush(queue, (-log, number, other, tuple(sets[:3])))
+    return sorted(found.values(), key=lambda s: (-s.log, s.terms))

@@ -1,0 +1,154 @@
+"""Everything that may be wrong, to first order: one list of terms, each a size or a scatter with its columns."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..model.formula import Formula
+from ..model.noise import Term as Scatter
+from ..model.noise import per_group, walk
+from .evidence import WIDTHS
+from .fit import Fit
+from .prior import GROSS, OUTSIDE, Prior
+from .problem import Acting, Aside, Problem
+from .screen import Look, limits
+
+#: Standard deviations of sizes that differ from test to test, in half widths of the cause's prior.
+SPREADS = np.array([0.25, 0.5, 1.0, 2.0, 4.0])
+#: Standard deviations of a remainder, in those of one reading of its channel.
+REMAINDERS = np.array([2.0, 4.0, 8.0, 16.0])
+#: Standard deviations of a gross reading's error, in those of one reading.
+ERRORS = np.array([6.0, 15.0, 40.0])
+#: Shares of the largest variance of a remainder below which its directions are left out.
+FAINT = 0.01
+
+
+@dataclass(frozen=True, eq=False)
+class Term:
+    """Something that may act.
+
+    Attributes:
+        name: id of the cause, or what stands for it: "T_oil 17", "remainder T_oil"
+        family: terms of one family count as one answer, and one of them acts at a time
+        log_prior: of the cause, its form and its sample of shapes together
+        columns: effect of one unit of it (M, k); k = 1 for a size
+        widths: standard deviations of its prior, all as likely
+        low, high: bounds of a size
+        acting: what is fitted exactly; None: covariance only
+        formula: form of a cause; None: a gross reading or a remainder
+        aside: the reading, of a gross one
+        channels: sensors in which a remainder acts
+    """
+
+    name: str
+    family: str
+    log_prior: float
+    columns: np.ndarray
+    widths: np.ndarray
+    low: float = -np.inf
+    high: float = np.inf
+    acting: Acting | None = None
+    formula: Formula | None = None
+    aside: Aside | None = None
+    channels: tuple[str, ...] = ()
+
+    @property
+    def scatters(self) -> bool:
+        """Whether it is a covariance of several columns."""
+        return self.acting is None and self.aside is None
+
+    def scatter(self, width: float) -> Scatter:
+        """The covariance term at a standard deviation."""
+        return Scatter(self.label, width * self.columns)
+
+    @property
+    def label(self) -> str:
+        """Name with the form."""
+        form = self.formula.form.name if self.formula else ""
+        return f"{self.name}: {form}" if form else self.name
+
+
+def sizes(look: Look, prior: Prior) -> Iterator[Term]:
+    """The candidates of a look.
+
+    Args:
+        look: effects of all forms of all causes
+        prior: of causes
+    """
+    low, high = limits(look.candidates)
+    shares = look.weights + [prior.share[c.id] for c in look.candidates]
+    for k, c in enumerate(look.candidates):
+        cause = c.formula.cause
+        column = look.effects[:, [k]]
+        yield Term(cause.id, cause.family, float(shares[k]), column, WIDTHS, low[k], high[k], c, c.formula)
+
+
+def spreads(problem: Problem, fit: Fit, formulas: Sequence[Formula], prior: Prior) -> Iterator[Term]:
+    """Causes drawn anew in each test or mounting, or wandering from test to test."""
+    if not formulas:
+        return
+    own = [Acting(f, np.r_[float(f.paced), np.zeros(f.size - 1)]) for f in formulas]
+    effects = problem.tangents(fit.look.z, fit.look.acting, own)
+    for formula, effect in zip(formulas, effects.T, strict=True):
+        columns = _columns(problem, formula, effect)
+        if columns is not None and np.isfinite(columns).all():
+            cause = formula.cause
+            log = prior.share[cause.id] + float(np.log(formula.form.weight))
+            yield Term(cause.id, cause.family, log, columns, SPREADS, formula=formula)
+
+
+def _columns(problem: Problem, formula: Formula, effect: np.ndarray) -> np.ndarray | None:
+    o = problem.data
+    test = o.campaign.test[o.row]
+    if formula.form.spread == "mounting":
+        labels = np.unique(o.campaign.mounting, return_inverse=True)[1]
+        own = per_group(effect[problem.own], labels[test]) if labels.max() else None
+    else:
+        own = (walk if formula.form.spread == "walk" else per_group)(effect[problem.own], test)
+    if own is None:
+        return None
+    whole = np.zeros((problem.m, own.shape[1]))
+    whole[problem.own] = own
+    return whole
+
+
+def remainders(problem: Problem) -> Iterator[Term]:
+    """What no cause of the library is: smooth in the conditions or by test, in thermometers, one, others, or all."""
+    o = problem.data
+    warm = [i for i, s in enumerate(o.read) if s.kind.endswith("_temp")]
+    other = [i for i in range(len(o.read)) if i not in warm]
+    groups = [warm, *([[i] for i in warm] if len(warm) > 1 else []), *([other, warm + other] if other else [])]
+    groups = [g for g in groups if g]
+    tests = o.campaign.test[o.row]
+    kernels = {"smooth in the conditions": problem.alike}
+    if np.bincount(o.campaign.test).max() > 1 or len(np.unique(tests)) < o.campaign.n:
+        kernels["from test to test"] = tests[:, None] == tests
+    log = float(np.log(OUTSIDE) - np.log(len(groups) * len(kernels)))
+    for name, kernel in kernels.items():
+        variance, vectors = np.linalg.eigh(kernel * problem.same)
+        kept = variance > FAINT * variance[-1]
+        root = vectors[:, kept] * np.sqrt(variance[kept])
+        for group in groups:
+            mine = np.isin(o.entries.sensor, group)
+            own = (mine * o.entries.repeat)[:, None] * root
+            columns = np.zeros((problem.m, root.shape[1]))
+            columns[problem.own] = own
+            channels = tuple(o.read[i].name for i in group)
+            columns = columns[:, (columns**2).sum(axis=0) > 0]
+            yield Term(f"remainder {name}", "remainder", log, columns, REMAINDERS, channels=channels)
+
+
+def gross(problem: Problem, fit: Fit) -> Iterator[Term]:
+    """Single readings that cannot be: compared ones at the ends of dwells, and given ones through the model."""
+    for i in np.flatnonzero(problem.ends):
+        column = np.zeros((problem.m, 1))
+        column[i] = problem.repeat[i]
+        aside = Aside(int(i))
+        yield Term(f"reading {i}", f"reading {i}", float(np.log(GROSS)), column, ERRORS, aside=aside)
+    for sensor, columns in problem.inputs(fit.look):
+        for k in np.flatnonzero((columns**2).sum(axis=0) > 0):
+            aside, name = Aside(int(k), sensor), f"{sensor} {k}"
+            yield Term(name, name, float(np.log(GROSS)), columns[:, [k]], ERRORS, aside=aside)

@@ -1,0 +1,310 @@
+"""What the data say of everything that may be wrong: sets of terms to first order, the leading ones fitted exactly.
+
+The problem is linearised where nothing acts, and the likeliest sets of terms are fitted exactly. It is linearised anew
+at the best of them until the best one stays. All fits are weighed alike, nothing among them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Sequence
+from contextlib import suppress
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.special import logsumexp
+from scipy.stats import chi2
+
+from ....model.errors import SolveError
+from ..model.formula import Formula
+from . import screen, sets
+from .draws import correction
+from .evidence import WIDTHS, White
+from .fit import Fit, bounds, fitted
+from .found import Extra, Found, Hypothesis
+from .prior import Prior
+from .problem import Acting, Aside, Problem
+from .terms import Term, gross, remainders, sizes, spreads
+
+#: Linearisations at most.
+LOOKS = 3
+#: Sets fitted of each linearisation.
+FITTED = 10
+#: Nats behind the likeliest set within which they are fitted.
+WITHIN = 8.0
+#: Causes fitted alone: a large effect bends, and its cause may explain more than it promises to first order.
+ALONE = 10
+#: The same where nothing looks wrong.
+QUIET_ALONE = 4
+#: p of any cause above which little is fitted.
+QUIET = 0.3
+#: Hypotheses within so many nats of the best are weighed by draws of the exact model.
+NEAR = 3.0
+#: Scatters looked at for gross readings.
+QUICK = 3
+#: Log odds of nothing against one cause while gross readings are looked for.
+FIRST = 2.0
+
+Progress = Callable[[str, float], None]
+#: What tells sets apart: forms of the causes, terms that scatter.
+_Key = tuple[frozenset[Formula], frozenset[str]]
+
+
+@dataclass(frozen=True, eq=False)
+class _Combination:
+    """Sets of terms with the same forms and the same scatters, and the likeliest of them."""
+
+    key: _Key
+    best: sets.TermSet
+    log: float
+
+
+def weigh(
+    problem: Problem,
+    formulas: Sequence[Formula],
+    alpha: float = 0.05,
+    seed: int = 0,
+    most: int = 8,
+    progress: Progress = lambda stage, share: None,
+    wanted: Collection[str] = (),
+) -> Found:
+    """All hypotheses that count, weighed.
+
+    Args:
+        problem: data and model
+        formulas: all forms of all causes
+        alpha: accepted rate of false alarms: the prior of none is such that its posterior is 1/2 there
+        seed: of the draws
+        most: causes that may act together
+        progress: told of each stage and the share done
+        wanted: causes that are fitted however they look
+    """
+    return _Weighing(problem, formulas, alpha, seed, most, progress).run(wanted)
+
+
+class _Weighing:
+    """One run; arguments as for `weigh`."""
+
+    def __init__(
+        self, problem: Problem, formulas: Sequence[Formula], alpha: float, seed: int, most: int, progress: Progress
+    ) -> None:
+        self.whole, self.seed, self.most, self.progress = problem, seed, most, progress
+        self.formulas = tuple(f for f in formulas if not f.form.spread)
+        self.spreads = tuple(f for f in formulas if f.form.spread)
+        self.prior = Prior(f.cause for f in formulas)
+        self.hypotheses: dict[_Key, Hypothesis] = {}
+        progress("calibrating without a cause", 0.02)
+        null = fitted(problem, (), np.zeros(problem.nz))
+        progress("effects of all causes", 0.1)
+        first = screen.look(problem, null, self.formulas)
+        leader = self._search(null, first, FIRST, "gross readings", 0.2, QUICK)[0]
+        self.problem = problem.without(_aside(self.linear.terms, leader))
+        self.null, self.first = null, first
+        if self.problem.aside:
+            self.null = fitted(self.problem, (), null.look.z)
+            self.first = screen.look(self.problem, self.null, self.formulas)
+        self.drawn, self.critical, self.p_any = self._alarm(alpha)
+
+    def _alarm(self, alpha: float) -> tuple[np.ndarray, float, float]:
+        """Log Bayes factors of any cause in draws of the null, their critical value, and p of what is seen."""
+        weights = self.first.weights + [self.prior.share[c.id] for c in self.first.candidates]
+        drawn = screen.null_draws(self.first, weights, self.seed)
+        seen = float(logsumexp(self.first.log_bf + weights))
+        p = float((1 + (drawn >= seen).sum()) / (1 + len(drawn)))
+        return drawn, float(np.quantile(drawn, 1 - alpha)), p
+
+    def run(self, wanted: Collection[str]) -> Found:
+        """Everything."""
+        nothing: _Key = (frozenset(), frozenset())
+        self.hypotheses[nothing] = Hypothesis((), self.null, self.null.evidence + self.critical)
+        self._fit_alone(wanted)
+        near, first = self.null, self.first
+        for round_ in range(LOOKS if self.p_any < QUIET else 1):
+            begun = 0.3 + 0.2 * round_
+            found = self._search(near, first, self.critical, "sets of causes", begun)
+            self._fit_sets(found, near, begun + 0.1)
+            best = max(self.hypotheses.values(), key=lambda h: h.log_joint)
+            if best.fit.look is near.look or not best.causes:
+                break
+            near = best.fit
+            with suppress(SolveError):
+                first = screen.look(self.problem, near, self.formulas)
+                continue
+            break
+        return self._weighed()
+
+    def _search(
+        self, near: Fit, look: screen.Look, critical: float, stage: str, begun: float, scatters: int = sets.SCATTERS
+    ) -> list[sets.TermSet]:
+        """The likeliest sets of terms at a linearisation."""
+        problem, J = self.whole, near.look.jacobian
+        terms = list(sizes(look, self.prior))
+        effects, acting = np.zeros(problem.m), near.look.acting
+        place = problem.nz
+        for a in acting:
+            terms.append(_as_fitted(a, J[:, [place]], self.prior))
+            effects += a.t[0] * J[:, place]
+            place += a.formula.size
+        terms += gross(problem, near)
+        terms += spreads(problem, near, self.spreads, self.prior)
+        terms += remainders(problem)
+        known = J[:, : problem.nz] @ J[:, : problem.nz].T
+        noise = problem.noise(near.look)
+
+        def covariance(scales: Sequence[float]) -> tuple[np.ndarray, float]:
+            own = replace(noise, scales=np.array(scales))
+            return own.covariance + known, own.log_prior
+
+        def scaled(more: np.ndarray, scales: Sequence[float]) -> Sequence[float]:
+            own = replace(noise, scales=np.array(scales)).fitted(residual, known + more)
+            return [float(s) for s in own.scales]
+
+        residual = problem.measured - near.look.shown + J[:, : problem.nz] @ near.look.z + effects
+        self.linear = sets.Linear(terms, residual, covariance, scaled, self.prior, critical, self.most)
+        starts = [np.zeros(len(noise.loose)), near.noise.scales]
+        return sets.search(self.linear, starts, lambda share: self.progress(stage, begun + 0.1 * share), scatters)
+
+    def _fit_alone(self, wanted: Collection[str]) -> None:
+        """Fits the causes that promise most each alone, and those that are wanted."""
+        log_bf = self.first.by_form(len(self.formulas))
+        value = log_bf + [np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas]
+        best: dict[str, int] = {}
+        for k in np.argsort(-value, kind="stable"):
+            best.setdefault(self.formulas[k].cause.id, int(k))
+        n = ALONE if self.p_any < QUIET else QUIET_ALONE
+        for k in [*list(best.values())[:n], *(best[c] for c in wanted if c in best)]:
+            formula = self.formulas[k]
+            key: _Key = (frozenset([formula]), frozenset())
+            if key not in self.hypotheses:
+                start = self.first.start(k)
+                with suppress(SolveError):
+                    z, _ = self.null.moved(self.problem, start.effect)
+                    fit = fitted(self.problem, [start.acting], z, self.null.noise.scales)
+                    own = np.flatnonzero([f.cause.id == formula.cause.id for f in self.formulas])
+                    logs = {self.formulas[i].form.name: float(value[i]) for i in own}
+                    self._keep(key, fit, (), {formula.cause.id: logs})
+
+    def _fit_sets(self, found: Sequence[sets.TermSet], near: Fit, share: float) -> None:
+        """Fits the likeliest sets with the forms, scatters and starts that they promise."""
+        combinations = self._combinations(found)
+        for done, own in enumerate(combinations[:FITTED]):
+            self.progress("causes fitted together", share + 0.1 * done / FITTED)
+            if own.log < combinations[0].log - WITHIN:
+                break
+            if own.key in self.hypotheses:
+                continue
+            with suppress(SolveError):
+                self._fit(own, near, self._forms(own, combinations))
+
+    def _combinations(self, found: Sequence[sets.TermSet]) -> list[_Combination]:
+        """Sets put together by their forms and scatters, the likeliest first."""
+        members: dict[_Key, list[sets.TermSet]] = {}
+        for s in found:
+            members.setdefault(self._key(s), []).append(s)
+        each = [
+            _Combination(key, own[0], float(logsumexp([s.log for s in own]))) for key, own in members.items()
+        ]
+        return sorted(each, key=lambda c: -c.log)
+
+    def _key(self, s: sets.TermSet) -> _Key:
+        terms = self.linear.terms
+        forms = [t.formula for k in s.members if (t := terms[k]).formula is not None]
+        return frozenset(forms), frozenset(terms[k].label for k, _ in s.scatter.beside)
+
+    def _forms(self, own: _Combination, all_: Iterable[_Combination]) -> dict[str, dict[str, float]]:
+        """Cause -> form -> log weight, over the combinations with the same causes and scatters."""
+        causes = {f.cause.id for f in own.key[0]}
+        logs: dict[str, dict[str, float]] = {c: {} for c in causes}
+        for other in all_:
+            if other.key[1] == own.key[1] and {f.cause.id for f in other.key[0]} == causes:
+                for f in other.key[0]:
+                    known = logs[f.cause.id].get(f.form.name, -np.inf)
+                    logs[f.cause.id][f.form.name] = float(np.logaddexp(known, other.log))
+        return logs
+
+    def _fit(self, own: _Combination, near: Fit, forms: dict[str, dict[str, float]]) -> None:
+        """Fits a combination exactly from where its likeliest set is expected."""
+        terms, s = self.linear.terms, own.best
+        V, _ = self.linear.covariance(s.scatter.scales)
+        scatters = [(terms[k], width) for k, width in s.scatter.beside]
+        for term, width in scatters:
+            V = V + width**2 * term.columns @ term.columns.T
+        G = np.concatenate([np.zeros((len(V), 0)), *(terms[k].columns for k in s.members)], axis=1)
+        v = np.array(s.widths) ** 2
+        a = White.of(V + G * v @ G.T).back(self.linear.residual)
+        J = near.look.jacobian[:, : self.whole.nz]
+        z, t = np.clip(J.T @ a, -6.0, 6.0), v * (G.T @ a)
+        acting = [_started(terms[k], x) for k, x in zip(s.members, t, strict=True) if terms[k].formula is not None]
+        extra = tuple(term.scatter(width) for term, width in scatters)
+        problem = self.problem.beside(extra)
+        fit = fitted(problem, acting, z, np.array(s.scatter.scales))
+        extras = tuple(
+            Extra(t.name, t.formula.form.name, w, (), t.columns, float(np.log(t.formula.form.weight)))
+            if t.formula
+            else Extra(None, t.name, w, t.channels, t.columns, t.log_prior)
+            for t, w in scatters
+        )
+        self._keep(own.key, fit, extras, forms)
+
+    def _keep(self, key: _Key, fit: Fit, extras: tuple[Extra, ...], forms: dict[str, dict[str, float]]) -> None:
+        """A fitted hypothesis with its log joint probability; forms that were not fitted count as they look."""
+        acting = [a.formula for a in fit.look.acting]
+        causes = (*(f.cause.id for f in acting), *(e.cause for e in extras if e.cause))
+        log = fit.evidence + sum(float(np.log(f.form.weight)) for f in acting)
+        log += sum(e.log_prior for e in extras)
+        log += self.prior(causes) if causes else self.critical
+        for own in forms.values():
+            log += float(logsumexp(list(own.values())) - max(own.values()))
+        self.hypotheses[key] = Hypothesis(causes, fit, float(log), extras, forms)
+
+    def _weighed(self) -> Found:
+        """All hypotheses with their probabilities, the leading ones corrected by draws of the exact model."""
+        self.progress("draws of the exact model", 0.9)
+        found, done = list(self.hypotheses.values()), set[int]()
+        while True:
+            best = max(h.log_joint for h in found)
+            near = [k for k, h in enumerate(found) if k not in done and h.log_joint >= best - NEAR]
+            if not near:
+                break
+            for k in near:
+                by = correction(self.problem, found[k].fit, self.seed)
+                found[k] = replace(found[k], log_joint=found[k].log_joint + by.log, error=by.error)
+            done.update(near)
+        found.sort(key=lambda h: -h.log_joint)
+        logs = np.array([h.log_joint for h in found])
+        _, e = self.null.linear(self.problem)
+        return Found(
+            self.problem,
+            (*self.formulas, *self.spreads),
+            self.null,
+            self.first,
+            tuple(found),
+            np.exp(logs - logsumexp(logs)),
+            self.p_any,
+            self.critical,
+            self.drawn,
+            float(chi2.sf(e @ e, self.problem.m - len(self.problem.aside))),
+            self.prior,
+        )
+
+
+def _aside(terms: Sequence[Term], leader: sets.TermSet) -> frozenset[Aside]:
+    """The gross readings of a set."""
+    return frozenset(a for k in leader.members if (a := terms[k].aside) is not None)
+
+
+def _as_fitted(acting: Acting, column: np.ndarray, prior: Prior) -> Term:
+    """What acts at a linearisation, with the shapes that were fitted."""
+    cause, form = acting.formula.cause, acting.formula.form
+    log = prior.share[cause.id] + float(np.log(form.weight))
+    low, high = (float(b[0]) for b in bounds(acting))
+    return Term(
+        cause.id, cause.family, log, column, WIDTHS, low, high, acting, acting.formula
+    )
+
+
+def _started(term: Term, size: float) -> Acting:
+    """A cause where its fit begins: not too near to zero, inside its bounds."""
+    assert term.acting is not None
+    low, high = bounds(term.acting)
+    size, least = float(np.clip(size, low[0], high[0])), 0.1 if high[0] > 0.1 else -0.1
+    return replace(term.acting, t=np.r_[size if abs(size) > 0.1 else least, term.acting.t[1:]])
