@@ -13,7 +13,7 @@ from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.table import Campaign
 from gearheat.tools.diagnose.answer.grid import planned_campaign
 from gearheat.tools.diagnose.infer.found import Found
-from gearheat.tools.diagnose.infer.search import searched
+from gearheat.tools.diagnose.infer.weigh import weigh
 from gearheat.tools.diagnose.setting import Setting, setting
 
 #: What may be wrong in these tests, and by how much the oil thermometer is.
@@ -36,7 +36,7 @@ def _made(offset: float) -> tuple[Setting, Found]:
     scenario, card = load("helical_two_stage", PARTS | EXTRA_PARTS), Card()
     made = setting(scenario, card, noisy(planned_campaign(scenario, card, None), offset, 3))
     formulas = [f for f in made.formulas if f.cause.id in CAUSES and f.form.name == ""]
-    return made, searched(made.problem, formulas)
+    return made, weigh(made.problem, formulas)
 
 
 @pytest.fixture(scope="session")

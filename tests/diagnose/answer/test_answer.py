@@ -15,9 +15,9 @@ from gearheat.tools.diagnose.answer.predict import predictions
 from gearheat.tools.diagnose.answer.quality import adequacy, scatters
 from gearheat.tools.diagnose.answer.sets import Effects, alike
 from gearheat.tools.diagnose.infer import gross
-from gearheat.tools.diagnose.infer.fit import fitted
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Aside, Problem
+from gearheat.tools.diagnose.infer.weigh import weigh
 from gearheat.tools.diagnose.model.observe import Observed
 from gearheat.tools.diagnose.setting import Setting
 
@@ -34,7 +34,7 @@ def test_calm_probabilities_keep_their_order_and_that_of_nothing(wrong: tuple[Se
     assert [j.causes for j in before.joints if j.causes] == [j.causes for j in after.joints if j.causes]
     assert calm.probabilities.sum() == pytest.approx(1.0)
     assert after.joints[0].chance.probability < before.joints[0].chance.probability
-    nothing = [not h.causes and h.extra is None for h in found.hypotheses]
+    nothing = [not h.causes and not h.extras for h in found.hypotheses]
     assert calm.probabilities[nothing] == pytest.approx(found.probabilities[nothing])
 
 
@@ -63,30 +63,20 @@ def test_other_data_change_the_odds_by_what_they_say(wrong: tuple[Setting, Found
     assert np.subtract(*np.transpose(logs)) == pytest.approx(2.0 * more)
 
 
-def test_few_readings_of_one_sensor_are_gross(wrong: tuple[Setting, Found], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(gross, "MOST", 0.5)
-    problem = wrong[1].problem
-    one, other = (np.flatnonzero(problem.data.kind == kind)[:3].tolist() for kind in (0, 1))
-    kept = gross.few(problem, [Aside(i) for i in [*one, *other[:1]]])
-    assert kept == {Aside(one[0]), Aside(one[1]), Aside(other[0])}
-
-
-def test_good_readings_that_hide_a_gross_one_come_back(clean: tuple[Setting, Found]) -> None:
+def test_one_gross_reading_is_found_and_sound_ones_beside_it_stay(clean: tuple[Setting, Found]) -> None:
     made, sound = clean[0], clean[1].problem
     oil, row = next(s for s in sound.data.read if s.kind == "oil_temp"), 5
-    room = next(s.name for s in sound.data.given if s.kind == "ambient")
     values = {**sound.data.campaign.values}
     values[oil.name] = values[oil.name] + 20 * oil.repeat_sd * (np.arange(sound.data.campaign.n) == row)
     data = replace(sound.data.campaign, values=values)
     point = made.scenario.operating_point
     problem = Problem([Observed(made.plant, data, sound.data.nuisances, made.oils, point)], sound.day_sd)
-    bad, good = (
-        Aside(int(np.flatnonzero((problem.data.row == row) & (problem.data.entries.sensor == i))[0])) for i in (0, 1)
-    )
-    whole = problem.without(frozenset([bad, good, Aside(row, room)]))  # all thermometers of a row: none speaks
-    fit = fitted(whole, (), np.zeros(whole.nz))
-    assert all(abs(s.size_sd) < 1 for s in gross.distances(whole, fit))
-    assert gross.remaining(whole, fit) == {bad}
+    bad = Aside(int(np.flatnonzero((problem.data.row == row) & (problem.data.kind == 0))[0]))
+    found = weigh(problem, clean[1].formulas)
+    assert found.problem.aside == {bad}
+    assert decided(found).verdict == "consistent"
+    (far,) = gross.distances(found.problem, found.null)
+    assert far.size_sd == pytest.approx(20, rel=0.3)
 
 
 def test_the_cause_is_named_and_all_agrees(wrong: tuple[Setting, Found]) -> None:

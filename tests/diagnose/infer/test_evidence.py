@@ -8,7 +8,6 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from gearheat.tools.diagnose.infer.evidence import WIDTHS, White, log_bayes_factor, log_bayes_factors
-from gearheat.tools.diagnose.infer.gross import _robust
 from gearheat.tools.diagnose.infer.prior import MORE, TWO, Prior
 from scipy.integrate import quad
 from scipy.stats import multivariate_normal, norm
@@ -82,12 +81,3 @@ def test_priors_of_one_cause_add_up_and_classes_share_theirs() -> None:
     pairs = sum(np.exp(prior(pair)) for pair in combinations(names, 2))
     assert pairs == pytest.approx(TWO * (1 - sum(s**2 for s in share.values())))
     assert prior(names[:3]) - prior(names[:2]) == pytest.approx(np.log(3 * MORE * share["c"]))
-
-
-def test_a_gross_reading_does_not_hide_in_the_scatter_it_makes() -> None:
-    """Half of a kind says what its scatter is; a scatter that is larger than stated is never made smaller."""
-    stands = np.r_[np.random.default_rng(2).normal(scale=0.5, size=60), 8.0]
-    found = _robust(stands, np.zeros(61))
-    assert abs(found[-1]) > 12 and np.abs(found[:-1]).max() < 5
-    loud = _robust(4 * stands, np.zeros(61))
-    np.testing.assert_allclose(loud, 4 * stands)

@@ -133,28 +133,6 @@ class Start:
     effect: np.ndarray
 
 
-def again(fit: Fit) -> Start:
-    """A cause as it was fitted alone, about to join another."""
-    (acting,) = fit.look.acting
-    return Start(acting, acting.t[0] * fit.look.jacobian[:, len(fit.look.z)])
-
-
-def joined(problem: Problem, near: Fit, starts: Sequence[Start], steps: int = STEPS) -> Fit:
-    """A fitted hypothesis with further causes, fitted from where all of them are expected.
-
-    Args:
-        problem: data and model
-        near: the hypothesis
-        starts: what joins
-        steps: at most
-
-    Raises:
-        SolveError: the model cannot be run where the fit begins
-    """
-    z, acting = near.moved(problem, np.sum([s.effect for s in starts], axis=0))
-    return fitted(problem, [*acting, *(s.acting for s in starts)], z, near.noise.scales, steps)
-
-
 def prior_precision(problem: Problem, acting: Sequence[Acting]) -> np.ndarray:
     """Of the vector's entries by their priors, sizes by the widest."""
     return _Vector(problem, acting).precision
@@ -309,12 +287,6 @@ def _cost(problem: Problem, vector: _Vector, white: White, look: Look) -> float:
     """Half the squared misfit, priors included."""
     e = white(problem.measured - look.shown)
     return float(0.5 * e @ e + 0.5 * vector.precision @ look.x**2)
-
-
-def weighed(problem: Problem, look: Look, noise: Noise, cost: float) -> Fit:
-    """A fit with its scales as the data tell them, and its evidence."""
-    line = _Line(problem, look)
-    return line.weighed(line.scattered(noise), cost)
 
 
 class _Line:

@@ -9,11 +9,10 @@ from itertools import product
 import numpy as np
 from scipy.special import logsumexp, ndtri
 
-from ....model.errors import SolveError
 from ..library.cause import Mostly
 from ..model.formula import Formula
 from .evidence import log_bayes_factors
-from .fit import Fit, Start, View, bounds, fitted, weighed
+from .fit import Fit, Start, View, bounds
 from .problem import Acting, Problem
 
 #: Start points of a form for its first shape, beside the one in the middle.
@@ -28,8 +27,6 @@ THRESHOLDS = (6, 8)
 MOSTLY = (0.0, 0.6, 0.8, 1.2)
 #: Sizes up to which causes that shorten dwells are judged: readings that end a dwell hardly follow its last minutes.
 PACES = (1.0, 2.5)
-#: How far behind the best candidate of a form a second one is tried.
-NEAR = 3.0
 #: Places of a change in the running order at most.
 PLACES = 40
 #: Draws of the alarm's null.
@@ -75,13 +72,9 @@ class Look:
 
     def start(self, formula: int) -> Start:
         """Where a fit of a formula begins: at the best of its candidates."""
-        return self.ranked(formula)[0][1]
-
-    def ranked(self, formula: int) -> list[tuple[float, Start]]:
-        """The two best of a formula's candidates with their log Bayes factors."""
         own = np.flatnonzero(self.owner == formula)
-        best = own[np.argsort(-self.log_bf[own], kind="stable")][:2]
-        return [(float(self.log_bf[k]), self.begun(k, self.sizes[k])) for k in best]
+        k = int(own[np.argmax(self.log_bf[own])])
+        return self.begun(k, self.sizes[k])
 
     def begun(self, k: int, size: float) -> Start:
         """A candidate at a size, not too near to zero."""
@@ -90,31 +83,6 @@ class Look:
         size, least = float(np.clip(size, low[0], high[0])), 0.1 if high[0] > 0.1 else -0.1
         size = size if abs(size) > 0.1 else least
         return Start(replace(candidate, t=np.r_[size, candidate.t[1:]]), size * self.effects[:, k])
-
-
-@dataclass(frozen=True)
-class Looks:
-    """All forms of all causes at several linearisations; each form where it explains most.
-
-    Nuisances far from what is expected of them may take up most of a cause where no cause is fitted. From where the
-    rig is as its healthy campaign or its file says, it shows.
-
-    Args:
-        each: a look and the fit that it lies beside
-    """
-
-    each: tuple[tuple[Fit, Look], ...]
-
-    def by_form(self, n: int) -> np.ndarray:
-        """Log Bayes factor of each of n formulas (n,)."""
-        return np.asarray(np.max([look.by_form(n) for _, look in self.each], axis=0))
-
-    def starts(self, formula: int) -> list[tuple[Fit, Start]]:
-        """Beside which fit a formula begins, and how: best first, of one with a threshold a near second, too."""
-        found = [(value, near, start) for near, look in self.each for value, start in look.ranked(formula)]
-        found.sort(key=lambda item: -item[0])
-        most = 1 + any(shape.name == "threshold" for shape in found[0][2].acting.formula.form.shapes)
-        return [(near, start) for value, near, start in found[:most] if value > found[0][0] - NEAR]
 
 
 def samples(formulas: Sequence[Formula], orders: np.ndarray) -> tuple[tuple[Acting, ...], np.ndarray]:
@@ -170,29 +138,6 @@ def look(problem: Problem, fit: Fit, formulas: Sequence[Formula]) -> Look:
     effects = problem.tangents(fit.look.z, fit.look.acting, candidates)
     effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
     return judged(candidates, owner, effects, fit.views(problem))
-
-
-def looks(problem: Problem, null: Fit, first: Look, formulas: Sequence[Formula]) -> Looks:
-    """The first look, and one from where the rig is as its healthy campaign says, or else its file.
-
-    Args:
-        problem: data and model
-        null: the fit without a cause, which all Bayes factors are relative to
-        first: beside it
-        formulas: forms of causes
-    """
-    z = np.zeros(problem.nz)
-    try:
-        if len(problem.campaigns) > 1:
-            z = fitted(Problem(problem.campaigns[1:], problem.day_sd), (), z).look.z
-        here = problem.look(z)
-        fit = weighed(problem, here, problem.noise(here), 0.0)
-        found = look(problem, fit, formulas)
-    except SolveError:
-        return Looks(((null, first),))
-    ahead = fit.evidence - null.evidence
-    views = tuple(replace(view, log=view.log + ahead) for view in found.views)
-    return Looks(((null, first), (fit, replace(found, views=views, log_bf=found.log_bf + ahead))))
 
 
 def judged(candidates: tuple[Acting, ...], owner: np.ndarray, effects: np.ndarray, views: Sequence[View]) -> Look:

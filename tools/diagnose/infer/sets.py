@@ -8,7 +8,7 @@ of sizes grow, shrink and exchange members, and the likeliest set says which sca
 from __future__ import annotations
 
 import heapq
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -217,7 +217,9 @@ class Whitened:
             best = max(best, own.log)
             if members and own.log < best - WINDOW:
                 continue
-            fewer = [(members[:i] + members[i + 1 :], own.widths[:i] + own.widths[i + 1 :]) for i in range(len(members))]
+            fewer = [
+                (members[:i] + members[i + 1 :], own.widths[:i] + own.widths[i + 1 :]) for i in range(len(members))
+            ]
             for base in [(own.members, own.widths), *fewer]:
                 if frozenset(base[0]) not in seen and len(base[0]) < MOST:
                     seen.add(frozenset(base[0]))

@@ -66,6 +66,7 @@ def weigh(
     most: int = 8,
     progress: Progress = lambda stage, share: None,
     wanted: Collection[str] = (),
+    critical: float | None = None,
 ) -> Found:
     """All hypotheses that count, weighed.
 
@@ -77,16 +78,17 @@ def weigh(
         most: causes that may act together
         progress: told of each stage and the share done
         wanted: causes that are fitted however they look
+        critical: log prior odds of nothing against one cause, where they are known; draws of the null tell them else
     """
-    return _Weighing(problem, formulas, alpha, seed, most, progress).run(wanted)
+    own = _Weighing(problem, formulas, seed, most, progress)
+    own.ask_alarm(alpha, critical)
+    return own.run(wanted)
 
 
 class _Weighing:
     """One run; arguments as for `weigh`."""
 
-    def __init__(
-        self, problem: Problem, formulas: Sequence[Formula], alpha: float, seed: int, most: int, progress: Progress
-    ) -> None:
+    def __init__(self, problem: Problem, formulas: Sequence[Formula], seed: int, most: int, progress: Progress) -> None:
         self.whole, self.seed, self.most, self.progress = problem, seed, most, progress
         self.formulas = tuple(f for f in formulas if not f.form.spread)
         self.spreads = tuple(f for f in formulas if f.form.spread)
@@ -97,20 +99,22 @@ class _Weighing:
         progress("effects of all causes", 0.1)
         first = screen.look(problem, null, self.formulas)
         leader = self._search(null, first, FIRST, "gross readings", 0.2, QUICK)[0]
-        self.problem = problem.without(_aside(self.linear.terms, leader))
+        self.problem = problem.without(problem.aside | _aside(self.linear.terms, leader))
         self.null, self.first = null, first
-        if self.problem.aside:
+        if self.problem.aside != problem.aside:
             self.null = fitted(self.problem, (), null.look.z)
             self.first = screen.look(self.problem, self.null, self.formulas)
-        self.drawn, self.critical, self.p_any = self._alarm(alpha)
 
-    def _alarm(self, alpha: float) -> tuple[np.ndarray, float, float]:
-        """Log Bayes factors of any cause in draws of the null, their critical value, and p of what is seen."""
+    def ask_alarm(self, alpha: float, critical: float | None) -> None:
+        """p of any cause by draws of the null, and the prior of none that agrees with it."""
         weights = self.first.weights + [self.prior.share[c.id] for c in self.first.candidates]
-        drawn = screen.null_draws(self.first, weights, self.seed)
         seen = float(logsumexp(self.first.log_bf + weights))
-        p = float((1 + (drawn >= seen).sum()) / (1 + len(drawn)))
-        return drawn, float(np.quantile(drawn, 1 - alpha)), p
+        if critical is not None:
+            self.drawn, self.critical, self.p_any = np.zeros(0), critical, 0.0 if seen > critical else 1.0
+            return
+        self.drawn = screen.null_draws(self.first, weights, self.seed)
+        self.critical = float(np.quantile(self.drawn, 1 - alpha))
+        self.p_any = float((1 + (self.drawn >= seen).sum()) / (1 + len(self.drawn)))
 
     def run(self, wanted: Collection[str]) -> Found:
         """Everything."""
@@ -200,9 +204,7 @@ class _Weighing:
         members: dict[_Key, list[sets.TermSet]] = {}
         for s in found:
             members.setdefault(self._key(s), []).append(s)
-        each = [
-            _Combination(key, own[0], float(logsumexp([s.log for s in own]))) for key, own in members.items()
-        ]
+        each = [_Combination(key, own[0], float(logsumexp([s.log for s in own]))) for key, own in members.items()]
         return sorted(each, key=lambda c: -c.log)
 
     def _key(self, s: sets.TermSet) -> _Key:
@@ -297,9 +299,7 @@ def _as_fitted(acting: Acting, column: np.ndarray, prior: Prior) -> Term:
     cause, form = acting.formula.cause, acting.formula.form
     log = prior.share[cause.id] + float(np.log(form.weight))
     low, high = (float(b[0]) for b in bounds(acting))
-    return Term(
-        cause.id, cause.family, log, column, WIDTHS, low, high, acting, acting.formula
-    )
+    return Term(cause.id, cause.family, log, column, WIDTHS, low, high, acting, acting.formula)
 
 
 def _started(term: Term, size: float) -> Acting:

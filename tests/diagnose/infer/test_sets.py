@@ -1,0 +1,130 @@
+"""Sets of terms are weighed as the integrals say, and several things at once are found."""
+
+from __future__ import annotations
+
+from itertools import combinations
+from types import SimpleNamespace
+from typing import Any
+
+import numpy as np
+import pytest
+from gearheat.tools.diagnose.infer import sets
+from gearheat.tools.diagnose.infer.evidence import WIDTHS
+from gearheat.tools.diagnose.infer.prior import Prior
+from gearheat.tools.diagnose.infer.problem import Aside
+from gearheat.tools.diagnose.infer.terms import ERRORS, SPREADS, Term
+from scipy.special import logsumexp
+from scipy.stats import multivariate_normal
+
+M, CAUSES = 40, 12
+CRITICAL = 2.0
+
+
+def linear(residual: np.ndarray, more: list[Term], seed: int = 1, alike: bool = False) -> sets.Linear:
+    """Twelve causes with random effects on forty readings of noise one, and further terms."""
+    rng = np.random.default_rng(seed)
+    names = [f"cause{k}" for k in range(CAUSES)]
+    prior = Prior(SimpleNamespace(id=n, family=n, common=1.0) for n in names)  # type: ignore[misc]
+    formula: Any = SimpleNamespace()
+    effects = effects_of(rng)
+    own = [
+        Term(n, "one" if alike else n, prior.share[n], effects[:, [k]], WIDTHS, -9.0, 9.0, SimpleNamespace(), formula)  # type: ignore[arg-type]
+        for k, n in enumerate(names)
+    ]
+    gross = [t for t in more if t.aside is not None]
+    scatters = [t for t in more if t.aside is None]
+
+    def covariance(scales: Any) -> tuple[np.ndarray, float]:
+        return np.exp(2 * scales[0]) * np.eye(M), -0.5 * (scales[0] / 0.25) ** 2
+
+    def scaled(known: np.ndarray, scales: Any) -> list[float]:
+        values, vectors = np.linalg.eigh(known)
+        r2, tried = (vectors.T @ residual) ** 2, np.linspace(-1, 2, 61)
+        V = values + np.exp(2 * tried)[:, None]
+        logs = -0.5 * (r2 / V + np.log(V)).sum(axis=1) - 0.5 * (tried / 0.25) ** 2
+        return [float(tried[int(np.argmax(logs))])]
+
+    return sets.Linear([*own, *gross, *scatters], residual, covariance, scaled, prior, CRITICAL, 8)
+
+
+def effects_of(rng: np.random.Generator) -> np.ndarray:
+    """Effects (M, CAUSES)."""
+    return np.asarray(rng.normal(size=(M, CAUSES)))
+
+
+def noise(seed: int) -> np.ndarray:
+    """Of readings (M,)."""
+    return np.asarray(np.random.default_rng(seed).normal(size=M))
+
+
+def named(problem: sets.Linear, found: sets.TermSet) -> set[str]:
+    """What a set holds."""
+    return {problem.terms[k].name for k in found.terms}
+
+
+@pytest.mark.parametrize("sizes", [{}, {2: 3.0}, {0: 2.0, 5: -3.0}, {1: 2.0, 3: -2.0, 7: 2.5, 9: -3.0, 11: 2.0}])
+def test_all_that_acts_is_found(sizes: dict[int, float]) -> None:
+    effects = effects_of(np.random.default_rng(1))
+    residual = noise(5) + sum((t * effects[:, k] for k, t in sizes.items()), np.zeros(M))
+    problem = linear(residual, [])
+    best = sets.search(problem, [[0.0]], lambda share: None)[0]
+    assert named(problem, best) == {f"cause{k}" for k in sizes}
+
+
+def test_a_set_counts_as_much_as_its_integral() -> None:
+    effects = effects_of(np.random.default_rng(1))
+    residual = noise(6) + 1.2 * effects[:, 4] + 0.8 * effects[:, 8]
+    problem = linear(residual, [])
+    table = sets.Table(problem)
+    white = sets.Whitened(table, sets.Scatter((0.0,)))
+    for own in [(), (4,), (8,), (4, 8)]:
+        logs = []
+        for widths in np.array(np.meshgrid(*[WIDTHS] * len(own))).reshape(len(own), -1).T if own else [np.zeros(0)]:
+            G = effects[:, list(own)] * widths
+            logs.append(
+                multivariate_normal.logpdf(residual, np.zeros(M), np.eye(M) + G @ G.T) + M * np.log(2 * np.pi) / 2
+            )
+        exact = logsumexp(logs) - np.log(len(logs)) + table.log_prior(own)
+        assert white.scored(own, [1.6] * len(own)).log == pytest.approx(exact, abs=0.15), own
+
+
+def test_terms_of_one_family_are_one_answer() -> None:
+    effects = effects_of(np.random.default_rng(1))
+    residual = noise(5) + 3.0 * effects[:, 2] - 3.0 * effects[:, 7]
+    problem = linear(residual, [], alike=True)
+    assert all(len(s.terms) <= 1 for s in sets.search(problem, [[0.0]], lambda share: None))
+
+
+def test_a_gross_reading_is_no_cause_and_no_scatter() -> None:
+    residual = noise(8)
+    residual[17] += 12.0
+    column = np.zeros((M, 1))
+    column[17] = 1.0
+    reading = Term("reading 17", "reading 17", np.log(0.002), column, ERRORS, aside=Aside(17))
+    problem = linear(residual, [reading])
+    best = sets.search(problem, [[0.0]], lambda share: None)[0]
+    assert named(problem, best) == {"reading 17"}
+    assert abs(best.scatter.scales[0]) < 0.3
+
+
+def test_a_walk_beside_its_own_scatter() -> None:
+    """A walk is found where the scatter has grown to hold it, and the scatter is then what it is."""
+    rng = np.random.default_rng(3)
+    walk = np.tril(np.ones((M, M)))
+    residual = rng.standard_normal(M) + 1.5 * walk @ rng.standard_normal(M)
+    term = Term("cause0", "walk", np.log(0.05), walk, SPREADS, formula=SimpleNamespace(form=SimpleNamespace(name="")))  # type: ignore[arg-type]
+    problem = linear(residual, [term])
+    best = sets.search(problem, [[1.2]], lambda share: None)[0]
+    assert CAUSES in best.terms
+    assert dict(best.scatter.beside)[CAUSES] in (1.0, 2.0)
+    assert abs(best.scatter.scales[0]) < 0.3
+
+
+def test_no_better_set_of_two_is_missed() -> None:
+    effects = effects_of(np.random.default_rng(1))
+    residual = noise(9) + 1.0 * effects[:, 3] + 1.0 * effects[:, 6]
+    problem = linear(residual, [])
+    white = sets.Whitened(sets.Table(problem), sets.Scatter((0.0,)))
+    every = [white.scored(own, [1.6] * len(own)) for n in (0, 1, 2) for own in combinations(range(CAUSES), n)]
+    found = [s for s in sets.search(problem, [[0.0]], lambda share: None) if len(s.terms) <= 2]
+    assert found[0].terms == max(every, key=lambda s: s.log).terms
