@@ -11,8 +11,9 @@ from ...fmu.compiling import Progress
 from ...model.errors import DataError, GearheatError
 from ..show.console import as_json, file_of, progress_bar, writable, write
 from ..show.display import Display
+from .answer.findings import Findings, as_object
+from .answer.plan import Plan
 from .report import plan as plans
-from .report.findings import Findings, as_object
 from .report.page import render
 from .report.predictions import predictions_text
 from .report.screen import text
@@ -20,7 +21,7 @@ from .request import Inputs, PlanInputs, PlanRequest, Request, read, read_plan
 
 #: What is read and a listener for progress -> what was found, with its words; the same of a plan.
 Infer = Callable[[Inputs, Progress], Findings]
-Find = Callable[[PlanInputs, Progress], plans.Plan]
+Find = Callable[[PlanInputs, Progress], Plan]
 #: Kinds of pictures by the ending of their file's name.
 PICTURES: Mapping[str, Literal["png", "svg"]] = {".png": "png", ".svg": "svg"}
 T = TypeVar("T")
@@ -101,7 +102,7 @@ class Diagnosis(Display, Findings):
                 write(path, content)
 
 
-class PlanAnswer(Display, plans.Plan):
+class PlanAnswer(Display, Plan):
     """A plan that shows itself and is drawn."""
 
     @property

@@ -8,10 +8,11 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from gearheat.tools.diagnose.answer import estimate, gain
-from gearheat.tools.diagnose.answer.decide import UNEXPLAINED, calmed, decided
+from gearheat.tools.diagnose.answer.decide import calmed, decided
 from gearheat.tools.diagnose.answer.design import of_search, ranked
 from gearheat.tools.diagnose.answer.experiments import added, experiments
-from gearheat.tools.diagnose.answer.predict import predictions
+from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
+from gearheat.tools.diagnose.answer.predict import simulated
 from gearheat.tools.diagnose.answer.quality import adequacy, scatters
 from gearheat.tools.diagnose.answer.sets import Effects, alike
 from gearheat.tools.diagnose.infer import gross
@@ -157,10 +158,10 @@ def test_a_size_that_was_found_is_detectable(wrong: tuple[Setting, Found]) -> No
 
 
 def test_scatter_and_adequacy(clean: tuple[Setting, Found]) -> None:
-    found = clean[1]
+    setting, found = clean
     leader = decided(found).leader
-    for term in scatters(found, leader):
-        assert term.ci95[0] < 1.0 < term.ci95[1], term
+    for term in scatters(setting, found, leader):
+        assert term.ci95[0] < term.card < term.ci95[1], term
     assert all(0.001 < p < 0.9999 for p in adequacy(found, leader).values())
 
 
@@ -178,7 +179,7 @@ def test_gain_is_the_cause_s(wrong: tuple[Setting, Found]) -> None:
 def test_predictions_of_the_data_are_nearer_with_the_cause(wrong: tuple[Setting, Found]) -> None:
     setting, found = wrong
     campaign = found.problem.data.campaign
-    nominal, extended = predictions(setting, found, campaign)
+    nominal, extended = simulated(setting, found, campaign)
     i = next(i for i, s in enumerate(found.problem.data.read) if s.kind == "oil_temp")
     measured = campaign.values[found.problem.data.read[i].name]
     left = [float(np.sqrt(np.mean((table[i] - measured) ** 2))) for table in (nominal, extended)]
@@ -198,7 +199,7 @@ def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> 
     best = ranked(made, dict.fromkeys(CAUSES, 0.25))
     pair = next(p for p in now if set(p) == {TRUE, "cooling.air"})
     assert made.distances("bath")[pair] > now[pair] + 0.1, "a bath tells an offset of a thermometer"
-    assert all(r.after > r.before for r in best)
+    assert all(r.separation_after > r.separation_before for r in best)
 
 
 def test_added_tests_are_run_as_the_first_one(wrong: tuple[Setting, Found]) -> None:

@@ -12,8 +12,8 @@ from gearheat.model.errors import DataError
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.cli import app as cli
 from gearheat.tools.diagnose import asking
+from gearheat.tools.diagnose.answer.findings import Findings, Prediction
 from gearheat.tools.diagnose.asking import Outputs, Progress, ask
-from gearheat.tools.diagnose.report.findings import Findings, Prediction
 from gearheat.tools.diagnose.request import Inputs, Request
 from gearheat.tools.show.console import as_json
 from jsonschema import validate

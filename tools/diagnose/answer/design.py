@@ -13,6 +13,7 @@ from ..infer.problem import Acting, Look, Noise, Problem
 from ..model.noise import terms
 from ..model.observe import Observed, Seen
 from ..setting import Setting
+from . import findings
 from .experiments import Check, Experiment, added, with_readings
 from .sets import Effects
 
@@ -199,17 +200,7 @@ def of_search(setting: Setting, found: Found, causes: Collection[str], experimen
     )
 
 
-@dataclass(frozen=True)
-class Ranked:
-    """An experiment, the pair of causes that it separates most, and their distance before and after."""
-
-    experiment: Experiment
-    pair: Pair
-    before: float
-    after: float
-
-
-def ranked(made: Design, weights: Mapping[str, float]) -> list[Ranked]:
+def ranked(made: Design, weights: Mapping[str, float]) -> list[findings.Experiment]:
     """Experiments by what they add to the distances between causes, weighted by how probable both are.
 
     Args:
@@ -222,8 +213,15 @@ def ranked(made: Design, weights: Mapping[str, float]) -> list[Ranked]:
         value = {p: weights[p[0]] * weights[p[1]] * gain(before[p], after[p]) for p in before}
         best = max(value, key=lambda p: value[p], default=None)
         if best is not None and value[best] > 0:
-            found.append((sum(value.values()), Ranked(experiment, best, before[best], after[best])))
-    return [one for _, one in sorted(found, key=lambda item: (-item[0], item[1].experiment.id))]
+            one = findings.Experiment(
+                id=experiment.id,
+                what=experiment.what,
+                separates=best,
+                separation_before=before[best],
+                separation_after=after[best],
+            )
+            found.append((sum(value.values()), one))
+    return [one for _, one in sorted(found, key=lambda item: (-item[0], item[1].id))]
 
 
 def gain(before: float, after: float) -> float:

@@ -11,6 +11,7 @@ import numpy as np
 from ..infer.evidence import White
 from ..infer.problem import Acting
 from ..infer.screen import limits
+from .findings import CauseSet, Isolability
 
 #: Distances below this are none.
 APART = 3.0
@@ -70,16 +71,7 @@ class Effects:
         return min(self.distances(cause, size).items(), key=lambda item: item[1], default=None)
 
 
-@dataclass(frozen=True)
-class Alike:
-    """A cause with those that the design cannot tell from it; distance of the nearest of them."""
-
-    causes: tuple[str, ...]
-    distance: float
-    reason: str
-
-
-def alike(effects: Effects, cause: str, size: float, like: Mapping[str, str]) -> Alike | None:
+def alike(effects: Effects, cause: str, size: float, like: Mapping[str, str]) -> CauseSet | None:
     """The set that a design cannot tell from a cause, declared classes included; None where it stands alone.
 
     Args:
@@ -96,4 +88,14 @@ def alike(effects: Effects, cause: str, size: float, like: Mapping[str, str]) ->
     if not near:
         return None
     reason = like[cause].partition(":")[2].strip() if declared & set(near) else ""
-    return Alike((cause, *near), distances[near[0]], reason)
+    return CauseSet(causes=(cause, *near), distance=distances[near[0]], reason=reason)
+
+
+def isolability(effects: Effects) -> tuple[Isolability, ...]:
+    """What the design says of every cause of usual size."""
+    near = {cause: effects.nearest(cause) or ("", None) for cause in effects.places}
+    told = [
+        Isolability(cause=cause, visible=effects.visible(cause), nearest=name, distance=distance)
+        for cause, (name, distance) in near.items()
+    ]
+    return tuple(sorted(told, key=lambda i: -i.visible))

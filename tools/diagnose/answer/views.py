@@ -6,41 +6,23 @@ temperatures leave open, a thermometer with what torque and the other thermomete
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.special import logsumexp
 from scipy.stats import chi2
 
+from ....model.core.faults import listed
 from ....scenarios.measured.table import Sensor
 from ..infer.evidence import White, log_bayes_factors
 from ..infer.found import Found
 from ..infer.screen import limits
+from . import channels
+from .evidence import View
+from .numbers import array
 
 #: Causes that a channel names at least this probable.
 NAMED = 0.02
-
-
-@dataclass(frozen=True)
-class View:
-    """One channel, given the others.
-
-    Args:
-        sensor: the channel
-        deviation: its readings less what the others imply, calibrated without a cause [SI] (k,)
-        rows: their rows (k,)
-        p: of the deviations without a cause
-        nothing: probability that nothing is wrong, by this channel alone
-        causes: probability of each cause alone, the most probable first
-    """
-
-    sensor: Sensor
-    deviation: np.ndarray
-    rows: np.ndarray
-    p: float
-    nothing: float
-    causes: Mapping[str, float]
 
 
 def views(found: Found) -> tuple[View, ...]:
@@ -67,6 +49,28 @@ def views(found: Found) -> tuple[View, ...]:
         total = logsumexp([logsumexp(logs), found.critical])
         chances = {c: float(np.exp(logsumexp(logs[ids == c]) - total)) for c in dict.fromkeys(ids.tolist())}
         ranked = sorted((item for item in chances.items() if item[1] > NAMED), key=lambda item: -item[1])
-        p, nothing = float(chi2.sf(left @ left, len(left))), float(np.exp(found.critical - total))
-        told.append(View(o.read[i], deviation, o.row[o.kind == i], p, nothing, dict(ranked)))
+        s, rows = o.read[i], o.row[o.kind == i]
+        told.append(
+            View(
+                channel=s.name,
+                asks=_asks(s, o.read),
+                p=float(chi2.sf(left @ left, len(left))),
+                nothing=float(np.exp(found.critical - total)),
+                causes=tuple(View.Alone(id=id, probability=p) for id, p in ranked),
+                unit=channels.unit_of_difference(s),
+                order=array(o.campaign.order[o.campaign.test[rows]]),
+                direction=array(o.campaign.direction[rows]),
+                deviation=array(channels.difference(s, 1.0) * deviation),
+            )
+        )
     return tuple(told)
+
+
+def _asks(sensor: Sensor, read: Sequence[Sensor]) -> str:
+    """A channel and what it is compared with, in words."""
+    others = [s for s in read if s is not sensor]
+    warm = [s for s in others if s.kind.endswith("_temp")]
+    if sensor.kind.endswith("_temp") and warm:
+        rest = listed([channels.words(s) for s in others if s not in warm])
+        return f"{channels.words(sensor)} against the other thermometers{f' and {rest}' if rest else ''}"
+    return f"{channels.words(sensor)}, given {listed([channels.words(s) for s in others])}"

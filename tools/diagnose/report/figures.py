@@ -8,9 +8,9 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ...show.drawing import COLOURS, empty, legend, svg
+from ..answer.evidence import Picture, Rows, View
+from ..answer.findings import Channel, Findings
 from . import phrases
-from .evidence import Picture, Rows, View
-from .findings import Channel, Findings
 
 #: Colour of residuals of the nominal rig.
 BEFORE = COLOURS[1]

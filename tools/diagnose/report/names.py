@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from ....model.core.faults import listed
+
 #: Names of the taxonomy, but for faults of instruments.
 NAMES = {
     "losses.churning": "churning of the oil",
@@ -74,17 +76,11 @@ def name_of(cause: str) -> str:
     return cause.rpartition(".")[2].replace("_", " ")
 
 
-def listed(names: Iterable[str], last: str = "and", most: int = 100) -> str:
-    """Names with commas between and a word before the last one; the rest is counted beyond so many."""
-    found = list(names)
-    if len(found) > most:
-        return f"{', '.join(found[:most])} {last} {len(found) - most} more"
-    return f" {last} ".join([", ".join(found[:-1]), found[-1]]) if len(found) > 1 else "".join(found)
-
-
 def names_of(causes: Iterable[str], last: str = "and", most: int = 100) -> str:
-    """Causes in plain words with commas between."""
-    return listed((name_of(c) for c in causes), last, most)
+    """Causes in plain words with commas between and a word before the last one; the rest is counted beyond so many."""
+    found = [name_of(c) for c in causes]
+    more = [f"{len(found) - most} more"] if len(found) > most else []
+    return listed([*found[:most], *more], last)
 
 
 def sentence(text: str) -> str:

@@ -8,8 +8,8 @@ from typing import Any
 from markupsafe import Markup
 
 from ...show import pages
+from ..answer.findings import Findings
 from . import figures, phrases, tables
-from .findings import Findings
 from .names import name_of
 
 #: Readings of the interactive plot, at most.

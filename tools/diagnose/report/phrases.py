@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import math
 
-from .estimate import Estimate
-from .findings import Answer, Cause, Findings, Gain, Impact
+from ..answer.evidence import Estimate, GrossReading, NuisanceOff, VarianceComponent
+from ..answer.findings import Answer, Cause, Findings, Gain, Impact
+from ..answer.numbers import LEAST_P
 from .names import names_of
-from .numbers import LEAST_P
-from .quality import GrossReading, NuisanceOff, VarianceComponent
 
 #: Units as they are shown.
 SHOWN = {"degC": "°C", "1": ""}

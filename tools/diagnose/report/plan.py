@@ -1,22 +1,20 @@
-"""What a plan found, as plain data (the JSON schema `gearheat.plan/2`), on the screen, and as a picture."""
+"""What a plan found, on the screen and as a picture."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 from typing import Any, Literal
 
-from pydantic import Field
-
+from ....model.core.faults import listed
 from ...show.drawing import COLOURS, empty, legend, png, svg
+from ..answer.findings import Isolability
+from ..answer.plan import Outlook, Plan
+from ..answer.sets import APART
 from . import phrases
-from .findings import Isolability
-from .names import listed, name_of, names_of
-from .numbers import Model, Number
+from .names import name_of, names_of
 from .screen import drawn, paragraph
 from .tables import Table
 
-#: Standard deviations from which two causes are told apart.
-APART = 3.0
 #: Experiments on the screen and in the picture.
 SHOWN = 10
 #: What they have to add to count.
@@ -25,83 +23,6 @@ LEAST = 0.05
 PAIRS = 3
 #: The axis ends here [standard deviations].
 END = 12.0
-
-
-class PlannedCause(Model):
-    """A cause to tell from others; `visible` is its distance from none at its usual size."""
-
-    id: str
-    size: str = Field(default="", description="name of its size")
-    usual: Number
-    unit: str = "1"
-    visible: Number
-    exposes: str = ""
-
-
-class PlannedPair(Model):
-    """Two causes, their distance, and why no experiment here tells them apart where none does."""
-
-    causes: tuple[str, str]
-    distance: Number
-    one_answer: str | None = None
-
-
-class Outlook(Model):
-    """Experiments that are done, and the distances behind them."""
-
-    class Pair(Model):
-        """A pair of causes."""
-
-        causes: tuple[str, str]
-        before: Number
-        after: Number
-
-    experiments: tuple[str, ...] = Field(description="ids; none: the campaign as it is")
-    smallest: Number
-    nearest: tuple[str, str]
-    gain: Number = 0.0
-    separates: bool
-    pairs: tuple[Pair, ...] = ()
-
-
-class Planned(Model):
-    """An experiment that was considered: `tests` hold its inputs, `checks` the instruments it checks."""
-
-    id: str
-    what: str
-    tests: tuple[dict[str, Number], ...] = ()
-    checks: tuple[str, ...] = ()
-
-
-class Plan(Model):
-    """Result of `gearheat plan`; distances in standard deviations of what is read."""
-
-    schema_: Literal["gearheat.plan/2"] = Field(default="gearheat.plan/2", alias="schema")
-    rig: str
-    campaign: str = ""
-    readings: int = 0
-    reference: bool = False
-    apart: Number = APART
-    verdict: Literal["apart", "one", "several", "none", "same"] | None = Field(
-        default=None, description="absent where no causes were named"
-    )
-    causes: tuple[PlannedCause, ...] = ()
-    pairs: tuple[PlannedPair, ...] = ()
-    now: Outlook | None = None
-    catalogue: tuple[Planned, ...] = Field(default=(), description="the experiments")
-    outlooks: tuple[Outlook, ...] = Field(default=(), description="single experiments, the best first")
-    together: tuple[Outlook, ...] = Field(default=(), description="the best with a second and a third")
-    isolability: tuple[Isolability, ...] = Field(default=(), description="all causes of the library with this design")
-    warnings: tuple[str, ...] = ()
-
-    def what(self, id: str) -> str:
-        """An experiment in words."""
-        return next((e.what for e in self.catalogue if e.id == id), id)
-
-    @property
-    def ids(self) -> list[str]:
-        """The causes."""
-        return [c.id for c in self.causes]
 
 
 def as_object(plan: Plan) -> dict[str, Any]:

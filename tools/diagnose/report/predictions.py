@@ -5,7 +5,7 @@ from __future__ import annotations
 import csv
 import io
 
-from .findings import Findings
+from ..answer.findings import Findings
 
 #: Unit of a channel -> ending of its columns.
 ENDINGS = {"degC": "C", "N.m": "Nm"}

@@ -10,8 +10,8 @@ from rich.console import Console
 from rich.table import Table as Drawn
 
 from ....model.screen import fitting
+from ..answer.findings import Findings
 from . import phrases
-from .findings import Findings
 from .tables import Table, tables
 
 #: Width of the text at most.

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable
 from dataclasses import dataclass
 
+from ..answer.evidence import View
+from ..answer.findings import Findings, Hypothesis
 from . import phrases
-from .evidence import View
-from .findings import Findings, Hypothesis
 from .names import name_of, names_of
 
 #: Causes and hypotheses in a table have at least this probability.

@@ -5,8 +5,8 @@ The verdict itself is decided elsewhere; here it is put in words, and every sent
 
 from __future__ import annotations
 
+from ..answer.findings import UNEXPLAINED, Answer, Cause, Findings, Said
 from . import phrases
-from .findings import UNEXPLAINED, Answer, Cause, Findings, Said
 from .names import name_of, names_of, sentence
 
 #: Below this probability a cause that would be seen is ruled out.

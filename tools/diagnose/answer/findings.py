@@ -10,10 +10,8 @@ from typing import Any, Literal
 
 from pydantic import Field
 
-from .estimate import Estimate
-from .evidence import Picture, Rows, View
+from .evidence import DataQuality, Estimate, Picture, Rows, View
 from .numbers import Interval, Model, Number, P, Probability
-from .quality import DataQuality
 
 #: The name of whatever the library lacks.
 UNEXPLAINED = "model.unexplained"
