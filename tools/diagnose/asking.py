@@ -11,12 +11,13 @@ from ...fmu.compiling import Progress
 from ...model.errors import DataError, GearheatError
 from ..show.console import as_json, file_of, progress_bar, writable, write
 from ..show.display import Display
-from .answer.findings import Findings, as_object
+from .answer.findings import Findings
+from .answer.numbers import as_object
 from .answer.plan import Plan
 from .report import plan as plans
 from .report.page import render
-from .report.predictions import predictions_text
 from .report.screen import text
+from .report.tables import predictions_text
 from .request import Inputs, PlanInputs, PlanRequest, Request, read, read_plan
 
 #: What is read and a listener for progress -> what was found, with its words; the same of a plan.
@@ -116,7 +117,7 @@ class PlanAnswer(Display, Plan):
 
     def as_dict(self) -> dict[str, Any]:
         """The JSON object, without what is not known."""
-        return plans.as_object(self)
+        return as_object(self)
 
     def text(self, *, everything: bool = False, width: int | None = None) -> str:
         """The plan as text.

@@ -7,7 +7,8 @@ import pytest
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.logs import Log
 from gearheat.scenarios.measured.table import Sensor
-from gearheat.tools.diagnose.answer.findings import Findings, as_object
+from gearheat.tools.diagnose.answer.findings import Findings
+from gearheat.tools.diagnose.answer.numbers import as_object
 from gearheat.tools.diagnose.infer.logs import NOTHING, TWO, Fleet, filter_of, fleet, question
 from gearheat.tools.diagnose.logs import LogDiagnosis, composed
 from made_logs import MACHINES, YEARS, differing, made

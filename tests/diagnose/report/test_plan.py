@@ -12,9 +12,10 @@ from gearheat.model.errors import DataError
 from gearheat.tools.cli import app as cli
 from gearheat.tools.diagnose import asking
 from gearheat.tools.diagnose.answer.findings import Isolability
+from gearheat.tools.diagnose.answer.numbers import as_object
 from gearheat.tools.diagnose.answer.plan import Outlook, Plan, Planned, PlannedCause, PlannedPair
 from gearheat.tools.diagnose.asking import Progress, ask_plan
-from gearheat.tools.diagnose.report.plan import as_object, picture, sentence
+from gearheat.tools.diagnose.report.plan import picture, sentence
 from gearheat.tools.diagnose.report.plan import text as printed
 from gearheat.tools.diagnose.request import PlanInputs, PlanRequest, unknown_causes
 from typer.testing import CliRunner

@@ -6,7 +6,7 @@ degC, differences in K. Probabilities are of the posterior and come with their M
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field
 
@@ -286,6 +286,11 @@ class Findings(Model):
         """Probability that nothing is wrong."""
         return sum(h.probability for h in self.hypotheses if not h.causes)
 
+    @property
+    def named(self) -> set[str]:
+        """All causes of the answers."""
+        return {c for a in self.answers for group in a.causes for c in group}
+
     def cause(self, id: str) -> Cause | None:
         """What is known of a cause."""
         return next((c for c in self.causes if c.id == id), None)
@@ -293,8 +298,3 @@ class Findings(Model):
     def channel(self, name: str) -> Channel | None:
         """A channel by its name."""
         return next((c for c in self.channels if c.name == name), None)
-
-
-def as_object(findings: Findings) -> dict[str, Any]:
-    """The JSON object of a diagnosis, without what is not known."""
-    return findings.model_dump(mode="json", by_alias=True, exclude_none=True)

@@ -57,3 +57,8 @@ class Model(BaseModel):
     """Frozen, and without keys that nobody knows."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
+
+
+def as_object(result: Model) -> dict[str, Any]:
+    """The JSON object of a result, without what is not known."""
+    return result.model_dump(mode="json", by_alias=True, exclude_none=True)

@@ -37,13 +37,15 @@ def number(value: float, digits: int = 3) -> str:
     return "0" if text == "-0" else text
 
 
-def with_unit(value: float, unit: str, digits: int = 3) -> str:
-    """A number and its unit."""
-    return f"{number(value, digits)} {SHOWN.get(unit, unit)}".strip()
+def with_unit(value: float | None, unit: str = "1", digits: int = 3) -> str:
+    """A number and its unit; empty where there is none."""
+    return "" if value is None else f"{number(value, digits)} {SHOWN.get(unit, unit)}".strip()
 
 
-def percent(probability: float, error: float = 0.0) -> str:
-    """A probability with its Monte-Carlo error, never surer than it is computed."""
+def percent(probability: float | None, error: float = 0.0) -> str:
+    """A probability with its Monte-Carlo error, never surer than it is computed; empty where there is none."""
+    if probability is None:
+        return ""
     if probability > 0.995:
         return "> 99 %"
     if 0.0 <= probability < 0.005:
@@ -56,12 +58,14 @@ def sigma(distance: float | None) -> str:
     return "" if distance is None else f"{distance:.1f}"
 
 
-def p_value(p: float) -> str:
-    """p = 0.03, p = 0.998, p = 2e-5 or p < 1e-6."""
+def p_value(p: float | None, name: str = "p") -> str:
+    """p = 0.03, p = 0.998, p = 2e-5 or p < 1e-6; empty where there is none."""
+    if p is None:
+        return ""
     if p <= LEAST_P:
-        return "p < 1e-6"
+        return f"{name} < 1e-6"
     digits = 2 if p < 0.99 else 4
-    return f"p = {p:.0e}".replace("e-0", "e-") if p < 1e-3 else f"p = {min(p, 0.9999):.{digits}g}"
+    return f"{name} = {p:.0e}".replace("e-0", "e-") if p < 1e-3 else f"{name} = {min(p, 0.9999):.{digits}g}"
 
 
 def chance(p: float) -> str:
@@ -88,6 +92,11 @@ def estimate(found: Estimate) -> str:
 def meaning(found: Estimate) -> str:
     """What a parameter is, in words; that of a logarithm without the word."""
     return found.doc.removeprefix("logarithm of the ").removeprefix("logarithm of ") or found.name.replace("_", " ")
+
+
+def size(found: Cause) -> str:
+    """The size of a cause; empty where it has none."""
+    return estimate(found.parameters[0]) if found.parameters else ""
 
 
 def impact(found: Impact) -> str:
@@ -159,11 +168,6 @@ def nuisance(found: NuisanceOff) -> str:
     return f"{found.name} ({values}{off})"
 
 
-def scheme(gain: Gain) -> str:
-    """How readings were held out."""
-    return SCHEMES.get(gain.scheme, gain.scheme)
-
-
 def gain(found: Gain) -> str:
     """What the causes gain where they were not fitted, and what plain statistics reach."""
     unit = found.unit
@@ -171,8 +175,7 @@ def gain(found: Gain) -> str:
     if found.ratio_ci90 is not None:
         low, high = (number(v, 2) for v in found.ratio_ci90)
         text += f" (ratio {number(found.rmse_after / (found.rmse_before or 1.0), 2)}, {low} to {high})"
-    text += f", {scheme(found)}"
-    said = [text]
+    said = [f"{text}, {SCHEMES.get(found.scheme, found.scheme)}"]
     if found.before is not None and found.after is not None:
         before, after = number(found.before.with_), with_unit(found.after.with_, unit)
         said.append(f"both with the discrepancy term {before} and {after}")
