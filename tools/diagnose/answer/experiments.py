@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -180,11 +180,3 @@ def added(campaign: Campaign, experiment: Experiment) -> Campaign:
         points=np.zeros(n * k, dtype=int),
         series=None,
     )
-
-
-def with_readings(campaign: Campaign, readings: Sequence[tuple[int, int, float]]) -> Campaign:
-    """A campaign with readings of its compared sensors: number of the sensor, row, value."""
-    values = {name: column.copy() for name, column in campaign.values.items()}
-    for i, row, value in readings:
-        values[campaign.read[i].name][row] = value
-    return replace(campaign, values=values)

@@ -6,6 +6,7 @@ in comments above it. How uncertain the data leave its values stands in tables o
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -29,8 +30,6 @@ from .names import name_of
 ADDED = "extra_"
 #: Here and in the extended rig: a found part can stand beside that of a new search.
 FOUND = "found_"
-
-
 #: Part of a standard deviation that its derivative is taken over.
 STEP = 0.05
 #: Share of a value below which a change is left out.
@@ -51,17 +50,6 @@ class Applied:
         form = f" ({self.form.name})" if self.form.name else ""
         values = ", ".join(f"{name} = {phrases.number(float(v), 4)}" for name, v in self.theta.items())
         return f"{self.cause.id}{form}, {values}"
-
-
-class _Readings(dict[str, float]):
-    """Readings of any sensor."""
-
-    def __init__(self, value: float) -> None:
-        super().__init__()
-        self.value = value
-
-    def __missing__(self, sensor: str) -> float:
-        return self.value
 
 
 @dataclass(frozen=True)
@@ -162,10 +150,7 @@ def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scen
     base |= {f"{p.name}.{key}": value for p in with_parts.parts for key, value in p.values.items()}
     changed = None if form.spread else _changed(form, one.theta, base)
     if not changed:
-        differs = (
-            f"{outside} It differs from test to test." if form.values is not None else f"{outside} {one.cause.doc}"
-        )
-        return scenario, [differs]
+        return scenario, [f"{outside} {one.cause.doc if form.values is None else 'It differs from test to test.'}"]
     names = _names(form.parts, {p.name for p in scenario.spec.parts})
     parts = [replace(p, name=names[p.name]) for p in form.parts]
     nets = [tuple(_renamed(port, names) for port in net) for net in form.connections]
@@ -187,7 +172,8 @@ def _changed(form: Form, theta: Theta, base: Mapping[str, float]) -> dict[str, f
     """Values that a form changes in every test alike; None where it depends on the test or changes none."""
     if form.values is None:
         return None
-    rows = (Row(base, _Readings(300.0)), Row(base, _Readings(320.0), 1.0, -1.0, 55.0, 0.7, 1.0))
+    one, other = defaultdict[str, float](lambda: 300.0), defaultdict[str, float](lambda: 320.0)  # of any sensor
+    rows = (Row(base, one), Row(base, other, 1.0, -1.0, 55.0, 0.7, 1.0))
     first, second = ({path: float(v) for path, v in form.values(theta, row).items()} for row in rows)
     return first if first == second else None
 
