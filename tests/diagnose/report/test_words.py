@@ -155,7 +155,7 @@ def test_logarithms_are_told_as_factors() -> None:
 
 def test_a_regime_names_its_sides() -> None:
     both = cause(CHURNING, 0.5).model_copy(
-        update={"regime": {"n_carrier_rpm": (120.0, None), "film [mm²/s²]": (None, 3.0)}}
+        update={"regime": {"n_carrier [rpm]": (120.0, None), "film [mm²/s²]": (None, 3.0)}}
     )
     assert phrases.regime(both) == "only at n_carrier above 120 rpm, film below 3 mm²/s²"
 

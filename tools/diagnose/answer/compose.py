@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -34,18 +35,12 @@ TRIED = 6
 def hypotheses(decision: Decision) -> tuple[findings.Hypothesis, ...]:
     """The most probable ones, nothing always among them."""
     listed = [j for k, j in enumerate(decision.joints) if not j.causes or (k < MOST and j.chance.probability > LISTED)]
-    return tuple(
-        findings.Hypothesis(causes=j.causes, probability=j.chance.probability, mc_error=j.chance.mc_error)
-        for j in listed
-    )
+    return tuple(findings.Hypothesis(causes=j.causes, **asdict(j.chance)) for j in listed)
 
 
 def answers(decision: Decision) -> tuple[findings.Answer, ...]:
     """What the verdict names."""
-    return tuple(
-        findings.Answer(causes=j.classes, probability=j.chance.probability, mc_error=j.chance.mc_error)
-        for j in decision.answers
-    )
+    return tuple(findings.Answer(causes=j.classes, **asdict(j.chance)) for j in decision.answers)
 
 
 def causes(made: Setting, found: Found, decision: Decision) -> tuple[findings.Cause, ...]:
@@ -60,7 +55,7 @@ def causes(made: Setting, found: Found, decision: Decision) -> tuple[findings.Ca
             known = {"doc": cause.doc, "exposes": cause.exposes, "like": cause.like, "detectable": smallest.get(id)}
             known |= {"usual": cause.size.sd, "unit": cause.size.unit, "meaning": cause.size.doc}
             known |= _sized(made, id, found, decision) if chance.probability > LISTED else {}
-        told.append(findings.Cause(id=id, probability=chance.probability, mc_error=chance.mc_error, **known))
+        told.append(findings.Cause(id=id, **asdict(chance), **known))
     return tuple(sorted(told, key=lambda c: (-c.probability, c.id)))
 
 
@@ -113,9 +108,7 @@ def remainder(found: Found, decision: Decision) -> findings.Remainder | None:
             one = findings.RemainderChannel(channel=s.name, rms=value, unit=channels.unit_of_difference(s))
             told.append((rms / s.repeat_sd, one))
     told.sort(key=lambda item: -item[0])
-    return findings.Remainder(
-        probability=chance.probability, mc_error=chance.mc_error, channels=tuple(c for _, c in told)
-    )
+    return findings.Remainder(channels=tuple(c for _, c in told), **asdict(chance))
 
 
 def gains(found: Found, told: Sequence[Gain]) -> list[findings.Gain]:

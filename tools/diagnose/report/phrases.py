@@ -18,13 +18,7 @@ SCHEMES = {
     "leave-one-load": "each torque left out in turn",
     "leave-one-oil": "each oil left out in turn",
     "leave-one-segment": "each stretch of the logs left out in turn",
-    "first-oil-to-others": "the other oils predicted from the first",
-    "split": "half of the tests left out",
 }
-#: Ending of a column in which a regime is stated -> its unit; quantities say it as "speed [rpm]".
-ENDINGS = {"_rpm": "rpm", "_Nm": "N.m", "_C": "°C", "_K": "K", "_W": "W", "_mm2_s2": "mm²/s²", "_kW": "kW"}
-
-
 #: How the name of a parameter begins that is a logarithm.
 LOGARITHM = "ln_"
 
@@ -113,9 +107,7 @@ def regime(found: Cause) -> str:
     """Where a cause acts; empty where it acts everywhere."""
     parts = []
     for quantity, (low, high) in found.regime.items():
-        ending = next((e for e in ENDINGS if quantity.endswith(e)), "")
-        name, _, unit = quantity.removesuffix(ending).removesuffix("]").partition(" [")
-        unit = unit or ENDINGS.get(ending, "")
+        name, _, unit = quantity.removesuffix("]").partition(" [")
         ends = [("above", low), ("below", high)]
         said = " and ".join(with_unit(end, unit).join((f"{word} ", "")) for word, end in ends if end is not None)
         parts.append(f"{name} {said}")
@@ -153,8 +145,7 @@ def gross(found: GrossReading) -> str:
     if found.shown is not None and found.expected is not None:
         shown, expected = (with_unit(v, found.unit, 4) for v in (found.shown, found.expected))
         text += f" shows {shown}, the other readings say {expected}"
-    aside = "It is set aside." if found.set_aside else "It is kept."
-    return f"{text}, {number(abs(found.size_sd), 2)} standard deviations off. {aside}"
+    return f"{text}, {number(abs(found.size_sd), 2)} standard deviations off. It is set aside."
 
 
 def nuisance(found: NuisanceOff) -> str:
