@@ -8,8 +8,8 @@ from .answer import compose, pictures
 from .answer.channels import channel
 from .answer.decide import Decision, calmed, decided
 from .answer.estimate import played
-from .answer.findings import About, Alarm, Findings, Invisible
-from .answer.gain import Gain, gains
+from .answer.findings import About, Alarm, Findings, Gain, Invisible
+from .answer.gain import gains
 from .answer.predict import predictions
 from .answer.quality import data_quality
 from .answer.sets import Effects, isolability
@@ -95,7 +95,6 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
     """The findings without their words."""
     request, data, leader = inputs.request, found.problem.data.campaign, decision.leader
     reference, wrong = inputs.reference, decision.verdict != "consistent"
-    gained = compose.gains(found, held)
     sets = compose.sets(made.causes, found, decision) if wrong else ()
     rows = pictures.rows(found, leader)
     return Findings(
@@ -122,8 +121,8 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         remainder=compose.remainder(found, decision),
         data_quality=data_quality(made, found, leader),
         impact=compose.impacts(made, found, leader),
-        gain=gained[0] if gained else None,
-        gain_grouped=tuple(gained[1:]),
+        gain=held[0] if held else None,
+        gain_grouped=tuple(held[1:]),
         channels=tuple(channel(s) for s in data.sensors),
         played=played(found.problem, found.null, leader) if wrong else {},
         confusable=tuple(s.causes for s in sets),

@@ -168,11 +168,11 @@ def test_scatter_and_adequacy(clean: tuple[Setting, Found]) -> None:
 def test_gain_is_the_cause_s(wrong: tuple[Setting, Found]) -> None:
     told = gain.gains(wrong[1], seed=1)
     oil = next(s.name for s in wrong[1].problem.data.read if s.kind == "oil_temp")
-    one = next(g for g in told if g.sensor == oil)
+    one = next(g for g in told if g.channel == oil)
     assert one.n == wrong[1].problem.data.campaign.n
     assert one.chosen.get(TRUE, 0) >= one.folds - 1
-    assert one.after[0] < one.before[0]
-    assert one.ratio[0] <= one.after[0] / one.before[0] <= one.ratio[1]
+    assert one.rmse_after < one.rmse_before
+    assert one.ratio_ci90[0] <= one.rmse_after / one.rmse_before <= one.ratio_ci90[1]
     assert set(one.rivals) == {"constant cooling", "linear in the given sensors"}
 
 

@@ -1,4 +1,4 @@
-"""From what a search found to the result as data: hypotheses, causes, impact, remainder, gain, what to measure next."""
+"""From what a search found to the result as data: hypotheses, causes, impact, remainder, what to measure next."""
 
 from __future__ import annotations
 
@@ -15,7 +15,6 @@ from . import channels, estimate, findings
 from .decide import Chance, Decision
 from .design import of_search, ranked
 from .experiments import experiments
-from .gain import Gain
 from .sets import Effects, alike
 
 #: Hypotheses that are listed.
@@ -109,33 +108,6 @@ def remainder(found: Found, decision: Decision) -> findings.Remainder | None:
             told.append((rms / s.repeat_sd, one))
     told.sort(key=lambda item: -item[0])
     return findings.Remainder(channels=tuple(c for _, c in told), **asdict(chance))
-
-
-def gains(found: Found, told: Sequence[Gain]) -> list[findings.Gain]:
-    """Errors by channel and scheme: those in the first thermometer of the oil by the first scheme come first."""
-    sensors = {s.name: s for s in found.problem.data.read}
-    made = []
-    for one in sorted(told, key=lambda g: sensors[g.sensor].kind != "oil_temp"):
-        s = sensors[one.sensor]
-        errors = [[channels.difference(s, v) for v in pair] for pair in (one.before, one.after)]
-        before, after = (findings.Gain.Both.model_validate({"without": a, "with": b}) for a, b in errors)
-        gain = findings.Gain(
-            scheme=one.scheme,
-            channel=one.sensor,
-            unit=channels.unit_of_difference(s),
-            n=one.n,
-            rmse_before=before.without,
-            rmse_after=after.without,
-            before=before,
-            after=after,
-            ratio_ci90=one.ratio,
-            noise_floor=channels.difference(s, one.noise),
-            rivals={name: channels.difference(s, value) for name, value in one.rivals.items()},
-            chosen=one.chosen,
-            folds=one.folds,
-        )
-        made.append(gain)
-    return made
 
 
 def leading(decision: Decision) -> list[str]:
