@@ -7,13 +7,12 @@ from collections.abc import Callable, Sequence
 from .answer import compose, pictures
 from .answer.channels import channel
 from .answer.decide import Decision, calmed, decided
+from .answer.design import Effects, isolability
 from .answer.estimate import played
 from .answer.findings import About, Alarm, Findings, Gain, Invisible
 from .answer.gain import gains
 from .answer.predict import predictions
 from .answer.quality import data_quality
-from .answer.sets import Effects, isolability
-from .answer.views import views
 from .infer.found import Found
 from .infer.search import searched
 from .library.cause import Cause
@@ -130,7 +129,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         next_experiment=compose.next_experiments(made, found, decision) if wrong and not request.quick else (),
         isolability=isolability(Effects(found.first.candidates, found.first.white)),
         rows=rows,
-        views=views(found),
+        views=pictures.views(found),
         pictures=pictures.pictures(found, leader, rows.quantities),
         calibrated=calibrated(made, found, leader),
         extended_rig=rig_file(made, found, leader),

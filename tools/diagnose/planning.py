@@ -8,11 +8,10 @@ from typing import Any
 import numpy as np
 
 from ...model.errors import DataError
-from .answer.design import design
+from .answer.design import Effects, design, isolability
 from .answer.experiments import experiments
 from .answer.grid import planned_campaign
 from .answer.plan import Plan, Planner
-from .answer.sets import Effects, isolability
 from .infer.screen import changes, samples
 from .request import PlanInputs, unknown_causes
 from .setting import setting

@@ -9,12 +9,11 @@ import numpy as np
 import pytest
 from gearheat.tools.diagnose.answer import estimate, gain
 from gearheat.tools.diagnose.answer.decide import calmed, decided
-from gearheat.tools.diagnose.answer.design import of_search, ranked
+from gearheat.tools.diagnose.answer.design import Effects, alike, of_search, ranked
 from gearheat.tools.diagnose.answer.experiments import added, experiments
 from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
 from gearheat.tools.diagnose.answer.predict import simulated
 from gearheat.tools.diagnose.answer.quality import adequacy, scatters
-from gearheat.tools.diagnose.answer.sets import Effects, alike
 from gearheat.tools.diagnose.infer import gross
 from gearheat.tools.diagnose.infer.fit import fitted
 from gearheat.tools.diagnose.infer.found import Found
@@ -220,7 +219,6 @@ def test_a_cause_is_like_itself_alone(wrong: tuple[Setting, Found]) -> None:
     distances = seen.distances(TRUE)
     assert TRUE not in distances
     assert all(d <= seen.visible(TRUE) + 1e-9 for d in distances.values()), "a rival of size zero is none"
-    assert seen.visible(TRUE, 2.0) == pytest.approx(2 * seen.visible(TRUE))
     group = alike(seen, TRUE, 1e-3, like)
     assert group is not None, "what cannot be seen is like everything"
     assert group.causes[0] == TRUE

@@ -12,7 +12,6 @@ from gearheat.scenarios.load import load
 from gearheat.tools.diagnose.answer import pictures
 from gearheat.tools.diagnose.answer.estimate import posterior
 from gearheat.tools.diagnose.answer.quality import repeated
-from gearheat.tools.diagnose.answer.views import views
 from gearheat.tools.diagnose.infer import screen
 from gearheat.tools.diagnose.infer.fit import fitted
 from gearheat.tools.diagnose.infer.found import Found, Hypothesis
@@ -134,7 +133,7 @@ def test_the_channel_that_errs_says_so_on_its_own(made: Made) -> None:
     formulas = tuple(f for f in made.setting.formulas if f.cause.id in ids and not f.form.spread)
     first = screen.look(problem, null, formulas)
     found = replace(made.found, problem=problem, formulas=formulas, first=first)
-    told = {v.channel: v for v in views(found)}
+    told = {v.channel: v for v in pictures.views(found)}
     assert set(told) == {s.name for s in o.read}
     said = told[o.read[torque].name]
     assert said.asks.startswith("torque ")

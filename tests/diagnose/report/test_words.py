@@ -7,7 +7,7 @@ from fabricated_findings import AIR, CHURNING, KINDS, ambiguous, cause, clean, e
 from gearheat.tools.diagnose.answer.evidence import Estimate
 from gearheat.tools.diagnose.answer.findings import Alarm, Answer, CauseSet, Played, Remainder, RemainderChannel
 from gearheat.tools.diagnose.report import phrases
-from gearheat.tools.diagnose.report.names import name_of, names_of
+from gearheat.tools.diagnose.report.phrases import name_of, names_of
 from gearheat.tools.diagnose.report.screen import text
 from gearheat.tools.diagnose.report.words import contradictions, with_words
 

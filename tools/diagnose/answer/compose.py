@@ -13,9 +13,8 @@ from ..library.cause import Cause
 from ..setting import Setting
 from . import channels, estimate, findings
 from .decide import Chance, Decision
-from .design import of_search, ranked
+from .design import Effects, alike, of_search, ranked
 from .experiments import experiments
-from .sets import Effects, alike
 
 #: Hypotheses that are listed.
 MOST = 12

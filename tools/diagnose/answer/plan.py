@@ -9,10 +9,9 @@ from typing import Any, Literal
 from pydantic import Field
 
 from ..library.cause import Cause
-from .design import Design, Pair, gain
+from .design import APART, Design, Pair, gain
 from .findings import Isolability
 from .numbers import Model, Number
-from .sets import APART
 
 #: Experiments that are done together, at most.
 TOGETHER = 3

@@ -24,7 +24,7 @@ from ..infer.found import Found, Hypothesis
 from ..library.cause import Cause, Form, Nuisance, Row, Size, Theta, Values
 from ..setting import Setting
 from . import phrases
-from .names import name_of
+from .phrases import name_of
 
 #: Names of the parts that causes add.
 ADDED = "extra_"

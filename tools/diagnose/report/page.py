@@ -11,7 +11,7 @@ from ...show import pages
 from ..answer.evidence import Picture
 from ..answer.findings import Findings
 from . import figures, phrases, tables
-from .names import name_of
+from .phrases import name_of
 
 #: Readings of the interactive plot, at most.
 MOST = 5000

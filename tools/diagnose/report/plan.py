@@ -7,11 +7,11 @@ from typing import Literal
 
 from ....model.core.faults import listed
 from ...show.drawing import COLOURS, empty, legend, png, svg
+from ..answer.design import APART
 from ..answer.findings import Isolability
 from ..answer.plan import Outlook, Plan
-from ..answer.sets import APART
 from . import phrases
-from .names import name_of, names_of
+from .phrases import name_of, names_of
 from .screen import drawn, paragraph
 from .tables import Table
 

@@ -8,8 +8,20 @@ from dataclasses import dataclass
 
 from ..answer.channels import ENDINGS
 from ..answer.findings import Findings
-from .names import name_of, names_of
-from .phrases import SCHEMES, estimate, meaning, number, p_value, percent, sigma, size, where, with_unit
+from .phrases import (
+    SCHEMES,
+    estimate,
+    meaning,
+    name_of,
+    names_of,
+    number,
+    p_value,
+    percent,
+    sigma,
+    size,
+    where,
+    with_unit,
+)
 
 #: Causes and hypotheses in a table have at least this probability.
 LEAST = 0.01

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from ..answer.findings import UNEXPLAINED, Answer, Cause, Findings, Said
 from . import phrases
-from .names import name_of, names_of, sentence
+from .phrases import name_of, names_of, sentence
 
 #: Below this probability a cause that would be seen is ruled out.
 RULED_OUT = 0.01
