@@ -68,9 +68,8 @@ def _verdict(findings: Findings) -> str:
     answers, left = findings.answers, findings.remainder
     if findings.verdict == "consistent":
         return "The data agree with the model within the stated accuracies."
-    where = (
-        " and ".join(f"{c.channel} ({phrases.with_unit(c.rms, c.unit, 2)})" for c in left.channels[:2]) if left else ""
-    )
+    shown = left.channels[:2] if left else ()
+    where = " and ".join(f"{c.channel} ({phrases.with_unit(c.rms, c.unit, 2)})" for c in shown)
     seen = f", seen in {where}" if where else ""
     if findings.verdict == "unexplained" or not answers:
         sure = f" ({phrases.percent(left.probability, left.mc_error)})" if left else ""
@@ -79,8 +78,8 @@ def _verdict(findings: Findings) -> str:
         return f"Something is wrong that no cause of the library explains{sure}{seen}.{closest}"
     if findings.verdict == "ambiguous":
         parts = [_probable(a) for a in answers]
-        more = f"; or {len(parts) - MOST} less probable ones" if len(parts) > MOST else ""
-        return f"Something is wrong, and the data leave open what: {'; '.join(parts[:MOST])}{more}."
+        rest = f"; or {len(parts) - MOST} less probable ones" if len(parts) > MOST else ""
+        return f"Something is wrong, and the data leave open what: {'; '.join(parts[:MOST])}{rest}."
     first = answers[0]
     if limits := _at_bound(findings, first):
         return (
@@ -89,8 +88,8 @@ def _verdict(findings: Findings) -> str:
         )
     n = len(first.causes)
     subject = f"{COUNTS.get(n, n)} causes together explain" if n > 1 else "One cause explains"
-    sure = left is not None and left.probability >= 0.5
-    beside = f" Something that the library lacks acts beside it{seen}." if sure else ""
+    more = left is not None and left.probability >= 0.5
+    beside = f" Something that the library lacks acts beside it{seen}." if more else ""
     return f"{subject} the data: {_probable(first)}.{beside}"
 
 
