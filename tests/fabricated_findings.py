@@ -5,9 +5,19 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from gearheat.tools.diagnose.report.estimate import Estimate
-from gearheat.tools.diagnose.report.evidence import Picture, Rows, View
-from gearheat.tools.diagnose.report.findings import (
+from gearheat.tools.diagnose.answer.evidence import (
+    DataQuality,
+    Estimate,
+    GrossReading,
+    NuisanceOff,
+    Picture,
+    Repeat,
+    RepeatedPoint,
+    Rows,
+    VarianceComponent,
+    View,
+)
+from gearheat.tools.diagnose.answer.findings import (
     About,
     Alarm,
     Answer,
@@ -26,14 +36,6 @@ from gearheat.tools.diagnose.report.findings import (
     Played,
     Remainder,
     RemainderChannel,
-)
-from gearheat.tools.diagnose.report.quality import (
-    DataQuality,
-    GrossReading,
-    NuisanceOff,
-    Repeat,
-    RepeatedPoint,
-    VarianceComponent,
 )
 from gearheat.tools.diagnose.report.words import with_words
 

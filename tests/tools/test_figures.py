@@ -13,8 +13,9 @@ from fabricated_findings import AIR, CHURNING, EMISSIVITY, KINDS, OFFSET, WINDAG
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.compare import plots
 from gearheat.tools.compare.errors import measured
+from gearheat.tools.diagnose.answer.evidence import Rows, View
+from gearheat.tools.diagnose.answer.plan import Outlook, Plan, Planned, PlannedCause, PlannedPair
 from gearheat.tools.diagnose.report import figures, plan
-from gearheat.tools.diagnose.report.evidence import Rows, View
 from gearheat.tools.diagnose.report.page import render
 from matplotlib.figure import Figure
 from pages import words_that_collide
@@ -60,18 +61,18 @@ PAIRS = ((AIR, EMISSIVITY), (CHURNING, WINDAGE), (OFFSET, "cooling.internal_pres
 def test_of_a_plan(drawn: list[Figure], pairs: tuple[tuple[str, str], ...]) -> None:
     """Twelve experiments, three of them together, for few and for many pairs."""
 
-    def outlook(far: float, *names: str) -> plan.Outlook:
-        each = tuple(plan.Outlook.Pair(causes=pair, before=0.4, after=far + k) for k, pair in enumerate(pairs))
-        return plan.Outlook(experiments=names, smallest=far, nearest=pairs[0], gain=far, separates=far > 3, pairs=each)
+    def outlook(far: float, *names: str) -> Outlook:
+        each = tuple(Outlook.Pair(causes=pair, before=0.4, after=far + k) for k, pair in enumerate(pairs))
+        return Outlook(experiments=names, smallest=far, nearest=pairs[0], gain=far, separates=far > 3, pairs=each)
 
     names = [f"instrument.heat_flux_{k}" for k in range(12)]
-    found = plan.Plan(
+    found = Plan(
         rig="mine",
         verdict="several",
-        causes=tuple(plan.PlannedCause(id=id, usual=0.4, visible=4.0) for pair in pairs for id in pair),
-        pairs=tuple(plan.PlannedPair(causes=pair, distance=0.4) for pair in pairs),
+        causes=tuple(PlannedCause(id=id, usual=0.4, visible=4.0) for pair in pairs for id in pair),
+        pairs=tuple(PlannedPair(causes=pair, distance=0.4) for pair in pairs),
         now=outlook(0.4),
-        catalogue=tuple(plan.Planned(id=name, what="heat flux at a wall") for name in names),
+        catalogue=tuple(Planned(id=name, what="heat flux at a wall") for name in names),
         outlooks=tuple(outlook(0.9 + 1.1 * k, name) for k, name in enumerate(names)),
         together=(outlook(11.97, *names[:2]), outlook(13.0, *names[:3])),
     )

@@ -7,20 +7,18 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal, TypeVar
 
-from ...fmu.compiling import Progress
 from ...model.errors import DataError, GearheatError
 from ..show.console import as_json, file_of, progress_bar, writable, write
 from ..show.display import Display
+from .answer.findings import Findings
+from .answer.numbers import as_object
+from .answer.plan import Plan
 from .report import plan as plans
-from .report.findings import Findings, as_object
 from .report.page import render
-from .report.predictions import predictions_text
 from .report.screen import text
-from .request import Inputs, PlanInputs, PlanRequest, Request, read, read_plan
+from .report.tables import predictions_text
+from .request import PlanRequest, Request, read, read_plan
 
-#: What is read and a listener for progress -> what was found, with its words; the same of a plan.
-Infer = Callable[[Inputs, Progress], Findings]
-Find = Callable[[PlanInputs, Progress], plans.Plan]
 #: Kinds of pictures by the ending of their file's name.
 PICTURES: Mapping[str, Literal["png", "svg"]] = {".png": "png", ".svg": "svg"}
 T = TypeVar("T")
@@ -101,7 +99,7 @@ class Diagnosis(Display, Findings):
                 write(path, content)
 
 
-class PlanAnswer(Display, plans.Plan):
+class PlanAnswer(Display, Plan):
     """A plan that shows itself and is drawn."""
 
     @property
@@ -115,7 +113,7 @@ class PlanAnswer(Display, plans.Plan):
 
     def as_dict(self) -> dict[str, Any]:
         """The JSON object, without what is not known."""
-        return plans.as_object(self)
+        return as_object(self)
 
     def text(self, *, everything: bool = False, width: int | None = None) -> str:
         """The plan as text.
@@ -139,13 +137,12 @@ class PlanAnswer(Display, plans.Plan):
         return Path(path)
 
 
-def ask(request: Request, outputs: Outputs | None = None, infer: Infer | None = None) -> Diagnosis:
+def ask(request: Request, outputs: Outputs | None = None) -> Diagnosis:
     """Read and infer.
 
     Args:
         request: files and options
         outputs: files that will be written, checked before any work
-        infer: the inference; the project's own if None
 
     Raises:
         GearheatError: all problems of files and options at once
@@ -156,27 +153,19 @@ def ask(request: Request, outputs: Outputs | None = None, infer: Infer | None = 
     if outputs is not None and outputs.predictions is not None and request.predict is None:
         problems.append("--predictions needs the points to predict. Give --predict FILE, too.")
     inputs = _checked(problems, request.files(), written, lambda: read(request))
+    from .diagnosis import diagnosed  # what it needs loads slowly
+
     with progress_bar() as progress:
-        return Diagnosis.model_construct(**dict((infer or _inference())(inputs, progress)))
+        return Diagnosis.model_construct(**dict(diagnosed(inputs, progress)))
 
 
-def _inference() -> Infer:
-    """The project's inference, imported when it is needed."""
-    from .diagnosis import diagnosed
-
-    return diagnosed
-
-
-def ask_plan(
-    request: PlanRequest, *, json: str | None = None, out: Path | None = None, find: Find | None = None
-) -> PlanAnswer:
+def ask_plan(request: PlanRequest, *, json: str | None = None, out: Path | None = None) -> PlanAnswer:
     """Read and plan.
 
     Args:
         request: files and options
         json: place of the JSON object, checked before any work
         out: place of the picture, checked before any work
-        find: what plans; the project's own if None
 
     Raises:
         GearheatError: all problems of files and options at once
@@ -189,15 +178,10 @@ def ask_plan(
     given = {"--json": file_of(json), "--out": out}
     files = {name: path for name, path in given.items() if path is not None}
     inputs = _checked(problems, request.files(), files, lambda: read_plan(request))
+    from .planning import planned  # what it needs loads slowly
+
     with progress_bar() as progress:
-        return PlanAnswer.model_construct(**dict((find or _planning())(inputs, progress)))
-
-
-def _planning() -> Find:
-    """The project's planning, imported when it is needed."""
-    from .planning import planned
-
-    return planned
+        return PlanAnswer.model_construct(**dict(planned(inputs, progress)))
 
 
 def _checked(

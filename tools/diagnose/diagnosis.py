@@ -4,15 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from .answer import compose, pictures
+from .answer.channels import channel
 from .answer.decide import Decision, calmed, decided
-from .answer.gain import Gain, gains
+from .answer.design import Effects, isolability
+from .answer.estimate import played
+from .answer.findings import About, Alarm, Findings, Gain, Invisible
+from .answer.gain import gains
+from .answer.predict import predictions
+from .answer.quality import data_quality
 from .infer.found import Found
 from .infer.weigh import weigh
 from .library.cause import Cause
 from .logs import LogDiagnosis, logged
-from .report import compose, compose_data, compose_design, compose_pictures, compose_points, compose_rig
-from .report.channels import channel
-from .report.findings import Findings, Invisible
+from .report.extension import calibrated, rig_file
 from .report.words import with_words
 from .request import Inputs
 from .setting import Setting, setting
@@ -88,34 +93,47 @@ def _with_logs(findings: Findings, logs: LogDiagnosis, causes: Sequence[Cause]) 
 def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, held: Sequence[Gain]) -> Findings:
     """The findings without their words."""
     request, data, leader = inputs.request, found.problem.data.campaign, decision.leader
-    wrong = decision.verdict != "consistent"
-    gain, grouped = compose.gains(found, held)
-    sets = compose_design.sets(made.causes, found, decision) if wrong else ()
-    rows = compose_data.rows(found, leader)
+    reference, wrong = inputs.reference, decision.verdict != "consistent"
+    sets = compose.sets(made.causes, found, decision) if wrong else ()
+    rows = pictures.rows(found, leader)
     return Findings(
         verdict=decision.verdict,
-        about=compose.about(data, made.scenario.name, inputs.reference, request.seed),
-        test=compose.alarm(found, decision, request.alpha),
+        about=About(
+            data=data.name,
+            rig=made.scenario.name,
+            readings=data.n,
+            tests=data.n_tests,
+            reference=reference.name if reference else "",
+            reference_readings=reference.n if reference else 0,
+            seed=request.seed,
+        ),
+        test=Alarm(
+            alpha=request.alpha,
+            p_any=decision.p_any,
+            p_omnibus=found.p_omnibus,
+            p_adequacy=decision.p_adequacy,
+            draws=len(found.drawn),
+        ),
         hypotheses=compose.hypotheses(decision),
-        answers=compose.answers(decision.answers),
+        answers=compose.answers(decision),
         causes=compose.causes(made, found, decision),
         remainder=compose.remainder(found, decision),
-        data_quality=compose_data.data_quality(made, found, leader),
+        data_quality=data_quality(made, found, leader),
         impact=compose.impacts(made, found, leader),
-        gain=gain,
-        gain_grouped=grouped,
+        gain=held[0] if held else None,
+        gain_grouped=tuple(held[1:]),
         channels=tuple(channel(s) for s in data.sensors),
-        played=compose_design.played(found, decision) if wrong else {},
+        played=played(found.problem, found.null, leader) if wrong else {},
         confusable=tuple(s.causes for s in sets),
         sets=sets,
-        next_experiment=(compose_design.next_experiments(made, found, decision) if wrong and not request.quick else ()),
-        isolability=compose_design.isolability(compose_design.seen(found)),
+        next_experiment=compose.next_experiments(made, found, decision) if wrong and not request.quick else (),
+        isolability=isolability(Effects(found.first.candidates, found.first.white)),
         rows=rows,
-        views=compose_pictures.views(found),
-        pictures=compose_pictures.pictures(found, leader, rows.quantities),
-        calibrated=compose_rig.calibrated(made, found, leader),
-        extended_rig=compose_rig.rig_file(made, found, leader),
-        predictions=compose_points.predictions(made, found, inputs.points) if inputs.points else (),
+        views=pictures.views(found),
+        pictures=pictures.pictures(found, leader, rows.quantities),
+        calibrated=calibrated(made, found, leader),
+        extended_rig=rig_file(made, found, leader),
+        predictions=predictions(made, found, inputs.points) if inputs.points else (),
         invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in inputs.invisible.items()),
         warnings=inputs.warnings,
     )

@@ -11,13 +11,14 @@ from scipy.stats import chi2
 
 from ...model.errors import DataError
 from ...scenarios.measured.logs import Log, read_log
+from ...scenarios.measured.table import Sensor
 from ...scenarios.scenario import Scenario
+from .answer import channels
+from .answer import findings as f
+from .answer.evidence import DataQuality, Estimate, GrossReading, Picture, Rows
+from .answer.numbers import array
 from .infer.logs import Fleet, Moved, Progress, Question, Weighed, fleet, question, weigh
-from .model.windows import windows
-from .report import compose_logs
-from .report import findings as f
-from .report.estimate import Estimate
-from .report.quality import DataQuality, GrossReading
+from .model.windows import Windows, windows
 from .report.words import with_words
 from .request import Inputs
 
@@ -25,8 +26,9 @@ from .request import Inputs
 SURE = 0.9
 #: Causes that have a picture, at most.
 PICTURES = 3
-#: Units in which temperatures are shown.
-SHOWN = {"K": ("degC", -273.15), "rad/s": ("rpm", 0.0), "N.m": ("N.m", 0.0), "W": ("W", 0.0)}
+#: A day [s].
+DAY = 86400.0
+#: Units of readings by kind of sensor.
 UNITS = {"oil_temp": "degC", "wall_temp": "degC", "ambient": "degC", "torque": "N.m", "speed": "rad/s", "power": "W"}
 
 
@@ -161,7 +163,7 @@ def _findings(
     verdict: f.Verdict = "consistent" if whole.nothing > 0.5 else "explained" if len(answers) == 1 else "ambiguous"
     best = max(whole.moved, key=lambda m: m.evidence)
     leading = [whole.best(c) for c in dict.fromkeys(c for answer in answers for (c,) in answer.causes)]
-    rows, pictures = compose_logs.pictures(known, asked, leading[:PICTURES], logs[0].read)
+    rows, pictures = _pictures(known, asked, leading[:PICTURES], logs[0].read)
     warnings = [
         text for w in (_lacking(reference, siblings), *(_year_text(y, w) for y, w in years.items())) if (text := w)
     ]
@@ -339,3 +341,52 @@ def _gain(known: Fleet, asked: Question, logs: Sequence[Log], whole: Weighed) ->
         chosen=chosen,
         folds=len(begins),
     )
+
+
+def _pictures(
+    known: Fleet, asked: Question, moved: Sequence[Moved], read: Sequence[Sensor]
+) -> tuple[Rows, tuple[Picture, ...]]:
+    """The windows as rows, the machine's healthy past before those in question, and a picture a cause.
+
+    Args:
+        known: what the healthy logs say
+        asked: the logs in question
+        moved: causes, each in its leading form, the likeliest first
+        read: the sensors that are compared
+    """
+    own, level = known.filter, known.levels.mean[0]
+    past, now = known.past.some(known.machine_of[known.season] == 0), asked.windows
+    by_time = np.argsort(np.r_[past.time, now.time], kind="stable")
+
+    def left(data: Windows, z: np.ndarray) -> np.ndarray:
+        """Measured less simulated, free-running: means of the windows (n, reads)."""
+        return np.asarray(np.nanmean(own.run(data, z, free=True, slopes=False).error, axis=1))
+
+    def whole(part: np.ndarray) -> np.ndarray:
+        """Past and present in the order of time; the past is as it is."""
+        return np.asarray(np.concatenate([healthy, part])[by_time].T)
+
+    healthy, at = left(past, np.tile(level, (len(past.time), 1))), np.tile(level, (len(now.time), 1))
+    before, after = left(now, at), []
+    for m in moved:
+        z = at.copy()
+        z[:, known.knobs.index(m.knob)] += m.share * m.size
+        after.append(left(now, z))
+    counted = [np.where(d.counts[:, :, None], d.read, np.nan) for d in (past, now)]
+    measured = np.concatenate([np.nanmean(c, axis=1) for c in counted if len(c)])[by_time].T
+    shown = {}
+    for j, s in enumerate(read):
+        lines = [measured[j], *(measured[j] - whole(e)[j] for e in (before, *after[:1]))]
+        values = [array(channels.in_unit(s, line)) for line in lines]
+        shown[s.name] = Rows.Values(measured=values[0], nominal=values[1], extended=values[2] if after else ())
+    days = (np.sort(np.r_[past.time, now.time]) - now.time.min()) / DAY
+    time = Rows.Quantity(label="time since the first log in question", unit="d", values=array(days))
+    found = []
+    for m, e in zip(moved, after, strict=True):
+        best = int(np.argmax(np.nanmean(before**2 - e**2, axis=0)))  # where most is taken away
+        lines = [array(channels.difference(read[best], 1.0) * whole(part)[best]) for part in (before, e)]
+        found.append(
+            Picture(cause=m.knob.cause, channel=read[best].name, quantity="time", before=lines[0], after=lines[1])
+        )
+    n = len(days)
+    return Rows(row=tuple(range(1, n + 1)), channels=shown, quantities={"time": time}), tuple(found)

@@ -31,23 +31,7 @@ ALONE = (
 
 @dataclass(frozen=True)
 class Request:
-    """Files and options of a diagnosis.
-
-    Args:
-        rig: name, file or rig
-        data: table of readings, one row each
-        logs: tables of logged samples of the same machine
-        card: accuracies, priors and protocol
-        reference: readings of the same machine when it was healthy; `reference_logs` are its logs then
-        sibling_logs: logs of other machines of its type
-        libraries: files with further causes
-        predict: points to predict
-        causes: how many may act together
-        quick: without gain on readings left out and without next experiments
-        alpha: accepted rate of false alarms
-        seed: of everything that is drawn
-        series: logged courses of the tests of `data`, `reference_series` of those of `reference`
-    """
+    """Files and options of a diagnosis, as `gearheat.diagnose` describes them."""
 
     rig: RigLike
     data: Path | None = None
@@ -143,16 +127,7 @@ def read(request: Request) -> Inputs:
 
 @dataclass(frozen=True)
 class PlanRequest:
-    """Files and options of a plan.
-
-    Args:
-        rig: name, file or rig
-        separate: causes to tell apart, with commas between; empty for a table of all causes
-        card: accuracies, priors and protocol
-        points: conditions of the campaign there is or will be; the rig's own without them
-        libraries: files with further causes
-        reference: whether there is a healthy campaign of the same points as well
-    """
+    """Files and options of a plan, as `gearheat.plan` describes them; the causes to separate with commas between."""
 
     rig: RigLike
     separate: str = ""

@@ -7,9 +7,10 @@ import pytest
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.logs import Log
 from gearheat.scenarios.measured.table import Sensor
+from gearheat.tools.diagnose.answer.findings import Findings
+from gearheat.tools.diagnose.answer.numbers import as_object
 from gearheat.tools.diagnose.infer.logs import NOTHING, TWO, Fleet, filter_of, fleet, question
 from gearheat.tools.diagnose.logs import LogDiagnosis, composed
-from gearheat.tools.diagnose.report.findings import Findings, as_object
 from made_logs import MACHINES, YEARS, differing, made
 
 #: Samples of one stretch: a week; seasons of the healthy logs and of that in question.

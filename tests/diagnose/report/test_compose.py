@@ -9,13 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gearheat.scenarios.load import load
+from gearheat.tools.diagnose.answer import pictures
 from gearheat.tools.diagnose.answer.estimate import posterior
+from gearheat.tools.diagnose.answer.quality import repeated
 from gearheat.tools.diagnose.infer import screen
 from gearheat.tools.diagnose.infer.fit import fitted
 from gearheat.tools.diagnose.infer.found import Found, Hypothesis
 from gearheat.tools.diagnose.infer.prior import Prior
 from gearheat.tools.diagnose.infer.problem import Acting
-from gearheat.tools.diagnose.report import compose_data, compose_pictures, compose_points, compose_rig
+from gearheat.tools.diagnose.report import extension
 from gearheat.tools.diagnose.request import Inputs, Request, read
 from gearheat.tools.diagnose.setting import Setting, setting
 from gearheat.tools.solve.settings import flat_of
@@ -55,8 +57,8 @@ def made() -> Made:
 
 
 def test_a_picture_shows_what_the_cause_takes_away(made: Made) -> None:
-    rows = compose_data.rows(made.found, made.h)
-    (one,) = compose_pictures.pictures(made.found, made.h, rows.quantities)
+    rows = pictures.rows(made.found, made.h)
+    (one,) = pictures.pictures(made.found, made.h, rows.quantities)
     assert one.cause == CAUSE
     assert rows.quantities[one.quantity].unit == "rpm"
     values = rows.channels[one.channel]
@@ -67,16 +69,16 @@ def test_a_picture_shows_what_the_cause_takes_away(made: Made) -> None:
 
 def test_quantities_that_are_not_measured_give_way_to_the_running_order(made: Made) -> None:
     data = made.found.problem.data.campaign
-    assert compose_pictures.quantity("humidity", data, {"order"}) == "order"
-    assert compose_pictures.quantity("order", data, {"order", "rise"}) == "order"
+    assert pictures.quantity("humidity", data, {"order"}) == "order"
+    assert pictures.quantity("order", data, {"order", "rise"}) == "order"
 
 
 def test_the_extended_rig_has_the_calibrated_values_and_the_cause(made: Made, tmp_path: Path) -> None:
-    (path := tmp_path / "extended.toml").write_text(compose_rig.rig_file(made.setting, made.found, made.h))
+    (path := tmp_path / "extended.toml").write_text(extension.rig_file(made.setting, made.found, made.h))
     rig = load(path)
     theta = made.h.fit.look.acting[0].formula.theta(made.h.fit.look.acting[0].t)
     assert rig.spec.part("found_churning").values["P_ref"] == pytest.approx(theta["P_ref"])
-    for told in compose_rig.calibrated(made.setting, made.found, made.h):
+    for told in extension.calibrated(made.setting, made.found, made.h):
         part, _, key = told.path.rpartition(".")
         assert told.extended is not None
         if not told.path.endswith(".V"):  # litres
@@ -85,7 +87,7 @@ def test_the_extended_rig_has_the_calibrated_values_and_the_cause(made: Made, tm
 
 def test_the_extended_rig_says_how_uncertain_the_data_leave_it(made: Made, tmp_path: Path) -> None:
     """Every parameter by the posterior: of a factor its logarithm's, of the cause its size's, whatever goes with it."""
-    (path := tmp_path / "extended.toml").write_text(compose_rig.rig_file(made.setting, made.found, made.h))
+    (path := tmp_path / "extended.toml").write_text(extension.rig_file(made.setting, made.found, made.h))
     rig = load(path)
     sd, problem = np.sqrt(np.diag(posterior(made.found.problem, made.h)[1])), made.found.problem
     (acting,) = made.h.fit.look.acting
@@ -111,7 +113,7 @@ def test_repeated_points_are_told_in_running_order(made: Made) -> None:
         mounting=("",) * 3, T_start=data.T_start[:3], room_start=data.room_start[:3], humidity=data.humidity[:3],
         date=("",) * 3, lines=data.lines[first], points=data.points[first],
     )  # fmt: skip
-    told = {p.channel: p for p in compose_points.repeated(short)}
+    told = {p.channel: p for p in repeated(short)}
     assert [r.test for r in told[oil].repeats] == [1, 3]
     assert [r.sum for r in told[oil].repeats] == pytest.approx([-0.25, 0.25])
     assert [r.difference for r in told[oil].repeats] == pytest.approx([-0.25, 0.25])
@@ -131,7 +133,7 @@ def test_the_channel_that_errs_says_so_on_its_own(made: Made) -> None:
     formulas = tuple(f for f in made.setting.formulas if f.cause.id in ids and not f.form.spread)
     first = screen.look(problem, null, formulas)
     found = replace(made.found, problem=problem, formulas=formulas, first=first)
-    told = {v.channel: v for v in compose_pictures.views(found)}
+    told = {v.channel: v for v in pictures.views(found)}
     assert set(told) == {s.name for s in o.read}
     said = told[o.read[torque].name]
     assert said.asks.startswith("torque ")

@@ -8,12 +8,13 @@ from pathlib import Path
 
 import pytest
 from fabricated_findings import explained
+from gearheat.fmu.compiling import Progress
 from gearheat.model.errors import DataError
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.cli import app as cli
-from gearheat.tools.diagnose import asking
-from gearheat.tools.diagnose.asking import Outputs, Progress, ask
-from gearheat.tools.diagnose.report.findings import Findings, Prediction
+from gearheat.tools.diagnose import diagnosis
+from gearheat.tools.diagnose.answer.findings import Findings, Prediction
+from gearheat.tools.diagnose.asking import Outputs, ask
 from gearheat.tools.diagnose.request import Inputs, Request
 from gearheat.tools.show.console import as_json
 from jsonschema import validate
@@ -35,7 +36,9 @@ def infer(inputs: Inputs, progress: Progress) -> Findings:
 
 def diagnose_command(request: Request, outputs: Outputs, infer) -> None:
     """What the command does with an inference."""
-    (found := ask(request, outputs, infer)).write(outputs)
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(diagnosis, "diagnosed", infer)
+        (found := ask(request, outputs)).write(outputs)
     print(as_json(found.as_dict()) if outputs.json == "-" else found.text(), end="")
 
 
@@ -103,7 +106,7 @@ def test_an_interrupted_run_writes_nothing(tmp_path: Path) -> None:
 
 
 def test_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(asking, "_inference", lambda: infer)
+    monkeypatch.setattr(diagnosis, "diagnosed", infer)
     done = CliRunner().invoke(cli.app, ["diagnose", str(DATA), "--rig", RIG, "--all", "--seed", "3"])
     assert done.exit_code == 0, done.output
     assert "Smallest size found in 80 of 100 such campaigns" in done.output

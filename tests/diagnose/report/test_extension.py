@@ -8,7 +8,6 @@ import casadi as ca
 import numpy as np
 import pytest
 from gearheat.model.machines.spec import PartSpec
-from gearheat.model.parts import PARTS
 from gearheat.scenarios.load import load
 from gearheat.scenarios.write import DIAGNOSED
 from gearheat.tools.diagnose.library.cause import Cause, Form, Row, Size, Theta, Values
@@ -46,11 +45,11 @@ def written(tmp_path: Path, text: str) -> Path:
 
 def test_a_cause_adds_its_part_under_a_free_name(tmp_path: Path, conductor: Form) -> None:
     one = applied(conductor, G=3.0)
-    path = written(tmp_path, extended(RIG, {}, [one], "mine.csv", PARTS).text({}))
+    path = written(tmp_path, extended(RIG, {}, [one], "mine.csv").text({}))
     again = load(path)
     assert again.spec.part("found_air").values["G"] == 3.0
     assert again.value_sources["found_air.G"] == f"{DIAGNOSED} mine.csv, cooling.air"
-    twice = load(written(tmp_path, extended(again, {}, [one], "later.csv", PARTS).text({})))
+    twice = load(written(tmp_path, extended(again, {}, [one], "later.csv").text({})))
     assert twice.spec.part("found_air_2").values["G"] == 3.0
     assert "cooling by the air (cooling.air)" in twice.doc
 
@@ -58,7 +57,7 @@ def test_a_cause_adds_its_part_under_a_free_name(tmp_path: Path, conductor: Form
 def test_calibrated_values_come_first_and_stay_within_their_range(tmp_path: Path) -> None:
     path, quantity = next((p, q) for p, q in RIG.settable().items() if q.high == 1.0 and not q.high_open)
     factor = Form(values=lambda theta, row: {f"{OIL}.nu_40": row.base[f"{OIL}.nu_40"] * ca.exp(theta["G"])})
-    text = extended(RIG, {path: 1.3, f"{OIL}.nu_40": 1e-4}, [applied(factor, G=0.5)], "mine.csv", PARTS).text({})
+    text = extended(RIG, {path: 1.3, f"{OIL}.nu_40": 1e-4}, [applied(factor, G=0.5)], "mine.csv").text({})
     again = load(written(tmp_path, text))
     assert again.spec.part(path.rpartition(".")[0]).values[quantity.name.rpartition(".")[2]] == 1.0
     assert f"# {path} would be 1.3; no more than this is possible." in text
@@ -69,13 +68,13 @@ def test_a_value_that_the_file_leaves_to_its_default_is_written(tmp_path: Path) 
     """A fan is a factor on the speed of the air, which no rig file states."""
     assert "k_air" not in RIG.spec.part("room").values
     factor = Form(values=lambda theta, row: {"room.k_air": row.base["room.k_air"] * ca.exp(theta["G"])})
-    again = load(written(tmp_path, extended(RIG, {}, [applied(factor, "cooling.fan", G=0.5)], "a.csv", PARTS).text({})))
+    again = load(written(tmp_path, extended(RIG, {}, [applied(factor, "cooling.fan", G=0.5)], "a.csv").text({})))
     assert again.spec.part("room").values["k_air"] == pytest.approx(float(ca.exp(0.5)))
 
 
 def test_several_oils_keep_their_own_values(tmp_path: Path) -> None:
     factor = Form(values=lambda theta, row: {f"{OIL}.nu_40": row.base[f"{OIL}.nu_40"] * theta["G"]})
-    text = extended(RIG, {}, [applied(factor, G=1.5)], "mine.csv", PARTS, oils=3).text({})
+    text = extended(RIG, {}, [applied(factor, G=1.5)], "mine.csv", oils=3).text({})
     assert "of the rig's own oil" in text.splitlines()[1]
     assert not load(written(tmp_path, text)).value_sources[f"{OIL}.nu_40"].startswith(DIAGNOSED)
 
@@ -90,7 +89,7 @@ def test_several_oils_keep_their_own_values(tmp_path: Path) -> None:
     ],
 )
 def test_instruments_and_days_are_comments(tmp_path: Path, form: Form) -> None:
-    text = extended(RIG, {}, [applied(form, "sensor.oil_temp.offset", G=2.0)], "mine.csv", PARTS).text({})
+    text = extended(RIG, {}, [applied(form, "sensor.oil_temp.offset", G=2.0)], "mine.csv").text({})
     assert "# Not a matter of the machine, hence not below: sensor.oil_temp.offset" in text
     assert "G = 2" in text.splitlines()[1]
     assert load(written(tmp_path, text)).spec.parts == RIG.spec.parts
@@ -105,7 +104,7 @@ def test_directions_hold_the_whole_covariance(tmp_path: Path) -> None:
 
     found = directions(values, x, covariance)
     slopes = np.array([[0.2e-4 * np.exp(0.1), 0.0], [3.0, 1.0]])
-    again = load(written(tmp_path, extended(RIG, {}, [], "a.csv", PARTS).text(found))).joint_uncertainties
+    again = load(written(tmp_path, extended(RIG, {}, [], "a.csv").text(found))).joint_uncertainties
     assert list(again) == ["posterior_1", "posterior_2"]
     changes = np.array([[moved.get(path, 0.0) for path in (f"{OIL}.nu_40", "room.k_air")] for moved in again.values()])
     assert changes.T @ changes == pytest.approx(slopes @ covariance @ slopes.T, rel=2e-4)
@@ -114,4 +113,4 @@ def test_directions_hold_the_whole_covariance(tmp_path: Path) -> None:
 
 def test_the_same_findings_give_the_same_bytes(conductor: Form) -> None:
     one = applied(conductor, G=3.0)
-    assert extended(RIG, {}, [one], "a.csv", PARTS).text({}) == extended(RIG, {}, [one], "a.csv", PARTS).text({})
+    assert extended(RIG, {}, [one], "a.csv").text({}) == extended(RIG, {}, [one], "a.csv").text({})

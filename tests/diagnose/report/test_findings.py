@@ -6,8 +6,9 @@ from importlib.resources import files
 import numpy as np
 import pytest
 from fabricated_findings import KINDS, explained
-from gearheat.tools.diagnose.report.evidence import Rows
-from gearheat.tools.diagnose.report.findings import Alarm, Findings, Hypothesis, as_object
+from gearheat.tools.diagnose.answer.evidence import Rows
+from gearheat.tools.diagnose.answer.findings import Alarm, Findings, Hypothesis
+from gearheat.tools.diagnose.answer.numbers import as_object
 from pydantic import ValidationError
 
 SHIPPED = files("gearheat.tools.diagnose.report").joinpath("diagnosis.schema.json")

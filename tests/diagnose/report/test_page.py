@@ -6,7 +6,7 @@ import re
 
 import pytest
 from fabricated_findings import KINDS, clean, explained, spoiled
-from gearheat.tools.diagnose.report.evidence import Rows
+from gearheat.tools.diagnose.answer.evidence import Rows
 from gearheat.tools.diagnose.report.page import render
 from pages import problems_of
 

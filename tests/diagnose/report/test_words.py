@@ -4,10 +4,10 @@ import re
 
 import pytest
 from fabricated_findings import AIR, CHURNING, KINDS, ambiguous, cause, clean, explained, spoiled, unexplained
+from gearheat.tools.diagnose.answer.evidence import Estimate
+from gearheat.tools.diagnose.answer.findings import Alarm, Answer, CauseSet, Played, Remainder, RemainderChannel
 from gearheat.tools.diagnose.report import phrases
-from gearheat.tools.diagnose.report.estimate import Estimate
-from gearheat.tools.diagnose.report.findings import Alarm, Answer, CauseSet, Played, Remainder, RemainderChannel
-from gearheat.tools.diagnose.report.names import listed, name_of
+from gearheat.tools.diagnose.report.phrases import name_of, names_of
 from gearheat.tools.diagnose.report.screen import text
 from gearheat.tools.diagnose.report.words import contradictions, with_words
 
@@ -155,7 +155,7 @@ def test_logarithms_are_told_as_factors() -> None:
 
 def test_a_regime_names_its_sides() -> None:
     both = cause(CHURNING, 0.5).model_copy(
-        update={"regime": {"n_carrier_rpm": (120.0, None), "film [mm²/s²]": (None, 3.0)}}
+        update={"regime": {"n_carrier [rpm]": (120.0, None), "film [mm²/s²]": (None, 3.0)}}
     )
     assert phrases.regime(both) == "only at n_carrier above 120 rpm, film below 3 mm²/s²"
 
@@ -163,5 +163,5 @@ def test_a_regime_names_its_sides() -> None:
 def test_names() -> None:
     assert name_of("sensor.oil_temp.lag") == "lag of the oil thermometer"
     assert name_of("mine.sticky_valve") == "sticky valve"
-    assert [listed("abc"[:n]) for n in range(4)] == ["", "a", "a and b", "a, b and c"]
-    assert listed("abcd", most=2) == "a, b and 2 more"
+    assert [names_of("abc"[:n]) for n in range(4)] == ["", "a", "a and b", "a, b and c"]
+    assert names_of("abcd", most=2) == "a, b and 2 more"

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
 
 import numpy as np
 from scipy.special import logsumexp
@@ -13,10 +12,8 @@ from scipy.stats import chi2
 from ..infer.evidence import White
 from ..infer.found import Found, Hypothesis
 from ..infer.prior import OUTSIDE
+from .findings import UNEXPLAINED, Verdict
 
-Verdict = Literal["consistent", "explained", "ambiguous", "unexplained"]
-#: The name of whatever the library lacks.
-UNEXPLAINED = "model.unexplained"
 #: Probability from which one answer explains the data, and that several together reach.
 SURE = 0.9
 #: Bayes factor above which a further cause counts.

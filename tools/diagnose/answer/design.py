@@ -4,21 +4,106 @@ from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import combinations
 
 import numpy as np
+from scipy.linalg import block_diag
 
+from ..infer.evidence import White
 from ..infer.found import Found
 from ..infer.problem import Acting, Look, Noise, Problem
+from ..infer.screen import limits
 from ..model.noise import terms
 from ..model.observe import Observed, Seen
 from ..setting import Setting
-from .experiments import Check, Experiment, added, with_readings
-from .sets import Effects
+from . import findings
+from .experiments import Check, Experiment, added
 
 Pair = tuple[str, str]
+#: Distances below this are none [standard deviations].
+APART = 3.0
 #: A distance beyond this tells two causes apart as well as any.
 ENOUGH = 6.0
+
+
+@dataclass(frozen=True)
+class Effects:
+    """Whitened effects of candidates, forms with their shapes, per half width of the prior (m, k)."""
+
+    candidates: tuple[Acting, ...]
+    white: np.ndarray
+
+    @staticmethod
+    def of(candidates: Sequence[Acting], effects: np.ndarray, covariance: np.ndarray) -> Effects:
+        """From effects (m, k) and the covariance (m, m) of readings without a cause."""
+        return Effects(tuple(candidates), White.of(covariance)(effects))
+
+    @cached_property
+    def places(self) -> Mapping[str, np.ndarray]:
+        """Cause -> its candidates, the middle of its general form first."""
+        found: dict[str, list[int]] = {}
+        for k, c in enumerate(self.candidates):
+            found.setdefault(c.id, []).append(k)
+        return {name: np.array(own) for name, own in found.items()}
+
+    @cached_property
+    def _gram(self) -> np.ndarray:
+        """Products of all pairs of effects (k, k)."""
+        return np.asarray(self.white.T @ self.white)
+
+    @cached_property
+    def _bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """Lowest and highest sizes (k,), in half widths of the priors."""
+        return limits(self.candidates)
+
+    def visible(self, cause: str) -> float:
+        """Distance of a cause from none, at a half width of its prior."""
+        k = self.places[cause][0]
+        return float(np.sqrt(self._gram[k, k]))
+
+    def distances(self, cause: str, size: float = 1.0) -> dict[str, float]:
+        """Standard deviations between a cause and the best form of each other, rescaled as its bounds allow.
+
+        Args:
+            cause: in the middle of its general form
+            size: in half widths of its prior
+        """
+        k, (low, high) = self.places[cause][0], self._bounds
+        across, length = size * self._gram[k], np.diag(self._gram)
+        best = np.clip(across / np.maximum(length, 1e-300), low, high)
+        left = size**2 * self._gram[k, k] - 2 * best * across + best**2 * length
+        found = {o: float(left[own].min()) for o, own in self.places.items() if o != cause}
+        return {o: float(np.sqrt(max(value, 0.0))) for o, value in found.items()}
+
+
+def alike(effects: Effects, cause: str, size: float, like: Mapping[str, str]) -> findings.CauseSet | None:
+    """The set that a design cannot tell from a cause, declared classes included; None where it stands alone.
+
+    Args:
+        effects: of all causes
+        cause: its id
+        size: in half widths of its prior
+        like: cause -> class and why
+    """
+    if cause not in effects.places:
+        return None
+    distances = effects.distances(cause, size)
+    declared = {o for o in distances if like[cause] and like[o].partition(":")[0] == like[cause].partition(":")[0]}
+    near = sorted((o for o in distances if distances[o] < APART or o in declared), key=lambda o: distances[o])
+    if not near:
+        return None
+    reason = like[cause].partition(":")[2].strip() if declared & set(near) else ""
+    return findings.CauseSet(causes=(cause, *near), distance=distances[near[0]], reason=reason)
+
+
+def isolability(effects: Effects) -> tuple[findings.Isolability, ...]:
+    """What the design says of every cause of usual size."""
+    told = []
+    for cause in effects.places:
+        name, distance = min(effects.distances(cause).items(), key=lambda item: item[1], default=("", None))
+        told.append(findings.Isolability(cause=cause, visible=effects.visible(cause), nearest=name, distance=distance))
+    return tuple(sorted(told, key=lambda i: -i.visible))
 
 
 @dataclass(frozen=True)
@@ -71,28 +156,26 @@ def design(
         effects: theirs in the campaign (m, k)
         experiments: to try
     """
-    blocks = [b for e in experiments if (b := _Block.of(setting, problem, look, candidates, e)) is not None]
-    runs = [b for b in blocks if b.observed is not None]
-    campaigns = [*problem.campaigns, *(b.observed for b in runs if b.observed is not None)]
-    seen = [*look.seen, *(b.seen for b in runs if b.seen is not None)]
+    runs = {e.id: r for e in experiments if e.tests and (r := _run(setting, problem, look, candidates, e)) is not None}
+    checks = [(e.id, check) for e in experiments for check in e.checks]
+    campaigns = [*problem.campaigns, *(o for o, _, _ in runs.values())]
+    seen = [*look.seen, *(s for _, s, _ in runs.values())]
     scales = {t.name: s for t, s in zip(noise.loose, noise.scales, strict=True)}
     joint = terms(campaigns, seen, problem.day_sd, problem.nz)
-    J = np.concatenate([look.jacobian, *(b.jacobian for b in runs)])
+    J = np.concatenate([look.jacobian, *(s.by[:, : problem.nz] for _, s, _ in runs.values())])
     V = J @ J.T + sum(np.exp(2 * scales.get(t.name, 0.0)) * t.matrix for t in joint)
-    rows = [effects, *(b.effects for b in runs)]
-    owner = np.concatenate([[""] * problem.m, *([b.experiment.id] * len(b.effects) for b in runs)])
-    checks = [c for b in blocks for c in b.checks]
     known = {t.name: t.columns[:, 0] for t in joint if t.columns is not None and t.name.startswith("tolerance of ")}
     sensors = {s.name: s.offset_sd for s in problem.data.campaign.sensors}
-    V = _with_checks(V, known, checks, sensors)
-    owner = np.concatenate([owner, *([c.experiment] * len(c.effects) for c in checks)])
-    parts = {name: owner == name for name in ["", *(b.experiment.id for b in blocks)]}
-    whole = np.concatenate([*rows, *(c.effects for c in checks)])
-    return Design(tuple(b.experiment for b in blocks), tuple(candidates), whole, V, parts)
+    V = _with_checks(V, known, [check for _, check in checks], sensors)
+    rows = [effects, *(e for _, _, e in runs.values()), *(_of_check(problem.data, c, candidates) for _, c in checks)]
+    owner = np.repeat(["", *runs, *(id for id, _ in checks)], [len(r) for r in rows])
+    possible = tuple(e for e in experiments if not e.tests or e.id in runs)
+    parts = {name: owner == name for name in ["", *(e.id for e in possible)]}
+    return Design(possible, tuple(candidates), np.concatenate(rows), V, parts)
 
 
 def _with_checks(
-    V: np.ndarray, known: Mapping[str, np.ndarray], checks: Sequence[_Checked], offset_sd: Mapping[str, float]
+    V: np.ndarray, known: Mapping[str, np.ndarray], checks: Sequence[Check], offset_sd: Mapping[str, float]
 ) -> np.ndarray:
     """A covariance (m, m) with the readings of checks behind it, which share the tolerances of their sensors.
 
@@ -102,71 +185,36 @@ def _with_checks(
         checks: to add
         offset_sd: sensor -> its fixed tolerance
     """
-    sizes = [len(c.effects) for c in checks]
-    m, total = len(V), len(V) + sum(sizes)
-    found = np.zeros((total, total))
-    found[:m, :m] = V
-    ends = m + np.cumsum(sizes)
-    for c, n, end in zip(checks, sizes, ends, strict=True):
-        own = slice(end - n, end)
-        found[own, own] += c.one.sd**2 * np.eye(n) + c.one.standard**2
-    for sensor in {c.one.sensor for c in checks}:
-        effect = np.zeros(total)
-        effect[:m] = known.get(f"tolerance of {sensor}", np.zeros(m))
-        for c, n, end in zip(checks, sizes, ends, strict=True):
-            effect[end - n : end] = offset_sd[sensor] if c.one.sensor == sensor else 0.0
+    m = len(V)
+    found = block_diag(V, *(c.sd**2 * np.eye(len(c.true)) + c.standard**2 for c in checks))
+    for sensor in dict.fromkeys(c.sensor for c in checks):
+        shared = [np.full(len(c.true), offset_sd[sensor] if c.sensor == sensor else 0.0) for c in checks]
+        effect = np.concatenate([known.get(f"tolerance of {sensor}", np.zeros(m)), *shared])
         both = np.outer(effect, effect)
         both[:m, :m] = 0.0  # known already
         found += both
-    return found
+    return np.asarray(found)
 
 
-@dataclass(frozen=True)
-class _Checked:
-    """A check and what the causes make of reading less truth (n, k)."""
-
-    one: Check
-    effects: np.ndarray
-    experiment: str
-
-
-@dataclass(frozen=True)
-class _Block:
-    """What an experiment adds: tests with effects (m, k) and Jacobian (m, nz), and checks."""
-
-    experiment: Experiment
-    observed: Observed | None
-    seen: Seen | None
-    effects: np.ndarray
-    jacobian: np.ndarray
-    checks: tuple[_Checked, ...]
-
-    @staticmethod
-    def of(
-        setting: Setting, problem: Problem, look: Look, candidates: Sequence[Acting], experiment: Experiment
-    ) -> _Block | None:
-        """An experiment simulated; None where the machine cannot run it."""
-        checks = tuple(_Checked(c, _of_check(problem.data, c, candidates), experiment.id) for c in experiment.checks)
-        nothing = np.zeros((0, len(candidates))), np.zeros((0, problem.nz))
-        if not experiment.tests:
-            return _Block(experiment, None, None, *nothing, checks)
-        data, z = problem.data, np.append(look.z, 0.0)
-        campaign = added(data.campaign, experiment)
-        point = setting.scenario.operating_point
-        o = Observed(setting.plant, campaign, data.nuisances, setting.oils, point)
-        shown = o.at(z, []).shown
-        if not np.isfinite(shown).all():
-            return None
-        readings = list(zip(o.kind.tolist(), o.row.tolist(), shown.tolist(), strict=True))
-        o = Observed(setting.plant, with_readings(campaign, readings), data.nuisances, setting.oils, point)
-        o.features[0] = 1.0  # behind the campaign
-        seen = o.at(z, [])
-        effects = o.tangents(z, [], [(c.formula, c.t) for c in candidates])
-        if experiment.logged:  # a log knows its times
-            effects[:, [c.formula.paced for c in candidates]] = 0.0
-        if not np.isfinite(seen.shown).all() or not np.isfinite(effects).all():
-            return None
-        return _Block(experiment, o, seen, effects, seen.by[:, : problem.nz], checks)
+def _run(
+    setting: Setting, problem: Problem, look: Look, candidates: Sequence[Acting], experiment: Experiment
+) -> tuple[Observed, Seen, np.ndarray] | None:
+    """The tests of an experiment simulated, with the effects of the causes (m, k); None where the machine cannot."""
+    data, z, point = problem.data, np.append(look.z, 0.0), setting.scenario.operating_point
+    campaign = added(data.campaign, experiment)
+    o = Observed(setting.plant, campaign, data.nuisances, setting.oils, point)
+    shown = o.at(z, []).shown
+    if not np.isfinite(shown).all():
+        return None
+    for i, s in enumerate(campaign.read):
+        campaign.values[s.name][o.row[o.kind == i]] = shown[o.kind == i]
+    o = Observed(setting.plant, campaign, data.nuisances, setting.oils, point)
+    o.features[0] = 1.0  # behind the campaign
+    seen = o.at(z, [])
+    effects = o.tangents(z, [], [(c.formula, c.t) for c in candidates])
+    if experiment.logged:  # a log knows its times
+        effects[:, [c.formula.paced for c in candidates]] = 0.0
+    return (o, seen, effects) if np.isfinite(seen.shown).all() and np.isfinite(effects).all() else None
 
 
 def _of_check(o: Observed, check: Check, candidates: Sequence[Acting]) -> np.ndarray:
@@ -199,17 +247,7 @@ def of_search(setting: Setting, found: Found, causes: Collection[str], experimen
     )
 
 
-@dataclass(frozen=True)
-class Ranked:
-    """An experiment, the pair of causes that it separates most, and their distance before and after."""
-
-    experiment: Experiment
-    pair: Pair
-    before: float
-    after: float
-
-
-def ranked(made: Design, weights: Mapping[str, float]) -> list[Ranked]:
+def ranked(made: Design, weights: Mapping[str, float]) -> list[findings.Experiment]:
     """Experiments by what they add to the distances between causes, weighted by how probable both are.
 
     Args:
@@ -222,8 +260,15 @@ def ranked(made: Design, weights: Mapping[str, float]) -> list[Ranked]:
         value = {p: weights[p[0]] * weights[p[1]] * gain(before[p], after[p]) for p in before}
         best = max(value, key=lambda p: value[p], default=None)
         if best is not None and value[best] > 0:
-            found.append((sum(value.values()), Ranked(experiment, best, before[best], after[best])))
-    return [one for _, one in sorted(found, key=lambda item: (-item[0], item[1].experiment.id))]
+            one = findings.Experiment(
+                id=experiment.id,
+                what=experiment.what,
+                separates=best,
+                separation_before=before[best],
+                separation_after=after[best],
+            )
+            found.append((sum(value.values()), one))
+    return [one for _, one in sorted(found, key=lambda item: (-item[0], item[1].id))]
 
 
 def gain(before: float, after: float) -> float:

@@ -18,7 +18,10 @@ from ..infer.problem import Acting, Problem
 from ..infer.screen import limits
 from ..library.cause import Cause, Form, Shape
 from ..model.observe import Observed
+from . import channels
 from .decide import Member
+from .evidence import Estimate
+from .findings import Played
 
 Bound = Literal["", "low", "high"]
 #: Half width of a 95 % interval in standard deviations.
@@ -31,18 +34,6 @@ NEAR = 0.02
 COUNTS = 0.01
 #: Standard deviations of a spread that are weighed, in half widths of the prior.
 SPREADS = np.geomspace(0.1, 8.0, 25)
-
-
-@dataclass(frozen=True)
-class Estimate:
-    """A parameter with its 95 % interval, in the unit beside it."""
-
-    name: str
-    value: float
-    ci95: tuple[float, float]
-    unit: str
-    doc: str
-    at_bound: Bound
 
 
 @dataclass(frozen=True)
@@ -99,7 +90,8 @@ def _size(cause: Cause, centre: float, spread: float) -> Estimate:
     """A size by its mean and standard deviation, in half widths of its prior."""
     s = cause.size
     low, value, high = (float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE))
-    return Estimate(s.name, value, (low, high), s.unit, s.doc, at_bound(value, s.low, s.high))
+    bound = at_bound(value, s.low, s.high)
+    return Estimate(name=s.name, value=value, ci95=(low, high), unit=s.unit, doc=s.doc, at_bound=bound)
 
 
 def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
@@ -117,7 +109,8 @@ def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
         low, value, high = values
         unit, (low, value, high) = shown(shape, [low, value, high])
         bound = at_bound(values[1], shape.low, shape.high)
-        found.append(Estimate(shape.name, value, (low, high), unit, shape.doc, bound))
+        told = Estimate(name=shape.name, value=value, ci95=(low, high), unit=unit, doc=shape.doc, at_bound=bound)
+        found.append(told)
     return found
 
 
@@ -154,7 +147,7 @@ def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estima
     size_of = next(f.cause.size for f in found.formulas if f.cause.id == cause)
     sd = size_of.sd
     doc = size_of.doc if "standard deviation" in size_of.doc else f"standard deviation of: {size_of.doc}"
-    return (Estimate(size_of.name, sd * value, (sd * low, sd * high), size_of.unit, doc, ""),)
+    return (Estimate(name=size_of.name, value=sd * value, ci95=(sd * low, sd * high), unit=size_of.unit, doc=doc),)
 
 
 def form_shares(cause: str, members: Sequence[Member]) -> dict[str, float]:
@@ -273,8 +266,8 @@ def detectable(found: Found) -> dict[str, float]:
     return {c.id: float(a * c.formula.cause.size.sd) for c, a, k in zip(candidates, above, known, strict=True) if k}
 
 
-def played(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, tuple[float, float]]:
-    """Root mean square that the rig leaves when it is played over the data: sensor -> calibrated, extended [SI].
+def played(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, Played]:
+    """Root mean square that the rig leaves when it is played over the data, by sensor.
 
     The extended rig holds what is a matter of the machine; nothing where nothing is. Sensors that a hypothesis calls
     wrong are left out.
@@ -292,5 +285,7 @@ def played(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, tuple[float,
         rows = np.setdiff1d(np.flatnonzero(o.kind == i), gross)
         left = [o.measured[rows] - shown[rows] for shown in (null.look.shown[own], extended)]
         if len(rows) and s.name not in wrong and np.isfinite(left[1]).all():
-            found[s.name] = (float(np.sqrt(np.mean(left[0] ** 2))), float(np.sqrt(np.mean(left[1] ** 2))))
+            before, after = (channels.difference(s, float(np.sqrt(np.mean(e**2)))) for e in left)
+            unit = channels.unit_of_difference(s)
+            found[s.name] = Played(rms_calibrated=before, rms_extended=after, unit=unit)
     return found

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -60,14 +60,14 @@ class Experiment:
     Args:
         id: stable identifier
         what: it in words
-        tests: magnitudes of speed, load and room [SI] of each test; None leaves one as it is
+        tests: kind of given sensor -> magnitude [SI], of each test; others are left as they are
         logged: whether each dwell is logged, not read at its end alone
         checks: instruments
     """
 
     id: str
     what: str
-    tests: tuple[tuple[float | None, float | None, float | None], ...] = ()
+    tests: tuple[Mapping[str, float], ...] = ()
     logged: bool = False
     checks: tuple[Check, ...] = ()
 
@@ -92,28 +92,28 @@ def _first(campaign: Campaign, kind: str) -> Sensor | None:
 
 def _tests(campaign: Campaign) -> Iterator[Experiment]:
     speed, load, room = (range_of(campaign, kind) for kind in ("speed", "torque", "ambient"))
-    speeds, loads = (tuple(dict.fromkeys(r)) if r else (None,) for r in (speed, load))
-    corners = [(n, tau) for n in speeds for tau in loads]
+    speeds = [{"speed": n} for n in dict.fromkeys(speed)] if speed else [{}]
+    loads = [{"torque": tau} for tau in dict.fromkeys(load)] if load else [{}]
+    corners = tuple(n | tau for n in speeds for tau in loads)
     if room is not None:
         cold = min(COLD, room[0] - COLDER)
         text = f"the corners of the campaign in a room of {cold - 273.15:.0f} degC"
-        yield Experiment("cold_room", text, tuple((n, tau, cold) for n, tau in corners))
+        yield Experiment("cold_room", text, tuple(test | {"ambient": cold} for test in corners))
     if load is not None:
         least = LIGHTER * load[0] if load[0] > 0.05 * load[1] else 0.05 * load[1]
-        middle = np.linspace(*speed, 4) if speed else [None]
+        middle = [{"speed": float(n)} for n in np.linspace(*speed, 4)] if speed else [{}]
         text = f"{len(middle)} points at {least:.3g} N.m"
-        yield Experiment("low_load", text, tuple((None if n is None else float(n), least, None) for n in middle))
+        yield Experiment("low_load", text, tuple(n | {"torque": least} for n in middle))
     if speed is not None:
         for name, n, shares in (
             ("high_speed", FASTER * speed[1], FAST_LOADS),
             ("low_speed", SLOWER * speed[0], SLOW_LOADS),
         ):
-            own = [share * load[1] for share in shares] if load else [None]
+            own = [{"torque": share * load[1]} for share in shares] if load else [{}]
             text = f"{len(own)} points at {n * 30 / np.pi:.0f} rpm"
-            yield Experiment(name, text, tuple((n, tau, None) for tau in own))
-    usual = tuple((n, tau, None) for n, tau in corners)
-    yield Experiment("repeat", "the corners of the campaign again", usual)
-    yield Experiment("transients", "the warm-up logged at the corners of the campaign", usual, logged=True)
+            yield Experiment(name, text, tuple({"speed": n} | tau for tau in own))
+    yield Experiment("repeat", "the corners of the campaign again", corners)
+    yield Experiment("transients", "the warm-up logged at the corners of the campaign", corners, logged=True)
 
 
 def _checks(campaign: Campaign) -> Iterator[Experiment]:
@@ -155,9 +155,8 @@ def added(campaign: Campaign, experiment: Experiment) -> Campaign:
     values = {s.name: np.full(n * k, float(np.nanmean(campaign.values[s.name]))) for s in campaign.read}
     for s in campaign.given:
         own = campaign.values[s.name][rows]
-        place = {"speed": 0, "torque": 1, "ambient": 2}.get(s.kind)
         main = _first(campaign, s.kind)
-        scale = [None if place is None else test[place] for test in experiment.tests]
+        scale = [test.get(s.kind) for test in experiment.tests]
         usual = float(np.nanmean(np.abs(campaign.values[main.name][rows]))) if main else 1.0
         wanted = [own if v is None else own + v - usual if s.kind == "ambient" else own * v / usual for v in scale]
         values[s.name] = np.concatenate(wanted)
@@ -180,11 +179,3 @@ def added(campaign: Campaign, experiment: Experiment) -> Campaign:
         points=np.zeros(n * k, dtype=int),
         series=None,
     )
-
-
-def with_readings(campaign: Campaign, readings: Sequence[tuple[int, int, float]]) -> Campaign:
-    """A campaign with readings of its compared sensors: number of the sensor, row, value."""
-    values = {name: column.copy() for name, column in campaign.values.items()}
-    for i, row, value in readings:
-        values[campaign.read[i].name][row] = value
-    return replace(campaign, values=values)

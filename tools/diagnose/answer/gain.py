@@ -15,6 +15,8 @@ from ..infer.fit import Fit, prior_precision
 from ..infer.found import Extra, Found
 from ..infer.problem import Aside, Problem
 from ..infer.weigh import weigh
+from . import channels
+from .findings import Gain
 from .folds import schemes
 from .rivals import RIVALS
 
@@ -22,28 +24,6 @@ from .rivals import RIVALS
 DRAWS = 2000
 #: Probability from which a hypothesis of a fold counts.
 COUNTS = 0.01
-
-
-@dataclass(frozen=True)
-class Gain:
-    """Errors of one sensor by one scheme [SI].
-
-    Args:
-        before, after: root mean squares (2,): without, with what only interpolates from test to test
-        ratio: 90 % interval of after over before with it, tests drawn with replacement
-        noise: standard deviation of one reading against the model
-    """
-
-    scheme: str
-    sensor: str
-    n: int
-    folds: int
-    before: tuple[float, float]
-    after: tuple[float, float]
-    ratio: tuple[float, float]
-    noise: float
-    rivals: dict[str, float]
-    chosen: dict[str, int]
 
 
 @dataclass(frozen=True)
@@ -57,7 +37,7 @@ class _Fold:
 
 
 def gains(found: Found, seed: int, progress: Callable[[float], None] = lambda share: None) -> list[Gain]:
-    """All schemes that the data allow, all compared sensors.
+    """All schemes that the data allow, all compared sensors, thermometers of the oil first.
 
     Args:
         found: the answer of all data; only its settings and its gross readings are used
@@ -77,7 +57,8 @@ def gains(found: Found, seed: int, progress: Callable[[float], None] = lambda sh
             told += [
                 g for i in range(len(found.problem.data.read)) if (g := _gain(found, scheme, folds, errors, i, seed))
             ]
-    return told
+    oil = [s.name for s in found.problem.data.read if s.kind == "oil_temp"]
+    return sorted(told, key=lambda g: g.channel not in oil)
 
 
 def _fold(found: Found, rows: np.ndarray, seed: int) -> _Fold:
@@ -117,23 +98,28 @@ def _gain(
     if not mine.any():
         return None
     gross = [a.number for a in found.problem.aside if not a.sensor]
-    entries, rivals = np.setdiff1d(np.flatnonzero(o.kind == sensor), gross), {}
+    entries, rivals, s = np.setdiff1d(np.flatnonzero(o.kind == sensor), gross), {}, o.read[sensor]
     rows = o.row[entries]
     for name, rival in RIVALS.items():
         left = [rival(o, sensor, rows, ~np.isin(rows, fold)) for fold in folds if np.isin(rows, fold).any()]
-        rivals[name] = rms(np.concatenate(left))
+        rivals[name] = channels.difference(s, rms(np.concatenate(left)))
     test = o.campaign.test[o.row[held[mine]]]
+    left_out = [[channels.difference(s, rms(line[mine])) for line in side] for side in (before, after)]
+    sides = [Gain.Both.model_validate({"without": one, "with": other}) for one, other in left_out]
     return Gain(
-        scheme,
-        o.read[sensor].name,
-        int(mine.sum()),
-        len(folds),
-        (rms(before[0, mine]), rms(before[1, mine])),
-        (rms(after[0, mine]), rms(after[1, mine])),
-        _bootstrap(before[1, mine], after[1, mine], test, seed),
-        noise_floor(found, sensor),
-        rivals,
-        dict(Counter(c for e in errors for c in e.chosen).most_common()),
+        scheme=scheme,
+        channel=s.name,
+        unit=channels.unit_of_difference(s),
+        n=int(mine.sum()),
+        rmse_before=sides[0].without,
+        rmse_after=sides[1].without,
+        before=sides[0],
+        after=sides[1],
+        ratio_ci90=_bootstrap(before[0, mine], after[0, mine], test, seed),
+        noise_floor=channels.difference(s, noise_floor(found, sensor)),
+        rivals=rivals,
+        chosen=dict(Counter(c for e in errors for c in e.chosen).most_common()),
+        folds=len(folds),
     )
 
 

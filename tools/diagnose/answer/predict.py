@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -12,15 +11,38 @@ from ..infer.evidence import White
 from ..infer.fit import Fit
 from ..infer.found import Found
 from ..infer.problem import Problem
-from ..model.noise import Term, terms
+from ..model.noise import terms
 from ..model.observe import Observed
 from ..setting import Setting
+from . import channels
+from .findings import Prediction
 
 #: Probability from which a hypothesis counts.
 COUNTS = 0.03
 
 
-def predictions(setting: Setting, found: Found, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
+def predictions(setting: Setting, found: Found, points: Campaign) -> tuple[Prediction, ...]:
+    """What the instruments will show at points, where the machine can be run.
+
+    Args:
+        setting: the rig
+        found: the search
+        points: their conditions
+    """
+    read, told = found.problem.data.read, []
+    tables = [
+        [channels.in_unit(s, row) for s, row in zip(read, table, strict=True)]
+        for table in simulated(setting, found, points)
+    ]
+    for row in range(points.n):
+        both = [{s.name: float(line[row]) for s, line in zip(read, t, strict=True)} for t in tables]
+        stated = points.points[row] > 0  # else a row that a test lacks
+        if stated and all(np.isfinite(v) for values in both for v in values.values()):
+            told.append(Prediction(point=str(int(points.points[row])), nominal=both[0], extended=both[1]))
+    return tuple(told)
+
+
+def simulated(setting: Setting, found: Found, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
     """Readings (read, n) at points, calibrated without a cause and extended, NaN where the machine cannot be run.
 
     Args:
@@ -73,13 +95,8 @@ def _predicted(problem: Problem, fit: Fit, o: Observed) -> np.ndarray:
         return table
     joint = terms([*problem.campaigns, o], [*fit.look.seen, seen], problem.day_sd, problem.nz)
     scales = {t.name: s for t, s in zip(fit.noise.loose, fit.noise.scales, strict=True)}
-    V = sum(np.exp(2 * scales.get(t.name, 0.0)) * t.matrix for t in _shared(joint, fit))
+    known = {t.name for t in fit.noise.terms}
+    V = sum(np.exp(2 * scales.get(t.name, 0.0)) * t.matrix for t in joint if t.name in known)
     told = V[problem.m :, : problem.m] @ White.of(fit.noise.covariance).back(problem.measured - fit.look.shown)
     table[o.kind[good], o.row[good]] = (seen.shown + np.nan_to_num(told))[good]
     return table
-
-
-def _shared(joint: Sequence[Term], fit: Fit) -> list[Term]:
-    """The terms that the fit has, too."""
-    known = {t.name for t in fit.noise.terms}
-    return [t for t in joint if t.name in known]

@@ -2,88 +2,107 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
+from ....scenarios.measured import repeats
+from ....scenarios.measured.table import Campaign
 from ..infer.found import Found, Hypothesis
 from ..infer.gross import distances
+from ..setting import Setting
+from . import channels
 from .decide import p_adequacy
 from .estimate import posterior
+from .evidence import DataQuality, GrossReading, NuisanceOff, Repeat, RepeatedPoint, VarianceComponent
 
 #: Prior standard deviations beyond which a value of the rig is told.
 OFF = 2.5
 
 
-@dataclass(frozen=True)
-class Gross:
-    """A reading that was set aside: campaign and row (from 0), sensor, and what it shows and should show [SI]."""
-
-    campaign: int
-    row: int
-    sensor: str
-    size_sd: float
-    shown: float
-    expected: float | None
-
-
-@dataclass(frozen=True)
-class Off:
-    """A nuisance far from the rig's file: standard deviations, and the factor on each of its parameters."""
-
-    name: str
-    z: float
-    factors: dict[str, float]
+def data_quality(setting: Setting, found: Found, h: Hypothesis) -> DataQuality:
+    """Gross readings, values far off, scatter against the card, by a hypothesis."""
+    return DataQuality(
+        gross=gross_readings(found, h),
+        nuisances=values_off(setting, found, h),
+        variance=scatters(setting, found, h),
+        repeated=repeated(found.problem.data.campaign),
+        adequacy=adequacy(found, h),
+    )
 
 
-@dataclass(frozen=True)
-class Scatter:
-    """A loose term of the scatter: what the data make of the card's standard deviation."""
-
-    name: str
-    ratio: float
-    ci95: tuple[float, float]
-
-
-def gross_readings(found: Found, h: Hypothesis) -> list[Gross]:
+def gross_readings(found: Found, h: Hypothesis) -> tuple[GrossReading, ...]:
     """All readings that were set aside, by what a hypothesis says of them."""
     problem, told = found.problem, []
     rows = np.cumsum([0, *(o.campaign.n for o in problem.campaigns)])
     entries = np.cumsum([0, *(o.m for o in problem.campaigns)])
-    for suspect in distances(problem, h.fit):
-        number, sensor = suspect.aside.number, suspect.aside.sensor
-        if sensor:
-            k = int(np.searchsorted(rows, number, side="right")) - 1
-            row, name, expected = int(number - rows[k]), sensor, None
-        else:
-            k = int(np.searchsorted(entries, number, side="right")) - 1
-            o, i = problem.campaigns[k], int(number - entries[k])
-            row, name, expected = int(o.row[i]), o.read[o.kind[i]].name, float(h.fit.look.shown[number])
-        value = float(problem.campaigns[k].campaign.values[name][row])
-        told.append(Gross(k, row, name, suspect.size_sd, value, expected))
-    return sorted(told, key=lambda g: -abs(g.size_sd))
+    for suspect in sorted(distances(problem, h.fit), key=lambda s: -abs(s.size_sd)):
+        number, name, expected = suspect.aside.number, suspect.aside.sensor, None
+        begins = rows if name else entries
+        k = int(np.searchsorted(begins, number, side="right")) - 1
+        o, row = problem.campaigns[k], int(number - begins[k])
+        if not name:
+            name, row = o.read[o.kind[row]].name, int(o.row[row])
+            expected = float(channels.in_unit(o.campaign.sensor(name), h.fit.look.shown[number]))
+        campaign, s = o.campaign, o.campaign.sensor(name)
+        line = int(campaign.lines[row])
+        told.append(
+            GrossReading(
+                row=line - 1,
+                line=line,
+                point=f"{int(campaign.points[row])}{f' of {campaign.name}' if k else ''}",
+                channel=name,
+                size_sd=suspect.size_sd,
+                shown=float(channels.in_unit(s, campaign.values[name][row])),
+                expected=expected,
+                unit=channels.unit(s),
+            )
+        )
+    return tuple(told)
 
 
-def values_off(found: Found, h: Hypothesis) -> list[Off]:
+def values_off(setting: Setting, found: Found, h: Hypothesis) -> tuple[NuisanceOff, ...]:
     """Nuisances beyond `OFF` of their prior, the farthest first."""
+    plant, told = setting.plant, []
     x, _ = posterior(found.problem, h)
-    told = []
     for nuisance, z in zip(found.problem.data.nuisances, x[: found.problem.nz], strict=False):
-        if abs(z) > OFF:
-            factors = {path: float(np.exp(e * nuisance.sd * z)) for path, e in nuisance.paths.items()}
-            told.append(Off(nuisance.name, float(z), factors))
-    return sorted(told, key=lambda o: -abs(o.z))
+        if abs(z) <= OFF:
+            continue
+        factors = {path: float(np.exp(e * nuisance.sd * z)) for path, e in nuisance.paths.items()}
+        values = [path for path in factors if path in plant.place]
+        factor = factors[values[0]] if values else None
+        if len(values) != 1 or factor is None:
+            told.append(NuisanceOff(name=nuisance.name, z=z, factor=factor, paths=tuple(factors)))
+            continue
+        place = plant.place[values[0]]
+        file, unit = float(plant.p[place]), plant.flat.parameters[place].unit
+        told.append(
+            NuisanceOff(
+                name=nuisance.name, z=z, factor=factor, file=file, found=file * factor, unit=unit, paths=tuple(values)
+            )
+        )
+    return tuple(sorted(told, key=lambda o: -abs(o.z)))
 
 
-def scatters(found: Found, h: Hypothesis) -> list[Scatter]:
+def scatters(setting: Setting, found: Found, h: Hypothesis) -> tuple[VarianceComponent, ...]:
     """The loose terms of the scatter, as they were found."""
-    noise = h.fit.noise
-    spreads = scale_sds(found, h)
-    told = []
-    for term, scale, sd in zip(noise.loose, noise.scales, spreads, strict=True):
-        low, high = np.exp(scale + 1.96 * sd * np.array([-1.0, 1.0]))
-        told.append(Scatter(term.name, float(np.exp(scale)), (float(low), float(high))))
-    return told
+    noise, told = h.fit.noise, []
+    sensors = {f"readings of {s.name}": s for s in setting.problem.data.campaign.sensors}
+    for term, scale, sd in zip(noise.loose, noise.scales, scale_sds(found, h), strict=True):
+        s, card, ratio = sensors.get(term.name), setting.card.day_cooling_sd, float(np.exp(scale))
+        if s is not None:
+            card = channels.difference(s, s.repeat_sd)
+        low, high = (card * float(np.exp(scale + 1.96 * sd * sign)) for sign in (-1.0, 1.0))
+        told.append(
+            VarianceComponent(
+                name=term.name,
+                channel=s.name if s else "",
+                unit=channels.unit_of_difference(s) if s else "1",
+                card=card,
+                found=card * ratio,
+                ratio=ratio,
+                ci95=(low, high),
+            )
+        )
+    return tuple(told)
 
 
 def scale_sds(found: Found, h: Hypothesis) -> np.ndarray:
@@ -102,3 +121,44 @@ def adequacy(found: Found, h: Hypothesis) -> dict[str, float]:
     o = found.problem.data
     own = {s.name: np.flatnonzero(o.kind == i) for i, s in enumerate(o.read)}
     return {name: p_adequacy(found, h, entries) for name, entries in own.items() if len(entries)}
+
+
+def repeated(campaign: Campaign) -> tuple[RepeatedPoint, ...]:
+    """Points that were measured in several tests, each sensor in running order, as deviations from the point's mean."""
+    groups = repeats.repeats(campaign)
+    stated = {s.sensor: s.stated for s in repeats.scatters(campaign, groups)}
+    both = bool((campaign.direction < 0).any())
+    told = []
+    for group in groups:
+        tests = [int(np.flatnonzero(campaign.order == order)[0]) for order in group.order]
+        for sensor in campaign.read:
+            unit, values = channels.difference(sensor, 1.0), (group.total[sensor.name], group.difference[sensor.name])
+            sums, apart = (unit * (v - np.nanmean(v)) for v in values)
+            told.append(
+                RepeatedPoint(
+                    condition=condition(campaign, group),
+                    channel=sensor.name,
+                    unit=channels.unit_of_difference(sensor),
+                    repeats=tuple(
+                        Repeat(test=k + 1, order=order, date=campaign.date[k], sum=a, difference=b)
+                        for k, order, a, b in zip(tests, group.order, _known(sums), _known(apart, both), strict=True)
+                    ),
+                    sd=float(np.nanstd(sums, ddof=1)),
+                    card=unit * stated[sensor.name] / (2**0.5 if both else 1.0),
+                )
+            )
+    return tuple(told)
+
+
+def _known(values: np.ndarray, at_all: bool = True) -> list[float | None]:
+    """Numbers, None for those that there are not."""
+    return [float(v) if at_all and np.isfinite(v) else None for v in values]
+
+
+def condition(campaign: Campaign, point: repeats.Repeat) -> str:
+    """What drives a point, in words."""
+    said = [point.oil] if point.oil else []
+    for name, value in point.conditions.items():
+        sensor = campaign.sensor(name)
+        said.append(f"{float(channels.in_unit(sensor, np.array(value))):.0f} {channels.unit(sensor)}")
+    return ", ".join(said)

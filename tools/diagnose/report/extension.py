@@ -6,26 +6,30 @@ in comments above it. How uncertain the data leave its values stands in tables o
 
 from __future__ import annotations
 
+from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....model.core.component import Component
 from ....model.core.declare import Output, Parameter, declared
 from ....model.machines.spec import PartSpec
+from ....model.parts.free_form import EXTRA_PARTS
+from ....model.units import from_si
 from ....scenarios.scenario import Scenario
 from ....scenarios.write import DIAGNOSED, rig_text
-from ..library.cause import Cause, Form, Row, Theta
+from ..answer.estimate import posterior
+from ..answer.findings import Calibrated
+from ..infer.found import Found, Hypothesis
+from ..library.cause import Cause, Form, Nuisance, Row, Size, Theta, Values
+from ..setting import Setting
 from . import phrases
-from .names import name_of
+from .phrases import name_of
 
 #: Names of the parts that causes add.
 ADDED = "extra_"
 #: Here and in the extended rig: a found part can stand beside that of a new search.
 FOUND = "found_"
-
-
 #: Part of a standard deviation that its derivative is taken over.
 STEP = 0.05
 #: Share of a value below which a change is left out.
@@ -46,17 +50,6 @@ class Applied:
         form = f" ({self.form.name})" if self.form.name else ""
         values = ", ".join(f"{name} = {phrases.number(float(v), 4)}" for name, v in self.theta.items())
         return f"{self.cause.id}{form}, {values}"
-
-
-class _Readings(dict[str, float]):
-    """Readings of any sensor."""
-
-    def __init__(self, value: float) -> None:
-        super().__init__()
-        self.value = value
-
-    def __missing__(self, sensor: str) -> float:
-        return self.value
 
 
 @dataclass(frozen=True)
@@ -117,7 +110,6 @@ def extended(
     calibrated: Mapping[str, float],
     applied: Sequence[Applied],
     data: str,
-    types: Mapping[str, type[Component]],
     oils: int = 1,
     also: Sequence[Applied] = (),
 ) -> Extended:
@@ -128,7 +120,6 @@ def extended(
         calibrated: path -> value as the data calibrate it, with the causes [SI]
         applied: the causes
         data: name of the data
-        types: types of parts that causes add, by name
         oils: how many oils the tests ran with
         also: what calibration adds to the rig
     """
@@ -141,7 +132,7 @@ def extended(
                 notes.append(f"{path} would be {phrases.number(float(value), 4)}; no more than this is possible.")
     rig = scenario.with_values(values, f"calibrated: diagnosis of {data}")
     for one in (*also, *applied):
-        rig, left = _added(rig, one, data, types, oils)
+        rig, left = _added(rig, one, data, oils)
         notes += left
     causes = " and ".join(f"{name_of(a.cause.id)} ({a.cause.id})" for a in applied) or "calibrated, no cause added"
     doc = f"{rig.doc.rstrip('.')}; as diagnosed from {data}: {causes}."
@@ -150,34 +141,30 @@ def extended(
     return Extended(clean, tuple(head))
 
 
-def _added(
-    scenario: Scenario, one: Applied, data: str, types: Mapping[str, type[Component]], oils: int
-) -> tuple[Scenario, list[str]]:
+def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scenario, list[str]]:
     """The scenario with a cause, and what of it the machine cannot hold."""
     form, outside = one.form, f"Not a matter of the machine, hence not below: {one.told}."
-    with_parts = scenario.spec.with_parts(form.parts, form.connections, types)
+    with_parts = scenario.spec.with_parts(form.parts, form.connections, EXTRA_PARTS)
     declarations = {p.name: declared(with_parts.types[p.type], Parameter) for p in with_parts.parts}
     base = {f"{name}.{key}": d.default for name, own in declarations.items() for key, d in own.items()}
     base |= {f"{p.name}.{key}": value for p in with_parts.parts for key, value in p.values.items()}
     changed = None if form.spread else _changed(form, one.theta, base)
     if not changed:
-        differs = (
-            f"{outside} It differs from test to test." if form.values is not None else f"{outside} {one.cause.doc}"
-        )
-        return scenario, [differs]
+        return scenario, [f"{outside} {one.cause.doc if form.values is None else 'It differs from test to test.'}"]
     names = _names(form.parts, {p.name for p in scenario.spec.parts})
     parts = [replace(p, name=names[p.name]) for p in form.parts]
     nets = [tuple(_renamed(port, names) for port in net) for net in form.connections]
     neutral = {f"{p.name}.{key}": value for p in form.parts for key, value in p.values.items()}
     values = {_renamed(path, names): value for path, value in (neutral | changed).items()}
-    lossy = [p.name for p in parts if "P" in declared(types[p.type], Output) and hasattr(types[p.type], "shaft")]
+    kinds = {p.name: with_parts.types[p.type] for p in parts}
+    lossy = [name for name, kind in kinds.items() if "P" in declared(kind, Output) and hasattr(kind, "shaft")]
     losses = {**scenario.losses, **{f"P_{name}_W": (f"{name}.P",) for name in lossy}}
-    oil = {path.rpartition(".")[0] for path in changed} & {n for n, kinds in scenario.entries.items() if "oil" in kinds}
+    oil = {path.rpartition(".")[0] for path in changed} & {n for n, own in scenario.entries.items() if "oil" in own}
     notes = [f"{one.told}: the values below are of the rig's own oil; others change alike."] if oil and oils > 1 else []
     source = f"inferred: for the rig's own oil, diagnosis of {data}" if notes else f"{DIAGNOSED} {data}, {one.cause.id}"
     if form.shown is not None or form.truth is not None or form.pace is not None:
         notes.append(f"{outside} Its part in the machine is below.")
-    spec = scenario.spec.with_parts(parts, nets, types)
+    spec = scenario.spec.with_parts(parts, nets, EXTRA_PARTS)
     return replace(scenario, spec=spec, losses=losses).with_values(values, source), notes
 
 
@@ -185,7 +172,8 @@ def _changed(form: Form, theta: Theta, base: Mapping[str, float]) -> dict[str, f
     """Values that a form changes in every test alike; None where it depends on the test or changes none."""
     if form.values is None:
         return None
-    rows = (Row(base, _Readings(300.0)), Row(base, _Readings(320.0), 1.0, -1.0, 55.0, 0.7, 1.0))
+    one, other = defaultdict[str, float](lambda: 300.0), defaultdict[str, float](lambda: 320.0)  # of any sensor
+    rows = (Row(base, one), Row(base, other, 1.0, -1.0, 55.0, 0.7, 1.0))
     first, second = ({path: float(v) for path, v in form.values(theta, row).items()} for row in rows)
     return first if first == second else None
 
@@ -204,3 +192,74 @@ def _renamed(path: str, names: Mapping[str, str]) -> str:
     """A port or a value of a part under the part's new name."""
     part, _, rest = path.partition(".")
     return f"{names.get(part, part)}.{rest}"
+
+
+def values(found: Found, z: np.ndarray) -> dict[str, float]:
+    """Values of the rig by path as nuisances (n,) calibrate them [SI], those of added parts among them."""
+    plant, told = found.problem.data.plant, dict[str, float]()
+    for nuisance, change in zip(found.problem.data.nuisances, z, strict=False):
+        for path, exponent in nuisance.paths.items():
+            before = told.get(path, float(plant.p[plant.place[path]]))
+            told[path] = before * float(np.exp(exponent * nuisance.sd * change))
+    return told
+
+
+def calibrated(setting: Setting, found: Found, h: Hypothesis) -> tuple[Calibrated, ...]:
+    """Values that the data moved, in the units of the rig file.
+
+    Args:
+        setting: the rig
+        found: the search
+        h: the hypothesis of the answer
+    """
+    known, told = setting.scenario.settable(), []
+    nominal, extended = values(found, found.null.look.z), values(found, h.fit.look.z)
+    for path, value in nominal.items():
+        if path in known:
+            unit = known[path].unit
+            file = float(setting.plant.p[setting.plant.place[path]])
+            shown = [float(from_si(v, unit)) for v in (file, value, extended[path])]
+            causes = shown[2] if h.causes else None
+            told.append(Calibrated(path=path, unit=unit, file=shown[0], nominal=shown[1], extended=causes))
+    return tuple(told)
+
+
+def rig_file(setting: Setting, found: Found, h: Hypothesis) -> str:
+    """The text of the rig file: calibrated, with the causes of a hypothesis, and how uncertain the data leave both.
+
+    Args:
+        setting: the rig
+        found: the search
+        h: the hypothesis of the answer
+    """
+    data, scenario = found.problem.data.campaign, replace(setting.scenario, spec=setting.spec)
+    oils = dict.fromkeys(data.oil)
+    if len(oils) == 1 and (own := setting.oils.get(next(iter(oils)))):
+        known = scenario.settable()
+        filled = {path: value for path, value in own.items() if path in known}
+        scenario = scenario.with_values(filled, f"inferred: the oil of {data.name}")
+
+    def at(x: np.ndarray) -> Extended:
+        z, acting = h.fit.split(found.problem, x)
+        told = values(found, z)
+        added = [_calibration(n, told) for n in found.problem.data.nuisances if n.parts]
+        causes = [Applied(a.formula.cause, a.formula.form, a.formula.theta(a.t)) for a in acting]
+        return extended(scenario, told, causes, data.name, len(oils), added)
+
+    x = h.fit.look.x
+    uncertain = directions(lambda near: at(near).values, x, posterior(found.problem, h)[1])
+    return at(x).text(uncertain)
+
+
+def _calibration(nuisance: Nuisance, told: Mapping[str, float]) -> Applied:
+    """What calibration adds to a rig, as if it were a cause."""
+    own = {path: told[path] for path in nuisance.paths}
+
+    def held(theta: Theta, row: Row) -> Values:
+        return own
+
+    form = Form(parts=nuisance.parts, connections=nuisance.connections, values=held)
+    entry = Cause(
+        f"calibration of {nuisance.name}", "Calibration adds it.", Size("factor", "1", "", 1.0, 0.0, 1.0), (form,)
+    )
+    return Applied(entry, form, {})

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 from matplotlib.axes import Axes
 
 from ...show.drawing import COLOURS, empty, legend, svg
+from ..answer.evidence import Picture, Rows, View
+from ..answer.findings import Findings
 from . import phrases
-from .evidence import Picture, Rows, View
-from .findings import Channel, Findings
 
 #: Colour of residuals of the nominal rig.
 BEFORE = COLOURS[1]
@@ -31,21 +31,23 @@ def picture(findings: Findings, found: Picture) -> str:
     """What is left in a channel against the quantity that a cause acts on, without and with the cause."""
     quantity = findings.rows.quantities[found.quantity]
     x, direction = _numbers(quantity.values), np.array(findings.rows.direction or [0] * len(found.before))
+    sd = rows.sd if (rows := findings.rows.channels.get(found.channel)) else None
     figure, panels = empty(10.0, 3.4, 1, 2, sharex=True, sharey=True)
     sides = (("without this cause", found.before, BEFORE), ("with this cause", found.after, AFTER))
     for panel, (title, values, colour) in zip(panels, sides, strict=True):
-        _residuals(panel, x, _numbers(values), direction, colour, _scatter(findings.rows, found.channel))
+        _residuals(panel, x, _numbers(values), direction, colour, sd)
         panel.set_title(title)
         _along(panel, quantity)
-    panels[0].set_ylabel(_left(findings.channel(found.channel), found.channel))
-    _directions(panels[0], figure_of=direction)
+    panels[0].set_ylabel(_left(findings, found.channel))
+    if len(set(direction)) > 1:
+        panels[0].legend(fontsize=8)
     return svg(figure)
 
 
 def overview(findings: Findings) -> str:
     """What is left in every channel against every quantity, before and after; empty without readings."""
     rows = findings.rows
-    axes = [q for q in rows.quantities.values() if np.ptp(_finite(q.values)) > 0]
+    axes = [q for q in rows.quantities.values() if len(set(q.values) - {None}) > 1]
     if not rows.channels or not axes:
         return ""
     direction = np.array(rows.direction or [0] * len(axes[0].values))
@@ -59,7 +61,7 @@ def overview(findings: Findings) -> str:
                 _residuals(panel, _numbers(axis.values), left, direction, colour, values.sd, word)
             _along(panel, axis)
             panel.label_outer()
-        line[0].set_ylabel(_left(findings.channel(name), name))
+        line[0].set_ylabel(_left(findings, name))
     legend(figure, panels[0])
     return svg(figure)
 
@@ -82,7 +84,8 @@ def views(found: Sequence[View]) -> str:
         panel.set_ylabel(f"{view.channel} [{phrases.SHOWN.get(view.unit, view.unit)}]")
         panel.set_title(view.asks)
     panels[-1].set_xlabel("running order")
-    _directions(panels[0], figure_of=_numbers(drawn[0].direction))
+    if len(set(drawn[0].direction)) > 1:
+        panels[0].legend(fontsize=8)
     return svg(figure)
 
 
@@ -116,12 +119,6 @@ def _trend(panel: Axes, x: np.ndarray, y: np.ndarray, colour: str) -> None:
         panel.plot([x[g].mean() for g in groups], [y[g].mean() for g in groups], color=colour, linewidth=1.5)
 
 
-def _directions(panel: Axes, *, figure_of: np.ndarray) -> None:
-    """A legend of the directions where there are two."""
-    if len(set(figure_of)) > 1:
-        panel.legend(fontsize=8)
-
-
 def _along(panel: Axes, quantity: Rows.Quantity) -> None:
     """Label of the axis; a tick for each value where there are but a few."""
     unit = phrases.SHOWN.get(quantity.unit, quantity.unit)
@@ -132,19 +129,10 @@ def _along(panel: Axes, quantity: Rows.Quantity) -> None:
         panel.margins(x=0.25)
 
 
-def _left(channel: Channel | None, name: str) -> str:
-    unit = f" [{channel.difference}]" if channel else ""
-    return f"{name}\nmeasured - simulated{unit}"
+def _left(findings: Findings, name: str) -> str:
+    channel = findings.channel(name)
+    return f"{name}\nmeasured - simulated{f' [{channel.difference}]' if channel else ''}"
 
 
-def _scatter(rows: Rows, channel: str) -> float | None:
-    return rows.channels[channel].sd if channel in rows.channels else None
-
-
-def _numbers(values: Iterable[float | None]) -> np.ndarray:
-    return np.array([np.nan if v is None else v for v in values], dtype=float)
-
-
-def _finite(values: Iterable[float | None]) -> np.ndarray:
-    found = _numbers(values)
-    return found[np.isfinite(found)] if np.isfinite(found).any() else np.zeros(1)
+def _numbers(values: Sequence[float | None]) -> np.ndarray:
+    return np.array(values, dtype=float)  # None becomes NaN

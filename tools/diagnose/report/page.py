@@ -8,9 +8,10 @@ from typing import Any
 from markupsafe import Markup
 
 from ...show import pages
+from ..answer.evidence import Picture
+from ..answer.findings import Findings
 from . import figures, phrases, tables
-from .findings import Findings
-from .names import name_of
+from .phrases import name_of
 
 #: Readings of the interactive plot, at most.
 MOST = 5000
@@ -25,25 +26,15 @@ def render(findings: Findings) -> str:
         said=findings.says,
         about=findings.about,
         bars=_bars(findings),
-        pictures=[_picture(findings, i) for i in range(len(findings.pictures))],
+        pictures=[_picture(findings, p) for p in findings.pictures],
         overview=Markup(figures.overview(findings)),
         views=Markup(figures.views(findings.views)),
         gain=f"{phrases.gain(findings.gain)}." if findings.gain else "",
         doubt=phrases.gains_nothing(findings),
-        **{name: _sections(made(findings)) for name, made in SECTIONS.items()},
+        **{name: _sections(made(findings)) for name, made in tables.SECTIONS.items()},
         plot=_data(findings),
         **pages.vendored(),
     )
-
-
-#: Name in the template -> its tables.
-SECTIONS = {
-    "quality": tables.quality,
-    "causes": tables.causes,
-    "gains": tables.gain,
-    "experiments": tables.experiments,
-    "sets": tables.sets,
-}
 
 
 def _sections(found: Sequence[tables.Table]) -> list[dict[str, Any]]:
@@ -64,25 +55,21 @@ def _bars(findings: Findings) -> list[dict[str, str]]:
     ]
 
 
-def _picture(findings: Findings, index: int) -> dict[str, Any]:
+def _picture(findings: Findings, found: Picture) -> dict[str, Any]:
     """A picture of a cause and the sentences beside it."""
-    found = findings.pictures[index]
-    cause = findings.cause(found.cause)
-    size = phrases.estimate(cause.parameters[0]) if cause and cause.parameters else ""
-    where = phrases.where(cause) if cause else ""
-    return {
-        "name": name_of(found.cause),
-        "svg": Markup(figures.picture(findings, found)),
-        "size": ", ".join(filter(None, (size, where))),
-        "doc": cause.doc if cause else "",
-        "percent": phrases.percent(cause.probability, cause.mc_error) if cause else "",
-    }
+    told: dict[str, Any] = {"name": name_of(found.cause), "svg": Markup(figures.picture(findings, found))}
+    if cause := findings.cause(found.cause):
+        size = ", ".join(filter(None, (phrases.size(cause), phrases.where(cause))))
+        told |= {"size": size, "doc": cause.doc, "percent": phrases.percent(cause.probability, cause.mc_error)}
+    return told
 
 
 def _data(findings: Findings) -> Markup:
     """What the interactive plot shows, as JSON that may stand in a page."""
     rows = findings.rows
     every = slice(None, None, max(1, -(-len(rows.row) // MOST)))
+    if not rows.channels or not rows.quantities:
+        return Markup("")
     channels = {}
     for name, values in rows.channels.items():
         known = findings.channel(name)
@@ -93,8 +80,6 @@ def _data(findings: Findings) -> Markup:
         for key, q in rows.quantities.items()
     }
     rest = {"row": rows.row[every], "test": rows.test[every], "direction": rows.direction[every]}
-    if not channels or not quantities:
-        return Markup("")
     return pages.as_data(rest | {"channels": channels, "quantities": quantities})
 
 

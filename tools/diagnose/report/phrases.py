@@ -1,15 +1,72 @@
-"""Numbers, probabilities and estimates as people write them."""
+"""Causes, numbers, probabilities and estimates as people write them."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Iterable
 
-from .estimate import Estimate
-from .findings import Answer, Cause, Findings, Gain, Impact
-from .names import names_of
-from .numbers import LEAST_P
-from .quality import GrossReading, NuisanceOff, VarianceComponent
+from ....model.core.faults import listed
+from ..answer.evidence import Estimate, GrossReading, NuisanceOff, VarianceComponent
+from ..answer.findings import Answer, Cause, Findings, Gain, Impact
+from ..answer.numbers import LEAST_P
 
+#: Names of the taxonomy, but for faults of instruments.
+NAMES = {
+    "losses.churning": "churning of the oil",
+    "losses.oil_viscosity": "viscosity of the oil",
+    "losses.oil_level": "oil level",
+    "losses.bearing_preload": "bearing preload",
+    "losses.seal_drag": "seal drag",
+    "losses.mesh_friction": "friction of the teeth",
+    "losses.mesh_direction": "friction of the teeth in one direction",
+    "losses.film_starvation": "teeth short of oil film",
+    "losses.windage": "windage",
+    "losses.torque_only": "a torque loss without heat",
+    "heat.external_source": "heat from outside",
+    "heat.parked": "heat while it stands",
+    "cooling.air": "cooling by the air",
+    "cooling.emissivity": "cooling by radiation",
+    "cooling.foundation": "heat into the foundation",
+    "cooling.contact": "thermal contact inside the housing wall",
+    "cooling.oil_wall": "heat transfer from oil to wall",
+    "cooling.humidity": "cooling that follows the humidity",
+    "cooling.cooler": "oil cooler",
+    "cooling.thermostat": "thermostat of the cooler",
+    "cooling.fan": "fan of the cooler",
+    "thermal.mass": "heat capacities",
+    "thermal.split": "place where the heat appears",
+    "procedure.not_stationary": "readings taken before they were steady",
+    "procedure.order": "cooling that changes over the running order",
+    "procedure.day_scatter": "scatter from day to day",
+    "model.unexplained": "something outside the library",
+}
+#: Kinds of sensors.
+KINDS = {
+    "oil_temp": "oil thermometer",
+    "wall_temp": "wall thermometer",
+    "ambient": "room thermometer",
+    "torque": "torque transducer",
+    "speed": "speed sensor",
+    "power": "power meter",
+}
+#: Faults of a sensor.
+FAULTS = {
+    "offset": "zero error of the {}",
+    "bias": "zero error of the {}",
+    "gain": "gain error of the {}",
+    "drift": "drifting zero of the {}",
+    "step": "zero of the {} that jumped",
+    "position": "place of the {}",
+    "heated": "{} warmed by the gearbox",
+    "random_walk": "wandering zero of the {}",
+    "lag": "lag of the {}",
+    "frozen": "frozen {}",
+    "spikes": "spikes of the {}",
+    "swapped": "swapped leads of the {}",
+    "by_direction": "error of the {} that depends on the direction",
+    "since": "error of the {} from a test on",
+    "mounting": "error of the {} that changes with each mounting",
+}
 #: Units as they are shown.
 SHOWN = {"degC": "°C", "1": ""}
 SCHEMES = {
@@ -19,15 +76,32 @@ SCHEMES = {
     "leave-one-load": "each torque left out in turn",
     "leave-one-oil": "each oil left out in turn",
     "leave-one-segment": "each stretch of the logs left out in turn",
-    "first-oil-to-others": "the other oils predicted from the first",
-    "split": "half of the tests left out",
 }
-#: Ending of a column in which a regime is stated -> its unit; quantities say it as "speed [rpm]".
-ENDINGS = {"_rpm": "rpm", "_Nm": "N.m", "_C": "°C", "_K": "K", "_W": "W", "_mm2_s2": "mm²/s²", "_kW": "kW"}
-
-
 #: How the name of a parameter begins that is a logarithm.
 LOGARITHM = "ln_"
+
+
+def name_of(cause: str) -> str:
+    """A cause in plain words; one of a user's library by the end of its identifier."""
+    if cause in NAMES:
+        return NAMES[cause]
+    family, _, rest = cause.partition(".")
+    kind, _, fault = rest.partition(".")
+    if family == "sensor" and fault:
+        return FAULTS.get(fault, f"{fault.replace('_', ' ')} of the {{}}").format(KINDS.get(kind, f"{kind} sensor"))
+    return cause.rpartition(".")[2].replace("_", " ")
+
+
+def names_of(causes: Iterable[str], last: str = "and", most: int = 100) -> str:
+    """Causes in plain words with commas between and a word before the last one; the rest is counted beyond so many."""
+    found = [name_of(c) for c in causes]
+    more = [f"{len(found) - most} more"] if len(found) > most else []
+    return listed([*found[:most], *more], last)
+
+
+def sentence(text: str) -> str:
+    """A text with a capital at its beginning."""
+    return text[:1].upper() + text[1:]
 
 
 def number(value: float, digits: int = 3) -> str:
@@ -38,13 +112,15 @@ def number(value: float, digits: int = 3) -> str:
     return "0" if text == "-0" else text
 
 
-def with_unit(value: float, unit: str, digits: int = 3) -> str:
-    """A number and its unit."""
-    return f"{number(value, digits)} {SHOWN.get(unit, unit)}".strip()
+def with_unit(value: float | None, unit: str = "1", digits: int = 3) -> str:
+    """A number and its unit; empty where there is none."""
+    return "" if value is None else f"{number(value, digits)} {SHOWN.get(unit, unit)}".strip()
 
 
-def percent(probability: float, error: float = 0.0) -> str:
-    """A probability with its Monte-Carlo error, never surer than it is computed."""
+def percent(probability: float | None, error: float = 0.0) -> str:
+    """A probability with its Monte-Carlo error, never surer than it is computed; empty where there is none."""
+    if probability is None:
+        return ""
     if probability > 0.995:
         return "> 99 %"
     if 0.0 <= probability < 0.005:
@@ -57,12 +133,14 @@ def sigma(distance: float | None) -> str:
     return "" if distance is None else f"{distance:.1f}"
 
 
-def p_value(p: float) -> str:
-    """p = 0.03, p = 0.998, p = 2e-5 or p < 1e-6."""
+def p_value(p: float | None, name: str = "p") -> str:
+    """p = 0.03, p = 0.998, p = 2e-5 or p < 1e-6; empty where there is none."""
+    if p is None:
+        return ""
     if p <= LEAST_P:
-        return "p < 1e-6"
+        return f"{name} < 1e-6"
     digits = 2 if p < 0.99 else 4
-    return f"p = {p:.0e}".replace("e-0", "e-") if p < 1e-3 else f"p = {min(p, 0.9999):.{digits}g}"
+    return f"{name} = {p:.0e}".replace("e-0", "e-") if p < 1e-3 else f"{name} = {min(p, 0.9999):.{digits}g}"
 
 
 def chance(p: float) -> str:
@@ -91,6 +169,11 @@ def meaning(found: Estimate) -> str:
     return found.doc.removeprefix("logarithm of the ").removeprefix("logarithm of ") or found.name.replace("_", " ")
 
 
+def size(found: Cause) -> str:
+    """The size of a cause; empty where it has none."""
+    return estimate(found.parameters[0]) if found.parameters else ""
+
+
 def impact(found: Impact) -> str:
     """A mean change with its interval: oil temperature 3.2 K higher (2.9 to 3.5)."""
     low, high = sorted(abs(v) for v in found.ci95)
@@ -105,9 +188,7 @@ def regime(found: Cause) -> str:
     """Where a cause acts; empty where it acts everywhere."""
     parts = []
     for quantity, (low, high) in found.regime.items():
-        ending = next((e for e in ENDINGS if quantity.endswith(e)), "")
-        name, _, unit = quantity.removesuffix(ending).removesuffix("]").partition(" [")
-        unit = unit or ENDINGS.get(ending, "")
+        name, _, unit = quantity.removesuffix("]").partition(" [")
         ends = [("above", low), ("below", high)]
         said = " and ".join(with_unit(end, unit).join((f"{word} ", "")) for word, end in ends if end is not None)
         parts.append(f"{name} {said}")
@@ -145,8 +226,7 @@ def gross(found: GrossReading) -> str:
     if found.shown is not None and found.expected is not None:
         shown, expected = (with_unit(v, found.unit, 4) for v in (found.shown, found.expected))
         text += f" shows {shown}, the other readings say {expected}"
-    aside = "It is set aside." if found.set_aside else "It is kept."
-    return f"{text}, {number(abs(found.size_sd), 2)} standard deviations off. {aside}"
+    return f"{text}, {number(abs(found.size_sd), 2)} standard deviations off. It is set aside."
 
 
 def nuisance(found: NuisanceOff) -> str:
@@ -160,11 +240,6 @@ def nuisance(found: NuisanceOff) -> str:
     return f"{found.name} ({values}{off})"
 
 
-def scheme(gain: Gain) -> str:
-    """How readings were held out."""
-    return SCHEMES.get(gain.scheme, gain.scheme)
-
-
 def gain(found: Gain) -> str:
     """What the causes gain where they were not fitted, and what plain statistics reach."""
     unit = found.unit
@@ -172,11 +247,10 @@ def gain(found: Gain) -> str:
     if found.ratio_ci90 is not None:
         low, high = (number(v, 2) for v in found.ratio_ci90)
         text += f" (ratio {number(found.rmse_after / (found.rmse_before or 1.0), 2)}, {low} to {high})"
-    text += f", {scheme(found)}"
-    said = [text]
+    said = [f"{text}, {SCHEMES.get(found.scheme, found.scheme)}"]
     if found.before is not None and found.after is not None:
         before, after = number(found.before.with_), with_unit(found.after.with_, unit)
-        said.append(f"both with the discrepancy term {before} and {after}")
+        said.append(f"interpolated from test to test {before} and {after}")
     said += [f"{name} {with_unit(value, unit)}" for name, value in found.rivals.items()]
     if found.noise_floor is not None:
         said.append(f"one reading scatters by {with_unit(found.noise_floor, unit)}")

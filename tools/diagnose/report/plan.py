@@ -1,22 +1,20 @@
-"""What a plan found, as plain data (the JSON schema `gearheat.plan/2`), on the screen, and as a picture."""
+"""What a plan found, on the screen and as a picture."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any, Literal
+from typing import Literal
 
-from pydantic import Field
-
+from ....model.core.faults import listed
 from ...show.drawing import COLOURS, empty, legend, png, svg
+from ..answer.design import APART
+from ..answer.findings import Isolability
+from ..answer.plan import Outlook, Plan
 from . import phrases
-from .findings import Isolability
-from .names import listed, name_of, names_of
-from .numbers import Model, Number
+from .phrases import name_of, names_of
 from .screen import drawn, paragraph
 from .tables import Table
 
-#: Standard deviations from which two causes are told apart.
-APART = 3.0
 #: Experiments on the screen and in the picture.
 SHOWN = 10
 #: What they have to add to count.
@@ -25,88 +23,6 @@ LEAST = 0.05
 PAIRS = 3
 #: The axis ends here [standard deviations].
 END = 12.0
-
-
-class PlannedCause(Model):
-    """A cause to tell from others; `visible` is its distance from none at its usual size."""
-
-    id: str
-    size: str = Field(default="", description="name of its size")
-    usual: Number
-    unit: str = "1"
-    visible: Number
-    exposes: str = ""
-
-
-class PlannedPair(Model):
-    """Two causes, their distance, and why no experiment here tells them apart where none does."""
-
-    causes: tuple[str, str]
-    distance: Number
-    one_answer: str | None = None
-
-
-class Outlook(Model):
-    """Experiments that are done, and the distances behind them."""
-
-    class Pair(Model):
-        """A pair of causes."""
-
-        causes: tuple[str, str]
-        before: Number
-        after: Number
-
-    experiments: tuple[str, ...] = Field(description="ids; none: the campaign as it is")
-    smallest: Number
-    nearest: tuple[str, str]
-    gain: Number = 0.0
-    separates: bool
-    pairs: tuple[Pair, ...] = ()
-
-
-class Planned(Model):
-    """An experiment that was considered: `tests` hold its inputs, `checks` the instruments it checks."""
-
-    id: str
-    what: str
-    tests: tuple[dict[str, Number], ...] = ()
-    checks: tuple[str, ...] = ()
-
-
-class Plan(Model):
-    """Result of `gearheat plan`; distances in standard deviations of what is read."""
-
-    schema_: Literal["gearheat.plan/2"] = Field(default="gearheat.plan/2", alias="schema")
-    rig: str
-    campaign: str = ""
-    readings: int = 0
-    reference: bool = False
-    apart: Number = APART
-    verdict: Literal["apart", "one", "several", "none", "same"] | None = Field(
-        default=None, description="absent where no causes were named"
-    )
-    causes: tuple[PlannedCause, ...] = ()
-    pairs: tuple[PlannedPair, ...] = ()
-    now: Outlook | None = None
-    catalogue: tuple[Planned, ...] = Field(default=(), description="the experiments")
-    outlooks: tuple[Outlook, ...] = Field(default=(), description="single experiments, the best first")
-    together: tuple[Outlook, ...] = Field(default=(), description="the best with a second and a third")
-    isolability: tuple[Isolability, ...] = Field(default=(), description="all causes of the library with this design")
-    warnings: tuple[str, ...] = ()
-
-    def what(self, id: str) -> str:
-        """An experiment in words."""
-        return next((e.what for e in self.catalogue if e.id == id), id)
-
-    @property
-    def ids(self) -> list[str]:
-        """The causes."""
-        return [c.id for c in self.causes]
-
-
-def as_object(plan: Plan) -> dict[str, Any]:
-    """The JSON object of a plan, without what is not known."""
-    return plan.model_dump(mode="json", by_alias=True, exclude_none=True)
 
 
 def sentence(plan: Plan) -> str:
@@ -151,55 +67,43 @@ def text(plan: Plan, *, everything: bool = False, width: int | None = None) -> s
     if plan.now is not None:
         found.append(drawn(_experiments(plan, everything), width))
     for why, ids in _classes(plan).items():
-        line = f"{names_of(ids)} ({why}). What would tell: {_exposes(plan, ids)}."
-        found.append(paragraph("one answer", line, width))
+        exposes = "; ".join(f"{name_of(c.id)}: {c.exposes}" for c in plan.causes if c.id in ids and c.exposes)
+        found.append(paragraph("one answer", f"{names_of(ids)} ({why}). What would tell: {exposes}.", width))
     for c in (c for c in plan.causes if c.visible < plan.apart):
         size = phrases.with_unit(c.usual, c.unit)
         seen = phrases.number(c.visible, 2)
         line = f"{name_of(c.id)} of usual size ({c.size} {size}) would show at only {seen} standard deviations."
         found.append(paragraph("faint", line, width))
     if plan.isolability and (everything or plan.verdict is None):
-        found.append(drawn(isolability(plan.isolability), width))
+        found.append(drawn(_isolability(plan.isolability), width))
     found += [paragraph("warning", w, width) for w in plan.warnings]
     return "\n".join(found) + "\n"
 
 
-def isolability(found: Iterable[Isolability]) -> Table:
-    """What a design tells of each cause, as a table.
-
-    Args:
-        found: of each cause
-    """
-    rows = [
-        (
-            i.cause,
-            phrases.sigma(i.visible),
-            "yes" if i.visible >= APART else "no",
-            name_of(i.nearest) if i.nearest else "",
-            phrases.sigma(i.distance),
-            "yes" if i.distance is not None and min(i.distance, i.visible) >= APART else "no",
-        )
-        for i in found
-    ]
+def _isolability(found: Iterable[Isolability]) -> Table:
+    """What a design tells of each cause."""
+    rows = []
+    for i in found:
+        seen, told = (_word(d is not None and min(d, i.visible) >= APART) for d in (i.visible, i.distance))
+        near = name_of(i.nearest), phrases.sigma(i.distance)
+        rows.append((i.cause, phrases.sigma(i.visible), seen, *near, told))
     head = ("cause", "from none", "seen", "nearest cause", "from it", "told apart")
     note = f"Distances in standard deviations at the usual size of each cause; seen and told apart from {APART:g} on."
-    return Table("What this design can tell", head, tuple(rows), note)
+    return Table("What this design can tell", head, rows, note)
+
+
+def _word(right: bool) -> str:
+    return "yes" if right else "no"
 
 
 def _experiments(plan: Plan, everything: bool) -> Table:
     several = len(plan.causes) > 2
-    head = ("experiment", "distance", "tells apart", *(("nearest",) if several else ()), "what")
-    rows = [
-        (
-            name,
-            f"{o.smallest:.2f}",
-            "yes" if o.separates else "no",
-            *((" / ".join(o.nearest),) if several else ()),
-            what,
-        )
-        for name, what, o in _listed(plan, everything)
-    ]
-    return Table("", head, tuple(rows), "Smallest distance of two causes, in standard deviations.")
+    head = ("experiment", "distance", "tells apart", *(["nearest"] if several else []), "what")
+    rows = []
+    for name, what, o in _listed(plan, everything):
+        nearest = [" / ".join(o.nearest)] if several else []
+        rows.append((name, f"{o.smallest:.2f}", _word(o.separates), *nearest, what))
+    return Table("", head, rows, "Smallest distance of two causes, in standard deviations.")
 
 
 def _listed(plan: Plan, everything: bool = False) -> list[tuple[str, str, Outlook]]:
@@ -207,16 +111,8 @@ def _listed(plan: Plan, everything: bool = False) -> list[tuple[str, str, Outloo
     now = [("", "the campaign as it is", plan.now)] if plan.now is not None else []
     kept = plan.outlooks if everything else [o for o in plan.outlooks if o.gain >= LEAST][:SHOWN]
     single = [(o.experiments[0], plan.what(o.experiments[0]), o) for o in kept]
-    return [
-        *now,
-        *single,
-        *((" + ".join(o.experiments), "together", o) for o in plan.together if len(o.experiments) > 1),
-    ]
-
-
-def _exposes(plan: Plan, ids: Iterable[str]) -> str:
-    wanted = set(ids)
-    return "; ".join(f"{name_of(c.id)}: {c.exposes}" for c in plan.causes if c.id in wanted and c.exposes)
+    several = [(" + ".join(o.experiments), "together", o) for o in plan.together if len(o.experiments) > 1]
+    return [*now, *single, *several]
 
 
 def picture(plan: Plan, form: Literal["png", "svg"]) -> bytes:
@@ -233,7 +129,7 @@ def picture(plan: Plan, form: Literal["png", "svg"]) -> bytes:
     figure, (panel,) = empty(9.0, 1.4 + 0.34 * len(rows) * max(len(pairs), 1) ** 0.5, 1, 1)
     height = 0.8 / max(len(pairs), 1)
     for k, pair in enumerate(pairs):
-        values = [o.smallest if pair is None else _after(o, pair) for _, _, o in rows]
+        values = [next((p.after for p in o.pairs if p.causes == pair), o.smallest) for _, _, o in rows]
         places = [i + (k - (len(pairs) - 1) / 2) * height for i in range(len(rows))]
         label = "nearest pair" if pair is None else " / ".join(pair)
         bars = panel.barh(places, [min(v, END) for v in values], height, color=COLOURS[k], label=label)
@@ -244,10 +140,4 @@ def picture(plan: Plan, form: Literal["png", "svg"]) -> bytes:
     panel.set(xlim=(0, END), xlabel="distance [standard deviations]")
     panel.grid(False, axis="y")
     legend(figure, panel)
-    if form == "svg":
-        return svg(figure).encode()
-    return png(figure)
-
-
-def _after(outlook: Outlook, pair: tuple[str, str]) -> float:
-    return next((p.after for p in outlook.pairs if p.causes == pair), outlook.smallest)
+    return svg(figure).encode() if form == "svg" else png(figure)

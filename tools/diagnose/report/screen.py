@@ -10,8 +10,8 @@ from rich.console import Console
 from rich.table import Table as Drawn
 
 from ....model.screen import fitting
+from ..answer.findings import Findings
 from . import phrases
-from .findings import Findings
 from .tables import Table, tables
 
 #: Width of the text at most.
@@ -47,15 +47,23 @@ def text(findings: Findings, *, everything: bool = False, width: int | None = No
     return "\n".join(found) + "\n"
 
 
-def paragraph(word: str, line: str, width: int | None = None) -> str:
+def paragraph(word: str, line: str, width: int | None = None, left: int = LEFT) -> str:
     """A text with a word to its left.
 
     Args:
         word: to the left
         line: the text
         width: columns of the screen, None where there is none
+        left: columns of the word
     """
-    return _filled(line, width, f"{word:<{LEFT}}", " " * LEFT)
+    return textwrap.fill(
+        line,
+        min(width or WIDTH, WIDTH),
+        initial_indent=f"{word:<{left}}",
+        subsequent_indent=" " * left,
+        break_long_words=False,
+        break_on_hyphens=False,
+    )
 
 
 def drawn(table: Table, width: int | None = None) -> str:
@@ -81,18 +89,8 @@ def drawn(table: Table, width: int | None = None) -> str:
         screen.print(made)
     shown = {i for group in groups for i in group}
     if left := ", ".join(name for i, name in enumerate(table.columns) if i not in shown):
-        out.write(_filled(f"left out for want of room: {left}; widen the screen, or take --json", width) + "\n")
+        line = f"left out for want of room: {left}; widen the screen, or take --json"
+        out.write(paragraph("", line, width, 0) + "\n")
     if table.note:
-        out.write(_filled(table.note, width) + "\n")
+        out.write(paragraph("", table.note, width, 0) + "\n")
     return "\n".join(line.rstrip() for line in out.getvalue().splitlines())
-
-
-def _filled(line: str, width: int | None, first: str = "", rest: str = "") -> str:
-    return textwrap.fill(
-        line,
-        min(width or WIDTH, WIDTH),
-        initial_indent=first,
-        subsequent_indent=rest,
-        break_long_words=False,
-        break_on_hyphens=False,
-    )

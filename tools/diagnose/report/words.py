@@ -5,9 +5,9 @@ The verdict itself is decided elsewhere; here it is put in words, and every sent
 
 from __future__ import annotations
 
+from ..answer.findings import UNEXPLAINED, Answer, Cause, Findings, Said
 from . import phrases
-from .findings import UNEXPLAINED, Answer, Cause, Findings, Said
-from .names import name_of, names_of, sentence
+from .phrases import name_of, names_of, sentence
 
 #: Below this probability a cause that would be seen is ruled out.
 RULED_OUT = 0.01
@@ -23,6 +23,8 @@ APART = 3.0
 MOST = 6
 #: The same of lists of little weight.
 FEW = 3
+#: Numbers of causes in words.
+COUNTS = {2: "Two", 3: "Three", 4: "Four"}
 
 
 def with_words(findings: Findings) -> Findings:
@@ -45,7 +47,7 @@ def contradictions(findings: Findings) -> list[str]:
     total, calm = sum(h.probability for h in findings.hypotheses), findings.verdict == "consistent"
     best = findings.answers[0].probability if findings.answers else 0.0
     known = {c.id for c in findings.causes}
-    named = {c for a in findings.answers for group in a.causes for c in group} - {UNEXPLAINED}
+    named = findings.named - {UNEXPLAINED}
     alarm = findings.test.p_any < findings.test.alpha
     checks = {
         f"the probabilities add up to {total:.3f}": total > 1 + 1e-6,
@@ -63,56 +65,50 @@ def contradictions(findings: Findings) -> list[str]:
 
 
 def _verdict(findings: Findings) -> str:
-    answers = findings.answers
+    answers, left = findings.answers, findings.remainder
     if findings.verdict == "consistent":
         return "The data agree with the model within the stated accuracies."
+    shown = left.channels[:2] if left else ()
+    where = " and ".join(f"{c.channel} ({phrases.with_unit(c.rms, c.unit, 2)})" for c in shown)
+    seen = f", seen in {where}" if where else ""
     if findings.verdict == "unexplained" or not answers:
-        return _unexplained(findings)
+        sure = f" ({phrases.percent(left.probability, left.mc_error)})" if left else ""
+        best = next((a for a in answers if a.causes != ((UNEXPLAINED,),)), None)
+        closest = f" The closest known cause is {_probable(best)}." if best else ""
+        return f"Something is wrong that no cause of the library explains{sure}{seen}.{closest}"
     if findings.verdict == "ambiguous":
-        parts = [f"{phrases.answer(a)} ({_probability(a)})" for a in answers]
-        more = f"; or {len(parts) - MOST} less probable ones" if len(parts) > MOST else ""
-        return f"Something is wrong, and the data leave open what: {'; '.join(parts[:MOST])}{more}."
+        parts = [_probable(a) for a in answers]
+        rest = f"; or {len(parts) - MOST} less probable ones" if len(parts) > MOST else ""
+        return f"Something is wrong, and the data leave open what: {'; '.join(parts[:MOST])}{rest}."
     first = answers[0]
     if limits := _at_bound(findings, first):
-        name = names_of(limits)
         return (
-            f"{sentence(phrases.answer(first))} fits best ({_probability(first)}), yet only at the limit of the size"
-            f" that {name} can have: this is a pointer, not yet a finding."
+            f"{sentence(phrases.answer(first))} fits best ({phrases.percent(first.probability, first.mc_error)}), yet"
+            f" only at the limit of the size that {names_of(limits)} can have: this is a pointer, not yet a finding."
         )
-    several = len(first.causes) > 1
-    subject = f"{_count(len(first.causes))} causes together explain" if several else "One cause explains"
-    return f"{subject} the data: {phrases.answer(first)} ({_probability(first)}).{_beyond(findings)}"
+    n = len(first.causes)
+    subject = f"{COUNTS.get(n, n)} causes together explain" if n > 1 else "One cause explains"
+    more = left is not None and left.probability >= 0.5
+    beside = f" Something that the library lacks acts beside it{seen}." if more else ""
+    return f"{subject} the data: {_probable(first)}.{beside}"
 
 
-def _unexplained(findings: Findings) -> str:
-    left = findings.remainder
-    where = f", seen in {_remainder_channels(findings)}" if left and left.channels else ""
-    sure = f" ({phrases.percent(left.probability, left.mc_error)})" if left else ""
-    best = next((a for a in findings.answers if a.causes != ((UNEXPLAINED,),)), None)
-    closest = f" The closest known cause is {phrases.answer(best)} ({_probability(best)})." if best else ""
-    return f"Something is wrong that no cause of the library explains{sure}{where}.{closest}"
+def _probable(answer: Answer) -> str:
+    return f"{phrases.answer(answer)} ({phrases.percent(answer.probability, answer.mc_error)})"
 
 
-def _beyond(findings: Findings) -> str:
-    """That something else acts beside a named cause."""
-    left = findings.remainder
-    if left is None or left.probability < 0.5:
-        return ""
-    where = _remainder_channels(findings)
-    return f" Something that the library lacks acts beside it{f', seen in {where}' if where else ''}."
-
-
-def _remainder_channels(findings: Findings) -> str:
-    left = findings.remainder
-    found = left.channels[:2] if left else ()
-    return " and ".join(f"{c.channel} ({phrases.with_unit(c.rms, c.unit, 2)})" for c in found)
+def _at_bound(findings: Findings, answer: Answer) -> list[str]:
+    """Causes of an answer whose size sits on its bound."""
+    found = [findings.cause(c) for group in answer.causes for c in group[:1]]
+    return [c.id for c in found if c is not None and c.parameters and c.parameters[0].at_bound]
 
 
 def _do(findings: Findings) -> str:
     """What to do now, the most pressing first."""
     steps = []
-    if findings.data_quality.gross:
-        steps.append(f"Check {_readings(findings)} in your records.")
+    if gross := findings.data_quality.gross:
+        rows = ", ".join(f"row {g.row} ({g.channel})" for g in gross[:MOST])
+        steps.append(f"Check the reading{'s' if len(gross) > 1 else ''} in {rows} in your records.")
     if findings.verdict == "consistent":
         steps.append("Nothing else needs doing." if steps else "Nothing needs doing.")
         return " ".join(steps)
@@ -135,12 +131,6 @@ def _do(findings: Findings) -> str:
     return " ".join(steps)
 
 
-def _readings(findings: Findings) -> str:
-    found = findings.data_quality.gross
-    rows = ", ".join(f"row {g.row} ({g.channel})" for g in found[:MOST])
-    return f"the reading in {rows}" if len(found) == 1 else f"the readings in {rows}"
-
-
 def _exposing(findings: Findings) -> str:
     """The experiment that would show the causes of the first answer."""
     members = [c for group in findings.answers[0].causes for c in group] if findings.answers else []
@@ -159,17 +149,15 @@ def _size(findings: Findings) -> str:
         said.append(f"{sentence(which + effects)}, on average.")
     for answer in findings.answers[: 1 if findings.verdict != "ambiguous" else 2]:
         for group in answer.causes:
-            found = [c for member in group if (c := findings.cause(member)) is not None]
-            if sizes := [text for c in found if (text := _sized(c))]:
+            sizes = []
+            for c in (findings.cause(member) for member in group):
+                if c is not None and c.parameters:
+                    place = f" ({where})" if (where := phrases.where(c)) else ""
+                    size = f"{phrases.meaning(c.parameters[0])} {phrases.estimate(c.parameters[0])}"
+                    sizes.append(f"{name_of(c.id)}{place}: {size}")
+            if sizes:
                 said.append(f"{sentence('; or '.join(sizes))}.")
     return " ".join(dict.fromkeys(said))
-
-
-def _sized(cause: Cause) -> str:
-    if not cause.parameters:
-        return ""
-    place = f" ({where})" if (where := phrases.where(cause)) else ""
-    return f"{name_of(cause.id)}{place}: {phrases.meaning(cause.parameters[0])} {phrases.estimate(cause.parameters[0])}"
 
 
 def _sure(findings: Findings) -> str:
@@ -193,25 +181,20 @@ def _sure(findings: Findings) -> str:
 def _cannot_be(findings: Findings) -> str:
     """Causes that would show and do not; those that these data cannot tell from the answer, or cannot show."""
     said = []
-    named = {c for a in findings.answers for group in a.causes for c in group}
+    named = findings.named
     out = [c.id for c in findings.causes if _ruled_out(findings, c) and c.id not in named]
     if out:
         said.append(f"Ruled out at their usual size: {names_of(out, most=MOST)}.")
+    still_open = {c.id for c in findings.causes if c.probability >= RULED_OUT} - named
     for group in findings.sets:
         first, *alike = group.causes
-        others = [c for c in alike if c not in named and _open(findings, c)]
+        others = [c for c in alike if c in still_open]
         if first in named and others and group.distance < APART:
             said.append(f"These data cannot tell {name_of(first)} from {names_of(others, 'or')}.")
     if findings.invisible:
         blind = names_of((i.cause for i in findings.invisible), "or", FEW)
         said.append(f"These data cannot show {blind}.")
     return " ".join(said)
-
-
-def _open(findings: Findings, cause: str) -> bool:
-    """Whether these data, at the size found, still leave a cause open."""
-    found = findings.cause(cause)
-    return found is not None and found.probability >= RULED_OUT
 
 
 def _ruled_out(findings: Findings, cause: Cause) -> bool:
@@ -236,17 +219,3 @@ def _data(findings: Findings) -> tuple[str, ...]:
         elif p > TOO_GOOD:
             said.append(f"What is left in {channel} is smaller than its stated scatter ({phrases.p_value(p)}).")
     return tuple(said)
-
-
-def _at_bound(findings: Findings, answer: Answer) -> list[str]:
-    """Causes of an answer whose size sits on its bound."""
-    found = [findings.cause(c) for group in answer.causes for c in group[:1]]
-    return [c.id for c in found if c is not None and c.parameters and c.parameters[0].at_bound]
-
-
-def _probability(answer: Answer) -> str:
-    return phrases.percent(answer.probability, answer.mc_error)
-
-
-def _count(n: int) -> str:
-    return {2: "Two", 3: "Three", 4: "Four"}.get(n, str(n))

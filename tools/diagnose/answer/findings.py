@@ -6,14 +6,12 @@ degC, differences in K. Probabilities are of the posterior and come with their M
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Literal
 
 from pydantic import Field
 
-from .estimate import Estimate
-from .evidence import Picture, Rows, View
+from .evidence import DataQuality, Estimate, Picture, Rows, View
 from .numbers import Interval, Model, Number, P, Probability
-from .quality import DataQuality
 
 #: The name of whatever the library lacks.
 UNEXPLAINED = "model.unexplained"
@@ -146,7 +144,7 @@ class Gain(Model):
     """Errors on readings that were held out, with everything repeated without them."""
 
     class Both(Model):
-        """The same predicted without and with the discrepancy term."""
+        """The same predicted without and with what only interpolates from test to test."""
 
         without: Number
         with_: Number = Field(alias="with")
@@ -156,7 +154,7 @@ class Gain(Model):
     channel: str
     unit: str = "K"
     n: int
-    rmse_before: Number = Field(description="without the discrepancy term, as in version 1: same as before.without")
+    rmse_before: Number = Field(description="without what only interpolates from test to test: same as before.without")
     rmse_after: Number = Field(description="the same as after.without")
     before: Both | None = Field(default=None, description="calibrated, no cause")
     after: Both | None = Field(default=None, description="with the causes chosen without the held-out readings")
@@ -288,6 +286,11 @@ class Findings(Model):
         """Probability that nothing is wrong."""
         return sum(h.probability for h in self.hypotheses if not h.causes)
 
+    @property
+    def named(self) -> set[str]:
+        """All causes of the answers."""
+        return {c for a in self.answers for group in a.causes for c in group}
+
     def cause(self, id: str) -> Cause | None:
         """What is known of a cause."""
         return next((c for c in self.causes if c.id == id), None)
@@ -295,8 +298,3 @@ class Findings(Model):
     def channel(self, name: str) -> Channel | None:
         """A channel by its name."""
         return next((c for c in self.channels if c.name == name), None)
-
-
-def as_object(findings: Findings) -> dict[str, Any]:
-    """The JSON object of a diagnosis, without what is not known."""
-    return findings.model_dump(mode="json", by_alias=True, exclude_none=True)

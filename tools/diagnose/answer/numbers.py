@@ -36,11 +36,6 @@ def array(values: Iterable[Any]) -> tuple[float | None, ...]:
     return tuple(rounded(v, ARRAY_DIGITS) if v is not None and math.isfinite(v) else None for v in numbers)
 
 
-def _listed(values: Any) -> Any:
-    """An array of any kind as numbers."""
-    return array(values) if isinstance(values, Iterable) and not isinstance(values, str) else values
-
-
 #: A finite number.
 Number = Annotated[float, AfterValidator(rounded), Field(allow_inf_nan=False)]
 #: A probability of a hypothesis.
@@ -50,10 +45,15 @@ P = Annotated[float, AfterValidator(_p), Field(ge=0, le=1)]
 #: An interval.
 Interval = tuple[Number, Number]
 #: A row of numbers, null where one is missing; takes arrays.
-Array = Annotated[tuple[float | None, ...], BeforeValidator(_listed)]
+Array = Annotated[tuple[float | None, ...], BeforeValidator(array)]
 
 
 class Model(BaseModel):
     """Frozen, and without keys that nobody knows."""
 
     model_config = ConfigDict(frozen=True, extra="forbid", populate_by_name=True)
+
+
+def as_object(result: Model) -> dict[str, Any]:
+    """The JSON object of a result, without what is not known."""
+    return result.model_dump(mode="json", by_alias=True, exclude_none=True)

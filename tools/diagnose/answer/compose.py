@@ -1,0 +1,138 @@
+"""From what a search found to the result as data: hypotheses, causes, impact, remainder, what to measure next."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import asdict
+from typing import Any
+
+import numpy as np
+
+from ..infer.found import Found, Hypothesis
+from ..library.cause import Cause
+from ..setting import Setting
+from . import channels, estimate, findings
+from .decide import Chance, Decision
+from .design import Effects, alike, of_search, ranked
+from .experiments import experiments
+
+#: Hypotheses that are listed.
+MOST = 12
+#: The least probability of one.
+LISTED = 0.005
+#: Changes of the loss by name, with their units.
+LOSS = {"loss_Nm": "N.m", "heat_W": "W"}
+#: Causes between which experiments are judged.
+JUDGED = 4
+#: The least weight of one.
+LEAST = 0.02
+#: Experiments that are listed.
+TRIED = 6
+
+
+def hypotheses(decision: Decision) -> tuple[findings.Hypothesis, ...]:
+    """The most probable ones, nothing always among them."""
+    listed = [j for k, j in enumerate(decision.joints) if not j.causes or (k < MOST and j.chance.probability > LISTED)]
+    return tuple(findings.Hypothesis(causes=j.causes, **asdict(j.chance)) for j in listed)
+
+
+def answers(decision: Decision) -> tuple[findings.Answer, ...]:
+    """What the verdict names."""
+    return tuple(findings.Answer(causes=j.classes, **asdict(j.chance)) for j in decision.answers)
+
+
+def causes(made: Setting, found: Found, decision: Decision) -> tuple[findings.Cause, ...]:
+    """All causes, most probable first."""
+    smallest = estimate.detectable(found)
+    told = []
+    for cause in (*made.causes, None):
+        id = cause.id if cause else findings.UNEXPLAINED
+        chance = decision.marginal.get(id, Chance(0.0, 0.0))
+        known: dict[str, Any] = {}
+        if cause is not None:
+            known = {"doc": cause.doc, "exposes": cause.exposes, "like": cause.like, "detectable": smallest.get(id)}
+            known |= {"usual": cause.size.sd, "unit": cause.size.unit, "meaning": cause.size.doc}
+            known |= _sized(made, id, found, decision) if chance.probability > LISTED else {}
+        told.append(findings.Cause(id=id, **asdict(chance), **known))
+    return tuple(sorted(told, key=lambda c: (-c.probability, c.id)))
+
+
+def _sized(made: Setting, cause: str, found: Found, decision: Decision) -> dict[str, Any]:
+    """Size, shapes and forms of a cause, and what it alone changes."""
+    members = decision.members[cause]
+    shares = estimate.form_shares(cause, members)
+    own: dict[str, Any] = {
+        "parameters": estimate.estimates(found, cause, members),
+        "forms": [findings.FormShare(name=name, share=share) for name, share in shares.items() if share > LISTED],
+    }
+    acting = next(((h, a) for h, _ in members for a in h.fit.look.acting if a.id == cause), None)
+    if acting is not None:
+        h, one = acting
+        own["regime"] = estimate.regime(one.formula.form, one.formula.theta(one.t))
+        own["impact"] = impacts(made, found, h, cause)
+    return own
+
+
+def impacts(made: Setting, found: Found, h: Hypothesis, only: str | None = None) -> dict[str, findings.Impact]:
+    """Mean change of each compared sensor, and of the loss, by a hypothesis or by one of its causes."""
+    o = found.problem.data
+    means, sensors = estimate.sensor_means(o), {s.name: s for s in o.read}
+    if loss := estimate.loss_means(o, made.ratios):
+        means |= {key: weights for key, weights in zip(LOSS, loss, strict=True) if len(weights)}
+    told = {}
+    for name, change in estimate.impact(found.problem, h, means, only).items():
+        if name in LOSS:
+            told[name] = findings.Impact(value=change.value, ci95=change.ci95, unit=LOSS[name], what="loss")
+            continue
+        s = sensors[name]
+        value, low, high = (channels.difference(s, v) for v in (change.value, *change.ci95))
+        unit, what = channels.unit_of_difference(s), channels.words(s)
+        told[channels.change_name(s)] = findings.Impact(value=value, ci95=(low, high), unit=unit, what=what)
+    return told
+
+
+def remainder(found: Found, decision: Decision) -> findings.Remainder | None:
+    """What the library lacks, by channel: beside the most probable hypothesis that holds it."""
+    chance = decision.marginal.get(findings.UNEXPLAINED)
+    own = [e for h, _ in decision.members.get(findings.UNEXPLAINED, ()) for e in h.extras if e.cause is None]
+    if chance is None or chance.probability < LISTED or not own:
+        return None
+    o, told = found.problem.data, []
+    for i, s in enumerate(o.read):
+        rows = np.flatnonzero(o.kind == i)
+        if s.name in own[0].channels and len(rows):
+            rms = float(np.sqrt(np.mean(((own[0].size * own[0].columns[rows]) ** 2).sum(axis=1))))
+            value = channels.difference(s, rms)
+            one = findings.RemainderChannel(channel=s.name, rms=value, unit=channels.unit_of_difference(s))
+            told.append((rms / s.repeat_sd, one))
+    told.sort(key=lambda item: -item[0])
+    return findings.Remainder(channels=tuple(c for _, c in told), **asdict(chance))
+
+
+def leading(decision: Decision) -> list[str]:
+    """Causes by their probability, those of the answers first."""
+    named = [c for a in decision.answers for group in a.classes for c in group]
+    others = sorted(decision.marginal, key=lambda c: -decision.marginal[c].probability)
+    return [c for c in dict.fromkeys([*named, *others]) if c != findings.UNEXPLAINED]
+
+
+def sets(library: Sequence[Cause], found: Found, decision: Decision) -> tuple[findings.CauseSet, ...]:
+    """For each leading cause those that the design cannot tell from it, at its usual size or as found if larger."""
+    effects, like = Effects(found.first.candidates, found.first.white), {c.id: c.like for c in library}
+    told = []
+    for cause in leading(decision)[:JUDGED]:
+        members = decision.members.get(cause, ())
+        sizes = [abs(a.t[0]) for h, _ in members[:1] for a in h.fit.look.acting if a.id == cause]
+        told.append(alike(effects, cause, max([1.0, *sizes]), like))
+    return tuple(s for s in told if s is not None)
+
+
+def next_experiments(setting: Setting, found: Found, decision: Decision) -> tuple[findings.Experiment, ...]:
+    """Experiments by what they add to the distances between the leading causes."""
+    known = {c.id for c in found.first.candidates}
+    causes = [c for c in leading(decision) if c in known][:JUDGED]
+    if len(causes) < 2:
+        return ()
+    weights = {c: max(decision.marginal[c].probability if c in decision.marginal else 0.0, LEAST) for c in causes}
+    made = of_search(setting, found, causes, experiments(found.problem.data.campaign))
+    return tuple(ranked(made, weights)[:TRIED])

@@ -1,0 +1,165 @@
+"""What pictures are drawn from: readings with what the model says of them, a picture a cause, each channel alone."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+
+import numpy as np
+from scipy.special import logsumexp
+from scipy.stats import chi2
+
+from ....model.core.faults import listed
+from ....scenarios.measured.table import Campaign, Sensor
+from ..infer.evidence import White, log_bayes_factors
+from ..infer.found import Found, Hypothesis
+from ..infer.screen import limits
+from . import channels
+from .evidence import Picture, Rows, View
+from .numbers import array
+
+#: What a cause may act on, where it is no column -> the kind of sensor that reads it.
+ACTS_ON = {"w": "speed", "tau": "torque", "T": "oil_temp", "film": "speed"}
+#: Causes that a channel names at least this probable.
+NAMED = 0.02
+
+
+def rows(found: Found, h: Hypothesis) -> Rows:
+    """The readings of the data: measured, calibrated without a cause, and with a hypothesis."""
+    o, own = found.problem.data, found.problem.own
+    c = o.campaign
+    null, leader = (fit.look.shown[own] for fit in (found.null, h.fit))
+    noise = h.fit.noise
+    loose = zip(noise.scales, noise.loose, strict=True)  # scatter of readings and days, without tolerances
+    spread = np.sqrt(np.sum([np.exp(2 * s) * np.diag(t.matrix) for s, t in loose], axis=0))[own]
+    told = {}
+    for i, s in enumerate(o.read):
+        mine = o.kind == i
+        if not mine.any():
+            continue
+        table = np.full((3, c.n), np.nan)
+        table[:, o.row[mine]] = o.measured[mine], null[mine], leader[mine]
+        measured, nominal, extended = (array(channels.in_unit(s, line)) for line in table)
+        sd = channels.difference(s, float(np.median(spread[mine])))
+        told[s.name] = Rows.Values(
+            measured=measured, nominal=nominal, extended=extended if h.fit.look.acting else (), sd=sd
+        )
+    return Rows(
+        row=tuple(range(1, c.n + 1)),
+        test=tuple(int(t) + 1 for t in c.test),
+        direction=tuple(int(d) for d in c.direction),
+        channels=told,
+        quantities=quantities(c, o.sensors),
+    )
+
+
+def quantities(campaign: Campaign, sensors: Mapping[str, np.ndarray]) -> dict[str, Rows.Quantity]:
+    """What readings are drawn against: the given sensors, the rise of the oil over the room, the running order."""
+    oil, room = (next((s for s in campaign.sensors if s.kind == kind), None) for kind in ("oil_temp", "ambient"))
+    told = {}
+    for s in (*campaign.given, *([oil] if oil else ())):
+        values = array(channels.in_unit(s, sensors[s.name]))
+        told[s.name] = Rows.Quantity(label=channels.words(s), unit=channels.unit(s), values=values)
+    if oil and room:
+        rise = sensors[oil.name] - sensors[room.name]
+        told["rise"] = Rows.Quantity(label="oil over room", unit="K", values=array(rise))
+    told["order"] = Rows.Quantity(label="running order", values=array(campaign.order[campaign.test]))
+    if len(set(campaign.direction)) > 1:
+        told["direction"] = Rows.Quantity(label="direction", values=array(campaign.direction))
+    return told
+
+
+def pictures(found: Found, h: Hypothesis, quantities: Collection[str]) -> tuple[Picture, ...]:
+    """For each cause of a hypothesis what is left without and with it, in the channel that shows it best.
+
+    Args:
+        found: the search
+        h: the hypothesis
+        quantities: what readings can be drawn against
+    """
+    problem, fit, o = found.problem, h.fit, found.problem.data
+    sd = np.sqrt(np.diag(fit.noise.covariance))[problem.own]
+    left = (problem.measured - fit.look.shown)[problem.own]
+    made = []
+    for acting in fit.look.acting:
+        others = [a for a in fit.look.acting if a is not acting]
+        effect = (fit.look.shown - problem.shown(fit.look.z, others))[problem.own]
+        ends = np.unique(o.kind[o.kind < len(o.read)])
+        best = max((int(i) for i in ends), key=lambda i: float(np.mean((effect / sd)[o.kind == i] ** 2)))
+        mine, sensor = o.kind == best, o.read[best]
+        table = np.full((2, o.campaign.n), np.nan)
+        table[:, o.row[mine]] = left[mine] + effect[mine], left[mine]
+        before, after = (array(channels.difference(sensor, 1.0) * line) for line in table)
+        drawn = quantity(acting.formula.cause.acts_on, o.campaign, quantities)
+        made.append(Picture(cause=acting.id, channel=sensor.name, quantity=drawn, before=before, after=after))
+    return tuple(made)
+
+
+def quantity(acts_on: str, campaign: Campaign, known: Collection[str]) -> str:
+    """Key of the quantity that a cause acts on; the running order where it is not measured.
+
+    Args:
+        acts_on: as the cause has it
+        campaign: the data
+        known: what readings can be drawn against
+    """
+    if acts_on in known:
+        return acts_on
+    kind = ACTS_ON.get(acts_on, "")
+    ranked = sorted((s for s in campaign.sensors if s.kind == kind), key=lambda s: s.role != "given")
+    return next((s.name for s in ranked if s.name in known), "order")
+
+
+def views(found: Found) -> tuple[View, ...]:
+    """What each channel says on its own: its readings given those of all the others, without a cause and with each.
+
+    The others carry the nuisances and tolerances they share with the channel: a torque is compared with what the
+    measured temperatures leave open, a thermometer with what torque and the other thermometers do. Empty where only
+    one channel has readings.
+    """
+    problem, o, first = found.problem, found.problem.data, found.first
+    whole, e = found.null.linear(problem)
+    V, r = whole.L @ whole.L.T, whole.L @ e
+    kinds = [i for i in range(len(o.read)) if (o.kind == i).any()]
+    share = found.prior.share
+    weights = first.weights + [share[c.id] for c in first.candidates]
+    low, high = limits(first.candidates)
+    ids = np.array([c.id for c in first.candidates])
+    told = []
+    for i in kinds if len(kinds) > 1 else ():
+        mine = np.zeros(problem.m, dtype=bool)
+        mine[problem.own] = o.kind == i
+        given = White.of(V[np.ix_(~mine, ~mine)])
+        tie = given(V[np.ix_(~mine, mine)])
+        white = White.of(V[np.ix_(mine, mine)] - tie.T @ tie)
+        deviation = r[mine] - tie.T @ given(r[~mine])
+        effects = white(first.effects[mine] - tie.T @ given(first.effects[~mine]))
+        left = white(deviation)
+        logs = weights + log_bayes_factors(effects.T @ left, (effects**2).sum(axis=0), low, high)
+        total = logsumexp([logsumexp(logs), found.critical])
+        chances = {c: float(np.exp(logsumexp(logs[ids == c]) - total)) for c in dict.fromkeys(ids.tolist())}
+        ranked = sorted((item for item in chances.items() if item[1] > NAMED), key=lambda item: -item[1])
+        s, rows = o.read[i], o.row[o.kind == i]
+        told.append(
+            View(
+                channel=s.name,
+                asks=_asks(s, o.read),
+                p=float(chi2.sf(left @ left, len(left))),
+                nothing=float(np.exp(found.critical - total)),
+                causes=tuple(View.Alone(id=id, probability=p) for id, p in ranked),
+                unit=channels.unit_of_difference(s),
+                order=array(o.campaign.order[o.campaign.test[rows]]),
+                direction=array(o.campaign.direction[rows]),
+                deviation=array(channels.difference(s, 1.0) * deviation),
+            )
+        )
+    return tuple(told)
+
+
+def _asks(sensor: Sensor, read: Sequence[Sensor]) -> str:
+    """A channel and what it is compared with, in words."""
+    others = [s for s in read if s is not sensor]
+    warm = [s for s in others if s.kind.endswith("_temp")]
+    if sensor.kind.endswith("_temp") and warm:
+        rest = listed([channels.words(s) for s in others if s not in warm])
+        return f"{channels.words(sensor)} against the other thermometers{f' and {rest}' if rest else ''}"
+    return f"{channels.words(sensor)}, given {listed([channels.words(s) for s in others])}"
