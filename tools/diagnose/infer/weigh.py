@@ -25,8 +25,8 @@ from .prior import Prior
 from .problem import Acting, Aside, Problem
 from .terms import Term, gross, remainders, sizes, spreads
 
-#: Linearisations at most.
-LOOKS = 3
+#: Linearisations at most: as calibrated, as the file or the healthy campaign says, and at the best hypotheses.
+LOOKS = 4
 #: Sets fitted of each linearisation.
 FITTED = 10
 #: Nats behind the likeliest set within which they are fitted.
@@ -121,20 +121,28 @@ class _Weighing:
         nothing: _Key = (frozenset(), frozenset())
         self.hypotheses[nothing] = Hypothesis((), self.null, self.null.evidence + self.critical)
         self._fit_alone(wanted)
-        near, first = self.null, self.first
-        for round_ in range(LOOKS if self.p_any < QUIET else 1):
-            begun = 0.3 + 0.2 * round_
-            found = self._search(near, first, self.critical, "sets of causes", begun)
-            self._fit_sets(found, near, begun + 0.1)
-            best = max(self.hypotheses.values(), key=lambda h: h.log_joint)
-            if best.fit.look is near.look or not best.causes:
-                break
-            near = best.fit
+        for k in range(LOOKS if self.p_any < QUIET else 1):
+            best = max(self.hypotheses.values(), key=lambda h: h.log_joint).fit
             with suppress(SolveError):
-                first = screen.look(self.problem, near, self.formulas)
-                continue
-            break
+                near = self.null if k == 0 else self._home() if k == 1 else best
+                look = self.first if near is self.null else screen.look(self.problem, near, self.formulas)
+                found = self._search(near, look, self.critical, "sets of causes", 0.3 + 0.15 * k)
+                self._fit_sets(found, near, 0.4 + 0.15 * k)
+            if k > 1 and max(self.hypotheses.values(), key=lambda h: h.log_joint).fit is best:
+                break
         return self._weighed()
+
+    def _home(self) -> Fit:
+        """Where the rig is as its healthy campaign says, or else its file.
+
+        Nuisances far from what is expected of them may take up most of a cause where no cause is fitted. From there it
+        shows.
+        """
+        z, campaigns = np.zeros(self.problem.nz), self.problem.campaigns
+        if len(campaigns) > 1:
+            z = fitted(Problem(campaigns[1:], self.problem.day_sd), (), z).look.z
+        look = self.problem.look(z)
+        return replace(self.null, look=look, noise=self.problem.noise(look))
 
     def _search(
         self, near: Fit, look: screen.Look, critical: float, stage: str, begun: float, scatters: int = sets.SCATTERS
