@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from importlib.resources import files
-
 import numpy as np
 
 from ..model.core.flat import FlatModel
 from . import emit
 from .batch_library import address, driver
+from .fixed import wrapper
 
 
 def relations_source(flat: FlatModel) -> str:
@@ -20,17 +19,16 @@ def relations_source(flat: FlatModel) -> str:
     if not flat.relations:
         return ""
     limits = {"low": [r.low for r in flat.relations], "high": [r.high for r in flat.relations]}
-    wrapper = files("gearheat.fmu") / "wrapper"
     return "\n".join(
         [
             f"#define N_RELATIONS {len(flat.relations)}",
-            (wrapper / "batch.h").read_text(encoding="utf-8"),
+            wrapper("batch.h"),
             *(
                 f"static const double model_relation_{end}[] = {{{', '.join(map(emit.number, numbers))}}};"
                 for end, numbers in limits.items()
             ),
             emit.function(flat.relation_function),
-            (wrapper / "batch_relations.c").read_text(encoding="utf-8"),
+            wrapper("batch_relations.c"),
         ]
     )
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from importlib.resources import files
 from itertools import pairwise
 from typing import Any
 
@@ -11,7 +10,8 @@ import casadi as ca
 
 from ..model.core.flat import FlatModel
 from . import emit, rosenbrock
-from .equations import equations
+from .equations import equations, full
+from .fixed import wrapper
 from .source import defined, newton_constants
 from .variables import table
 
@@ -45,12 +45,12 @@ def steady_source(flat: FlatModel) -> str:
     (c_values,), fixed, k_values = _hoisted([c_values], flat.p)
     place, names = [flat.x, flat.z, flat.u, flat.p, ca.vertcat(fixed, given)], list("xzupc")
     functions = [
-        _function("fixed", [flat.p], ["p"], [k_values], ["k"]),
-        _function("given", [flat.u, flat.p, fixed], ["u", "p", "k"], [c_values], ["c"]),
-        _function("rates", place, names, [whole], ["r"]),
-        _function("equations", place, names, [whole, entries], ["r", "entries"]),
-        _function("algebra", place, names, [residual, inner], ["r", "J"]),
-        _function("outputs", place, names, [y], ["y"]),
+        full("fixed", [flat.p], [k_values], ["p"], ["k"]),
+        full("given", [flat.u, flat.p, fixed], [c_values], ["u", "p", "k"], ["c"]),
+        full("rates", place, [whole], names, ["r"]),
+        full("equations", place, [whole, entries], names, ["r", "entries"]),
+        full("algebra", place, [residual, inner], names, ["r", "J"]),
+        full("outputs", place, [y], names, ["y"]),
     ]
     nk = fixed.numel()
     sizes = {**_sizes(flat), "NYR": y.numel(), "NK": nk, "NC": nk + given.numel(), "NJ": entries.numel()}
@@ -78,18 +78,13 @@ def warmup_source(flat: FlatModel, most_steps: int) -> str:
     parts, c, c_values = _hoisted([x_new, z_new, error[:-1], model.y, model.ode, model.residual, inner[:]], model.p)
     x_new, z_new, error, y, ode, residual, inner = parts
     place, names = [model.x, model.z, model.u, model.p, c], list("xzupc")
-    step = _function(
-        "step",
-        [model.x, model.z, model.u, slope, model.p, c, h],
-        ["x", "z", "u", "slope", "p", "c", "h"],
-        [x_new, z_new, error],
-        ["x_new", "z_new", "error"],
-    )
+    inputs, names_in = [model.x, model.z, model.u, slope, model.p, c, h], ["x", "z", "u", "slope", "p", "c", "h"]
+    step = full("step", inputs, [x_new, z_new, error], names_in, ["x_new", "z_new", "error"])
     functions = [
-        emit.function(_function("constants", [model.p], ["p"], [c_values], ["c"])),
+        emit.function(full("constants", [model.p], [c_values], ["p"], ["c"])),
         emit.function(step, "lanes_", "lanes"),
-        emit.function(_function("algebra", place, names, [residual, inner], ["r", "J"])),
-        emit.function(_function("outputs", place, names, [y, ode], ["y", "dx"])),
+        emit.function(full("algebra", place, [residual, inner], names, ["r", "J"])),
+        emit.function(full("outputs", place, [y, ode], names, ["y", "dx"])),
     ]
     sizes = {**_sizes(flat), "NX": ode.numel(), "NY": y.numel(), "NC": c.numel()}
     sizes |= {"ORDER": METHOD.order, "MAX_STEPS": most_steps}
@@ -109,10 +104,6 @@ def _hoisted(parts: Sequence[Any], given: Any) -> tuple[list[Any], Any, Any]:
     return cut, ca.vertcat(ca.SX(0, 1), *symbols), ca.vertcat(ca.SX(0, 1), *values)
 
 
-def _function(name: str, inputs: list[Any], names_in: list[str], outputs: list[Any], names_out: list[str]) -> Any:
-    return ca.Function(name, inputs, [ca.densify(o) for o in outputs], names_in, names_out, {"cse": True})
-
-
 def _sizes(flat: FlatModel) -> dict[str, int]:
     return {
         "N": len(flat.states),
@@ -125,11 +116,7 @@ def _sizes(flat: FlatModel) -> dict[str, int]:
 
 def _text(sizes: Mapping[str, Any], above: Sequence[str], generated: Sequence[str], below: Sequence[str]) -> str:
     """Sizes, the fixed text above the generated tables and functions, these, and the fixed text below them."""
-    return "\n".join([defined({**sizes, **newton_constants()}), *map(_fixed, above), *generated, *map(_fixed, below)])
-
-
-def _fixed(name: str) -> str:
-    return (files("gearheat.fmu") / "wrapper" / name).read_text(encoding="utf-8")
+    return "\n".join([defined({**sizes, **newton_constants()}), *map(wrapper, above), *generated, *map(wrapper, below)])
 
 
 def _ranges(flat: FlatModel) -> list[str]:

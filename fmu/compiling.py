@@ -12,13 +12,13 @@ import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
-from importlib import resources
 from importlib.metadata import version
 from pathlib import Path
 from types import MappingProxyType
 
 from ..model.errors import FmuError, suggestion
 from ..model.files import replacing
+from .fixed import wrapper
 
 
 @dataclass(frozen=True)
@@ -145,15 +145,16 @@ def binary(
         FmuError: the compiler is missing or fails, or the cache cannot be written
     """
     key = hashlib.sha256()
+    windows = wrapper("windows.c")
     named = (platform.name, *platform.targets, optimise, *FLAGS, *_SYSTEM, version("ziglang"))
-    for part in (source, *headers.values(), _windows(), *named):
+    for part in (source, *headers.values(), windows, *named):
         key.update(part.encode() + b"\0")
     stored = cache_folder() / "binaries" / f"{key.hexdigest()}{platform.suffix}"
     try:
         return stored.read_bytes()
     except OSError:
         pass
-    files = {"all.c": source, "windows.c": _windows(), **headers}
+    files = {"all.c": source, "windows.c": windows, **headers}
     with ThreadPoolExecutor(len(platform.targets)) as pool:
         made = _join(list(pool.map(lambda target: _compile(files, target, optimise), platform.targets)))
     store(stored, made)
@@ -173,10 +174,6 @@ def together(build: Callable[[Platform], bytes], platforms: Sequence[Platform], 
         for number, job in enumerate(as_completed(jobs), 1):
             progress(f"compiled for {jobs[job]}", number / len(jobs))
     return {name: job.result() for job, name in jobs.items()}
-
-
-def _windows() -> str:
-    return (resources.files("gearheat.fmu") / "wrapper" / "windows.c").read_text(encoding="utf-8")
 
 
 def store(path: Path, content: bytes) -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import re
 import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -19,34 +19,13 @@ from ..model.errors import FmuError
 from . import units
 from .choices import Choice
 from .equations import Equations
+from .fixed import tables
 from .variables import Table, Variable
 
 #: Relative tolerance when the importer gives none: an error of one step is at most this times the nominal.
 TOLERANCE = 1e-5
 #: What an importer does when nothing is asked: four hours, most of a warm-up, in steps of a minute.
-EXPERIMENT = {"startTime": "0.0", "stopTime": "14400.0", "stepSize": "60.0"}
-
-LOG_CATEGORIES = {
-    "logStatusError": "why a call was refused",
-    "logStatusDiscard": "why a step or a value could not be computed",
-    "logStatusWarning": "law arguments outside the range their source gives, once each",
-    "logSolver": "internal steps of each communication step",
-}
-
-_CAPABILITIES = {
-    "needsExecutionTool": "false",
-    "canBeInstantiatedOnlyOncePerProcess": "false",
-    "canNotUseMemoryManagementFunctions": "true",
-    "canGetAndSetFMUstate": "true",
-    "canSerializeFMUstate": "true",
-    "providesDirectionalDerivative": "true",
-}
-_CO_SIMULATION = {
-    "canHandleVariableCommunicationStepSize": "true",
-    "canInterpolateInputs": "true",
-    "maxOutputDerivativeOrder": "1",
-    "canRunAsynchronuously": "false",
-}
+EXPERIMENT: Mapping[str, str] = tables("description")["experiment"]
 
 
 def identifier(name: str) -> str:
@@ -172,7 +151,9 @@ def description(
     named = {"fmiVersion": "2.0", "modelName": flat.name, "guid": guid}
     told = {**origin(flat), "numberOfEventIndicators": "0", **owner.attributes}
     root = ET.Element("fmiModelDescription", {**named, **told})
-    _interfaces(root, identifier(flat.name), with_sources, exchange=not table.of("deviation"))
+    for interface in interfaces(root, flat, table, 2):
+        if with_sources:
+            ET.SubElement(ET.SubElement(interface, "SourceFiles"), "File", name="all.c")
     circumstances(root, table, _types)
     variables = ET.SubElement(root, "ModelVariables")
     for variable in table:
@@ -204,7 +185,7 @@ def circumstances(
     if measured or choices:
         types(ET.SubElement(root, "TypeDefinitions"), measured, choices)
     categories = ET.SubElement(root, "LogCategories")
-    for name, text in LOG_CATEGORIES.items():
+    for name, text in tables("description")["log_categories"].items():
         ET.SubElement(categories, "Category", name=name, description=text)
     ET.SubElement(root, "DefaultExperiment", {**EXPERIMENT, "tolerance": repr(TOLERANCE)})
 
@@ -247,14 +228,22 @@ def type_of(unit: str) -> dict[str, str]:
     return told | ({"relativeQuantity": "true"} if units.is_difference(unit) else {})
 
 
-def _interfaces(root: ET.Element, name: str, with_sources: bool, exchange: bool) -> None:
-    """With standard deviations there is no model exchange: their sensitivities move with the solver inside."""
-    own = {"modelIdentifier": name, **_CAPABILITIES}
-    if exchange:
-        ET.SubElement(root, "ModelExchange", {**own, "completedIntegratorStepNotNeeded": "true"})
-    ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
-    for interface in list(root) if with_sources else ():
-        ET.SubElement(ET.SubElement(interface, "SourceFiles"), "File", name="all.c")
+def interfaces(root: ET.Element, flat: FlatModel, table: Table, fmi: int) -> list[ET.Element]:
+    """The kinds of simulation. With standard deviations there is no model exchange: sensitivities move with the solver.
+
+    Args:
+        root: the description, where they are added
+        flat: the model, for its name
+        table: its variables
+        fmi: version of the standard, 2 or 3
+    """
+    own = tables("description")[f"fmi{fmi}"]
+    kinds = {} if table.of("deviation") else {"ModelExchange": own["model_exchange"]}
+    told = {"modelIdentifier": identifier(flat.name), **own["capabilities"]}
+    return [
+        ET.SubElement(root, kind, {**told, **more})
+        for kind, more in (kinds | {"CoSimulation": own["co_simulation"]}).items()
+    ]
 
 
 def _unit_definitions(root: ET.Element, used: Iterable[str]) -> None:

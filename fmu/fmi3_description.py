@@ -13,6 +13,7 @@ from .description import (
     circumstances,
     identifier,
     identity,
+    interfaces,
     items,
     origin,
     type_name,
@@ -23,22 +24,6 @@ from .description import (
 )
 from .variables import Table, Variable
 
-_CAPABILITIES = {
-    "needsExecutionTool": "false",
-    "canBeInstantiatedOnlyOncePerProcess": "false",
-    "canGetAndSetFMUState": "true",
-    "canSerializeFMUState": "true",
-    "providesDirectionalDerivatives": "true",
-    "providesAdjointDerivatives": "true",
-}
-_MODEL_EXCHANGE = {"needsCompletedIntegratorStep": "false"}
-_CO_SIMULATION = {
-    "canHandleVariableCommunicationStepSize": "true",
-    "maxOutputDerivativeOrder": "1",
-    "providesIntermediateUpdate": "false",
-    "mightReturnEarlyFromDoStep": "false",
-    "hasEventMode": "true",
-}
 #: What the types of FMI 2.0 are called.
 _TYPES = {"Real": "Float64", "Integer": "Int32", "Enumeration": "Enumeration"}
 
@@ -55,10 +40,7 @@ def description(flat: FlatModel, table: Table, token: str, dependent: Dependenci
     """
     named = {"fmiVersion": "3.0", "modelName": flat.name, "instantiationToken": token}
     root = ET.Element("fmiModelDescription", {**named, **origin(flat), **owner.attributes})
-    own = {"modelIdentifier": identifier(flat.name), **_CAPABILITIES}
-    if not table.of("deviation"):
-        ET.SubElement(root, "ModelExchange", {**own, **_MODEL_EXCHANGE})
-    ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
+    interfaces(root, flat, table, 3)
     circumstances(root, table, _types, "s")
     variables = ET.SubElement(root, "ModelVariables")
     for variable in table:
