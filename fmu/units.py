@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
 from ..model import units as model_units
+from ..model.core.flat import Quantity
 from .fixed import tables
 
 
@@ -34,6 +35,11 @@ class Unit:
     exponents: Mapping[str, int] | None
     shown: tuple[Display, ...]
 
+    @property
+    def base(self) -> dict[str, float]:
+        """Exponents, and the factor where it is not 1, as attributes of XML."""
+        return {**(self.exponents or {}), **({} if self.factor == 1 else {"factor": self.factor})}
+
     def display(self, size: float) -> Display | None:
         """How a value of a typical size is shown; None where the unit itself serves."""
         return next((d for d in reversed(self.shown) if size >= d.least), None)
@@ -42,6 +48,11 @@ class Unit:
 def fmi_unit(unit: str) -> str:
     """The unit attribute of a variable: the model's unit without the mark of a difference."""
     return unit.removesuffix("(difference)").strip()
+
+
+def units_of(quantities: Iterable[Quantity], *also: str) -> list[Unit]:
+    """The units of quantities in the order of their names, and others."""
+    return [unit(name) for name in sorted({fmi_unit(u) for u in (*also, *(q.unit for q in quantities))})]
 
 
 def is_difference(unit: str) -> bool:
