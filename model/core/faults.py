@@ -8,11 +8,12 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from .component import Equation
 from .connect import Assembly, nets
 from .constraint import Constraint, Known
 from .declare import Given, Port
 from .reduce import tie
-from .solve import Row, Unknown
+from .solve import Unknown
 
 #: Names shown of a set.
 SHOWN = 4
@@ -40,7 +41,7 @@ class Faults:
     def __init__(
         self,
         assembly: Assembly,
-        rows: Sequence[Row],
+        rows: Sequence[Equation],
         unknowns: Sequence[Unknown],
         columns: Sequence[Sequence[int]],
         typical: Mapping[int, float],
@@ -116,12 +117,12 @@ class Faults:
         ways += [f"{'t' if free else 'T'}ake {listed(list(parts), 'or')} away"] if parts else []
         return ", or ".join(ways)
 
-    def _inputs_of(self, rows: Sequence[Row]) -> list[str]:
+    def _inputs_of(self, rows: Sequence[Equation]) -> list[str]:
         """The inputs that stand in some equations."""
         held = {s.element_hash() for row in rows for s in ca.symvar(ca.SX(row.residual))}
         return [path for h, path in self.known.inputs.items() if h in held]
 
-    def _twice(self, unknowns: Sequence[Unknown], said: Sequence[Row]) -> tuple[list[list[Port]], list[Row]]:
+    def _twice(self, unknowns: Sequence[Unknown], said: Sequence[Equation]) -> tuple[list[list[Port]], list[Equation]]:
         """Nets of which two of some equations name a potential as one of their sides, and these equations."""
         sides = [(side.element_hash(), r) for r in said for side in (r.lhs, r.rhs) if side.is_symbolic()]
         names = {u.symbol.element_hash(): u.name for u in unknowns}
@@ -205,7 +206,7 @@ def _owned(net: Sequence[Port], parts: set[str]) -> list[Port]:
     return [port for port in net if _owner(port) in parts]
 
 
-def _part(row: Row) -> str:
+def _part(row: Equation) -> str:
     return row.name.partition(": ")[0]
 
 

@@ -5,18 +5,19 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from ..errors import StructureError
+from .component import Equation
 from .connect import Assembly
 from .faults import Faults
 from .matching import Matching, columns_of
 from .ports_check import floating
-from .solve import Row, Unknown, incidence
+from .solve import Unknown, incidence
 
 #: Problems told at once: what is wrong at one place shows at several.
 MOST = 5
 
 
 def check_structure(
-    assembly: Assembly, rows: Sequence[Row], unknowns: Sequence[Unknown], typical: Mapping[int, float]
+    assembly: Assembly, rows: Sequence[Equation], unknowns: Sequence[Unknown], typical: Mapping[int, float]
 ) -> None:
     """Refuse a system unless every unknown has an equation of its own and every temperature a level.
 
