@@ -62,6 +62,23 @@ def steady_source(flat: FlatModel) -> str:
     return _text(sizes, ["batch.h", "lanes.h"], generated, ["newton.c", "batch_steady.c", "batch_straight.c"])
 
 
+def relations_source(flat: FlatModel) -> str:
+    """The C text that judges rows of parameters; nothing where the model has no relations.
+
+    Raises:
+        FmuError: an operation has no C text
+    """
+    if not flat.relations:
+        return ""
+    limits = {"low": [r.low for r in flat.relations], "high": [r.high for r in flat.relations]}
+    ends = [
+        f"static const double model_relation_{end}[] = {{{', '.join(map(emit.number, numbers))}}};"
+        for end, numbers in limits.items()
+    ]
+    above = [f"#define N_RELATIONS {len(flat.relations)}", wrapper("batch.h")]
+    return "\n".join([*above, *ends, emit.function(flat.relation_function), wrapper("batch_relations.c")])
+
+
 def warmup_source(flat: FlatModel, most_steps: int) -> str:
     """The C text for warm-ups: the equations of the FMU with its audit, and its solver.
 
