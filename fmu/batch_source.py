@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from itertools import pairwise
 from typing import Any
 
 import casadi as ca
 
 from ..model.core.flat import FlatModel
 from . import emit, rosenbrock
-from .equations import equations, full
+from .equations import equations, full, hoist
 from .fixed import wrapper
 from .source import defined, newton_constants
 from .variables import table
@@ -40,9 +39,9 @@ def steady_source(flat: FlatModel) -> str:
     places = jacobian.sparsity().get_triplet()
     inner = ca.densify(ca.jacobian(flat.residual, flat.z))
     y = ca.vertcat(flat.y, flat.supply, flat.throughput, outside, implicit)
-    parts, given, c_values = _hoisted([whole, jacobian.nz[:], y, flat.residual, inner[:]], ca.vertcat(flat.u, flat.p))
+    parts, given, c_values = hoist([whole, jacobian.nz[:], y, flat.residual, inner[:]], ca.vertcat(flat.u, flat.p))
     whole, entries, y, residual, inner = parts
-    (c_values,), fixed, k_values = _hoisted([c_values], flat.p)
+    (c_values,), fixed, k_values = hoist([c_values], flat.p)
     place, names = [flat.x, flat.z, flat.u, flat.p, ca.vertcat(fixed, given)], list("xzupc")
     functions = [
         full("fixed", [flat.p], [k_values], ["p"], ["k"]),
@@ -92,7 +91,7 @@ def warmup_source(flat: FlatModel, most_steps: int) -> str:
     model = equations(flat)
     x_new, z_new, error, slope, h = rosenbrock.step(model.ode, model.residual, model.x, model.z, model.u, METHOD)
     inner = ca.densify(ca.jacobian(model.residual, model.z))
-    parts, c, c_values = _hoisted([x_new, z_new, error[:-1], model.y, model.ode, model.residual, inner[:]], model.p)
+    parts, c, c_values = hoist([x_new, z_new, error[:-1], model.y, model.ode, model.residual, inner[:]], model.p)
     x_new, z_new, error, y, ode, residual, inner = parts
     place, names = [model.x, model.z, model.u, model.p, c], list("xzupc")
     inputs, names_in = [model.x, model.z, model.u, slope, model.p, c, h], ["x", "z", "u", "slope", "p", "c", "h"]
@@ -107,18 +106,6 @@ def warmup_source(flat: FlatModel, most_steps: int) -> str:
     sizes |= {"ORDER": METHOD.order, "MAX_STEPS": most_steps}
     drivers = ["newton.c", "batch_instance.h", "trial.c", "batch_warmup.c"]
     return _text(sizes, ["batch.h", "lanes.h"], [*_ranges(flat), *functions], drivers)
-
-
-def _hoisted(parts: Sequence[Any], given: Any) -> tuple[list[Any], Any, Any]:
-    """Columns without what depends on the symbols `given` alone; new symbols for that; and that."""
-    columns = [ca.densify(ca.SX(part)) for part in parts]
-    ends = [0]
-    for column in columns:
-        ends.append(ends[-1] + column.numel())
-    rest, symbols, values = ca.extract_parametric(ca.cse(ca.vertcat(*columns)), given)
-    rest = ca.cse(rest)
-    cut = [rest[a:b] for a, b in pairwise(ends)]
-    return cut, ca.vertcat(ca.SX(0, 1), *symbols), ca.vertcat(ca.SX(0, 1), *values)
 
 
 def _sizes(flat: FlatModel) -> dict[str, int]:
