@@ -134,6 +134,7 @@ def description(
     *,
     owner: Owner = Owner(),
     with_sources: bool = True,
+    fmi: int = 2,
 ) -> bytes:
     """modelDescription.xml.
 
@@ -145,25 +146,40 @@ def description(
         dependent: the result of `dependencies`, computed when not given
         owner: what its owner says of it
         with_sources: whether the FMU holds its sources
+        fmi: version of the standard, 2 or 3
     """
     dependent = dependent or dependencies(model, table)
-    named = {"fmiVersion": "2.0", "modelName": flat.name, "guid": guid}
-    told = {**origin(flat), "numberOfEventIndicators": "0", **owner.attributes}
-    outputs = [_unknown(state, [state.reference]) for state in table.of("state")]
+    first = 1 if fmi == 2 else 0  # variables are told by their number in 2.0, by their reference in 3.0
+    key, identification = ("index", "guid") if fmi == 2 else ("valueReference", "instantiationToken")
+
+    def unknown(variable: Variable, on: Iterable[int]) -> dict[str, Any]:
+        return {key: variable.reference + first, "dependencies": " ".join(str(r + first) for r in on)}
+
+    named = {"fmiVersion": f"{fmi}.0", "modelName": flat.name, identification: guid, **origin(flat)}
     step = unknowns(table, dependent.step)
+    outputs = [(v, (v.reference,)) for v in table.of("state")] + [(v, on) for v, on in step if v.kind != "derivative"]
     structure = {
-        "Outputs": outputs + [_unknown(v, on) for v, on in step if v.kind != "derivative"],
-        "Derivatives": [_unknown(v, on) for v, on in step if v.kind == "derivative"],
-        "InitialUnknowns": [_unknown(v, on) for v, on in unknowns(table, dependent.initial)],
+        "Outputs": outputs,
+        "Derivatives": [(v, on) for v, on in step if v.kind == "derivative"],
+        "InitialUnknowns": unknowns(table, dependent.initial),
     }
     return xml(
-        "fmi2.xml",
-        root={**named, **told},
+        f"fmi{fmi}.xml",
+        root={**named, **({"numberOfEventIndicators": "0"} if fmi == 2 else {}), **owner.attributes},
         with_sources=with_sources,
-        variables=[(v.type, identity(v), values(v, 1)) for v in table],
-        structure=structure,
-        **circumstances(flat, table, 2),
+        variables=[(v.type, identity(v), values(v, first)) for v in table],
+        structure={name: [unknown(v, on) for v, on in group] for name, group in structure.items()},
+        **circumstances(flat, table, fmi),
     )
+
+
+def build_description(name: str) -> bytes:
+    """buildDescription.xml of FMI 3.0: how the source becomes a library.
+
+    Args:
+        name: of the model
+    """
+    return xml("build.xml", identifier=identifier(name))
 
 
 def origin(flat: FlatModel) -> dict[str, str]:
@@ -274,7 +290,3 @@ def unknowns(table: Table, dependent: Sequence[tuple[int, ...]]) -> list[tuple[V
     on = {v.reference: references for v, references in zip(own, dependent, strict=True)}
     deviations = [(v, on.get(v.of, ()) if v.of is not None else ()) for v in table.of("deviation")]
     return [*((v, on[v.reference]) for v in own), *deviations]
-
-
-def _unknown(variable: Variable, on: Iterable[int]) -> dict[str, Any]:
-    return {"index": variable.reference + 1, "dependencies": " ".join(str(r + 1) for r in on)}

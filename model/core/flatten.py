@@ -14,10 +14,10 @@ from .component import Component, Equation
 from .connect import Assembly, nets
 from .declare import Declaration, Variable
 from .equations import check_symbols, energies_of, rows_of
+from .faults import check_structure
 from .flat import Check, FlatModel, Quantity
 from .reduce import reduce
 from .solve import Solution, Unknown, column, inline, scaled_residual, solve, start_of
-from .structure import check_structure
 
 
 def flatten(assembly: Assembly, *, flows: Iterable[str] = ()) -> FlatModel:

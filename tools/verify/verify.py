@@ -23,8 +23,7 @@ from ..show.console import counting, write
 from ..show.display import Display
 from ..show.pages import page
 from .model_values import RigValues, single
-from .table import HEAD, lines
-from .verdicts import NOT_REPRODUCED, VERDICTS, Machine, Value, Verdict, counts, judged, kinds
+from .verdicts import HEAD, NOT_REPRODUCED, VERDICTS, Machine, Value, Verdict, counts, judged, kinds, lines
 
 A = TypeVar("A")
 B = TypeVar("B")
