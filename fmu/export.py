@@ -168,8 +168,9 @@ def _code(
     model = equations(flat, variables.audit)
     directions = None if uncertain is None else leading(flat, model, variables, uncertain.reasons)
     code, dependent = source(flat, model, variables, fmi, directions), dependencies(model, variables)
-    told = {"owner": owner, "with_sources": with_sources, "fmi": fmi}
-    without_guid = description(flat, model, variables, GUID_MARK, dependent, **told)
+    without_guid = description(
+        flat, model, variables, GUID_MARK, dependent, owner=owner, with_sources=with_sources, fmi=fmi
+    )
     guid = _guid(code.encode() + without_guid)
     return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode()), directions
 

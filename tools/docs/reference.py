@@ -32,7 +32,7 @@ from ..diagnose.library.cause import Cause
 from ..diagnose.library.nuisances import usual_priors
 from ..diagnose.library.registry import library
 from ..diagnose.model.ranges import ranges_of
-from .laws import facts, law_modules, laws_of, title
+from .laws import facts, info, law_modules, laws_of, title
 from .markdown import TABLES, page
 
 #: Where the pages of the contact solver and of the reference methods stand.
@@ -77,7 +77,9 @@ def _laws() -> Iterator[tuple[str, str]]:
     rows, titles = Counter(row.law for row in golden_rows()), {name: title(name) for name in law_modules()}
     for name, heading in titles.items():
         about = inspect.getdoc(importlib.import_module(f"{laws.__name__}.{name}"))
-        own: list[tuple[Any, dict[str, str]]] = [(f, facts(f.law, rows[f"{name}.{f.__name__}"])) for f in laws_of(name)]
+        own: list[tuple[Any, dict[str, str]]] = [
+            (f, facts(info(f), rows[f"{name}.{f.__name__}"])) for f in laws_of(name)
+        ]
         yield f"laws/{name}.md", page("law_module", title=heading, about=about, laws=own)
     yield "laws/index.md", page("laws", titles=titles, sources=sources().values())
 
