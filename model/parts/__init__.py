@@ -11,3 +11,10 @@ _MODULES: dict[str, str] = tomllib.loads(files(__name__).joinpath("types.toml").
 PARTS: dict[str, type[Component]] = {
     name: getattr(import_module(f"{__name__}.{module}"), name) for name, module in _MODULES.items()
 }
+
+
+def __getattr__(name: str) -> type[Component]:
+    """A type by its name, for imports."""
+    if name not in PARTS:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return PARTS[name]
