@@ -40,7 +40,7 @@ from .description import Owner, build_description, dependencies, description, id
 from .documentation import About, PartText, documentation
 from .effective import effective
 from .equations import equations
-from .icon import icon
+from .fixed import icon
 from .leading import Directions, Uncertain, leading
 from .metadata import metadata
 from .parameter_set import parameter_set

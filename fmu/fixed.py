@@ -1,4 +1,4 @@
-"""What is the same in every FMU: files of the wrapper in C, tables, and templates of XML."""
+"""What is the same in every FMU: files of the wrapper in C, tables, its icon, and templates of XML."""
 
 from __future__ import annotations
 
@@ -24,6 +24,11 @@ def wrapper(name: str) -> str:
 def tables(name: str) -> dict[str, Any]:
     """The tables of a file."""
     return tomllib.loads((files("gearheat.fmu") / "tables" / f"{name}.toml").read_text(encoding="utf-8"))
+
+
+def icon() -> bytes:
+    """A wheel and a warm pinion that mesh, as PNG."""
+    return (files("gearheat.fmu") / "templates" / "icon.png").read_bytes()
 
 
 def xml(template: str, **values: Any) -> bytes:
