@@ -34,8 +34,7 @@ from ..model.core.connect import nets
 from ..model.core.declare import Port, State, declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, ScenarioError, suggestion
-from ..model.machines import cycloidal, drum_motor, harmonic, planetary, rv_stage
-from ..model.machines.spec import PartSpec, Spec, assemble
+from ..model.machines.spec import LAYOUTS, PartSpec, Spec, assemble, layout
 from ..model.parts import PARTS
 from ..model.parts.free_form import EXTRA_PARTS
 from ..model.units import to_si
@@ -50,17 +49,6 @@ from .scenario import Erratum, Scenario
 from .shipped import RIGS, list_rigs
 from .tables import RigTable, validate
 from .values import PartValues, deviation, in_range, part_values, readable, settable
-
-#: Kind of rig -> its fixed parts (name -> type) and connections.
-LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
-    "planetary": (planetary.PARTS, planetary.CONNECTIONS),
-    "harmonic": (harmonic.PARTS, harmonic.CONNECTIONS),
-    "cycloidal": (cycloidal.PARTS, cycloidal.CONNECTIONS),
-    "cycloidal_printed": (cycloidal.PRINTED_PARTS, cycloidal.PRINTED_CONNECTIONS),
-    "rv_stage": (rv_stage.PARTS, rv_stage.CONNECTIONS),
-    "drum_motor": (drum_motor.PARTS, drum_motor.CONNECTIONS),
-    "network": ({}, ()),
-}
 
 
 def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None = None) -> Scenario:
@@ -114,7 +102,7 @@ class _Loader:
             self.problems.append(f"{self.file} [part]: is empty. Give a table [part.NAME] for each part.")
         if self.table.kind not in LAYOUTS or not self.table.part:  # without them nothing else can be judged
             raise ScenarioError(self.problems)
-        self.layout, self.connections = LAYOUTS[self.table.kind]
+        self.layout, self.connections = layout(self.table.kind)
         self.known = {**known, **self._own_types()}
         self.types = self._types()
         self.value_sources: dict[str, str] = {}

@@ -16,36 +16,7 @@ from ..show.console import folder, note
 from . import commands, reference
 from .blocks import FENCE, MARKS, PAGES, run_pages
 from .laws import filled
-
-#: Settings of Sphinx.
-SETTINGS = {
-    "project": "gearheat",
-    "copyright": "the gearheat developers",
-    "extensions": ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"],
-    "html_theme": "alabaster",
-    "html_theme_options": {"fixed_sidebar": True, "page_width": "1100px", "body_max_width": "800px"},
-    "html_copy_source": False,
-    "html_css_files": ["narrow.css"],
-    "html_show_sphinx": False,
-    "default_role": "code",
-    "myst_heading_anchors": 3,
-    "autodoc_typehints": "description",
-    "suppress_warnings": ["misc.highlighting_failure"],
-}
-
-#: So that no page is wider than its screen, and on a narrow one its text stands before the navigation.
-NARROW = """
-table.docutils { display: block; overflow-x: auto; max-width: 100%; width: max-content; }
-div.body img, div.body svg { max-width: 100%; height: auto; }
-div.math { overflow-x: auto; overflow-y: hidden; }
-div.body p, div.body li, div.body dt { overflow-wrap: anywhere; }
-div.body td p, div.body th p { overflow-wrap: normal; }
-@media screen and (max-width: 875px) {
-  div.document { display: flex; flex-direction: column; }
-  div.document > * { flex: none; }
-  div.sphinxsidebar { order: 2; margin-top: 20px; }
-}
-"""
+from .markdown import TABLES
 
 
 def docs_command(program: TyperGroup, out: Path, run: str) -> None:
@@ -80,9 +51,9 @@ def build(program: TyperGroup, out: Path) -> None:
         source = gather(program, Path(work) / "source")
         static = source / "static"
         static.mkdir()
-        (static / "narrow.css").write_text(NARROW, encoding="utf-8")
+        shutil.copy(Path(__file__).with_name("narrow.css"), static)
         own = dict.fromkeys(("version", "release"), version("gearheat"))
-        settings = {**SETTINGS, **own, "html_static_path": [str(static)]}
+        settings = {**TABLES["sphinx"], **own, "html_static_path": [str(static)]}
         places = (str(source), None, str(out), str(Path(work) / "trees"), "html")
         try:
             app = Sphinx(*places, confoverrides=settings, status=None, warningiserror=True, exception_on_warning=False)
