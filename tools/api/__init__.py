@@ -21,8 +21,6 @@ if TYPE_CHECKING:
     from .tools.build.new import new as new
     from .tools.compare.calibrate import Calibration as Calibration
     from .tools.compare.calibrate import calibrate as calibrate
-    from .tools.compare.losses import LossTable as LossTable
-    from .tools.compare.losses import losses as losses
     from .tools.compare.replay import Replays as Replays
     from .tools.compare.replay import replay as replay
     from .tools.compare.results import Errors as Errors
@@ -56,6 +54,8 @@ if TYPE_CHECKING:
     from .tools.rating.rate import rate_by_method as rate_by_method
     from .tools.solve.design import DesignAnswer as DesignAnswer
     from .tools.solve.design import design as design
+    from .tools.solve.losses import LossTable as LossTable
+    from .tools.solve.losses import losses as losses
     from .tools.solve.maps import Map as Map
     from .tools.solve.maps import Rating as Rating
     from .tools.solve.maps import map_outputs
@@ -96,8 +96,8 @@ PUBLIC: dict[str, str] = {
     "FilmTable": "tools.films.film",
     "GearheatError": "model.errors",
     "load": "tools.describe.rig",
-    "losses": "tools.compare.losses",
-    "LossTable": "tools.compare.losses",
+    "losses": "tools.solve.losses",
+    "LossTable": "tools.solve.losses",
     "Map": "tools.solve.maps",
     "map": "tools.solve.maps",
     "MethodRating": "tools.rating.rate",

@@ -44,6 +44,9 @@ def docs(
     ] = "quick",
 ) -> None:
     """Build the documentation as a web site; its code blocks are run and their output compared with the pages."""
+    import gearheat as gh
+
     from ..docs import build
 
-    build.docs_command(cast(TyperGroup, context.find_root().command), out, run)
+    public = {name: getattr(gh, name) for name in gh.PUBLIC}
+    build.docs_command(cast(TyperGroup, context.find_root().command), public, out, run)

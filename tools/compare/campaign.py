@@ -24,10 +24,11 @@ from ...model.run.point import point
 from ...model.run.result import Outside
 from ...model.run.rows import evaluate, outside
 from ...model.run.schedule import Schedule, stepped
+from ...scenarios.measured import readings
 from ...scenarios.measured.study import Measured
 from ...scenarios.scenario import Scenario
 from ..show.console import note
-from . import playing, readings
+from . import playing
 from .playing import Job
 
 #: How long a rig without measured data is run at its operating point [s].

@@ -9,13 +9,13 @@ from typing import Any
 
 from ...model.errors import DataError
 from ...scenarios.given import RigLike
+from ...scenarios.measured.readings import column_of, drives, joined, read_result
 from ...scenarios.measured.study import loaded, measured_of
 from ..show.console import note
 from ..show.display import Answer
 from . import summary
 from .errors import Comparison
 from .errors import compare as compare_rows
-from .readings import column_of, drives, joined, read_result
 from .rivals import Score, rivals
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from ...model.core.flat import FlatModel
 from ...model.units import shown, to_si
 from ...scenarios.given import RigLike, Settings
+from ...scenarios.measured.readings import ROOM, column_of, drives, sources
 from ...scenarios.measured.study import Measured, loaded, measured_of
 from ...scenarios.scenario import Scenario
 from ..describe import description as describe
@@ -21,12 +22,11 @@ from ..export.fmu import write_fmu
 from ..show.console import as_json, folder, note, write
 from ..show.display import Answer
 from ..show.notes import unchecked_lines
+from ..solve.losses import oils_of
 from ..solve.settings import adjusted, flat_of
 from ..solve.unchecked import unchecked
 from . import campaign, summary
 from .errors import Comparison, Rows, compare, present
-from .losses import oils_of
-from .readings import ROOM, column_of, drives, sources
 from .report import Study, render
 from .rivals import Score, rivals
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 import shutil
 import tempfile
+from collections.abc import Mapping
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 from typer.core import TyperGroup
 
@@ -19,11 +21,12 @@ from .laws import filled
 from .markdown import TABLES
 
 
-def docs_command(program: TyperGroup, out: Path, run: str) -> None:
+def docs_command(program: TyperGroup, public: Mapping[str, Any], out: Path, run: str) -> None:
     """Run the pages' code blocks and build the web site.
 
     Args:
         program: the command line
+        public: functions and classes of `gearheat` by name
         out: folder of the web site
         run: which blocks are run before: "quick", "all" or "none"
 
@@ -34,11 +37,11 @@ def docs_command(program: TyperGroup, out: Path, run: str) -> None:
         raise GearheatError('docs: Sphinx is not installed. Run pip install "gearheat[docs]".')
     if run != "none" and (found := run_pages(program, run == "all")):
         raise GearheatError(found)
-    build(program, folder(out))
+    build(program, public, folder(out))
     note(f"{out / 'index.html'}")
 
 
-def build(program: TyperGroup, out: Path) -> None:
+def build(program: TyperGroup, public: Mapping[str, Any], out: Path) -> None:
     """Build the web site; every warning of Sphinx is a fault.
 
     Raises:
@@ -48,7 +51,7 @@ def build(program: TyperGroup, out: Path) -> None:
     from sphinx.errors import SphinxError
 
     with tempfile.TemporaryDirectory() as work:
-        source = gather(program, Path(work) / "source")
+        source = gather(program, public, Path(work) / "source")
         static = source / "static"
         static.mkdir()
         shutil.copy(Path(__file__).with_name("narrow.css"), static)
@@ -64,7 +67,7 @@ def build(program: TyperGroup, out: Path) -> None:
             raise GearheatError("docs: Sphinx finds faults, see above.")
 
 
-def gather(program: TyperGroup, source: Path) -> Path:
+def gather(program: TyperGroup, public: Mapping[str, Any], source: Path) -> Path:
     """All pages in one folder, with the reference generated from the code.
 
     Args:
@@ -72,7 +75,7 @@ def gather(program: TyperGroup, source: Path) -> Path:
     """
     shutil.copytree(PAGES, source)
     place = source / "generated"
-    for name, text in (*reference.pages(), *commands.pages(program)):
+    for name, text in (*reference.pages(), *commands.pages(program, public)):
         (place / name).parent.mkdir(parents=True, exist_ok=True)
         (place / name).write_text(text, encoding="utf-8")
     reference.copy_pictures(place)

@@ -11,7 +11,6 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-import gearheat
 from typer.core import TyperGroup
 
 from ...model.errors import GearheatError
@@ -21,8 +20,13 @@ from .markdown import TABLES, code, page
 DUTY = "time [min],input.w [rpm],output.tau [N.m],room.T [degC]\n0,1450,-500,20\n10,1450,-500,20\n"
 
 
-def pages(program: TyperGroup) -> Iterator[tuple[str, str]]:
-    """Path below the folder of generated pages, and text, of every page."""
+def pages(program: TyperGroup, public: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Path below the folder of generated pages, and text, of every page.
+
+    Args:
+        program: the command line
+        public: functions and classes of `gearheat` by name
+    """
     commands = sorted(program.commands.items())
     yield "commands.md", page("commands", commands=commands, named=_named, default=_default)
     schema = json.loads(files("gearheat.tools.diagnose.report").joinpath("diagnosis.schema.json").read_text("utf-8"))
@@ -31,7 +35,7 @@ def pages(program: TyperGroup) -> Iterator[tuple[str, str]]:
         answers = {command: _keys_of(program, command) for command in TABLES["asked"]}
     yield "json.md", page("json", answers=answers, schema=schema)
     yield "api/index.md", page("api", modules=TABLES["modules"])
-    yield "api/gearheat.md", page("public", members=list(_public()))
+    yield "api/gearheat.md", page("public", members=list(_public(public)))
     for module in TABLES["modules"]:
         yield f"api/{module}.md", page("module", name=module)
 
@@ -70,9 +74,10 @@ def _keys(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
         yield path, kinds.get(type(value).__name__, f"empty {type(value).__name__}")
 
 
-def _public() -> Iterator[tuple[str, str, str]]:
-    """All public names with their places and kinds, functions first."""
-    names = [name for name, module in gearheat.PUBLIC.items() if module not in TABLES["modules"]]
-    kinds = {name: "class" if isinstance(getattr(gearheat, name), type) else "function" for name in names}
-    for name in sorted(kinds, key=lambda name: (kinds[name] == "class", name)):
-        yield name, f"gearheat.{gearheat.PUBLIC[name]}.{gearheat.RENAMED.get(name, name)}", kinds[name]
+def _public(public: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
+    """Public names with their places and kinds, functions first, but for those whose module has a page."""
+    pages = {f"gearheat.{module}" for module in TABLES["modules"]}
+    members = {name: member for name, member in public.items() if member.__module__ not in pages}
+    for name, member in sorted(members.items(), key=lambda item: (isinstance(item[1], type), item[0])):
+        kind = "class" if isinstance(member, type) else "function"
+        yield name, f"{member.__module__}.{member.__qualname__}", kind

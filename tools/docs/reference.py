@@ -25,11 +25,11 @@ from ...scenarios.measured.card import read_card
 from ...scenarios.measured.lubrication import oils_of
 from ...scenarios.measured.read import read_campaign
 from ...scenarios.measured.write import as_toml, default_card
+from ...scenarios.nuisances import usual_priors
 from ...scenarios.shipped import FILES, RIGS, list_rigs
 from ...scenarios.tables import CampaignTable, ErratumTable, RigTable, SensorTable
 from ..describe.parts import described
 from ..diagnose.library.cause import Cause
-from ..diagnose.library.nuisances import usual_priors
 from ..diagnose.library.registry import library
 from ..diagnose.model.ranges import ranges_of
 from .laws import facts, info, law_modules, laws_of, title

@@ -169,28 +169,6 @@ class Cause:
 
 
 @dataclass(frozen=True)
-class Nuisance:
-    """What may differ from the rig file without being a fault: parameters whose logarithm changes by sd times z.
-
-    Args:
-        name: in words
-        paths: parameter -> exponent; its value is base * exp(exponent * sd * z)
-        sd: prior standard deviation of the logarithm
-        wide: the same where a healthy reference campaign of the same rig tells the parameters
-        refilled: whether another filling or mounting changes it, by half of its sd
-        parts, connections: what is added to the machine for it, neutral
-    """
-
-    name: str
-    paths: Mapping[str, float]
-    sd: float
-    wide: float
-    refilled: bool = False
-    parts: tuple[PartSpec, ...] = ()
-    connections: tuple[tuple[str, ...], ...] = ()
-
-
-@dataclass(frozen=True)
 class Ranges:
     """What the data and the nominal model say of sizes and ranges: from here come references, thresholds and priors.
 

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....scenarios.measured.table import Campaign
-from ..library.cause import Nuisance
+from ....scenarios.nuisances import Nuisance
 from .duty import duty
 from .entries import Entries
 from .formula import Formula

@@ -8,9 +8,10 @@ import numpy as np
 
 from ....model.parts.free_form import EXTRA_PARTS
 from ....model.units import from_si
+from ....scenarios.nuisances import Nuisance
 from ..answer.estimate import posterior
 from ..infer.found import Found, Hypothesis
-from ..library.cause import Cause, Form, Nuisance, Row, Size, Theta, Values
+from ..library.cause import Cause, Form, Row, Size, Theta, Values
 from ..setting import Setting
 from .extension import Applied, Extended, directions, extended
 from .findings import Calibrated

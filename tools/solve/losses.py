@@ -19,14 +19,14 @@ from ...model.run.steady import steady, steady_table
 from ...scenarios.entries import catalogue
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
 from ...scenarios.measured.oils import bath_of
+from ...scenarios.measured.readings import about
 from ...scenarios.measured.study import Measured, measured_of
 from ...scenarios.scenario import Scenario
 from ..show.display import Answer
-from ..solve.contacts import contacts_at, part_with_contacts
-from ..solve.settings import adjusted, choice_paths, flat_of
-from ..solve.steady import conditions, outside_of
-from ..solve.unchecked import unchecked
-from .readings import about
+from .contacts import contacts_at, part_with_contacts
+from .settings import adjusted, choice_paths, flat_of
+from .steady import conditions, outside_of
+from .unchecked import unchecked
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -5,17 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
-from ....model.machines.roles import Roles
-from ....model.machines.spec import PartSpec
-from ....scenarios.scenario import Scenario
-from .cause import Nuisance
-from .extras import Extras
-from .forms import Context
-
-#: Friction in thin films that is the machine's own: share of the typical loss.
-THIN_FILMS = 0.057
-#: Its exponents of speed, viscosity and load, in the middle of what starved teeth do.
-EXPONENTS = {"a": -0.35, "b": -1.2, "c": 1.2, "oil_share": 0.8}
+from ..model.machines.roles import Roles
+from ..model.machines.spec import PartSpec
+from .scenario import Scenario
 
 #: Relative standard deviations where neither card nor rig file says more, by the key of a card.
 DEFAULT_SD: Mapping[str, float] = {
@@ -28,6 +20,28 @@ DEFAULT_SD: Mapping[str, float] = {
     "gwh": 0.20,
     "cap": 0.10,
 }
+
+
+@dataclass(frozen=True)
+class Nuisance:
+    """What may differ from the rig file without being a fault: parameters whose logarithm changes by sd times z.
+
+    Args:
+        name: in words
+        paths: parameter -> exponent; its value is base * exp(exponent * sd * z)
+        sd: prior standard deviation of the logarithm
+        wide: the same where a healthy reference campaign of the same rig tells the parameters
+        refilled: whether another filling or mounting changes it, by half of its sd
+        parts, connections: what is added to the machine for it, neutral
+    """
+
+    name: str
+    paths: Mapping[str, float]
+    sd: float
+    wide: float
+    refilled: bool = False
+    parts: tuple[PartSpec, ...] = ()
+    connections: tuple[tuple[str, ...], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -133,27 +147,6 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
             exponents = {path: sign * (sds[path] / most if most else 1.0) for path, sign in signs.items()}
             found.append(Nuisance(group.name, exponents, most, group.wide, group.refilled))
     return tuple(found)
-
-
-def habit(at: Context) -> Nuisance | None:
-    """Friction of the teeth that grows as films get thin, more or less than the model's, as a healthy campaign tells.
-
-    A cause that warms the oil takes the machine to films thinner than any of its healthy days. What its teeth make of
-    them the model knows but roughly, and the difference would be taken for a second cause.
-
-    Args:
-        at: machine and data
-    """
-    places = [place for place in at.roles.places["teeth"] if place.lubricant]
-    if not places:
-        return None
-    extras = Extras("habit", at)
-    made = [extras.loss(place, k, len(places)) for k, place in enumerate(places)]
-    power = {"P_ref": THIN_FILMS * at.ranges.loss / len(places), "k": 1.0}
-    parts = tuple(PartSpec(part.name, "ExtraHabit", {**part.values, **EXPONENTS, **power}) for part, _ in made)
-    connections = tuple(net for _, nets in made for net in nets)
-    paths = {f"{part.name}.k": 1.0 for part in parts}
-    return Nuisance("thin films", paths, 0.0, 1.0, parts=parts, connections=connections)
 
 
 def usual_priors(scenario: Scenario) -> dict[str, float]:

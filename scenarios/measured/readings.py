@@ -13,12 +13,12 @@ import numpy as np
 
 from ...model.parts.shaft import Efficiency
 from ...model.units import from_si
-from ...scenarios.csv_table import Column, Table, parse, raise_all
-from ...scenarios.measured.power import efficiency, loss, shaft_powers
-from ...scenarios.measured.sensors import SI
-from ...scenarios.measured.study import Measured
-from ...scenarios.measured.table import Sensor
-from ...scenarios.scenario import Scenario
+from ..csv_table import Column, Table, parse, raise_all
+from ..scenario import Scenario
+from .power import efficiency, loss, shaft_powers
+from .sensors import SI
+from .study import Measured
+from .table import Sensor
 
 #: Columns of a row that a machine with two shafts has, and the outputs of its efficiency that they show.
 LOSSES: Mapping[str, str] = {"loss_Nm": "tau_loss", "P_loss_W": "P_loss", "efficiency": "eta"}
@@ -149,7 +149,12 @@ def _shown(sensor: Sensor, value: float) -> float:
 
 
 def about(study: Measured, row: int) -> dict[str, Any]:
-    """Which reading a row is."""
+    """Point, test, direction and oil of a row.
+
+    Args:
+        study: the rig and its readings
+        row: of the table, from 0
+    """
     c = study.campaign
     test = int(c.test[row])
     direction = 2 if c.direction[row] < 0 else 1
@@ -184,6 +189,10 @@ def read_result(path: Path, study: Measured) -> Table:
 
 def joined(table: Table, study: Measured) -> list[dict[str, Any]]:
     """Rows of the readings that both tables have, in the order of the measured one.
+
+    Args:
+        table: simulated readings
+        study: the rig and its measured readings
 
     Raises:
         DataError: readings that are there twice or not measured
