@@ -10,10 +10,13 @@ import os
 import re
 import shutil
 from functools import partial
+from inspect import signature
 
+import gearheat as gh
 import pytest
 from challenge.cases import make_case
 from challenge.model_rig import draw_steady
+from for_each import ALL
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import read_card
 from gearheat.scenarios.measured.read import read_campaign
@@ -32,7 +35,7 @@ def block(language: str) -> str:
     return found
 
 
-def test_the_page_for_ones_own_gearbox(tmp_path, monkeypatch) -> None:
+def test_the_page_for_ones_own_gearbox(tmp_path, monkeypatch, capsys) -> None:
     sheet = partial(draw_steady, machine="helical_two_stage")
     make_case(sheet, 3, 7, 0, tmp_path / "made", kind="single", cause="losses.churning", apart=False)
     with (tmp_path / "made" / "case" / "DATA.csv").open(encoding="utf-8", newline="") as file:
@@ -49,9 +52,26 @@ def test_the_page_for_ones_own_gearbox(tmp_path, monkeypatch) -> None:
     monkeypatch.chdir(tmp_path)
     words = block("sh").split()
     assert words.pop(0) == "gearheat"
-    run = CliRunner().invoke(app, words)
+    run = CliRunner().invoke(app, [*words, "--json", "found.json"])
     assert run.exit_code == 0, run.output
-    assert "churning" in (tmp_path / "diagnosis.html").read_text("utf-8")
+    report = (tmp_path / "diagnosis.html").read_text("utf-8")
+    assert "churning" in report
+
+    asked = signature(gh.diagnose).bind("points.csv", "gearbox", card="card.toml").arguments
+    findings = gh.Diagnosis.model_validate_json((tmp_path / "found.json").read_text("utf-8"))
+
+    def diagnose(*given, **options):
+        """The findings of the same question, which take a minute to find."""
+        assert signature(ask).bind(*given, **options).arguments == asked
+        return findings
+
+    ask = gh.diagnose
+    (tmp_path / "diagnosis.html").unlink()
+    if not ALL:
+        monkeypatch.setattr(gh, "diagnose", diagnose, raising=False)
+    exec(block("python"), {})
+    assert "churning" in capsys.readouterr().out
+    assert (tmp_path / "diagnosis.html").read_text("utf-8") == report
 
 
 SCHEMES = {
