@@ -53,7 +53,7 @@ _SYSTEM = tuple(f"-lapi-ms-win-crt-{name}-l1-1-0" for name in ("math", "heap", "
 #: Compilers that run at once, whoever asks.
 _AT_ONCE = threading.BoundedSemaphore(os.cpu_count() or 1)
 
-#: Told what long work has done or is at, and how much of all is done.
+#: Called with what long work does or has done, and the share of all work that is done.
 Progress = Callable[[str, float], None]
 
 
@@ -138,7 +138,7 @@ def together(build: Callable[[Platform], bytes], platforms: Sequence[Platform], 
     Args:
         build: makes the binary of one platform
         platforms: of which
-        progress: told after each
+        progress: called after each
     """
     with ThreadPoolExecutor(len(platforms)) as pool:
         jobs = {pool.submit(build, platform): platform.name for platform in platforms}

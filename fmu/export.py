@@ -95,7 +95,7 @@ def export(
         choices: its enumerations: how a run begins, the oils; values of parameters that it does not have go
         uncertain: what makes standard deviations, which co-simulation alone has
         others: further parameter sets, and a run that an importer can repeat
-        progress: told what is done, and how much of the compiling
+        progress: called with what is done, and the share of the compiling
 
     Raises:
         FmuError: a start value is wrong, nothing uncertain has an effect, the compiler or writing the file fails

@@ -211,7 +211,7 @@ class Scenario:
         return known[name]
 
     def unchecked(self, filled: Iterable[tuple[str, str]] = ()) -> dict[tuple[str, str], tuple[str, ...]]:
-        """Catalogue entries in use, by kind and name -> paths of their values that were compared with no print.
+        """Catalogue entries in use, by kind and name -> paths of their values never checked against a print.
 
         Args:
             filled: part and name of further entries that a run fills parts with, such as the oils of a campaign

@@ -1,4 +1,4 @@
-"""A run with catalogue values that were compared with no print says so: in its JSON, its output and its report."""
+"""A run with catalogue values never checked against a print says so: in its JSON, its output and its report."""
 
 from __future__ import annotations
 

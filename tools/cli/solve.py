@@ -183,7 +183,7 @@ def rating(
     set_: Set = None,
     json: Json = None,
 ) -> None:
-    """Thermal power over room temperature and speed: what the rig carries for ever within a limit."""
+    """Thermal power over room temperature and speed: continuous power at which a limit is kept."""
     import gearheat as gh
 
     console.writable(out, console.file_of(json))

@@ -31,7 +31,7 @@ class Study:
         loss_columns: columns of `rows` that are the single losses
         laws, outside: what the model cites, and what it used outside its range
         parameters: (name, value with unit, source)
-        unchecked: catalogue entries in use, and which of their values were compared with no print
+        unchecked: catalogue entries in use, and which of their values were never checked against a print
         errata: (source and place, what it says, what it should be, evidence)
         energy_residual_max: largest violation of the energy balance over the throughput
     """

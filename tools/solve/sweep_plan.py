@@ -65,7 +65,7 @@ class Request:
 class Plan:
     """A sweep, ready to run: the values of its rows (rows, axes) and what is done with them.
 
-    `unchecked` holds the catalogue entries in use with values that were compared with no print, `drawn` the outputs
+    `unchecked` holds the catalogue entries in use with values never checked against a print, `drawn` the outputs
     that a picture shows.
     """
 
