@@ -13,12 +13,12 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
-from ..model.errors import ScenarioError
+from ..model.errors import Problems
 from .document import read_toml
 from .published import Number, Row
-from .tables import Strict, problem_of
+from .tables import Strict
 
 GOLDEN = Path(str(files("gearheat.model").joinpath("golden")))
 
@@ -44,18 +44,11 @@ class GoldenRow(Strict):
         given = self.kind if self.kind in ("published", "corrected") else "recomputed"
         return Row.model_validate(
             {
-                "name": self.name,
+                **self.model_dump(include={"name", "published", "why", "tol", "rel", "law", "args", "item"}),
                 "where": self.source,
-                "published": self.published,
                 given: self.expect,
-                "why": self.why,
-                "tol": self.tol,
-                "rel": self.rel,
                 "unit": "" if self.unit == "1" else self.unit,
                 "run": "law",
-                "law": self.law,
-                "args": self.args,
-                "item": self.item,
             }
         )
 
@@ -73,13 +66,10 @@ def golden_rows() -> tuple[Row, ...]:
         ScenarioError: everything wrong with the files at once
     """
     found: list[Row] = []
-    problems: list[str] = []
+    problems = Problems()
     for path in sorted(GOLDEN.glob("*.toml")):
         raw = {"row": [row for row in read_toml(path).get("row", []) if "law" in row]}
-        try:
-            found += [row.as_row() for row in GoldenTable.model_validate(raw).row]
-        except ValidationError as error:
-            problems += [problem_of(path.name, dict(e), GoldenTable) for e in error.errors()]
-    if problems:
-        raise ScenarioError(problems)
+        with problems:
+            found += [row.as_row() for row in GoldenTable.read(path.name, raw).row]
+    problems.check()
     return tuple(found)

@@ -6,10 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..model.core.flat import Quantity
-from ..model.errors import GearheatError, ScenarioError, suggestion
-from ..model.units import to_si
+from ..model.errors import Problems, suggestion
 from .columns import split_unit
 from .tables import SensorTable
+from .values import standard_deviation
 
 
 @dataclass(frozen=True)
@@ -50,7 +50,7 @@ def instruments(
         tables: key -> what is written
         known: path -> quantity of all that can be read
     """
-    problems: list[str] = []
+    problems = Problems()
     found: list[Instrument] = []
     for key, table in tables.items():
         place = f"{where} [sensors] {key}"
@@ -60,10 +60,8 @@ def instruments(
         unit = known[table.reads].unit
         accuracy: dict[str, float | None] = {}
         for name, raw in (("repeat_sd", table.repeat_sd), ("offset_sd", table.offset_sd)):
-            try:
-                accuracy[name] = None if raw is None else accuracy_of(raw, unit, f"{place}: {name}")
-            except GearheatError as error:
-                problems += error.problems
+            with problems:
+                accuracy[name] = None if raw is None else standard_deviation(f"{place}: {name}", raw, unit)
         found.append(
             Instrument(
                 name=split_unit(key)[0],
@@ -78,20 +76,3 @@ def instruments(
             )
         )
     return tuple(found), problems
-
-
-def accuracy_of(raw: str, unit: str, name: str) -> float:
-    """A standard deviation in SI.
-
-    Args:
-        raw: as written, "0.35 K"
-        unit: SI unit of what is read; that of a temperature is a difference
-        name: what to call it in a message
-
-    Raises:
-        ScenarioError: it has no fitting unit, or is below zero
-    """
-    value = to_si(raw, f"{unit} (difference)" if unit == "K" else unit, name=name)
-    if value < 0:
-        raise ScenarioError(f"{name} = {raw!r} is below zero. Give one standard deviation.")
-    return value

@@ -33,7 +33,7 @@ from ..model.core.component import Component
 from ..model.core.connect import nets
 from ..model.core.declare import Port, State, declared
 from ..model.core.flat import Quantity
-from ..model.errors import GearheatError, ScenarioError, suggestion
+from ..model.errors import GearheatError, Problems, ScenarioError, suggestion
 from ..model.machines.spec import LAYOUTS, PartSpec, Spec, assemble, layout
 from ..model.parts import PARTS
 from ..model.parts.free_form import EXTRA_PARTS
@@ -93,8 +93,8 @@ class _Loader:
         self.table: RigTable
         plain, folded = assembled(self.file, raw)
         whole, repeated = expanded(self.file, plain)
-        self.table, self.problems = validate(self.file, whole)
-        self.problems += folded + repeated
+        self.table, wrong = validate(self.file, whole)
+        self.problems = Problems(wrong + folded + repeated)
         if self.table.kind not in LAYOUTS and (self.table.kind or not self.problems):
             close = suggestion(self.table.kind, LAYOUTS) or f" Kinds: {', '.join(LAYOUTS)}."
             self.problems.append(f'{self.file}: unknown kind "{self.table.kind}".{close}')
@@ -150,8 +150,7 @@ class _Loader:
         spec = self._spec(parts)
         sensors = self._sensors()
         protocol, data, joint = self._protocol(), self._data(), self._joint_uncertainties()
-        if self.problems:
-            raise ScenarioError(self.problems)
+        self.problems.check()
         nets(assemble(spec))  # ports of different kinds that meet
         return Scenario(
             name=self.name,
@@ -200,10 +199,8 @@ class _Loader:
             if path not in known:
                 self.problems.append(f'{where}: there is no input "{path}".{suggestion(path, known)}')
                 continue
-            try:
+            with self.problems:
                 point[path] = in_range(f"{where}: ", raw, known[path])
-            except GearheatError as error:
-                self.problems += error.problems
         written = dict(paths(self.table.operating_point))
         given = [f"{end}.{quantity}" for end, quantities in self.table.drive.items() for quantity in quantities]
         self.problems += [
@@ -270,10 +267,8 @@ class _Loader:
             if path not in known:
                 self.problems.append(f'{where}: there is no value "{path}".{suggestion(path, known)}')
                 continue
-            try:
+            with self.problems:
                 found[name][path] = deviation(f"{where}: {path}", raw, known[path].unit)
-            except GearheatError as error:
-                self.problems += error.problems
         return found
 
     def _quantities(self, kind: Any) -> dict[str, Quantity]:
@@ -291,13 +286,10 @@ class _Loader:
         if table.oil not in self.types:
             self.problems.append(f'{where}: there is no part "{table.oil}".{suggestion(table.oil, self.types)}')
         inputs = {path: Driven(t.column, (t.sign[0], t.sign[1])) for path, t in table.inputs.items()}
-        try:
-            return Protocol(
-                inputs, table.room, table.oil, to_si(table.stop, "s", name=f"{where}: stop"), tuple(table.notes)
-            )
-        except GearheatError as error:
-            self.problems += error.problems
-            return None
+        with self.problems:
+            stop = to_si(table.stop, "s", name=f"{where}: stop")
+            return Protocol(inputs, table.room, table.oil, stop, tuple(table.notes))
+        return None
 
     def _data(self) -> Path | None:
         """The rig's own measured table."""

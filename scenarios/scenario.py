@@ -9,7 +9,7 @@ from pathlib import Path
 
 from ..model.core.declare import Given, Input, declared
 from ..model.core.flat import FlatModel, Quantity
-from ..model.errors import GearheatError, ScenarioError, suggestion
+from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.machines.spec import Spec
 from .entries import Entry, catalogue, unchecked_entry
 from .instruments import Instrument
@@ -259,14 +259,11 @@ def parse_assignments(target: Scenario | FlatModel, texts: Iterable[str]) -> dic
     else:
         known = {path: target.quantity(path) for path in target.index}
     values: dict[str, float] = {}
-    problems: list[str] = []
+    problems = Problems()
     for text in texts:
-        try:
+        with problems:
             values |= _assigned(target, known, text)
-        except GearheatError as error:
-            problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return values
 
 

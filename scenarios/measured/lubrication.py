@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from ...model.errors import DataError, suggestion
+from ...model.errors import DataError, Problems, suggestion
 from ...model.machines.roles import Roles
 from ...model.machines.spec import Spec
 from ..scenario import Scenario
@@ -29,7 +29,7 @@ def lubricated(spec: Spec, lubrication: Mapping[str, str]) -> Spec:
     """
     if not lubrication:
         return spec
-    roles, moved, problems = Roles.of(spec), dict[str, str](), list[str]()
+    roles, moved, problems = Roles.of(spec), dict[str, str](), Problems()
     for name, lubricant in lubrication.items():
         parts = _parts(roles, name)
         sources = roles.having(LUBRICANTS.get(lubricant, ""))
@@ -45,8 +45,7 @@ def lubricated(spec: Spec, lubrication: Mapping[str, str]) -> Spec:
         else:
             ports = [port for p in parts for port in roles.nets.ports_of_lubricant(p)]
             moved |= {port: roles.nets.ports_of_lubricant(sources[0])[0] for port in ports if sources}
-    if problems:
-        raise DataError(problems)
+    problems.check(DataError)
     nets = []
     for net in spec.connections:
         users = [port for port in net if port not in moved]

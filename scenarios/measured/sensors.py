@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ...model.core.declare import State, declared
 from ...model.core.flat import Quantity
-from ...model.errors import DataError, GearheatError, suggestion
+from ...model.errors import DataError, Problems, suggestion
 from ...model.parts.lubrication import OilBath
 from ...model.parts.shaft import ShaftEnd
 from ...model.parts.thermal import Room
@@ -15,6 +15,7 @@ from ...model.units import spelled, text, to_si
 from ..columns import split_unit
 from ..instruments import Instrument
 from ..scenario import Scenario
+from ..values import deviation
 from .card import Card
 from .context import CONTEXT
 from .nominal import Nominal
@@ -65,7 +66,7 @@ class _Sensors:
         self.known: Mapping[str, Quantity] = scenario.readable()
         self.types = {part.name: scenario.spec.types[part.type] for part in scenario.spec.parts}
         self.nominal = Nominal(scenario)
-        self.problems: list[str] = []
+        self.problems = Problems()
         self.found = {i.name: i for i in scenario.instruments or default_instruments(scenario)}
         self.driven: set[str] = set()
 
@@ -83,8 +84,7 @@ class _Sensors:
                 self._refuse(f"channels.{key}", key)
         self._drive()
         sensors = [self._completed(instrument) for instrument in self.found.values()] if not self.problems else []
-        if self.problems:
-            raise DataError(self.problems)
+        self.problems.check(DataError)
         return tuple(sensors)
 
     def _drive(self) -> None:
@@ -155,14 +155,11 @@ class _Sensors:
         for key in ("repeat_sd", "offset_sd"):
             if table.get(key) is None:
                 continue
-            try:
+            with self.problems:
                 value = self._spread(str(table[key]), instrument, f"{self.card.name} {place}.{key}")
-            except GearheatError as error:
-                self.problems += error.problems
-                continue
-            if value < 0:
-                self.problems.append(f"{self.card.name} {place}.{key} = {table[key]} is below zero.")
-            self.found[name] = replace(self.found[name], **{key: value})  # type: ignore[arg-type]
+                if value < 0:
+                    self.problems.append(f"{self.card.name} {place}.{key} = {table[key]} is below zero.")
+                self.found[name] = replace(self.found[name], **{key: value})  # type: ignore[arg-type]
 
     def _spread(self, written: str, instrument: Instrument, where: str) -> float:
         """A standard deviation in SI: with its own unit, or in that of the column."""
@@ -170,10 +167,10 @@ class _Sensors:
         try:
             number = float(written)
         except ValueError:
-            return to_si(written, f"{si} (difference)" if si == "K" else si, name=where)
+            return deviation(where, written, si)
         unit = self._unit(instrument)
         unit = "K" if unit in ("degC", "") and si == "K" else unit
-        return to_si(f"{number!r} {unit}".strip(), f"{si} (difference)" if si == "K" else si, name=where)
+        return deviation(where, f"{number!r} {unit}".strip(), si)
 
     def _unit(self, instrument: Instrument) -> str:
         return spelled(self.card.units.get(instrument.column, instrument.unit or split_unit(instrument.column)[1]))

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from ...model.contact import Contact, Lubricant, solve
-from ...model.errors import ScenarioError, SolveError
+from ...model.errors import Problems, ScenarioError, SolveError
 from ...model.laws.film import asperity_share, mixed_friction
 from ...model.laws.film_line import line_film_central
 from ...model.laws.film_point import point_film_central
@@ -120,13 +120,12 @@ def film(
     drawn = None if plot is None else Path(plot)
     request = Request(str(rig), Path(out), part, vary, grid, nodes, drawn, set)
     writable(request.out, request.plot)
-    problems = [
+    problems = Problems(
         f"{option} {path}: unknown kind of file. Its name must end in {' or '.join(kinds)}."
         for option, path, kinds in (("-o", request.out, (".csv",)), ("--plot", request.plot, (".png", ".svg")))
         if path is not None and path.suffix not in kinds
-    ]
-    if problems:
-        raise ScenarioError(problems)
+    )
+    problems.check()
     case = case_of(request)
     points = grid_of(case, request.grid)
     count = request.nodes or (NODES_LINE if _is_line(case.contact) else NODES_SIDE)

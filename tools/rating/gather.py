@@ -7,7 +7,7 @@ from dataclasses import replace
 
 from ...model.core.component import Component
 from ...model.core.declare import Port, declared
-from ...model.errors import ScenarioError
+from ...model.errors import Problems
 from ...model.machines.spec import assemble
 from ...model.parts.equivalent import CylindricalPair, pair_of
 from ...model.parts.ports import AirPort, HeatPort
@@ -82,7 +82,7 @@ def _check(
     needed: Mapping[str, Sequence[object]],
     dips: Mapping[str, float],
 ) -> None:
-    problems = []
+    problems = Problems()
     if not pairs:
         teeth = [f"{p.name} ({p.type})" for p in scenario.spec.parts if scenario.spec.types[p.type].role == "teeth"]
         problems.append(
@@ -97,8 +97,7 @@ def _check(
     problems += [
         f'--dip: there is no gear "{name}". Gears: {", ".join(gears)}.' for name in dips if pairs and name not in gears
     ]
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
 
 
 def _at_operating_point(scenario: Scenario, read: Sequence[str]) -> dict[str, float]:

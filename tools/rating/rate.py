@@ -9,7 +9,7 @@ from typing import Any
 from scipy.optimize import brentq
 
 from ...model.core.flat import Quantity
-from ...model.errors import GearheatError, ScenarioError
+from ...model.errors import Problems
 from ...model.parts.ports import COLDEST, HOTTEST
 from ...model.sources import LawInfo, LawUse, recording
 from ...model.units import from_si
@@ -198,13 +198,10 @@ def _celsius(T: float | None) -> float | None:
 
 def _depths(texts: Sequence[str]) -> dict[str, float]:
     found: dict[str, float] = {}
-    problems: list[str] = []
+    problems = Problems()
     for text in texts:
         name, _, raw = (part.strip() for part in text.partition("="))
-        try:
+        with problems:
             found[name] = in_range(f"--dip {name}", raw, DEPTH)
-        except GearheatError as error:
-            problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return found

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
 from ...model.core.flat import FlatModel, Quantity
-from ...model.errors import GearheatError, ScenarioError, SolveError, suggestion
+from ...model.errors import Problems, ScenarioError, SolveError, suggestion
 from ...model.run.design import Design
 from ...model.run.least import Target, least_change, rank, unchanged
 from ...model.units import from_si, shown
@@ -187,26 +187,19 @@ def _alternatives(scenario: Scenario, among: str | None) -> tuple[str | None, li
 
 def _case(scenario: Scenario, free: Sequence[str], targets: Sequence[str], assignments: Sequence[str]) -> _Case:
     """One design, with the problems of everything given at once."""
-    problems: list[str] = []
+    problems = Problems()
     setting = scenario
-    try:
+    with problems:
         setting = adjusted(scenario, assignments, named=free)
-    except GearheatError as error:
-        problems += error.problems
     flat = flat_of(setting)
     aims: list[Target] = []
     for text in targets:
-        try:
+        with problems:
             aims.append(_target(flat, text))
-        except GearheatError as error:
-            problems += error.problems
     for name in free:
-        try:
+        with problems:
             flat.locate(name)
-        except GearheatError as error:
-            problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return _Case(setting, flat, tuple(aims), tuple(free))
 
 

@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from ...model.core.flat import Quantity
-from ...model.errors import GearheatError, ScenarioError
+from ...model.errors import Problems, ScenarioError
 from ...model.units import from_si, shown, to_si
 
 #: Rows of the largest sweep that is not taken for a slip of the keyboard.
@@ -66,7 +66,7 @@ def read(texts: Sequence[str]) -> tuple[Written, ...]:
         ScenarioError: all texts that cannot be read, and names given twice
     """
     found: list[Written] = []
-    problems: list[str] = []
+    problems = Problems()
     for text in texts:
         if (match := _NORMAL.fullmatch(text)) is not None:
             name, mean, deviation, unit = match.groups()
@@ -85,8 +85,7 @@ def read(texts: Sequence[str]) -> tuple[Written, ...]:
     problems += [f'--vary: "{n}" is varied twice. Give it once.' for n in dict.fromkeys(names) if names.count(n) > 1]
     if not texts:
         problems.append('--vary is missing. Say what is varied, for example --vary "room.T=10..35 degC".')
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return tuple(found)
 
 
@@ -101,14 +100,11 @@ def axes(written: Sequence[Written], known: Mapping[str, Quantity]) -> tuple[Axi
         ScenarioError: wrong units, values out of range, ranges that are none
     """
     found: list[Axis] = []
-    problems: list[str] = []
+    problems = Problems()
     for w in written:
-        try:
+        with problems:
             found.append(_axis(w, known[w.name]))
-        except GearheatError as error:
-            problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return tuple(found)
 
 
@@ -123,9 +119,7 @@ def _axis(w: Written, quantity: Quantity) -> Axis:
     elif not second > first:
         raise ScenarioError(f"{where}: {w.first} is not below {w.second}. Write LOW..HIGH.")
     ends = (first,) if w.kind == "normal" else (first, second)
-    problems = [f"--vary: {problem}" for end in ends if (problem := quantity.problem(end)) is not None]
-    if problems:
-        raise ScenarioError(problems)
+    Problems(f"--vary: {problem}" for end in ends if (problem := quantity.problem(end)) is not None).check()
     return Axis(w.name, w.kind, first, second)
 
 

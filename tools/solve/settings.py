@@ -10,7 +10,7 @@ from typing import Any
 from ...model.core.declare import Choice, Parameter, declared
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
-from ...model.errors import GearheatError, ScenarioError, suggestion
+from ...model.errors import GearheatError, Problems, ScenarioError, suggestion
 from ...model.laws.film_map import FilmMap
 from ...model.machines.spec import Spec, assemble
 from ...scenarios.film_map import map_named, names_map
@@ -47,12 +47,9 @@ def adjusted(
     choices, problems = _choices(scenario.spec, assignments)
     problems += _doubled(assignments)
     values: dict[str, float] = {}
-    try:
+    with problems:
         values = parse_assignments(scenario, (a for a in assignments if _name(a) not in choice_paths(scenario.spec)))
-    except GearheatError as error:
-        problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     shafts = scenario.shaft_paths()
     ends = [name for name in dict.fromkeys((*values, *named)) if name in shafts]
     driven = deduced(scenario.given, ends) if drive is None else drive
@@ -113,11 +110,11 @@ def parameter_of(spec: Spec, path: str) -> Parameter | None:
     return declared(spec.types[kinds[0]], Parameter).get(key) if kinds else None
 
 
-def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], list[str]]:
+def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], Problems]:
     """The choices among the assignments, and what is wrong with them."""
     known = choice_paths(spec)
     values: dict[str, Any] = {}
-    problems: list[str] = []
+    problems = Problems()
     for text in assignments:
         if (path := _name(text)) not in known:
             continue

@@ -12,7 +12,7 @@ import numpy as np
 
 from ...fmu.batch import Batch
 from ...model.core.flat import FlatModel
-from ...model.errors import GearheatError, ScenarioError, SolveError
+from ...model.errors import Problems, ScenarioError, SolveError
 from ...model.files import flows
 from ...model.run.point import problem_of
 from ...model.run.schedule import Schedule
@@ -136,32 +136,24 @@ def plan_sweep(request: Request) -> Plan:
     written: tuple[sampling.Written, ...] = ()
     problems = _problems(request)
     vary = [text for text in request.vary if text != UNCERTAINTY]
-    try:
+    with problems:
         written = sampling.read(vary) if vary or not request.vary else ()
-    except GearheatError as error:
-        problems += error.problems
     names = [w.name for w in written]
     given = {text.partition("=")[0].strip() for text in request.assignments}
     problems += [f"--vary: {name} is set as well. Take one away." for name in names if name in given]
     scenario = scenario_of(request.rig)
     scheduled: tuple[str, ...] = ()
-    try:
+    with problems:
         scheduled = duty_names(request.duty) if request.duty is not None else ()
-    except GearheatError as error:
-        problems += error.problems
-    try:
+    with problems:
         scenario = adjusted(scenario, request.assignments, named=[*names, *scheduled])
-    except GearheatError as error:
-        problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     flat = flat_of(scenario)
     kinds = ("input", "parameter", "state") if request.kind == "warmup" else ("input", "parameter")
     found = [problem_of(flat, name, kinds, "--vary") for name in names]
     found += [problem_of(flat, name, ("state", "output"), "--output") for name in _outputs(request)]
     found += [f"--vary: {name} is given by the duty. Take one away." for name in names if name in scheduled]
-    if problems := [p for p in found if p]:
-        raise ScenarioError(problems)
+    Problems(filter(None, found)).check()
     axes = sampling.axes(written, {name: flat.quantity(name) for name in names})
     if request.grid is not None:
         values = sampling.gridded(axes, request.grid)
@@ -185,7 +177,7 @@ def _sampled(
     return (*axes, *more), np.column_stack([values[:, : len(axes)], uncertain])
 
 
-def _problems(request: Request) -> list[str]:
+def _problems(request: Request) -> Problems:
     """What is wrong with the options themselves."""
     found: list[str | None] = []
     if request.out is not None and request.out.suffix not in SUFFIXES and not flows(request.out):
@@ -206,7 +198,7 @@ def _problems(request: Request) -> list[str]:
         found.append(f"--{timed[0]} belongs to a warm-up. Add --kind warmup, or leave it out.")
     if request.kind == "warmup" and (request.duty is None) == (request.duration is None):
         found.append('A warm-up lasts either as long as its --duty or a --duration, for example "330 min". Give one.')
-    return [problem for problem in found if problem]
+    return Problems(filter(None, found))
 
 
 def _outputs(request: Request) -> list[str]:
