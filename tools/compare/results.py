@@ -24,12 +24,12 @@ class Errors(Answer):
     """Errors of simulated readings, with the noise floor and statistical rivals.
 
     Attributes:
-        comparison: errors by channel and group
+        comparison: errors by channel and group, None where nothing was measured
         scores: of the rivals
         found: the JSON object
     """
 
-    comparison: Comparison
+    comparison: Comparison | None
     scores: Sequence[Score]
     found: Mapping[str, Any]
 
@@ -39,12 +39,14 @@ class Errors(Answer):
         return f"{self.found['result']} beside {self.found['data']}"
 
     def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """Errors with those of the rivals."""
-        return summary.error_lines(self.comparison, self.scores)
+        """Errors with those of the rivals, or the one point there is."""
+        if self.comparison is not None:
+            return summary.error_lines(self.comparison, self.scores)
+        return ("name", "value"), list(self.found["rows"][0].items())
 
     def groups(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """Errors by group, simulated minus measured."""
-        return summary.group_lines(self.comparison)
+        return summary.group_lines(self.comparison) if self.comparison is not None else ((), ())
 
 
 def compare(result: str | Path, data: str | Path, rig: RigLike, *, card: str | Path | None = None) -> Errors:

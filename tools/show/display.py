@@ -65,7 +65,7 @@ class Display:
 
         head, rows = self.table()
         drawn = self.drawing()
-        table = html_table(head, [[cell(value) for value in row] for row in rows])
+        table = html_table(head, rows)
         return f"<b>{escape(self.title)}</b>\n{table}\n{svg(drawn.figure) if drawn is not None else ''}"
 
     def to_pandas(self) -> Any:

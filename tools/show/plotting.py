@@ -11,7 +11,7 @@ from markupsafe import Markup
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from .console import cell, write
+from .console import write
 from .drawing import png, svg
 from .pages import OWN, as_data, html_table, page, vendored
 
@@ -49,13 +49,12 @@ def write_picture(path: Path, picture: Picture) -> None:
 
 
 def _page(picture: Picture, drawn: str) -> str:
-    rows = [[cell(value) for value in row] for row in picture.rows]
     return page(
         OWN,
         "plot.html",
         picture=picture,
         figure=Markup(drawn),
-        table=html_table(picture.columns, rows) if rows else "",
+        table=html_table(picture.columns, picture.rows) if picture.rows else "",
         data=as_data(picture.courses) if picture.courses else "",
         **vendored(),
     )
