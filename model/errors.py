@@ -49,7 +49,11 @@ class Problems(list[str]):
         return isinstance(error, GearheatError)
 
     def check(self, kind: type[GearheatError] = ScenarioError) -> None:
-        """Raise an error of a class that carries all problems, if there are any."""
+        """Raise an error that carries all problems, if there are any.
+
+        Args:
+            kind: class of the error
+        """
         if self:
             raise kind(self)
 

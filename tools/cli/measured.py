@@ -162,22 +162,14 @@ def _refuse(options: Mapping[str, object], method: str | None) -> None:
         raise ScenarioError(f"{', '.join(wrong)} does not go with --method. Leave out one of them.")
 
 
-def print_errors(errors: CampaignRun | Errors) -> None:
-    """Print the tables of errors.
-
-    Args:
-        errors: of a run or of a comparison
-    """
+def print_errors(errors: Errors) -> None:
+    """Print the tables of errors of a run or of a comparison."""
     console.table("Errors", *errors.table())
     console.table("Errors by group, simulated minus measured", *errors.groups())
 
 
 def print_run(done: CampaignRun) -> None:
-    """Print errors, or the one point there is.
-
-    Args:
-        done: the run
-    """
+    """Print errors, or the one point there is."""
     if done.comparison is None:
         console.table(done.title, *done.table())
     else:
@@ -221,11 +213,7 @@ def _print_method(rated: MethodRating) -> None:
 
 
 def print_calibration(fit: Calibration) -> None:
-    """Print fitted values.
-
-    Args:
-        fit: the values
-    """
+    """Print fitted values."""
     found = fit.found
     console.table(fit.title, *fit.table())
     body = [[n, *line.values()] for n, line in found["correlation"].items()]
@@ -236,11 +224,7 @@ def print_calibration(fit: Calibration) -> None:
 
 
 def print_replays(found: Replays) -> None:
-    """Print errors of free runs and by hours ahead, log by log.
-
-    Args:
-        found: the errors
-    """
+    """Print errors of free runs and by hours ahead, log by log."""
     sensors = list(next(iter(found.logs[0].free.values())))
     hours = found.as_dict()["hours"]
     for r in found.logs:

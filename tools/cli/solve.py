@@ -142,9 +142,7 @@ def sweep(
         scheduler=scheduler,
         draw=plot is not None,
     )
-    found = rows.as_dict()
-    if plot is not None:
-        found = _drawn(found, plot, rows, say=False)
+    found = _drawn(rows.as_dict(), plot, rows, say=False)
     console.answer(found, json, lambda: _print_sweep(rows, found))
     rows.check()
 
@@ -198,36 +196,20 @@ def _drawn(found: dict[str, Any], plot: Path | None, result: Display, *, say: bo
     """The object with the place of its picture, which is written."""
     if plot is None:
         return found
-    if (picture := result.drawing()) is not None:
-        from ..show.plotting import write_picture
-
-        write_picture(plot, picture)
-        if say:
-            console.note(f"wrote {plot}")
+    if result.save_picture(plot) is not None and say:
+        console.note(f"wrote {plot}")
     return found | {"plot": str(plot)}
 
 
 def print_run(run: TimeSeries, out: Path, plot: Path | None, json: str | None) -> None:
-    """Write a time series and its picture, and say where it ends.
-
-    Args:
-        run: the time series
-        out: CSV to write
-        plot: picture to write
-        json: where the JSON object goes
-    """
+    """Write a time series and its picture, and say where it ends."""
     run.save(out)
     found = _drawn({**run.as_dict(), "out": str(out)}, plot, run)
     console.answer(found, json, lambda: print_end(out, found))
 
 
 def print_end(out: Path, found: Mapping[str, Any]) -> None:
-    """Print where a time series ends.
-
-    Args:
-        out: its file
-        found: its JSON object
-    """
+    """Print where a time series ends, from its file and its JSON object."""
     console.say(f"{out}: {found['rows']} rows to {found['stop_s']:g} s")
     print_outside(found.get("outside", ()))
     print_unchecked(found.get("unchecked", ()))

@@ -83,11 +83,7 @@ def verify_contact(
 
 
 def print_films(films: FilmTable) -> None:
-    """Print what was varied and how well the law fits.
-
-    Args:
-        films: the films
-    """
+    """Print what was varied and how well the law fits."""
     found = films.found
     console.table(films.title, *films.table())
     for name in found["failed"]:

@@ -72,20 +72,6 @@ class Replays(Display):
         panels[-1].set_xlabel("days", fontsize=7)
         return Picture(figure, title)
 
-    def save_picture(self, path: str | Path) -> Path:
-        """Write the picture.
-
-        Args:
-            path: .svg, .png or .html
-
-        Raises:
-            DataError: it cannot be written
-        """
-        from ..show.plotting import write_picture
-
-        write_picture(Path(path), self.drawing())
-        return Path(path)
-
 
 def replay(
     rig: RigLike,

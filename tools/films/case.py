@@ -11,7 +11,7 @@ from typing import Any
 from ...model.contact import Contact, Lubricant
 from ...model.core.component import Component
 from ...model.core.flat import Quantity
-from ...model.errors import GearheatError, Problems, ScenarioError, suggestion
+from ...model.errors import Problems, ScenarioError, suggestion
 from ...model.laws.oil import density, kinematic_viscosity, pressure_viscosity
 from ...model.machines.spec import assemble
 from ...model.parts.contacts import TellsFilmContact
@@ -202,14 +202,12 @@ def _constant_oil(values: Mapping[str, float]) -> Oil:
     return lambda T: (values["eta_0"], values["alpha_p"])
 
 
-def _named_oil(name: str, values: Mapping[str, float], problems: list[str]) -> Oil:
+def _named_oil(name: str, values: Mapping[str, float], problems: Problems) -> Oil:
     """An oil of the catalogue; values beside it stand in its place."""
-    try:
+    with problems:
         oil = oil_of(oil_values(name))
-    except GearheatError as error:
-        problems += error.problems
-        return _constant_oil(values)
-    return lambda T: (values.get("eta_0", oil(T)[0]), values.get("alpha_p", oil(T)[1]))
+        return lambda T: (values.get("eta_0", oil(T)[0]), values.get("alpha_p", oil(T)[1]))
+    return _constant_oil(values)
 
 
 def oil_of(values: Mapping[str, float]) -> Oil:
