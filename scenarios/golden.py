@@ -9,54 +9,16 @@ several results.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, Literal
-
-from pydantic import Field
+from typing import Any
 
 from ..model.errors import Problems
 from .document import read_toml
-from .published import Number, Row
-from .tables import Strict
+from .published import PublishedTable, Row
 
 GOLDEN = Path(str(files("gearheat.model").joinpath("golden")))
-
-
-class GoldenRow(Strict):
-    """One golden row of a law."""
-
-    name: str = Field(description="what the number is, in words")
-    law: str = Field(description='"module.function" of a law')
-    source: str = Field(description="where the number is from")
-    kind: Literal["published", "corrected", "reproduced", "misprint"] = Field(description="what the number is")
-    args: dict[str, Any] = Field(description="argument -> number in SI, or text with a unit")
-    item: int | None = Field(None, description="which of several results, from 0")
-    expect: float = Field(description="the number")
-    unit: str = Field("", description="its unit")
-    tol: float | None = Field(None, description="distance allowed")
-    rel: float | None = Field(None, description="distance allowed over the number")
-    published: Number | None = Field(None, description="what stands in print where that was corrected")
-    why: str = Field("", description="why the printed number does not stand")
-
-    def as_row(self) -> Row:
-        """The row in the form of all published numbers."""
-        given = self.kind if self.kind in ("published", "corrected") else "recomputed"
-        return Row.model_validate(
-            {
-                **self.model_dump(include={"name", "published", "why", "tol", "rel", "law", "args", "item"}),
-                "where": self.source,
-                given: self.expect,
-                "unit": "" if self.unit == "1" else self.unit,
-                "run": "law",
-            }
-        )
-
-
-class GoldenTable(Strict):
-    """A file of golden rows."""
-
-    row: list[GoldenRow] = Field([], description="one table [[row]] a number")
 
 
 def golden_rows() -> tuple[Row, ...]:
@@ -68,8 +30,16 @@ def golden_rows() -> tuple[Row, ...]:
     found: list[Row] = []
     problems = Problems()
     for path in sorted(GOLDEN.glob("*.toml")):
-        raw = {"row": [row for row in read_toml(path).get("row", []) if "law" in row]}
+        raw = [_published(row) for row in read_toml(path).get("row", []) if "law" in row]
         with problems:
-            found += [row.as_row() for row in GoldenTable.read(path.name, raw).row]
+            found += PublishedTable.read(path.name, {"row": raw}).row
     problems.check()
     return tuple(found)
+
+
+def _published(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A golden row in the form of all published numbers."""
+    kind = row["kind"] if row["kind"] in ("published", "corrected") else "recomputed"
+    names = {"source": "where", "expect": kind}
+    kept = {names.get(key, key): value for key, value in row.items() if key not in ("kind", "unit")}
+    return kept | {"run": "law", "unit": row.get("unit", "").removesuffix("1")}

@@ -24,8 +24,9 @@ A source is a citation ("Dias2014, table 5.7") or one of "assumed: ...", "inferr
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -43,12 +44,11 @@ from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
 from .instruments import Instrument, instruments
 from .own_parts import installed_types, own_type
-from .protocol import Driven, Protocol
 from .repeats import expanded
-from .scenario import Erratum, Scenario
+from .scenario import Protocol, Scenario
 from .shipped import RIGS, list_rigs
 from .tables import RigTable, validate
-from .values import PartValues, deviation, in_range, part_values, readable, settable
+from .values import PartValues, deviation, in_range, part_values, quantities, readable, settable
 
 
 def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None = None) -> Scenario:
@@ -105,6 +105,7 @@ class _Loader:
         self.layout, self.connections = layout(self.table.kind)
         self.known = {**known, **self._own_types()}
         self.types = self._types()
+        self.settable = quantities(self.types, settable)
         self.value_sources: dict[str, str] = {}
 
     def _types(self) -> dict[str, type[Component]]:
@@ -168,7 +169,7 @@ class _Loader:
             units={f"{name}.{key}": unit for name, part in parts.items() for key, unit in part.units.items()},
             overrides=tuple(o for part in parts.values() for o in part.overrides),
             entries={name: part.entries for name, part in parts.items() if part.entries},
-            errata=tuple(Erratum(e.place, e.says, e.should_be, e.evidence) for e in self.table.errata),
+            errata=tuple(self.table.errata),
             protocol=protocol,
             data=data,
             reproduces=self.table.reproduces,
@@ -193,22 +194,28 @@ class _Loader:
         sources, problems = sources_of(where, self.table.operating_point)
         self.problems += problems
         self.value_sources |= sources
-        known = self._quantities(settable)
-        point: dict[str, float] = {}
-        for path, raw in paths({k: v for k, v in self.table.operating_point.items() if k not in ABOUT}):
-            if path not in known:
-                self.problems.append(f'{where}: there is no input "{path}".{suggestion(path, known)}')
-                continue
-            with self.problems:
-                point[path] = in_range(f"{where}: ", raw, known[path])
-        written = dict(paths(self.table.operating_point))
+        written = dict(paths({k: v for k, v in self.table.operating_point.items() if k not in ABOUT}))
+        point = self._taken(where, "input", written, lambda raw, q: in_range(f"{where}: ", raw, q))
         given = [f"{end}.{quantity}" for end, quantities in self.table.drive.items() for quantity in quantities]
         self.problems += [
             f"{where}: {path} is missing, which [drive] says is given. Give its usual value."
             for path in given
-            if path in known and path not in written
+            if path in self.settable and path not in written
         ]
         return point
+
+    def _taken(
+        self, where: str, what: str, table: Mapping[str, Any], read: Callable[[Any, Quantity], float]
+    ) -> dict[str, float]:
+        """Values of a table by path, as they are read for a quantity that may be set."""
+        found: dict[str, float] = {}
+        for path, raw in paths(table):
+            if path not in self.settable:
+                self.problems.append(f'{where}: there is no {what} "{path}".{suggestion(path, self.settable)}')
+                continue
+            with self.problems:
+                found[path] = read(raw, self.settable[path])
+        return found
 
     def _drive(self) -> dict[str, tuple[str, ...]]:
         ends = [name for name, cls in self.types.items() if cls.__name__ == "ShaftEnd"]
@@ -250,7 +257,7 @@ class _Loader:
 
     def _sensors(self) -> tuple[Instrument, ...]:
         """The instruments; losses and they name what the model shows."""
-        known = self._quantities(readable)
+        known = quantities(self.types, readable)
         found, problems = instruments(self.file, self.table.sensors, known)
         self.problems += problems
         for column, path in ((column, path) for column, summed in self.table.losses.items() for path in summed):
@@ -260,35 +267,25 @@ class _Loader:
 
     def _joint_uncertainties(self) -> dict[str, dict[str, float]]:
         """Reason -> path -> what a value changes by at one standard deviation."""
-        known = self._quantities(settable)
-        found: dict[str, dict[str, float]] = {name: {} for name in self.table.uncertainties}
-        for name, path, raw in ((n, *leaf) for n, table in self.table.uncertainties.items() for leaf in paths(table)):
+        found = {}
+        for name, table in self.table.uncertainties.items():
             where = f"{self.file} [uncertainties.{name}]"
-            if path not in known:
-                self.problems.append(f'{where}: there is no value "{path}".{suggestion(path, known)}')
-                continue
-            with self.problems:
-                found[name][path] = deviation(f"{where}: {path}", raw, known[path].unit)
+            found[name] = self._taken(where, "value", table, partial(_changed, where))
         return found
-
-    def _quantities(self, kind: Any) -> dict[str, Quantity]:
-        return {f"{n}.{k}": d.quantity(f"{n}.{k}") for n, cls in self.types.items() for k, d in kind(cls).items()}
 
     def _protocol(self) -> Protocol | None:
         table = self.table.campaign
         if table is None:
             return None
         where = f"{self.file} [campaign]"
-        known = self._quantities(settable)
         for path in (table.room, *table.inputs):
-            if path not in known:
-                self.problems.append(f'{where}: there is no input "{path}".{suggestion(path, known)}')
+            if path not in self.settable:
+                self.problems.append(f'{where}: there is no input "{path}".{suggestion(path, self.settable)}')
         if table.oil not in self.types:
             self.problems.append(f'{where}: there is no part "{table.oil}".{suggestion(table.oil, self.types)}')
-        inputs = {path: Driven(t.column, (t.sign[0], t.sign[1])) for path, t in table.inputs.items()}
         with self.problems:
             stop = to_si(table.stop, "s", name=f"{where}: stop")
-            return Protocol(inputs, table.room, table.oil, stop, tuple(table.notes))
+            return Protocol(table.inputs, table.room, table.oil, stop, tuple(table.notes))
         return None
 
     def _data(self) -> Path | None:
@@ -300,3 +297,8 @@ class _Loader:
         if not path.is_file():
             self.problems.append(f"{path}: there is no such file. Check the path.")
         return path
+
+
+def _changed(where: str, raw: object, quantity: Quantity) -> float:
+    """What a value changes by."""
+    return deviation(f"{where}: {quantity.name}", raw, quantity.unit)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -87,6 +87,18 @@ def settable(cls: type[Component]) -> dict[str, Declaration]:
 def readable(cls: type[Component]) -> dict[str, Declaration]:
     """What a result can show: outputs, states and inputs."""
     return {k: d for kind in (Output, State, Input) for k, d in declared(cls, kind).items()}
+
+
+def quantities(
+    types: Mapping[str, type[Component]], kind: Callable[[type[Component]], Mapping[str, Declaration]]
+) -> dict[str, Quantity]:
+    """Quantities of parts by path.
+
+    Args:
+        types: part -> its type
+        kind: which declarations of a type, such as `settable`
+    """
+    return {f"{n}.{k}": d.quantity(f"{n}.{k}") for n, cls in types.items() for k, d in kind(cls).items()}
 
 
 def deviation(name: str, raw: object, unit: str) -> float:

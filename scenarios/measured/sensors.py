@@ -64,7 +64,6 @@ class _Sensors:
     def __init__(self, scenario: Scenario, card: Card) -> None:
         self.scenario, self.card = scenario, card
         self.known: Mapping[str, Quantity] = scenario.readable()
-        self.types = {part.name: scenario.spec.types[part.type] for part in scenario.spec.parts}
         self.nominal = Nominal(scenario)
         self.problems = Problems()
         self.found = {i.name: i for i in scenario.instruments or default_instruments(scenario)}
@@ -194,7 +193,7 @@ class _Sensors:
         """What a sensor is, by what it reads."""
         unit, part = self.known[instrument.reads].unit, instrument.reads.partition(".")[0]
         if unit == "K":
-            cls = self.types[part]
+            cls = self.scenario.types[part]
             return "oil_temp" if issubclass(cls, OilBath) else "ambient" if issubclass(cls, Room) else "wall_temp"
         if unit not in KINDS:
             self.problems.append(
@@ -220,7 +219,7 @@ class _Sensors:
         if instrument.signs is not None:
             return instrument.signs
         if not instrument.magnitude and driven is not None:
-            return driven.sign
+            return driven.sign[0], driven.sign[1]
         if not instrument.magnitude:
             return 1.0, 1.0
         sign = -1.0 if self.nominal.value(instrument.reads) < 0 else 1.0
@@ -255,12 +254,11 @@ def instrument_of(path: str) -> Instrument:
 def default_instruments(scenario: Scenario) -> tuple[Instrument, ...]:
     """Sensors of a rig whose file declares none: its shaft ends, its oil, its bodies and its rooms."""
     paths, rooms = [], []
-    for part in scenario.spec.parts:
-        cls = scenario.spec.types[part.type]
+    for name, cls in scenario.types.items():
         if issubclass(cls, Room):
-            rooms.append(f"{part.name}.T")
+            rooms.append(f"{name}.T")
         if issubclass(cls, ShaftEnd):
-            paths += [f"{part.name}.w", f"{part.name}.tau"]
+            paths += [f"{name}.w", f"{name}.tau"]
         elif issubclass(cls, Room) or "T" in declared(cls, State):
-            paths.append(f"{part.name}.T")
+            paths.append(f"{name}.T")
     return tuple(Instrument("T_amb", "T_amb_C", path) if rooms == [path] else instrument_of(path) for path in paths)

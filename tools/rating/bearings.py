@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from ...model.laws.rolling import needle_torque_load, needle_torque_viscous
-from .machine import Bearing
+from .machine import Turning
 
 Values = Mapping[str, float]
 
@@ -39,14 +39,14 @@ FACTORS: Mapping[str, Factors] = {
 }
 
 
-def bearing_loss(bearing: Bearing, nu: float) -> float:
+def bearing_loss(bearing: Turning, nu: float) -> float:
     """Friction power of all pieces [W].
 
     Args:
         bearing: the bearing at work
         nu: kinematic viscosity of the oil [m2/s]
     """
-    factors, v = FACTORS[bearing.type], bearing.values
+    factors, v = FACTORS[type(bearing.part).__name__], bearing.part.values
     F_r, F_a = bearing.F_r + v["F_r_0"], bearing.F_a + v["F_a_0"]
     viscous = needle_torque_viscous(bearing.w, nu, v["d_m"], v.get("f_0", factors.f_0))
     loaded = needle_torque_load(factors.P_1(v, F_r, F_a), v["d_m"], factors.f_1(v, F_r, F_a))

@@ -17,7 +17,7 @@ from ...model.run.steady import steady
 from ...scenarios.scenario import Scenario
 from ..solve.settings import flat_of
 from ..solve.steady import conditions
-from .machine import Bearing, Machine, Mesh, Seal, Surface, Untreated
+from .machine import Machine, Mesh, Turning, Untreated
 from .readings import reading, with_readings
 
 #: Role of a part -> kind of its loss.
@@ -48,19 +48,19 @@ def machine_of(scenario: Scenario, bearing_types: Sequence[str], dips: Mapping[s
     pairs = {name: pair for name, part in parts.items() if (pair := pair_of(part)) is not None}
     baths = [name for name, part in parts.items() if part.role == "bath"]
     rooms = scenario.spec.of_type(Room.__name__)
-    surfaces = tuple(Surface(name, part.values) for name, part in parts.items() if _is_surface(part))
+    surfaces = tuple(part for part in parts.values() if _is_surface(part))
     _check(scenario, pairs, {"oil bath": baths, "room": rooms, "surface with area and emissivity": surfaces}, dips)
     at = _at_operating_point(scenario, [n for n, p in parts.items() if n in pairs or p.role in ("bearing", "seal")])
     dips = {**_told_dips(scenario, parts, pairs, at), **dips}
     meshes = tuple(_mesh(name, pair, at, dips) for name, pair in pairs.items())
     bearings = tuple(_bearing(part, at) for part in parts.values() if type(part).__name__ in bearing_types)
     seals = tuple(
-        Seal(name, part.values["count"], part.values["d_sh"], at[f"{reading(name, 'shaft')}.w"])
+        Turning(part, at[f"{reading(name, 'shaft')}.w"])
         for name, part in parts.items()
         if part.role == "seal" and "d_sh" in part.values
     )
     ends = scenario.spec.of_type("ShaftEnd")
-    treated = {*pairs, *(b.name for b in bearings), *(s.name for s in seals), *(s.name for s in surfaces)}
+    treated = {*pairs, *(t.part.name for t in (*bearings, *seals)), *(s.name for s in surfaces)}
     passes = scenario.spec.of_type(Efficiency.__name__)
     return Machine(
         meshes,
@@ -131,10 +131,9 @@ def _told_dips(scenario: Scenario, parts: Parts, pairs: Mapping[str, Cylindrical
     return found
 
 
-def _bearing(part: Component, at: Values) -> Bearing:
+def _bearing(part: Component, at: Values) -> Turning:
     load = reading(part.name, "load")
-    w = at[f"{reading(part.name, 'shaft')}.w"]
-    return Bearing(part.name, type(part).__name__, part.values, w, at[f"{load}.F_r"], at[f"{load}.F_a"])
+    return Turning(part, at[f"{reading(part.name, 'shaft')}.w"], at[f"{load}.F_r"], at[f"{load}.F_a"])
 
 
 def _is_surface(part: Component) -> bool:

@@ -5,16 +5,18 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from scipy.optimize import brentq
 
+from ...model.core.component import Component
 from ...model.laws import iso14179_1 as part_1
 from ...model.laws import iso14179_2 as part_2
 from ...model.laws.mesh import friction_schlenk, load_per_face_width, mesh_loss, tooth_loss_factor
 from ...model.laws.radiation import radiation_coefficient
 from ...model.laws.sealing import lip_seal_torque
 from .bearings import bearing_loss
-from .machine import Machine, Mesh, Surface
+from .machine import Machine, Mesh
 
 #: Kind of loss -> part -> loss [W].
 Losses = dict[str, dict[str, float]]
@@ -48,8 +50,8 @@ def losses_1(machine: Machine, T: float) -> Losses:
     return {
         "mesh": {m.name: _mesh_1(m, nu) for m in machine.meshes},
         "churning": {m.name: _churning_1(m, nu) for m in machine.meshes},
-        "bearings": {b.name: bearing_loss(b, nu) for b in machine.bearings},
-        "seals": {s.name: s.count * float(part_1.seal_torque(s.d_sh)) * abs(s.w) for s in machine.seals},
+        "bearings": {b.part.name: bearing_loss(b, nu) for b in machine.bearings},
+        "seals": _seals(machine, part_1.seal_torque),
     }
 
 
@@ -83,9 +85,15 @@ def losses_2(machine: Machine, T: float) -> Losses:
     return {
         "mesh": {m.name: _mesh_2(m, eta, machine.oil["X_L"]) for m in machine.meshes},
         "churning": {m.name: _churning_2(m, machine.surfaces) for m in machine.meshes},
-        "bearings": {b.name: bearing_loss(b, nu) for b in machine.bearings},
-        "seals": {s.name: s.count * float(lip_seal_torque(s.d_sh)) * abs(s.w) for s in machine.seals},
+        "bearings": {b.part.name: bearing_loss(b, nu) for b in machine.bearings},
+        "seals": _seals(machine, lip_seal_torque),
     }
+
+
+def _seals(machine: Machine, torque: Callable[[float], Any]) -> dict[str, float]:
+    """Losses of the seals from the friction torque of one [N.m] over its shaft diameter [m]."""
+    sizes = {s.part.name: (s.part.values, abs(s.w)) for s in machine.seals}
+    return {name: v["count"] * float(torque(v["d_sh"])) * w for name, (v, w) in sizes.items()}
 
 
 def _mesh_2(m: Mesh, eta: float, X_L: float) -> float:
@@ -97,7 +105,7 @@ def _mesh_2(m: Mesh, eta: float, X_L: float) -> float:
     return float(mesh_loss(m.F_t * m.v, mu, H_v))
 
 
-def _churning_2(m: Mesh, surfaces: tuple[Surface, ...]) -> float:
+def _churning_2(m: Mesh, surfaces: tuple[Component, ...]) -> float:
     e_max = max(m.dips)
     if not e_max:
         return 0.0
@@ -130,12 +138,12 @@ def conductance_2(machine: Machine, T: float) -> float:
     return sum(_surface_2(s, T, machine.T_room) for s in machine.surfaces)
 
 
-def _surface_2(surface: Surface, T: float, T_room: float) -> float:
+def _surface_2(surface: Component, T: float, T_room: float) -> float:
     v = surface.values
     wet, dry = float(v["A"]), float(v["A"] + v.get("A_fins", 0.0))
 
     def outside(T_wall: float) -> float:
-        free = float(part_2.free_convection(T_wall, T_room, surface.height))
+        free = float(part_2.free_convection(T_wall, T_room, v.get("height", v.get("D", 0.0))))
         return free * dry + float(radiation_coefficient(T_wall, T_room, v["emissivity"])) * wet
 
     if abs(T - T_room) < 1e-6:
