@@ -77,7 +77,8 @@ def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
     Raises:
         ScenarioError: all problems of the file at once
     """
-    units = {**_taken_by_parts(), **DESCRIPTIVE.get(kind, {})}
+    units = {key: d.unit for cls in PARTS.values() for key, d in declared(cls, Parameter).items()}
+    units |= DESCRIPTIVE.get(kind, {})
     entries: dict[str, Entry] = {}
     problems = Problems()
     for name, table in read_toml(path).items():
@@ -112,11 +113,6 @@ def _checked(where: str, given: object, values: Mapping[str, Any]) -> tuple[dict
         f'{where}: {CHECKED} names "{k}", which has no value.{suggestion(k, values)}' for k in told if k not in values
     ]
     return dict(told), strange
-
-
-def _taken_by_parts() -> dict[str, str]:
-    """Parameter -> its unit, over all types of parts."""
-    return {key: d.unit for cls in PARTS.values() for key, d in declared(cls, Parameter).items()}
 
 
 def entry(kind: str, name: str) -> Entry:

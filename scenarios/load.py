@@ -40,15 +40,24 @@ from ..model.parts import PARTS
 from ..model.parts.free_form import EXTRA_PARTS
 from ..model.units import to_si
 from .assemblies import assembled
+from .columns import split_unit
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
-from .instruments import Instrument, instruments
 from .own_parts import installed_types, own_type
 from .repeats import expanded
-from .scenario import Protocol, Scenario
+from .scenario import Instrument, Protocol, Scenario
 from .shipped import RIGS, list_rigs
 from .tables import RigTable, validate
-from .values import PartValues, deviation, in_range, part_values, quantities, readable, settable
+from .values import (
+    PartValues,
+    deviation,
+    in_range,
+    part_values,
+    quantities,
+    readable,
+    settable,
+    standard_deviation,
+)
 
 
 def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None = None) -> Scenario:
@@ -258,12 +267,34 @@ class _Loader:
     def _sensors(self) -> tuple[Instrument, ...]:
         """The instruments; losses and they name what the model shows."""
         known = quantities(self.types, readable)
-        found, problems = instruments(self.file, self.table.sensors, known)
-        self.problems += problems
+        found: list[Instrument] = []
+        for key, table in self.table.sensors.items():
+            place = f"{self.file} [sensors] {key}"
+            if table.reads not in known:
+                self.problems.append(f'{place}: there is no "{table.reads}".{suggestion(table.reads, known)}')
+                continue
+            accuracy: dict[str, float] = {}
+            for name, raw in (("repeat_sd", table.repeat_sd), ("offset_sd", table.offset_sd)):
+                if raw is not None:
+                    with self.problems:
+                        accuracy[name] = standard_deviation(f"{place}: {name}", raw, known[table.reads].unit)
+            found.append(
+                Instrument(
+                    name=split_unit(key)[0],
+                    column=table.column or key,
+                    reads=table.reads,
+                    kind=table.kind or "",
+                    role=table.role or "",
+                    unit=table.unit or "",
+                    magnitude=table.magnitude or table.signs is not None,
+                    signs=None if table.signs is None else (table.signs[0], table.signs[1]),
+                    **accuracy,
+                )
+            )
         for column, path in ((column, path) for column, summed in self.table.losses.items() for path in summed):
             if path not in known:
                 self.problems.append(f'{self.file} [losses] {column}: there is no "{path}".{suggestion(path, known)}')
-        return found
+        return tuple(found)
 
     def _joint_uncertainties(self) -> dict[str, dict[str, float]]:
         """Reason -> path -> what a value changes by at one standard deviation."""

@@ -160,7 +160,12 @@ def read_published(path: Path) -> tuple[Row, ...]:
         problems += [f'{path.name} {row.name}: there is no row "{other}".' for other in unknown]
     every = (*raw.row, *(row for sheet in raw.table for row in _cells(path, sheet, problems)))
     problems.check()
-    return tuple(_with_common(row, raw.set) for row in every)
+    common = dict(paths(raw.set))  # what all rows set whose run takes values
+    takers = [run for run, keys in _ALLOWED.items() if "set" in keys]
+    return tuple(
+        row.model_copy(update={"set": {**common, **dict(paths(row.set))}}) if row.run in takers else row
+        for row in every
+    )
 
 
 def _cells(path: Path, sheet: SheetTable, problems: Problems) -> Iterator[Row]:
@@ -193,13 +198,6 @@ def _cell(sheet: SheetTable, source: Cells, column: str, keys: Mapping[str, floa
             "select": {**keys, **source.select},
         }
     )
-
-
-def _with_common(row: Row, common: Mapping[str, Any]) -> Row:
-    """The row with what all rows set, where its run takes values."""
-    if "set" not in _ALLOWED.get(row.run, ()):
-        return row
-    return row.model_copy(update={"set": {**dict(paths(common)), **dict(paths(row.set))}})
 
 
 def _wrong(row: Row) -> Iterator[str]:

@@ -13,10 +13,37 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.machines.spec import Spec
 from .entries import Entry, catalogue, unchecked_entry
-from .instruments import Instrument
 from .shipped import FILES
 from .tables import DrivenTable, ErratumTable
 from .values import Override, entry_values, in_range, quantities, readable, settable
+
+
+@dataclass(frozen=True)
+class Instrument:
+    """One instrument of a rig; what is empty or None follows from what it reads.
+
+    Args:
+        name: of the instrument
+        column: column of a measured table
+        reads: path in the model
+        kind: what it is: "oil_temp", "wall_temp", "ambient", "torque", "speed" or "power"
+        role: "given" drives the model, "read" is compared
+        unit: of the column
+        magnitude: whether the column holds magnitudes
+        signs: sign of the model's value in direction 1 and 2 where it does
+        repeat_sd, offset_sd: scatter from reading to reading, and tolerance that is fixed over a campaign [SI]
+    """
+
+    name: str
+    column: str
+    reads: str
+    kind: str = ""
+    role: str = ""
+    unit: str = ""
+    magnitude: bool = False
+    signs: tuple[float, float] | None = None
+    repeat_sd: float | None = None
+    offset_sd: float | None = None
 
 
 @dataclass(frozen=True)

@@ -170,9 +170,6 @@ def _expected(steps: Iterable[str | int], top: type[Strict]) -> tuple[type[Stric
     for step in steps:
         if model and (field := model.model_fields.get(str(step))):
             meaning = field.description or ""
-            model = next((m for m in (field.annotation, *get_args(field.annotation)) if _is_model(m)), None)
+            kinds = (m for m in (field.annotation, *get_args(field.annotation)) if isinstance(m, type))
+            model = next((m for m in kinds if issubclass(m, Strict)), None)
     return model, meaning
-
-
-def _is_model(candidate: Any) -> bool:
-    return isinstance(candidate, type) and issubclass(candidate, Strict)

@@ -17,8 +17,8 @@ from .card import Card
 from .checks import checked
 from .context import CONTEXT, DIRECTIONS, Cells, contradictions, floats, order_warnings
 from .halves import with_unread
+from .lubrication import oil_problems, oil_values, oil_warnings
 from .nominal import Nominal
-from .oils import oil_problems, oil_values, oil_warnings
 from .sensors import SI, driven_by, sensors_of
 from .table import Campaign, Sensor
 
@@ -139,6 +139,8 @@ class _Reader:
         direction = self._direction(cells, values)[rows]
         starts = rows[first]
         points = cells.numbers("point")
+        spoken = self.scenario.protocol.notes if self.scenario.protocol else ()  # of columns that nothing reads
+        unused = [w for w in cells.table.warnings if not any(f'column "{name}" is not used' in w for name in spoken)]
         return Campaign(
             name=self.path.name,
             sensors=tuple(_one_way(s, direction) for s in self.sensors),
@@ -160,7 +162,7 @@ class _Reader:
             room_begin=self.card.protocol.ambient_start_minus_reading_K,
             names=tuple(names[row] if "test" in self.context else str(k + 1) for k, row in enumerate(starts)),
             others=self._others(rows),
-            warnings=(*self._unused(cells), *order_warnings(cells)),
+            warnings=(*unused, *order_warnings(cells)),
         )
 
     def _others(self, rows: np.ndarray) -> dict[str, tuple[str, ...]]:
@@ -168,11 +170,6 @@ class _Reader:
         used = {s.column for s in self.sensors} | set(self.context.values())
         columns = {name: k for k, name in enumerate(self.header) if name not in used}
         return {name: tuple(self.rows[row][1][k] for row in rows) for name, k in columns.items()}
-
-    def _unused(self, cells: Cells) -> list[str]:
-        """Warnings of columns that nothing reads, but for those that the rig file speaks of."""
-        spoken = self.scenario.protocol.notes if self.scenario.protocol else ()
-        return [w for w in cells.table.warnings if not any(f'column "{name}" is not used' in w for name in spoken)]
 
     def _direction(self, cells: Cells, values: dict[str, np.ndarray]) -> np.ndarray:
         """+1 and -1 (n,): as stated, by the sign of a signed given torque that turns round, else 0."""

@@ -13,8 +13,7 @@ from ...model.parts.shaft import ShaftEnd
 from ...model.parts.thermal import Room
 from ...model.units import spelled, text, to_si
 from ..columns import split_unit
-from ..instruments import Instrument
-from ..scenario import Scenario
+from ..scenario import Instrument, Scenario
 from ..values import deviation
 from .card import Card
 from .context import CONTEXT
@@ -114,13 +113,6 @@ class _Sensors:
         close = suggestion(key, names) or f" Sensors: {', '.join(self.found)}."
         self.problems.append(f'{self.card.name} {place}: there is no sensor "{key}".{close}')
 
-    def _new(self, path: str) -> str:
-        """A sensor of its own for a path of the model."""
-        made = instrument_of(path)
-        name = made.name if made.name not in self.found else path.replace(".", "_")
-        self.found[name] = replace(made, name=name)
-        return name
-
     def _declare(self, key: str, table: Mapping[str, object]) -> None:
         name = self._name(key)
         if name is None and table.get("reads") not in self.known:
@@ -139,8 +131,10 @@ class _Sensors:
 
     def _rename(self, key: str, column: str) -> None:
         name = self._name(key)
-        if name is None and key in self.known:
-            name = self._new(key)
+        if name is None and key in self.known:  # a sensor of its own for a path of the model
+            made = instrument_of(key)
+            name = made.name if made.name not in self.found else key.replace(".", "_")
+            self.found[name] = replace(made, name=name)
         if name is None:
             self._refuse(f"columns.{key}", key)
             return

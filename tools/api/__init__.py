@@ -17,59 +17,34 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from .model.core.component import Component as Component
     from .model.errors import GearheatError as GearheatError
-    from .tools.build.new import NewRig as NewRig
-    from .tools.build.new import new as new
-    from .tools.compare.calibrate import Calibration as Calibration
-    from .tools.compare.calibrate import calibrate as calibrate
-    from .tools.compare.losses import LossTable as LossTable
-    from .tools.compare.losses import losses as losses
-    from .tools.compare.replay import Replays as Replays
-    from .tools.compare.replay import replay as replay
-    from .tools.compare.results import Errors as Errors
-    from .tools.compare.results import compare as compare
-    from .tools.compare.run import CampaignRun as CampaignRun
-    from .tools.compare.run import run as run
-    from .tools.describe.description import Description as Description
-    from .tools.describe.description import show as show
-    from .tools.describe.parts import PartTypes as PartTypes
-    from .tools.describe.parts import parts as parts
-    from .tools.describe.rig import Rig as Rig
-    from .tools.describe.rig import assemble as assemble
-    from .tools.describe.rig import load as load
-    from .tools.describe.rig import rigs as rigs
+    from .tools.build.new import NewRig as NewRig, new as new
+    from .tools.compare.calibrate import Calibration as Calibration, calibrate as calibrate
+    from .tools.compare.losses import LossTable as LossTable, losses as losses
+    from .tools.compare.replay import Replays as Replays, replay as replay
+    from .tools.compare.results import Errors as Errors, compare as compare
+    from .tools.compare.run import CampaignRun as CampaignRun, run as run
+    from .tools.describe.description import Description as Description, show as show
+    from .tools.describe.parts import PartTypes as PartTypes, parts as parts
+    from .tools.describe.rig import Rig as Rig, assemble as assemble, load as load, rigs as rigs
     from .tools.describe.schema import schema as schema
-    from .tools.describe.shipped import Shipped as Shipped
-    from .tools.describe.shipped import shipped as shipped
-    from .tools.diagnose.api import CardText as CardText
-    from .tools.diagnose.api import card as card
-    from .tools.diagnose.api import diagnose as diagnose
-    from .tools.diagnose.api import plan as plan
-    from .tools.diagnose.asking import Diagnosis as Diagnosis
-    from .tools.diagnose.asking import Outputs as Outputs
-    from .tools.diagnose.asking import PlanAnswer as PlanAnswer
+    from .tools.describe.shipped import Shipped as Shipped, shipped as shipped
+    from .tools.diagnose.api import CardText as CardText, card as card, diagnose as diagnose, plan as plan
+    from .tools.diagnose.asking import Diagnosis as Diagnosis, Outputs as Outputs, PlanAnswer as PlanAnswer
     from .tools.export.export import export as export
     from .tools.export.fmu import Exported as Exported
     from .tools.export.play import play as play
-    from .tools.films.film import FilmTable as FilmTable
-    from .tools.films.film import film as film
-    from .tools.rating.rate import MethodRating as MethodRating
-    from .tools.rating.rate import rate_by_method as rate_by_method
-    from .tools.solve.design import DesignAnswer as DesignAnswer
-    from .tools.solve.design import design as design
-    from .tools.solve.maps import Map as Map
-    from .tools.solve.maps import Rating as Rating
-    from .tools.solve.maps import map_outputs
-    from .tools.solve.maps import rating as rating
-    from .tools.solve.simulate import TimeSeries as TimeSeries
-    from .tools.solve.simulate import simulate as simulate
-    from .tools.solve.steady import SteadyState as SteadyState
-    from .tools.solve.steady import steady as steady
-    from .tools.solve.sweep import Sweep as Sweep
-    from .tools.solve.sweep import sweep as sweep
-    from .tools.verify.contact.command import ContactVerification as ContactVerification
-    from .tools.verify.contact.command import verify_contact as verify_contact
-    from .tools.verify.verify import Verification as Verification
-    from .tools.verify.verify import verify as verify
+    from .tools.films.film import FilmTable as FilmTable, film as film
+    from .tools.rating.rate import MethodRating as MethodRating, rate_by_method as rate_by_method
+    from .tools.solve.design import DesignAnswer as DesignAnswer, design as design
+    from .tools.solve.maps import Map as Map, Rating as Rating, map_outputs, rating as rating
+    from .tools.solve.simulate import TimeSeries as TimeSeries, simulate as simulate
+    from .tools.solve.steady import SteadyState as SteadyState, steady as steady
+    from .tools.solve.sweep import Sweep as Sweep, sweep as sweep
+    from .tools.verify.contact.command import (
+        ContactVerification as ContactVerification,
+        verify_contact as verify_contact,
+    )
+    from .tools.verify.verify import Verification as Verification, verify as verify
 
     map = map_outputs
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -188,11 +188,11 @@ def fit_parameters(
     if len(measured) <= len(start):
         raise SolveError(f"{len(measured)} readings cannot determine {len(start)} parameters. Free fewer.")
     with tempfile.TemporaryDirectory() as folder, Player(export(flat, Path(folder) / "rig.fmu")) as player:
-        simulated = _simulated(player, study, runs, sensor.reads)
 
         def errors(z: np.ndarray) -> np.ndarray:
             values = {q.name: float(v) for q, v in zip(quantities, z * scale, strict=True)}
-            return np.asarray(simulated(values) - measured)
+            simulated = [_simulated(player, study, run, sensor.reads, values) for run in runs]
+            return np.asarray(np.concatenate(simulated) - measured)
 
         low, high = (np.array([getattr(q, side) for q in quantities]) / scale for side in ("low", "high"))
         first = errors(start / scale)
@@ -220,25 +220,12 @@ def fit_parameters(
 
 
 def _simulated(
-    player: Player, study: Measured, runs: Sequence[campaign.Run], path: str
-) -> Callable[[Mapping[str, float]], np.ndarray]:
-    """Parameter values -> the oil temperature at every reading [K]."""
-
-    def readings(values: Mapping[str, float]) -> np.ndarray:
-        found: list[float] = []
-        for run in runs:
-            played = player.run(
-                run.inputs,
-                run.schedule.stop,
-                60.0,
-                start={**run.start, **(_settled(study, run, values) if study.campaign.steady else {}), **values},
-                record=[path],
-                output_times=list(run.moments),
-            )
-            found += played.values[:, 0].tolist()
-        return np.array(found)
-
-    return readings
+    player: Player, study: Measured, run: campaign.Run, path: str, values: Mapping[str, float]
+) -> np.ndarray:
+    """The oil temperature at every reading of a test [K], with other values of parameters."""
+    start = {**run.start, **(_settled(study, run, values) if study.campaign.steady else {}), **values}
+    stop, moments = run.schedule.stop, list(run.moments)
+    return player.run(run.inputs, stop, 60.0, start=start, record=[path], output_times=moments).values[:, 0]
 
 
 def _settled(study: Measured, run: campaign.Run, values: Mapping[str, float]) -> dict[str, float]:

@@ -168,7 +168,8 @@ def crew(workers: int) -> Iterator[ProcessPoolExecutor | None]:
     if count == 1:
         yield None
         return
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=playing.ready)
+    deaf = (signal.SIGINT, signal.SIG_IGN)  # the parent alone answers Ctrl-C
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=signal.signal, initargs=deaf)
     try:
         with _deaf():
             for _ in range(count):

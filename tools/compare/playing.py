@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import signal
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
@@ -19,7 +18,7 @@ import numpy as np
 from ...fmu.play import Player
 from ...fmu.variables import STORED, SUPPLIED, THROUGHPUT
 from ...model.run.schedule import Schedule
-from ..show.columns import series
+from ..show.columns import table_text, titled
 from ..show.console import as_json, write
 
 SCHEMA = "gearheat.test/1"
@@ -81,11 +80,6 @@ class Job:
         return self.folder / f"test-{self.run.test:02d}.{suffix}"
 
 
-def ready() -> None:
-    """Prepare a worker: the parent alone answers Ctrl-C."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
-
-
 def finished(job: Job) -> list[dict[str, float]] | None:
     """The readings of a test that was played before with the same inputs and FMU; None if it has to be played."""
     try:
@@ -117,7 +111,7 @@ def play(job: Job) -> list[dict[str, float]]:
         supplied, throughput, stored = (reading[name] - before[name] for name in AUDIT)
         reading["energy_residual"] = abs(supplied - stored) / throughput if throughput else 0.0
         before = reading
-    write(job.place("csv"), series(played.time, columns, job.record))
+    write(job.place("csv"), table_text({"time [s]": played.time, **titled(columns, job.record)}))
     kept = {"schema": SCHEMA, "key": job.key(), "test": run.test, "moments_s": list(run.moments)}
     write(job.place("json"), as_json({**kept, "units": job.record, "readings": readings}))
     return readings

@@ -13,7 +13,7 @@ import numpy as np
 from ...model.parts.shaft import Efficiency
 from ...model.units import from_si
 from ...scenarios.csv_table import Column, Table, parse, raise_all
-from ...scenarios.measured.power import efficiency, loss, shaft_powers
+from ...scenarios.measured.nominal import efficiency, shaft_powers
 from ...scenarios.measured.sensors import SI
 from ...scenarios.measured.study import Measured
 from ...scenarios.measured.table import Sensor
@@ -79,7 +79,7 @@ def measured_losses(study: Measured) -> dict[str, np.ndarray]:
     given = next(s for s in study.campaign.sensors if s.kind == "speed")
     ratio = study.nominal.ratios[first] / study.nominal.ratios[given.reads.partition(".")[0]]
     w = np.abs(study.campaign.values[given.name] * ratio)
-    P = loss(powers)
+    P = np.asarray(sum(powers.values()))
     return {"loss_Nm": P / np.where(w > 0, w, np.nan), "P_loss_W": P, "efficiency": efficiency(powers)}
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...model.errors import DataError
 from ...model.units import from_si
@@ -16,10 +16,7 @@ from ..diagnose.infer.logs import filter_of, year_of
 from ..diagnose.infer.replay import HOURS, Replayed, Rivals
 from ..diagnose.infer.replay import replay as replay_log
 from ..show.console import note
-from ..show.display import Display
-
-if TYPE_CHECKING:
-    from ..show.plotting import Picture
+from ..show.display import Display, Picture
 
 #: Width and height of the picture [inch].
 SIZE = (9.0, 4.5)
@@ -56,7 +53,6 @@ class Replays(Display):
     def drawing(self) -> Picture:
         """Free run and readings of the longest stretch of the last log."""
         from ..show.drawing import empty
-        from ..show.plotting import Picture
 
         r = self.logs[-1]
         title = f"{r.name}, free run"

@@ -17,8 +17,8 @@ from ..show.notes import unchecked_lines
 from ..show.pages import html_table, page
 from . import plots
 from .errors import Comparison, Rows, measured, numbers, present
+from .results import error_lines, group_lines
 from .rivals import Score
-from .summary import error_lines, group_lines
 
 #: Columns of the table of all readings.
 READING = ("point", "test", "direction", "oil", "n_set_rpm", "T_set_Nm", "T_amb_C")

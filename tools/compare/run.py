@@ -17,16 +17,17 @@ from ...scenarios.given import RigLike, Settings
 from ...scenarios.measured.study import Measured, loaded, measured_of
 from ...scenarios.scenario import Scenario
 from ..export.fmu import write_fmu
+from ..show.columns import rows_text
 from ..show.console import as_json, folder, note, write
 from ..solve.settings import adjusted, flat_of
 from ..solve.unchecked import unchecked
-from . import campaign, summary
+from . import campaign
 from .errors import Rows, compare, present
 from .losses import oils_of
 from .playing import Job
 from .readings import ROOM, column_of, drives, sources
 from .report import render
-from .results import Errors
+from .results import Errors, summarise
 from .rivals import rivals
 
 #: First columns of a row, the rest follow in the order they arise.
@@ -108,14 +109,15 @@ def run(
         "fmu": fmu.name,
         "fmu_sha256": digest,
         "rows": rows,
-        **(nothing if comparison is None else summary.as_dict(comparison, scores)),
+        **(nothing if comparison is None else summarise(comparison, scores)),
         "energy_residual_max": max(row["energy_residual"] for row in rows),
         "unchecked": unchecked(scenario, flat, oils_of(study)),
     }
     columns = _curves(scenario, study)
     curves = {test: _curve(kept / f"test-{test:02d}.csv", columns, flat) for test in _telling(rows)}
     outside = campaign.outside_of(flat, found, played)
-    write(out / "rows.csv", _csv(rows))
+    head = list(dict.fromkeys(name for row in rows for name in row))
+    write(out / "rows.csv", rows_text(head, ([row.get(name) for name in head] for row in rows)))
     write(out / "result.json", as_json(result))
     write(out / "report.html", render(scenario, flat, result, comparison, scores, curves=curves, outside=outside))
     note(f"{out / 'report.html'} after {time.perf_counter() - began:.1f} s")
@@ -154,13 +156,3 @@ def _curve(path: Path, columns: Mapping[str, str], flat: FlatModel) -> dict[str,
         c: f"{p} [{shown(flat.quantity(p).unit)}]" for c, p in columns.items() if c.endswith("_C") and p in flat.index
     }
     return {"time": values[:, 0]} | {c: values[:, head.index(name)] for c, name in names.items() if name in head}
-
-
-def _csv(rows: Rows) -> str:
-    """Rows as CSV; numbers with nine digits, nothing where a value is missing."""
-    head = list(dict.fromkeys(name for row in rows for name in row))
-
-    def cell(value: Any) -> str:
-        return "" if value is None else f"{value:.9g}" if isinstance(value, float) else str(value)
-
-    return "\n".join([",".join(head), *(",".join(cell(row.get(name)) for name in head) for row in rows)]) + "\n"

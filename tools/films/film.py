@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import hashlib
-import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -20,14 +19,12 @@ from ...model.laws.film_point import point_film_central
 from ...model.units import from_si, shown
 from ...scenarios.film_map import COLUMNS, FAILED, OK, read_film_map
 from ...scenarios.load import load
+from ..show.columns import rows_text
 from ..show.console import counting, note, writable, write
-from ..show.display import Answer
+from ..show.display import Answer, Picture
 from ..solve.settings import adjusted
 from ..solve.sweep_file import Store, work_file
 from .case import AXES, MapCase, from_file, from_rig
-
-if TYPE_CHECKING:
-    from ..show.plotting import Picture
 
 #: Points along load, speed and temperature.
 POINTS = {"F": 6, "u_m": 6, "T": 4}
@@ -278,9 +275,7 @@ def table_of(case: MapCase, points: np.ndarray, kept: np.ndarray) -> str:
         points: load, speed and temperature (n, 3)
         kept: what was found at each (n, KEPT)
     """
-    text = io.StringIO()
-    text.write(",".join(column.name for column in COLUMNS) + "\n")
-    c = case.contact
+    rows, c = list[list[float | str | None]](), case.contact
     across = c.R_y if isfinite(c.R_y) else None
     constant = (c.R_x, across, c.length, c.E_eff, case.slide_roll, case.sigma, case.mu_boundary)
     for (F, u_m, T), (h_c, h_min, mu_fluid, share, p_max, found) in zip(points, kept, strict=True):
@@ -306,8 +301,8 @@ def table_of(case: MapCase, points: np.ndarray, kept: np.ndarray) -> str:
             OK if found == FOUND else WRONG[found][0],
             *constant,
         ]
-        text.write(",".join("" if v is None else v if isinstance(v, str) else f"{v:.9g}" for v in cells) + "\n")
-    return text.getvalue()
+        rows.append(cells)
+    return rows_text((column.name for column in COLUMNS), rows)
 
 
 def formula_of(contact: Contact) -> float:
@@ -333,7 +328,6 @@ def _named(case: MapCase, point: np.ndarray) -> str:
 def _picture(case: MapCase, points: np.ndarray, kept: np.ndarray) -> Picture:
     """Central film over speed at each load, a panel for each temperature."""
     from ..show.drawing import COLOURS, empty
-    from ..show.plotting import Picture
 
     temperatures, loads = np.unique(points[:, 2]), np.unique(points[:, 0])
     figure, panels = empty(3.2 * len(temperatures) + 0.8, 3.6, 1, len(temperatures), sharey=True)

@@ -17,10 +17,9 @@ from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.values import in_range
 from ..show.display import Answer
 from ..solve.settings import adjusted
-from .bearings import FACTORS
 from .gather import machine_of
 from .machine import Machine
-from .methods import METHODS, Method
+from .methods import FACTORS, METHODS, Method
 
 #: Largest multiple of the load that a rating looks for.
 MOST_LOAD = 100.0
@@ -125,7 +124,10 @@ def compared(machine: Machine, method: Method, T_limit: float, k: float | None) 
         columns["method_at_sump"] = method.losses(machine, T_sump)
     temperatures = {"model": machine.T_oil, "method": machine.T_oil, "method_at_sump": T_sump}
     return {
-        "losses_W": {name: _summed(losses) for name, losses in columns.items()},
+        "losses_W": {
+            name: {kind: sum(parts.values()) for kind, parts in losses.items()} | {"total": total(losses)}
+            for name, losses in columns.items()
+        },
         "parts_W": columns,
         "eta": {name: 1 - total(losses) / machine.P_in if machine.P_in else None for name, losses in columns.items()},
         "T_oil_C": {name: _celsius(temperatures[name]) for name in columns},
@@ -167,10 +169,6 @@ def _outside(method: Method, uses: Sequence[LawUse]) -> list[dict[str, Any]]:
 def total(losses: Mapping[str, Mapping[str, float]]) -> float:
     """Sum of all losses [W]."""
     return sum(power for parts in losses.values() for power in parts.values())
-
-
-def _summed(losses: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
-    return {kind: sum(parts.values()) for kind, parts in losses.items()} | {"total": total(losses)}
 
 
 def _rating(machine: Machine, T_limit: float, share: float | None, at_no_load: float) -> dict[str, Any]:

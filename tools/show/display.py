@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -15,14 +16,33 @@ from .console import as_json, cell, write
 
 if TYPE_CHECKING:
     import numpy as np
+    from matplotlib.figure import Figure
 
     from ...model.core.flat import FlatModel
-    from .plotting import Picture
 
 #: Lines of a result in a console; a notebook shows all.
 LINES = 10
 #: Columns of a table of values.
 HEAD = ("name", "value", "unit", "meaning")
+
+
+@dataclass(frozen=True)
+class Picture:
+    """What is drawn, and what an HTML page says beside it.
+
+    Attributes:
+        figure: the picture
+        title, note: what it is, and what to know about it
+        columns, rows: of a table below it; none without columns
+        courses: series over time as `courses.js` reads them; the figure is then for readers without JavaScript
+    """
+
+    figure: Figure
+    title: str
+    note: str = ""
+    columns: Sequence[str] = ()
+    rows: Sequence[Sequence[Any]] = ()
+    courses: Any = None
 
 
 def optional(package: str) -> Any:
@@ -142,8 +162,7 @@ class Columns(Display):
         Raises:
             DataError: it cannot be written
         """
-        titled = self.titled()
-        write(Path(path), table_text(list(titled), list(titled.values())))
+        write(Path(path), table_text(self.titled()))
         return Path(path)
 
 

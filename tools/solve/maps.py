@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -13,15 +13,12 @@ from ...model.run.design import design
 from ...model.units import from_si, shown, text
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
 from ...scenarios.scenario import Scenario, parse_assignments
-from ..show.display import Columns, optional
+from ..show.display import Columns, Picture, optional
 from . import sampling
 from .settings import adjusted, flat_of
 from .steady import conditions, leading_outputs
 from .sweep_plan import Request, plan_sweep
 from .sweep_rows import local
-
-if TYPE_CHECKING:
-    from ..show.plotting import Picture
 
 #: Ranges where none is given, as shares of the operating point [1].
 USUAL = (0.2, 1.2)

@@ -162,14 +162,11 @@ def gridded(axes: Sequence[Axis], text: str) -> np.ndarray:
         names = ", ".join(axis.name for axis in axes)
         raise ScenarioError(f"--grid {text}: {len(counts)} numbers for {len(axes)} varied ({names}). Give one each.")
     _check(int(np.prod([float(n) for n in counts])), "--grid")
-    lines = [axis.at(_shares(axis, n)) for axis, n in zip(axes, counts, strict=True)]
+    lines = [
+        axis.at(np.linspace(0.0, 1.0, n) if axis.kind == "uniform" and n > 1 else (np.arange(n) + 0.5) / n)
+        for axis, n in zip(axes, counts, strict=True)
+    ]
     return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, len(axes))
-
-
-def _shares(axis: Axis, n: int) -> np.ndarray:
-    if axis.kind == "uniform" and n > 1:
-        return np.linspace(0.0, 1.0, n)
-    return (np.arange(n) + 0.5) / n
 
 
 def _check(rows: int, option: str) -> None:

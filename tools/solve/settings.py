@@ -45,7 +45,9 @@ def adjusted(
     """
     assignments = assignments_of(assignments, scenario.settable)
     choices, problems = _choices(scenario.spec, assignments)
-    problems += _doubled(assignments)
+    names = [_name(text) for text in assignments]
+    twice = [name for name in dict.fromkeys(names) if name and names.count(name) > 1]
+    problems += [f'"{name}" is set twice. Set it once.' for name in twice]
     values: dict[str, float] = {}
     with problems:
         values = parse_assignments(scenario, (a for a in assignments if _name(a) not in choice_paths(scenario.spec)))
@@ -142,11 +144,6 @@ def _filled(scenario: Scenario, assignments: Sequence[str]) -> dict[str, str]:
         if (part := _name(text)) in parts:
             found |= scenario.entry_sources(part, text.partition("=")[2].strip(), SET)
     return {path: source for path, source in found.items() if path not in single}
-
-
-def _doubled(assignments: Iterable[str]) -> list[str]:
-    names = [_name(text) for text in assignments]
-    return [f'"{name}" is set twice. Set it once.' for name in dict.fromkeys(names) if name and names.count(name) > 1]
 
 
 def _name(assignment: str) -> str:

@@ -19,7 +19,8 @@ from ...model.units import SHOWN, from_si, in_unit, shown
 from ...scenarios.duty import duty_names, read_duty
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
-from ..show.display import Columns, optional
+from ..show.columns import titled
+from ..show.display import Columns, Picture, optional
 from .settings import adjusted, flat_of
 from .steady import outside_of
 from .unchecked import unchecked
@@ -27,7 +28,6 @@ from .unchecked import unchecked
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..show.plotting import Picture
 
 #: A duty: a CSV file, or a DataFrame whose column names have units, "time [min]" first.
 Duty = str | Path | Any
@@ -111,8 +111,7 @@ class TimeSeries(Columns):
 
     def titled(self) -> Mapping[str, np.ndarray]:
         """Time [s] and columns in the units shown to a person, by their titles."""
-        columns = {f"{n} [{shown(self.units[n])}]": from_si(c, self.units[n]) for n, c in self.columns.items()}
-        return {"time [s]": self.time, **columns}
+        return {"time [s]": self.time, **titled(self.columns, self.units)}
 
     @classmethod
     def load(cls, path: str | Path) -> TimeSeries:

@@ -15,15 +15,13 @@ from ...model.run.steady import steady as solve
 from ...model.units import from_si, shown
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
-from ..show.display import HEAD, Quantities
+from ..show.display import HEAD, Picture, Quantities
 from ..show.heat_paths import heat_flows, heat_paths
 from .settings import adjusted, flat_of
 from .unchecked import unchecked
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from ..show.plotting import Picture
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -18,15 +18,12 @@ from ...model.errors import SolveError
 from ...model.units import from_si, shown
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, written
 from ..show.console import counting, note
-from ..show.display import Display, optional
+from ..show.display import Display, Picture, optional
 from . import sampling
 from .simulate import Duty, duty_file
 from .sweep_file import Column, Store, words, work_file, write_table
 from .sweep_plan import MOST_DRAWN, Plan, Request, plan_sweep
 from .sweep_rows import TELLING, Block, clustered, local
-
-if TYPE_CHECKING:
-    from ..show.plotting import Picture
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -26,8 +27,8 @@ from . import sampling
 from .settings import adjusted, flat_of
 from .simulate import first_temperatures
 from .steady import leading_outputs, outside_of
-from .sweep_file import SUFFIXES, Column, parquet_missing
-from .sweep_rows import TELLING, Job, dask_missing
+from .sweep_file import SUFFIXES, Column
+from .sweep_rows import TELLING, Job
 from .uncertainties import UNCERTAINTY, reasons, sampled, shares
 from .unchecked import unchecked
 
@@ -183,9 +184,9 @@ def _problems(request: Request) -> Problems:
     if request.out is not None and request.out.suffix not in SUFFIXES and not flows(request.out):
         found.append(f"-o {request.out}: unknown kind of file. Its name must end in {' or '.join(SUFFIXES)}.")
     elif request.out is not None and request.out.suffix == ".parquet":
-        found.append(parquet_missing())
+        found.append(_missing("pyarrow", "-o FILE.parquet", "parquet", ", or write .csv"))
     if request.scheduler is not None:
-        found.append(dask_missing())
+        found.append(_missing("distributed", "--scheduler", "dask", ""))
     if UNCERTAINTY in request.vary:
         options = {"--plot": request.drawn, "--grid": request.grid}
         found += [f"{name} does not go with --vary {UNCERTAINTY}. Leave it out." for name, v in options.items() if v]
@@ -199,6 +200,15 @@ def _problems(request: Request) -> Problems:
     if request.kind == "warmup" and (request.duty is None) == (request.duration is None):
         found.append('A warm-up lasts either as long as its --duty or a --duration, for example "330 min". Give one.')
     return Problems(filter(None, found))
+
+
+def _missing(package: str, option: str, extra: str, otherwise: str) -> str | None:
+    """What is wrong where an option needs a package that is not installed."""
+    try:
+        import_module(package)
+    except ImportError:
+        return f'{option} needs the package "{package}". Install it: pip install "gearheat[{extra}]"{otherwise}'
+    return None
 
 
 def _outputs(request: Request) -> list[str]:
