@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Any
 
 from ...model.errors import DataError
 from ...model.units import from_si, in_unit, shown
-from .columns import table_text
 from .console import as_json, cell, write
 
 if TYPE_CHECKING:
@@ -162,6 +161,8 @@ class Columns(Display):
         Raises:
             DataError: it cannot be written
         """
+        from .columns import table_text
+
         write(Path(path), table_text(self.titled()))
         return Path(path)
 
