@@ -62,10 +62,7 @@ def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> S
         values[quantity.name] = column = np.full(len(rows), np.nan)
         for k, (line, cells) in enumerate(rows):
             try:
-                value = offset + slope * number(cells[i])
-                if (problem := quantity.problem(value)) is not None:
-                    raise ValueError(f"is out of range. {problem.partition('out of range. ')[2].rstrip('.')}")
-                column[k] = value
+                column[k] = _in_range(quantity, offset + slope * number(cells[i]))
             except ValueError as error:
                 problems.append(f'{path.name} line {line}: {quantity.name} = "{cells[i]}" {error}.')
     if len(header) == 1:
@@ -107,6 +104,13 @@ def _column(cell: str, known: Mapping[str, Quantity]) -> tuple[Quantity, float, 
         if "may mean" in str(error):
             raise DataError(f'column "{cell}": its unit may mean revolutions or radians. {remedy}') from None
         raise DataError(f'column "{cell}": the unit does not fit {quantity.doc}. {remedy}') from None
+
+
+def _in_range(quantity: Quantity, value: float) -> float:
+    """The value. Raises ValueError where it is out of range."""
+    if (problem := quantity.problem(value)) is not None:
+        raise ValueError(f"is out of range. {problem.partition('out of range. ')[2].rstrip('.')}")
+    return value
 
 
 def _time_problems(name: str, rows: Sequence[tuple[int, list[str]]], time: np.ndarray) -> list[str]:

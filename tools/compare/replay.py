@@ -16,7 +16,8 @@ from ..diagnose.infer.logs import filter_of, year_of
 from ..diagnose.infer.replay import HOURS, Replayed, Rivals
 from ..diagnose.infer.replay import replay as replay_log
 from ..show.console import note
-from ..show.display import Display, Picture
+from ..show.display import Display
+from ..show.picture import Picture
 
 #: Width and height of the picture [inch].
 SIZE = (9.0, 4.5)

@@ -21,7 +21,8 @@ from ...scenarios.film_map import COLUMNS, FAILED, OK, read_film_map
 from ...scenarios.load import load
 from ..show.columns import rows_text
 from ..show.console import counting, note, writable, write
-from ..show.display import Answer, Picture
+from ..show.display import Answer
+from ..show.picture import Picture
 from ..solve.settings import adjusted
 from ..solve.sweep_file import Store, work_file
 from .case import AXES, MapCase, from_file, from_rig

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 
 from ...model.units import from_si
-from .display import Picture
 from .drawing import COLOURS, empty, legend
+from .picture import Picture
 
 #: Points of a course that a page holds, at most.
 MOST = 3000

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,10 +11,10 @@ from typing import TYPE_CHECKING, Any
 from ...model.errors import DataError
 from ...model.units import from_si, in_unit, shown
 from .console import as_json, cell, write
+from .picture import Picture
 
 if TYPE_CHECKING:
     import numpy as np
-    from matplotlib.figure import Figure
 
     from ...model.core.flat import FlatModel
 
@@ -23,25 +22,6 @@ if TYPE_CHECKING:
 LINES = 10
 #: Columns of a table of values.
 HEAD = ("name", "value", "unit", "meaning")
-
-
-@dataclass(frozen=True)
-class Picture:
-    """What is drawn, and what an HTML page says beside it.
-
-    Attributes:
-        figure: the picture
-        title, note: what it is, and what to know about it
-        columns, rows: of a table below it; none without columns
-        courses: series over time as `courses.js` reads them; the figure is then for readers without JavaScript
-    """
-
-    figure: Figure
-    title: str
-    note: str = ""
-    columns: Sequence[str] = ()
-    rows: Sequence[Sequence[Any]] = ()
-    courses: Any = None
 
 
 def optional(package: str) -> Any:

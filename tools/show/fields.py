@@ -9,8 +9,8 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
-from .display import Picture
 from .drawing import COLOURS, empty
+from .picture import Picture
 
 #: Panels in a row.
 ACROSS = 3

@@ -8,9 +8,9 @@ from markupsafe import Markup
 from matplotlib.axes import Axes
 
 from .console import write
-from .display import Picture
 from .drawing import png, svg
 from .pages import OWN, as_data, html_table, page, vendored
+from .picture import Picture
 
 #: Width and height of a figure that is made for a result [inch].
 SIZE = (8.0, 4.5)

@@ -11,9 +11,9 @@ from matplotlib.patches import PathPatch, Rectangle
 from matplotlib.path import Path as Outline
 
 from ...model.units import text
-from .display import Picture
 from .drawing import COLOURS, empty
 from .heat_paths import Path
+from .picture import Picture
 
 #: Width of a column [inch].
 COLUMN = 1.75

@@ -13,7 +13,8 @@ from ...model.run.design import design
 from ...model.units import from_si, shown, text
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
 from ...scenarios.scenario import Scenario, parse_assignments
-from ..show.display import Columns, Picture, optional
+from ..show.display import Columns, optional
+from ..show.picture import Picture
 from . import sampling
 from .settings import adjusted, flat_of
 from .steady import conditions, leading_outputs

@@ -20,7 +20,8 @@ from ...scenarios.duty import duty_names, read_duty
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.columns import titled
-from ..show.display import Columns, Picture, optional
+from ..show.display import Columns, optional
+from ..show.picture import Picture
 from .settings import adjusted, flat_of
 from .steady import outside_of
 from .unchecked import unchecked

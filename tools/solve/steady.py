@@ -15,8 +15,9 @@ from ...model.run.steady import steady as solve
 from ...model.units import from_si, shown
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
-from ..show.display import HEAD, Picture, Quantities
+from ..show.display import HEAD, Quantities
 from ..show.heat_paths import heat_flows, heat_paths
+from ..show.picture import Picture
 from .settings import adjusted, flat_of
 from .unchecked import unchecked
 

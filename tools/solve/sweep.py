@@ -18,7 +18,8 @@ from ...model.errors import SolveError
 from ...model.units import from_si, shown
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, written
 from ..show.console import counting, note
-from ..show.display import Display, Picture, optional
+from ..show.display import Display, optional
+from ..show.picture import Picture
 from . import sampling
 from .simulate import Duty, duty_file
 from .sweep_file import Column, Store, words, work_file, write_table
