@@ -290,19 +290,8 @@ def table_of(case: MapCase, points: np.ndarray, kept: np.ndarray) -> str:
             rough = Lambda is not None and case.mu_boundary is not None
             mu = float(mixed_friction(Lambda, mu_fluid, case.mu_boundary)) if rough else None
             films, rest = (h_c, h_min), (mu_fluid, Lambda, carried, mu, p_max)
-        cells = [
-            F,
-            u_m,
-            T - 273.15,
-            eta_0,
-            alpha_p,
-            *films,
-            formula,
-            *rest,
-            OK if found == FOUND else WRONG[found][0],
-            *constant,
-        ]
-        rows.append(cells)
+        status = OK if found == FOUND else WRONG[found][0]
+        rows.append([F, u_m, T - 273.15, eta_0, alpha_p, *films, formula, *rest, status, *constant])
     return rows_text((column.name for column in COLUMNS), rows)
 
 

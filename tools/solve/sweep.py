@@ -255,15 +255,10 @@ class Summary:
 
     def outputs(self) -> Iterator[tuple[str, str, str, list[float]]]:
         """Path, unit and meaning of each output, with its least, mean and largest value."""
-        for i, name in enumerate(self.plan.job.outputs):
+        means = self.sum / max(self.count, 1)
+        for name, *numbers in zip(self.plan.job.outputs, self.low, means, self.high, strict=True):
             q = self.plan.flat.quantity(name)
-            numbers = (self.low[i], self.sum[i] / max(self.count, 1), self.high[i])
-            yield (
-                name,
-                shown(q.unit),
-                q.doc,
-                [from_si(float(v), q.unit) for v in numbers] if self.count else [np.nan] * 3,
-            )
+            yield name, shown(q.unit), q.doc, [from_si(float(v), q.unit) if self.count else np.nan for v in numbers]
 
     def as_dict(self, out: Path | None) -> dict[str, Any]:
         """The summary as an object.
