@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +14,7 @@ from ...model.parts.shaft import Efficiency
 from ...model.units import from_si
 from ..csv_table import Column, Table, parse, raise_all
 from ..scenario import Scenario
-from .power import efficiency, loss, shaft_powers
+from .nominal import efficiency, shaft_powers
 from .sensors import SI
 from .study import Measured
 from .table import Sensor
@@ -65,29 +64,23 @@ def simulated(scenario: Scenario, paths: Mapping[str, str], values: Mapping[str,
     return row | {column: sum(values[p] for p in summed) for column, summed in scenario.losses.items()}
 
 
-@dataclass(frozen=True)
-class Losses:
-    """What the measured torques and speeds say (n,): loss power, loss torque at the first shaft, efficiency."""
+def measured_losses(study: Measured) -> dict[str, np.ndarray]:
+    """Columns of measured losses (n,), from all shafts' powers, as in `LOSSES`: the torque is that at the first shaft.
 
-    P: np.ndarray
-    tau: np.ndarray
-    eta: np.ndarray
-
-
-def measured_losses(study: Measured) -> Losses | None:
-    """Losses of the measured rows, from all shafts' powers; None where a torque or all speeds are missing."""
+    There are none where a torque or all speeds are missing.
+    """
     powers = shaft_powers(study.campaign, study.nominal)
     if powers is None or not (parts := study.scenario.spec.of_type(Efficiency.__name__)):
-        return None
+        return {}
     nets = [net for net in study.scenario.spec.connections if f"{parts[0]}.a" in net]
     first = next((end for end in powers if any(f"{end}.reading" in net for net in nets)), None)
     if first is None:
-        return None
+        return {}
     given = next(s for s in study.campaign.sensors if s.kind == "speed")
     ratio = study.nominal.ratios[first] / study.nominal.ratios[given.reads.partition(".")[0]]
     w = np.abs(study.campaign.values[given.name] * ratio)
-    P = loss(powers)
-    return Losses(P, P / np.where(w > 0, w, np.nan), efficiency(powers))
+    P = np.asarray(sum(powers.values()))
+    return {"loss_Nm": P / np.where(w > 0, w, np.nan), "P_loss_W": P, "efficiency": efficiency(powers)}
 
 
 def measured_rows(study: Measured) -> list[dict[str, Any]]:
@@ -96,8 +89,7 @@ def measured_rows(study: Measured) -> list[dict[str, Any]]:
     rows: list[dict[str, Any]] = []
     for k in range(c.n):
         read = {column_of(s): _shown(s, c.values[s.name][k]) for s in study.warm}
-        if lost is not None:
-            read |= {"loss_Nm": float(lost.tau[k]), "P_loss_W": float(lost.P[k]), "efficiency": float(lost.eta[k])}
+        read |= {name: float(values[k]) for name, values in lost.items()}
         row: dict[str, Any] = {ROOM: _shown(study.rooms[0], c.values[study.rooms[0].name][k])} if study.rooms else {}
         row |= {f"{name}_meas": value for name, value in read.items()}
         row |= {"grid": c.mounting[c.test[k]] or None} | {name: values[k] for name, values in points.items()}

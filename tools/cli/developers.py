@@ -12,7 +12,6 @@ from ..show import console
 from .options import Json, Rig, Tests
 
 
-@console.guarded
 def bench(
     rig: Rig,
     tests: Tests = None,
@@ -34,7 +33,6 @@ def bench(
     bench.command(rig, tests, json, next((name for name, given in asked.items() if given), "job"), draws)
 
 
-@console.guarded
 def docs(
     context: typer.Context,
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the web site.")],

@@ -18,7 +18,7 @@ from ...model.run.rows import evaluate
 from ...model.run.steady import steady, steady_table
 from ...scenarios.entries import catalogue
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
-from ...scenarios.measured.oils import bath_of
+from ...scenarios.measured.lubrication import bath_of
 from ...scenarios.measured.readings import about
 from ...scenarios.measured.study import Measured, measured_of
 from ...scenarios.scenario import Scenario
@@ -89,13 +89,14 @@ def losses(
     scenario = adjusted(scenario, [*assignments_of(set, scenario.settable), *chosen])
     if not scenario.losses:
         raise ScenarioError(f"{scenario.path.name}: there is no table [losses]. Say which outputs each column sums.")
-    study = measured_of(scenario, data, card)
+    study, flat = measured_of(scenario, data, card), flat_of(scenario)
     at_point: dict[str, Any] = {}
     if study:
         rows = at_readings(study, temperature)
     else:
-        row, outside = at_operating_point(scenario)
-        rows, at_point = [row], {"outside": outside}
+        result = steady(flat, conditions(scenario, flat))
+        rows = [{c: float(sum(result[path][0] for path in paths)) for c, paths in scenario.losses.items()}]
+        at_point = {"outside": outside_of(result)}
     found: dict[str, Any] = {
         "schema": "gearheat.losses/1",
         "rig": scenario.name,
@@ -105,7 +106,7 @@ def losses(
         },
         "rows": rows,
         **at_point,
-        "unchecked": unchecked(scenario, flat_of(scenario), oils_of(study)),
+        "unchecked": unchecked(scenario, flat, oils_of(study)),
     }
     cycle = contacts_at_operating_point(scenario) if contacts else None
     if cycle is not None:
@@ -171,14 +172,6 @@ def held(
     y = evaluate(flat, x.reshape(len(flat.states), -1), u, p)["y"]
     groups = ((flat.outputs, y), (flat.inputs, u), (flat.parameters, p))
     return {q.name: line for quantities, lines in groups for q, line in zip(quantities, lines, strict=True)}
-
-
-def at_operating_point(scenario: Scenario) -> tuple[dict[str, Any], list[dict[str, Any]]]:
-    """The losses at the rig's operating point and the steady temperatures there, and the laws outside their range."""
-    flat = flat_of(scenario)
-    result = steady(flat, conditions(scenario, flat))
-    row = {c: float(sum(result[path][0] for path in paths)) for c, paths in scenario.losses.items()}
-    return row, outside_of(result)
 
 
 def contacts_at_operating_point(scenario: Scenario) -> ContactTable:
