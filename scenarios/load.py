@@ -45,7 +45,7 @@ from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
 from .own_parts import installed_types, own_type
 from .repeats import expanded
-from .scenario import Instrument, Protocol, Scenario
+from .scenario import Erratum, Instrument, Protocol, Scenario
 from .shipped import RIGS, list_rigs
 from .tables import RigTable, validate
 from .values import (
@@ -178,7 +178,7 @@ class _Loader:
             units={f"{name}.{key}": unit for name, part in parts.items() for key, unit in part.units.items()},
             overrides=tuple(o for part in parts.values() for o in part.overrides),
             entries={name: part.entries for name, part in parts.items() if part.entries},
-            errata=tuple(self.table.errata),
+            errata=tuple(Erratum(**e.model_dump()) for e in self.table.errata),
             protocol=protocol,
             data=data,
             reproduces=self.table.reproduces,

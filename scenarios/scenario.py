@@ -14,7 +14,7 @@ from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.machines.spec import Spec
 from .entries import Entry, catalogue, unchecked_entry
 from .shipped import FILES
-from .tables import DrivenTable, ErratumTable
+from .tables import DrivenTable
 from .values import Override, entry_values, in_range, quantities, readable, settable
 
 
@@ -44,6 +44,16 @@ class Instrument:
     signs: tuple[float, float] | None = None
     repeat_sd: float | None = None
     offset_sd: float | None = None
+
+
+@dataclass(frozen=True)
+class Erratum:
+    """One place where the source of a rig is wrong, and how we know."""
+
+    place: str
+    says: str
+    should_be: str
+    evidence: str
 
 
 @dataclass(frozen=True)
@@ -101,7 +111,7 @@ class Scenario:
     units: Mapping[str, str] = field(default_factory=dict)
     overrides: tuple[Override, ...] = ()
     entries: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    errata: tuple[ErratumTable, ...] = ()
+    errata: tuple[Erratum, ...] = ()
     protocol: Protocol | None = None
     data: Path | None = None
     reproduces: str = ""
