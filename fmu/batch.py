@@ -23,15 +23,14 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import ScenarioError, suggestion
 from ..model.run.audit import SLACK
 from ..model.run.schedule import Schedule
-from .batch_library import BESIDE, Duty, address, driver, instructions, rows_from, shared, widened
-from .batch_relations import broken_relations, relations_source
-from .batch_source import EXTRA, steady_source, warmup_source
+from .batch_library import BESIDE, Duty, address, broken_relations, driver, instructions, rows_from, shared, widened
+from .batch_source import EXTRA, relations_source, steady_source, warmup_source
 from .grid import Grid, grid
 
 #: Of the local error of a warm-up, in nominals of the states.
 TOLERANCE = 1e-4
 
-#: Steps of a warm-up between two points of its schedule or output.
+#: Steps of a warm-up between two points of its schedule or output; a row that needs more is stopped.
 MOST_STEPS = 1_000_000
 
 #: Steady states that a thread takes at a time. The results do not depend on it.
@@ -107,14 +106,13 @@ class Batch:
 
     Args:
         flat: the model
-        most_steps: of a warm-up between two points of its schedule or output; a row that needs more is stopped
     """
 
-    def __init__(self, flat: FlatModel, most_steps: int = MOST_STEPS) -> None:
+    def __init__(self, flat: FlatModel) -> None:
         self.name = flat.name
         self.states, self.inputs, self.parameters = flat.states, flat.inputs, flat.parameters
         self.outputs, self.relations = flat.outputs, flat.relations
-        self._flat, self._most_steps = flat, most_steps
+        self._flat = flat
         self._limits = [_limits(group) for group in (self.inputs, self.parameters, self.states)]
 
     @cached_property
@@ -125,7 +123,7 @@ class Batch:
     @cached_property
     def warmup_source(self) -> str:
         """The C text for warm-ups."""
-        return warmup_source(self._flat, self._most_steps)
+        return warmup_source(self._flat, MOST_STEPS)
 
     @cached_property
     def relations_source(self) -> str:

@@ -153,6 +153,20 @@ def rows_from(vectors: Sequence[np.ndarray], first: int) -> list[int]:
     return [number for array, stride in pairs for number in (address(array), stride)]
 
 
+def broken_relations(source: str, p: np.ndarray) -> np.ndarray:
+    """Place of the first relation that does not hold in each row, -1 where all do.
+
+    Args:
+        source: of `batch_source.relations_source`
+        p: parameters (n, parameters), or a vector
+    """
+    rows = np.ascontiguousarray(np.atleast_2d(p), dtype=float)
+    broken = np.full(len(rows), -1, dtype=np.int32)
+    if source:
+        driver("batch_relations", source)(len(rows), address(rows), rows.shape[1], address(broken))
+    return broken
+
+
 def shared(block: Callable[[int, int], int], n: int, size: int, threads: int) -> None:
     """Do n rows in blocks on some threads; ctypes lets go of the interpreter while C runs.
 

@@ -3,15 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from importlib.resources import files
-from itertools import pairwise
 from typing import Any
 
 import casadi as ca
 
 from ..model.core.flat import FlatModel
 from . import emit, rosenbrock
-from .equations import equations
+from .equations import equations, full, hoist
+from .fixed import wrapper
 from .source import defined, newton_constants
 from .variables import table
 
@@ -40,17 +39,17 @@ def steady_source(flat: FlatModel) -> str:
     places = jacobian.sparsity().get_triplet()
     inner = ca.densify(ca.jacobian(flat.residual, flat.z))
     y = ca.vertcat(flat.y, flat.supply, flat.throughput, outside, implicit)
-    parts, given, c_values = _hoisted([whole, jacobian.nz[:], y, flat.residual, inner[:]], ca.vertcat(flat.u, flat.p))
+    parts, given, c_values = hoist([whole, jacobian.nz[:], y, flat.residual, inner[:]], ca.vertcat(flat.u, flat.p))
     whole, entries, y, residual, inner = parts
-    (c_values,), fixed, k_values = _hoisted([c_values], flat.p)
+    (c_values,), fixed, k_values = hoist([c_values], flat.p)
     place, names = [flat.x, flat.z, flat.u, flat.p, ca.vertcat(fixed, given)], list("xzupc")
     functions = [
-        _function("fixed", [flat.p], ["p"], [k_values], ["k"]),
-        _function("given", [flat.u, flat.p, fixed], ["u", "p", "k"], [c_values], ["c"]),
-        _function("rates", place, names, [whole], ["r"]),
-        _function("equations", place, names, [whole, entries], ["r", "entries"]),
-        _function("algebra", place, names, [residual, inner], ["r", "J"]),
-        _function("outputs", place, names, [y], ["y"]),
+        full("fixed", [flat.p], [k_values], ["p"], ["k"]),
+        full("given", [flat.u, flat.p, fixed], [c_values], ["u", "p", "k"], ["c"]),
+        full("rates", place, [whole], names, ["r"]),
+        full("equations", place, [whole, entries], names, ["r", "entries"]),
+        full("algebra", place, [residual, inner], names, ["r", "J"]),
+        full("outputs", place, [y], names, ["y"]),
     ]
     nk = fixed.numel()
     sizes = {**_sizes(flat), "NYR": y.numel(), "NK": nk, "NC": nk + given.numel(), "NJ": entries.numel()}
@@ -60,6 +59,23 @@ def steady_source(flat: FlatModel) -> str:
     beside = [emit.function(f, "lanes_", "lanes") for f in functions if f.name() not in ("fixed", "rates")]
     generated = [*_ranges(flat), *pattern, *map(emit.function, functions), *beside]
     return _text(sizes, ["batch.h", "lanes.h"], generated, ["newton.c", "batch_steady.c", "batch_straight.c"])
+
+
+def relations_source(flat: FlatModel) -> str:
+    """The C text that judges rows of parameters; nothing where the model has no relations.
+
+    Raises:
+        FmuError: an operation has no C text
+    """
+    if not flat.relations:
+        return ""
+    limits = {"low": [r.low for r in flat.relations], "high": [r.high for r in flat.relations]}
+    ends = [
+        f"static const double model_relation_{end}[] = {{{', '.join(map(emit.number, numbers))}}};"
+        for end, numbers in limits.items()
+    ]
+    above = [f"#define N_RELATIONS {len(flat.relations)}", wrapper("batch.h")]
+    return "\n".join([*above, *ends, emit.function(flat.relation_function), wrapper("batch_relations.c")])
 
 
 def warmup_source(flat: FlatModel, most_steps: int) -> str:
@@ -75,42 +91,21 @@ def warmup_source(flat: FlatModel, most_steps: int) -> str:
     model = equations(flat)
     x_new, z_new, error, slope, h = rosenbrock.step(model.ode, model.residual, model.x, model.z, model.u, METHOD)
     inner = ca.densify(ca.jacobian(model.residual, model.z))
-    parts, c, c_values = _hoisted([x_new, z_new, error[:-1], model.y, model.ode, model.residual, inner[:]], model.p)
+    parts, c, c_values = hoist([x_new, z_new, error[:-1], model.y, model.ode, model.residual, inner[:]], model.p)
     x_new, z_new, error, y, ode, residual, inner = parts
     place, names = [model.x, model.z, model.u, model.p, c], list("xzupc")
-    step = _function(
-        "step",
-        [model.x, model.z, model.u, slope, model.p, c, h],
-        ["x", "z", "u", "slope", "p", "c", "h"],
-        [x_new, z_new, error],
-        ["x_new", "z_new", "error"],
-    )
+    inputs, names_in = [model.x, model.z, model.u, slope, model.p, c, h], ["x", "z", "u", "slope", "p", "c", "h"]
+    step = full("step", inputs, [x_new, z_new, error], names_in, ["x_new", "z_new", "error"])
     functions = [
-        emit.function(_function("constants", [model.p], ["p"], [c_values], ["c"])),
+        emit.function(full("constants", [model.p], [c_values], ["p"], ["c"])),
         emit.function(step, "lanes_", "lanes"),
-        emit.function(_function("algebra", place, names, [residual, inner], ["r", "J"])),
-        emit.function(_function("outputs", place, names, [y, ode], ["y", "dx"])),
+        emit.function(full("algebra", place, [residual, inner], names, ["r", "J"])),
+        emit.function(full("outputs", place, [y, ode], names, ["y", "dx"])),
     ]
     sizes = {**_sizes(flat), "NX": ode.numel(), "NY": y.numel(), "NC": c.numel()}
     sizes |= {"ORDER": METHOD.order, "MAX_STEPS": most_steps}
     drivers = ["newton.c", "batch_instance.h", "trial.c", "batch_warmup.c"]
     return _text(sizes, ["batch.h", "lanes.h"], [*_ranges(flat), *functions], drivers)
-
-
-def _hoisted(parts: Sequence[Any], given: Any) -> tuple[list[Any], Any, Any]:
-    """Columns without what depends on the symbols `given` alone; new symbols for that; and that."""
-    columns = [ca.densify(ca.SX(part)) for part in parts]
-    ends = [0]
-    for column in columns:
-        ends.append(ends[-1] + column.numel())
-    rest, symbols, values = ca.extract_parametric(ca.cse(ca.vertcat(*columns)), given)
-    rest = ca.cse(rest)
-    cut = [rest[a:b] for a, b in pairwise(ends)]
-    return cut, ca.vertcat(ca.SX(0, 1), *symbols), ca.vertcat(ca.SX(0, 1), *values)
-
-
-def _function(name: str, inputs: list[Any], names_in: list[str], outputs: list[Any], names_out: list[str]) -> Any:
-    return ca.Function(name, inputs, [ca.densify(o) for o in outputs], names_in, names_out, {"cse": True})
 
 
 def _sizes(flat: FlatModel) -> dict[str, int]:
@@ -125,11 +120,7 @@ def _sizes(flat: FlatModel) -> dict[str, int]:
 
 def _text(sizes: Mapping[str, Any], above: Sequence[str], generated: Sequence[str], below: Sequence[str]) -> str:
     """Sizes, the fixed text above the generated tables and functions, these, and the fixed text below them."""
-    return "\n".join([defined({**sizes, **newton_constants()}), *map(_fixed, above), *generated, *map(_fixed, below)])
-
-
-def _fixed(name: str) -> str:
-    return (files("gearheat.fmu") / "wrapper" / name).read_text(encoding="utf-8")
+    return "\n".join([defined({**sizes, **newton_constants()}), *map(wrapper, above), *generated, *map(wrapper, below)])
 
 
 def _ranges(flat: FlatModel) -> list[str]:

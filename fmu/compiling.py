@@ -11,14 +11,14 @@ import tempfile
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import dataclass
-from importlib import resources
+from dataclasses import dataclass, replace
 from importlib.metadata import version
 from pathlib import Path
 from types import MappingProxyType
 
 from ..model.errors import FmuError, suggestion
 from ..model.files import replacing
+from .fixed import tables, wrapper
 
 
 @dataclass(frozen=True)
@@ -30,44 +30,18 @@ class Platform:
     targets: tuple[str, ...]
 
 
-#: Linux with an old C library: newer ones would bind exp, log and pow to versions a user may not have.
-_LINUX = "x86_64-linux-gnu.2.17"
-#: The same for ARM.
-_LINUX_ARM = "aarch64-linux-gnu.2.17"
-#: An old macOS: without a version the library asks for the newest that the compiler knows.
-_MAC = "x86_64-macos.11.0"
-#: The same for ARM; its first macOS.
-_MAC_ARM = "aarch64-macos.11.0"
+def _platforms(version: str) -> dict[str, Platform]:
+    rows = tables("platforms")[version].items()
+    return {name: Platform(name, suffix, tuple(targets)) for name, (suffix, *targets) in rows}
 
-#: The platforms of FMI 2.0, with one that only 3.0 has a name for, and those of 3.0, by name.
-PLATFORMS = {
-    p.name: p
-    for p in (
-        Platform("linux64", ".so", (_LINUX,)),
-        Platform("win64", ".dll", ("x86_64-windows-gnu",)),
-        Platform("win32", ".dll", ("x86-windows-gnu",)),
-        Platform("darwin64", ".dylib", (_MAC, _MAC_ARM)),
-        Platform("aarch64-linux", ".so", (_LINUX_ARM,)),
-    )
-}
-PLATFORMS_3 = {
-    p.name: p
-    for p in (
-        Platform("x86_64-linux", ".so", (_LINUX,)),
-        Platform("aarch64-linux", ".so", (_LINUX_ARM,)),
-        Platform("x86_64-windows", ".dll", ("x86_64-windows-gnu",)),
-        Platform("x86_64-darwin", ".dylib", (_MAC,)),
-        Platform("aarch64-darwin", ".dylib", (_MAC_ARM,)),
-    )
-}
 
-#: What the names of FMI 2.0 mean in 3.0, which names processors.
-_NAMES_IN_3 = {
-    "linux64": ("x86_64-linux",),
-    "win64": ("x86_64-windows",),
-    "darwin64": ("x86_64-darwin", "aarch64-darwin"),
-}
+#: The platforms of FMI 2.0 by name.
+PLATFORMS = _platforms("fmi2")
+#: Those of FMI 3.0.
+PLATFORMS_3 = _platforms("fmi3")
 
+#: How much the compiler optimises.
+OPTIMISE = "-O2"
 #: Any change makes the compiler rebuild its run-time libraries.
 CODE = ("-g0", "-fPIC", "-fvisibility=hidden", "-fno-sanitize=all", "-ffp-contract=off", "-std=c99")
 LINK = ("-s", "-shared")
@@ -79,14 +53,14 @@ _SYSTEM = tuple(f"-lapi-ms-win-crt-{name}-l1-1-0" for name in ("math", "heap", "
 #: Compilers that run at once, whoever asks.
 _AT_ONCE = threading.BoundedSemaphore(os.cpu_count() or 1)
 
-#: Told what long work has done or is at, and how much of all is done.
+#: Called with what long work does or has done, and the share of all work that is done.
 Progress = Callable[[str, float], None]
 
 
 def host_platform() -> Platform:
     """The platform this program runs on."""
     if host.system() == "Linux" and host.machine() == "aarch64":
-        return Platform("linux64", ".so", (_LINUX_ARM,))
+        return replace(PLATFORMS["aarch64-linux"], name="linux64")
     return PLATFORMS[{"Windows": "win64", "Darwin": "darwin64"}.get(host.system(), "linux64")]
 
 
@@ -111,7 +85,7 @@ def platforms(choice: str, fmi: int = 2) -> tuple[Platform, ...]:
         return tuple(names_of.values())
     names = [own.name if name.strip() == "host" else name.strip() for name in choice.split(",")]
     if fmi == 3:
-        names = [of_3 for name in names for of_3 in _NAMES_IN_3.get(name, (name,))]
+        names = [of_3 for name in names for of_3 in tables("platforms")["in_3"].get(name, (name,))]
     known = ("host", "all", *names_of)
     unknown = [n for n in names if n not in names_of]
     if unknown:
@@ -130,32 +104,30 @@ def cache_folder() -> Path:
     return Path.home() / ".cache" / "gearheat"
 
 
-def binary(
-    source: str, platform: Platform, *, optimise: str = "-O2", headers: Mapping[str, str] = MappingProxyType({})
-) -> bytes:
+def binary(source: str, platform: Platform, *, headers: Mapping[str, str] = MappingProxyType({})) -> bytes:
     """The shared library of a C source; the same source is compiled once only.
 
     Args:
         source: the C text
         platform: the platform of FMI to compile for
-        optimise: option of the compiler
         headers: name -> text of files beside the source
 
     Raises:
         FmuError: the compiler is missing or fails, or the cache cannot be written
     """
     key = hashlib.sha256()
-    named = (platform.name, *platform.targets, optimise, *FLAGS, *_SYSTEM, version("ziglang"))
-    for part in (source, *headers.values(), _windows(), *named):
+    windows = wrapper("windows.c")
+    named = (platform.name, *platform.targets, OPTIMISE, *FLAGS, *_SYSTEM, version("ziglang"))
+    for part in (source, *headers.values(), windows, *named):
         key.update(part.encode() + b"\0")
     stored = cache_folder() / "binaries" / f"{key.hexdigest()}{platform.suffix}"
     try:
         return stored.read_bytes()
     except OSError:
         pass
-    files = {"all.c": source, "windows.c": _windows(), **headers}
+    files = {"all.c": source, "windows.c": windows, **headers}
     with ThreadPoolExecutor(len(platform.targets)) as pool:
-        made = _join(list(pool.map(lambda target: _compile(files, target, optimise), platform.targets)))
+        made = _join(list(pool.map(lambda target: _compile(files, target), platform.targets)))
     store(stored, made)
     return made
 
@@ -166,17 +138,13 @@ def together(build: Callable[[Platform], bytes], platforms: Sequence[Platform], 
     Args:
         build: makes the binary of one platform
         platforms: of which
-        progress: told after each
+        progress: called after each
     """
     with ThreadPoolExecutor(len(platforms)) as pool:
         jobs = {pool.submit(build, platform): platform.name for platform in platforms}
         for number, job in enumerate(as_completed(jobs), 1):
             progress(f"compiled for {jobs[job]}", number / len(jobs))
     return {name: job.result() for job, name in jobs.items()}
-
-
-def _windows() -> str:
-    return (resources.files("gearheat.fmu") / "wrapper" / "windows.c").read_text(encoding="utf-8")
 
 
 def store(path: Path, content: bytes) -> None:
@@ -199,23 +167,23 @@ def store(path: Path, content: bytes) -> None:
         ) from error
 
 
-def _compile(files: Mapping[str, str], target: str, optimise: str) -> bytes:
+def _compile(files: Mapping[str, str], target: str) -> bytes:
     environment = dict(os.environ)
     for variable, folder in (("ZIG_GLOBAL_CACHE_DIR", "global"), ("ZIG_LOCAL_CACHE_DIR", "local")):
         environment.setdefault(variable, str(cache_folder() / "zig" / folder))
     with tempfile.TemporaryDirectory() as folder, _AT_ONCE:
         for name, text in files.items():
             Path(folder, name).write_text(text, encoding="utf-8")
-        for command in _commands(target, optimise):
+        for command in _commands(target):
             _run([sys.executable, "-m", "ziglang", "cc", "-target", target, *command], target, folder, environment)
         return Path(folder, "library").read_bytes()
 
 
-def _commands(target: str, optimise: str) -> list[list[str]]:
+def _commands(target: str) -> list[list[str]]:
     """What the compiler is asked for, one after the other."""
     if "windows" not in target:
-        return [[optimise, *FLAGS, "-o", "library", "all.c", "-lm"]]
-    objects = [[optimise, *CODE, "-c", "-o", f"{name}.o", f"{name}.c"] for name in ("all", "windows")]
+        return [[OPTIMISE, *FLAGS, "-o", "library", "all.c", "-lm"]]
+    objects = [[OPTIMISE, *CODE, "-c", "-o", f"{name}.o", f"{name}.c"] for name in ("all", "windows")]
     return [*objects, [*LINK, "-nostdlib", "-o", "library", "all.o", "windows.o", *_SYSTEM]]
 
 

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-import xml.etree.ElementTree as ET
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from datetime import datetime
 from importlib.metadata import PackageNotFoundError, version
@@ -19,34 +18,13 @@ from ..model.errors import FmuError
 from . import units
 from .choices import Choice
 from .equations import Equations
+from .fixed import tables, xml
 from .variables import Table, Variable
 
 #: Relative tolerance when the importer gives none: an error of one step is at most this times the nominal.
 TOLERANCE = 1e-5
 #: What an importer does when nothing is asked: four hours, most of a warm-up, in steps of a minute.
-EXPERIMENT = {"startTime": "0.0", "stopTime": "14400.0", "stepSize": "60.0"}
-
-LOG_CATEGORIES = {
-    "logStatusError": "why a call was refused",
-    "logStatusDiscard": "why a step or a value could not be computed",
-    "logStatusWarning": "law arguments outside the range their source gives, once each",
-    "logSolver": "internal steps of each communication step",
-}
-
-_CAPABILITIES = {
-    "needsExecutionTool": "false",
-    "canBeInstantiatedOnlyOncePerProcess": "false",
-    "canNotUseMemoryManagementFunctions": "true",
-    "canGetAndSetFMUstate": "true",
-    "canSerializeFMUstate": "true",
-    "providesDirectionalDerivative": "true",
-}
-_CO_SIMULATION = {
-    "canHandleVariableCommunicationStepSize": "true",
-    "canInterpolateInputs": "true",
-    "maxOutputDerivativeOrder": "1",
-    "canRunAsynchronuously": "false",
-}
+EXPERIMENT: Mapping[str, str] = tables("description")["experiment"]
 
 
 def identifier(name: str) -> str:
@@ -156,6 +134,7 @@ def description(
     *,
     owner: Owner = Owner(),
     with_sources: bool = True,
+    fmi: int = 2,
 ) -> bytes:
     """modelDescription.xml.
 
@@ -167,18 +146,40 @@ def description(
         dependent: the result of `dependencies`, computed when not given
         owner: what its owner says of it
         with_sources: whether the FMU holds its sources
+        fmi: version of the standard, 2 or 3
     """
     dependent = dependent or dependencies(model, table)
-    named = {"fmiVersion": "2.0", "modelName": flat.name, "guid": guid}
-    told = {**origin(flat), "numberOfEventIndicators": "0", **owner.attributes}
-    root = ET.Element("fmiModelDescription", {**named, **told})
-    _interfaces(root, identifier(flat.name), with_sources, exchange=not table.of("deviation"))
-    circumstances(root, table, _types)
-    variables = ET.SubElement(root, "ModelVariables")
-    for variable in table:
-        _scalar_variable(variables, variable)
-    _model_structure(root, table, dependent)
-    return xml(root)
+    first = 1 if fmi == 2 else 0  # variables are told by their number in 2.0, by their reference in 3.0
+    key, identification = ("index", "guid") if fmi == 2 else ("valueReference", "instantiationToken")
+
+    def unknown(variable: Variable, on: Iterable[int]) -> dict[str, Any]:
+        return {key: variable.reference + first, "dependencies": " ".join(str(r + first) for r in on)}
+
+    named = {"fmiVersion": f"{fmi}.0", "modelName": flat.name, identification: guid, **origin(flat)}
+    step = unknowns(table, dependent.step)
+    outputs = [(v, (v.reference,)) for v in table.of("state")] + [(v, on) for v, on in step if v.kind != "derivative"]
+    structure = {
+        "Outputs": outputs,
+        "Derivatives": [(v, on) for v, on in step if v.kind == "derivative"],
+        "InitialUnknowns": unknowns(table, dependent.initial),
+    }
+    return xml(
+        f"fmi{fmi}.xml",
+        root={**named, **({"numberOfEventIndicators": "0"} if fmi == 2 else {}), **owner.attributes},
+        with_sources=with_sources,
+        variables=[(v.type, identity(v), values(v, first)) for v in table],
+        structure={name: [unknown(v, on) for v, on in group] for name, group in structure.items()},
+        **circumstances(flat, table, fmi),
+    )
+
+
+def build_description(name: str) -> bytes:
+    """buildDescription.xml of FMI 3.0: how the source becomes a library.
+
+    Args:
+        name: of the model
+    """
+    return xml("build.xml", identifier=identifier(name))
 
 
 def origin(flat: FlatModel) -> dict[str, str]:
@@ -187,41 +188,29 @@ def origin(flat: FlatModel) -> dict[str, str]:
     return told | {"variableNamingConvention": "structured"}
 
 
-def circumstances(
-    root: ET.Element, table: Table, types: Callable[[ET.Element, list[str], Sequence[Choice]], None], *also: str
-) -> None:
-    """Units, types, log categories and the experiment an importer runs when nothing is asked.
+def circumstances(flat: FlatModel, table: Table, fmi: int) -> dict[str, Any]:
+    """What every description tells beside its variables: interfaces, units, types, log categories, an experiment.
+
+    With standard deviations there is no model exchange: their sensitivities move with the solver inside.
 
     Args:
-        root: the description, where they are added
-        table: the variables
-        types: adds the types of variables of some units, by these units, and of choices
-        also: units used beside those of the variables
+        flat: the model, for its name
+        table: its variables
+        fmi: version of the standard, 2 or 3
     """
-    used = {*also, *(v.quantity.unit for v in table if v.type == "Real")}
-    _unit_definitions(root, used)
-    measured, choices = sorted(used & units.QUANTITIES.keys()), [v.choice for v in table if v.choice]
-    if measured or choices:
-        types(ET.SubElement(root, "TypeDefinitions"), measured, choices)
-    categories = ET.SubElement(root, "LogCategories")
-    for name, text in LOG_CATEGORIES.items():
-        ET.SubElement(categories, "Category", name=name, description=text)
-    ET.SubElement(root, "DefaultExperiment", {**EXPERIMENT, "tolerance": repr(TOLERANCE)})
-
-
-def xml(root: ET.Element) -> bytes:
-    """The text of a file with one element for people to read."""
-    ET.indent(root)
-    text = ET.tostring(root, encoding="unicode")
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{text}\n'.encode()
-
-
-def _types(definitions: ET.Element, measured: list[str], choices: Sequence[Choice]) -> None:
-    for unit in measured:
-        told = type_of(unit)
-        ET.SubElement(ET.SubElement(definitions, "SimpleType", name=told.pop("name")), "Real", told)
-    for choice in choices:
-        items(ET.SubElement(ET.SubElement(definitions, "SimpleType", name=type_name(choice)), "Enumeration"), choice)
+    own = tables("description")[f"fmi{fmi}"]
+    kinds = {} if table.of("deviation") else {"ModelExchange": own["model_exchange"]}
+    told = {"modelIdentifier": identifier(flat.name), **own["capabilities"]}
+    real = [v.quantity for v in table if v.type == "Real"]
+    also = ("s",) if fmi == 3 else ()
+    return {
+        "interfaces": {kind: told | more for kind, more in (kinds | {"CoSimulation": own["co_simulation"]}).items()},
+        "units": units.units_of(real, *also),
+        "types": [type_of(unit) for unit in sorted({*also, *(q.unit for q in real)} & units.QUANTITIES.keys())],
+        "choices": {type_name(v.choice): _items(v.choice) for v in table if v.choice},
+        "log_categories": tables("description")["log_categories"],
+        "experiment": {**EXPERIMENT, "tolerance": TOLERANCE},
+    }
 
 
 def type_name(choice: Choice) -> str:
@@ -229,15 +218,8 @@ def type_name(choice: Choice) -> str:
     return f"{choice.name}.Choice"
 
 
-def items(enumeration: ET.Element, choice: Choice) -> None:
-    """Add the items of a choice to its type.
-
-    Args:
-        enumeration: the type, where they are added
-        choice: what offers them
-    """
-    for value, item in enumerate(choice.items, 1):
-        ET.SubElement(enumeration, "Item", name=item.name, value=str(value), description=item.doc)
+def _items(choice: Choice) -> list[dict[str, Any]]:
+    return [{"name": item.name, "value": k, "description": item.doc} for k, item in enumerate(choice.items, 1)]
 
 
 def type_of(unit: str) -> dict[str, str]:
@@ -245,38 +227,6 @@ def type_of(unit: str) -> dict[str, str]:
     quantity = units.QUANTITIES[unit]
     told = {"name": quantity, "quantity": quantity, "unit": units.fmi_unit(unit)}
     return told | ({"relativeQuantity": "true"} if units.is_difference(unit) else {})
-
-
-def _interfaces(root: ET.Element, name: str, with_sources: bool, exchange: bool) -> None:
-    """With standard deviations there is no model exchange: their sensitivities move with the solver inside."""
-    own = {"modelIdentifier": name, **_CAPABILITIES}
-    if exchange:
-        ET.SubElement(root, "ModelExchange", {**own, "completedIntegratorStepNotNeeded": "true"})
-    ET.SubElement(root, "CoSimulation", {**own, **_CO_SIMULATION})
-    for interface in list(root) if with_sources else ():
-        ET.SubElement(ET.SubElement(interface, "SourceFiles"), "File", name="all.c")
-
-
-def _unit_definitions(root: ET.Element, used: Iterable[str]) -> None:
-    definitions = ET.SubElement(root, "UnitDefinitions")
-    for name in sorted({units.fmi_unit(unit) for unit in used}):
-        defined = units.unit(name)
-        element = ET.SubElement(definitions, "Unit", name=name)
-        if defined.exponents is not None:
-            base = {b: str(e) for b, e in defined.exponents.items()}
-            if defined.factor != 1:
-                base["factor"] = repr(defined.factor)
-            ET.SubElement(element, "BaseUnit", base)
-        for shown in defined.shown:
-            about = {"name": shown.name, "factor": repr(shown.factor), "offset": repr(shown.offset)}
-            ET.SubElement(element, "DisplayUnit", about)
-
-
-def _scalar_variable(variables: ET.Element, variable: Variable) -> None:
-    element = ET.SubElement(variables, "ScalarVariable", identity(variable))
-    real = ET.SubElement(element, variable.type, values(variable))
-    if variable.state is not None:
-        real.set("derivative", str(variable.state + 1))
 
 
 def identity(variable: Variable) -> dict[str, str]:
@@ -291,8 +241,13 @@ def identity(variable: Variable) -> dict[str, str]:
     return told | ({"initial": variable.initial} if variable.initial else {})
 
 
-def values(variable: Variable) -> dict[str, str]:
-    """The attributes that say which values a variable takes: unit, range, typical size and start value."""
+def values(variable: Variable, first: int = 0) -> dict[str, Any]:
+    """The attributes that say which values a variable takes: unit, range, typical size, start value, its integral.
+
+    Args:
+        variable: of the table
+        first: number of the first variable
+    """
     q = variable.quantity
     if variable.choice:
         return {"declaredType": type_name(variable.choice), "start": str(int(q.start))}
@@ -300,7 +255,7 @@ def values(variable: Variable) -> dict[str, str]:
         ends = (("min", math.ceil, variable.bounds[0]), ("max", math.floor, variable.bounds[1]))
         return {key: str(whole(end)) for key, whole, end in ends if math.isfinite(end)} | {"start": str(int(q.start))}
     unit = units.fmi_unit(q.unit)
-    told = {"declaredType": units.QUANTITIES[q.unit]} if q.unit in units.QUANTITIES else {}
+    told: dict[str, Any] = {"declaredType": units.QUANTITIES[q.unit]} if q.unit in units.QUANTITIES else {}
     told["unit"] = unit
     if units.is_difference(q.unit):
         told["relativeQuantity"] = "true"
@@ -312,7 +267,7 @@ def values(variable: Variable) -> dict[str, str]:
         told["nominal"] = repr(float(q.nominal))
     if variable.start is not None:
         told["start"] = repr(float(variable.start))
-    return told
+    return told if variable.state is None else told | {"derivative": variable.state + first}
 
 
 def _meaning(variable: Variable) -> str:
@@ -320,18 +275,6 @@ def _meaning(variable: Variable) -> str:
     part, dot, _ = variable.name.rpartition(".")
     doc = variable.quantity.doc  # of a derivative and of a standard deviation it names the part
     return doc if not dot or variable.kind in ("derivative", "deviation") else f"{part}: {doc}"
-
-
-def _model_structure(root: ET.Element, table: Table, dependent: Dependencies) -> None:
-    structure = ET.SubElement(root, "ModelStructure")
-    outputs, derivatives = ET.SubElement(structure, "Outputs"), ET.SubElement(structure, "Derivatives")
-    for state in table.of("state"):
-        _unknown(outputs, state, [state.reference])
-    for variable, on in unknowns(table, dependent.step):
-        _unknown(derivatives if variable.kind == "derivative" else outputs, variable, on)
-    initial = ET.SubElement(structure, "InitialUnknowns")
-    for variable, on in unknowns(table, dependent.initial):
-        _unknown(initial, variable, on)
 
 
 def unknowns(table: Table, dependent: Sequence[tuple[int, ...]]) -> list[tuple[Variable, tuple[int, ...]]]:
@@ -347,11 +290,3 @@ def unknowns(table: Table, dependent: Sequence[tuple[int, ...]]) -> list[tuple[V
     on = {v.reference: references for v, references in zip(own, dependent, strict=True)}
     deviations = [(v, on.get(v.of, ()) if v.of is not None else ()) for v in table.of("deviation")]
     return [*((v, on[v.reference]) for v in own), *deviations]
-
-
-def _unknown(parent: ET.Element, variable: Variable, on: Iterable[int]) -> None:
-    attributes: dict[str, Any] = {
-        "index": str(variable.reference + 1),
-        "dependencies": " ".join(str(r + 1) for r in on),
-    }
-    ET.SubElement(parent, "Unknown", attributes)

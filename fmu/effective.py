@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from itertools import accumulate
 from typing import Any
 
 import casadi as ca
@@ -38,9 +39,7 @@ def effective(flat: FlatModel, start: Mapping[str, float] | None = None) -> Flat
     symbols = {i: ca.SX.sym(flat.parameters[i].name) for i in kept}
     new = [symbols.get(i, ca.SX(values[q.name])) for i, q in enumerate(flat.parameters)]
     column = ca.substitute(column, ca.vertcat(*old), ca.vertcat(*new))
-    sizes = [0]
-    for part in parts:
-        sizes.append(sizes[-1] + ca.SX(part).numel())
+    sizes = [0, *accumulate(ca.SX(part).numel() for part in parts)]
     ode, y, residual, supply, throughput, stored, checked, related = ca.vertsplit(column, sizes)
     return replace(
         flat,

@@ -5,91 +5,19 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
+from functools import cache
 from typing import Any, NamedTuple
 
 import casadi as ca
 
 from ..model.errors import FmuError
+from .fixed import tables, wrapper
 
-#: C text of each scalar operation, by the name of CasADi's code.
-_OPERATIONS = {
-    "ASSIGN": "{0}",
-    "ADD": "{0}+{1}",
-    "SUB": "{0}-{1}",
-    "MUL": "{0}*{1}",
-    "DIV": "{0}/{1}",
-    "NEG": "-{0}",
-    "EXP": "exp({0})",
-    "LOG": "log({0})",
-    "POW": "pow({0},{1})",
-    "CONSTPOW": "pow({0},{1})",
-    "SQRT": "sqrt({0})",
-    "SQ": "{0}*{0}",
-    "TWICE": "{0}+{0}",
-    "SIN": "sin({0})",
-    "COS": "cos({0})",
-    "TAN": "tan({0})",
-    "ASIN": "asin({0})",
-    "ACOS": "acos({0})",
-    "ATAN": "atan({0})",
-    "LT": "{0}<{1}",
-    "LE": "{0}<={1}",
-    "EQ": "{0}=={1}",
-    "NE": "{0}!={1}",
-    "NOT": "{0}==0",
-    "AND": "{0}!=0&&{1}!=0",
-    "OR": "{0}!=0||{1}!=0",
-    "FLOOR": "floor({0})",
-    "CEIL": "ceil({0})",
-    "FMOD": "fmod({0},{1})",
-    "FABS": "fabs({0})",
-    "SIGN": "({0}>0)-({0}<0)",
-    "COPYSIGN": "copysign({0},{1})",
-    "IF_ELSE_ZERO": "{0}!=0?{1}:0",
-    "ERF": "erf({0})",
-    "FMIN": "fmin({0},{1})",
-    "FMAX": "fmax({0},{1})",
-    "INV": "1/{0}",
-    "SINH": "sinh({0})",
-    "COSH": "cosh({0})",
-    "TANH": "tanh({0})",
-    "ASINH": "asinh({0})",
-    "ACOSH": "acosh({0})",
-    "ATANH": "atanh({0})",
-    "ATAN2": "atan2({0},{1})",
-    "LOG1P": "log1p({0})",
-    "EXPM1": "expm1({0})",
-    "HYPOT": "hypot({0},{1})",
-    "LIFT": "{0}",
-}
-#: Where the text for vectors is more than the same with the functions of wrapper/lanes.h.
-_OF_LANES = {
-    "LT": "lanes_true({0}<{1})",
-    "LE": "lanes_true({0}<={1})",
-    "EQ": "lanes_true({0}=={1})",
-    "NE": "lanes_true({0}!={1})",
-    "NOT": "lanes_true({0}==0)",
-    "AND": "lanes_true(({0}!=0)&({1}!=0))",
-    "OR": "lanes_true(({0}!=0)|({1}!=0))",
-    "SIGN": "lanes_true({0}>0)-lanes_true({0}<0)",
-    "IF_ELSE_ZERO": "lanes_only({0}!=0,{1})",
-}
 #: Statements up to which a function stays whole. The work of a compiler on one function grows faster than its length,
 #: above all the search for operations that vector instructions can do at once.
 WHOLE = 15_000
 #: Statements of each piece of a longer function.
 PIECE = 250
-#: Keeps a function from being put into the one that calls it.
-_APART = """#ifndef APART
-#if defined(__GNUC__)
-#define APART __attribute__((noinline))
-#elif defined(_MSC_VER)
-#define APART __declspec(noinline)
-#else
-#define APART
-#endif
-#endif
-"""
 _FUNCTION_CALL = re.compile(r"^(?=[a-z])")
 
 
@@ -97,14 +25,14 @@ def _by_code(operations: Mapping[str, str]) -> dict[int, str]:
     return {getattr(ca, f"OP_{name}"): text for name, text in operations.items() if hasattr(ca, f"OP_{name}")}
 
 
-#: Type of the numbers -> text of a constant, and of each operation by code.
-_TEXTS = {
-    "double": ("{0}", _by_code(_OPERATIONS)),
-    "lanes": (
-        "lanes_all({0})",
-        _by_code({name: _FUNCTION_CALL.sub("lanes_", text) for name, text in _OPERATIONS.items()} | _OF_LANES),
-    ),
-}
+@cache
+def _texts(kind: str) -> tuple[str, dict[int, str]]:
+    """For a type of numbers the text of a constant, and of each operation by code."""
+    own: dict[str, str] = tables("operations")["double"]
+    if kind == "double":
+        return "{0}", _by_code(own)
+    calls = {name: _FUNCTION_CALL.sub("lanes_", text) for name, text in own.items()}
+    return "lanes_all({0})", _by_code(calls | tables("operations")["lanes"])
 
 
 def number(value: float) -> str:
@@ -167,7 +95,7 @@ def _in_pieces(
     pieces = [lines[k : k + piece] for k in range(0, len(lines), piece)]
     taken, handed = _crossing(pieces, set(arguments))
     place = {variable: k for k, variable in enumerate(sorted(set().union(*taken)))}
-    texts, calls = [_APART], []
+    texts, calls = [wrapper("apart.h")], []
     for k, inner in enumerate(pieces):
         body = _with_transfers(inner, taken[k], handed[k], place)
         used = {word for line in body for word in line.reads}
@@ -258,7 +186,7 @@ def _operands(f: Any, kind: int) -> Iterator[tuple[int, list[int]]]:
 def _instruction(
     f: Any, k: int, shared: Mapping[int, tuple[str, bool]], powers: Mapping[int, tuple[str, bool]], kind: str
 ) -> list[_Line]:
-    constant, texts = _TEXTS[kind]
+    constant, texts = _texts(kind)
     code, inputs, outputs = f.instruction_id(k), f.instruction_input(k), f.instruction_output(k)
     if code == ca.OP_OUTPUT:
         array, value = f.name_out(outputs[0]), f"a{inputs[0]}"

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from itertools import accumulate, pairwise
 from typing import Any
 
 import casadi as ca
@@ -46,14 +47,8 @@ class Equations:
         x_new, z_new, error, slope, h = rosenbrock.step(ode, residual, self.x, self.z, self.u)
         parts = {"ode": ode, "residual": residual, "jacobian": ca.densify(ca.jacobian(residual, self.z))[:], "y": y}
         parts |= {"checked": checked, "x_new": x_new, "z_new": z_new, "error": error[:-1] if self.audit else error}
-        sizes = [0]
-        for part in parts.values():
-            sizes.append(sizes[-1] + part.shape[0])
-        whole = ca.cse(ca.densify(ca.vertcat(*parts.values())))
-        whole, symbols, constants = ca.extract_parametric(whole, self.p)
-        whole = ca.cse(whole)
-        found = {name: whole[a:b] for name, (a, b) in zip(parts, pairwise(sizes), strict=True)}
-        return found, ca.vertcat(ca.SX(0, 1), *symbols), ca.vertcat(ca.SX(0, 1), *constants), (slope, h)
+        cut, symbols, constants = hoist(list(parts.values()), self.p)
+        return dict(zip(parts, cut, strict=True)), symbols, constants, (slope, h)
 
     def _of_point(self, name: str, results: dict[str, str]) -> Any:
         """(x, z, u, p, c) -> some of the results, by the names they get."""
@@ -157,6 +152,21 @@ class Equations:
     def adjoint_functions(self) -> tuple[Any, ...]:
         """Those that FMI 3.0 needs besides."""
         return (self.adjoint, self.constants_adjoint)
+
+
+def hoist(parts: Sequence[Any], given: Any) -> tuple[list[Any], Any, Any]:
+    """Columns without what depends on the symbols `given` alone; new symbols for that; and that.
+
+    Args:
+        parts: SX columns
+        given: SX symbols
+    """
+    columns = [ca.densify(ca.SX(part)) for part in parts]
+    ends = [0, *accumulate(column.numel() for column in columns)]
+    rest, symbols, values = ca.extract_parametric(ca.cse(ca.vertcat(*columns)), given)
+    rest = ca.cse(rest)
+    cut = [rest[a:b] for a, b in pairwise(ends)]
+    return cut, ca.vertcat(ca.SX(0, 1), *symbols), ca.vertcat(ca.SX(0, 1), *values)
 
 
 def full(name: str, inputs: list[Any], outputs: list[Any], names_in: list[str], names_out: list[str]) -> Any:

@@ -33,14 +33,14 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from ..model.core.flat import FlatModel
-from . import fmi3_description, fmi3_source
+from . import fmi3_source
 from .choices import Choice, reduced, start_choice
 from .compiling import Platform, Progress, binary, platforms, store, together
-from .description import Owner, dependencies, description, identifier
+from .description import Owner, build_description, dependencies, description, identifier
 from .documentation import About, PartText, documentation
 from .effective import effective
 from .equations import equations
-from .icon import icon
+from .fixed import icon
 from .leading import Directions, Uncertain, leading
 from .metadata import metadata
 from .parameter_set import parameter_set
@@ -95,7 +95,7 @@ def export(
         choices: its enumerations: how a run begins, the oils; values of parameters that it does not have go
         uncertain: what makes standard deviations, which co-simulation alone has
         others: further parameter sets, and a run that an importer can repeat
-        progress: told what is done, and how much of the compiling
+        progress: called with what is done, and the share of the compiling
 
     Raises:
         FmuError: a start value is wrong, nothing uncertain has an effect, the compiler or writing the file fails
@@ -131,7 +131,7 @@ def _binaries(name: str, code: str, chosen: Sequence[Platform], fmi: int, progre
 
 def _of_fmi_3(name: str, variables: Table, with_sources: bool) -> dict[str, bytes]:
     """The files that FMI 3.0 has besides, or in another place."""
-    built = {"sources/buildDescription.xml": fmi3_description.build_description(name)} if with_sources else {}
+    built = {"sources/buildDescription.xml": build_description(name)} if with_sources else {}
     return {
         "terminalsAndIcons/terminalsAndIcons.xml": terminals(variables),
         "terminalsAndIcons/icon.png": icon(),
@@ -168,10 +168,9 @@ def _code(
     model = equations(flat, variables.audit)
     directions = None if uncertain is None else leading(flat, model, variables, uncertain.reasons)
     code, dependent = source(flat, model, variables, fmi, directions), dependencies(model, variables)
-    if fmi == 3:
-        without_guid = fmi3_description.description(flat, variables, GUID_MARK, dependent, owner)
-    else:
-        without_guid = description(flat, model, variables, GUID_MARK, dependent, owner=owner, with_sources=with_sources)
+    without_guid = description(
+        flat, model, variables, GUID_MARK, dependent, owner=owner, with_sources=with_sources, fmi=fmi
+    )
     guid = _guid(code.encode() + without_guid)
     return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode()), directions
 

@@ -5,69 +5,16 @@ from __future__ import annotations
 import re
 from importlib.resources import files
 
+from .fixed import tables
+
 #: Before the source of a shared library, whose functions have the names of the standard.
 OF_LIBRARY = "#define FMI3_OVERRIDE_FUNCTION_PREFIX\n"
 
 #: The standard's headers; an importer that compiles the source brings its own.
 _HEADERS = ("fmi3PlatformTypes.h", "fmi3FunctionTypes.h", "fmi3Functions.h")
 
-WRAPPER = (
-    "fmi3_callbacks.h",
-    "instance.h",
-    "fmi3_messages.c",
-    "messages.c",
-    "newton.c",
-    "choices.c",
-    "evaluate.c",
-    "trial.c",
-    "certain.c",
-    "solver.c",
-    "beginning.c",
-    "fmi3_modes.c",
-    "common.c",
-    "states.c",
-    "derivatives.c",
-    "cosimulation.c",
-    "exchange.c",
-    "fmi3_life.c",
-    "fmi3_values.c",
-    "fmi3_absent.c",
-)
-
-#: Functions of FMI 2.0 that a function of 3.0 with other arguments calls, and what they are called there.
-_INNER = {
-    "fmi2Instantiate": "instantiate",
-    "fmi2SetupExperiment": "set_up",
-    "fmi2EnterInitializationMode": "enter_initialization",
-    "fmi2ExitInitializationMode": "exit_initialization",
-    "fmi2GetReal": "get_values",
-    "fmi2SetReal": "set_values",
-    "fmi2DoStep": "do_step",
-    "fmi2GetDirectionalDerivative": "directional",
-    "fmi2GetRealOutputDerivatives": "output_derivatives",
-}
-_DEFINITION = re.compile(rf"^(fmi2\w+) ({'|'.join(_INNER)})\(", re.MULTILINE)
-
-#: Words of FMI 2.0 whose counterpart in 3.0 is more than another number.
-_WORDS = {
-    "fmi2CallbackFunctions": "Callbacks",
-    "fmi2Type": "Interface",
-    "fmi2ModelExchange": "MODEL_EXCHANGE",
-    "fmi2CoSimulation": "CO_SIMULATION",
-    "fmi2Component": "fmi3Instance",
-    "fmi2Real": "fmi3Float64",
-    "fmi2Integer": "fmi3Int32",
-    "fmi2SetupExperiment": "fmi3EnterInitializationMode",
-    "fmi2GetReal": "fmi3GetFloat64",
-    "fmi2SetReal": "fmi3SetFloat64",
-    "fmi2GetDerivatives": "fmi3GetContinuousStateDerivatives",
-    "fmi2GetRealOutputDerivatives": "fmi3GetOutputDerivatives",
-}
-_SAID = {
-    "wrong GUID": "wrong instantiation token",
-    '"step complete"': '"step mode"',
-    '"step failed"': '"step mode, the last step refused"',
-}
+_TABLES = tables("wrapper")
+_DEFINITION = re.compile(rf"^(fmi2\w+) ({'|'.join(_TABLES['inner'])})\(", re.MULTILINE)
 
 
 def headers() -> dict[str, str]:
@@ -92,12 +39,13 @@ def in_words_of_3(text: str) -> str:
     Args:
         text: of the file; one that is of FMI 3.0 stays as it is
     """
-    text = _DEFINITION.sub(lambda found: f"static {found[1]} {_INNER[found[2]]}(", text)
-    for said, instead in _SAID.items():
+    text = _DEFINITION.sub(lambda found: f"static {found[1]} {_TABLES['inner'][found[2]]}(", text)
+    for said, instead in _TABLES["said"].items():
         text = text.replace(said, instead)
     return re.sub(r"\bfmi2\w+", _word, text)
 
 
 def _word(found: re.Match[str]) -> str:
     word = found[0]
-    return _WORDS.get(word) or f"fmi3{word[4:]}".replace("FMUstate", "FMUState").replace("DeSerialize", "Deserialize")
+    other = f"fmi3{word[4:]}".replace("FMUstate", "FMUState").replace("DeSerialize", "Deserialize")
+    return str(_TABLES["words"].get(word, other))

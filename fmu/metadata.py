@@ -6,11 +6,11 @@ SRMD is the format of SSP Traceability for metadata of one file: classifications
 from __future__ import annotations
 
 import hashlib
-import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 
 from ..model.core.flat import FlatModel
-from .description import tool, xml
+from .description import tool
+from .fixed import xml
 from .units import fmi_unit
 
 SRMD = "http://ssp-standard.org/SSPTraceability1/SimulationResourceMetaData"
@@ -33,29 +33,17 @@ def metadata(
     checksum = hashlib.sha3_256(parameters).hexdigest().upper()
     spaces = {"xmlns:srmd": SRMD, "xmlns:stc": STC}
     about = {"data": source, "checksum": checksum, "checksumType": "SHA3-256"}
-    root = ET.Element("srmd:SimulationResourceMetaData", {**spaces, **told, **about})
     named = {q.name: fmi_unit(q.unit) for q in flat.parameters}
     known = {name: value for name, value in uncertainties.items() if name in named}
-    _classification(root, "org.gearheat.source", {name: text for name, text in sources.items() if name in named})
-    _classification(
-        root,
-        "org.gearheat.standard-uncertainty",
-        {name: f"{value!r} {named[name]}".removesuffix(" 1") for name, value in known.items()},
-    )
-    _classification(
-        root,
-        "org.gearheat.law",
-        {
+    classifications = {
+        "org.gearheat.source": {name: text for name, text in sources.items() if name in named},
+        "org.gearheat.standard-uncertainty": {
+            name: f"{value!r} {named[name]}".removesuffix(" 1") for name, value in known.items()
+        },
+        "org.gearheat.law": {
             law.name: f"{law.source}, {law.where}; valid for: {law.valid or 'not said'}; "
             f"{'' if law.verified else 'not '}compared with printed numbers"
             for law in flat.laws
         },
-    )
-    return xml(root)
-
-
-def _classification(root: ET.Element, kind: str, entries: Mapping[str, str]) -> None:
-    if entries:
-        parent = ET.SubElement(root, "stc:Classification", type=kind)
-        for keyword, text in entries.items():
-            ET.SubElement(parent, "stc:ClassificationEntry", keyword=keyword).text = text
+    }
+    return xml("metadata.srmd", root={**spaces, **told, **about}, classifications=classifications)

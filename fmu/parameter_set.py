@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from collections.abc import Iterable, Mapping
+from typing import Any
 
 from ..model.core.flat import Quantity
-from . import units
 from .description import tool
+from .fixed import xml
+from .units import fmi_unit, unit, units_of
 
 SSV = "http://ssp-standard.org/SSP1/SystemStructureParameterValues"
 SSC = "http://ssp-standard.org/SSP1/SystemStructureCommon"
@@ -38,17 +39,15 @@ def parameter_set(
         uncertainties: name -> standard uncertainty of the value, in the unit of the value
     """
     chosen = tuple(quantities)
-    root = ET.Element(
-        "ssv:ParameterSet",
-        {"xmlns:ssv": SSV, "xmlns:ssc": SSC, "version": "1.0", "name": name, "description": doc},
-        generationTool=tool(),
+    spaces = {"xmlns:ssv": SSV, "xmlns:ssc": SSC, "version": "1.0"}
+    return xml(
+        "parameters.ssv",
+        root={**spaces, "name": name, "description": doc, "generationTool": tool()},
+        parameters=[(q, _value(q), _origin(q.name, sources or {}, uncertainties or {})) for q in chosen],
+        provenance=PROVENANCE,
+        kind="ssv",
+        units=units_of(chosen),
     )
-    parameters = ET.SubElement(root, "ssv:Parameters")
-    for q in chosen:
-        _parameter(parameters, q, (sources or {}).get(q.name), (uncertainties or {}).get(q.name))
-    define_units(root, "ssv:Units", chosen)
-    ET.indent(root)
-    return f'<?xml version="1.0" encoding="UTF-8"?>\n{ET.tostring(root, encoding="unicode")}\n'.encode()
 
 
 def kind_of(source: str) -> str:
@@ -57,37 +56,18 @@ def kind_of(source: str) -> str:
     return kind if kind in _KINDS else "cited"
 
 
-def _parameter(parent: ET.Element, q: Quantity, source: str | None, uncertainty: float | None) -> None:
-    element = ET.SubElement(parent, "ssv:Parameter", name=q.name, description=q.doc)
-    unit = units.fmi_unit(q.unit)
+def _value(q: Quantity) -> dict[str, Any]:
+    """A value with its unit; one that is not understood has no place in the file, and its values go without."""
     if q.whole:
-        ET.SubElement(element, "ssv:Integer", value=str(int(q.start)))
-    else:
-        known = {"unit": unit} if units.unit(unit).exponents is not None else {}
-        ET.SubElement(element, "ssv:Real", {"value": repr(float(q.start)), **known})
-    said = {} if source is None else {"kind": kind_of(source), "source": source}
-    if uncertainty is not None:
-        said["standardUncertainty"] = repr(float(uncertainty))
-    if said:
-        annotation = ET.SubElement(ET.SubElement(element, "ssv:Annotations"), "ssc:Annotation", type=PROVENANCE)
-        ET.SubElement(annotation, "provenance", {"xmlns": PROVENANCE_SPACE, **said})
+        return {"value": int(q.start)}
+    known = unit(fmi_unit(q.unit))
+    return {"value": float(q.start), "unit": known.name if known.exponents is not None else None}
 
 
-def define_units(root: ET.Element, tag: str, quantities: Iterable[Quantity]) -> None:
-    """Add the units that values refer to; one that is not understood has no place here, and its values go without.
-
-    Args:
-        root: of the file
-        tag: name of the element that holds units there
-        quantities: what has units
-    """
-    defined = [units.unit(name) for name in sorted({units.fmi_unit(q.unit) for q in quantities})]
-    known = [(unit, unit.exponents) for unit in defined if unit.exponents is not None]
-    if not known:
-        return
-    parent = ET.SubElement(root, tag)
-    for unit, exponents in known:
-        base = {name: str(exponent) for name, exponent in exponents.items()}
-        if unit.factor != 1:
-            base["factor"] = repr(unit.factor)
-        ET.SubElement(ET.SubElement(parent, "ssc:Unit", name=unit.name), "ssc:BaseUnit", base)
+def _origin(name: str, sources: Mapping[str, str], uncertainties: Mapping[str, float]) -> dict[str, Any]:
+    """Where a value is from, and how uncertain it is."""
+    source = sources.get(name)
+    said: dict[str, Any] = {} if source is None else {"kind": kind_of(source), "source": source}
+    if name in uncertainties:
+        said["standardUncertainty"] = float(uncertainties[name])
+    return {"xmlns": PROVENANCE_SPACE, **said} if said else {}

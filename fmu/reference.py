@@ -21,7 +21,6 @@ def write_reference(
     stop: float,
     step: float,
     *,
-    record: Sequence[str] | None = None,
     folder: Path | None = None,
 ) -> tuple[Path, Path, Path]:
     """Play an FMU at a tight tolerance and write inputs, result and options beside it, for whoever imports it.
@@ -31,7 +30,6 @@ def write_reference(
         inputs: name -> (times [s], values), linear between the points, a time given twice is a jump
         stop: end [s]; the run begins at 0
         step: time between the rows of the result [s]
-        record: variables of the result; all outputs and inputs when not given
         folder: where to write; beside the FMU when not given
 
     Returns:
@@ -41,7 +39,7 @@ def write_reference(
         FmuError: the FMU or the inputs are refused, or a file cannot be written
     """
     fmu = Path(fmu)
-    played = play(fmu, inputs, stop, step, record=record, tolerance=TOLERANCE)
+    played = play(fmu, inputs, stop, step, tolerance=TOLERANCE)
     options = {
         "StartTime": 0.0,
         "StopTime": float(stop),

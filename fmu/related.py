@@ -7,23 +7,15 @@ specification of the Modelica Association, metadata in SRMD of SSP Traceability.
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 
-from .description import xml
+from .fixed import xml
 
 FOLDER = "extra/org.fmi-standard.fmi-ls-ref"
 PARAMETERS = f"{FOLDER}/parameters.ssv"
 MANIFEST = f"{FOLDER}/fmi-ls-manifest.xml"
 
-_MANIFEST = "http://fmi-standard.org/fmi-ls-manifest"
-_IDENTITY = {
-    "xmlns:fmi-ls": _MANIFEST,
-    "fmi-ls:fmi-ls-name": "org.fmi-standard.fmi-ls-ref",
-    "fmi-ls:fmi-ls-version": "1.0.0-alpha.1",
-    "fmi-ls:fmi-ls-description": "Layered Standard providing information on related files included in an FMU.",
-}
 _SET = "application/x-ssp-parameter-set"
 
 
@@ -69,46 +61,27 @@ def related(parameters: bytes, metadata: bytes, others: Related = Related()) -> 
         metadata: SRMD of that set
         others: what goes with it besides
     """
-    root = ET.Element("fmiReferences", _IDENTITY)
+    entries: list[tuple[dict[str, str], str]] = []
     files: dict[str, bytes] = {}
 
-    def add(source: str, content: bytes, kind: str, role: str, doc: str) -> ET.Element:
+    def add(source: str, content: bytes, kind: str, role: str, doc: str, label: str = "") -> None:
         files[f"{FOLDER}/{source}"] = content
-        return _listed(root, source, kind, role, doc)
+        entries.append(({"type": kind, "source": source, "role": role, "description": doc}, label))
 
     add("parameters.ssv", parameters, _SET, "parameter", _VALUES)
     for name, content in others.sets.items():
-        doc = f"Values of {name} in place of the start values"
-        entry = add(f"sets/{name.replace(' ', '_')}.ssv", content, _SET, "parameter", doc)
-        ET.SubElement(entry, "Label", name=f"variant:{name}")
+        doc, source = f"Values of {name} in place of the start values", f"sets/{name.replace(' ', '_')}.ssv"
+        add(source, content, _SET, "parameter", doc, f"variant:{name}")
     if (run := others.experiment) is not None:
-        add("experiments.exp", _experiments(run), "application/x-ma-hs-experiments", "experiment/smoke-test", run.doc)
+        told = xml("experiments.exp", run=run)
+        add("experiments.exp", told, "application/x-ma-hs-experiments", "experiment/smoke-test", run.doc)
         add("reference_in.csv", run.stimuli.encode(), "text/csv", "other", "Inputs of the experiment over time, SI")
         add("reference_ref.csv", run.results.encode(), "text/csv", "result", "Results of the experiment, SI")
     add("parameters.srmd", metadata, "application/x-srmd-meta-data", "meta-data", _ORIGIN)
-    _listed(root, "../../documentation/index.html", "text/html", "document", _PAGE)
-    return {MANIFEST: xml(root), **files}
+    page = {"type": "text/html", "source": "../../documentation/index.html", "role": "document", "description": _PAGE}
+    return {MANIFEST: xml("manifest.xml", entries=[*entries, (page, "")]), **files}
 
 
 _VALUES = "Start values of all parameters, with the source of each and its standard uncertainty where one is stated"
 _ORIGIN = "Sources and standard uncertainties of the parameters, and the laws with their sources and validity"
 _PAGE = "Purpose, variables, laws with their sources and validity, and how the FMU was verified"
-
-
-def _listed(root: ET.Element, source: str, kind: str, role: str, doc: str) -> ET.Element:
-    return ET.SubElement(root, "Related", {"type": kind, "source": source, "role": role, "description": doc})
-
-
-def _experiments(run: Experiment) -> bytes:
-    root = ET.Element("Experiments", name=run.name, description=run.doc)
-    about = {"name": run.name, "description": run.doc, "tolerance": repr(run.tolerance)}
-    experiment = ET.SubElement(root, "Experiment", about)
-    times = {"startTime": "0.0", "stopTime": repr(run.stop), "stepSize": repr(run.step)}
-    ET.SubElement(experiment, "TransientSimulation", times)
-    for what, source in (
-        ("Parameters", "parameters.ssv"),
-        ("Stimuli", "reference_in.csv"),
-        ("References", "reference_ref.csv"),
-    ):
-        ET.SubElement(experiment, what, source=source)
-    return xml(root)

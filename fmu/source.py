@@ -16,6 +16,7 @@ from . import emit, fmi3_source
 from .choices import ROOM, START, STEADY
 from .description import TOLERANCE, identifier
 from .equations import Equations
+from .fixed import tables, wrapper
 from .leading import Directions, shown
 from .rosenbrock import RODAS3
 from .sensitivity import Sensitivities
@@ -23,45 +24,11 @@ from .units import fmi_unit
 from .variables import Table
 
 _HEADERS = ("fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h")
-_WRAPPER = (
-    "instance.h",
-    "fmi2_messages.c",
-    "messages.c",
-    "newton.c",
-    "choices.c",
-    "evaluate.c",
-    "trial.c",
-    "certain.c",
-    "solver.c",
-    "beginning.c",
-    "fmi2_modes.c",
-    "fmi2_platform.c",
-    "common.c",
-    "fmi2_types.c",
-    "states.c",
-    "derivatives.c",
-    "fmi2_slopes.c",
-    "cosimulation.c",
-    "fmi2_status.c",
-    "fmi2_events.c",
-    "exchange.c",
-)
-
 _NOTICE = "Copyright (c) 2026, the gearheat developers. SPDX-License-Identifier: BSD-3-Clause"
 
 #: FMPy's copy of the header lacks what the standard's has: names that begin with FMI2_FUNCTION_PREFIX, so that several
 #: FMUs can be linked into one program.
 _NAME = "\n#define fmi2FullName(name) name\n"
-_PREFIXED_NAME = """
-#if defined(FMI2_FUNCTION_PREFIX) && !defined(FMI2_OVERRIDE_FUNCTION_PREFIX)
-#define fmi2Paste(a,b) a ## b
-#define fmi2PasteB(a,b) fmi2Paste(a,b)
-#define fmi2FullName(name) fmi2PasteB(FMI2_FUNCTION_PREFIX, name)
-#else
-#define fmi2FullName(name) name
-#endif
-"""
-
 #: Types of variables, one bit each as instance.h has them.
 _TYPES = {"Real": 1, "Integer": 2, "Enumeration": 4}
 
@@ -87,13 +54,14 @@ def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, direct
     functions = model.functions if fmi == 2 else (*model.functions, *model.adjoint_functions)
     if directions is not None:
         functions += Sensitivities(model, directions.count, directions.moving, shown(table)).functions
-    tables = [_sizes(flat, model, table, directions), _tables(flat, table), _directions(directions)]
-    generated = "\n".join([*tables, *map(emit.function, functions)])
-    texts = [_wrapper_file(name, directions) for name in (_WRAPPER if fmi == 2 else fmi3_source.WRAPPER)]
+    values = [_sizes(flat, model, table, directions), _tables(flat, table), _directions(directions)]
+    generated = "\n".join([*values, *map(emit.function, functions)])
+    instead = {} if directions is None else _UNCERTAIN
+    texts = [wrapper(instead.get(name, name)) for name in tables("wrapper")["files"][f"fmi{fmi}"]]
     if fmi == 2:
         return "\n".join([head, _fmi_headers(), generated, *texts])
-    wrapper = map(fmi3_source.in_words_of_3, texts)
-    return "\n".join([head, fmi3_source.included(identifier(flat.name)), generated, *wrapper])
+    included = fmi3_source.included(identifier(flat.name))
+    return "\n".join([head, included, generated, *map(fmi3_source.in_words_of_3, texts)])
 
 
 def _fmi_headers() -> str:
@@ -101,12 +69,7 @@ def _fmi_headers() -> str:
     folder = files("fmpy") / "c-code"
     texts = [(folder / name).read_text(encoding="utf-8") for name in _HEADERS]
     whole = "\n".join(re.sub(r'#include "fmi2\w+\.h"\n', "", text.replace("\r\n", "\n")) for text in texts)
-    return whole.replace(_NAME, _PREFIXED_NAME)
-
-
-def _wrapper_file(name: str, directions: Directions | None) -> str:
-    name = name if directions is None else _UNCERTAIN.get(name, name)
-    return (files("gearheat.fmu") / "wrapper" / name).read_text(encoding="utf-8")
+    return whole.replace(_NAME, wrapper("fmi2_names.h"))
 
 
 def _sizes(flat: FlatModel, model: Equations, table: Table, directions: Directions | None) -> str:

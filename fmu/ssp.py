@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
-from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from ..model.core.flat import Quantity
-from .description import tool, xml
+from .description import tool
 from .export import archive
-from .parameter_set import SSC, define_units
-from .units import fmi_unit
+from .fixed import xml
+from .parameter_set import SSC
+from .units import fmi_unit, units_of
 
 SSD = "http://ssp-standard.org/SSP1/SystemStructureDescription"
 
@@ -66,30 +65,17 @@ def structure(system: System) -> bytes:
         system: the FMUs and their connections
     """
     spaces = {"xmlns:ssd": SSD, "xmlns:ssc": SSC, "version": "1.0", "name": system.name, "generationTool": tool()}
-    root = ET.Element("ssd:SystemStructureDescription", spaces)
-    top = ET.SubElement(root, "ssd:System", name=system.name, description=system.doc)
-    if system.inputs:
-        _connectors(top, system.inputs, ())
-    elements = ET.SubElement(top, "ssd:Elements")
-    for element in system.elements:
-        told = {"name": element.name, "description": element.doc, "source": _source(element)}
-        kind = {"type": "application/x-fmu-sharedlibrary", "implementation": "CoSimulation"}
-        _connectors(ET.SubElement(elements, "ssd:Component", {**told, **kind}), element.inputs, element.outputs)
-    connections = ET.SubElement(top, "ssd:Connections")
-    for start, end in system.connections:
-        ends = {"startElement": start[0], "startConnector": start[1], "endElement": end[0], "endConnector": end[1]}
-        ET.SubElement(connections, "ssd:Connection", {key: text for key, text in ends.items() if text is not None})
-    define_units(root, "ssd:Units", [q for e in system.elements for q in (*e.inputs, *e.outputs)])
-    ET.SubElement(root, "ssd:DefaultExperiment", startTime="0.0", stopTime=repr(system.stop))
-    return xml(root)
-
-
-def _connectors(parent: ET.Element, inputs: Sequence[Quantity], outputs: Iterable[Quantity]) -> None:
-    connectors = ET.SubElement(parent, "ssd:Connectors")
-    for kind, quantities in (("input", inputs), ("output", outputs)):
-        for q in quantities:
-            connector = ET.SubElement(connectors, "ssd:Connector", name=q.name, kind=kind, description=q.doc)
-            ET.SubElement(connector, "ssc:Real", unit=fmi_unit(q.unit))
+    keys = ("startElement", "startConnector", "endElement", "endConnector")
+    return xml(
+        "structure.ssd",
+        root=spaces,
+        system=system,
+        connections=[dict(zip(keys, (*start, *end), strict=True)) for start, end in system.connections],
+        source_of=_source,
+        unit_of=fmi_unit,
+        kind="ssd",
+        units=units_of([q for e in system.elements for q in (*e.inputs, *e.outputs)]),
+    )
 
 
 def _source(element: Element) -> str:

@@ -7,12 +7,11 @@ temperature with the heat flow rate `P.Q_flow` that follows, which counts out of
 
 from __future__ import annotations
 
-import xml.etree.ElementTree as ET
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from .description import xml
-from .variables import Table, Variable
+from .fixed import xml
+from .variables import Table
 
 
 @dataclass(frozen=True)
@@ -27,8 +26,8 @@ class _Terminal:
     name: str
     kind: str
     doc: str
-    potential: Variable
-    flow: Variable
+    potential: str
+    flow: str
     members: tuple[str, str]
     inflow: bool
 
@@ -39,16 +38,7 @@ def terminals(table: Table) -> bytes:
     Args:
         table: the variables of the FMU
     """
-    root = ET.Element("fmiTerminalsAndIcons", fmiVersion="3.0")
-    drawn = ET.SubElement(root, "GraphicalRepresentation")
-    corners = {"x1": "-100", "y1": "-100", "x2": "100", "y2": "100"}
-    ET.SubElement(drawn, "CoordinateSystem", {**corners, "suggestedScalingFactorTo_mm": "0.1"})
-    ET.SubElement(drawn, "Icon", corners)
-    if found := list(_found(table)):
-        parent = ET.SubElement(root, "Terminals")
-        for terminal in found:
-            _terminal(parent, terminal)
-    return xml(root)
+    return xml("terminals.xml", terminals=list(_found(table)))
 
 
 def _found(table: Table) -> Iterator[_Terminal]:
@@ -57,18 +47,10 @@ def _found(table: Table) -> Iterator[_Terminal]:
     for (name, unit), v in known.items():
         path, _, last = name.rpartition(".")
         if (last, unit) == ("w", "rad/s") and (tau := known.get((f"{path}.tau", "N.m"))):
-            yield _Terminal(path, "org.gearheat.Flange", "shaft end", v, tau, ("w", "tau"), True)
+            yield _Terminal(path, "org.gearheat.Flange", "shaft end", name, tau.name, ("w", "tau"), True)
         if (last, unit) == ("T", "K"):
             given, follows = (known.get((f"{path}.{flow}", "W")) for flow in ("Q_flow_external", "Q_flow"))
             flow = follows if v.kind == "input" else given
             if flow is not None:
-                yield _Terminal(path, "org.gearheat.HeatPort", "heat port", v, flow, ("T", "Q_flow"), v.kind != "input")
-
-
-def _terminal(parent: ET.Element, t: _Terminal) -> None:
-    told = {"name": t.name, "matchingRule": "plug", "terminalKind": t.kind, "description": f"{t.doc} {t.name}"}
-    element = ET.SubElement(parent, "Terminal", told)
-    kinds = "signal", "inflow" if t.inflow else "outflow"
-    for member, variable, kind in zip(t.members, (t.potential, t.flow), kinds, strict=True):
-        about = {"variableName": variable.name, "memberName": member, "variableKind": kind}
-        ET.SubElement(element, "TerminalMemberVariable", about)
+                names, inflow = ("T", "Q_flow"), v.kind != "input"
+                yield _Terminal(path, "org.gearheat.HeatPort", "heat port", name, flow.name, names, inflow)

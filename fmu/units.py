@@ -3,37 +3,13 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from types import MappingProxyType
 
 from ..model import units as model_units
-
-#: Exponents of the SI base units, and the factor to them, of each unit the model writes.
-_NAMED: dict[str, tuple[float, dict[str, int]]] = {
-    "1": (1.0, {}),
-    "kg": (1.0, {"kg": 1}),
-    "m": (1.0, {"m": 1}),
-    "s": (1.0, {"s": 1}),
-    "A": (1.0, {"A": 1}),
-    "K": (1.0, {"K": 1}),
-    "mol": (1.0, {"mol": 1}),
-    "cd": (1.0, {"cd": 1}),
-    "rad": (1.0, {"rad": 1}),
-    "Hz": (1.0, {"s": -1}),
-    "N": (1.0, {"kg": 1, "m": 1, "s": -2}),
-    "Pa": (1.0, {"kg": 1, "m": -1, "s": -2}),
-    "J": (1.0, {"kg": 1, "m": 2, "s": -2}),
-    "W": (1.0, {"kg": 1, "m": 2, "s": -3}),
-    "C": (1.0, {"s": 1, "A": 1}),
-    "V": (1.0, {"kg": 1, "m": 2, "s": -3, "A": -1}),
-    "ohm": (1.0, {"kg": 1, "m": 2, "s": -3, "A": -2}),
-    "F": (1.0, {"kg": -1, "m": -2, "s": 4, "A": 2}),
-    "H": (1.0, {"kg": 1, "m": 2, "s": -2, "A": -2}),
-    "mm": (1e-3, {"m": 1}),
-    "min": (60.0, {"s": 1}),
-    "h": (3600.0, {"s": 1}),
-}
+from ..model.core.flat import Quantity
+from .fixed import tables
 
 
 @dataclass(frozen=True)
@@ -46,47 +22,8 @@ class Display:
     least: float = 0.0
 
 
-#: Units in which values are shown, by SI unit, small ones first; the others are shown as the program shows them.
-SHOWN: Mapping[str, tuple[Display, ...]] = {
-    "m": (Display("um", 1e6), Display("mm", 1e3, least=1e-4)),
-    "m2/s": (Display("mm2/s", 1e6),),
-    "m3": (Display("l", 1e3),),
-    "rad": (Display("deg", 57.29577951308232),),
-    "Pa": (Display("MPa", 1e-6), Display("GPa", 1e-9, least=1e9)),
-    "J": (Display("kJ", 1e-3),),
-    "W": (Display("kW", 1e-3, least=1e3),),
-}
-
-
 #: What is measured in a unit, for the types of an FMU; of some units several things are.
-QUANTITIES: Mapping[str, str] = {
-    "K": "ThermodynamicTemperature",
-    "K (difference)": "TemperatureDifference",
-    "W": "Power",
-    "J": "Energy",
-    "J/K": "HeatCapacity",
-    "J/(kg.K)": "SpecificHeatCapacity",
-    "W/m2": "Irradiance",
-    "W/K": "ThermalConductance",
-    "W/(m.K)": "ThermalConductivity",
-    "W/(m2.K)": "CoefficientOfHeatTransfer",
-    "rad/s": "AngularVelocity",
-    "rad": "Angle",
-    "N.m": "Torque",
-    "N": "Force",
-    "N.m.s/rad": "RotationalDampingConstant",
-    "kg.m2": "MomentOfInertia",
-    "kg": "Mass",
-    "kg/m3": "Density",
-    "m": "Length",
-    "m2": "Area",
-    "m3": "Volume",
-    "m/s": "Velocity",
-    "m2/s": "KinematicViscosity",
-    "Pa": "Pressure",
-    "Pa.s": "DynamicViscosity",
-    "s": "Time",
-}
+QUANTITIES: Mapping[str, str] = tables("units")["quantities"]
 
 
 @dataclass(frozen=True)
@@ -98,6 +35,11 @@ class Unit:
     exponents: Mapping[str, int] | None
     shown: tuple[Display, ...]
 
+    @property
+    def base(self) -> dict[str, float]:
+        """Exponents, and the factor where it is not 1, as attributes of XML."""
+        return {**(self.exponents or {}), **({} if self.factor == 1 else {"factor": self.factor})}
+
     def display(self, size: float) -> Display | None:
         """How a value of a typical size is shown; None where the unit itself serves."""
         return next((d for d in reversed(self.shown) if size >= d.least), None)
@@ -108,6 +50,11 @@ def fmi_unit(unit: str) -> str:
     return unit.removesuffix("(difference)").strip()
 
 
+def units_of(quantities: Iterable[Quantity], *also: str) -> list[Unit]:
+    """The units of quantities in the order of their names, and others."""
+    return [unit(name) for name in sorted({fmi_unit(u) for u in (*also, *(q.unit for q in quantities))})]
+
+
 def is_difference(unit: str) -> bool:
     """Whether a quantity in `unit` is a difference, which an offset of the shown unit must not touch."""
     return unit.endswith("(difference)")
@@ -116,8 +63,8 @@ def is_difference(unit: str) -> bool:
 def unit(name: str) -> Unit:
     """Definition of a unit the model writes, like "W/(m2.K)"."""
     factor, exponents = _parse(name)
-    if name in SHOWN:
-        return Unit(name, factor, exponents, SHOWN[name])
+    if (shown := tables("units")["shown"].get(name)) is not None:
+        return Unit(name, factor, exponents, tuple(Display(**one) for one in shown))
     zero = model_units.from_si(0.0, name)
     slope = model_units.from_si(1.0, name) - zero
     words = model_units.shown(name)
@@ -127,15 +74,15 @@ def unit(name: str) -> Unit:
 
 def _parse(name: str) -> tuple[float, Mapping[str, int] | None]:
     """Factor and base exponents: products by '.', powers as digits behind a symbol, one '/' before the divisor."""
-    factor, total = 1.0, dict[str, int]()
+    named, factor, total = tables("units")["named"], 1.0, dict[str, int]()
     for sign, side in zip((1, -1), name.split("/"), strict=False):
         for term in side.strip("()").split("."):
             match = re.fullmatch(r"([a-zA-Z]+|1)(-?\d+)?", term)
-            if match is None or match[1] not in _NAMED or name.count("/") > 1:
+            if match is None or match[1] not in named or name.count("/") > 1:
                 return 1.0, None
             power = sign * int(match[2] or 1)
-            scale, exponents = _NAMED[match[1]]
-            factor *= scale**power
+            exponents = dict(named[match[1]])
+            factor *= exponents.pop("factor", 1.0) ** power
             for base, e in exponents.items():
                 total[base] = total.get(base, 0) + e * power
     return factor, MappingProxyType({b: e for b, e in sorted(total.items()) if e})

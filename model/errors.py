@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Iterable
+from types import TracebackType
 
 
 class GearheatError(Exception):
@@ -32,6 +33,29 @@ class FmuError(GearheatError):
 
 class DataError(GearheatError):
     """A measured or scheduled table is wrong."""
+
+
+class Problems(list[str]):
+    """What is wrong with one thing, gathered so that a user is told all of it at once.
+
+    An error within `with problems:` is taken note of, and the work goes on behind the block.
+    """
+
+    def __enter__(self) -> Problems:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, _: TracebackType | None) -> bool:
+        self += error.problems if isinstance(error, GearheatError) else ()
+        return isinstance(error, GearheatError)
+
+    def check(self, kind: type[GearheatError] = ScenarioError) -> None:
+        """Raise an error that carries all problems, if there are any.
+
+        Args:
+            kind: class of the error
+        """
+        if self:
+            raise kind(self)
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:

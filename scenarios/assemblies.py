@@ -27,11 +27,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
-from ..model.errors import suggestion
+from ..model.errors import ScenarioError, suggestion
 from .repeats import flat, joined, meant, nets
-from .tables import Strict, problem_of
+from .tables import Strict
 
 
 class AssemblyTable(Strict):
@@ -77,9 +77,9 @@ def assembled(file: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[s
     if "assembly" not in raw or not isinstance(parts, Mapping) or not isinstance(connect, Mapping):
         return rest, []
     try:
-        tables = Assemblies.model_validate({"assembly": raw["assembly"]}).assembly
-    except ValidationError as error:
-        return rest, [problem_of(file, dict(e), Assemblies) for e in error.errors()]
+        tables = Assemblies.read(file, {"assembly": raw["assembly"]}).assembly
+    except ScenarioError as error:
+        return rest, list(error.problems)
     found = unfolded(file, parts, connect, tables)
     return rest | {"part": found.parts, "connect": found.connect}, found.problems
 

@@ -57,8 +57,9 @@ def scale(unit: str, si: str, *, name: str) -> tuple[float, float]:
         ScenarioError: a unit of another kind, or none where there must be one
     """
     if unit in ("", "1") and si != "1":
+        usual = {"K": "degC", "rad/s": "rpm", "N.m": "Nm"}.get(si, si)
         raise ScenarioError(
-            f'{name}: its unit is not known. Write it behind the column\'s name, "[{_usual(si)}]", or in the'
+            f'{name}: its unit is not known. Write it behind the column\'s name, "[{usual}]", or in the'
             " card's table [units]."
         )
     zero, one = (to_si(f"{value:g} {'' if unit == '1' else unit}".strip(), si, name=name) for value in (0.0, 1.0))
@@ -79,7 +80,3 @@ def in_si(values: np.ndarray, unit: str, si: str, *, name: str) -> np.ndarray:
     """
     factor, offset = scale(unit, si, name=name)
     return np.asarray(values * factor + offset)
-
-
-def _usual(si: str) -> str:
-    return {"K": "degC", "rad/s": "rpm", "N.m": "Nm"}.get(si, si)

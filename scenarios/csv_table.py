@@ -11,7 +11,7 @@ from difflib import get_close_matches
 from pathlib import Path
 from typing import Any, Literal
 
-from ..model.errors import DataError, suggestion
+from ..model.errors import DataError, Problems, suggestion
 from .document import read_text
 
 #: Columns in which a table of `gearheat sweep` says how each of its rows was found; nothing reads them.
@@ -67,8 +67,7 @@ def raise_all(problems: Sequence[str], name: str) -> None:
             *problems[:SHOWN],
             f"{name}: {rest} more problems. Mend the first ones and read it again.",
         ]
-    if problems:
-        raise DataError(problems)
+    Problems(problems).check(DataError)
 
 
 def read_cells(path: Path, comments: bool = False) -> tuple[list[str], list[tuple[int, list[str]]]]:

@@ -14,7 +14,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from pathlib import Path
 
@@ -31,22 +30,6 @@ TIME = Quantity("time", "s", "time")
 
 #: A step large enough to tell the slope of a unit's conversion from its offset without rounding.
 _LARGE = 1e6
-
-
-@dataclass(frozen=True)
-class DutyColumn:
-    """A column of the table: what it gives, and how its numbers become SI."""
-
-    quantity: Quantity
-    offset: float
-    slope: float
-
-    def si(self, cell: str) -> float:
-        """A cell in SI. Raises ValueError saying what is wrong with it."""
-        value = self.offset + self.slope * number(cell)
-        if (problem := self.quantity.problem(value)) is not None:
-            raise ValueError(f"is out of range. {problem.partition('out of range. ')[2].rstrip('.')}")
-        return value
 
 
 def duty_names(path: str | Path) -> tuple[str, ...]:
@@ -72,11 +55,16 @@ def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> S
     values: dict[str, np.ndarray] = {}
     for i, cell in enumerate(header):
         try:
-            column = _column(cell, known if i else {TIME.name: TIME})
+            quantity, offset, slope = _column(cell, known if i else {TIME.name: TIME})
         except GearheatError as error:
             problems += [f"{path.name} line 1: {problem}" for problem in error.problems]
             continue
-        values[column.quantity.name] = _cells(path.name, rows, i, column, problems)
+        values[quantity.name] = column = np.full(len(rows), np.nan)
+        for k, (line, cells) in enumerate(rows):
+            try:
+                column[k] = _in_range(quantity, offset + slope * number(cells[i]))
+            except ValueError as error:
+                problems.append(f'{path.name} line {line}: {quantity.name} = "{cells[i]}" {error}.')
     if len(header) == 1:
         problems.append(f"{path.name} line 1: no input beside the time. Add a column, one of: {', '.join(known)}.")
     if TIME.name in values:
@@ -91,8 +79,11 @@ def _split(cell: str) -> tuple[str, str]:
     return (match[1], match[2].strip()) if match else (cell, "")
 
 
-def _column(cell: str, known: Mapping[str, Quantity]) -> DutyColumn:
-    """What a header cell says. Raises DataError for an unknown name, a missing or a wrong unit."""
+def _column(cell: str, known: Mapping[str, Quantity]) -> tuple[Quantity, float, float]:
+    """What a header cell says, and how its numbers become SI: offset and slope.
+
+    Raises DataError for an unknown name, a missing or a wrong unit.
+    """
     name, unit = _split(cell)
     if TIME.name in known:
         name, unit = split_unit(cell)
@@ -108,24 +99,18 @@ def _column(cell: str, known: Mapping[str, Quantity]) -> DutyColumn:
         raise DataError(f'column "{cell}" has no unit. {remedy}')
     try:
         offset = to_si(f"0 {unit}", quantity.unit)
-        return DutyColumn(quantity, offset, (to_si(f"{_LARGE} {unit}", quantity.unit) - offset) / _LARGE)
+        return quantity, offset, (to_si(f"{_LARGE} {unit}", quantity.unit) - offset) / _LARGE
     except ScenarioError as error:
         if "may mean" in str(error):
             raise DataError(f'column "{cell}": its unit may mean revolutions or radians. {remedy}') from None
         raise DataError(f'column "{cell}": the unit does not fit {quantity.doc}. {remedy}') from None
 
 
-def _cells(
-    name: str, rows: Sequence[tuple[int, list[str]]], i: int, column: DutyColumn, problems: list[str]
-) -> np.ndarray:
-    """One column in SI; NaN where a cell is wrong, which is then among the problems."""
-    values = np.full(len(rows), np.nan)
-    for k, (line, cells) in enumerate(rows):
-        try:
-            values[k] = column.si(cells[i])
-        except ValueError as error:
-            problems.append(f'{name} line {line}: {column.quantity.name} = "{cells[i]}" {error}.')
-    return values
+def _in_range(quantity: Quantity, value: float) -> float:
+    """The value. Raises ValueError where it is out of range."""
+    if (problem := quantity.problem(value)) is not None:
+        raise ValueError(f"is out of range. {problem.partition('out of range. ')[2].rstrip('.')}")
+    return value
 
 
 def _time_problems(name: str, rows: Sequence[tuple[int, list[str]]], time: np.ndarray) -> list[str]:

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ..model.core.declare import Parameter, declared
-from ..model.errors import GearheatError, ScenarioError, suggestion
+from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.parts import PARTS
 from ..model.units import to_si
 from .document import ABOUT, read_toml, sources_of
@@ -77,9 +77,10 @@ def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
     Raises:
         ScenarioError: all problems of the file at once
     """
-    units = {**_taken_by_parts(), **DESCRIPTIVE.get(kind, {})}
+    units = {key: d.unit for cls in PARTS.values() for key, d in declared(cls, Parameter).items()}
+    units |= DESCRIPTIVE.get(kind, {})
     entries: dict[str, Entry] = {}
-    problems: list[str] = []
+    problems = Problems()
     for name, table in read_toml(path).items():
         where = f"{path.name} [{name}]"
         if not isinstance(table, Mapping):
@@ -94,13 +95,10 @@ def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
             if key not in units:
                 problems.append(f'{where}: no part takes "{key}".{suggestion(key, units)}')
                 continue
-            try:
+            with problems:
                 to_si(value, units[key], name=f"{where}: {key}")
-            except GearheatError as error:
-                problems += error.problems
         entries[name] = Entry(kind, name, str(table.get("doc", "")), values, sources, checked)
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return entries
 
 
@@ -115,11 +113,6 @@ def _checked(where: str, given: object, values: Mapping[str, Any]) -> tuple[dict
         f'{where}: {CHECKED} names "{k}", which has no value.{suggestion(k, values)}' for k in told if k not in values
     ]
     return dict(told), strange
-
-
-def _taken_by_parts() -> dict[str, str]:
-    """Parameter -> its unit, over all types of parts."""
-    return {key: d.unit for cls in PARTS.values() for key, d in declared(cls, Parameter).items()}
 
 
 def entry(kind: str, name: str) -> Entry:

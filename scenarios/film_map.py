@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -72,7 +72,7 @@ def read_film_map(path: Path, name: str = "") -> FittedMap:
         name: as a rig file writes it; the file's own if empty
 
     Raises:
-        DataError: all that is wrong with the file at once
+        DataError: all that is wrong with the file at once; too few contacts
     """
     table, problems = parse(path, COLUMNS)
     rows = _solved(table, problems)
@@ -88,14 +88,42 @@ def read_film_map(path: Path, name: str = "") -> FittedMap:
                 "make one file for each."
             )
     raise_all(problems, path.name)
-    radius = float(values["R_x [m]"][0])
+    R = float(values["R_x [m]"][0])
     across = float(values["R_y [m]"][0]) if "R_y [m]" in values else np.nan
     line = bool(np.isnan(across))
-    area = float(values["length [m]"][0]) * radius if line else radius**2
-    points = np.column_stack([values["F [N]"] / area, values["u_m [m/s]"] / radius, values["eta_0 [Pa.s]"]])
-    shape: Literal["line", "ellipse"] = "line" if line else "ellipse"
-    about = (name or path.name, str(path.resolve()), shape)
-    return fitted(about, points, values, len(table.lines) - len(rows))
+    area = float(values["length [m]"][0]) * R if line else R**2
+    points = np.column_stack([values["F [N]"] / area, values["u_m [m/s]"] / R, values["eta_0 [Pa.s]"]])
+    ranges = tuple((float(column.min()), float(column.max())) for column in points.T)
+    levels = [len(distinct(column)) for column in points.T]
+    degrees = next((d for n in range(DEGREE, 0, -1) if len(d := _degrees(levels, n)) <= len(points)), ())
+    if len(points) < FEWEST or len(degrees) < 2:
+        raise DataError(
+            f"{name or path.name}: {len(points)} contacts with a film are too few for a law. "
+            f"Solve at least {FEWEST} loads, speeds or temperatures."
+        )
+    z = np.column_stack([_place(column, *limits) for column, limits in zip(points.T, ranges, strict=True)])
+    basis = np.column_stack([np.broadcast_to(b, len(z)) for b in products(list(z.T), degrees)])
+    rms: dict[str, float] = {}
+
+    def fit(key: str) -> Fit:
+        wanted = np.log(values[f"{key} [m]"] / R)
+        coefficients = np.linalg.lstsq(basis, wanted, rcond=None)[0]
+        error = np.expm1(basis @ coefficients - wanted)
+        rms[key] = float(np.sqrt(np.mean(error**2)))
+        return Fit(tuple(float(c) for c in coefficients), float(np.abs(error).max()))
+
+    law = FilmMap(
+        name=name or path.name,
+        file=str(path.resolve()),
+        shape="line" if line else "ellipse",
+        ranges=ranges,
+        degrees=degrees,
+        central=fit("h_c"),
+        minimum=fit("h_min"),
+        E_eff=float(values["E_eff [Pa]"][0]),
+        R_ratio=0.0 if line else across / R,
+    )
+    return FittedMap(law, len(points), len(table.lines) - len(rows), rms)
 
 
 def distinct(values: np.ndarray) -> np.ndarray:
@@ -125,58 +153,6 @@ def _solved(table: Table, problems: list[str]) -> list[int]:
 
 def _positive(value: Any) -> bool:
     return value is None or bool(value > 0)  # None was told of already
-
-
-def fitted(
-    about: tuple[str, str, Literal["line", "ellipse"]],
-    points: np.ndarray,
-    values: dict[str, np.ndarray],
-    failed: int,
-) -> FittedMap:
-    """The law nearest to the films of solved contacts.
-
-    Args:
-        about: name, place and shape of the map
-        points: load, speed and viscosity of each contact as `FilmMap` has them (n, 3)
-        values: columns of the map (n)
-        failed: contacts without a film
-
-    Raises:
-        DataError: too few contacts
-    """
-    name, file, shape = about
-    ranges = tuple((float(line.min()), float(line.max())) for line in points.T) if len(points) else ()
-    levels = [len(distinct(line)) for line in points.T]
-    degrees = next((d for n in range(DEGREE, 0, -1) if len(d := _degrees(levels, n)) <= len(points)), ())
-    if len(points) < FEWEST or len(degrees) < 2:
-        raise DataError(
-            f"{name}: {len(points)} contacts with a film are too few for a law. "
-            f"Solve at least {FEWEST} loads, speeds or temperatures."
-        )
-    z = np.column_stack([_place(line, *limits) for line, limits in zip(points.T, ranges, strict=True)])
-    basis = np.column_stack([np.broadcast_to(b, len(z)) for b in products(list(z.T), degrees)])
-    R = float(values["R_x [m]"][0])
-    rms: dict[str, float] = {}
-
-    def fit(key: str, wanted: np.ndarray) -> Fit:
-        coefficients = np.linalg.lstsq(basis, np.log(wanted), rcond=None)[0]
-        error = np.expm1(basis @ coefficients - np.log(wanted))
-        rms[key] = float(np.sqrt(np.mean(error**2)))
-        return Fit(tuple(float(c) for c in coefficients), float(np.abs(error).max()))
-
-    across = values.get("R_y [m]", np.array([np.nan]))[0]
-    law = FilmMap(
-        name=name,
-        file=file,
-        shape=shape,
-        ranges=ranges,
-        degrees=degrees,
-        central=fit("h_c", values["h_c [m]"] / R),
-        minimum=fit("h_min", values["h_min [m]"] / R),
-        E_eff=float(values["E_eff [Pa]"][0]),
-        R_ratio=0.0 if shape == "line" else float(across) / R,
-    )
-    return FittedMap(law, len(points), failed, rms)
 
 
 def _degrees(levels: Sequence[int], highest: int) -> tuple[tuple[int, int, int], ...]:

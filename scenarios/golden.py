@@ -9,61 +9,16 @@ several results.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from importlib.resources import files
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
-from pydantic import Field, ValidationError
-
-from ..model.errors import ScenarioError
+from ..model.errors import Problems
 from .document import read_toml
-from .published import Number, Row
-from .tables import Strict, problem_of
+from .published import PublishedTable, Row
 
 GOLDEN = Path(str(files("gearheat.model").joinpath("golden")))
-
-
-class GoldenRow(Strict):
-    """One golden row of a law."""
-
-    name: str = Field(description="what the number is, in words")
-    law: str = Field(description='"module.function" of a law')
-    source: str = Field(description="where the number is from")
-    kind: Literal["published", "corrected", "reproduced", "misprint"] = Field(description="what the number is")
-    args: dict[str, Any] = Field(description="argument -> number in SI, or text with a unit")
-    item: int | None = Field(None, description="which of several results, from 0")
-    expect: float = Field(description="the number")
-    unit: str = Field("", description="its unit")
-    tol: float | None = Field(None, description="distance allowed")
-    rel: float | None = Field(None, description="distance allowed over the number")
-    published: Number | None = Field(None, description="what stands in print where that was corrected")
-    why: str = Field("", description="why the printed number does not stand")
-
-    def as_row(self) -> Row:
-        """The row in the form of all published numbers."""
-        given = self.kind if self.kind in ("published", "corrected") else "recomputed"
-        return Row.model_validate(
-            {
-                "name": self.name,
-                "where": self.source,
-                "published": self.published,
-                given: self.expect,
-                "why": self.why,
-                "tol": self.tol,
-                "rel": self.rel,
-                "unit": "" if self.unit == "1" else self.unit,
-                "run": "law",
-                "law": self.law,
-                "args": self.args,
-                "item": self.item,
-            }
-        )
-
-
-class GoldenTable(Strict):
-    """A file of golden rows."""
-
-    row: list[GoldenRow] = Field([], description="one table [[row]] a number")
 
 
 def golden_rows() -> tuple[Row, ...]:
@@ -73,13 +28,18 @@ def golden_rows() -> tuple[Row, ...]:
         ScenarioError: everything wrong with the files at once
     """
     found: list[Row] = []
-    problems: list[str] = []
+    problems = Problems()
     for path in sorted(GOLDEN.glob("*.toml")):
-        raw = {"row": [row for row in read_toml(path).get("row", []) if "law" in row]}
-        try:
-            found += [row.as_row() for row in GoldenTable.model_validate(raw).row]
-        except ValidationError as error:
-            problems += [problem_of(path.name, dict(e), GoldenTable) for e in error.errors()]
-    if problems:
-        raise ScenarioError(problems)
+        raw = [_published(row) for row in read_toml(path).get("row", []) if "law" in row]
+        with problems:
+            found += PublishedTable.read(path.name, {"row": raw}).row
+    problems.check()
     return tuple(found)
+
+
+def _published(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A golden row in the form of all published numbers."""
+    kind = row["kind"] if row["kind"] in ("published", "corrected") else "recomputed"
+    names = {"source": "where", "expect": kind}
+    kept = {names.get(key, key): value for key, value in row.items() if key not in ("kind", "unit")}
+    return kept | {"run": "law", "unit": row.get("unit", "").removesuffix("1")}

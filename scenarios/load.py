@@ -24,8 +24,9 @@ A source is a citation ("Dias2014, table 5.7") or one of "assumed: ...", "inferr
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -33,34 +34,30 @@ from ..model.core.component import Component
 from ..model.core.connect import nets
 from ..model.core.declare import Port, State, declared
 from ..model.core.flat import Quantity
-from ..model.errors import GearheatError, ScenarioError, suggestion
-from ..model.machines import cycloidal, drum_motor, harmonic, planetary, rv_stage
-from ..model.machines.spec import PartSpec, Spec, assemble
+from ..model.errors import GearheatError, Problems, ScenarioError, suggestion
+from ..model.machines.spec import LAYOUTS, PartSpec, Spec, assemble, layout
 from ..model.parts import PARTS
 from ..model.parts.free_form import EXTRA_PARTS
 from ..model.units import to_si
 from .assemblies import assembled
+from .columns import split_unit
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
-from .instruments import Instrument, instruments
 from .own_parts import installed_types, own_type
-from .protocol import Driven, Protocol
 from .repeats import expanded
-from .scenario import Erratum, Scenario
+from .scenario import Erratum, Instrument, Protocol, Scenario
 from .shipped import RIGS, list_rigs
 from .tables import RigTable, validate
-from .values import PartValues, deviation, in_range, part_values, readable, settable
-
-#: Kind of rig -> its fixed parts (name -> type) and connections.
-LAYOUTS: Mapping[str, tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]] = {
-    "planetary": (planetary.PARTS, planetary.CONNECTIONS),
-    "harmonic": (harmonic.PARTS, harmonic.CONNECTIONS),
-    "cycloidal": (cycloidal.PARTS, cycloidal.CONNECTIONS),
-    "cycloidal_printed": (cycloidal.PRINTED_PARTS, cycloidal.PRINTED_CONNECTIONS),
-    "rv_stage": (rv_stage.PARTS, rv_stage.CONNECTIONS),
-    "drum_motor": (drum_motor.PARTS, drum_motor.CONNECTIONS),
-    "network": ({}, ()),
-}
+from .values import (
+    PartValues,
+    deviation,
+    in_range,
+    part_values,
+    quantities,
+    readable,
+    settable,
+    standard_deviation,
+)
 
 
 def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None = None) -> Scenario:
@@ -105,8 +102,8 @@ class _Loader:
         self.table: RigTable
         plain, folded = assembled(self.file, raw)
         whole, repeated = expanded(self.file, plain)
-        self.table, self.problems = validate(self.file, whole)
-        self.problems += folded + repeated
+        self.table, wrong = validate(self.file, whole)
+        self.problems = Problems(wrong + folded + repeated)
         if self.table.kind not in LAYOUTS and (self.table.kind or not self.problems):
             close = suggestion(self.table.kind, LAYOUTS) or f" Kinds: {', '.join(LAYOUTS)}."
             self.problems.append(f'{self.file}: unknown kind "{self.table.kind}".{close}')
@@ -114,9 +111,10 @@ class _Loader:
             self.problems.append(f"{self.file} [part]: is empty. Give a table [part.NAME] for each part.")
         if self.table.kind not in LAYOUTS or not self.table.part:  # without them nothing else can be judged
             raise ScenarioError(self.problems)
-        self.layout, self.connections = LAYOUTS[self.table.kind]
+        self.layout, self.connections = layout(self.table.kind)
         self.known = {**known, **self._own_types()}
         self.types = self._types()
+        self.settable = quantities(self.types, settable)
         self.value_sources: dict[str, str] = {}
 
     def _types(self) -> dict[str, type[Component]]:
@@ -162,8 +160,7 @@ class _Loader:
         spec = self._spec(parts)
         sensors = self._sensors()
         protocol, data, joint = self._protocol(), self._data(), self._joint_uncertainties()
-        if self.problems:
-            raise ScenarioError(self.problems)
+        self.problems.check()
         nets(assemble(spec))  # ports of different kinds that meet
         return Scenario(
             name=self.name,
@@ -181,7 +178,7 @@ class _Loader:
             units={f"{name}.{key}": unit for name, part in parts.items() for key, unit in part.units.items()},
             overrides=tuple(o for part in parts.values() for o in part.overrides),
             entries={name: part.entries for name, part in parts.items() if part.entries},
-            errata=tuple(Erratum(e.place, e.says, e.should_be, e.evidence) for e in self.table.errata),
+            errata=tuple(Erratum(**e.model_dump()) for e in self.table.errata),
             protocol=protocol,
             data=data,
             reproduces=self.table.reproduces,
@@ -206,24 +203,28 @@ class _Loader:
         sources, problems = sources_of(where, self.table.operating_point)
         self.problems += problems
         self.value_sources |= sources
-        known = self._quantities(settable)
-        point: dict[str, float] = {}
-        for path, raw in paths({k: v for k, v in self.table.operating_point.items() if k not in ABOUT}):
-            if path not in known:
-                self.problems.append(f'{where}: there is no input "{path}".{suggestion(path, known)}')
-                continue
-            try:
-                point[path] = in_range(f"{where}: ", raw, known[path])
-            except GearheatError as error:
-                self.problems += error.problems
-        written = dict(paths(self.table.operating_point))
+        written = dict(paths({k: v for k, v in self.table.operating_point.items() if k not in ABOUT}))
+        point = self._taken(where, "input", written, lambda raw, q: in_range(f"{where}: ", raw, q))
         given = [f"{end}.{quantity}" for end, quantities in self.table.drive.items() for quantity in quantities]
         self.problems += [
             f"{where}: {path} is missing, which [drive] says is given. Give its usual value."
             for path in given
-            if path in known and path not in written
+            if path in self.settable and path not in written
         ]
         return point
+
+    def _taken(
+        self, where: str, what: str, table: Mapping[str, Any], read: Callable[[Any, Quantity], float]
+    ) -> dict[str, float]:
+        """Values of a table by path, as they are read for a quantity that may be set."""
+        found: dict[str, float] = {}
+        for path, raw in paths(table):
+            if path not in self.settable:
+                self.problems.append(f'{where}: there is no {what} "{path}".{suggestion(path, self.settable)}')
+                continue
+            with self.problems:
+                found[path] = read(raw, self.settable[path])
+        return found
 
     def _drive(self) -> dict[str, tuple[str, ...]]:
         ends = [name for name, cls in self.types.items() if cls.__name__ == "ShaftEnd"]
@@ -265,51 +266,58 @@ class _Loader:
 
     def _sensors(self) -> tuple[Instrument, ...]:
         """The instruments; losses and they name what the model shows."""
-        known = self._quantities(readable)
-        found, problems = instruments(self.file, self.table.sensors, known)
-        self.problems += problems
+        known = quantities(self.types, readable)
+        found: list[Instrument] = []
+        for key, table in self.table.sensors.items():
+            place = f"{self.file} [sensors] {key}"
+            if table.reads not in known:
+                self.problems.append(f'{place}: there is no "{table.reads}".{suggestion(table.reads, known)}')
+                continue
+            accuracy: dict[str, float] = {}
+            for name, raw in (("repeat_sd", table.repeat_sd), ("offset_sd", table.offset_sd)):
+                if raw is not None:
+                    with self.problems:
+                        accuracy[name] = standard_deviation(f"{place}: {name}", raw, known[table.reads].unit)
+            found.append(
+                Instrument(
+                    name=split_unit(key)[0],
+                    column=table.column or key,
+                    reads=table.reads,
+                    kind=table.kind or "",
+                    role=table.role or "",
+                    unit=table.unit or "",
+                    magnitude=table.magnitude or table.signs is not None,
+                    signs=None if table.signs is None else (table.signs[0], table.signs[1]),
+                    **accuracy,
+                )
+            )
         for column, path in ((column, path) for column, summed in self.table.losses.items() for path in summed):
             if path not in known:
                 self.problems.append(f'{self.file} [losses] {column}: there is no "{path}".{suggestion(path, known)}')
-        return found
+        return tuple(found)
 
     def _joint_uncertainties(self) -> dict[str, dict[str, float]]:
         """Reason -> path -> what a value changes by at one standard deviation."""
-        known = self._quantities(settable)
-        found: dict[str, dict[str, float]] = {name: {} for name in self.table.uncertainties}
-        for name, path, raw in ((n, *leaf) for n, table in self.table.uncertainties.items() for leaf in paths(table)):
+        found = {}
+        for name, table in self.table.uncertainties.items():
             where = f"{self.file} [uncertainties.{name}]"
-            if path not in known:
-                self.problems.append(f'{where}: there is no value "{path}".{suggestion(path, known)}')
-                continue
-            try:
-                found[name][path] = deviation(f"{where}: {path}", raw, known[path].unit)
-            except GearheatError as error:
-                self.problems += error.problems
+            found[name] = self._taken(where, "value", table, partial(_changed, where))
         return found
-
-    def _quantities(self, kind: Any) -> dict[str, Quantity]:
-        return {f"{n}.{k}": d.quantity(f"{n}.{k}") for n, cls in self.types.items() for k, d in kind(cls).items()}
 
     def _protocol(self) -> Protocol | None:
         table = self.table.campaign
         if table is None:
             return None
         where = f"{self.file} [campaign]"
-        known = self._quantities(settable)
         for path in (table.room, *table.inputs):
-            if path not in known:
-                self.problems.append(f'{where}: there is no input "{path}".{suggestion(path, known)}')
+            if path not in self.settable:
+                self.problems.append(f'{where}: there is no input "{path}".{suggestion(path, self.settable)}')
         if table.oil not in self.types:
             self.problems.append(f'{where}: there is no part "{table.oil}".{suggestion(table.oil, self.types)}')
-        inputs = {path: Driven(t.column, (t.sign[0], t.sign[1])) for path, t in table.inputs.items()}
-        try:
-            return Protocol(
-                inputs, table.room, table.oil, to_si(table.stop, "s", name=f"{where}: stop"), tuple(table.notes)
-            )
-        except GearheatError as error:
-            self.problems += error.problems
-            return None
+        with self.problems:
+            stop = to_si(table.stop, "s", name=f"{where}: stop")
+            return Protocol(table.inputs, table.room, table.oil, stop, tuple(table.notes))
+        return None
 
     def _data(self) -> Path | None:
         """The rig's own measured table."""
@@ -320,3 +328,8 @@ class _Loader:
         if not path.is_file():
             self.problems.append(f"{path}: there is no such file. Check the path.")
         return path
+
+
+def _changed(where: str, raw: object, quantity: Quantity) -> float:
+    """What a value changes by."""
+    return deviation(f"{where}: {quantity.name}", raw, quantity.unit)

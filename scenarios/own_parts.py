@@ -12,7 +12,7 @@ from importlib import import_module
 from importlib.metadata import entry_points
 
 from ..model.core.component import Component
-from ..model.errors import ScenarioError, suggestion
+from ..model.errors import Problems, ScenarioError, suggestion
 
 #: Entry points under which installed packages offer part types, "Cooler = my_package.parts:Cooler".
 GROUP = "gearheat.parts"
@@ -26,7 +26,7 @@ def installed_types() -> dict[str, type[Component]]:
         ScenarioError: all that cannot be loaded, is no part or has another name than its class
     """
     found: dict[str, type[Component]] = {}
-    problems: list[str] = []
+    problems = Problems()
     for entry in sorted(entry_points(group=GROUP), key=lambda e: e.name):
         try:
             found[entry.name] = own_type(entry.value, {})
@@ -35,8 +35,7 @@ def installed_types() -> dict[str, type[Component]]:
     problems += [
         f'package {n}: its class is "{c.__name__}". Give both one name.' for n, c in found.items() if n != c.__name__
     ]
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return found
 
 

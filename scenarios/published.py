@@ -33,12 +33,12 @@ from collections.abc import Iterator, Mapping
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import Field, ValidationError
+from pydantic import Field
 
-from ..model.errors import GearheatError, ScenarioError
+from ..model.errors import Problems, ScenarioError
 from .csv_table import number, read_cells
 from .document import paths, read_toml
-from .tables import Strict, problem_of
+from .tables import Strict
 
 Number = str | float
 
@@ -139,78 +139,6 @@ class PublishedTable(Strict):
     table: list[SheetTable] = Field([], description="CSV files with many numbers")
 
 
-class _Reader:
-    """Reads one file, collecting problems all the way."""
-
-    def __init__(self, path: Path) -> None:
-        self.path = path
-        self.problems: list[str] = []
-
-    def rows(self) -> tuple[Row, ...]:
-        """All rows of the file and of its tables, while problems are collected."""
-        try:
-            raw = PublishedTable.model_validate(read_toml(self.path))
-        except ValidationError as error:
-            self.problems += [problem_of(self.path.name, dict(e), PublishedTable) for e in error.errors()]
-            return ()
-        for i, row in enumerate(raw.row, 1):
-            self.problems += [f"{self.path.name} [row {i}] {row.name}: {told}" for told in _wrong(row)]
-        names = [row.name for row in raw.row]
-        for name in dict.fromkeys(n for n in names if names.count(n) > 1):
-            self.problems.append(f'{self.path.name}: two rows are named "{name}". Name them apart.')
-        for row in raw.row:
-            unknown = [other for other in row.of.values() if other not in names]
-            self.problems += [f'{self.path.name} {row.name}: there is no row "{other}".' for other in unknown]
-        every = (*raw.row, *(row for sheet in raw.table for row in self._cells(sheet)))
-        return tuple(_with_common(row, raw.set) for row in every)
-
-    def _cells(self, sheet: SheetTable) -> Iterator[Row]:
-        """A row for each number of a CSV table."""
-        where = f"{self.path.name} [table] {sheet.name}"
-        try:
-            header, lines = read_cells(self.path.parent / sheet.data, comments=True)
-        except GearheatError as error:
-            self.problems += error.problems
-            return
-        if unknown := [name for name in (*sheet.keys, *sheet.columns) if name not in header]:
-            self.problems.append(f"{where}: {sheet.data} has no column {', '.join(unknown)}. Name its columns.")
-            return
-        for line, cells in lines:
-            found = dict(zip(header, cells, strict=True))
-            for column, source in sheet.columns.items():
-                try:
-                    keys = {key: number(found[key]) for key in sheet.keys}
-                    yield _cell(sheet, source, column, keys, number(found[column]))
-                except ValueError as error:
-                    self.problems.append(f"{sheet.data} line {line}: {column} {error}.")
-
-
-def _cell(sheet: SheetTable, source: Cells, column: str, keys: Mapping[str, float], value: float) -> Row:
-    said = ", ".join(f"{key} {key_value:g}" for key, key_value in keys.items())
-    return Row.model_validate(
-        {
-            "name": f"{sheet.name}: {said}, {column}",
-            "where": sheet.where,
-            "group": sheet.name,
-            sheet.kind: value,
-            "tol": sheet.tol,
-            "rel": sheet.rel,
-            "unit": sheet.unit,
-            "run": sheet.run,
-            "set": {**sheet.set, **source.set},
-            "path": source.path,
-            "select": {**keys, **source.select},
-        }
-    )
-
-
-def _with_common(row: Row, common: Mapping[str, Any]) -> Row:
-    """The row with what all rows set, where its run takes values."""
-    if "set" not in _ALLOWED.get(row.run, ()):
-        return row
-    return row.model_copy(update={"set": {**dict(paths(common)), **dict(paths(row.set))}})
-
-
 def read_published(path: Path) -> tuple[Row, ...]:
     """The rows of a file of published numbers.
 
@@ -220,11 +148,56 @@ def read_published(path: Path) -> tuple[Row, ...]:
     Raises:
         ScenarioError: everything wrong with the file at once
     """
-    reader = _Reader(path)
-    rows = reader.rows()
-    if reader.problems:
-        raise ScenarioError(reader.problems)
-    return rows
+    raw = PublishedTable.read(path.name, read_toml(path))
+    problems = Problems(
+        f"{path.name} [row {i}] {row.name}: {wrong}" for i, row in enumerate(raw.row, 1) for wrong in _wrong(row)
+    )
+    names = [row.name for row in raw.row]
+    for name in dict.fromkeys(n for n in names if names.count(n) > 1):
+        problems.append(f'{path.name}: two rows are named "{name}". Name them apart.')
+    for row in raw.row:
+        unknown = [other for other in row.of.values() if other not in names]
+        problems += [f'{path.name} {row.name}: there is no row "{other}".' for other in unknown]
+    every = (*raw.row, *(row for sheet in raw.table for row in _cells(path, sheet, problems)))
+    problems.check()
+    common = dict(paths(raw.set))  # what all rows set whose run takes values
+    takers = [run for run, keys in _ALLOWED.items() if "set" in keys]
+    return tuple(
+        row.model_copy(update={"set": {**common, **dict(paths(row.set))}}) if row.run in takers else row
+        for row in every
+    )
+
+
+def _cells(path: Path, sheet: SheetTable, problems: Problems) -> Iterator[Row]:
+    """A row for each number of a CSV table beside a file, while problems are collected."""
+    with problems:
+        header, lines = read_cells(path.parent / sheet.data, comments=True)
+        if unknown := [name for name in (*sheet.keys, *sheet.columns) if name not in header]:
+            where = f"{path.name} [table] {sheet.name}"
+            raise ScenarioError(f"{where}: {sheet.data} has no column {', '.join(unknown)}. Name its columns.")
+        for line, cells in lines:
+            found = dict(zip(header, cells, strict=True))
+            for column, source in sheet.columns.items():
+                try:
+                    keys = {key: number(found[key]) for key in sheet.keys}
+                    yield _cell(sheet, source, column, keys, number(found[column]))
+                except ValueError as error:
+                    problems.append(f"{sheet.data} line {line}: {column} {error}.")
+
+
+def _cell(sheet: SheetTable, source: Cells, column: str, keys: Mapping[str, float], value: float) -> Row:
+    said = ", ".join(f"{key} {key_value:g}" for key, key_value in keys.items())
+    return Row.model_validate(
+        {
+            **sheet.model_dump(include={"where", "tol", "rel", "unit", "run"}),
+            "name": f"{sheet.name}: {said}, {column}",
+            "group": sheet.name,
+            sheet.kind: value,
+            "set": {**sheet.set, **source.set},
+            "path": source.path,
+            "select": {**keys, **source.select},
+        }
+    )
 
 
 def _wrong(row: Row) -> Iterator[str]:

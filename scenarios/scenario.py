@@ -7,15 +7,43 @@ from dataclasses import dataclass, field, replace
 from math import hypot
 from pathlib import Path
 
+from ..model.core.component import Component
 from ..model.core.declare import Given, Input, declared
 from ..model.core.flat import FlatModel, Quantity
-from ..model.errors import GearheatError, ScenarioError, suggestion
+from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.machines.spec import Spec
 from .entries import Entry, catalogue, unchecked_entry
-from .instruments import Instrument
-from .protocol import Protocol
 from .shipped import FILES
-from .values import Override, entry_values, in_range, readable, settable
+from .tables import DrivenTable
+from .values import Override, entry_values, in_range, quantities, readable, settable
+
+
+@dataclass(frozen=True)
+class Instrument:
+    """One instrument of a rig; what is empty or None follows from what it reads.
+
+    Args:
+        name: of the instrument
+        column: column of a measured table
+        reads: path in the model
+        kind: what it is: "oil_temp", "wall_temp", "ambient", "torque", "speed" or "power"
+        role: "given" drives the model, "read" is compared
+        unit: of the column
+        magnitude: whether the column holds magnitudes
+        signs: sign of the model's value in direction 1 and 2 where it does
+        repeat_sd, offset_sd: scatter from reading to reading, and tolerance that is fixed over a campaign [SI]
+    """
+
+    name: str
+    column: str
+    reads: str
+    kind: str = ""
+    role: str = ""
+    unit: str = ""
+    magnitude: bool = False
+    signs: tuple[float, float] | None = None
+    repeat_sd: float | None = None
+    offset_sd: float | None = None
 
 
 @dataclass(frozen=True)
@@ -26,6 +54,26 @@ class Erratum:
     says: str
     should_be: str
     evidence: str
+
+
+@dataclass(frozen=True)
+class Protocol:
+    """How measured tables of a rig are taken: what drives the model, and what happens between readings.
+
+    Args:
+        inputs: model input -> the column that gives it while a point is held; 0 during the stop
+        room: model input of the room temperature. Its reading is taken at the end of a point: constant before the
+            first one, in a straight line from each reading to the next
+        oil: part of the model that holds the oil of the test
+        stop: time without load between the two halves of a test [s], where the table does not say
+        notes: further columns of the rig's own table, which only its reader needs
+    """
+
+    inputs: Mapping[str, DrivenTable]
+    room: str
+    oil: str
+    stop: float
+    notes: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -86,30 +134,22 @@ class Scenario:
             found[path] = hypot(found.get(path, 0.0), change)
         return found
 
+    @property
+    def types(self) -> dict[str, type[Component]]:
+        """Part -> its type."""
+        return {part.name: self.spec.types[part.type] for part in self.spec.parts}
+
     def settable(self) -> dict[str, Quantity]:
         """All that may be given a value, by path: parameters, start values of states, inputs."""
-        return {
-            f"{part.name}.{key}": d.quantity(f"{part.name}.{key}")
-            for part in self.spec.parts
-            for key, d in settable(self.spec.types[part.type]).items()
-        }
+        return quantities(self.types, settable)
 
     def readable(self) -> dict[str, Quantity]:
         """All that a sensor may read, by path: outputs, states, inputs."""
-        return {
-            f"{part.name}.{key}": d.quantity(f"{part.name}.{key}")
-            for part in self.spec.parts
-            for key, d in readable(self.spec.types[part.type]).items()
-        }
+        return quantities(self.types, readable)
 
     def inputs(self) -> dict[str, Quantity]:
         """All that may be given over time, by path, whatever is driven."""
-        known = self.settable()
-        return {
-            path: known[path]
-            for part in self.spec.parts
-            for path in (f"{part.name}.{key}" for key in declared(self.spec.types[part.type], Input))
-        }
+        return quantities(self.types, lambda cls: declared(cls, Input))
 
     def with_values(self, values: Mapping[str, float], source: str = "given by the user") -> Scenario:
         """The scenario with values replaced.
@@ -146,7 +186,7 @@ class Scenario:
 
     def shaft_paths(self) -> set[str]:
         """Paths of the quantities that may be given at the shaft ends."""
-        return {f"{p.name}.{key}" for p in self.spec.parts for key in declared(self.spec.types[p.type], Given)}
+        return {f"{name}.{key}" for name, cls in self.types.items() for key in declared(cls, Given)}
 
     def driven_paths(self) -> set[str]:
         """Paths of the inputs of the model as it is driven: rooms, loads, what is given at the shaft ends."""
@@ -163,7 +203,7 @@ class Scenario:
         Raises:
             ScenarioError: unknown name, with suggestions
         """
-        found = entry_values(self._entry(part, name), settable(self.spec.types[self.spec.part(part).type]))
+        found = entry_values(self._entry(part, name), settable(self.types[part]))
         return {f"{part}.{key}": value for key, value in found.items()}
 
     def entry_sources(self, part: str, name: str, source: str) -> dict[str, str]:
@@ -189,7 +229,7 @@ class Scenario:
         Raises:
             ScenarioError: there is no such part, or no catalogue fits it
         """
-        known, taken = self._known(part), settable(self.spec.types[self.spec.part(part).type]).keys()
+        known, taken = self._known(part), settable(self.types[part]).keys()
         own = [known[name].values.keys() & taken for name in self.entries.get(part, {}).values() if name in known]
         found = tuple(name for name, e in known.items() if all(e.values.keys() >= keys for keys in own))
         if not found:
@@ -211,7 +251,7 @@ class Scenario:
         return known[name]
 
     def unchecked(self, filled: Iterable[tuple[str, str]] = ()) -> dict[tuple[str, str], tuple[str, ...]]:
-        """Catalogue entries in use, by kind and name -> paths of their values that were compared with no print.
+        """Catalogue entries in use, by kind and name -> paths of their values never checked against a print.
 
         Args:
             filled: part and name of further entries that a run fills parts with, such as the oils of a campaign
@@ -259,14 +299,11 @@ def parse_assignments(target: Scenario | FlatModel, texts: Iterable[str]) -> dic
     else:
         known = {path: target.quantity(path) for path in target.index}
     values: dict[str, float] = {}
-    problems: list[str] = []
+    problems = Problems()
     for text in texts:
-        try:
+        with problems:
             values |= _assigned(target, known, text)
-        except GearheatError as error:
-            problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return values
 
 

@@ -3,17 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from typing import Any, Literal, get_args
+from typing import Any, Literal, Self, get_args
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
-from ..model.errors import suggestion
+from ..model.errors import ScenarioError, suggestion
 
 
 class Strict(BaseModel):
     """Base: no unknown keys, no silent conversion."""
 
     model_config = ConfigDict(extra="forbid", strict=True, frozen=True, allow_inf_nan=False)
+
+    @classmethod
+    def read(cls, name: str, raw: object) -> Self:
+        """The tables of a file.
+
+        Args:
+            name: of the file, for messages
+            raw: what TOML makes of it
+
+        Raises:
+            ScenarioError: all that does not fit
+        """
+        try:
+            return cls.model_validate(raw)
+        except ValidationError as error:
+            raise ScenarioError(problem_of(name, dict(e), cls) for e in error.errors()) from None
 
 
 class DrivenTable(Strict):
@@ -154,9 +170,6 @@ def _expected(steps: Iterable[str | int], top: type[Strict]) -> tuple[type[Stric
     for step in steps:
         if model and (field := model.model_fields.get(str(step))):
             meaning = field.description or ""
-            model = next((m for m in (field.annotation, *get_args(field.annotation)) if _is_model(m)), None)
+            kinds = (m for m in (field.annotation, *get_args(field.annotation)) if isinstance(m, type))
+            model = next((m for m in kinds if issubclass(m, Strict)), None)
     return model, meaning
-
-
-def _is_model(candidate: Any) -> bool:
-    return isinstance(candidate, type) and issubclass(candidate, Strict)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -12,7 +12,7 @@ import numpy as np
 from ..model.core.component import Component
 from ..model.core.declare import Choice, Declaration, Input, Output, Parameter, State, declared
 from ..model.core.flat import Quantity
-from ..model.errors import GearheatError, ScenarioError, suggestion
+from ..model.errors import GearheatError, Problems, ScenarioError, suggestion
 from ..model.parts import PARTS
 from ..model.units import in_unit, spelled, split, to_si
 from .document import ABOUT, sources_of
@@ -76,7 +76,7 @@ class PartValues:
     units: dict[str, str] = field(default_factory=dict)
     entries: dict[str, str] = field(default_factory=dict)
     overrides: list[Override] = field(default_factory=list)
-    problems: list[str] = field(default_factory=list)
+    problems: Problems = field(default_factory=Problems)
 
 
 def settable(cls: type[Component]) -> dict[str, Declaration]:
@@ -87,6 +87,18 @@ def settable(cls: type[Component]) -> dict[str, Declaration]:
 def readable(cls: type[Component]) -> dict[str, Declaration]:
     """What a result can show: outputs, states and inputs."""
     return {k: d for kind in (Output, State, Input) for k, d in declared(cls, kind).items()}
+
+
+def quantities(
+    types: Mapping[str, type[Component]], kind: Callable[[type[Component]], Mapping[str, Declaration]]
+) -> dict[str, Quantity]:
+    """Quantities of parts by path.
+
+    Args:
+        types: part -> its type
+        kind: which declarations of a type, such as `settable`
+    """
+    return {f"{n}.{k}": d.quantity(f"{n}.{k}") for n, cls in types.items() for k, d in kind(cls).items()}
 
 
 def deviation(name: str, raw: object, unit: str) -> float:
@@ -101,6 +113,22 @@ def deviation(name: str, raw: object, unit: str) -> float:
         ScenarioError: it is no number with a fitting unit
     """
     return to_si(raw, f"{unit} (difference)" if unit == "K" else unit, name=name)
+
+
+def standard_deviation(name: str, raw: object, unit: str) -> float:
+    """A standard deviation in SI.
+
+    Args:
+        name: what to call it in a message
+        raw: a number, or text with a unit
+        unit: SI unit of the value; that of a temperature is a difference
+
+    Raises:
+        ScenarioError: it is no number with a fitting unit, or below zero
+    """
+    if (value := deviation(name, raw, unit)) < 0:
+        raise ScenarioError(f"{name} = {raw!r} is below zero. Give one standard deviation.")
+    return value
 
 
 def in_range(where: str, raw: object, quantity: Quantity) -> float:
@@ -236,18 +264,16 @@ class _PartReader:
         if key not in self.declarations:
             self.result.problems.append(self._unknown(key))
             return False
-        try:
+        with self.result.problems:
             value = in_range(f"{self.where}: ", raw, self.declarations[key].quantity(key))
-        except GearheatError as error:
-            self.result.problems.extend(error.problems)
-            return False
-        if key in values:
-            entries = ", ".join(self.result.entries.values())
-            self.result.overrides.append(Override(f"{self.name}.{key}", value, values[key], entries))
-        values[key] = value
-        if unit := unit_of(raw):
-            self.result.units[key] = unit
-        return True
+            if key in values:
+                entries = ", ".join(self.result.entries.values())
+                self.result.overrides.append(Override(f"{self.name}.{key}", value, values[key], entries))
+            values[key] = value
+            if unit := unit_of(raw):
+                self.result.units[key] = unit
+            return True
+        return False
 
     def _take_uncertainties(self, table: object) -> None:
         """Take the standard uncertainties of values of this part; that of a temperature is a difference."""
@@ -262,15 +288,8 @@ class _PartReader:
                 close = suggestion(key, known) or f" Values: {', '.join(known)}."
                 problems.append(f"{name}: the part has no such value.{close}")
                 continue
-            try:
-                value = deviation(name, raw, self.declarations[key].unit)
-            except GearheatError as error:
-                problems.extend(error.problems)
-                continue
-            if value >= 0:
-                self.result.uncertainties[key] = value
-            else:
-                problems.append(f"{name} = {raw!r} is below zero. Give one standard deviation.")
+            with problems:
+                self.result.uncertainties[key] = standard_deviation(name, raw, self.declarations[key].unit)
 
     def _unknown(self, key: str) -> str:
         if (name := meant(key, self.meanings)) is None:

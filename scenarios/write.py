@@ -11,8 +11,7 @@ from ..model.core.declare import Choice, declared
 from ..model.core.flat import Quantity
 from ..model.laws.film_map import FilmMap
 from ..model.machines.spec import PartSpec
-from .instruments import Instrument
-from .scenario import Scenario
+from .scenario import Instrument, Scenario
 from .values import UNCERTAINTIES, settable
 
 #: Choices that follow from [drive].

@@ -1,6 +1,32 @@
 """What holds for all tests."""
 
+from pathlib import Path
+
 import pytest
+
+#: Files that take more than 10 s, the longest first. A parallel run hands out whole files in this order, then the rest:
+#: what a file's tests share is made once, and no processor waits at the end for a long file that began late.
+LONGEST = (
+    "challenge/test_hidden.py",
+    "fmu/test_operating_points.py",
+    "static/test_readme.py",
+    "diagnose/infer/test_logs.py",
+    "tools/test_every_rig.py",
+    "tools/test_docs.py",
+    "diagnose/test_readings_and_logs.py",
+    "fmu/test_duties.py",
+    "diagnose/test_pages.py",
+    "diagnose/library/test_causes.py",
+    "static/test_package.py",
+    "diagnose/infer/test_looks.py",
+)
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Long files first; the others, and the tests of a file, stay in their order."""
+    here = Path(__file__).parent
+    ranks = {here / name: rank for rank, name in enumerate(LONGEST)}
+    items.sort(key=lambda item: ranks.get(item.path, len(ranks)))
 
 
 @pytest.fixture(autouse=True)

@@ -25,7 +25,7 @@ def run_of_one_point() -> None:
     columns = {"point": 1, "test": 1, "oil": "ISO VG 220 mineral", "n_input_rpm": 1450.0, "T_output_Nm": -592.5}
     row = columns | {"T_oil_C": 40.27, "T_wall_C": 38.3, "P_mesh_W": 98.23, "efficiency": 0.975, "time_s": 28800.0}
     found = {"rig": "mine", "unchecked": [], "energy_residual_max": 1.4e-16}
-    measured.print_run(CampaignRun([row], None, (), found))
+    measured.print_run(CampaignRun(None, (), found | {"rows": [row]}))
 
 
 def calibration() -> None:

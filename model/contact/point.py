@@ -1,9 +1,10 @@
-"""A steady contact in the plane: Newton's method on grids from coarse to fine, each starting from the one before."""
+"""A steady contact, in the plane by Newton's method on grids from coarse to fine, each starting from the one before."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from math import ceil, log
+from functools import partial
+from math import ceil, inf, log
 
 import numpy as np
 
@@ -11,6 +12,7 @@ from ..errors import ScenarioError, SolveError
 from .case import Array, Contact
 from .film import Film, film_of
 from .grid import Grid, prolong, restrict
+from .line import solve_line
 from .newton import Problem, State, newton
 from .scale import REST, Scaled, checked, units
 
@@ -30,7 +32,7 @@ COARSE = 1e-3
 FLOOR = 1e-9
 
 
-def solve_point(
+def solve(
     contact: Contact,
     *,
     n: int = 257,
@@ -39,19 +41,23 @@ def solve_point(
     tolerance: float = 1e-6,
     floor: float = FLOOR,
 ) -> Film:
-    """A steady elliptical contact or a roller of finite length.
+    """The steady film of a contact.
 
     Args:
         contact: the contact
-        n: nodes along a side of the finest grid, 2^k + 1
+        n: nodes along a side of the finest grid, 2^k + 1; of a line contact, any number
         domain: first x, last x and largest y over the half width a of the Hertz contact
         roughness: height [m] of a surface that stands still, at places x and y [m]
         tolerance: scaled residual at which it stops, in units of the Hertz pressure [1]
-        floor: film at which the surfaces touch [m]
+        floor: film at which the surfaces touch [m]; not of a line contact
 
     Raises:
+        ScenarioError: n or the contact make no problem
         SolveError: no solution found
     """
+    if not (contact.R_y < inf or contact.edge_radius > 0):
+        profile = None if roughness is None else partial(_along, roughness)
+        return solve_line(contact, n=n, domain=domain[:2] if domain else None, roughness=profile, tolerance=tolerance)
     case = Scaled(checked(contact), units(contact))
     grid = case.grid(nodes(n), domain)
     state = steady(case, grid, roughness, tolerance, floor)
@@ -61,6 +67,11 @@ def solve_point(
             "Refine the grid: n = 2^k + 1, larger."
         )
     return film_of(case, grid, state, gap(case, grid, roughness), floor)
+
+
+def _along(height: Height, x: Array) -> Array:
+    """Heights of a rough surface along the middle of a line contact [m]."""
+    return height(x, np.zeros_like(x))
 
 
 def steady(case: Scaled, finest: Grid, roughness: Height | None, tolerance: float, floor: float) -> State:

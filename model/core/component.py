@@ -16,13 +16,18 @@ from .declare import Choice, Declaration, Given, Input, Output, Parameter, Port,
 from .flat import Relation, broken
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Equation:
     """Two sides that are equal; which of their symbols it determines is found by flattening."""
 
     name: str
     lhs: Any
     rhs: Any
+
+    @property
+    def residual(self) -> Any:
+        """lhs - rhs."""
+        return self.lhs - self.rhs
 
 
 #: A relation and the expression of the value that tells whether it holds.

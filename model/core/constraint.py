@@ -8,10 +8,10 @@ from typing import Any
 
 import casadi as ca
 
-from .component import Component
+from .component import Component, Equation
 from .connect import Assembly
 from .eliminate import Factors, Singular, typical_sizes
-from .solve import Row, Unknown, column
+from .solve import Unknown, column
 
 #: A coefficient of a constraint below this is none.
 NOTHING = 1e-12
@@ -69,7 +69,7 @@ class Known:
         return ca.Function("values", free, [expression])(*point) if free else ca.DM(expression)
 
 
-def constraint(rows: Sequence[Row], unknowns: Sequence[Unknown], known: Known) -> Any:
+def constraint(rows: Sequence[Equation], unknowns: Sequence[Unknown], known: Known) -> Any:
     """The one relation, an expression that has to be zero, that is left when all unknowns are eliminated.
 
     Args:

@@ -11,7 +11,7 @@ import casadi as ca
 
 from ..errors import GearheatError, StructureError, suggestion
 from .component import Component, Equation
-from .solve import Row, Unknown, column
+from .solve import Unknown, column
 
 #: The place in its own sources that CasADi puts before a message.
 PLACE = re.compile(r"^\S+\.[ch]pp:\d+: ")
@@ -21,7 +21,7 @@ UNDECIDED = ("truth value", "__bool__")
 KIND = "Wrong number or type of arguments"
 
 
-def rows_of(part: Component) -> list[Row]:
+def rows_of(part: Component) -> list[Equation]:
     """The equations of a part, named "part: equation".
 
     Args:
@@ -31,7 +31,7 @@ def rows_of(part: Component) -> list[Row]:
         StructureError: the part has no equations, names what it does not declare, decides by the value of a symbol, or
             gives a side that is no scalar; with the equation behind which that happens
     """
-    rows: list[Row] = []
+    rows: list[Equation] = []
     try:
         for e in part.equations():
             rows.append(_row(part, e))
@@ -48,7 +48,7 @@ def rows_of(part: Component) -> list[Row]:
     return rows
 
 
-def _row(part: Component, e: Equation) -> Row:
+def _row(part: Component, e: Equation) -> Equation:
     for side in (e.lhs, e.rhs):
         if ca.SX(side).numel() != 1:
             shape = " x ".join(map(str, ca.SX(side).shape))
@@ -56,7 +56,7 @@ def _row(part: Component, e: Equation) -> Row:
                 f'{part.name}: a side of equation "{e.name}" has the shape {shape}. Each side is one number: yield an '
                 "equation for every component."
             )
-    return Row(f"{part.name}: {e.name}", e.lhs, e.rhs)
+    return Equation(f"{part.name}: {e.name}", e.lhs, e.rhs)
 
 
 def energies_of(part: Component) -> tuple[list[Any], Any]:
@@ -107,7 +107,7 @@ def _undeclared(part: Component, error: KeyError | AttributeError) -> str:
     return str(error.name) if error.obj is part else ""
 
 
-def check_symbols(rows: Sequence[Row], unknowns: Sequence[Unknown], parts: Sequence[Component]) -> None:
+def check_symbols(rows: Sequence[Equation], unknowns: Sequence[Unknown], parts: Sequence[Component]) -> None:
     """Refuse equations that cannot be solved whatever their structure.
 
     No number comes of functions that take a symbol for a number (`math.sqrt`).

@@ -1,21 +1,78 @@
-"""Sets of equations and unknowns that do not come out even, in the words of parts, ports and remedies."""
+"""Does every unknown have an equation of its own, and if not: what does not come out even, in words and remedies."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import casadi as ca
 
+from ..errors import StructureError
+from .component import Equation
 from .connect import Assembly, nets
 from .constraint import Constraint, Known
 from .declare import Given, Port
+from .matching import Matching, columns_of
+from .ports_check import floating
 from .reduce import tie
-from .solve import Row, Unknown
+from .solve import Unknown, incidence
 
 #: Names shown of a set.
 SHOWN = 4
+
+
+#: Problems told at once: what is wrong at one place shows at several.
+MOST = 5
+
+
+def check_structure(
+    assembly: Assembly, rows: Sequence[Equation], unknowns: Sequence[Unknown], typical: Mapping[int, float]
+) -> None:
+    """Refuse a system unless every unknown has an equation of its own and every temperature a level.
+
+    The message names the smallest sets that do not come out even. What is said twice of potentials is missing for
+    flows, and the other way round: then the potentials are told.
+
+    Args:
+        assembly: the parts
+        rows: all equations, rigid couplings reduced
+        unknowns: all unknowns
+        typical: typical value of every symbol by its hash
+
+    Raises:
+        StructureError: an unknown has no equation of its own, or a temperature no level
+    """
+    columns = columns_of(incidence(rows, unknowns))
+    if problems := floating(assembly.name, assembly.ports(), rows, unknowns, columns):
+        raise StructureError(problems)
+    matching = Matching(columns, len(unknowns))
+    if not matching.spare_rows and not matching.free_columns:
+        return
+    faults = Faults(assembly, rows, unknowns, columns, typical)
+    much = [faults.too_much(c) for c in _apart(sorted(map(matching.too_many, matching.spare_rows), key=len))]
+    little = [faults.too_little(c) for c in _joined(map(matching.too_few, matching.free_columns))]
+    found = [*much, *little]
+    told = [fault for fault in found if fault.potentials] or found
+    raise StructureError(list(dict.fromkeys(problem for fault in told for problem in fault.problems))[:MOST])
+
+
+def _apart(sets: Iterable[list[int]]) -> list[list[int]]:
+    """Those of the sets that share nothing with one before: each is a fault of its own."""
+    kept: list[list[int]] = []
+    for chosen in sets:
+        if not any(set(chosen) & set(other) for other in kept):
+            kept.append(chosen)
+    return kept
+
+
+def _joined(sets: Iterable[list[int]]) -> list[list[int]]:
+    """The sets, those that share something as one."""
+    kept: list[set[int]] = []
+    for chosen in sets:
+        near = [other for other in kept if not other.isdisjoint(chosen)]
+        kept = [other for other in kept if other not in near] + [set(chosen).union(*near)]
+    return [sorted(chosen) for chosen in kept]
 
 
 @dataclass(frozen=True)
@@ -40,7 +97,7 @@ class Faults:
     def __init__(
         self,
         assembly: Assembly,
-        rows: Sequence[Row],
+        rows: Sequence[Equation],
         unknowns: Sequence[Unknown],
         columns: Sequence[Sequence[int]],
         typical: Mapping[int, float],
@@ -116,12 +173,12 @@ class Faults:
         ways += [f"{'t' if free else 'T'}ake {listed(list(parts), 'or')} away"] if parts else []
         return ", or ".join(ways)
 
-    def _inputs_of(self, rows: Sequence[Row]) -> list[str]:
+    def _inputs_of(self, rows: Sequence[Equation]) -> list[str]:
         """The inputs that stand in some equations."""
         held = {s.element_hash() for row in rows for s in ca.symvar(ca.SX(row.residual))}
         return [path for h, path in self.known.inputs.items() if h in held]
 
-    def _twice(self, unknowns: Sequence[Unknown], said: Sequence[Row]) -> tuple[list[list[Port]], list[Row]]:
+    def _twice(self, unknowns: Sequence[Unknown], said: Sequence[Equation]) -> tuple[list[list[Port]], list[Equation]]:
         """Nets of which two of some equations name a potential as one of their sides, and these equations."""
         sides = [(side.element_hash(), r) for r in said for side in (r.lhs, r.rhs) if side.is_symbolic()]
         names = {u.symbol.element_hash(): u.name for u in unknowns}
@@ -205,7 +262,7 @@ def _owned(net: Sequence[Port], parts: set[str]) -> list[Port]:
     return [port for port in net if _owner(port) in parts]
 
 
-def _part(row: Row) -> str:
+def _part(row: Equation) -> str:
     return row.name.partition(": ")[0]
 
 

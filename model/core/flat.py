@@ -167,15 +167,17 @@ class FlatModel:
     @cached_property
     def index(self) -> Mapping[str, tuple[str, int]]:
         """Path -> (kind, position), kind one of "state", "input", "parameter", "output"."""
-        groups = {"state": self.states, "input": self.inputs, "parameter": self.parameters, "output": self.outputs}
-        return {q.name: (kind, i) for kind, group in groups.items() for i, q in enumerate(group)}
+        return {q.name: (kind, i) for kind, group in self._groups.items() for i, q in enumerate(group)}
+
+    @cached_property
+    def _groups(self) -> Mapping[str, tuple[Quantity, ...]]:
+        """The quantities that have a path, by kind."""
+        return {"state": self.states, "input": self.inputs, "parameter": self.parameters, "output": self.outputs}
 
     def quantity(self, name: str) -> Quantity:
         """The quantity of a path. Raises ScenarioError with suggestions for an unknown one."""
         kind, i = self.locate(name)
-        return {"state": self.states, "input": self.inputs, "parameter": self.parameters, "output": self.outputs}[kind][
-            i
-        ]
+        return self._groups[kind][i]
 
     def locate(self, name: str) -> tuple[str, int]:
         """Kind and position of a path. Raises ScenarioError with suggestions for an unknown one."""
@@ -217,6 +219,4 @@ class FlatModel:
 
     def starts(self, kind: str) -> np.ndarray:
         """Default values of all states, algebraic variables, inputs or parameters, in order."""
-        groups = {"state": self.states, "algebraic": self.algebraic, "input": self.inputs, "parameter": self.parameters}
-        group = groups[kind]
-        return np.array([q.start for q in group])
+        return np.array([q.start for q in (self.algebraic if kind == "algebraic" else self._groups[kind])])

@@ -10,14 +10,14 @@ from typing import Any
 import casadi as ca
 
 from ..sources import LawInfo, LawUse, recording
-from .component import Component
+from .component import Component, Equation
 from .connect import Assembly, nets
 from .declare import Declaration, Variable
 from .equations import check_symbols, energies_of, rows_of
+from .faults import check_structure
 from .flat import Check, FlatModel, Quantity
 from .reduce import reduce
-from .solve import Row, Solution, Unknown, column, inline, scaled_residual, solve, start_of
-from .structure import check_structure
+from .solve import Solution, Unknown, column, inline, scaled_residual, solve, start_of
 
 
 def flatten(assembly: Assembly, *, flows: Iterable[str] = ()) -> FlatModel:
@@ -42,7 +42,7 @@ def flatten(assembly: Assembly, *, flows: Iterable[str] = ()) -> FlatModel:
         unknowns += _unknowns(part)
     aliased = _Alias(alias)
     lefts, rights = aliased([r.lhs for r in rows]), aliased([r.rhs for r in rows])
-    rows = [Row(r.name, lhs, rhs) for r, lhs, rhs in zip(rows, lefts, rights, strict=True)]
+    rows = [Equation(r.name, lhs, rhs) for r, lhs, rhs in zip(rows, lefts, rights, strict=True)]
     check_symbols(rows, unknowns, assembly.parts)
     typical = _typical(assembly, unknowns)
     reduced = reduce(assembly, rows, unknowns, typical)
@@ -67,7 +67,7 @@ class _Alias:
         return list(replaced.nonzeros())
 
 
-def _nets(assembly: Assembly) -> tuple[list[Row], list[Unknown], list[tuple[Any, Any]]]:
+def _nets(assembly: Assembly) -> tuple[list[Equation], list[Unknown], list[tuple[Any, Any]]]:
     """Flow balances, the unknowns of the nets, and which port symbols are the same."""
     rows, unknowns, alias = [], [], []
     for net in nets(assembly):
@@ -80,7 +80,7 @@ def _nets(assembly: Assembly) -> tuple[list[Row], list[Unknown], list[tuple[Any,
                 Unknown(port.symbols[name], f"{port.name}.{name}", flow.nominal, unit=flow.unit) for port in net
             ]
             total = sum((port.symbols[name] for port in net), ca.SX(0))
-            rows.append(Row(f"sum of {name} at {first.name}", total, ca.SX(0)))
+            rows.append(Equation(f"sum of {name} at {first.name}", total, ca.SX(0)))
     return rows, unknowns, alias
 
 

@@ -7,9 +7,9 @@ from collections.abc import Iterator, Mapping, Sequence
 import casadi as ca
 import numpy as np
 
-from .component import Component
+from .component import Component, Equation
 from .declare import Port
-from .solve import Row, Unknown, column
+from .solve import Unknown, column
 
 
 def open_ports(model: str, parts: Sequence[Component], nets: Sequence[Sequence[Port]]) -> list[str]:
@@ -46,7 +46,7 @@ def _open(model: str, part: Component, alone: set[str]) -> Iterator[str]:
 def floating(
     model: str,
     ports: Mapping[str, Port],
-    rows: Sequence[Row],
+    rows: Sequence[Equation],
     unknowns: Sequence[Unknown],
     columns: Sequence[Sequence[int]],
 ) -> list[str]:

@@ -14,11 +14,11 @@ from dataclasses import dataclass, field
 import casadi as ca
 
 from ..errors import StructureError
-from .component import Component
+from .component import Component, Equation
 from .connect import Assembly
 from .constraint import Constraint, Known, constraint
 from .matching import Matching, columns_of
-from .solve import Row, Unknown, incidence
+from .solve import Unknown, incidence
 
 #: How well the start values of states that follow each other agree, relative to their size.
 AGREE = 1e-9
@@ -31,12 +31,12 @@ class Reduced:
     `joined` says of each state that is none any more, by path, which ones it follows.
     """
 
-    rows: list[Row]
+    rows: list[Equation]
     unknowns: list[Unknown]
     joined: dict[str, str] = field(default_factory=dict)
 
 
-def reduce(assembly: Assembly, rows: list[Row], unknowns: list[Unknown], typical: Mapping[int, float]) -> Reduced:
+def reduce(assembly: Assembly, rows: list[Equation], unknowns: list[Unknown], typical: Mapping[int, float]) -> Reduced:
     """Let states that linear equations tie together follow each other, until as few are left as may be chosen freely.
 
     What cannot be reduced (a state tied to an input, a relation that is not linear) stays as it is, for
@@ -68,7 +68,7 @@ def reduce(assembly: Assembly, rows: list[Row], unknowns: list[Unknown], typical
     return reduced
 
 
-def _standing(rows: list[Row], known: Known) -> dict[str, list[int]]:
+def _standing(rows: list[Equation], known: Known) -> dict[str, list[int]]:
     """In which equations each state stands, by its path."""
     states = [Unknown(part.symbols[key], _path(part, key)) for part, key in known.states.values()]
     found: dict[str, list[int]] = {state.name: [] for state in states}
@@ -90,7 +90,7 @@ def _coupling(reduced: Reduced, columns: list[list[int]], known: Known) -> tuple
     return None
 
 
-def tie(rows: list[Row], unknowns: list[Unknown], known: Known) -> Constraint | None:
+def tie(rows: list[Equation], unknowns: list[Unknown], known: Known) -> Constraint | None:
     """What equations, one more than unknowns, say about states and inputs; None where that is not linear.
 
     Args:
@@ -118,7 +118,7 @@ def _demote(model: str, relation: Constraint, k: int, known: Known, reduced: Red
     for i in others:
         other, name = relation.states[i]
         followed = followed - relation.coefficients[i] / relation.coefficients[k] * other.derivatives[name]
-    reduced.rows.append(Row(f"{path} follows", part.derivatives[key], followed))
+    reduced.rows.append(Equation(f"{path} follows", part.derivatives[key], followed))
     reduced.unknowns.append(Unknown(part.symbols[key], path, part.states[key].nominal))
     reduced.joined[path] = f"{path} follows {' and '.join(leaders)}"
 

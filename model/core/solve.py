@@ -18,6 +18,7 @@ from scipy.sparse import csr_matrix
 from scipy.sparse.csgraph import min_weight_full_bipartite_matching
 
 from ..errors import StructureError
+from .component import Equation
 from .eliminate import Factors, Singular, typical_sizes
 
 #: Cost of letting an equation determine an unknown that one side of it gives.
@@ -43,20 +44,6 @@ class Unknown:
     unit: str = "1"
 
 
-@dataclass(frozen=True, eq=False)
-class Row:
-    """One equation, lhs = rhs, with its name."""
-
-    name: str
-    lhs: Any
-    rhs: Any
-
-    @property
-    def residual(self) -> Any:
-        """lhs - rhs."""
-        return self.lhs - self.rhs
-
-
 @dataclass
 class Solution:
     """Definitions in the order in which they can be evaluated; torn unknowns and the equations that test them.
@@ -68,17 +55,7 @@ class Solution:
     symbols: list[Any] = field(default_factory=list)
     definitions: list[Any] = field(default_factory=list)
     torn: list[Unknown] = field(default_factory=list)
-    tests: list[Row] = field(default_factory=list)
-
-    def keep(self, unknowns: Sequence[Unknown], tests: Sequence[Row]) -> None:
-        """Leave unknowns implicit, with as many equations.
-
-        Args:
-            unknowns: those that stay implicit
-            tests: the equations that determine them, as many
-        """
-        self.torn += unknowns
-        self.tests += tests
+    tests: list[Equation] = field(default_factory=list)
 
     def define(self, symbol: Any, definition: Any) -> None:
         """Append one definition; it may use known symbols and those defined before.
@@ -96,7 +73,7 @@ def column(items: Sequence[Any]) -> Any:
     return ca.vertcat(*items) if items else ca.SX(0, 1)
 
 
-def incidence(rows: Sequence[Row], unknowns: Sequence[Unknown]) -> Any:
+def incidence(rows: Sequence[Equation], unknowns: Sequence[Unknown]) -> Any:
     """Sparsity of the residuals in the unknowns.
 
     Args:
@@ -106,7 +83,7 @@ def incidence(rows: Sequence[Row], unknowns: Sequence[Unknown]) -> Any:
     return ca.jacobian_sparsity(column([r.residual for r in rows]), column([u.symbol for u in unknowns]))
 
 
-def solve(model: str, rows: Sequence[Row], unknowns: Sequence[Unknown], solution: Solution) -> None:
+def solve(model: str, rows: Sequence[Equation], unknowns: Sequence[Unknown], solution: Solution) -> None:
     """Add the definitions of all unknowns to a solution. The system must be structurally sound.
 
     Args:
@@ -125,7 +102,7 @@ def solve(model: str, rows: Sequence[Row], unknowns: Sequence[Unknown], solution
         _solve_block(model, block_rows, block_unknowns, solution)
 
 
-def _solve_block(model: str, rows: list[Row], unknowns: list[Unknown], solution: Solution) -> None:
+def _solve_block(model: str, rows: list[Equation], unknowns: list[Unknown], solution: Solution) -> None:
     z = column([u.symbol for u in unknowns])
     if len(rows) == 1 and (definition := _explicit(rows[0], z)) is not None:
         solution.define(z, definition)
@@ -138,7 +115,7 @@ def _solve_block(model: str, rows: list[Row], unknowns: list[Unknown], solution:
         _tear(model, rows, unknowns, solution)
 
 
-def _explicit(row: Row, z: Any) -> Any:
+def _explicit(row: Equation, z: Any) -> Any:
     """The other side where one side is the unknown itself, else None."""
     for side, other in ((row.lhs, row.rhs), (row.rhs, row.lhs)):
         if ca.is_equal(ca.SX(side), z, 0) and not ca.depends_on(other, z):
@@ -159,7 +136,7 @@ def _eliminate(model: str, matrix: Any, constant: Any, unknowns: list[Unknown], 
         solution.define(unknown.symbol, value)
 
 
-def _tear(model: str, rows: list[Row], unknowns: list[Unknown], solution: Solution) -> None:
+def _tear(model: str, rows: list[Equation], unknowns: list[Unknown], solution: Solution) -> None:
     """Keep some unknowns of a block as algebraic variables, define the rest by them, and test what is left.
 
     Torn are the unknowns with a guess; without any, as few as make the rest linear. What is still implicit after that
@@ -168,12 +145,13 @@ def _tear(model: str, rows: list[Row], unknowns: list[Unknown], solution: Soluti
     torn = [u for u in unknowns if u.guess is not None] or _nonlinear(rows, unknowns)
     rest = [u for u in unknowns if u not in torn]
     tests = _tests(rows, torn, rest)
-    solution.keep(torn, tests)
+    solution.torn += torn
+    solution.tests += tests
     if rest:
         solve(model, [r for r in rows if r not in tests], rest, solution)
 
 
-def _nonlinear(rows: list[Row], unknowns: list[Unknown]) -> list[Unknown]:
+def _nonlinear(rows: list[Equation], unknowns: list[Unknown]) -> list[Unknown]:
     """Unknowns of which at least one is in every nonlinear term, those first that are in most of them."""
     z = column([u.symbol for u in unknowns])
     entries = _entries(rows, z)
@@ -188,7 +166,7 @@ def _nonlinear(rows: list[Row], unknowns: list[Unknown]) -> list[Unknown]:
     return [unknowns[i] for i in sorted(chosen)]
 
 
-def _tests(rows: list[Row], torn: list[Unknown], rest: list[Unknown]) -> list[Row]:
+def _tests(rows: list[Equation], torn: list[Unknown], rest: list[Unknown]) -> list[Equation]:
     """The equations that are left over when each remaining unknown has got one, best one that gives it explicitly."""
     if not rest:
         return list(rows)
@@ -211,7 +189,7 @@ def _tests(rows: list[Row], torn: list[Unknown], rest: list[Unknown]) -> list[Ro
     return [row for i, row in enumerate(rows) if i not in taken]
 
 
-def _entries(rows: list[Row], z: Any) -> Any:
+def _entries(rows: list[Equation], z: Any) -> Any:
     """Derivatives of the residuals of some equations."""
     return ca.jacobian(column([r.residual for r in rows]), z)
 

@@ -85,6 +85,10 @@ def nijenbanning_central(M: Num, L: Num, D: Num) -> Num:
     .. math:: H = \left\{\left[H_{RI}^{3/2} + (H_{EI}^{-4} + H_{00}^{-4})^{-3/8}\right]^{2s/3}
         + (H_{RP}^{-8} + H_{EP}^{-8})^{-s/8}\right\}^{1/s},\quad s = 1.5 (1 + e^{-1.2 H_{EI}/H_{RI}})
 
+    Solved circular contacts agree within 5 % from M = 20 on and at L of 10 or more from M = 10 on; at M = 5 the formula
+    is 36 % (L = 2.5) to 31 % (L = 5) above them. While H_EI is below about twice H_RI, solved films rise with load;
+    the formula is flat there, within 0.2 % up at L = 25.
+
     Args:
         M: load number, F / (E_eff R_x^2) U^(-3/4) [1]
         L: lubricant number, alpha_p E_eff U^(1/4) [1]

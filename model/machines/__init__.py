@@ -1,1 +1,1 @@
-"""One file a machine: its spec and its assembly."""
+"""What machines are made of: specs, the layouts of whole kinds of machines, what the parts do, pieces of a machine."""

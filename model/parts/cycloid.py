@@ -41,11 +41,7 @@ class CycloidDrive(Component):
     """
 
     role: ClassVar[str] = "teeth"
-    scale: ClassVar[tuple[str, ...]] = (
-        "mu_r1",
-        "mu_r2",
-        "mu_r3",
-    )
+    scale: ClassVar[tuple[str, ...]] = ("mu_r1", "mu_r2", "mu_r3")
 
     input = Flange()
     output = Flange()

@@ -39,10 +39,7 @@ class FlankFilm(Component):
     """
 
     role: ClassVar[str] = "teeth"
-    scale: ClassVar[tuple[str, ...]] = (
-        "mu_fluid",
-        "mu_boundary",
-    )
+    scale: ClassVar[tuple[str, ...]] = ("mu_fluid", "mu_boundary")
 
     film = Choice(
         ("pad", "moes", "dowson_higginson_printed"),

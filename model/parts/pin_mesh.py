@@ -113,15 +113,12 @@ class PinMesh:
             angles.append(ca.acos(ca.fmin(ca.fmax(c, -INSIDE), INSIDE)))
         return angles[0], angles[1]
 
-    def quadrature(self, count: int = ANGLES) -> list[tuple[Num, Num]]:
+    def quadrature(self) -> list[tuple[Num, Num]]:
         """Angles and weights [rad] of a sum over the loaded half: Gauss's rule between the turns of the entrainment.
 
         The film closes at the turns, so that friction has a cusp there: the angles crowd towards them.
-
-        Args:
-            count: number of angles in each of the three parts
         """
-        x, weights = np.polynomial.legendre.leggauss(count)
+        x, weights = np.polynomial.legendre.leggauss(ANGLES)
         ends = (0.0, *self.turning_angles(), float(np.pi))
         found = []
         for low, high in itertools.pairwise(ends):

@@ -20,6 +20,8 @@ from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading
 
 #: Discs of a stage; they stand opposite each other, so that the radial forces of both cancel.
 DISCS = 2
+#: Moments of a mesh cycle that are told.
+MOMENTS = 15
 #: Reduced radius of disc and pin at the sharpest place of the disc that counts as undercut, over the pin's radius.
 UNDERCUT = 1e-6
 
@@ -40,10 +42,7 @@ class CycloidPinStage(Component):
     """
 
     role: ClassVar[str] = "teeth"
-    scale: ClassVar[tuple[str, ...]] = (
-        "mu_fluid",
-        "mu_boundary",
-    )
+    scale: ClassVar[tuple[str, ...]] = ("mu_fluid", "mu_boundary")
 
     crank = Flange()
     carrier = Flange()
@@ -212,11 +211,10 @@ class CycloidPinStage(Component):
         """
         return self.contact_case(values, float(ca.pi) / 2)
 
-    def mesh_cycle(self, values: Mapping[str, float], count: int = 15) -> list[ContactCase]:
+    def mesh_cycle(self, values: Mapping[str, float]) -> list[ContactCase]:
         """The way of a pin through the loaded half, in the middles of equal steps: it carries at every moment.
 
         Args:
             values: parameters and outputs of the stage at an operating point, by key, in SI
-            count: number of moments
         """
-        return [self.contact_case(values, float(ca.pi) * (k + 0.5) / count) for k in range(count)]
+        return [self.contact_case(values, float(ca.pi) * (k + 0.5) / MOMENTS) for k in range(MOMENTS)]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import dataclass
 from typing import ClassVar
 
 import casadi as ca
@@ -25,10 +26,24 @@ from ..laws.gears import (
 from ..laws.mesh import friction_schlenk, load_per_contact_length, load_per_face_width
 from ..laws.smooth import Num, smooth_abs
 from .ports import HeatPort, Lubricant
-from .tooth_contact import ToothContact
 
 #: Share of a_w that the base circles may take; at 1 the flanks would have no line of action.
 ANGLE_LEFT = 0.9999
+
+
+@dataclass(frozen=True)
+class ToothContact:
+    """One tooth contact at its pitch point: what does not depend on speed and load.
+
+    `rho` radius of curvature of the first gear [m], `R` reduced radius normal to the teeth [m], `l` length of the
+    lines of contact [m], `base` and `normal` base tangential and normal force over tangential force [1].
+    """
+
+    rho: Num
+    R: Num
+    l: Num  # noqa: E741
+    base: Num
+    normal: Num
 
 
 class ToothedPart(Component):

@@ -306,10 +306,8 @@ class BoxCooling(SurfaceCooling):
         L = self.length * self.width / (2 * (self.length + self.width))  # area over perimeter
         upward = self.share_top * natural_horizontal_up(T, T_air, L, p=self.air.p)
         downward = self.share_bottom * natural_horizontal_down(T, T_air, L, p=self.air.p)
-        vertical = (1 - self.share_top - self.share_bottom) * natural_vertical_plate(
-            T, T_air, self.height, p=self.air.p
-        )
-        return vertical + upward + downward
+        vertical = natural_vertical_plate(T, T_air, self.height, p=self.air.p)
+        return (1 - self.share_top - self.share_bottom) * vertical + upward + downward
 
     def forced(self, T_film: Num) -> Num:
         """Plates along the air."""
@@ -325,28 +323,21 @@ class CylinderCooling(SurfaceCooling):
     def natural(self) -> Num:
         """Mean of shell and end faces by area."""
         T, T_air = self.surface.T, self.air.T
-        shell, ends = (
-            natural_horizontal_cylinder(T, T_air, self.D, p=self.air.p),
-            natural_vertical_plate(T, T_air, self.D, p=self.air.p),
-        )
+        shell = natural_horizontal_cylinder(T, T_air, self.D, p=self.air.p)
+        ends = natural_vertical_plate(T, T_air, self.D, p=self.air.p)
         return (1 - self.share_ends) * shell + self.share_ends * ends
 
     def forced(self, T_film: Num) -> Num:
         """Cylinder across the air, end faces along it."""
-        shell, ends = (
-            forced_cylinder(self.air.v, T_film, self.D, p=self.air.p),
-            forced_plate(self.air.v, T_film, self.D, p=self.air.p),
-        )
+        shell = forced_cylinder(self.air.v, T_film, self.D, p=self.air.p)
+        ends = forced_plate(self.air.v, T_film, self.D, p=self.air.p)
         return (1 - self.share_ends) * shell + self.share_ends * ends
 
 
 class FinnedBoxCooling(BoxCooling):
     """A box with straight fins: they add convecting area, not radiating area."""
 
-    scale: ClassVar[tuple[str, ...]] = (
-        "A",
-        "A_fins",
-    )
+    scale: ClassVar[tuple[str, ...]] = ("A", "A_fins")
 
     A_fins = Parameter("m2", "surface of the fins, both sides", at_least=0.0)
     fin_height = Parameter("m", "height of a fin", nominal=0.01, above=0.0)

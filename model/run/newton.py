@@ -55,7 +55,7 @@ LONGEST = 1e9
 #: Shortest step [s] before the pseudo-transient gives up.
 SHORTEST = 1e-12
 
-#: Steps before the pseudo-transient gives up.
+#: Corrections before the pseudo-transient gives up.
 MOST_RELAX = 1000
 
 
@@ -168,7 +168,7 @@ def homotopy(at: Callable[[float], System], z: np.ndarray, box: Box) -> Root:
     return Root(z, share >= 1.0, steps, share)
 
 
-def pseudo_transient(system: System, z: np.ndarray, box: Box, n: int, most: int = MOST_RELAX) -> Root:
+def pseudo_transient(system: System, z: np.ndarray, box: Box, n: int) -> Root:
     """Follow dz/dt = residual to equilibrium by implicit Euler with steps that grow as long as they are easy.
 
     It goes where the machine would go, also where Newton's method finds no way: shafts that come to rest, the stable
@@ -180,7 +180,6 @@ def pseudo_transient(system: System, z: np.ndarray, box: Box, n: int, most: int 
         z: where to start, inside the box
         box: bounds and scales
         n: number of unknowns with a derivative
-        most: corrections before giving up
     """
     residual, jacobian = system(z)
     if not np.isfinite(residual).all():
@@ -188,7 +187,7 @@ def pseudo_transient(system: System, z: np.ndarray, box: Box, n: int, most: int 
     states = Box(box.low[:n], box.high[:n], box.scale[:n])
     step = float(np.clip(1 / max(states.size(residual[:n]), 1e-12), 1e-6, 1e3))
     taken = 0
-    while taken < most and step > SHORTEST:
+    while taken < MOST_RELAX and step > SHORTEST:
         step = min(step, CAUTION / max(growth(reduced(jacobian, n)), 1e-300))
         inner = newton(_euler(system, z, step, n), z, box, MOST_EULER)
         taken += max(inner.steps, 1)

@@ -126,7 +126,7 @@ class Search:
             np.append(own_box.scale, scales),
             np.append(own_box.stride, [STRIDE] * len(own)),
         )
-        self.compiled = _compiled(flat, self.free, self.names)
+        self.compiled = compiled(flat, self.free, self.names)
         self.limits: dict[str, None] = {}
 
     def _inside(self, value: float, q: Quantity, bounds: Mapping[str, tuple[float, float]]) -> float:
@@ -256,8 +256,14 @@ class Search:
 
 
 @once
-def _compiled(flat: FlatModel, free: tuple[str, ...], targets: tuple[str, ...]) -> Fast:
-    """(x, z, u, p) -> derivatives, algebraic residuals and targets, and their Jacobian in x, z and freed values."""
+def compiled(flat: FlatModel, free: tuple[str, ...], targets: tuple[str, ...]) -> Fast:
+    """(x, z, u, p) -> derivatives, algebraic residuals and targets, and their Jacobian in x, z and freed values.
+
+    Args:
+        flat: the model
+        free: parameters and inputs
+        targets: outputs and states
+    """
     vectors = {"state": flat.x, "output": flat.y, "input": flat.u, "parameter": flat.p}
     aims, freed = ([vectors[kind][i] for kind, i in map(flat.locate, names)] for names in (targets, free))
     equations = ca.vertcat(flat.ode, flat.residual, *aims)

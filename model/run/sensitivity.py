@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import cast
 
-import casadi as ca
 import numpy as np
 
 from ..core.flat import FlatModel
 from ..errors import ScenarioError
-from .fast import Fast, once
 from .point import point, problem_of
+from .search import compiled
 from .steady import equilibrium
 
 
@@ -43,17 +42,7 @@ def sensitivities(
     here = point(flat, values, guess, who="sensitivities")
     at = equilibrium(flat, here, None, tuple(values), "sensitivities")
     n, m = len(at.w), len(outputs)
-    compiled = _compiled(flat, tuple(outputs), tuple(names))
-    jacobian = compiled(at.x, at.z, here.u, here.p)[0].reshape(n + m, n + len(names))
+    _, slopes = compiled(flat, tuple(names), tuple(outputs))(at.x, at.z, here.u, here.p)
+    jacobian = slopes.reshape(n + m, n + len(names))
     answer = np.linalg.solve(jacobian[:n, :n], -jacobian[:n, n:])
     return cast(np.ndarray, jacobian[n:, n:] + jacobian[n:, :n] @ answer)
-
-
-@once
-def _compiled(flat: FlatModel, outputs: tuple[str, ...], names: tuple[str, ...]) -> Fast:
-    """(x, z, u, p) -> Jacobian of derivatives, algebraic residuals and outputs in x, z and the names."""
-    vectors = {"state": flat.x, "output": flat.y, "input": flat.u, "parameter": flat.p}
-    rows = [vectors[kind][i] for kind, i in map(flat.locate, outputs)]
-    columns = [vectors[kind][i] for kind, i in map(flat.locate, names)]
-    jacobian = ca.jacobian(ca.vertcat(flat.ode, flat.residual, *rows), ca.vertcat(flat.x, flat.z, *columns))
-    return Fast("sensitivities", flat.point, [jacobian])

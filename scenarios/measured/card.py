@@ -7,11 +7,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, Literal
 
-from pydantic import ConfigDict, Field, ValidationError, field_validator, model_validator
+from pydantic import ConfigDict, Field, field_validator, model_validator
 
-from ...model.errors import DataError, GearheatError, suggestion
+from ...model.errors import DataError, GearheatError, Problems, suggestion
 from ..document import read_text, read_toml
-from ..tables import SensorTable, Strict, problem_of
+from ..tables import SensorTable, Strict
 
 #: Versions of the format that are read.
 SCHEMAS = ("gearheat.card/1", "gearheat.card/2")
@@ -121,12 +121,11 @@ def read_card(path: Path | None) -> Card:
         raise DataError(f"{path.name}: is no card. Write one with `gearheat card RIG -o {path.name}`.")
     first = raw.get("schema") == SCHEMAS[0]
     raw, warnings = _known_only(path.name, raw) if first else (raw, [])
-    try:
-        card = Card.model_validate({**raw, "name": path.name, "warnings": tuple(warnings)})
-    except ValidationError as error:
-        raise DataError([problem_of(path.name, dict(e), Card) for e in error.errors()]) from None
-    if problems := _problems(card):
-        raise DataError(problems)
+    problems = Problems()
+    with problems:
+        card = Card.read(path.name, {**raw, "name": path.name, "warnings": tuple(warnings)})
+        problems += _problems(card)
+    problems.check(DataError)
     return card.model_copy(update={"warnings": (*card.warnings, *_word_warnings(card))})
 
 

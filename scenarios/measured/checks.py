@@ -7,10 +7,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ...model.units import from_si, shown
+from ...model.units import text
 from ..csv_table import raise_all
-from .nominal import Nominal
-from .power import efficiency, shaft_powers
+from .nominal import Nominal, efficiency, shaft_powers
 from .sensors import ACCURACY, SI
 from .table import Campaign, Sensor
 
@@ -121,7 +120,7 @@ def outlying(campaign: Campaign, points: Campaign) -> list[str]:
 
 
 def _shown(sensor: Sensor, value: float) -> str:
-    return f"{from_si(float(value), SI[sensor.kind]):.4g} {shown(SI[sensor.kind])}"
+    return text(float(value), SI[sensor.kind], 4)
 
 
 def _place(campaign: Campaign, row: int | np.intp) -> str:
@@ -132,6 +131,7 @@ def _accuracies(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
     """Accuracies that no instrument has."""
     for sensor in campaign.sensors:
         usual = dict(zip(("repeat_sd", "offset_sd"), ACCURACY[sensor.kind], strict=True))
+        unit = "K (difference)" if SI[sensor.kind] == "K" else SI[sensor.kind]
         if SI[sensor.kind] != "K":
             size = abs(nominal.value(sensor.reads))
             usual = {key: part * (size if size > 0 else _size(campaign, sensor)) for key, part in usual.items()}
@@ -139,12 +139,9 @@ def _accuracies(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
             stated = getattr(sensor, key)
             if (stated == 0.0 and key == "offset_sd") or value == 0.0 or value / ODD <= stated <= value * ODD:
                 continue
-            unit = "K" if SI[sensor.kind] == "K" else shown(SI[sensor.kind])
-            size = stated if unit == "K" else from_si(stated, SI[sensor.kind])
-            normal = value if unit == "K" else from_si(value, SI[sensor.kind])
             yield (
-                f"{sensor.name}: {key} = {size:.3g} {unit} is no accuracy of such an instrument; {normal:.2g} {unit} is"
-                " usual. Check its unit in the card."
+                f"{sensor.name}: {key} = {text(stated, unit, 3)} is no accuracy of such an instrument;"
+                f" {text(value, unit, 2)} is usual. Check its unit in the card."
             )
 
 

@@ -36,7 +36,9 @@ def with_unread(campaign: Campaign) -> Campaign:
     plan = [entry for own in rows for entry in _completed(own, [steps[row] for row in own], usual)]
     if all(step is None for _, step in plan):
         return campaign
-    return _built(campaign, plan, _change_of_room(campaign))
+    inside = np.diff(campaign.test) == 0
+    rooms = [s.name for s in campaign.given if s.kind == "ambient"]
+    return _built(campaign, plan, {n: float(np.nanmedian(np.diff(campaign.values[n])[inside])) for n in rooms})
 
 
 def _completed(own: Sequence[int], steps: Sequence[Step], usual: Sequence[Step]) -> list[tuple[int, Step | None]]:
@@ -53,14 +55,8 @@ def _completed(own: Sequence[int], steps: Sequence[Step], usual: Sequence[Step])
     return plan
 
 
-def _change_of_room(campaign: Campaign) -> Mapping[str, float]:
-    """Room sensor -> median change from each reading to the next of a test [K]."""
-    inside = np.diff(campaign.test) == 0
-    rooms = [s.name for s in campaign.given if s.kind == "ambient"]
-    return {name: float(np.nanmedian(np.diff(campaign.values[name])[inside])) for name in rooms}
-
-
 def _built(campaign: Campaign, plan: Sequence[tuple[int, Step | None]], change: Mapping[str, float]) -> Campaign:
+    """The campaign with the rows of a plan; `change` is the median from each reading of a room to the next [K]."""
     source = np.array([row for row, _ in plan])
     unread = np.array([step is not None for _, step in plan])
     turned = np.array([1.0 if step is None else step[0] * campaign.direction[row] for row, step in plan])

@@ -14,13 +14,13 @@ from typing import IO, Any
 
 import numpy as np
 
-from ...model.errors import DataError, GearheatError, suggestion
+from ...model.errors import DataError, Problems
 from ...model.files import reading
-from ...model.units import spelled
 from ..columns import in_si, split_unit
 from ..csv_table import raise_all
 from ..scenario import Scenario
 from .card import Card
+from .read import placed
 from .sensors import SI, sensors_of
 from .table import Sensed, Sensor
 
@@ -108,8 +108,7 @@ def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
         DataError: everything wrong with the file, at once
     """
     header, cells, lines = _cells(path)
-    problems: list[str] = []
-    sensors = [placed for s in sensors_of(scenario, card) if (placed := _placed(s, header, card, path.name, problems))]
+    sensors, problems = placed(sensors_of(scenario, card), header, card, path.name)
     if not any(s.role == "read" for s in sensors):
         problems.append(f"{path.name} line 1: no column of a sensor that is compared. Name yours in the card: columns.")
     time_column = next((h for h in header if h in TIMES or split_unit(h)[0] in TIMES), "")
@@ -122,7 +121,7 @@ def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
     segments = cells.get(card.columns.get("segment", "segment"))
     stretch, step = _stretches(time, segments, path.name, lines)
     values, gross = _set_aside(values, sensors, stretch, lines)
-    return Log(path.name, tuple(sensors), values, time, stretch, step, lines, dated, gross)
+    return Log(path.name, sensors, values, time, stretch, step, lines, dated, gross)
 
 
 def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]:
@@ -162,29 +161,13 @@ def _parquet(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarra
     return list(columns), columns, np.arange(1, table.num_rows + 1)
 
 
-def _placed(sensor: Sensor, header: Sequence[str], card: Card, name: str, problems: list[str]) -> Sensor | None:
-    """The sensor with its column in this file, None where there is none."""
-    names = (sensor.column, split_unit(sensor.column)[0])
-    exact = [h for h in header if h == sensor.column]
-    column = next(iter(exact or [h for h in header if split_unit(h)[0] in names]), None)
-    if column is None:
-        if sensor.role == "given":
-            problems.append(
-                f'{name} line 1: column "{sensor.column}" drives the model ({sensor.reads}) and is missing.'
-                f'{suggestion(sensor.column, header)} Add it, or name yours in the card: columns = {{ "{sensor.name}" ='
-                ' "..." }.'
-            )
-        return None
-    return replace(sensor, column=column, unit=spelled(card.units.get(column, split_unit(column)[1] or sensor.unit)))
-
-
 def _number(cell: Any) -> float:
     if cell is None or (isinstance(cell, str) and cell.strip().lower() in ("", "nan", "na", "null")):
         return math.nan
     return float(cell)
 
 
-def _values(cells: Sequence[Any], sensor: Sensor, name: str, lines: np.ndarray, problems: list[str]) -> np.ndarray:
+def _values(cells: Sequence[Any], sensor: Sensor, name: str, lines: np.ndarray, problems: Problems) -> np.ndarray:
     """A column in SI (n,), NaN where a cell is empty."""
     found = np.full(len(cells), np.nan)
     for k, cell in enumerate(cells):
@@ -192,11 +175,9 @@ def _values(cells: Sequence[Any], sensor: Sensor, name: str, lines: np.ndarray, 
             found[k] = _number(cell)
         except (TypeError, ValueError):
             problems.append(f'{name} line {lines[k]}: {sensor.column} is "{cell}", expected a number or nothing.')
-    try:
-        return in_si(found, sensor.unit, SI[sensor.kind], name=f"{name} {sensor.column}")
-    except GearheatError as error:
-        problems += error.problems
-        return found
+    with problems:
+        found = in_si(found, sensor.unit, SI[sensor.kind], name=f"{name} {sensor.column}")
+    return found
 
 
 def _time(

@@ -1,4 +1,7 @@
-"""What the model of a rig gives at its operating point and at measured conditions: the yardstick of measured tables."""
+"""What the model of a rig gives at its operating point and at measured conditions: the yardstick of measured tables.
+
+The power balance of measured rows: what goes in at the shaft ends and does not come out is lost.
+"""
 
 from __future__ import annotations
 
@@ -14,6 +17,7 @@ from ...model.machines.spec import assemble
 from ...model.parts.shaft import ShaftEnd
 from ...model.run.steady import steady
 from ..scenario import Scenario
+from .table import Campaign
 
 #: Speed below which a shaft is at rest [rad/s].
 REST = 1e-6
@@ -60,3 +64,34 @@ class Nominal:
         speeds = {end: self.value(f"{end}.w") for end in self.ends}
         first = next((w for w in speeds.values() if abs(w) > REST), np.nan)
         return {end: w / first for end, w in speeds.items()}
+
+
+def model_values(campaign: Campaign) -> dict[str, np.ndarray]:
+    """Path -> what is measured of it (n,) in SI, with the model's signs; the first sensor of a path leads."""
+    found: dict[str, np.ndarray] = {}
+    for sensor in campaign.sensors:
+        found.setdefault(sensor.reads, campaign.values[sensor.name] * sensor.sign(campaign.direction))
+    return found
+
+
+def shaft_powers(campaign: Campaign, nominal: Nominal) -> dict[str, np.ndarray] | None:
+    """Shaft end -> power into the gearbox there (n,) [W], as measured; None where a torque or all speeds are missing.
+
+    Args:
+        campaign: what was measured
+        nominal: its rig; the ratios of its gears give the speeds that were not measured
+    """
+    values, ratios = model_values(campaign), nominal.ratios
+    speeds = {end: values[f"{end}.w"] for end in nominal.ends if f"{end}.w" in values and abs(ratios[end]) > REST}
+    turning = [end for end in nominal.ends if np.isfinite(ratios[end]) and abs(ratios[end]) > REST]
+    if not speeds or any(f"{end}.tau" not in values for end in turning):
+        return None
+    known, w = next(iter(speeds.items()))
+    return {end: values[f"{end}.tau"] * speeds.get(end, w * ratios[end] / ratios[known]) for end in turning}
+
+
+def efficiency(powers: dict[str, np.ndarray]) -> np.ndarray:
+    """Power out over power in (n,), NaN where nothing goes in."""
+    into = np.asarray(sum(np.maximum(power, 0.0) for power in powers.values()))
+    out = np.asarray(sum(np.maximum(-power, 0.0) for power in powers.values()))
+    return np.where(into > 0, out / np.where(into > 0, into, 1.0), np.nan)

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...model.errors import GearheatError, ScenarioError, suggestion
+from ...model.errors import Problems, suggestion
 from ...model.units import spelled
 from ..columns import in_si, split_unit
 from ..csv_table import Column, Table, parse, raise_all, read_cells
@@ -17,8 +17,8 @@ from .card import Card
 from .checks import checked
 from .context import CONTEXT, DIRECTIONS, Cells, contradictions, floats, order_warnings
 from .halves import with_unread
+from .lubrication import oil_problems, oil_values, oil_warnings
 from .nominal import Nominal
-from .oils import oil_problems, oil_values, oil_warnings
 from .sensors import SI, driven_by, sensors_of
 from .table import Campaign, Sensor
 
@@ -38,21 +38,32 @@ def read_campaign(path: Path, scenario: Scenario, card: Card, *, points: bool = 
     return _Reader(path, scenario, card, points).campaign()
 
 
-def placed(sensor: Sensor, header: Sequence[str], card: Card) -> Sensor | None:
-    """The sensor with the column of a table that holds it, None where there is none.
+def placed(
+    declared: Sequence[Sensor], header: Sequence[str], card: Card, name: str
+) -> tuple[tuple[Sensor, ...], Problems]:
+    """The sensors that a table has, each with its column, and what is wrong: columns that drive the model are missing.
 
     Args:
-        sensor: as rig and card declare it
+        declared: sensors as rig and card declare them
         header: names of the table's columns
         card: units of columns
+        name: of the table
     """
-    same = [h for h in header if h == sensor.column]
-    names = (sensor.column, split_unit(sensor.column)[0])
-    column = next(iter(same or [h for h in header if split_unit(h)[0] in names]), None)
-    if column is None:
-        return None
-    unit = card.units.get(column, split_unit(column)[1] or sensor.unit)
-    return replace(sensor, column=column, unit=spelled(unit))
+    found, problems = [], Problems()
+    for sensor in declared:
+        same = [h for h in header if h == sensor.column]
+        names = (sensor.column, split_unit(sensor.column)[0])
+        column = next(iter(same or [h for h in header if split_unit(h)[0] in names]), None)
+        if column is not None:
+            unit = card.units.get(column, split_unit(column)[1] or sensor.unit)
+            found.append(replace(sensor, column=column, unit=spelled(unit)))
+        elif sensor.role == "given":
+            problems.append(
+                f'{name} line 1: column "{sensor.column}" drives the model ({sensor.reads}) and is missing.'
+                f'{suggestion(sensor.column, header)} Add it, or name yours in the card: columns = {{ "{sensor.name}" ='
+                ' "..." }.'
+            )
+    return tuple(found), problems
 
 
 class _Reader:
@@ -61,12 +72,13 @@ class _Reader:
     def __init__(self, path: Path, scenario: Scenario, card: Card, points: bool) -> None:
         self.path, self.scenario, self.card, self.points = path, scenario, card, points
         self.header, self.rows = read_cells(path)
-        self.problems: list[str] = []
         declared = sensors_of(scenario, card)
-        self.sensors = tuple(s for sensor in declared if (s := placed(sensor, self.header, card)) is not None)
+        self.sensors, self.problems = placed(declared, self.header, card, path.name)
         context = {name: card.columns.get(name, name) for name in CONTEXT}
         self.context = {name: column for name, column in context.items() if column in self.header}
-        self._missing(declared)
+        if not (points or any(s.role == "read" for s in self.sensors)):
+            names = ", ".join(s.column for s in declared if s.role == "read")
+            self.problems.append(f"{path.name} line 1: there is nothing to compare. Add at least one of: {names}.")
 
     def campaign(self) -> Campaign:
         """All of the table, or all of its problems."""
@@ -86,19 +98,6 @@ class _Reader:
         warned = replace(found, warnings=(*found.warnings, *oil_warnings(self.scenario, found.oil, self.card)))
         return with_unread(checked(warned, nominal, known, points=self.points))
 
-    def _missing(self, declared: Sequence[Sensor]) -> None:
-        """Columns that drive the model, and that anything is read."""
-        there = {s.name for s in self.sensors}
-        for sensor in (s for s in declared if s.role == "given" and s.name not in there):
-            close = suggestion(sensor.column, self.header)
-            self.problems.append(
-                f'{self.path.name} line 1: column "{sensor.column}" drives the model ({sensor.reads}) and is missing.'
-                f'{close} Add it, or name yours in the card: columns = {{ "{sensor.name}" = "..." }}.'
-            )
-        if not (self.points or any(s.role == "read" for s in self.sensors)):
-            names = ", ".join(s.column for s in declared if s.role == "read")
-            self.problems.append(f"{self.path.name} line 1: there is nothing to compare. Add at least one of: {names}.")
-
     def _columns(self) -> list[Column]:
         found = [
             Column(s.column, s.reads, required=s.role == "given", at_least=0.0 if s.signs != (1.0, 1.0) else -np.inf)
@@ -114,21 +113,18 @@ class _Reader:
     def _values(self, table: Table, sensor: Sensor) -> np.ndarray:
         """What a sensor shows (n,) in SI."""
         cells = floats(table.columns[sensor.column])
-        try:
-            return in_si(cells, sensor.unit, SI[sensor.kind], name=f"{self.path.name} {sensor.column}")
-        except GearheatError as error:
-            self.problems += error.problems
-            return cells
+        with self.problems:
+            cells = in_si(cells, sensor.unit, SI[sensor.kind], name=f"{self.path.name} {sensor.column}")
+        return cells
 
     def _si(self, cells: Cells, name: str) -> np.ndarray:
         """A context column (n,) in SI."""
         column = self.context.get(name, name)
         unit = self.card.units.get(column, split_unit(column)[1] or split_unit(name)[1])
-        try:
-            return in_si(cells.numbers(name), spelled(unit), CONTEXT[name][2], name=f"{self.path.name} {column}")
-        except ScenarioError as error:
-            self.problems += error.problems
-            return cells.numbers(name)
+        numbers = cells.numbers(name)
+        with self.problems:
+            numbers = in_si(numbers, spelled(unit), CONTEXT[name][2], name=f"{self.path.name} {column}")
+        return numbers
 
     def _ordered(self, cells: Cells, values: dict[str, np.ndarray], si: dict[str, np.ndarray]) -> Campaign:
         """The campaign with its tests in running order."""
@@ -143,6 +139,8 @@ class _Reader:
         direction = self._direction(cells, values)[rows]
         starts = rows[first]
         points = cells.numbers("point")
+        spoken = self.scenario.protocol.notes if self.scenario.protocol else ()  # of columns that nothing reads
+        unused = [w for w in cells.table.warnings if not any(f'column "{name}" is not used' in w for name in spoken)]
         return Campaign(
             name=self.path.name,
             sensors=tuple(_one_way(s, direction) for s in self.sensors),
@@ -164,7 +162,7 @@ class _Reader:
             room_begin=self.card.protocol.ambient_start_minus_reading_K,
             names=tuple(names[row] if "test" in self.context else str(k + 1) for k, row in enumerate(starts)),
             others=self._others(rows),
-            warnings=(*self._unused(cells), *order_warnings(cells)),
+            warnings=(*unused, *order_warnings(cells)),
         )
 
     def _others(self, rows: np.ndarray) -> dict[str, tuple[str, ...]]:
@@ -172,11 +170,6 @@ class _Reader:
         used = {s.column for s in self.sensors} | set(self.context.values())
         columns = {name: k for k, name in enumerate(self.header) if name not in used}
         return {name: tuple(self.rows[row][1][k] for row in rows) for name, k in columns.items()}
-
-    def _unused(self, cells: Cells) -> list[str]:
-        """Warnings of columns that nothing reads, but for those that the rig file speaks of."""
-        spoken = self.scenario.protocol.notes if self.scenario.protocol else ()
-        return [w for w in cells.table.warnings if not any(f'column "{name}" is not used' in w for name in spoken)]
 
     def _direction(self, cells: Cells, values: dict[str, np.ndarray]) -> np.ndarray:
         """+1 and -1 (n,): as stated, by the sign of a signed given torque that turns round, else 0."""

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...model.errors import GearheatError
+from ...model.errors import Problems
 from ...model.units import spelled
 from ..columns import in_si, split_unit
 from ..csv_table import Column, Table, parse, raise_all, read_cells
@@ -61,14 +61,15 @@ def read_samples(path: Path, scenario: Scenario, card: Card) -> Samples:
     """
     header, _ = read_cells(path)
     declared = sensors_of(scenario, card)
-    sensors = [s for sensor in declared if (s := placed(sensor, header, card)) is not None]
+    sensors, _ = placed(declared, header, card, path.name)
     named = {
         c.name: Column(card.columns.get(c.name, c.name), c.doc, c.kind, c.required, options=c.options) for c in CONTEXT
     }
     time = next((h for h in header if split_unit(h)[0] in TIMES), "time_s")
     columns = [*named.values(), Column(time, "time since the start of the test", at_least=0.0)]
     columns += [Column(s.column, s.reads, required=False) for s in sensors]
-    table, problems = parse(path, columns)
+    table, wrong = parse(path, columns)
+    problems = Problems(wrong)
     compared = [s for s in sensors if s.role == "read" and SI[s.kind] == "K"]
     if not compared:
         names = ", ".join(s.column for s in declared if s.role == "read" and SI[s.kind] == "K")
@@ -82,14 +83,12 @@ def read_samples(path: Path, scenario: Scenario, card: Card) -> Samples:
     return Samples(path.name, np.array(context["test"], dtype=str), seconds, point, direction, values, table.warnings)
 
 
-def _si(table: Table, column: str, unit: str, si: str, problems: list[str]) -> np.ndarray:
+def _si(table: Table, column: str, unit: str, si: str, problems: Problems) -> np.ndarray:
     """A column of numbers (n,) in SI."""
     cells = floats(table.columns.get(column, ()))
-    try:
-        return in_si(cells, unit, si, name=f"{table.name} {column}")
-    except GearheatError as error:
-        problems += error.problems
-        return cells
+    with problems:
+        cells = in_si(cells, unit, si, name=f"{table.name} {column}")
+    return cells
 
 
 def _backward(table: Table, test_column: str, time_column: str) -> list[str]:

@@ -7,14 +7,14 @@ from dataclasses import replace
 
 from ...model.core.declare import State, declared
 from ...model.core.flat import Quantity
-from ...model.errors import DataError, GearheatError, suggestion
+from ...model.errors import DataError, Problems, suggestion
 from ...model.parts.lubrication import OilBath
 from ...model.parts.shaft import ShaftEnd
 from ...model.parts.thermal import Room
 from ...model.units import spelled, text, to_si
 from ..columns import split_unit
-from ..instruments import Instrument
-from ..scenario import Scenario
+from ..scenario import Instrument, Scenario
+from ..values import deviation
 from .card import Card
 from .context import CONTEXT
 from .nominal import Nominal
@@ -63,9 +63,8 @@ class _Sensors:
     def __init__(self, scenario: Scenario, card: Card) -> None:
         self.scenario, self.card = scenario, card
         self.known: Mapping[str, Quantity] = scenario.readable()
-        self.types = {part.name: scenario.spec.types[part.type] for part in scenario.spec.parts}
         self.nominal = Nominal(scenario)
-        self.problems: list[str] = []
+        self.problems = Problems()
         self.found = {i.name: i for i in scenario.instruments or default_instruments(scenario)}
         self.driven: set[str] = set()
 
@@ -83,8 +82,7 @@ class _Sensors:
                 self._refuse(f"channels.{key}", key)
         self._drive()
         sensors = [self._completed(instrument) for instrument in self.found.values()] if not self.problems else []
-        if self.problems:
-            raise DataError(self.problems)
+        self.problems.check(DataError)
         return tuple(sensors)
 
     def _drive(self) -> None:
@@ -115,13 +113,6 @@ class _Sensors:
         close = suggestion(key, names) or f" Sensors: {', '.join(self.found)}."
         self.problems.append(f'{self.card.name} {place}: there is no sensor "{key}".{close}')
 
-    def _new(self, path: str) -> str:
-        """A sensor of its own for a path of the model."""
-        made = instrument_of(path)
-        name = made.name if made.name not in self.found else path.replace(".", "_")
-        self.found[name] = replace(made, name=name)
-        return name
-
     def _declare(self, key: str, table: Mapping[str, object]) -> None:
         name = self._name(key)
         if name is None and table.get("reads") not in self.known:
@@ -140,8 +131,10 @@ class _Sensors:
 
     def _rename(self, key: str, column: str) -> None:
         name = self._name(key)
-        if name is None and key in self.known:
-            name = self._new(key)
+        if name is None and key in self.known:  # a sensor of its own for a path of the model
+            made = instrument_of(key)
+            name = made.name if made.name not in self.found else key.replace(".", "_")
+            self.found[name] = replace(made, name=name)
         if name is None:
             self._refuse(f"columns.{key}", key)
             return
@@ -155,14 +148,11 @@ class _Sensors:
         for key in ("repeat_sd", "offset_sd"):
             if table.get(key) is None:
                 continue
-            try:
+            with self.problems:
                 value = self._spread(str(table[key]), instrument, f"{self.card.name} {place}.{key}")
-            except GearheatError as error:
-                self.problems += error.problems
-                continue
-            if value < 0:
-                self.problems.append(f"{self.card.name} {place}.{key} = {table[key]} is below zero.")
-            self.found[name] = replace(self.found[name], **{key: value})  # type: ignore[arg-type]
+                if value < 0:
+                    self.problems.append(f"{self.card.name} {place}.{key} = {table[key]} is below zero.")
+                self.found[name] = replace(self.found[name], **{key: value})  # type: ignore[arg-type]
 
     def _spread(self, written: str, instrument: Instrument, where: str) -> float:
         """A standard deviation in SI: with its own unit, or in that of the column."""
@@ -170,10 +160,10 @@ class _Sensors:
         try:
             number = float(written)
         except ValueError:
-            return to_si(written, f"{si} (difference)" if si == "K" else si, name=where)
+            return deviation(where, written, si)
         unit = self._unit(instrument)
         unit = "K" if unit in ("degC", "") and si == "K" else unit
-        return to_si(f"{number!r} {unit}".strip(), f"{si} (difference)" if si == "K" else si, name=where)
+        return deviation(where, f"{number!r} {unit}".strip(), si)
 
     def _unit(self, instrument: Instrument) -> str:
         return spelled(self.card.units.get(instrument.column, instrument.unit or split_unit(instrument.column)[1]))
@@ -197,7 +187,7 @@ class _Sensors:
         """What a sensor is, by what it reads."""
         unit, part = self.known[instrument.reads].unit, instrument.reads.partition(".")[0]
         if unit == "K":
-            cls = self.types[part]
+            cls = self.scenario.types[part]
             return "oil_temp" if issubclass(cls, OilBath) else "ambient" if issubclass(cls, Room) else "wall_temp"
         if unit not in KINDS:
             self.problems.append(
@@ -223,7 +213,7 @@ class _Sensors:
         if instrument.signs is not None:
             return instrument.signs
         if not instrument.magnitude and driven is not None:
-            return driven.sign
+            return driven.sign[0], driven.sign[1]
         if not instrument.magnitude:
             return 1.0, 1.0
         sign = -1.0 if self.nominal.value(instrument.reads) < 0 else 1.0
@@ -258,12 +248,11 @@ def instrument_of(path: str) -> Instrument:
 def default_instruments(scenario: Scenario) -> tuple[Instrument, ...]:
     """Sensors of a rig whose file declares none: its shaft ends, its oil, its bodies and its rooms."""
     paths, rooms = [], []
-    for part in scenario.spec.parts:
-        cls = scenario.spec.types[part.type]
+    for name, cls in scenario.types.items():
         if issubclass(cls, Room):
-            rooms.append(f"{part.name}.T")
+            rooms.append(f"{name}.T")
         if issubclass(cls, ShaftEnd):
-            paths += [f"{part.name}.w", f"{part.name}.tau"]
+            paths += [f"{name}.w", f"{name}.tau"]
         elif issubclass(cls, Room) or "T" in declared(cls, State):
-            paths.append(f"{part.name}.T")
+            paths.append(f"{name}.T")
     return tuple(Instrument("T_amb", "T_amb_C", path) if rooms == [path] else instrument_of(path) for path in paths)

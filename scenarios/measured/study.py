@@ -11,9 +11,8 @@ from ..given import RigLike, scenario_of
 from ..scenario import Scenario
 from ..write import DIAGNOSED, SET
 from .card import Card, read_card
-from .lubrication import lubricated
+from .lubrication import lubricated, oil_values
 from .nominal import Nominal
-from .oils import oil_values
 from .read import read_campaign
 from .sensors import driven_by
 from .table import Campaign, Sensor

@@ -14,7 +14,7 @@ from ..scenario import Scenario
 from ..tables import Strict
 from .card import Card, CardSensor, Channel, Protocol
 from .context import CONTEXT
-from .oils import lubricants
+from .lubrication import lubricants
 from .sensors import SI, sensors_of
 from .table import Sensor
 

@@ -33,10 +33,38 @@ def test_films_of_lines_grow_with_speed_and_fall_with_load(u: float, more: float
 
 @given(st.floats(0.01, 20.0), st.floats(1.01, 5.0), st.floats(10.0, 1e3))
 def test_films_of_ellipses_grow_with_speed_and_fall_with_load(u: float, more: float, F: float) -> None:
+    """The central film over five asymptotes falls where surfaces are elastic: H_EI at least three times H_RI.
+
+    Below, load flattens the contact as fast as it presses the oil out. The project's solver has H = 8.75, 9.67, 9.65,
+    9.56 at H_EI/H_RI = 0.45, 1.65, 3.5, 9.1 (D = 0.2, L = 22), the formula is flat within 0.2 % up to 2.4.
+    """
     shape = {"R_x": 0.01, "R_y": 0.05}
     for law in POINTS:
         h = law(u_sum=u, F_n=F, **shape, **OIL)
-        assert law(u_sum=more * u, F_n=F, **shape, **OIL) > h > law(u_sum=u, F_n=more * F, **shape, **OIL) > 0
+        assert law(u_sum=more * u, F_n=F, **shape, **OIL) > h > 0
+        if law is not film_point.point_film_central or is_elastic(u, F):
+            assert h > law(u_sum=u, F_n=more * F, **shape, **OIL) > 0
+
+
+def is_elastic(u: float, F: float) -> bool:
+    """Whether the film of elastic surfaces in oil of constant viscosity is three times that of rigid ones."""
+    U = OIL["eta_0"] * u / (OIL["E_eff"] * 0.01)
+    M, L = F / (OIL["E_eff"] * 0.01**2 * U**0.75), OIL["alpha_p"] * OIL["E_eff"] * U**0.25
+    H_RI, H_EI, _, _ = film_point.nijenbanning_asymptotes(M, L, 0.2)
+    return bool(H_EI > 3 * H_RI)
+
+
+@pytest.mark.parametrize("D", [1.0, 0.2, 0.05])
+def test_the_film_of_an_ellipse_ends_in_each_asymptote(D: float) -> None:
+    """Far towards each end, one term is left, whole: a blend without the right powers would end elsewhere."""
+    ends = {
+        "rigid, constant viscosity": (1e-3, 1e-6, 0),
+        "elastic, constant viscosity": (1e9, 1e-9, 1),
+        "piezoviscous": (1e6, 1e3, 2),
+    }
+    for name, (M, L, which) in ends.items():
+        alone = film_point.nijenbanning_asymptotes(M, L, D)[which]
+        assert film_point.nijenbanning_central(M, L, D) == pytest.approx(alone, rel=2e-3), name
 
 
 def test_no_film_at_rest_and_a_finite_one_without_load() -> None:

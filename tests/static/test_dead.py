@@ -1,10 +1,11 @@
-"""Nothing dead: what a module defines, the source or an example of the pages uses; tests do not count."""
+"""Nothing dead: what a module defines, the source, a list of part types or an example uses; tests do not count."""
 
 import ast
 import re
 from collections import Counter
 from itertools import chain
 
+from gearheat.model.parts import PARTS
 from gearheat.tools.docs.blocks import blocks
 from source_trees import ROOT, modules, name_of, nodes_of
 
@@ -31,7 +32,7 @@ METHODS = {"_repr_html_", "to_pandas", "to_xarray"}
 
 def used() -> Counter[str]:
     """How often each name is read or imported; its definition does not count."""
-    names = Counter(VERIFIED)
+    names = Counter([*VERIFIED, *PARTS])
     for node in chain(*map(nodes_of, modules()), *(ast.walk(ast.parse(example)) for example in EXAMPLES)):
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
             names[node.id] += 1

@@ -6,8 +6,8 @@ import csv
 
 import pytest
 from gearheat.scenarios.load import load
+from gearheat.scenarios.measured.readings import measured_rows
 from gearheat.scenarios.measured.study import measured_of
-from gearheat.tools.compare.readings import measured_rows
 from made_tables import made, written
 
 RIG = "helical_two_stage"

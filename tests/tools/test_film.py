@@ -53,7 +53,7 @@ def test_a_map_of_a_contact_with_picture_and_law(gearheat, case, tmp_path):
     assert plot.read_text("utf-8").startswith("<svg")
     assert not list(tmp_path.glob("*.part"))
     law = read_film_map(out).law
-    made = film.case_of(film.Request(str(case), out))
+    made = film.case_of(case)
     point = np.array([2000.0, 2.0, 348.15])
     contact = film.contact_at(made, point)
     h, _ = law.films(contact.lubricant.eta_0, 2 * contact.u_m, contact.F / contact.length, contact.R_x)
@@ -173,7 +173,7 @@ def test_a_film_is_chosen_on_the_command_line(gearheat, tmp_path):
 def test_an_ellipse_on_too_coarse_a_grid_has_no_film(case, monkeypatch, slope, found):
     """A film whose error falls with the square of the number of nodes, known on 65 of them and on every other one."""
     case.write_text(CASE.replace('length = "10 mm"', 'length = "10 mm"\nR_y = "20 mm"'), encoding="utf-8")
-    made = film.case_of(film.Request(str(case), Path("map.csv")))
+    made = film.case_of(case)
 
     def solved(contact, n):
         h = 1e-7 / (1 + slope * (32 / (n - 1)) ** 2)

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 from gearheat.tools.compare.errors import compare, measured
 from gearheat.tools.compare.plots import breakdown, parity, residuals, warm_up
+from gearheat.tools.compare.results import error_lines
 from gearheat.tools.compare.rivals import rivals
-from gearheat.tools.compare.summary import error_lines
 
 TEMPERATURES = ("T_oil_C", "T_wall_C", "T_amb_C")
 

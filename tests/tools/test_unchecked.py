@@ -1,4 +1,4 @@
-"""A run with catalogue values that were compared with no print says so: in its JSON, its output and its report."""
+"""A run with catalogue values never checked against a print says so: in its JSON, its output and its report."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import pytest
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.study import measured_of
 from gearheat.scenarios.write import rig_text
-from gearheat.tools.compare.losses import oils_of
+from gearheat.tools.solve.losses import oils_of
 from gearheat.tools.solve.settings import adjusted, flat_of
 from gearheat.tools.solve.unchecked import unchecked
 

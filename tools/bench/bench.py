@@ -11,6 +11,7 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -29,6 +30,7 @@ from . import fmu as bench_fmu
 from . import throughput
 from . import uncertainty as bench_uncertainty
 from .costs import rhs_s
+from .harness import timed
 
 #: Tolerances at which LSODA runs; the cheapest one that is as accurate as the FMU is what the FMU is compared with.
 TOLERANCES = (1e-6, 1e-8, 1e-9)
@@ -38,6 +40,9 @@ REFERENCE = 1e-10
 
 #: Communication step of the FMU [s].
 STEP = 60.0
+
+#: The program as a process of its own.
+PROGRAM = (sys.executable, "-m", "gearheat.tools.cli")
 
 #: How often the memory of the whole job is looked at [s].
 EVERY = 0.02
@@ -68,7 +73,7 @@ def command(rig: str, tests: str | None, json: str | None, what: str = "job", dr
 
 def _job(rig: str, tests: str | None) -> dict[str, Any]:
     note("gearheat --help")
-    helped = min(_timed(lambda: _gearheat("--help"))[0] for _ in range(3))
+    helped = min(timed(lambda: _gearheat("--help"), time.perf_counter)[0] for _ in range(3))
     note(f"gearheat run {rig}, warm cache")
     job = _main_job(rig, tests)
     return {
@@ -96,15 +101,8 @@ def _contact() -> dict[str, Any]:
     return peer.measure()
 
 
-def _timed(work: Callable[[], Any], clock: Callable[[], float] = time.perf_counter) -> tuple[float, Any]:
-    began = clock()
-    result = work()
-    return clock() - began, result
-
-
 def _gearheat(*arguments: str) -> None:
-    command = [sys.executable, "-m", "gearheat.tools.cli", *arguments]
-    subprocess.run(command, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+    subprocess.run([*PROGRAM, *arguments], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
 
 
 def _imports(module: str) -> bool:
@@ -118,7 +116,7 @@ def _main_job(rig: str, tests: str | None) -> tuple[float, float]:
     chosen = [] if tests is None else ["--tests", tests]
     with tempfile.TemporaryDirectory() as folder:
         _gearheat("run", rig, "--out", f"{folder}/cold", *chosen)
-        command = [sys.executable, "-m", "gearheat.tools.cli", "run", rig, "--out", f"{folder}/warm", *chosen]
+        command = [*PROGRAM, "run", rig, "--out", f"{folder}/warm", *chosen]
         began = time.perf_counter()
         process = subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
         peak = _Peak(process.pid)
@@ -187,10 +185,8 @@ def _integration(rig: str, tests: str | None) -> dict[str, Any]:
         fmu_error = _apart(values, exact)
         for tolerance in TOLERANCES:  # both by turns, so that a busy moment of the machine meets both
             note(f"FMU, then LSODA with tolerance {tolerance:g}")
-            fmu_s += [_timed(lambda: _played(player, runs, states), time.process_time)[0] for _ in range(3)]
-            began = time.process_time()
-            values = _simulated(flat, runs, "lsoda", tolerance)
-            took = time.process_time() - began
+            fmu_s += [timed(lambda: _played(player, runs, states))[0] for _ in range(3)]
+            took, values = timed(partial(_simulated, flat, runs, "lsoda", tolerance))
             lsoda.append({"tolerance": tolerance, "s": took, "error_K": _apart(values, exact)})
     equal = [run for run in lsoda if run["error_K"] <= fmu_error] or lsoda[-1:]
     best = min(equal, key=lambda run: run["s"])
@@ -216,10 +212,7 @@ def _simulated(flat: FlatModel, runs: Sequence[campaign.Run], method: str, toler
             run.schedule,
             start={n: v for n, v in run.start.items() if n in names},
             values={n: v for n, v in run.start.items() if n not in names},
-            times=[
-                run.schedule.start,
-                *(m for m in run.moments for _ in range(2 if m < run.schedule.stop else 1)),
-            ],
+            times=[run.schedule.start, *_both_sides(run)],
             tolerance=tolerance,
             method=method,
         )

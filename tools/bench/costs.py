@@ -8,11 +8,10 @@ from __future__ import annotations
 import os
 import subprocess
 import tempfile
-import time
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
+from unittest.mock import patch
 
 import numpy as np
 
@@ -25,6 +24,7 @@ from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
 from ...model.parts import PARTS
 from .c_importer import HERE, Compiler, includes, program, unpack
+from .harness import timed
 
 #: Speed in each stage of the warm-up, in parts of that of the operating point [1]; as in `importer/measure.c`.
 STAGES = (0.4, 0.6, 0.8, 1.0, 0.2)
@@ -97,23 +97,15 @@ def massless_chain(n: int) -> Assembly:
 
 def massless(n: int) -> dict[str, float]:
     """Seconds to flatten n conductors in a row without masses between them, and instructions of what is left."""
-    began = time.process_time()
-    flat = flatten(massless_chain(n))
-    return {"conductors": n, "flatten_s": time.process_time() - began, "instructions": _instructions(flat)}
-
-
-def _instructions(flat: FlatModel) -> int:
-    return int(flat.function.n_instructions())
+    seconds, flat = timed(lambda: flatten(massless_chain(n)))
+    return {"conductors": n, "flatten_s": seconds, "instructions": int(flat.function.n_instructions())}
 
 
 def growth(n: int) -> dict[str, float]:
     """Seconds to flatten, to generate and to compile a chain of n masses and conductors, and those of one step."""
-    times = [time.process_time()]
-    flat = flatten(chain(n))
-    times.append(time.process_time())
-    text = source(flat, equations(flat), table(flat))
-    times.append(time.process_time())
-    with tempfile.TemporaryDirectory() as folder, _fresh_cache(Path(folder)):
+    flatten_s, flat = timed(lambda: flatten(chain(n)))
+    generate_s, text = timed(lambda: source(flat, equations(flat), table(flat)))
+    with tempfile.TemporaryDirectory() as folder, patch.dict(os.environ, {"ZIG_LOCAL_CACHE_DIR": f"{folder}/cache"}):
         path = Path(folder) / "all.c"
         path.write_text(text, encoding="utf-8")
         began = os.times()
@@ -124,8 +116,8 @@ def growth(n: int) -> dict[str, float]:
         size = costs.stat().st_size
     return {
         "nodes": n,
-        "flatten_s": times[1] - times[0],
-        "generate_s": times[2] - times[1],
+        "flatten_s": flatten_s,
+        "generate_s": generate_s,
         "compile_s": compiled,
         "source_kB": len(text) / 1000,
         "binary_kB": size / 1000,
@@ -147,20 +139,6 @@ def _costs(path: Path) -> Path:
     made = path.parent / "costs.so"
     made.write_bytes(Compiler.zig().made([HERE / "costs.c"], options))
     return made
-
-
-@contextmanager
-def _fresh_cache(folder: Path) -> Iterator[None]:
-    """What is compiled inside has not been compiled before."""
-    before = os.environ.get("ZIG_LOCAL_CACHE_DIR")
-    os.environ["ZIG_LOCAL_CACHE_DIR"] = str(folder / "cache")
-    try:
-        yield
-    finally:
-        if before is None:
-            del os.environ["ZIG_LOCAL_CACHE_DIR"]
-        else:
-            os.environ["ZIG_LOCAL_CACHE_DIR"] = before
 
 
 def growth_rows(found: Mapping[str, Any]) -> list[tuple[str, str]]:

@@ -9,11 +9,7 @@ from __future__ import annotations
 
 import io
 import json
-import subprocess
-import sys
 import tempfile
-import time
-import venv
 from collections.abc import Callable, Mapping
 from contextlib import redirect_stdout
 from pathlib import Path
@@ -33,6 +29,7 @@ from ...model.run.simulate import simulate
 from ...scenarios.load import load
 from ..solve.settings import flat_of
 from .costs import STAGE, STAGES, from_c, growth, growth_rows, massless
+from .harness import TABLES, environment, run, script, timed
 
 #: Thermal nodes of the chains by which growth is measured.
 CHAINS = (4, 20, 100, 400, 1000)
@@ -40,18 +37,9 @@ CHAINS = (4, 20, 100, 400, 1000)
 MASSLESS = (20, 80, 160, 1000)
 #: Tolerances at which a peer is tried: the first that is as accurate as the FMU counts.
 TOLERANCES = (1e-5, 1e-6, 1e-7, 1e-8, 1e-9, 1e-10)
-#: Goal -> (what is measured, comparison, bound).
-GOALS = {
-    "step of the solver with input slopes, in right-hand sides": ("step_rhs", "<=", 4.0),
-    "set 4, step of 1 s, get 15, in right-hand sides": ("call_rhs", "<=", 7.0),
-    "step of 60 s behind a jump, in right-hand sides": ("jump_rhs", "<=", 15.0),
-    "330 min at 60 s, in right-hand sides": ("warmup_60_rhs", "<=", 3000.0),
-    "error of 330 min at 60 s [K]": ("warmup_60_error_K", "<=", 1e-4),
-    "LSODA at no larger error over FMU from C": ("lsoda_ratio", ">=", 15.0),
-    "BDF at no larger error over FMU from C": ("bdf_ratio", ">=", 10.0),
-    "PythonFMU over FMU from C, 60 s": ("pythonfmu_ratio", ">=", 50.0),
-    "FMU state [bytes]": ("state_bytes", "<=", 2048.0),
-}
+#: Communication step of the peers that have one [s].
+STEP = 60.0
+PYTHONFMU = "PythonFMU, explicit Euler of 0.5 s, in FMPy"
 
 
 class Peer(NamedTuple):
@@ -94,7 +82,7 @@ def measure(
     found["massless"] = [massless(n) for n in conductors]
     found["goals"] = [
         {"goal": goal, "bound": f"{sign} {bound:g}", "measured": found[key], "met": _met(found[key], sign, bound)}
-        for goal, (key, sign, bound) in GOALS.items()
+        for goal, (key, sign, bound) in TABLES["goals"].items()
         if key in found
     ]
     return found
@@ -107,14 +95,10 @@ def _met(value: float, sign: str, bound: float) -> bool:
 Run = Callable[[float], np.ndarray]
 
 
-def _clocked(work: Callable[[], np.ndarray], truth: np.ndarray, repeats: int = 5) -> tuple[float, float]:
-    """Least processor time of a run, and its largest error."""
-    best, values = np.inf, truth
-    for _ in range(repeats):
-        begun = time.process_time()
-        values = work()
-        best = min(best, time.process_time() - begun)
-    return best, float(np.abs(values - truth).max())
+def _clocked(work: Callable[[], np.ndarray], truth: np.ndarray) -> tuple[float, float]:
+    """Least processor time of five runs, and their largest error."""
+    runs = [timed(work) for _ in range(5)]
+    return min(seconds for seconds, _ in runs), float(np.abs(runs[-1][1] - truth).max())
 
 
 def _as_accurate(run: Run, truth: np.ndarray, error: float) -> Peer:
@@ -138,7 +122,7 @@ def _peers(
         return np.stack([found[q.name] for q in flat.states], axis=1)
 
     def played() -> np.ndarray:
-        return np.asarray(player.run(inputs, ends[-1], 60.0, record=names, output_times=ends).values)
+        return np.asarray(player.run(inputs, ends[-1], STEP, record=names, output_times=ends).values)
 
     def fmpy(kind: str) -> Run:
         return lambda tolerance: _fmpy(fmu, duty, ends, speed, names, kind, tolerance)
@@ -201,57 +185,11 @@ def _fmpy(
     from fmpy import simulate_fmu
 
     signal = np.array(list(zip(duty.time, duty.values[speed], strict=True)), dtype=[("time", "d"), (speed, "d")])
-    options = {"stop_time": ends[-1], "output_interval": 60.0, "relative_tolerance": tolerance}
+    options = {"stop_time": ends[-1], "output_interval": STEP, "relative_tolerance": tolerance}
     with redirect_stdout(io.StringIO()):  # it warns of every input that keeps its start value
         found = simulate_fmu(str(fmu), fmi_type=kind, input=signal, output=names, **options)
     rows = [np.flatnonzero(np.isclose(found["time"], end))[0] for end in ends]
     return np.stack([[found[name][row] for name in names] for row in rows])
-
-
-PYTHONFMU = "PythonFMU, explicit Euler of 0.5 s, in FMPy"
-#: The model as a PythonFMU slave: explicit Euler of 0.5 s inside, the right-hand side by CasADi.
-SLAVE = """
-import casadi, os
-from pythonfmu import Fmi2Causality, Fmi2Slave, Real
-
-class Peer(Fmi2Slave):
-    def __init__(self, **kwargs):
-        super().__init__(**kwargs)
-        self.ode = casadi.Function.load({ode!r})
-        self.x, self.u, self.p = casadi.DM({x}), casadi.DM({u}), casadi.DM({p})
-        self.speed, self.warm = {speed}, 0.0
-        self.register_variable(Real("speed", causality=Fmi2Causality.input))
-        self.register_variable(Real("warm", causality=Fmi2Causality.output))
-        {outputs}
-
-    def do_step(self, t, h):
-        self.u[{place}] = self.speed
-        n = max(int(round(h / 0.5)), 1)
-        for _ in range(n):
-            self.x = self.x + h / n * self.ode(self.x, self.u, self.p)
-        {assign}
-        return True
-"""
-PLAY = """
-import json, sys, time
-import numpy as np
-from fmpy import read_model_description, extract
-from fmpy.fmi2 import FMU2Slave
-import fmpy
-md = read_model_description(sys.argv[1]); folder = extract(sys.argv[1])
-name = md.coSimulation.modelIdentifier
-fmu = FMU2Slave(guid=md.guid, unzipDirectory=folder, modelIdentifier=name, instanceName="peer")
-refs = {v.name: v.valueReference for v in md.modelVariables}
-fmu.instantiate(); fmu.setupExperiment(startTime=0.0); fmu.enterInitializationMode(); fmu.exitInitializationMode()
-parts, speed, n = json.loads(sys.argv[2]), float(sys.argv[3]), int(sys.argv[4])
-rows, t, begun = [], 0.0, time.process_time()
-for share in parts:
-    fmu.setReal([refs["speed"]], [share * speed])
-    for _ in range(66):
-        fmu.doStep(t, 60.0); t += 60.0
-    rows.append(fmu.getReal([refs[f"x{i}"] for i in range(n)]))
-print(json.dumps([time.process_time() - begun, rows]))
-"""
 
 
 def _pythonfmu(
@@ -261,31 +199,13 @@ def _pythonfmu(
     place, n = flat.locate(next(iter(duty.values)))[1], len(flat.states)
     u, speed = flat.starts("input"), float(flat.starts("input")[place])
     _explicit(flat)[0].save(str(folder / "ode.casadi"))
-    text = SLAVE.format(
-        ode=str(folder / "ode.casadi"),
-        x=flat.starts("state").tolist(),
-        u=u.tolist(),
-        p=flat.starts("parameter").tolist(),
-        place=place,
-        speed=speed,
-        outputs="\n        ".join(
-            f'self.x{i} = 0.0; self.register_variable(Real("x{i}", causality=Fmi2Causality.output))' for i in range(n)
-        ),
-        assign="\n        ".join(f"self.x{i} = float(self.x[{i}])" for i in range(n)),
-    )
-    (folder / "peer.py").write_text(text, encoding="utf-8")
-    (folder / "play.py").write_text(PLAY, encoding="utf-8")
-    venv.create(folder / "peers", with_pip=True)
-    python = folder / "peers" / ("Scripts" if sys.platform == "win32" else "bin") / "python"
-    subprocess.run(
-        [str(python), "-m", "pip", "install", "-q", "pythonfmu", "fmpy", "casadi"], check=True, capture_output=True
-    )
-    subprocess.run(
-        [str(python), "-m", "pythonfmu", "build", "-f", "peer.py"], cwd=folder, check=True, capture_output=True
-    )
-    command = [str(python), "play.py", "Peer.fmu", json.dumps(STAGES), str(speed), str(n)]
-    out = subprocess.run(command, cwd=folder, check=True, capture_output=True, text=True)
-    seconds, rows = json.loads(out.stdout.splitlines()[-1])
+    start = {"x": flat.starts("state").tolist(), "u": u.tolist(), "p": flat.starts("parameter").tolist()}
+    script(folder, "peer", ode=repr(str(folder / "ode.casadi")), place=place, speed=speed, **start)
+    play = script(folder, "play", steps=round(STAGE / STEP), step=STEP)
+    python = str(environment(folder, "PythonFMU", [("pythonfmu", "fmpy", "casadi")]))
+    run([python, "-m", "pythonfmu", "build", "-f", "peer.py"], folder, "PythonFMU does not build")
+    command = [python, str(play), "Peer.fmu", json.dumps(STAGES), str(speed), str(n)]
+    seconds, rows = json.loads(run(command, folder, "PythonFMU does not run"))
     return float(seconds), float(np.abs(np.array(rows) - truth).max())
 
 

@@ -18,6 +18,7 @@ from ...scenarios.load import load
 from ..solve.settings import adjusted, flat_of
 from ..solve.sweep import sweep
 from .costs import STAGE, STAGES
+from .harness import timed
 
 #: What varies from row to row: the load by this much of its value.
 LOAD = (0.2, 1.08)
@@ -108,7 +109,5 @@ def _sweep(rig: str, load_name: str, room: str, values: dict[str, np.ndarray], r
     vary = [f"{name}={ends[name][0]!r}..{ends[name][1]!r} {unit}" for name, unit in units.items()]
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "rows.csv"
-        began = time.perf_counter()
-        sweep(rig, vary, out=out, sample=rows)
-        seconds = time.perf_counter() - began
+        seconds, _ = timed(lambda: sweep(rig, vary, out=out, sample=rows), time.perf_counter)
         return {"rows": rows, "seconds": seconds, "rows_per_s": rows / seconds, "MB": out.stat().st_size / 1e6}

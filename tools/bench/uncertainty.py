@@ -35,6 +35,8 @@ EVERY = 300.0
 STEP = 60.0
 #: Rows that are drawn at a time, which bounds the memory.
 BLOCK = 1000
+#: The same seed draws the same.
+SEED = 0
 #: Fewest draws that have a scatter, and a standard error of it.
 FEWEST = 10
 #: Of the table: deviations at the end; the largest difference, relative to the draws' scatter; its standard error.
@@ -43,14 +45,12 @@ HEAD = ("output", "FMU", "draws", "differ by [%]", "at [min]", "error of draws [
 NOTHING = 1e-9
 
 
-def measure(rig: str, draws: int = 10_000, *, seed: int = 0, cost: bool = True) -> dict[str, Any]:
+def measure(rig: str, draws: int = 10_000) -> dict[str, Any]:
     """The standard deviations of the FMU and of the draws, and what a run with them costs.
 
     Args:
         rig: name or path
         draws: rows of Monte Carlo
-        seed: the same seed draws the same
-        cost: whether the cost is measured
 
     Returns:
         per output the difference of the FMU from the scatter, relative to that, at the time where it is largest, and
@@ -66,7 +66,7 @@ def measure(rig: str, draws: int = 10_000, *, seed: int = 0, cost: bool = True) 
     flat = flat_of(scenario)
     what, start = uncertain(scenario, flat), first_temperatures(scenario, flat, None)
     times = EVERY * np.arange(1, round(DURATION / EVERY) + 1)
-    found = np.concatenate(list(_draws(flat, what, start, times, draws, seed)))
+    found = np.concatenate(list(_draws(flat, what, start, times, draws)))
     if len(found) < max(FEWEST, draws // 2):
         raise ScenarioError(f"{scenario.name}: {len(found)} of {draws} drawn rows have a result: no scatter.")
     with tempfile.TemporaryDirectory() as folder:
@@ -75,19 +75,17 @@ def measure(rig: str, draws: int = 10_000, *, seed: int = 0, cost: bool = True) 
         run = play(full, {}, DURATION, STEP, record=names, output_times=times)
         told = {"rig": scenario.name, "draws": draws, "failed": draws - len(found)}
         told |= {"outputs": _compared(flat, what.shown, run.values, found, times)}
-        if cost:
-            plain = export(flat, Path(folder) / "plain.fmu", start=start)
-            alone, with_them = (run_in_rhs(fmu, Path(folder) / fmu.stem) for fmu in (plain, full))
-            told["cost"] = {"plain_rhs": alone, "uncertain_rhs": with_them, "ratio": with_them / alone}
-    return told
+        plain = export(flat, Path(folder) / "plain.fmu", start=start)
+        alone, with_them = (run_in_rhs(fmu, Path(folder) / fmu.stem) for fmu in (plain, full))
+    return told | {"cost": {"plain_rhs": alone, "uncertain_rhs": with_them, "ratio": with_them / alone}}
 
 
 def _draws(
-    flat: FlatModel, what: Uncertain, start: Mapping[str, float], times: np.ndarray, draws: int, seed: int
+    flat: FlatModel, what: Uncertain, start: Mapping[str, float], times: np.ndarray, draws: int
 ) -> Iterator[np.ndarray]:
     """What is shown of the rows that have a result, block by block (rows, times, shown)."""
     batch, duty = Batch(flat), Schedule(np.array([0.0, DURATION]), {})
-    sizes = drawn(shares(what.reasons), draws, "monte-carlo", seed)
+    sizes = drawn(shares(what.reasons), draws, "monte-carlo", SEED)
     axes, values = sampled(what.reasons, flat, sizes)
     for first in range(0, draws, BLOCK):
         block = values[first : first + BLOCK]

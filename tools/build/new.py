@@ -6,7 +6,7 @@ import json
 import math
 import re
 import tempfile
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,7 +24,7 @@ from ..solve.settings import flat_of
 from ..solve.steady import conditions
 from . import sizing, sump
 from .sizing import APART, GAP, LIGHT, OVERHANG, SIDE, Unit, unit
-from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, BevelStage, PlanetaryStage, Stage, WormStage
+from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, BevelStage, PlanetaryStage, WormStage
 
 #: Density of steel [kg/m3].
 STEEL = 7850.0
@@ -42,15 +42,6 @@ CHURNED = 200 * math.pi / 30
 HOT = 100.0
 #: Efficiency below which standard sizes do not fit the power.
 POOR = 0.4
-
-#: What meets in a planetary unit beside its two shafts.
-PLANETARY = {
-    "ring": ["stage_1.ring", "ring_mount.flange"],
-    "planets": ["stage_1.planet", "planet_bearing.shaft"],
-    "load_input": ["stage_1.sun_load", "input_bearing_a.load", "input_bearing_b.load"],
-    "load_output": ["stage_1.carrier_load", "output_bearing_a.load", "output_bearing_b.load"],
-    "load_planets": ["stage_1.planet_load", "planet_bearing.load"],
-}
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -184,12 +175,16 @@ def text(made: Unit, doc: str, speed: str, oil: str) -> str:
         "stages": [_stage(made, k) for k in range(n)],
         "shafts": [_shaft(made, names, k) for k in range(n + 1)],
         "seals": [{"name": f"{names[k]}_seal", "d": made.shafts[k].d} for k in (0, -1)],
-        "nets": _nets(names, made),
-        "losses": _losses(names, made),
         **_bodies(made),
     }
     templates = Environment(loader=PackageLoader("gearheat.tools.build", "templates"), undefined=StrictUndefined)
+    templates.filters |= {"json": json.dumps, "at": _at}
     return templates.get_template("new_rig.toml").render(values, num=_num, mm=_mm).strip() + "\n"
+
+
+def _at(parts: Iterable[str], *ports: str) -> list[str]:
+    """Ports, or outputs, of several parts."""
+    return [f"{part}.{port}" for part in parts for port in ports]
 
 
 def _num(value: float) -> str:
@@ -208,10 +203,10 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
     elif isinstance(s, PlanetaryStage):
         rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2 of sun and planet, standard module, straight teeth"
         shape = {"type": "PlanetarySet", "N": s.count, "z_3": s.z_3, "m_n": s.m_n, "a": s.a, "width": WIDTH}
-        shape |= {"s_planet": s.b / 2, "d_planet": s.d_planet} | s.ratios
+        shape |= {"s_planet": s.b / 2, "d_planet": s.d_planet, "driver": "sun", "driven": "carrier"} | s.ratios
     elif isinstance(s, WormStage):
         rule = f"wheel's torque over a3 of {T_WORM / 1e6:g} N/mm2 as makers rate them, standard a = {_mm(s.a)} mm"
-        shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "width": SLIM}
+        shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "width": SLIM, "driver": "worm"}
     else:
         twist = f"beta for a = {_mm(s.a)} mm" if KINDS[s.kind] else "a follows from the teeth"
         rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"
@@ -219,6 +214,7 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
     c = 0.5 * OIL * CHURNED**3 * s.b * s.reach**4
     shape |= {"z_1": s.z_1, "z_2": s.z_2, "b": s.b, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule, "c": c}
     found = {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", "wetting": f"oil_gears_{k + 1}"}
+    found |= {"driver": "pinion", "driven": "wheel"}
     return found | shape | {"r": s.reach, "m": s.m_n, "height": sump.height_of_axes(made), "A_wet": sump.wetted(s)}
 
 
@@ -269,88 +265,3 @@ def _bodies(made: Unit) -> dict[str, float]:
         "height": made.height,
         "share": made.length * made.width / made.area,
     }
-
-
-def _ports(stage: Stage) -> tuple[str, str]:
-    """Ports of a stage's part at the shafts that drive and are driven."""
-    planets, worm = isinstance(stage, PlanetaryStage), isinstance(stage, WormStage)
-    return ("sun", "carrier") if planets else ("worm" if worm else "pinion", "wheel")
-
-
-def _nets(names: Sequence[str], made: Unit) -> list[dict[str, str]]:
-    """What meets, by name of the net."""
-    n = len(names) - 1
-    bearings = [f"{name}_bearing_{end}" for name in names for end in "ab"]
-    seals = ["input_seal", "output_seal"]
-    stages, churnings, wetted = (
-        [f"{what}_{k}" for k in range(1, n + 1)] for what in ("stage", "churning", "oil_gears")
-    )
-    thrower = sump.splash(made)["shaft"]
-    nets: dict[str, list[str]] = {}
-    for k, name in enumerate(names):
-        ends = [f"{name}.flange"] if k in (0, n) else []
-        ends += ["rotor.flange"] if k == 0 else []
-        ends += [f"{stages[k - 1]}.{_ports(made.stages[k - 1])[1]}", f"{churnings[k - 1]}.shaft"] if k else []
-        ends += [f"{wetted[k - 1]}.shaft"] if k else []
-        ends += ["oil_wall.shaft"] if k == thrower else []
-        ends += [f"{stages[k]}.{_ports(made.stages[k])[0]}"] if k < n else []
-        turning = [f"{name}_bearing_{end}.shaft" for end in "ab"] + ([f"{name}_seal.shaft"] if k in (0, n) else [])
-        nets[f"{name}_shaft"] = [*ends, *turning]
-    planets = ["planet_bearing"] if isinstance(made.stages[0], PlanetaryStage) else []
-    nets |= PLANETARY if planets else _forces(names, made)
-    nets["reading_input"], nets["reading_output"] = (
-        [f"{end}.reading", f"efficiency.{port}"] for end, port in (("input", "a"), ("output", "b"))
-    )
-    nets["reading_output"] += ["stage_1.reading"] if planets else []
-    oiled = (*stages, *churnings, *wetted, "oil_wall", *bearings, *planets)
-    nets["lubricant"] = ["oil.lubricant", *(f"{part}.lubricant" for part in oiled)]
-    kinds = [bearing for shaft in made.shafts for bearing in shaft.bearings]
-    low = [name for name, kind in zip(bearings, kinds, strict=True) if sump.stands_in_oil(made, kind)]
-    nets |= {"sump": ["oil.sump", *(f"{part}.sump" for part in (*churnings, *low))]} if sump.wheels_dip(made) else {}
-    churned = [f"{part}.{side}" for part in churnings for side in ("inner", "outer")]
-    nets["heat_oil"] = ["oil.heat", *churned, *(f"{part}.a" for part in wetted), "oil_wall.a"]
-    heated = [f"{part}.{side}" for part in planets for side in ("inner", "outer")]
-    nets["heat_gears"] = [
-        "gears.heat",
-        *(f"{stage}.gears" for stage in stages),
-        *heated,
-        *(f"{part}.b" for part in wetted),
-        "gears_shafts.a",
-    ]
-    rubbing = [*bearings, *seals]
-    nets["heat_shafts"] = ["shafts.heat", "gears_shafts.b", "shafts_wall.a", *(f"{part}.inner" for part in rubbing)]
-    outer = [f"{part}.outer" for part in rubbing]
-    nets["heat_wall"] = ["wall.heat", "oil_wall.b", "shafts_wall.b", "wall_surface.a", *outer]
-    nets["heat_surface"] = ["surface.heat", "wall_surface.b", "cooling.surface", "foot.a"]
-    nets |= {"air": ["room.air", "cooling.air"], "floor": ["room.floor", "foot.b"]}
-    return [{"name": name, "ports": json.dumps(ports)} for name, ports in nets.items()]
-
-
-def _forces(names: Sequence[str], made: Unit) -> dict[str, list[str]]:
-    """Tooth forces on the supports of the shafts, and what their bearings carry."""
-    nets = {}
-    for k, stage in enumerate(made.stages):
-        name, driver = f"stage_{k + 1}", _ports(stage)[0]
-        on_pinion, on_wheel = f"{names[k]}_support.{'mesh_2' if k else 'mesh'}", f"{names[k + 1]}_support.mesh"
-        if isinstance(stage, BevelStage | WormStage):
-            nets[f"force_{k + 1}_{driver}"] = [f"{name}.{driver}_force", on_pinion]
-            nets[f"force_{k + 1}_wheel"] = [f"{name}.wheel_force", on_wheel]
-        else:
-            nets[f"force_{k + 1}"] = [f"{name}.force", on_pinion, on_wheel]
-    for name in names:
-        nets |= {f"load_{name}_{e}": [f"{name}_support.load_{e}", f"{name}_bearing_{e}.load"] for e in "ab"}
-    return nets
-
-
-def _losses(names: Sequence[str], made: Unit) -> dict[str, str]:
-    """Columns of the losses' table."""
-    stages, planets = range(1, len(names)), isinstance(made.stages[0], PlanetaryStage)
-    found = {
-        "P_mesh_W": ["stage_1.P_loss_sp", "stage_1.P_loss_pr"] if planets else [f"stage_{k}.P_loss" for k in stages],
-        "P_dgb_W": [f"{name}_bearing_{end}.P_loss" for name in names for end in "ab"],
-        "P_seal_W": ["input_seal.P_loss", "output_seal.P_loss"],
-        "P_churn_W": [f"churning_{k}.P_loss" for k in stages],
-    }
-    if planets:
-        found["P_needle_W"] = ["planet_bearing.P_loss"]
-    return {column: json.dumps(parts) for column, parts in found.items()}

@@ -7,8 +7,10 @@ drawings are at hand. Every rule is told beside the number that it gives.
 from __future__ import annotations
 
 import math
+import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib.resources import files
 
 from ...model.errors import ScenarioError
 from ...model.units import si_of
@@ -31,22 +33,10 @@ GAP = 0.010
 OVERHANG = 2.5
 #: Distance of the bearings of a worm over its wheel's diameter [1].
 APART = 0.9
-RATINGS = {
-    "SKF 6205": 14.8e3,
-    "SKF 6206": 20.3e3,
-    "SKF 6207": 27.0e3,
-    "SKF 6208": 32.5e3,
-    "SKF 6209": 35.1e3,
-    "SKF 6210": 37.1e3,
-    "SKF 6211": 46.2e3,
-    "SKF 6212": 55.3e3,
-    "SKF 6217": 87.1e3,
-    "SKF 6305": 23.4e3,
-    "SKF 6306": 29.6e3,
-    "SKF 6308": 42.3e3,
-    "SKF 6310": 65.0e3,
-    "SKF 6312": 85.2e3,
-}
+#: Basic dynamic load ratings of the bearings to choose from [N].
+RATINGS: dict[str, float] = tomllib.loads(
+    files("gearheat.tools.build").joinpath("ratings.toml").read_text(encoding="utf-8")
+)
 
 
 @dataclass(frozen=True)

@@ -152,7 +152,8 @@ def run(*words: str) -> int:
 def steps() -> dict[str, Callable[[], int]]:
     """Name -> check, which returns 0 if all is well; the tests hold those of floors, sizes and wheel contents."""
     python = sys.executable
-    parallel = ("-n", "auto") if importlib.util.find_spec("xdist") else ()
+    files = ("-n", "auto", "--dist", "loadfile", "--no-loadscope-reorder")  # in the order of tests/conftest.py
+    parallel = files if importlib.util.find_spec("xdist") else ()
     return {
         "lint": lambda: run(python, "-m", "ruff", "check", "."),
         "format": lambda: run(python, "-m", "ruff", "format", "--check", "."),

@@ -1,4 +1,4 @@
-"""Where the program begins: also a Ctrl-C while it loads, and a help text without room, end with one line."""
+"""Entry point: Ctrl-C, also while the program loads, and a closed or full standard output end with one line."""
 
 from __future__ import annotations
 

@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..show.console import guarded
 from . import developers, diagnosis, fmu, measured, rigs, solve, verify
 
 app = typer.Typer(
@@ -54,7 +55,7 @@ PANELS = {
 }
 for _panel, _commands in PANELS.items():
     for _command in _commands:
-        app.command(_command.__name__.strip("_").replace("_", "-"), rich_help_panel=_panel)(_command)
+        app.command(_command.__name__.strip("_").replace("_", "-"), rich_help_panel=_panel)(guarded(_command))
 
 
 def program() -> None:

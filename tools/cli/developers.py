@@ -12,7 +12,6 @@ from ..show import console
 from .options import Json, Rig, Tests
 
 
-@console.guarded
 def bench(
     rig: Rig,
     tests: Tests = None,
@@ -34,7 +33,6 @@ def bench(
     bench.command(rig, tests, json, next((name for name, given in asked.items() if given), "job"), draws)
 
 
-@console.guarded
 def docs(
     context: typer.Context,
     out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the web site.")],
@@ -44,6 +42,9 @@ def docs(
     ] = "quick",
 ) -> None:
     """Build the documentation as a web site; its code blocks are run and their output compared with the pages."""
+    import gearheat as gh
+
     from ..docs import build
 
-    build.docs_command(cast(TyperGroup, context.find_root().command), out, run)
+    public = {name: getattr(gh, name) for name in gh.PUBLIC}
+    build.docs_command(cast(TyperGroup, context.find_root().command), public, out, run)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Annotated, Any
 
+import gearheat as gh
 import typer
 
 from ..show import console
@@ -21,7 +22,6 @@ def _logs(text: str) -> Any:
     return typer.Option(metavar="FILE", help=f"{text} CSV, CSV.gz or Parquet. Repeatable.")
 
 
-@console.guarded
 def diagnose(
     rig: Annotated[str, typer.Option(help="Name of a shipped rig, or path of a rig file.")],
     data: Annotated[Path | None, typer.Argument(help="Measured readings: CSV, one row per reading.")] = None,
@@ -50,8 +50,6 @@ def diagnose(
 ) -> None:
     """What the model gets wrong in measured data: causes by name, size and certainty, and what to measure next."""
     console.use_one_thread()
-    import gearheat as gh
-
     outputs = gh.Outputs(predictions, json, report, extended)
     findings = gh.diagnose(
         data,
@@ -78,7 +76,6 @@ def diagnose(
         print(findings.text(everything=everything, width=console.screen_width()), end="")
 
 
-@console.guarded
 def plan(
     rig: Annotated[str, typer.Argument(help="Name of a shipped rig, or path of a rig file.")],
     separate: Annotated[
@@ -98,8 +95,6 @@ def plan(
 ) -> None:
     """Which causes a campaign can tell apart on a rig, and which experiments would, before anything is measured."""
     console.use_one_thread()
-    import gearheat as gh
-
     causes = [name for name in map(str.strip, separate.split(",")) if name]
     found = gh.plan(
         rig, separate=causes, card=card, points=points, library=library, reference=reference, json=json, out=out
@@ -114,7 +109,6 @@ def plan(
         print(found.text(everything=everything, width=console.screen_width()), end="")
 
 
-@console.guarded
 def card(
     rig: Annotated[str, typer.Argument(help="Name of a shipped rig, or path of a rig file.")],
     out: Annotated[
@@ -123,8 +117,6 @@ def card(
     json: Json = None,
 ) -> None:
     """A card for the campaigns of a rig: every key with its default and what it means."""
-    import gearheat as gh
-
     found = gh.card(rig)
     if out is not None:
         found.save(out)

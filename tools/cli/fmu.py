@@ -6,6 +6,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
+import gearheat as gh
 import typer
 
 from ..show import console
@@ -14,7 +15,6 @@ from .options import Extended, Json, Plot, Rig, Set, Ssp
 from .solve import print_run
 
 
-@console.guarded
 def export(
     rig: Rig,
     out: Annotated[Path, typer.Option("-o", "--out", help="FMU to write.")],
@@ -51,8 +51,6 @@ def export(
     json: Json = None,
 ) -> None:
     """Write the rig as an FMU for FMI 2.0 or 3.0, or as a system of FMUs."""
-    import gearheat as gh
-
     console.writable(out, console.file_of(json))
     written = gh.export(
         extended or rig,
@@ -77,7 +75,6 @@ def export(
     console.answer(found, json, lambda: _print_system(found) if ssp else _print_fmu(found))
 
 
-@console.guarded
 def play(
     fmu: Annotated[Path, typer.Argument(help="FMU to play.")],
     duty: Annotated[Path, typer.Option(help="CSV with time and inputs, units in the header.")],
@@ -89,8 +86,6 @@ def play(
     json: Json = None,
 ) -> None:
     """Play an FMU over a duty cycle."""
-    import gearheat as gh
-
     console.writable(out, console.file_of(json))
     console.plottable(plot)
     run = gh.play(fmu, duty, step=step, set=set_ or [], trust=trust)

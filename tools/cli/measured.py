@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Literal
+from typing import Annotated, Literal
 
+import gearheat as gh
 import typer
 
 from ...model.errors import ScenarioError
@@ -13,14 +14,10 @@ from ..show import console
 from ..show.notes import print_outside, print_unchecked
 from .options import Extended, Jobs, Json, Rig, Set, Tests
 
-if TYPE_CHECKING:
-    from gearheat import Calibration, CampaignRun, Errors, LossTable, MethodRating, Replays
-
 #: Rows of the table of contacts for people; programs get all.
 CONTACTS = 19
 
 
-@console.guarded
 def run(
     rig: Rig,
     out: Annotated[
@@ -36,14 +33,11 @@ def run(
     json: Json = None,
 ) -> None:
     """The main job: export the FMU, play all measured tests, compare, report."""
-    import gearheat as gh
-
     console.writable(console.file_of(json))
     done = gh.run(rig, out, tests=tests, step=step, set=set_ or [], jobs=jobs, extended=extended, data=data, card=card)
     console.answer(done.as_dict(), json, lambda: print_run(done))
 
 
-@console.guarded
 def losses(
     rig: Rig,
     data: Annotated[Path | None, typer.Option(help="Measured table; the rig's own if left out.")] = None,
@@ -76,8 +70,6 @@ def losses(
     json: Json = None,
 ) -> None:
     """Loss of every part at each measured reading, or beside those of a reference method."""
-    import gearheat as gh
-
     if method is not None:
         _refuse({"--data": data, "--card": card, "--power-flow": power_flow, "--contacts": contacts}, method)
         rated = gh.rate_by_method(rig, method, limit=limit or "95 degC", k=k, dip=dip or [], set=set_ or [])
@@ -96,7 +88,6 @@ def losses(
     console.answer(table.as_dict(), json, lambda: _print_losses(table))
 
 
-@console.guarded
 def compare(
     result: Annotated[Path, typer.Argument(help="Simulated readings: CSV with test and direction, or point.")],
     data: Annotated[Path, typer.Argument(help="Measured readings: CSV.")],
@@ -105,13 +96,10 @@ def compare(
     json: Json = None,
 ) -> None:
     """Errors of simulated readings by group, with the noise floor and statistical rivals."""
-    import gearheat as gh
-
     errors = gh.compare(result, data, rig, card=card)
     console.answer(errors.as_dict(), json, lambda: print_errors(errors))
 
 
-@console.guarded
 def calibrate(
     rig: Rig,
     free: Annotated[list[str], typer.Option(help="Parameter to fit. Repeatable.")],
@@ -127,13 +115,10 @@ def calibrate(
     json: Json = None,
 ) -> None:
     """Fit parameters to the measured oil temperatures of a table, or of one of its grids."""
-    import gearheat as gh
-
     fit = gh.calibrate(rig, free, grid=grid, bounds=bounds or [], set=set_ or [], data=data, card=card)
     console.answer(fit.as_dict(), json, lambda: print_calibration(fit))
 
 
-@console.guarded
 def replay(
     rig: Annotated[str, typer.Argument(help="Name of a shipped rig, or path of a rig file.")],
     fit: Annotated[Path, typer.Option(help="Log on which the rivals are fitted.")],
@@ -144,8 +129,6 @@ def replay(
     json: Json = None,
 ) -> None:
     """How well a rig predicts logs without correction, beside a one-node model, a regression and the last reading."""
-    import gearheat as gh
-
     console.plottable(out, "--out")
     found = gh.replay(rig, fit, until=until, logs=logs or [], card=card)
     if out is not None:
@@ -162,22 +145,14 @@ def _refuse(options: Mapping[str, object], method: str | None) -> None:
         raise ScenarioError(f"{', '.join(wrong)} does not go with --method. Leave out one of them.")
 
 
-def print_errors(errors: CampaignRun | Errors) -> None:
-    """Print the tables of errors.
-
-    Args:
-        errors: of a run or of a comparison
-    """
+def print_errors(errors: gh.Errors) -> None:
+    """Print the tables of errors of a run or of a comparison."""
     console.table("Errors", *errors.table())
     console.table("Errors by group, simulated minus measured", *errors.groups())
 
 
-def print_run(done: CampaignRun) -> None:
-    """Print errors, or the one point there is.
-
-    Args:
-        done: the run
-    """
+def print_run(done: gh.CampaignRun) -> None:
+    """Print errors, or the one point there is."""
     if done.comparison is None:
         console.table(done.title, *done.table())
     else:
@@ -187,7 +162,7 @@ def print_run(done: CampaignRun) -> None:
     console.say(f"{len(done.rows)} reading{'s' * (len(done.rows) > 1)}; {closed}")
 
 
-def _print_losses(table: LossTable) -> None:
+def _print_losses(table: gh.LossTable) -> None:
     console.table(table.title, *table.table())
     if (contacts := table.contacts) is not None:
         columns = list(contacts.columns)
@@ -202,7 +177,7 @@ def _print_losses(table: LossTable) -> None:
     print_unchecked(table.found["unchecked"])
 
 
-def _print_method(rated: MethodRating) -> None:
+def _print_method(rated: gh.MethodRating) -> None:
     found = rated.found
     console.table(rated.title, *rated.table())
     if found["T_sump_C"] is None:
@@ -220,12 +195,8 @@ def _print_method(rated: MethodRating) -> None:
         print(f"assumed: {assumption}")
 
 
-def print_calibration(fit: Calibration) -> None:
-    """Print fitted values.
-
-    Args:
-        fit: the values
-    """
+def print_calibration(fit: gh.Calibration) -> None:
+    """Print fitted values."""
     found = fit.found
     console.table(fit.title, *fit.table())
     body = [[n, *line.values()] for n, line in found["correlation"].items()]
@@ -235,12 +206,8 @@ def print_calibration(fit: Calibration) -> None:
     console.say(f"root mean square: {found['rmse_before_K']:.3f} K before, {found['rmse_after_K']:.3f} K after")
 
 
-def print_replays(found: Replays) -> None:
-    """Print errors of free runs and by hours ahead, log by log.
-
-    Args:
-        found: the errors
-    """
+def print_replays(found: gh.Replays) -> None:
+    """Print errors of free runs and by hours ahead, log by log."""
     sensors = list(next(iter(found.logs[0].free.values())))
     hours = found.as_dict()["hours"]
     for r in found.logs:

@@ -5,8 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import Annotated, Any
 
+import gearheat as gh
 import typer
 
 from ..show import console
@@ -14,11 +15,7 @@ from ..show.notes import print_outside, print_unchecked
 from ..show.stacked import stacked
 from .options import Everything, Json, Rig
 
-if TYPE_CHECKING:
-    from gearheat import Description, PartTypes, Shipped
 
-
-@console.guarded
 def new(
     name: Annotated[str, typer.Argument(help="Name of the rig, and of its file.")],
     stages: Annotated[
@@ -32,8 +29,6 @@ def new(
     json: Json = None,
 ) -> None:
     """A rig of your own from a name plate: it runs at once, and tells the rule of every number."""
-    import gearheat as gh
-
     path = out or Path(f"{name}.toml")
     rig = gh.new(name, stages=stages, ratio=ratio, power=power, speed=speed, oil=oil, out=path)
     console.answer(rig.sizes, json, lambda: _print_new(rig.sizes))
@@ -41,16 +36,12 @@ def new(
         console.note(note)
 
 
-@console.guarded
 def list_(json: Json = None) -> None:
     """The shipped rigs and catalogues."""
-    import gearheat as gh
-
     held = gh.shipped()
     console.answer(held.as_dict(), json, lambda: _print_shipped(held))
 
 
-@console.guarded
 def show(
     rig: Rig,
     errata: Annotated[bool, typer.Option("--errata", help="Show where the rig's sources are wrong.")] = False,
@@ -58,32 +49,24 @@ def show(
     json: Json = None,
 ) -> None:
     """What a rig is made of, how it is driven, and which parameters matter most; --all for everything."""
-    import gearheat as gh
-
     about = gh.show(rig)
     human = _print_errata if errata else partial(_print_rig, everything=everything)
     console.answer(about.as_dict(), json, lambda: human(about))
 
 
-@console.guarded
 def parts(
     kind: Annotated[str | None, typer.Argument(metavar="TYPE", help="Part type; all types if left out.")] = None,
     json: Json = None,
 ) -> None:
     """What a rig can be built of: part types, and all about one with an example."""
-    import gearheat as gh
-
     types = gh.parts(kind)
     console.answer(types.as_dict(), json, lambda: _print_types(types) if kind is None else _print_type(types.found))
 
 
-@console.guarded
 def schema(
     out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; printed if left out.")] = None,
 ) -> None:
     """JSON schema of rig files: editors complete and check them with it."""
-    import gearheat as gh
-
     text = console.as_json(gh.schema())
     if out is None:
         print(text, end="")
@@ -103,14 +86,14 @@ def _print_new(found: Mapping[str, Any]) -> None:
     print(f"Next: put your numbers into the file, then `gearheat steady {found['file']}`.")
 
 
-def _print_shipped(held: Shipped) -> None:
+def _print_shipped(held: gh.Shipped) -> None:
     console.table(held.title, *held.table())
     for kind, entries in held.catalogues.items():
         rows = [(name, e.doc, e.checked) for name, e in entries.items()]
         console.table(f"Catalogue: {kind}", ("name", "what it is", "checked"), rows)
 
 
-def _print_rig(about: Description, everything: bool) -> None:
+def _print_rig(about: gh.Description, everything: bool) -> None:
     """Print the rig: in short, or everything."""
     found = about.found
     console.say(f"{found['rig']}: {found['doc']}\n")
@@ -128,7 +111,7 @@ def _print_rig(about: Description, everything: bool) -> None:
         console.say(f"{len(found['errata'])} corrections to the sources: gearheat show {found['rig']} --errata")
 
 
-def _print_overview(about: Description) -> None:
+def _print_overview(about: gh.Description) -> None:
     """Print parts by type, inputs, states, main outputs and the parameters with the largest effect."""
     found, by_type = about.found, dict[str, list[str]]()
     for part in found["parts"]:
@@ -166,24 +149,20 @@ def _print_everything(found: dict[str, Any]) -> None:
     stacked("Laws", keys, _rows(found["laws"], keys), 3)
 
 
-def _print_errata(about: Description) -> None:
+def _print_errata(about: gh.Description) -> None:
     found = about.found
-    keys = ("place", "says", "should_be", "evidence")
     if not found["errata"]:
         console.say(f"{found['rig']}: no corrections to its sources are known.")
         return
-    console.table(
-        f"{found['rig']}: corrections to the sources",
-        ("place", "says", "should be", "evidence"),
-        _rows(found["errata"], keys),
-    )
+    rows = _rows(found["errata"], ("place", "says", "should_be", "evidence"))
+    console.table(f"{found['rig']}: corrections to the sources", ("place", "says", "should be", "evidence"), rows)
 
 
 def _rows(lines: Iterable[dict[str, Any]], keys: tuple[str, ...]) -> list[list[Any]]:
     return [[line[key] for key in keys] for line in lines]
 
 
-def _print_types(types: PartTypes) -> None:
+def _print_types(types: gh.PartTypes) -> None:
     console.table(types.title, *types.table())
     console.say("gearheat parts TYPE tells all of one of them, with an example to copy.")
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, Literal
+from typing import Annotated, Any, Literal
 
+import gearheat as gh
 import typer
 
 from ...model.errors import ScenarioError
@@ -14,11 +15,7 @@ from ..show.display import Display
 from ..show.notes import print_outside, print_unchecked
 from .options import Everything, Extended, Jobs, Json, Plot, Rig, Set
 
-if TYPE_CHECKING:
-    from gearheat import DesignAnswer, Map, Rating, Sweep, TimeSeries
 
-
-@console.guarded
 def steady(
     rig: Rig,
     set_: Set = None,
@@ -28,8 +25,6 @@ def steady(
     json: Json = None,
 ) -> None:
     """Steady temperatures and losses at one operating point."""
-    import gearheat as gh
-
     console.plottable(plot)
     state = gh.steady(extended or rig, set_ or [])
     found = _drawn(state.as_dict(), plot, state)
@@ -37,7 +32,6 @@ def steady(
     console.answer(found, json, lambda: _print_point(state.title, state.rows(shows), found))
 
 
-@console.guarded
 def simulate(
     rig: Rig,
     duty: Annotated[Path, typer.Option(help="CSV with time and inputs, units in the header.")],
@@ -47,15 +41,12 @@ def simulate(
     json: Json = None,
 ) -> None:
     """Temperatures and losses over a duty cycle."""
-    import gearheat as gh
-
     console.writable(out, console.file_of(json))
     console.plottable(plot)
     run = gh.simulate(rig, duty, set_ or [])
     print_run(run, out, plot, json)
 
 
-@console.guarded
 def design(
     rig: Rig,
     target: Annotated[
@@ -77,15 +68,12 @@ def design(
     json: Json = None,
 ) -> None:
     """Find parameters or inputs for which outputs reach their targets."""
-    import gearheat as gh
-
     if len(among or []) > 1:
         raise ScenarioError("--among can be given once. Write all names behind it, for example oil=PAOR,MINR,PAGD.")
     answer = gh.design(extended or rig, free or [], target, set=set_ or [], among=among[0] if among else None)
     console.answer(answer.as_dict(), json, lambda: _print_design(answer, everything))
 
 
-@console.guarded
 def sweep(
     rig: Rig,
     vary: Annotated[
@@ -120,8 +108,6 @@ def sweep(
     json: Json = None,
 ) -> None:
     """Many steady states or warm-ups, on a grid or at random. An interrupted sweep goes on."""
-    import gearheat as gh
-
     console.writable(out, console.file_of(json))
     console.plottable(plot)
     rows = gh.sweep(
@@ -142,14 +128,11 @@ def sweep(
         scheduler=scheduler,
         draw=plot is not None,
     )
-    found = rows.as_dict()
-    if plot is not None:
-        found = _drawn(found, plot, rows, say=False)
+    found = _drawn(rows.as_dict(), plot, rows, say=False)
     console.answer(found, json, lambda: _print_sweep(rows, found))
     rows.check()
 
 
-@console.guarded
 def map_(
     rig: Rig,
     out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write, a row per point.")],
@@ -162,8 +145,6 @@ def map_(
     json: Json = None,
 ) -> None:
     """Oil temperature, loss and efficiency over speed and torque: table and picture."""
-    import gearheat as gh
-
     console.writable(out, console.file_of(json))
     console.plottable(plot)
     points = gh.map(rig, speed=speed, torque=torque, grid=grid, output=output or [], set=set_ or [])
@@ -172,7 +153,6 @@ def map_(
     console.answer(found, json, lambda: _print_map(points, found))
 
 
-@console.guarded
 def rating(
     rig: Rig,
     limit: Annotated[str, typer.Option(help='What must be kept, such as "oil.T=95 degC".')],
@@ -183,9 +163,7 @@ def rating(
     set_: Set = None,
     json: Json = None,
 ) -> None:
-    """Thermal power over room temperature and speed: what the rig carries for ever within a limit."""
-    import gearheat as gh
-
+    """Thermal power over room temperature and speed: continuous power at which a limit is kept."""
     console.writable(out, console.file_of(json))
     powers = gh.rating(rig, limit, room=room, speed=speed, grid=grid, set=set_ or [])
     if out is not None:
@@ -198,36 +176,20 @@ def _drawn(found: dict[str, Any], plot: Path | None, result: Display, *, say: bo
     """The object with the place of its picture, which is written."""
     if plot is None:
         return found
-    if (picture := result.drawing()) is not None:
-        from ..show.plotting import write_picture
-
-        write_picture(plot, picture)
-        if say:
-            console.note(f"wrote {plot}")
+    if result.save_picture(plot) is not None and say:
+        console.note(f"wrote {plot}")
     return found | {"plot": str(plot)}
 
 
-def print_run(run: TimeSeries, out: Path, plot: Path | None, json: str | None) -> None:
-    """Write a time series and its picture, and say where it ends.
-
-    Args:
-        run: the time series
-        out: CSV to write
-        plot: picture to write
-        json: where the JSON object goes
-    """
+def print_run(run: gh.TimeSeries, out: Path, plot: Path | None, json: str | None) -> None:
+    """Write a time series and its picture, and say where it ends."""
     run.save(out)
     found = _drawn({**run.as_dict(), "out": str(out)}, plot, run)
     console.answer(found, json, lambda: print_end(out, found))
 
 
 def print_end(out: Path, found: Mapping[str, Any]) -> None:
-    """Print where a time series ends.
-
-    Args:
-        out: its file
-        found: its JSON object
-    """
+    """Print where a time series ends, from its file and its JSON object."""
     console.say(f"{out}: {found['rows']} rows to {found['stop_s']:g} s")
     print_outside(found.get("outside", ()))
     print_unchecked(found.get("unchecked", ()))
@@ -242,7 +204,7 @@ def _print_point(title: str, rows: Sequence[Sequence[Any]], found: Mapping[str, 
     print_unchecked(found["unchecked"])
 
 
-def _print_design(answer: DesignAnswer, everything: bool) -> None:
+def _print_design(answer: gh.DesignAnswer, everything: bool) -> None:
     found = answer.found
     if "among" in found:
         _print_alternatives(answer)
@@ -260,7 +222,7 @@ def _print_design(answer: DesignAnswer, everything: bool) -> None:
     _print_point(f"{rig}: steady state there", answer.rows(shows), found)
 
 
-def _print_alternatives(answer: DesignAnswer) -> None:
+def _print_alternatives(answer: gh.DesignAnswer) -> None:
     found = answer.found
     part = found["among"]
     console.table(f"{found['rig']}: alternatives, the best first", *answer.table())
@@ -275,7 +237,7 @@ def _print_alternatives(answer: DesignAnswer) -> None:
     print_unchecked({line["entry"]: line for a in solved for line in a["unchecked"]}.values())
 
 
-def _print_sweep(rows: Sweep, found: Mapping[str, Any]) -> None:
+def _print_sweep(rows: gh.Sweep, found: Mapping[str, Any]) -> None:
     console.table(rows.title, *rows.table())
     if failed := {name: n for name, n in found["status"].items() if name != "ok"}:
         console.say("rows without a result: " + ", ".join(f"{name} {n}" for name, n in failed.items()))
@@ -287,14 +249,14 @@ def _print_sweep(rows: Sweep, found: Mapping[str, Any]) -> None:
     print(found["out"] + ("" if rows.seconds is None else f" after {rows.seconds:.1f} s"))
 
 
-def _print_map(points: Map, found: Mapping[str, Any]) -> None:
+def _print_map(points: gh.Map, found: Mapping[str, Any]) -> None:
     console.table(points.title, *points.table())
     if found["without_result"]:
         console.say(f"{found['without_result']} points have no steady state; their cells are nan")
     print(", ".join(filter(None, (found["out"], found["plot"]))))
 
 
-def _print_rating(powers: Rating) -> None:
+def _print_rating(powers: gh.Rating) -> None:
     console.table(powers.title, *powers.table())
     for place, reason in powers.without_result.items():
         console.note(f"{place}: {reason}")

@@ -4,21 +4,18 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
+import gearheat as gh
 import typer
 
 from ..show import console
 from .options import Json, Set
 
-if TYPE_CHECKING:
-    from gearheat import FilmTable, Verification
-
 #: Exit code where a number is not reproduced.
 FAILED = 1
 
 
-@console.guarded
 def film(
     rig: Annotated[str, typer.Argument(help="Name of a shipped rig, path of a rig file, or TOML file of one contact.")],
     out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write; a run that was interrupted goes on.")],
@@ -35,14 +32,11 @@ def film(
 ) -> None:
     """Solve a lubricated contact over load, speed and temperature; fit the film law that parts can use."""
     console.use_one_thread()
-    import gearheat as gh
-
     console.writable(console.file_of(json))
     films = gh.film(rig, out, part=part, vary=vary or [], grid=grid, nodes=nodes, plot=plot, set=set_ or [])
     console.answer(films.as_dict(), json, lambda: print_films(films))
 
 
-@console.guarded
 def verify(
     rig: Annotated[
         str | None, typer.Argument(help="Name of a shipped rig, or path of a rig file; all shipped rigs if left out.")
@@ -51,8 +45,6 @@ def verify(
     html: Annotated[Path | None, typer.Option(metavar="FILE", help="HTML page to write.")] = None,
 ) -> None:
     """Published numbers of each machine beside what the model gives."""
-    import gearheat as gh
-
     console.writable(console.file_of(json), html)
     numbers = gh.verify(rig)
     if html is not None:
@@ -62,7 +54,6 @@ def verify(
         sys.exit(FAILED)
 
 
-@console.guarded
 def verify_contact(
     out: Annotated[
         Path,
@@ -76,18 +67,12 @@ def verify_contact(
 ) -> None:
     """Check the contact solver against published films, Hertz and measurements."""
     console.use_one_thread()
-    import gearheat as gh
-
     found = gh.verify_contact(out, quick=quick, cycle=cycle)
     console.answer(found.as_dict(), json, lambda: console.table(found.title, *found.table()))
 
 
-def print_films(films: FilmTable) -> None:
-    """Print what was varied and how well the law fits.
-
-    Args:
-        films: the films
-    """
+def print_films(films: gh.FilmTable) -> None:
+    """Print what was varied and how well the law fits."""
     found = films.found
     console.table(films.title, *films.table())
     for name in found["failed"]:
@@ -98,7 +83,7 @@ def print_films(films: FilmTable) -> None:
     console.say(f'{found["out"]}: film = "map:{found["out"]}" in a rig file')
 
 
-def _print_verification(numbers: Verification) -> None:
+def _print_verification(numbers: gh.Verification) -> None:
     for title, head, rows in numbers.details():
         console.table(title, head, rows, wrapped=True)
     console.table(numbers.title, *numbers.table())

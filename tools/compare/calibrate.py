@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -14,7 +14,7 @@ from scipy.optimize import least_squares
 from ...fmu.export import export
 from ...fmu.play import Player
 from ...model.core.flat import FlatModel, Quantity
-from ...model.errors import DataError, GearheatError, ScenarioError, SolveError
+from ...model.errors import DataError, Problems, SolveError
 from ...model.units import from_si, shown, to_si
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.measured.study import Measured, measured_of
@@ -132,41 +132,33 @@ def calibrate(
 
 
 def _checked(flat: FlatModel, free: Sequence[str]) -> list[Quantity]:
-    problems: list[str] = []
+    problems = Problems()
     for name in free:
-        try:
+        with problems:
             if flat.locate(name)[0] != "parameter":
                 problems.append(f"{name} is no parameter and cannot be fitted. `gearheat show` lists the parameters.")
-        except GearheatError as error:
-            problems += error.problems
     if len(set(free)) < len(free):
         problems.append("A parameter is free twice. Name each once.")
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return [flat.quantity(name) for name in free]
 
 
 def _bounded(quantities: Sequence[Quantity], bounds: Sequence[str]) -> list[Quantity]:
     """The quantities with the ranges of texts such as "cooling.A=0.4 m2..1.2 m2"."""
     found = {q.name: q for q in quantities}
-    problems: list[str] = []
+    problems = Problems()
     for text in bounds:
         name, _, ends = (part.strip() for part in text.partition("="))
         low, dots, high = ends.partition("..")
         if name not in found or not dots:
             problems.append(f'--bounds "{text}": write a free parameter and its range, like cooling.A=0.4 m2..1.2 m2.')
             continue
-        try:
-            unit = found[name].unit
-            values = [to_si(end, unit, name=f"--bounds {name}") for end in (low, high)]
-        except GearheatError as error:
-            problems += error.problems
-            continue
-        if not values[0] < values[1]:
-            problems.append(f'--bounds "{text}": the first end must lie below the second.')
-        found[name] = replace(found[name], low=values[0], high=values[1])
-    if problems:
-        raise ScenarioError(problems)
+        with problems:
+            first, second = (to_si(end, found[name].unit, name=f"--bounds {name}") for end in (low, high))
+            if not first < second:
+                problems.append(f'--bounds "{text}": the first end must lie below the second.')
+            found[name] = replace(found[name], low=first, high=second)
+    problems.check()
     return list(found.values())
 
 
@@ -196,11 +188,11 @@ def fit_parameters(
     if len(measured) <= len(start):
         raise SolveError(f"{len(measured)} readings cannot determine {len(start)} parameters. Free fewer.")
     with tempfile.TemporaryDirectory() as folder, Player(export(flat, Path(folder) / "rig.fmu")) as player:
-        simulated = _simulated(player, study, runs, sensor.reads)
 
         def errors(z: np.ndarray) -> np.ndarray:
             values = {q.name: float(v) for q, v in zip(quantities, z * scale, strict=True)}
-            return np.asarray(simulated(values) - measured)
+            simulated = [_simulated(player, study, run, sensor.reads, values) for run in runs]
+            return np.asarray(np.concatenate(simulated) - measured)
 
         low, high = (np.array([getattr(q, side) for q in quantities]) / scale for side in ("low", "high"))
         first = errors(start / scale)
@@ -228,25 +220,12 @@ def fit_parameters(
 
 
 def _simulated(
-    player: Player, study: Measured, runs: Sequence[campaign.Run], path: str
-) -> Callable[[Mapping[str, float]], np.ndarray]:
-    """Parameter values -> the oil temperature at every reading [K]."""
-
-    def readings(values: Mapping[str, float]) -> np.ndarray:
-        found: list[float] = []
-        for run in runs:
-            played = player.run(
-                run.inputs,
-                run.schedule.stop,
-                60.0,
-                start={**run.start, **(_settled(study, run, values) if study.campaign.steady else {}), **values},
-                record=[path],
-                output_times=list(run.moments),
-            )
-            found += played.values[:, 0].tolist()
-        return np.array(found)
-
-    return readings
+    player: Player, study: Measured, run: campaign.Run, path: str, values: Mapping[str, float]
+) -> np.ndarray:
+    """The oil temperature at every reading of a test [K], with other values of parameters."""
+    start = {**run.start, **(_settled(study, run, values) if study.campaign.steady else {}), **values}
+    stop, moments = run.schedule.stop, list(run.moments)
+    return player.run(run.inputs, stop, 60.0, start=start, record=[path], output_times=moments).values[:, 0]
 
 
 def _settled(study: Measured, run: campaign.Run, values: Mapping[str, float]) -> dict[str, float]:

@@ -6,29 +6,29 @@ import os
 import re
 import signal
 import threading
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import Future, ProcessPoolExecutor, as_completed
 from contextlib import contextmanager
-from dataclasses import dataclass
 from multiprocessing import get_context
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ...fmu.effective import effective
-from ...fmu.variables import STORED, SUPPLIED, THROUGHPUT
 from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError
 from ...model.run.point import point
 from ...model.run.result import Outside
 from ...model.run.rows import evaluate, outside
-from ...model.run.schedule import Schedule, stepped
+from ...model.run.schedule import stepped
+from ...scenarios.measured import readings
 from ...scenarios.measured.study import Measured
 from ...scenarios.scenario import Scenario
 from ..show.console import note
-from . import playing, readings
-from .playing import Job
+from . import playing
+from .playing import AUDIT, Job
+
+Run = playing.Run
 
 #: How long a rig without measured data is run at its operating point [s].
 HOLD = 8 * 3600.0
@@ -36,34 +36,10 @@ HOLD = 8 * 3600.0
 #: Temperature where no room is measured [K].
 START = 293.15
 
-#: Variables of every FMU for the energy balance.
-AUDIT = (SUPPLIED, THROUGHPUT, STORED)
-
-
 #: How long a steady state is held that a test begins with [s].
 SETTLED = 3600.0
 #: How long a steady state is held that a test comes to from another [s].
 SETTLING = 72 * 3600.0
-
-
-@dataclass(frozen=True)
-class Run:
-    """One test of a campaign, or the operating point of a rig without one: what drives the model, what was read.
-
-    `rows` are the rows of the campaign that were read at the `moments` [s].
-    """
-
-    test: int
-    oil: str
-    schedule: Schedule
-    start: Mapping[str, float]
-    moments: tuple[float, ...]
-    rows: tuple[int, ...]
-
-    @property
-    def inputs(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
-        """What drives the model: name -> (times [s], values in SI)."""
-        return {name: (self.schedule.time, values) for name, values in self.schedule.values.items()}
 
 
 def runs_of(scenario: Scenario, flat: FlatModel, study: Measured | None, tests: str | None = None) -> tuple[Run, ...]:
@@ -168,27 +144,6 @@ def recorded(scenario: Scenario, flat: FlatModel, study: Measured | None) -> dic
     return {name: flat.quantity(name).unit for name in dict.fromkeys(names)} | dict.fromkeys(AUDIT, "J")
 
 
-def jobs(
-    found: Iterable[Run], fmu: Path, digest: str, step: float, record: Mapping[str, str], folder: Path | None
-) -> tuple[Job, ...]:
-    """The jobs of the worker processes."""
-    return tuple(
-        Job(
-            test=run.test,
-            fmu=fmu,
-            digest=digest,
-            inputs=run.inputs,
-            start=run.start,
-            moments=run.moments,
-            step=step,
-            record=record,
-            audit=AUDIT,
-            folder=folder,
-        )
-        for run in found
-    )
-
-
 @contextmanager
 def _deaf() -> Iterator[None]:
     """Without Ctrl-C for a moment: processes that start in it inherit that, and the parent alone answers."""
@@ -209,13 +164,13 @@ def crew(workers: int) -> Iterator[ProcessPoolExecutor | None]:
     Args:
         workers: how many; 0 for one per core
     """
-    count = (
-        workers or len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else workers or os.cpu_count() or 1
-    )
+    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    count = workers or cores or 1
     if count == 1:
         yield None
         return
-    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=playing.ready)
+    deaf = (signal.SIGINT, signal.SIG_IGN)  # the parent alone answers Ctrl-C
+    pool = ProcessPoolExecutor(count, mp_context=get_context("spawn"), initializer=signal.signal, initargs=deaf)
     try:
         with _deaf():
             for _ in range(count):
@@ -227,14 +182,14 @@ def crew(workers: int) -> Iterator[ProcessPoolExecutor | None]:
 
 def play_all(todo: Sequence[Job], pool: ProcessPoolExecutor | None) -> dict[int, list[dict[str, float]]]:
     """The readings of every test; tests that were finished before with the same inputs are not played again."""
-    done = {job.test: kept for job in todo if job.folder is not None and (kept := playing.finished(job)) is not None}
+    done = {job.run.test: kept for job in todo if (kept := playing.finished(job)) is not None}
     if done:
         note(f"{len(done)} of {len(todo)} tests were finished before")
-    left = [job for job in todo if job.test not in done]
+    left = [job for job in todo if job.run.test not in done]
     for k, (job, found) in enumerate(_played(left, pool), start=len(done) + 1):
-        done[job.test] = found
-        note(f"played test {job.test} ({k} of {len(todo)})")
-    return {job.test: done[job.test] for job in todo}
+        done[job.run.test] = found
+        note(f"played test {job.run.test} ({k} of {len(todo)})")
+    return {job.run.test: done[job.run.test] for job in todo}
 
 
 def _played(left: Sequence[Job], pool: ProcessPoolExecutor | None) -> Iterator[tuple[Job, list[dict[str, float]]]]:

@@ -7,8 +7,7 @@ from __future__ import annotations
 
 import hashlib
 import json
-import signal
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import lru_cache
 from multiprocessing.util import Finalize
@@ -17,53 +16,68 @@ from pathlib import Path
 import numpy as np
 
 from ...fmu.play import Player
-from ..show.columns import series
+from ...fmu.variables import STORED, SUPPLIED, THROUGHPUT
+from ...model.run.schedule import Schedule
+from ..show.columns import table_text, titled
 from ..show.console import as_json, write
 
 SCHEMA = "gearheat.test/1"
+#: Variables of every FMU with the energy that came in, the throughput, and the energy stored, since the start [J].
+AUDIT = (SUPPLIED, THROUGHPUT, STORED)
+
+
+@dataclass(frozen=True)
+class Run:
+    """One test of a campaign, or the operating point of a rig without one: what drives the model, what was read.
+
+    Attributes:
+        start: start values of parameters and states, SI
+        moments: times of the readings [s], at the end of each half
+        rows: rows of the campaign that were read then
+    """
+
+    test: int
+    oil: str
+    schedule: Schedule
+    start: Mapping[str, float]
+    moments: tuple[float, ...]
+    rows: tuple[int, ...]
+
+    @property
+    def inputs(self) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+        """What drives the model: name -> (times [s], values in SI)."""
+        return {name: (self.schedule.time, values) for name, values in self.schedule.values.items()}
 
 
 @dataclass(frozen=True)
 class Job:
-    """One test: what drives the FMU, when it is read, and where the result goes.
+    """A run of the FMU and where its result goes.
 
     Attributes:
-        inputs: path -> (times [s], values), SI
-        start: start values of parameters and states, SI
-        moments: times of the readings [s], at the end of each half
+        step: communication step [s]
         record: path -> SI unit, the variables that are kept
-        audit: variables with the energy that came in, the throughput, and the energy stored, since the start [J]
-        folder: where the result is kept; None keeps nothing
+        folder: where the result is kept
     """
 
-    test: int
+    run: Run
     fmu: Path
     digest: str
-    inputs: Mapping[str, tuple[np.ndarray, np.ndarray]]
-    start: Mapping[str, float]
-    moments: Sequence[float]
     step: float
     record: Mapping[str, str]
-    audit: tuple[str, str, str]
-    folder: Path | None = None
+    folder: Path
 
     def key(self) -> str:
         """Hash of all that the result depends on."""
-        parts = [SCHEMA, self.digest, repr(float(self.step)), repr([float(m) for m in self.moments])]
-        parts += [f"{name} {value!r}" for name, value in sorted(self.start.items())]
+        parts = [SCHEMA, self.digest, repr(float(self.step)), repr([float(m) for m in self.run.moments])]
+        parts += [f"{name} {value!r}" for name, value in sorted(self.run.start.items())]
         parts += [f"{name} {unit}" for name, unit in self.record.items()]
-        for name, (time, values) in sorted(self.inputs.items()):
+        for name, (time, values) in sorted(self.run.inputs.items()):
             parts.append(f"{name} {np.asarray(time, float).tolist()} {np.asarray(values, float).tolist()}")
         return hashlib.sha256("\n".join(parts).encode()).hexdigest()
 
     def place(self, suffix: str) -> Path:
         """File of this test's result."""
-        return (self.folder or Path()) / f"test-{self.test:02d}.{suffix}"
-
-
-def ready() -> None:
-    """Prepare a worker: the parent alone answers Ctrl-C."""
-    signal.signal(signal.SIGINT, signal.SIG_IGN)
+        return self.folder / f"test-{self.run.test:02d}.{suffix}"
 
 
 def finished(job: Job) -> list[dict[str, float]] | None:
@@ -83,36 +97,24 @@ def play(job: Job) -> list[dict[str, float]]:
         one mapping per reading: path -> value, SI, and "energy_residual": what the time since the reading before (or
         the start) leaves of the energy balance, relative to the throughput
     """
-    time, columns = time_series(job)
-    readings = [at(time, columns, moment) for moment in job.moments]
-    before = at(time, columns, float(time[0]))
+    run, record = job.run, list(job.record)
+    played = _player(job.fmu, job.digest).run(run.inputs, run.schedule.stop, job.step, start=run.start, record=record)
+    columns = {name: played.values[:, k] for k, name in enumerate(played.names)}
+
+    def at(moment: float) -> dict[str, float]:
+        """All columns at a moment, before the jump if there is one."""
+        row = int(np.argmin(np.abs(played.time - moment)))
+        return {name: float(column[row]) for name, column in columns.items()}
+
+    before, readings = at(float(played.time[0])), [at(moment) for moment in run.moments]
     for reading in readings:
-        reading["energy_residual"] = imbalance(before, reading, job.audit)
+        supplied, throughput, stored = (reading[name] - before[name] for name in AUDIT)
+        reading["energy_residual"] = abs(supplied - stored) / throughput if throughput else 0.0
         before = reading
-    if job.folder is not None:
-        write(job.place("csv"), series(time, columns, job.record))
-        kept = {"schema": SCHEMA, "key": job.key(), "test": job.test, "moments_s": list(job.moments)}
-        write(job.place("json"), as_json({**kept, "units": job.record, "readings": readings}))
+    write(job.place("csv"), table_text({"time [s]": played.time, **titled(columns, job.record)}))
+    kept = {"schema": SCHEMA, "key": job.key(), "test": run.test, "moments_s": list(run.moments)}
+    write(job.place("json"), as_json({**kept, "units": job.record, "readings": readings}))
     return readings
-
-
-def time_series(job: Job) -> tuple[np.ndarray, dict[str, np.ndarray]]:
-    """The recorded variables of a test over time [s], SI; a time given twice is a jump."""
-    stop = max(float(time[-1]) for time, _ in job.inputs.values())
-    played = _player(job.fmu, job.digest).run(job.inputs, stop, job.step, start=job.start, record=list(job.record))
-    return played.time, {name: played.values[:, k] for k, name in enumerate(played.names)}
-
-
-def at(time: np.ndarray, columns: Mapping[str, np.ndarray], moment: float) -> dict[str, float]:
-    """All columns at a moment, before the jump if there is one."""
-    row = int(np.argmin(np.abs(time - moment)))
-    return {name: float(column[row]) for name, column in columns.items()}
-
-
-def imbalance(before: Mapping[str, float], after: Mapping[str, float], audit: tuple[str, str, str]) -> float:
-    """Energy that came in between two moments and was not stored, relative to the throughput."""
-    supplied, throughput, stored = (after[name] - before[name] for name in audit)
-    return abs(supplied - stored) / throughput if throughput else 0.0
 
 
 @lru_cache(maxsize=2)

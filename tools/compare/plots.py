@@ -77,13 +77,10 @@ def _residual(panel: Axes, rows: Rows, channel: Channel, by: str, noise: float |
     known = distinct(values)
     x = np.array([math.nan if v is None else known.index(v) for v in values]) + _spread(rows, by)
     _scatter(panel, rows, x, errors(rows, channel))
-    panel.set_xticks(range(len(known)), [_tick(by, v) for v in known])
+    words = {"direction": DIRECTIONS}.get(by, {})
+    panel.set_xticks(range(len(known)), [words.get(v, f"{v:g}" if by in UNITS else str(v)) for v in known])
     panel.set_xlim(-0.6, len(known) - 0.4)
     panel.set_xlabel(f"{GROUPINGS[by]} [{UNITS[by]}]" if by in UNITS else GROUPINGS[by])
-
-
-def _tick(by: str, value: Any) -> str:
-    return DIRECTIONS.get(value, str(value)) if by == "direction" else f"{value:g}" if by in UNITS else str(value)
 
 
 def _spread(rows: Rows, by: str) -> np.ndarray:

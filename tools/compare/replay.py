@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 from ...model.errors import DataError
 from ...model.units import from_si
@@ -17,9 +17,7 @@ from ..diagnose.infer.replay import HOURS, Replayed, Rivals
 from ..diagnose.infer.replay import replay as replay_log
 from ..show.console import note
 from ..show.display import Display
-
-if TYPE_CHECKING:
-    from ..show.plotting import Picture
+from ..show.picture import Picture
 
 #: Width and height of the picture [inch].
 SIZE = (9.0, 4.5)
@@ -56,7 +54,6 @@ class Replays(Display):
     def drawing(self) -> Picture:
         """Free run and readings of the longest stretch of the last log."""
         from ..show.drawing import empty
-        from ..show.plotting import Picture
 
         r = self.logs[-1]
         title = f"{r.name}, free run"
@@ -71,20 +68,6 @@ class Replays(Display):
         panels[0].set_title(title, fontsize=8)
         panels[-1].set_xlabel("days", fontsize=7)
         return Picture(figure, title)
-
-    def save_picture(self, path: str | Path) -> Path:
-        """Write the picture.
-
-        Args:
-            path: .svg, .png or .html
-
-        Raises:
-            DataError: it cannot be written
-        """
-        from ..show.plotting import write_picture
-
-        write_picture(Path(path), self.drawing())
-        return Path(path)
 
 
 def replay(

@@ -2,84 +2,78 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
-from markupsafe import Markup, escape
+from markupsafe import Markup
 
+from ...model.core.flat import FlatModel
 from ...model.run.result import Outside
 from ...model.sources import LawInfo, sources
-from ..show.console import cell
-from ..show.pages import page
+from ...scenarios.scenario import Scenario
+from ..describe import description as describe
+from ..show.notes import unchecked_lines
+from ..show.pages import html_table, page
 from . import plots
 from .errors import Comparison, Rows, measured, numbers, present
+from .results import error_lines, group_lines
 from .rivals import Score
-from .summary import error_lines, group_lines
-
-
-@dataclass(frozen=True)
-class Study:
-    """A campaign that was simulated.
-
-    Attributes:
-        rig, doc: name and description of the rig
-        fmu: file name of the FMU that was played
-        rows: the readings, simulated and measured
-        curves: some tests over time, columns as in `plots.warm_up`
-        loss_columns: columns of `rows` that are the single losses
-        laws, outside: what the model cites, and what it used outside its range
-        parameters: (name, value with unit, source)
-        unchecked: catalogue entries in use, and which of their values were compared with no print
-        errata: (source and place, what it says, what it should be, evidence)
-        energy_residual_max: largest violation of the energy balance over the throughput
-    """
-
-    rig: str
-    doc: str
-    fmu: str
-    rows: Rows
-    curves: Mapping[int, Mapping[str, np.ndarray]]
-    loss_columns: tuple[str, ...]
-    laws: tuple[LawInfo, ...]
-    outside: tuple[Outside, ...]
-    parameters: tuple[tuple[str, str, str], ...]
-    unchecked: tuple[str, ...]
-    errata: tuple[tuple[str, str, str, str], ...]
-    energy_residual_max: float
-
 
 #: Columns of the table of all readings.
 READING = ("point", "test", "direction", "oil", "n_set_rpm", "T_set_Nm", "T_amb_C")
 
 
-def render(study: Study, comparison: Comparison | None, scores: Sequence[Score]) -> str:
-    """The page as HTML text, the same bytes for the same study. Without a comparison it shows the simulation alone."""
+def render(
+    scenario: Scenario,
+    flat: FlatModel,
+    found: Mapping[str, Any],
+    comparison: Comparison | None,
+    scores: Sequence[Score],
+    *,
+    curves: Mapping[int, Mapping[str, np.ndarray]],
+    outside: Sequence[Outside],
+) -> str:
+    """The page as HTML text, the same bytes for the same run. Without a comparison it shows the simulation alone.
+
+    Args:
+        scenario: the rig
+        flat: its model
+        found: the JSON object of the run
+        comparison: of its readings
+        scores: of statistical rivals
+        curves: some tests over time, columns as in `plots.warm_up`
+        outside: laws that were used outside their range
+    """
+    rows, laws = found["rows"], describe.cited(flat)
+    parameters = describe.parameters(scenario, flat)
+    errata = [(e.place, e.says, e.should_be, e.evidence) for e in scenario.errata]
     return page(
         "gearheat.tools.compare",
         "report.html",
-        study=study,
-        compared=None if comparison is None else _compared(study.rows, comparison, scores),
-        tests=len({row["test"] for row in study.rows}),
-        warm_up=Markup(plots.warm_up(study.curves, study.rows)) if study.curves else "",
-        breakdown=_breakdown(study),
-        laws=_laws(study.laws),
-        unverified=[law.name for law in study.laws if not law.verified],
-        outside=_outside(study.outside),
-        parameters=html_table(("parameter", "value", "source"), study.parameters, text=(2,)),
-        errata=html_table(("place", "says", "should be", "evidence"), study.errata, text=(1, 2, 3)),
-        rows=_readings(study.rows),
+        rig=scenario,
+        found=found,
+        compared=None if comparison is None else _compared(rows, comparison, scores),
+        tests=len({row["test"] for row in rows}),
+        warm_up=Markup(plots.warm_up(curves, rows)) if curves else "",
+        breakdown=_breakdown(rows, [c for c in scenario.losses if c.startswith("P_") and c != "P_total_W"]),
+        laws=_laws(laws),
+        cited=len(laws),
+        unverified=[law.name for law in laws if not law.verified],
+        outside=_outside(outside),
+        unchecked=unchecked_lines(found["unchecked"]),
+        values=len(parameters),
+        parameters=html_table(("parameter", "value", "source"), parameters),
+        errata=html_table(("place", "says", "should be", "evidence"), errata),
+        rows=_readings(rows),
     )
 
 
-def _breakdown(study: Study) -> Markup:
+def _breakdown(rows: Rows, losses: Sequence[str]) -> Markup:
     """Losses of every test, or of the one point there is."""
-    if not study.loss_columns:
+    if not losses:
         return Markup("")
-    if len(study.rows) == 1:
-        return Markup(plots.shares(study.rows[0], study.loss_columns))
-    return Markup(plots.breakdown(study.rows, study.loss_columns))
+    return Markup(plots.shares(rows[0], losses) if len(rows) == 1 else plots.breakdown(rows, losses))
 
 
 def _compared(rows: Rows, comparison: Comparison, scores: Sequence[Score]) -> dict[str, Any]:
@@ -101,19 +95,6 @@ def _compared(rows: Rows, comparison: Comparison, scores: Sequence[Score]) -> di
     }
 
 
-def html_table(head: Sequence[str], body: Iterable[Sequence[Any]], text: Sequence[int] = (), ours: int = -1) -> Markup:
-    """An HTML table; columns in `text` are set to the left, row `ours` stands out."""
-
-    def row(tag: str, values: Sequence[Any]) -> str:
-        cells = ((f'<{tag} class="text">' if i in text else f"<{tag}>", cell(v)) for i, v in enumerate(values))
-        return "".join(f"{opening}{escape(value)}</{tag}>" for opening, value in cells)
-
-    lines = [f"<tr>{row('th', head)}</tr>"]
-    for i, values in enumerate(body):
-        lines.append(f"<tr{' class=ours' if i == ours else ''}>{row('td', values)}</tr>")
-    return Markup("<table>\n" + "\n".join(lines) + "\n</table>")
-
-
 def _laws(laws: Sequence[LawInfo]) -> Markup:
     known = sources()
     body = []
@@ -121,17 +102,17 @@ def _laws(laws: Sequence[LawInfo]) -> Markup:
         source = known.get(law.source)
         cited = source.cited if source else law.source
         body.append((law.name, cited, law.where, law.valid, "verified" if law.verified else "unverified"))
-    return html_table(("law", "source", "place", "valid", "against print"), body, text=(1, 2, 3, 4))
+    return html_table(("law", "source", "place", "valid", "against print"), body)
 
 
 def _outside(outside: Sequence[Outside]) -> Markup:
     body = [(o.law, o.component, o.argument, o.low, o.high, o.lowest, o.highest, o.regime) for o in outside]
     head = ("law", "part", "argument", "valid from", "to", "met from", "to", "regime there")
-    return html_table(head, body, text=(1, 2, 7)) if body else Markup("")
+    return html_table(head, body) if body else Markup("")
 
 
 def _readings(rows: Rows) -> Markup:
     columns = [c.column for c in measured(rows)]
     head = [*READING, *(name for column in columns for name in (column, f"{column}_meas"))]
     head = [name for name in head if any(name in row for row in rows)]
-    return html_table(head, [[row.get(name) for name in head] for row in rows], text=(3,))
+    return html_table(head, [[row.get(name) for name in head] for row in rows])

@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
 from ...model.errors import DataError
 from ...scenarios.given import RigLike
+from ...scenarios.measured.readings import column_of, drives, joined, read_result
 from ...scenarios.measured.study import loaded, measured_of
 from ..show.console import note
 from ..show.display import Answer
-from . import summary
-from .errors import Comparison
+from .errors import GROUPINGS, Comparison
 from .errors import compare as compare_rows
-from .readings import column_of, drives, joined, read_result
 from .rivals import Score, rivals
 
 
@@ -24,12 +23,12 @@ class Errors(Answer):
     """Errors of simulated readings, with the noise floor and statistical rivals.
 
     Attributes:
-        comparison: errors by channel and group
+        comparison: errors by channel and group, None where nothing was measured
         scores: of the rivals
         found: the JSON object
     """
 
-    comparison: Comparison
+    comparison: Comparison | None
     scores: Sequence[Score]
     found: Mapping[str, Any]
 
@@ -39,12 +38,14 @@ class Errors(Answer):
         return f"{self.found['result']} beside {self.found['data']}"
 
     def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """Errors with those of the rivals."""
-        return summary.error_lines(self.comparison, self.scores)
+        """Errors with those of the rivals, or the one point there is."""
+        if self.comparison is not None:
+            return error_lines(self.comparison, self.scores)
+        return ("name", "value"), list(self.found["rows"][0].items())
 
     def groups(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """Errors by group, simulated minus measured."""
-        return summary.group_lines(self.comparison)
+        return group_lines(self.comparison) if self.comparison is not None else ((), ())
 
 
 def compare(result: str | Path, data: str | Path, rig: RigLike, *, card: str | Path | None = None) -> Errors:
@@ -72,4 +73,56 @@ def compare(result: str | Path, data: str | Path, rig: RigLike, *, card: str | P
         raise DataError(f"{Path(result).name} and {study.campaign.name} have no reading in common.")
     comparison, scores = compare_rows(rows), rivals(rows, [column_of(s) for s in drives(study)])
     found = {"schema": "gearheat.compare/1", "result": Path(result).name, "data": study.campaign.name, "rows": rows}
-    return Errors(comparison, scores, {**found, **summary.as_dict(comparison, scores)})
+    return Errors(comparison, scores, {**found, **summarise(comparison, scores)})
+
+
+def summarise(comparison: Comparison, scores: Sequence[Score]) -> dict[str, Any]:
+    """Keys `rmse`, `noise_floor`, `rivals`, `groups`."""
+    return {
+        "rmse": comparison.rmse(),
+        "noise_floor": dict(comparison.noise_floor),
+        "rivals": {score.name: {k: v for k, v in asdict(score).items() if k != "name"} for score in scores},
+        "groups": [asdict(group) for group in comparison.groups],
+    }
+
+
+def hundredths(value: float | None) -> str:
+    """An error as a table shows it."""
+    return "" if value is None else f"{value:.2f}"
+
+
+def error_lines(comparison: Comparison, scores: Sequence[Score]) -> tuple[list[str], list[list[Any]]]:
+    """Head and body: channels across; simulation overall and by grid, noise floor and rivals down."""
+    rmse = comparison.rmse()
+    channels = comparison.channels
+
+    def line(name: str, values: Any) -> list[Any]:
+        return [name, *(hundredths(values.get(c.key)) for c in channels)]
+
+    body = [line("simulation, all readings", rmse["overall"])]
+    body += [line(f"simulation, {grid}", found) for grid, found in rmse.items() if grid != "overall"]
+    body.append(line("noise floor", comparison.noise_floor))
+    for score in scores:
+        body.append(line(f"{score.name}, in sample", score.in_sample))
+        body.append(line(f"{score.name}, left-out tests", score.leave_one_test_out))
+    return ["root mean square", *(f"{c.label} [{c.unit}]" for c in channels)], body
+
+
+def group_lines(comparison: Comparison) -> tuple[list[str], list[list[Any]]]:
+    """Head and body: groups down, mean and root mean square of each channel across."""
+    channels = comparison.channels
+    found: dict[tuple[str, Any], dict[str, Any]] = {}
+    for group in comparison.groups:
+        found.setdefault((group.by, group.value), {"n": group.n})[group.channel] = group
+    body = []
+    for (by, value), of in found.items():
+        pairs = [(of[c.key].mean, of[c.key].rms) if c.key in of else (None, None) for c in channels]
+        text = f"{value:g}" if isinstance(value, float) else value
+        body.append(
+            [
+                "all" if by == "all" else f"{GROUPINGS[by]} {text}",
+                of["n"],
+                *(hundredths(x) for pair in pairs for x in pair),
+            ]
+        )
+    return ["group", "readings", *(f"{c.short} {what} [{c.unit}]" for c in channels for what in ("mean", "rms"))], body

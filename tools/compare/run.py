@@ -4,66 +4,49 @@ from __future__ import annotations
 
 import hashlib
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 
 from ...model.core.flat import FlatModel
 from ...model.units import shown, to_si
 from ...scenarios.given import RigLike, Settings
+from ...scenarios.measured.readings import ROOM, column_of, drives, sources
 from ...scenarios.measured.study import Measured, loaded, measured_of
 from ...scenarios.scenario import Scenario
-from ..describe import description as describe
 from ..export.fmu import write_fmu
+from ..show.columns import rows_text
 from ..show.console import as_json, folder, note, write
-from ..show.display import Answer
-from ..show.notes import unchecked_lines
+from ..solve.losses import oils_of
 from ..solve.settings import adjusted, flat_of
 from ..solve.unchecked import unchecked
-from . import campaign, summary
-from .errors import Comparison, Rows, compare, present
-from .losses import oils_of
-from .readings import ROOM, column_of, drives, sources
-from .report import Study, render
-from .rivals import Score, rivals
+from . import campaign
+from .errors import Rows, compare, present
+from .playing import Job
+from .report import render
+from .results import Errors, summarise
+from .rivals import rivals
 
 #: First columns of a row, the rest follow in the order they arise.
 ROW = ("point", "test", "direction", "oil", "T_oil_C", "T_wall_C", "T_amb_C", "loss_Nm", "P_loss_W", "efficiency")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class CampaignRun(Answer):
-    """Measured tests that were played through the FMU, beside their readings.
+class CampaignRun(Errors):
+    """Measured tests that were played through the FMU, beside their readings."""
 
-    Attributes:
-        rows: one per reading
-        comparison: errors by channel and group, None where nothing was measured
-        scores: of statistical rivals
-        found: the JSON object
-    """
-
-    rows: Rows
-    comparison: Comparison | None
-    scores: Sequence[Score]
-    found: Mapping[str, Any]
+    @property
+    def rows(self) -> Rows:
+        """One per reading."""
+        return cast(Rows, self.found["rows"])
 
     @property
     def title(self) -> str:
         """The rig and what is shown."""
         return f"{self.found['rig']}: {'errors' if self.comparison else 'operating point'}"
-
-    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """Errors with those of the rivals, or the one point there is."""
-        if self.comparison is not None:
-            return summary.error_lines(self.comparison, self.scores)
-        return ("name", "value"), list(self.rows[0].items())
-
-    def groups(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """Errors by group, simulated minus measured."""
-        return summary.group_lines(self.comparison) if self.comparison is not None else ((), ())
 
 
 def run(
@@ -113,74 +96,32 @@ def run(
         note(f"exported {fmu}")
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()
         record = campaign.recorded(scenario, flat, study)
-        todo = campaign.jobs(found, fmu, digest, dt, record, kept)
+        todo = [Job(one, fmu, digest, dt, record, kept) for one in found]
         played = campaign.play_all(todo, pool)
-    rows = [_ordered(row) for row in campaign.rows(scenario, study, found, played)]
+    rows = campaign.rows(scenario, study, found, played)
+    rows = [{name: row[name] for name in ROW if name in row} | row for row in rows]
     given = [column_of(s) for s in drives(study)] if study else []
     comparison, scores = (compare(rows), rivals(rows, given)) if present(rows) else (None, ())
-    result = _result(scenario, fmu, digest, rows, comparison, scores)
-    result["unchecked"] = unchecked(scenario, flat, oils_of(study))
-    shown = _study(scenario, study, flat, found, played, rows, result, kept)
-    write(out / "rows.csv", _csv(rows))
-    write(out / "result.json", as_json(result))
-    write(out / "report.html", render(shown, comparison, scores))
-    note(f"{out / 'report.html'} after {time.perf_counter() - began:.1f} s")
-    return CampaignRun(rows, comparison, scores, result)
-
-
-def _ordered(row: Mapping[str, Any]) -> dict[str, Any]:
-    return {name: row[name] for name in ROW if name in row} | dict(row)
-
-
-def _result(
-    scenario: Scenario,
-    fmu: Path,
-    digest: str,
-    rows: Rows,
-    comparison: Comparison | None,
-    scores: Sequence[Score],
-) -> dict[str, Any]:
-    """The object of `--json`."""
     nothing: dict[str, Any] = {"rmse": {}, "noise_floor": {}, "rivals": {}, "groups": []}
-    return {
+    result = {
         "schema": "gearheat.run/1",
         "rig": scenario.name,
         "fmu": fmu.name,
         "fmu_sha256": digest,
         "rows": rows,
-        **(nothing if comparison is None else summary.as_dict(comparison, scores)),
+        **(nothing if comparison is None else summarise(comparison, scores)),
         "energy_residual_max": max(row["energy_residual"] for row in rows),
+        "unchecked": unchecked(scenario, flat, oils_of(study)),
     }
-
-
-def _study(
-    scenario: Scenario,
-    study: Measured | None,
-    flat: FlatModel,
-    found: Sequence[campaign.Run],
-    played: Mapping[int, list[dict[str, float]]],
-    rows: Rows,
-    result: Mapping[str, Any],
-    kept: Path,
-) -> Study:
-    """What the report shows."""
     columns = _curves(scenario, study)
     curves = {test: _curve(kept / f"test-{test:02d}.csv", columns, flat) for test in _telling(rows)}
-    single = [c for c in scenario.losses if c.startswith("P_") and c != "P_total_W"]
-    return Study(
-        rig=scenario.name,
-        doc=scenario.doc,
-        fmu=result["fmu"],
-        rows=rows,
-        curves=curves,
-        loss_columns=tuple(single),
-        laws=describe.cited(flat),
-        outside=campaign.outside_of(flat, found, played),
-        parameters=describe.parameters(scenario, flat),
-        unchecked=tuple(unchecked_lines(result["unchecked"])),
-        errata=tuple((e.place, e.says, e.should_be, e.evidence) for e in scenario.errata),
-        energy_residual_max=result["energy_residual_max"],
-    )
+    outside = campaign.outside_of(flat, found, played)
+    head = list(dict.fromkeys(name for row in rows for name in row))
+    write(out / "rows.csv", rows_text(head, ([row.get(name) for name in head] for row in rows)))
+    write(out / "result.json", as_json(result))
+    write(out / "report.html", render(scenario, flat, result, comparison, scores, curves=curves, outside=outside))
+    note(f"{out / 'report.html'} after {time.perf_counter() - began:.1f} s")
+    return CampaignRun(comparison, scores, result)
 
 
 def _curves(scenario: Scenario, study: Measured | None) -> dict[str, str]:
@@ -215,13 +156,3 @@ def _curve(path: Path, columns: Mapping[str, str], flat: FlatModel) -> dict[str,
         c: f"{p} [{shown(flat.quantity(p).unit)}]" for c, p in columns.items() if c.endswith("_C") and p in flat.index
     }
     return {"time": values[:, 0]} | {c: values[:, head.index(name)] for c, name in names.items() if name in head}
-
-
-def _csv(rows: Rows) -> str:
-    """Rows as CSV; numbers with nine digits, nothing where a value is missing."""
-    head = list(dict.fromkeys(name for row in rows for name in row))
-
-    def cell(value: Any) -> str:
-        return "" if value is None else f"{value:.9g}" if isinstance(value, float) else str(value)
-
-    return "\n".join([",".join(head), *(",".join(cell(row.get(name)) for name in head) for row in rows)]) + "\n"

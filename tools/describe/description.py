@@ -11,7 +11,7 @@ from ...model.core.flat import FlatModel, Quantity
 from ...model.errors import SolveError
 from ...model.run.result import Result
 from ...model.run.steady import steady
-from ...model.sources import LawInfo, sources
+from ...model.sources import LawInfo
 from ...model.units import from_si, in_unit, shown, text
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
@@ -20,6 +20,7 @@ from ..solve.settings import flat_of
 from ..solve.steady import conditions, leading_outputs, outside_of
 from ..solve.unchecked import unchecked
 from .overview import effects_table
+from .parts import first_line, law_line
 
 #: SI units of what everyone reads in degC and rpm, however it is written.
 TEMPERATURE_AND_SPEED = ("K", "rad/s")
@@ -90,7 +91,7 @@ def show(rig: RigLike) -> Description:
         "doc": scenario.doc,
         "reproduces": scenario.reproduces,
         "kind": scenario.kind,
-        "parts": [{"name": p.name, "type": p.type, "doc": _doc(types[p.type])} for p in scenario.spec.parts],
+        "parts": [{"name": p.name, "type": p.type, "doc": first_line(types[p.type])} for p in scenario.spec.parts],
         "parameters": [_parameter(scenario, flat, q) for q in every_parameter(scenario, flat)],
         "choices": choices(scenario),
         "inputs": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.inputs],
@@ -154,24 +155,12 @@ def cited(flat: FlatModel) -> tuple[LawInfo, ...]:
 
 def laws(flat: FlatModel) -> list[dict[str, Any]]:
     """The laws a model uses with what they cite, and whether a golden row from print verifies them."""
-    known = sources()
-    return [
-        {
-            "law": law.name,
-            "source": known[law.source].cited,
-            "where": law.where,
-            "valid": law.valid,
-            "verified": law.verified,
-        }
-        for law in cited(flat)
-    ]
+    return [{**law_line(law), "verified": law.verified} for law in cited(flat)]
 
 
 def errata_of(scenario: Scenario) -> list[dict[str, str]]:
     """The places where the rig's sources are wrong."""
-    return [
-        {"place": e.place, "says": e.says, "should_be": e.should_be, "evidence": e.evidence} for e in scenario.errata
-    ]
+    return [e.model_dump() for e in scenario.errata]
 
 
 def _line(q: Quantity) -> dict[str, Any]:
@@ -202,7 +191,3 @@ def _parameter(scenario: Scenario, flat: FlatModel, q: Quantity) -> dict[str, An
     written = [in_unit(v, unit) if unit and v is not None else v for v in (q.start, sd)]
     as_written = {"value": written[0], "uncertainty": written[1], "unit": unit} if unit else None
     return {**_line(q), "kind": kind, "uncertainty": known, "source": source, "written": as_written}
-
-
-def _doc(cls: type) -> str:
-    return (cls.__doc__ or "").strip().splitlines()[0]

@@ -16,7 +16,7 @@ from ...model.core.declare import Choice, Declaration, Input, Output, Parameter,
 from ...model.core.flat import Quantity
 from ...model.errors import ScenarioError, suggestion
 from ...model.parts import PARTS
-from ...model.sources import recording, sources
+from ...model.sources import LawInfo, recording, sources
 from ...model.units import from_si, shown, text, to_si
 from ...scenarios.entries import DESCRIPTIVE, Entry, catalogue
 from ...scenarios.load import load
@@ -173,17 +173,13 @@ def _inside(cls: type[Component], values: Mapping[str, Any]) -> tuple[list[str],
     with recording() as uses:
         part = cls("part", **values)
         names = [e.name for e in part.equations()]
-    known = sources()
     used = {use.law.name: use.law for use in (*part.uses, *uses)}
-    return names, [
-        {
-            "law": law.name,
-            "source": known[law.source].cited,
-            "where": law.where,
-            "valid": law.valid,
-        }
-        for law in used.values()
-    ]
+    return names, [law_line(law) for law in used.values()]
+
+
+def law_line(law: LawInfo) -> dict[str, Any]:
+    """A law with what it cites."""
+    return {"law": law.name, "source": sources()[law.source].cited, "where": law.where, "valid": law.valid}
 
 
 def _snippet(kind: str, values: Mapping[str, Any], entries: Mapping[str, str]) -> str:

@@ -22,6 +22,7 @@ from ..show.console import write
 from ..show.display import Quantities
 from ..solve.settings import adjusted, choice_paths, flat_of
 from .description import Description, show
+from .parts import first_line
 
 #: Source of the values of parts that a user adds in Python.
 ADDED = "set in Python"
@@ -105,7 +106,7 @@ class Rig(Quantities):
 
     def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """Its parts."""
-        docs = {kind: (cls.__doc__ or "").strip().splitlines()[0] for kind, cls in self.scenario.spec.types.items()}
+        docs = {kind: first_line(cls) for kind, cls in self.scenario.spec.types.items()}
         return ("part", "type", "what it is"), [(name, kind, docs[kind]) for name, kind in self.parts.items()]
 
     def as_dict(self) -> dict[str, Any]:

@@ -33,7 +33,7 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
 
     Args:
         inputs: what its files hold
-        progress: told of each stage and the share done
+        progress: called with (stage, fraction done)
 
     Raises:
         GearheatError: rig, card and data do not go together

@@ -62,7 +62,7 @@ def diagnose_logs(
         siblings: of other machines of its type
         alpha: accepted rate of false alarms
         seed: kept for the record; nothing is drawn
-        progress: told of each stage and the share done
+        progress: called with (stage, fraction done)
 
     Raises:
         DataError: logs do not go together
@@ -106,7 +106,7 @@ def logged(inputs: Inputs, progress: Progress) -> LogDiagnosis:
 
     Args:
         inputs: what its files hold
-        progress: told of each stage and the share done
+        progress: called with (stage, fraction done)
 
     Raises:
         DataError: all problems of the logs

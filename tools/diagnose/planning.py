@@ -22,7 +22,7 @@ def planned(inputs: PlanInputs, progress: Callable[[str, float], None]) -> Plan:
 
     Args:
         inputs: what the files of a request hold
-        progress: told of each stage and the share done
+        progress: called with (stage, fraction done)
 
     Raises:
         GearheatError: rig, card and points do not go together

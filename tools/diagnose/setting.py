@@ -14,12 +14,13 @@ from ...scenarios.measured.lubrication import lubricated, oils_of
 from ...scenarios.measured.nominal import Nominal
 from ...scenarios.measured.sensors import driven_by
 from ...scenarios.measured.table import Campaign
+from ...scenarios.nuisances import Nuisance, nuisances
 from ...scenarios.scenario import Scenario
 from .infer.problem import Problem
-from .library.cause import Cause, Nuisance, Ranges
+from .library.cause import Cause, Ranges
 from .library.forms import Context
-from .library.nuisances import habit, nuisances
 from .library.registry import library
+from .library.thin_films import thin_film_friction
 from .model.formula import Formula
 from .model.observe import Observed
 from .model.plant import Plant
@@ -86,7 +87,7 @@ def setting(
     sensors = data.sensors
     causes = library(roles, ranges, sensors, libraries)
     wide = reference is not None
-    films = habit(Context(roles, ranges, sensors))
+    films = thin_film_friction(Context(roles, ranges, sensors))
     known = (*nuisances(roles, card.prior_sd, driven.uncertainties), *([films] if films else ()))
     known = tuple(replace(n, sd=n.wide) if wide else n for n in known if wide or n.sd > 0)
     day = Nuisance("day", dict.fromkeys(roles.daily, 1.0), 1.0, 1.0)

@@ -5,9 +5,11 @@ from __future__ import annotations
 import re
 import shutil
 import tempfile
+from collections.abc import Mapping
 from importlib.metadata import version
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 from typer.core import TyperGroup
 
@@ -16,43 +18,15 @@ from ..show.console import folder, note
 from . import commands, reference
 from .blocks import FENCE, MARKS, PAGES, run_pages
 from .laws import filled
-
-#: Settings of Sphinx.
-SETTINGS = {
-    "project": "gearheat",
-    "copyright": "the gearheat developers",
-    "extensions": ["myst_parser", "sphinx.ext.autodoc", "sphinx.ext.napoleon", "sphinx.ext.mathjax"],
-    "html_theme": "alabaster",
-    "html_theme_options": {"fixed_sidebar": True, "page_width": "1100px", "body_max_width": "800px"},
-    "html_copy_source": False,
-    "html_css_files": ["narrow.css"],
-    "html_show_sphinx": False,
-    "default_role": "code",
-    "myst_heading_anchors": 3,
-    "autodoc_typehints": "description",
-    "suppress_warnings": ["misc.highlighting_failure"],
-}
-
-#: So that no page is wider than its screen, and on a narrow one its text stands before the navigation.
-NARROW = """
-table.docutils { display: block; overflow-x: auto; max-width: 100%; width: max-content; }
-div.body img, div.body svg { max-width: 100%; height: auto; }
-div.math { overflow-x: auto; overflow-y: hidden; }
-div.body p, div.body li, div.body dt { overflow-wrap: anywhere; }
-div.body td p, div.body th p { overflow-wrap: normal; }
-@media screen and (max-width: 875px) {
-  div.document { display: flex; flex-direction: column; }
-  div.document > * { flex: none; }
-  div.sphinxsidebar { order: 2; margin-top: 20px; }
-}
-"""
+from .markdown import TABLES
 
 
-def docs_command(program: TyperGroup, out: Path, run: str) -> None:
+def docs_command(program: TyperGroup, public: Mapping[str, Any], out: Path, run: str) -> None:
     """Run the pages' code blocks and build the web site.
 
     Args:
         program: the command line
+        public: functions and classes of `gearheat` by name
         out: folder of the web site
         run: which blocks are run before: "quick", "all" or "none"
 
@@ -63,11 +37,11 @@ def docs_command(program: TyperGroup, out: Path, run: str) -> None:
         raise GearheatError('docs: Sphinx is not installed. Run pip install "gearheat[docs]".')
     if run != "none" and (found := run_pages(program, run == "all")):
         raise GearheatError(found)
-    build(program, folder(out))
+    build(program, public, folder(out))
     note(f"{out / 'index.html'}")
 
 
-def build(program: TyperGroup, out: Path) -> None:
+def build(program: TyperGroup, public: Mapping[str, Any], out: Path) -> None:
     """Build the web site; every warning of Sphinx is a fault.
 
     Raises:
@@ -77,12 +51,12 @@ def build(program: TyperGroup, out: Path) -> None:
     from sphinx.errors import SphinxError
 
     with tempfile.TemporaryDirectory() as work:
-        source = gather(program, Path(work) / "source")
+        source = gather(program, public, Path(work) / "source")
         static = source / "static"
         static.mkdir()
-        (static / "narrow.css").write_text(NARROW, encoding="utf-8")
+        shutil.copy(Path(__file__).with_name("narrow.css"), static)
         own = dict.fromkeys(("version", "release"), version("gearheat"))
-        settings = {**SETTINGS, **own, "html_static_path": [str(static)]}
+        settings = {**TABLES["sphinx"], **own, "html_static_path": [str(static)]}
         places = (str(source), None, str(out), str(Path(work) / "trees"), "html")
         try:
             app = Sphinx(*places, confoverrides=settings, status=None, warningiserror=True, exception_on_warning=False)
@@ -93,7 +67,7 @@ def build(program: TyperGroup, out: Path) -> None:
             raise GearheatError("docs: Sphinx finds faults, see above.")
 
 
-def gather(program: TyperGroup, source: Path) -> Path:
+def gather(program: TyperGroup, public: Mapping[str, Any], source: Path) -> Path:
     """All pages in one folder, with the reference generated from the code.
 
     Args:
@@ -101,7 +75,7 @@ def gather(program: TyperGroup, source: Path) -> Path:
     """
     shutil.copytree(PAGES, source)
     place = source / "generated"
-    for name, text in (*reference.pages(), *commands.pages(program)):
+    for name, text in (*reference.pages(), *commands.pages(program, public)):
         (place / name).parent.mkdir(parents=True, exist_ok=True)
         (place / name).write_text(text, encoding="utf-8")
     reference.copy_pictures(place)

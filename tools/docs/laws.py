@@ -65,7 +65,8 @@ def facts(law: LawInfo, rows: int) -> dict[str, str]:
     return {"Source": f"{law.source}, {law.where}", "Valid": law.valid, "Range, in SI": ranges, "Compared": compared}
 
 
-def _info(law: Law) -> LawInfo:
+def info(law: Law) -> LawInfo:
+    """What a law declares."""
     return law.law  # type: ignore[attr-defined, no-any-return]
 
 
@@ -87,16 +88,16 @@ def _link(module: str, law: Law) -> str:
 def _equation(module: str, law: Law, rows: int) -> str:
     physics = {p.name for p in inspect.signature(law).parameters.values() if p.kind == p.POSITIONAL_OR_KEYWORD}
     symbols = "; ".join(f"`{key}` {words(text)}" for key, text in told_arguments(law) if key in physics)
-    about = ". ".join(f"{key}: {words(value)}" for key, value in facts(_info(law), rows).items() if value)
+    about = ". ".join(f"{key}: {words(value)}" for key, value in facts(info(law), rows).items() if value)
     return f"**{_link(module, law)}**: {docstring(law)}{symbols}\n\n*{about}.*\n\n"
 
 
 def _ranges() -> str:
     rows = [
-        (_link(module, law), code(name), f"{low:.4g}", f"{high:.4g}", words(_info(law).regimes.get(name, "")))
+        (_link(module, law), code(name), f"{low:.4g}", f"{high:.4g}", words(info(law).regimes.get(name, "")))
         for module in law_modules()
         for law in laws_of(module)
-        for name, (low, high) in _info(law).ranges.items()
+        for name, (low, high) in info(law).ranges.items()
     ]
     return table(("law", "argument", "from", "to", "beyond"), rows)
 
@@ -107,6 +108,6 @@ def _evidence() -> str:
     for module in law_modules():
         found = list(laws_of(module))
         counts = (sum(kinds[f"{module}.{law.__name__}", printed] for law in found) for printed in (True, False))
-        compared = sum(_info(law).verified for law in found)
+        compared = sum(info(law).verified for law in found)
         rows.append((f"[{title(module)}](../generated/laws/{module}.md)", *map(str, (len(found), compared, *counts))))
     return table(("laws on", "laws", "with print", "rows from print", "recomputed rows"), rows)

@@ -4,9 +4,16 @@ from __future__ import annotations
 
 import inspect
 import re
+import tomllib
 from collections.abc import Iterable, Mapping, Sequence
+from functools import cache
+from importlib.resources import files
 from typing import Any
 
+from jinja2 import Environment, PackageLoader, StrictUndefined
+
+#: What the pages tell of, and settings of the web site.
+TABLES: dict[str, Any] = tomllib.loads(files("gearheat.tools.docs").joinpath("docs.toml").read_text(encoding="utf-8"))
 MATH = re.compile(r"^\.\. math::[ \n]*((?:.+\n?)+?)(?:\n|\Z)", re.MULTILINE)
 
 
@@ -29,16 +36,15 @@ def table(head: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
     return "\n".join([f"| {' | '.join(head)} |", f"|{'---|' * len(head)}", *lines]) + "\n\n" if lines else ""
 
 
-def listing(lines: Sequence[Mapping[str, Any]], keys: Sequence[str], names: Sequence[str] = ("name",)) -> str:
-    """A table of dictionaries, columns in which all are empty left out.
+def listing(lines: Sequence[Mapping[str, Any]], keys: Sequence[str]) -> str:
+    """A table of dictionaries, columns in which all are empty left out; names are code.
 
     Args:
         lines: the rows
         keys: the columns
-        names: those that are code
     """
     kept = [key for key in keys if any(str(line[key]) for line in lines)]
-    shown = ((code(line[key]) if key in names else words(line[key]) for key in kept) for line in lines)
+    shown = ((code(line[key]) if key == "name" else words(line[key]) for key in kept) for line in lines)
     return table([key.replace("_", " ") for key in kept], [list(row) for row in shown])
 
 
@@ -65,3 +71,28 @@ def arguments(of: Any) -> str:
     """The arguments that a docstring tells, as a list."""
     found = told_arguments(of)
     return "".join(f"- `{name}`: {words(text)}\n" for name, text in found) + "\n" if found else ""
+
+
+def toctree(names: Iterable[str]) -> str:
+    """The pages below a page."""
+    return fenced("{toctree}", "\n".join([":hidden:", "", *names]))
+
+
+@cache
+def _templates() -> Environment:
+    found = Environment(
+        loader=PackageLoader("gearheat.tools.docs"), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+    )
+    found.filters |= {"words": words, "code": code, "doc": inspect.getdoc}
+    found.globals |= {f.__name__: f for f in (fenced, listing, docstring, arguments, toctree)}
+    return found
+
+
+def page(name: str, /, **values: Any) -> str:
+    """A page by its template.
+
+    Args:
+        name: of the template
+        values: what it asks for
+    """
+    return f"{_templates().get_template(f'{name}.md.jinja').render(values).rstrip()}\n"

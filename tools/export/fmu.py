@@ -33,7 +33,7 @@ from ..solve.simulate import first_temperatures
 from ..solve.uncertainties import uncertain
 from ..solve.unchecked import unchecked
 from .extras import checked, experiment, reference_duty, reference_run, sets_of_oils, write_extras
-from .page import figures_of, texts_of
+from .page import figures_of, text_of
 
 #: Shares of the operating point's torques at which a machine on torques alone is looked for that holds its speed.
 _SHARES = (1.0, 0.75, 0.5, 0.25, 0.1, 0.0)
@@ -173,7 +173,7 @@ def write_fmu(
     """
     assembly = assemble(scenario.spec)
     known: dict[str, Any] = {"sources": sources_of(scenario, flat), "uncertainties": scenario.standard_uncertainties}
-    known |= {"choices": choices_of(scenario), "parts": texts_of(assembly)}
+    known |= {"choices": choices_of(scenario), "parts": tuple(map(text_of, assembly.parts))}
     figures = {"Network": network_svg(assembly), **(drawn or {})}
     return export(flat, out, figures=figures, **{**known, **options})
 

@@ -93,16 +93,8 @@ def _heat(assembly: Assembly, start: Mapping[str, float]) -> Figure | None:
     return sankey(paths, temperatures, title) if paths else None
 
 
-def texts_of(assembly: Assembly) -> tuple[PartText, ...]:
-    """Equations and laws of every part.
-
-    Args:
-        assembly: the machine
-    """
-    return tuple(_text(part) for part in assembly.parts)
-
-
-def _text(part: Component) -> PartText:
+def text_of(part: Component) -> PartText:
+    """Equations and laws of a part."""
     with recording() as uses:
         equations = [(e.name, f"{_side(part, e.lhs)} = {_side(part, e.rhs)}") for e in part.equations()]
     laws = dict.fromkeys(use.law.name for use in (*part.uses, *uses))

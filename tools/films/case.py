@@ -11,7 +11,7 @@ from typing import Any
 from ...model.contact import Contact, Lubricant
 from ...model.core.component import Component
 from ...model.core.flat import Quantity
-from ...model.errors import GearheatError, ScenarioError, suggestion
+from ...model.errors import Problems, ScenarioError, suggestion
 from ...model.laws.oil import density, kinematic_viscosity, pressure_viscosity
 from ...model.machines.spec import assemble
 from ...model.parts.contacts import TellsFilmContact
@@ -85,14 +85,13 @@ def varied(vary: Sequence[str]) -> dict[str, Axis]:
     if not vary:
         return {}
     written = read(vary)
-    wrong = [
+    wrong = Problems(
         f'--vary: a map does not vary "{w.name}".{suggestion(w.name, AXES)} It varies: {", ".join(AXES)}.'
         for w in written
         if w.name not in AXES
-    ]
+    )
     wrong += [f"--vary {w.name}: write LOW..HIGH for a map." for w in written if w.kind != "uniform"]
-    if wrong:
-        raise ScenarioError(wrong)
+    wrong.check()
     return {axis.name: axis for axis in axes(written, AXES)}
 
 
@@ -106,7 +105,7 @@ def from_file(path: Path, vary: Sequence[str]) -> MapCase:
     Raises:
         ScenarioError: everything wrong with the file at once
     """
-    raw, problems = read_toml(path), []
+    raw, problems = read_toml(path), Problems()
     found: dict[str, dict[str, float]] = {}
     oil_name = raw.get("oil", {}).get("oil") if isinstance(raw.get("oil"), Mapping) else None
     oil_needed = {} if oil_name else OIL
@@ -119,11 +118,9 @@ def from_file(path: Path, vary: Sequence[str]) -> MapCase:
         if k not in ("contact", "oil", "vary")
     ]
     ranges: dict[str, Axis] = {}
-    try:
+    with problems:
         in_file = raw.get("vary", {})
         ranges = varied([f"{k}={v}" for k, v in in_file.items() if k != "source"]) | varied(vary)
-    except GearheatError as error:
-        problems += error.problems
     oil = _named_oil(str(oil_name), found["oil"], problems) if oil_name else _constant_oil(found["oil"])
     known = {"F": found["contact"].get("F"), "u_m": found["contact"].get("u_m"), "T": found["oil"].get("T")}
     if not oil_name:
@@ -133,8 +130,7 @@ def from_file(path: Path, vary: Sequence[str]) -> MapCase:
         for key, value in known.items()
         if value is None and key not in ranges
     ]
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     fixed = {key: float(value) for key, value in known.items() if value is not None and key not in ranges}
     return _case((path.stem, ""), found["contact"], found["oil"], oil, ranges, fixed)
 
@@ -175,23 +171,22 @@ def _case(
 
 def _values(
     where: str, table: object, needed: Mapping[str, str], may_be: Mapping[str, str]
-) -> tuple[dict[str, float], list[str]]:
+) -> tuple[dict[str, float], Problems]:
     """The numbers of a table in SI, and all that is wrong with it."""
     if not isinstance(table, Mapping):
-        return {}, [f"{where}: is missing. Give a table with {', '.join(needed) or 'oil'}."]
+        return {}, Problems([f"{where}: is missing. Give a table with {', '.join(needed) or 'oil'}."])
     units = {**needed, **may_be}
     values: dict[str, float] = {}
-    _, problems = sources_of(where, {k: v for k, v in table.items() if k != "oil"} | {"source": table.get("source")})
+    sourced = {k: v for k, v in table.items() if k != "oil"} | {"source": table.get("source")}
+    problems = Problems(sources_of(where, sourced)[1])
     for key, raw in table.items():
         if key in ("source", "sources", "oil", "doc"):
             continue
         if key not in units:
             problems.append(f'{where}: unknown key "{key}".{suggestion(key, units)}')
             continue
-        try:
+        with problems:
             values[key] = to_si(raw, units[key], name=f"{where}: {key}")
-        except GearheatError as error:
-            problems += error.problems
     positive = [key for key in values if key not in ("slide_roll", "edge_radius", "mu_boundary", "alpha_p", "T")]
     problems += [
         f"{where}: {key} = {values[key]:g} is out of range. Give a value above 0."
@@ -207,14 +202,12 @@ def _constant_oil(values: Mapping[str, float]) -> Oil:
     return lambda T: (values["eta_0"], values["alpha_p"])
 
 
-def _named_oil(name: str, values: Mapping[str, float], problems: list[str]) -> Oil:
+def _named_oil(name: str, values: Mapping[str, float], problems: Problems) -> Oil:
     """An oil of the catalogue; values beside it stand in its place."""
-    try:
+    with problems:
         oil = oil_of(oil_values(name))
-    except GearheatError as error:
-        problems += error.problems
-        return _constant_oil(values)
-    return lambda T: (values.get("eta_0", oil(T)[0]), values.get("alpha_p", oil(T)[1]))
+        return lambda T: (values.get("eta_0", oil(T)[0]), values.get("alpha_p", oil(T)[1]))
+    return _constant_oil(values)
 
 
 def oil_of(values: Mapping[str, float]) -> Oil:

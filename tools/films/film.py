@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import io
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from math import isfinite
@@ -13,15 +12,17 @@ from typing import Any
 import numpy as np
 
 from ...model.contact import Contact, Lubricant, solve
-from ...model.errors import ScenarioError, SolveError
+from ...model.errors import Problems, ScenarioError, SolveError
 from ...model.laws.film import asperity_share, mixed_friction
 from ...model.laws.film_line import line_film_central
 from ...model.laws.film_point import point_film_central
 from ...model.units import from_si, shown
-from ...scenarios.film_map import COLUMNS, FAILED, OK, FittedMap, read_film_map
+from ...scenarios.film_map import COLUMNS, FAILED, OK, read_film_map
 from ...scenarios.load import load
+from ..show.columns import rows_text
 from ..show.console import counting, note, writable, write
 from ..show.display import Answer
+from ..show.picture import Picture
 from ..solve.settings import adjusted
 from ..solve.sweep_file import Store, work_file
 from .case import AXES, MapCase, from_file, from_rig
@@ -46,20 +47,6 @@ ROUGHEST = 0.1
 FINER = 65
 #: What the table and a person are told of a point without a film.
 WRONG = {LOST: (FAILED, "no film found"), COARSE: ("coarse", "the grid is too coarse; give more --nodes")}
-
-
-@dataclass(frozen=True)
-class Request:
-    """What a user asks for, as written on the command line."""
-
-    rig: str
-    out: Path
-    part: str | None = None
-    vary: Sequence[str] = ()
-    grid: str | None = None
-    nodes: int | None = None
-    plot: Path | None = None
-    assignments: Sequence[str] = ()
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -117,45 +104,75 @@ def film(
         >>> import gearheat as gh
         >>> gh.film("planetary", "film.csv", part="gear_set")  # doctest: +SKIP
     """
-    drawn = None if plot is None else Path(plot)
-    request = Request(str(rig), Path(out), part, vary, grid, nodes, drawn, set)
-    writable(request.out, request.plot)
-    problems = [
+    out, drawn = Path(out), None if plot is None else Path(plot)
+    writable(out, drawn)
+    Problems(
         f"{option} {path}: unknown kind of file. Its name must end in {' or '.join(kinds)}."
-        for option, path, kinds in (("-o", request.out, (".csv",)), ("--plot", request.plot, (".png", ".svg")))
+        for option, path, kinds in (("-o", out, (".csv",)), ("--plot", drawn, (".png", ".svg")))
         if path is not None and path.suffix not in kinds
-    ]
-    if problems:
-        raise ScenarioError(problems)
-    case = case_of(request)
-    points = grid_of(case, request.grid)
-    count = request.nodes or (NODES_LINE if _is_line(case.contact) else NODES_SIDE)
+    ).check()
+    case = case_of(rig, part, vary, set)
+    points = grid_of(case, grid)
+    count = nodes or (NODES_LINE if _is_line(case.contact) else NODES_SIDE)
     if not _is_line(case.contact) and (count < FINER or (count - 1) & (count - 2)):
         raise ScenarioError(
             f"--nodes {count}: give 2^k + 1, at least {FINER}: a film is compared with that on half of them."
         )
-    kept = solved(case, points, count, request.out)
-    write(request.out, table_of(case, points, kept))
+    kept = solved(case, points, count, out)
+    write(out, table_of(case, points, kept))
     wrong = [(p, k[-1]) for p, k in zip(points, kept, strict=True) if k[-1] != FOUND]
     failed = [f"{_named(case, point)}: {WRONG[status][1]}" for point, status in wrong]
-    law = read_film_map(request.out)
-    if request.plot is not None:
-        write(request.plot, _plot(case, points, kept, request.plot.suffix))
-    return FilmTable(_payload(case, request, law, failed))
+    fitted = read_film_map(out)
+    if drawn is not None:
+        from ..show.plotting import write_picture
+
+        write_picture(drawn, _picture(case, points, kept))
+    law, units = fitted.law, {name: quantity.unit for name, quantity in AXES.items()}
+    found = {
+        "schema": "gearheat.film/1",
+        "case": case.name,
+        "part": case.part,
+        "out": str(out),
+        "shape": law.shape,
+        "contacts": fitted.points + fitted.failed,
+        "failed": failed,
+        "varied": {
+            a.name: {
+                "low": from_si(a.first, units[a.name]),
+                "high": from_si(a.second, units[a.name]),
+                "unit": shown(units[a.name]),
+            }
+            for a in case.axes
+        },
+        "terms": len(law.degrees),
+        "fit": {
+            k: {"largest": f.error, "rms": fitted.rms[k]} for k, f in (("h_c", law.central), ("h_min", law.minimum))
+        },
+        "plot": None if drawn is None else str(drawn),
+    }
+    return FilmTable(found)
 
 
-def case_of(request: Request) -> MapCase:
-    """The contact of a request: of a case file, or of a part of a rig.
+def case_of(
+    rig: str | Path, part: str | None = None, vary: Sequence[str] = (), assignments: Sequence[str] = ()
+) -> MapCase:
+    """The contact of a case file, or of a part of a rig.
+
+    Args:
+        rig: name of a shipped rig, rig file, or TOML file of one contact
+        part: part of the rig whose contact it is
+        vary: ranges such as "F=100..2000 N"
+        assignments: texts "NAME=VALUE"
 
     Raises:
         GearheatError: all that is wrong with it
     """
-    path = Path(request.rig)
+    path = Path(rig)
     if path.suffix == ".toml" and path.is_file() and "[contact]" in path.read_text(encoding="utf-8", errors="replace"):
-        if request.part is not None or request.assignments:
+        if part is not None or assignments:
             raise ScenarioError(f"{path.name}: --part and --set belong to a rig. Leave them out.")
-        return from_file(path, request.vary)
-    return from_rig(adjusted(load(request.rig), request.assignments), request.part, request.vary)
+        return from_file(path, vary)
+    return from_rig(adjusted(load(rig), assignments), part, vary)
 
 
 def grid_of(case: MapCase, written: str | None) -> np.ndarray:
@@ -259,9 +276,7 @@ def table_of(case: MapCase, points: np.ndarray, kept: np.ndarray) -> str:
         points: load, speed and temperature (n, 3)
         kept: what was found at each (n, KEPT)
     """
-    text = io.StringIO()
-    text.write(",".join(column.name for column in COLUMNS) + "\n")
-    c = case.contact
+    rows, c = list[list[float | str | None]](), case.contact
     across = c.R_y if isfinite(c.R_y) else None
     constant = (c.R_x, across, c.length, c.E_eff, case.slide_roll, case.sigma, case.mu_boundary)
     for (F, u_m, T), (h_c, h_min, mu_fluid, share, p_max, found) in zip(points, kept, strict=True):
@@ -275,20 +290,9 @@ def table_of(case: MapCase, points: np.ndarray, kept: np.ndarray) -> str:
             rough = Lambda is not None and case.mu_boundary is not None
             mu = float(mixed_friction(Lambda, mu_fluid, case.mu_boundary)) if rough else None
             films, rest = (h_c, h_min), (mu_fluid, Lambda, carried, mu, p_max)
-        cells = [
-            F,
-            u_m,
-            T - 273.15,
-            eta_0,
-            alpha_p,
-            *films,
-            formula,
-            *rest,
-            OK if found == FOUND else WRONG[found][0],
-            *constant,
-        ]
-        text.write(",".join("" if v is None else v if isinstance(v, str) else f"{v:.9g}" for v in cells) + "\n")
-    return text.getvalue()
+        status = OK if found == FOUND else WRONG[found][0]
+        rows.append([F, u_m, T - 273.15, eta_0, alpha_p, *films, formula, *rest, status, *constant])
+    return rows_text((column.name for column in COLUMNS), rows)
 
 
 def formula_of(contact: Contact) -> float:
@@ -311,34 +315,9 @@ def _named(case: MapCase, point: np.ndarray) -> str:
     return ", ".join(words)
 
 
-def _payload(case: MapCase, request: Request, found: FittedMap, failed: Sequence[str]) -> dict[str, Any]:
-    law = found.law
-    fits = {"h_c": law.central, "h_min": law.minimum}
-    return {
-        "schema": "gearheat.film/1",
-        "case": case.name,
-        "part": case.part,
-        "out": str(request.out),
-        "shape": law.shape,
-        "contacts": found.points + found.failed,
-        "failed": list(failed),
-        "varied": {
-            a.name: {
-                "low": from_si(a.first, AXES[a.name].unit),
-                "high": from_si(a.second, AXES[a.name].unit),
-                "unit": shown(AXES[a.name].unit),
-            }
-            for a in case.axes
-        },
-        "terms": len(law.degrees),
-        "fit": {k: {"largest": f.error, "rms": found.rms[k]} for k, f in fits.items()},
-        "plot": None if request.plot is None else str(request.plot),
-    }
-
-
-def _plot(case: MapCase, points: np.ndarray, kept: np.ndarray, suffix: str) -> str | bytes:
-    """Central film over speed at each load, a panel for each temperature, as a picture."""
-    from ..show.drawing import COLOURS, empty, png, svg
+def _picture(case: MapCase, points: np.ndarray, kept: np.ndarray) -> Picture:
+    """Central film over speed at each load, a panel for each temperature."""
+    from ..show.drawing import COLOURS, empty
 
     temperatures, loads = np.unique(points[:, 2]), np.unique(points[:, 0])
     figure, panels = empty(3.2 * len(temperatures) + 0.8, 3.6, 1, len(temperatures), sharey=True)
@@ -352,5 +331,6 @@ def _plot(case: MapCase, points: np.ndarray, kept: np.ndarray, suffix: str) -> s
         panel.set_xlabel("mean speed [m/s]")
     panels[0].set_ylabel("film [um]: central, minimum dotted")
     panels[0].legend()
-    figure.suptitle(f"{case.name} {case.part}".strip())
-    return svg(figure) if suffix == ".svg" else png(figure)
+    title = f"{case.name} {case.part}".strip()
+    figure.suptitle(title)
+    return Picture(figure, title)

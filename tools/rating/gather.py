@@ -2,23 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
-from ...model.core.component import Component
-from ...model.core.declare import Port, declared
-from ...model.errors import ScenarioError
-from ...model.machines.spec import assemble
+from ...model.core.component import Component, Equation, equation
+from ...model.core.declare import Output, Port, declared
+from ...model.errors import Problems
+from ...model.machines.spec import PartSpec, Spec, assemble
 from ...model.parts.equivalent import CylindricalPair, pair_of
-from ...model.parts.ports import AirPort, HeatPort
+from ...model.parts.ports import AirPort, BearingLoad, Flange, HeatPort
 from ...model.parts.shaft import Efficiency
 from ...model.parts.thermal import PrescribedTemperature, Room
 from ...model.run.steady import steady
 from ...scenarios.scenario import Scenario
 from ..solve.settings import flat_of
 from ..solve.steady import conditions
-from .machine import Bearing, Machine, Mesh, Seal, Surface, Untreated
-from .readings import reading, with_readings
+from .machine import Machine, Mesh, Turning, Untreated
 
 #: Role of a part -> kind of its loss.
 KINDS = {"teeth": "mesh", "churning": "churning", "bearing": "bearings", "seal": "seals"}
@@ -48,19 +47,22 @@ def machine_of(scenario: Scenario, bearing_types: Sequence[str], dips: Mapping[s
     pairs = {name: pair for name, part in parts.items() if (pair := pair_of(part)) is not None}
     baths = [name for name, part in parts.items() if part.role == "bath"]
     rooms = scenario.spec.of_type(Room.__name__)
-    surfaces = tuple(Surface(name, part.values) for name, part in parts.items() if _is_surface(part))
+    surfaces = tuple(part for part in parts.values() if _is_surface(part))
     _check(scenario, pairs, {"oil bath": baths, "room": rooms, "surface with area and emissivity": surfaces}, dips)
-    at = _at_operating_point(scenario, [n for n, p in parts.items() if n in pairs or p.role in ("bearing", "seal")])
+    read = [n for n, p in parts.items() if n in pairs or p.role in ("bearing", "seal")]
+    probed = replace(scenario, spec=with_readings(scenario.spec, read))
+    flat = flat_of(probed)
+    at = {path: float(column[0]) for path, column in steady(flat, conditions(probed, flat)).columns.items()}
     dips = {**_told_dips(scenario, parts, pairs, at), **dips}
     meshes = tuple(_mesh(name, pair, at, dips) for name, pair in pairs.items())
     bearings = tuple(_bearing(part, at) for part in parts.values() if type(part).__name__ in bearing_types)
     seals = tuple(
-        Seal(name, part.values["count"], part.values["d_sh"], at[f"{reading(name, 'shaft')}.w"])
+        Turning(part, at[f"{reading(name, 'shaft')}.w"])
         for name, part in parts.items()
         if part.role == "seal" and "d_sh" in part.values
     )
     ends = scenario.spec.of_type("ShaftEnd")
-    treated = {*pairs, *(b.name for b in bearings), *(s.name for s in seals), *(s.name for s in surfaces)}
+    treated = {*pairs, *(t.part.name for t in (*bearings, *seals)), *(s.name for s in surfaces)}
     passes = scenario.spec.of_type(Efficiency.__name__)
     return Machine(
         meshes,
@@ -82,7 +84,7 @@ def _check(
     needed: Mapping[str, Sequence[object]],
     dips: Mapping[str, float],
 ) -> None:
-    problems = []
+    problems = Problems()
     if not pairs:
         teeth = [f"{p.name} ({p.type})" for p in scenario.spec.parts if scenario.spec.types[p.type].role == "teeth"]
         problems.append(
@@ -97,16 +99,7 @@ def _check(
     problems += [
         f'--dip: there is no gear "{name}". Gears: {", ".join(gears)}.' for name in dips if pairs and name not in gears
     ]
-    if problems:
-        raise ScenarioError(problems)
-
-
-def _at_operating_point(scenario: Scenario, read: Sequence[str]) -> dict[str, float]:
-    """Outputs, states and inputs at the steady state, with readings at some parts, by path in SI."""
-    probed = replace(scenario, spec=with_readings(scenario.spec, read))
-    flat = flat_of(probed)
-    result = steady(flat, conditions(probed, flat))
-    return {path: float(column[0]) for path, column in result.columns.items()}
+    problems.check()
 
 
 def _mesh(name: str, pair: CylindricalPair, at: Values, dips: Mapping[str, float]) -> Mesh:
@@ -132,10 +125,9 @@ def _told_dips(scenario: Scenario, parts: Parts, pairs: Mapping[str, Cylindrical
     return found
 
 
-def _bearing(part: Component, at: Values) -> Bearing:
+def _bearing(part: Component, at: Values) -> Turning:
     load = reading(part.name, "load")
-    w = at[f"{reading(part.name, 'shaft')}.w"]
-    return Bearing(part.name, type(part).__name__, part.values, w, at[f"{load}.F_r"], at[f"{load}.F_a"])
+    return Turning(part, at[f"{reading(part.name, 'shaft')}.w"], at[f"{load}.F_r"], at[f"{load}.F_a"])
 
 
 def _is_surface(part: Component) -> bool:
@@ -170,3 +162,58 @@ def _leads_out(scenario: Scenario, name: str, part: Component) -> bool:
     heat = {f"{name}.{key}" for key, port in declared(type(part), Port).items() if isinstance(port, HeatPort)}
     met = {path.rpartition(".")[0] for net in scenario.spec.connections if heat & set(net) for path in net}
     return name not in ends and not met.isdisjoint(ends)
+
+
+class FlangeReading(Component):
+    """Speed of a shaft."""
+
+    port = Flange()
+    w = Output("rad/s", "angular velocity", nominal=10.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """It takes no torque."""
+        yield equation("speed read", self.w, self.port.w)
+        yield equation("no torque", self.port.tau, 0.0)
+
+
+class LoadReading(Component):
+    """Load of a bearing."""
+
+    port = BearingLoad()
+    F_r = Output("N", "radial load", nominal=1000.0)
+    F_a = Output("N", "axial load", nominal=1000.0)
+
+    def equations(self) -> Iterator[Equation]:
+        """Both loads."""
+        yield equation("radial load read", self.F_r, self.port.F_r)
+        yield equation("axial load read", self.F_a, self.port.F_a)
+
+
+#: Port -> the part that reads it.
+READINGS: Mapping[type[Port], type[Component]] = {
+    Flange: FlangeReading,
+    BearingLoad: LoadReading,
+}
+
+
+def with_readings(spec: Spec, parts: Iterable[str]) -> Spec:
+    """The spec with a reading at every shaft and load of some of its parts.
+
+    The outputs of the readings are `reading(part, port)` and ".w", ".F_r" or ".F_a".
+
+    Args:
+        spec: the machine
+        parts: names of the parts
+    """
+    probes, nets = [], []
+    for part in parts:
+        for key, port in declared(spec.types[spec.part(part).type], Port).items():
+            if (kind := READINGS.get(type(port))) is not None:
+                probes.append(PartSpec(reading(part, key), kind.__name__))
+                nets.append((f"{reading(part, key)}.port", f"{part}.{key}"))
+    return spec.with_parts(probes, nets, {kind.__name__: kind for kind in READINGS.values()})
+
+
+def reading(part: str, port: str) -> str:
+    """Name of the reading at a port of a part."""
+    return f"reading_{part}_{port}"

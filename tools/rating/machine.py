@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from ...model.core.component import Component
 from ...model.laws.oil import density, kinematic_viscosity
 from ...model.parts.equivalent import CylindricalPair
 
@@ -26,38 +27,13 @@ class Mesh:
 
 
 @dataclass(frozen=True)
-class Bearing:
-    """A bearing at work: part type and values, speed [rad/s], loads from the gears [N]."""
+class Turning:
+    """A bearing or a contact seal at work: the part, its speed [rad/s], loads of a bearing from the gears [N]."""
 
-    name: str
-    type: str
-    values: Mapping[str, float]
+    part: Component
     w: float
-    F_r: float
-    F_a: float
-
-
-@dataclass(frozen=True)
-class Seal:
-    """A contact seal at work: number, shaft diameter [m], speed [rad/s]."""
-
-    name: str
-    count: float
-    d_sh: float
-    w: float
-
-
-@dataclass(frozen=True)
-class Surface:
-    """An outer surface in the air: values of its part."""
-
-    name: str
-    values: Mapping[str, float]
-
-    @property
-    def height(self) -> float:
-        """Height of the housing [m]."""
-        return self.values.get("height", self.values.get("D", 0.0))
+    F_r: float = 0.0
+    F_a: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -75,6 +51,7 @@ class Machine:
     """A rig at its operating point.
 
     Args:
+        surfaces: outer ones in the air
         oil: values of the bath
         T_oil: temperature of the oil that the model reaches [K]
         T_room: temperature of the room [K]
@@ -84,9 +61,9 @@ class Machine:
     """
 
     meshes: tuple[Mesh, ...]
-    bearings: tuple[Bearing, ...]
-    seals: tuple[Seal, ...]
-    surfaces: tuple[Surface, ...]
+    bearings: tuple[Turning, ...]
+    seals: tuple[Turning, ...]
+    surfaces: tuple[Component, ...]
     oil: Mapping[str, float]
     T_oil: float
     T_room: float

@@ -9,7 +9,7 @@ from typing import Any
 from scipy.optimize import brentq
 
 from ...model.core.flat import Quantity
-from ...model.errors import GearheatError, ScenarioError
+from ...model.errors import Problems
 from ...model.parts.ports import COLDEST, HOTTEST
 from ...model.sources import LawInfo, LawUse, recording
 from ...model.units import from_si
@@ -17,10 +17,9 @@ from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.values import in_range
 from ..show.display import Answer
 from ..solve.settings import adjusted
-from .bearings import FACTORS
 from .gather import machine_of
 from .machine import Machine
-from .methods import METHODS, Method
+from .methods import FACTORS, METHODS, Method
 
 #: Largest multiple of the load that a rating looks for.
 MOST_LOAD = 100.0
@@ -125,7 +124,10 @@ def compared(machine: Machine, method: Method, T_limit: float, k: float | None) 
         columns["method_at_sump"] = method.losses(machine, T_sump)
     temperatures = {"model": machine.T_oil, "method": machine.T_oil, "method_at_sump": T_sump}
     return {
-        "losses_W": {name: _summed(losses) for name, losses in columns.items()},
+        "losses_W": {
+            name: {kind: sum(parts.values()) for kind, parts in losses.items()} | {"total": total(losses)}
+            for name, losses in columns.items()
+        },
         "parts_W": columns,
         "eta": {name: 1 - total(losses) / machine.P_in if machine.P_in else None for name, losses in columns.items()},
         "T_oil_C": {name: _celsius(temperatures[name]) for name in columns},
@@ -169,10 +171,6 @@ def total(losses: Mapping[str, Mapping[str, float]]) -> float:
     return sum(power for parts in losses.values() for power in parts.values())
 
 
-def _summed(losses: Mapping[str, Mapping[str, float]]) -> dict[str, float]:
-    return {kind: sum(parts.values()) for kind, parts in losses.items()} | {"total": total(losses)}
-
-
 def _rating(machine: Machine, T_limit: float, share: float | None, at_no_load: float) -> dict[str, Any]:
     """The power that keeps the sump at its limit; none where it is beyond reach, and why."""
     found = {"limit_C": _celsius(T_limit), "load_share": share, "power_W": None, "why": ""}
@@ -198,13 +196,10 @@ def _celsius(T: float | None) -> float | None:
 
 def _depths(texts: Sequence[str]) -> dict[str, float]:
     found: dict[str, float] = {}
-    problems: list[str] = []
+    problems = Problems()
     for text in texts:
         name, _, raw = (part.strip() for part in text.partition("="))
-        try:
+        with problems:
             found[name] = in_range(f"--dip {name}", raw, DEPTH)
-        except GearheatError as error:
-            problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return found

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import cast
+from collections.abc import Mapping
 
 import numpy as np
 
 from ...model.units import from_si
 from .drawing import COLOURS, empty, legend
-from .plotting import Picture
+from .picture import Picture
 
 #: Points of a course that a page holds, at most.
 MOST = 3000
@@ -38,17 +37,13 @@ def courses(title: str, time: np.ndarray, columns: Mapping[str, np.ndarray], uni
     legend(figure, panel)
     kept = np.unique(np.append(np.arange(0, len(time), max(1, -(-len(time) // MOST))), len(time) - 1))
     data = {
-        "x": {"label": f"time [{unit}]", "values": _rounded(time[kept] / size, 6)},
+        "x": {"label": f"time [{unit}]", "values": np.round(time[kept] / size, 6).tolist()},
         "y": "temperature [°C]",
         "series": [
-            {"label": name, "stroke": colours[i], "dashed": i >= len(COLOURS), "values": _rounded(v[kept], 3)}
+            {"label": name, "stroke": colours[i], "dashed": i >= len(COLOURS), "values": np.round(v[kept], 3).tolist()}
             for i, (name, v) in enumerate(warm.items())
         ],
     }
     ends = [(name, float(v[0]), float(v.min()), float(v.max()), float(v[-1])) for name, v in warm.items()]
     head = ("temperature [°C]", "first", "lowest", "highest", "last")
     return Picture(figure, title, "Drag to zoom, double-click to go back.", head, ends, data)
-
-
-def _rounded(values: np.ndarray, digits: int) -> Sequence[float]:
-    return cast(Sequence[float], np.round(values, digits).tolist())

@@ -9,14 +9,19 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import DataError
-from ...model.units import in_unit
+from ...model.units import from_si, in_unit, shown
 from .console import as_json, cell, write
+from .picture import Picture
 
 if TYPE_CHECKING:
-    from .plotting import Picture
+    import numpy as np
+
+    from ...model.core.flat import FlatModel
 
 #: Lines of a result in a console; a notebook shows all.
 LINES = 10
+#: Columns of a table of values.
+HEAD = ("name", "value", "unit", "meaning")
 
 
 def optional(package: str) -> Any:
@@ -65,7 +70,7 @@ class Display:
 
         head, rows = self.table()
         drawn = self.drawing()
-        table = html_table(head, [[cell(value) for value in row] for row in rows])
+        table = html_table(head, rows)
         return f"<b>{escape(self.title)}</b>\n{table}\n{svg(drawn.figure) if drawn is not None else ''}"
 
     def to_pandas(self) -> Any:
@@ -89,6 +94,22 @@ class Display:
         write(Path(path), as_json(self.as_dict()))
         return Path(path)
 
+    def save_picture(self, path: str | Path) -> Path | None:
+        """Write the picture; nothing where there is nothing to draw.
+
+        Args:
+            path: .svg, .png or .html
+
+        Raises:
+            DataError: it cannot be written
+        """
+        from .plotting import write_picture
+
+        if (picture := self.drawing()) is None:
+            return None
+        write_picture(Path(path), picture)
+        return Path(path)
+
 
 class Answer(Display):
     """Base of results that are their JSON object.
@@ -104,8 +125,36 @@ class Answer(Display):
         return dict(self.found)
 
 
+class Columns(Display):
+    """Base of results that are columns of numbers."""
+
+    def titled(self) -> Mapping[str, np.ndarray]:
+        """Columns of all rows in the units shown to a person, by their titles."""
+        raise NotImplementedError
+
+    def save(self, path: str | Path) -> Path:
+        """Write all rows as CSV, units in the header.
+
+        Args:
+            path: file to write
+
+        Raises:
+            DataError: it cannot be written
+        """
+        from .columns import table_text
+
+        write(Path(path), table_text(self.titled()))
+        return Path(path)
+
+
 class Quantities(Display):
-    """Base of results that hold values by name in SI."""
+    """Base of results that hold values by name in SI, of a model."""
+
+    if TYPE_CHECKING:
+
+        @property
+        def flat(self) -> FlatModel:
+            """The model."""
 
     def __getitem__(self, name: str) -> Any:
         """A value in SI."""
@@ -122,6 +171,15 @@ class Quantities(Display):
             ScenarioError: there is no such value, or the unit does not fit
         """
         return in_unit(float(self[name]), unit)
+
+    def rows(self, names: Sequence[str]) -> list[tuple[str, float, str, str]]:
+        """Rows of a table under `HEAD`.
+
+        Args:
+            names: of the values in it
+        """
+        known = [self.flat.quantity(name) for name in names]
+        return [(q.name, from_si(float(self[q.name]), q.unit), shown(q.unit), q.doc) for q in known]
 
 
 def lines_of(values: Mapping[str, Any]) -> list[tuple[str, Any]]:

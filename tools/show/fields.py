@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import MaxNLocator
 
 from .drawing import COLOURS, empty
-from .plotting import Picture
+from .picture import Picture
 
 #: Panels in a row.
 ACROSS = 3

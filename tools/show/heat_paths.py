@@ -73,7 +73,7 @@ def _places(assembly: Assembly) -> dict[str, _Place]:
     found: dict[str, _Place] = {}
     for net in nets(assembly):
         if isinstance(net[0], HeatPort):
-            owners = [parts[_owner(port)] for port in net]
+            owners = [parts[port.name.rpartition(".")[0]] for port in net]
             rules = [part for part in owners if _rules(part)] or owners
             place = _Place(rules[0].name, _rules(rules[0]) and not rules[0].states)
             found |= {port.name: place for port in net}
@@ -82,17 +82,10 @@ def _places(assembly: Assembly) -> dict[str, _Place]:
     return found
 
 
-def _owner(port: Port) -> str:
-    return port.name.rpartition(".")[0]
-
-
 def _rules(part: Component) -> bool:
     """Whether a part gives its net a temperature: it stores heat, or is given one."""
-    return bool(part.states or part.inputs) and not any(_turns(port) for port in part.ports.values())
-
-
-def _turns(port: Port) -> bool:
-    return "w" in port.potentials() and bool(port.flows())
+    turns = any("w" in port.potentials() and port.flows() for port in part.ports.values())
+    return bool(part.states or part.inputs) and not turns
 
 
 def _paths(part: Component, places: Mapping[str, _Place], values: Mapping[str, float]) -> Iterator[Path]:

@@ -86,14 +86,6 @@ def _rules(part: Component) -> bool:
     return bool(part.states or part.inputs)
 
 
-def _neighbours(boxes: list[Box]) -> list[set[int]]:
-    near = [set(box.to) for box in boxes]
-    for i, box in enumerate(boxes):
-        for j in box.to:
-            near[j].add(i)
-    return near
-
-
 def _layers(boxes: list[Box], near: list[set[int]]) -> list[int]:
     """Distance of every box from where something is given first, all nets of that name alike."""
     layers: dict[int, int] = {}
@@ -114,7 +106,10 @@ Places = Mapping[int, tuple[float, float]]
 
 def _placed(boxes: list[Box]) -> tuple[Places, tuple[float, float]]:
     """Centres of the boxes, column by column in the order of their neighbours, and the size of the whole."""
-    near = _neighbours(boxes)
+    near = [set(box.to) for box in boxes]
+    for i, box in enumerate(boxes):
+        for j in box.to:
+            near[j].add(i)
     layers = _layers(boxes, near)
     columns = [[i for i, layer in enumerate(layers) if layer == k] for k in range(max(layers) + 1)]
     heights = [sum(boxes[i].height + _GAP for i in column) for column in columns]

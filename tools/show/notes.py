@@ -1,4 +1,4 @@
-"""Notes under an answer: laws outside their range, catalogue values that were compared with no print."""
+"""Notes under an answer: laws outside their range, catalogue values never checked against a print."""
 
 from __future__ import annotations
 
@@ -22,11 +22,11 @@ def print_outside(outside: Sequence[Mapping[str, Any]]) -> None:
 
 
 def unchecked_lines(entries: Iterable[Mapping[str, Any]]) -> list[str]:
-    """Entries of catalogues with values that were compared with no print, a line each."""
+    """Entries of catalogues with values never checked against a print, a line each."""
     return [f'{e["catalogue"]} "{e["entry"]}": {", ".join(e["values"])}' for e in entries]
 
 
 def print_unchecked(entries: Iterable[Mapping[str, Any]]) -> None:
-    """Say which values of the catalogue were compared with no print."""
+    """Print which values of the catalogue were never checked against a print."""
     for line in unchecked_lines(entries):
         say(f"catalogue values not checked against a print: {line}")

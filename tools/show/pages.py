@@ -11,6 +11,8 @@ from typing import Any
 from jinja2 import ChoiceLoader, Environment, PackageLoader
 from markupsafe import Markup, escape
 
+from .console import cell
+
 #: The package whose templates all pages may use: the frame is one of them.
 OWN = "gearheat.tools.show"
 
@@ -32,21 +34,24 @@ def page(package: str, template: str, **values: Any) -> str:
     return _templates(package).get_template(template).render(**values)
 
 
-def html_table(head: Sequence[str], body: Iterable[Sequence[str]]) -> Markup:
-    """An HTML table of text: columns of numbers to the right, columns of words to the left.
+def html_table(head: Sequence[str], body: Iterable[Sequence[Any]], ours: int = -1) -> Markup:
+    """An HTML table: columns of numbers to the right, columns of words to the left.
 
     Args:
         head: names of the columns
-        body: a text per column
+        body: a text or a number per column
+        ours: number of a row that stands out
     """
-    lines = list(body)
-    words = [any(cell and cell[0] not in "-+<>±.0123456789" for cell in column) for column in zip(*lines, strict=True)]
+    lines = [[cell(value) for value in row] for row in body]
+    columns = zip(*lines, strict=True) if lines else [()] * len(head)
+    words = [any(text and text[0] not in "-+<>±.0123456789" for text in column) for column in columns]
 
     def row(tag: str, values: Sequence[str]) -> str:
         cells = ((f'<{tag} class="text">' if word else f"<{tag}>", v) for v, word in zip(values, words, strict=True))
         return "".join(f"{opening}{escape(value)}</{tag}>" for opening, value in cells)
 
-    rows = [f"<tr>{row('th', head)}</tr>", *(f"<tr>{row('td', line)}</tr>" for line in lines)]
+    rows = [f"<tr>{row('th', head)}</tr>"]
+    rows += [f"<tr{' class=ours' if i == ours else ''}>{row('td', line)}</tr>" for i, line in enumerate(lines)]
     return Markup("<table>\n" + "\n".join(rows) + "\n</table>")
 
 

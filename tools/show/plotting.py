@@ -2,40 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from markupsafe import Markup
 from matplotlib.axes import Axes
-from matplotlib.figure import Figure
 
-from .console import cell, write
+from .console import write
 from .drawing import png, svg
 from .pages import OWN, as_data, html_table, page, vendored
+from .picture import Picture
 
 #: Width and height of a figure that is made for a result [inch].
 SIZE = (8.0, 4.5)
-
-
-@dataclass(frozen=True)
-class Picture:
-    """What is drawn, and what an HTML page says beside it.
-
-    Attributes:
-        figure: the picture
-        title, note: what it is, and what to know about it
-        columns, rows: of a table below it; none without columns
-        courses: series over time as `courses.js` reads them; the figure is then for readers without JavaScript
-    """
-
-    figure: Figure
-    title: str
-    note: str = ""
-    columns: Sequence[str] = ()
-    rows: Sequence[Sequence[Any]] = ()
-    courses: Any = None
 
 
 def write_picture(path: Path, picture: Picture) -> None:
@@ -49,13 +27,12 @@ def write_picture(path: Path, picture: Picture) -> None:
 
 
 def _page(picture: Picture, drawn: str) -> str:
-    rows = [[cell(value) for value in row] for row in picture.rows]
     return page(
         OWN,
         "plot.html",
         picture=picture,
         figure=Markup(drawn),
-        table=html_table(picture.columns, rows) if rows else "",
+        table=html_table(picture.columns, picture.rows) if picture.rows else "",
         data=as_data(picture.courses) if picture.courses else "",
         **vendored(),
     )

@@ -13,7 +13,7 @@ from matplotlib.path import Path as Outline
 from ...model.units import text
 from .drawing import COLOURS, empty
 from .heat_paths import Path
-from .plotting import Picture
+from .picture import Picture
 
 #: Width of a column [inch].
 COLUMN = 1.75

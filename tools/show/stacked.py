@@ -1,4 +1,4 @@
-"""Tables whose words go under their row where a screen has no room for them beside it."""
+"""Tables that print long text below the row on narrow terminals."""
 
 from __future__ import annotations
 

@@ -8,15 +8,15 @@ from dataclasses import dataclass, field, replace
 from typing import Any, cast
 
 from ...model.core.flat import FlatModel, Quantity
-from ...model.errors import GearheatError, ScenarioError, SolveError, suggestion
+from ...model.errors import Problems, ScenarioError, SolveError, suggestion
 from ...model.run.design import Design
 from ...model.run.least import Target, least_change, rank, unchanged
 from ...model.units import from_si, shown
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, written
 from ...scenarios.scenario import Scenario, parse_assignments
-from ..show.display import Answer, Quantities
+from ..show.display import HEAD, Answer, Quantities
 from .settings import adjusted, flat_of
-from .steady import HEAD, conditions, first_of, point_of
+from .steady import conditions, first_of, point_of
 from .unchecked import unchecked
 
 #: Name of all entries of a catalogue that fit.
@@ -76,39 +76,20 @@ class DesignAnswer(Quantities, Answer):
 
     def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """Free names and targets, or a row for each alternative."""
-        if "among" in self.found:
-            return alternatives_table(self.found)
-        return HEAD, self.rows([*self.found["free"], *self.found["targets"]])
-
-    def rows(self, names: Sequence[str]) -> list[tuple[str, Any, str, str]]:
-        """Rows of a table under `HEAD`.
-
-        Args:
-            names: of free values, states, inputs or outputs
-        """
-        values, units = {**self.found["values"], **self.found["free"]}, self.found["units"]
-        return [(name, values[name], units[name], self.flat.quantity(name).doc) for name in names]
+        found = self.found
+        if "among" not in found:
+            return HEAD, self.rows([*found["free"], *found["targets"]])
+        solved = [a for a in found["alternatives"] if "problems" not in a]
+        names = list(dict.fromkeys(name for a in solved for name in (*a["targets"], *a["free"])))
+        units = {name: unit for a in solved for name, unit in a["units"].items()}
+        values = [(a, a["free"] | a["values"]) for a in solved]
+        rows = [(a[found["among"]], "yes" if a["met"] else "no", *map(held.get, names)) for a, held in values]
+        return (found["among"], "met", *(f"{name} [{units[name]}]" for name in names)), rows
 
     @property
     def first(self) -> list[str]:
         """What a first answer holds of the steady state."""
         return first_of(self.setting, self.flat, self.found["values"])
-
-
-def alternatives_table(found: Mapping[str, Any]) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-    """Head and rows of the alternatives that have a solution.
-
-    Args:
-        found: the JSON object
-    """
-    part = found["among"]
-    solved = [a for a in found["alternatives"] if "problems" not in a]
-    names = list(dict.fromkeys(name for a in solved for name in (*a["targets"], *a["free"])))
-    units = {name: unit for a in solved for name, unit in a["units"].items()}
-    rows = [
-        (a[part], "yes" if a["met"] else "no", *(a["values"].get(n, a["free"].get(n)) for n in names)) for a in solved
-    ]
-    return (part, "met", *(f"{name} [{units[name]}]" for name in names)), rows
 
 
 def design(
@@ -187,26 +168,19 @@ def _alternatives(scenario: Scenario, among: str | None) -> tuple[str | None, li
 
 def _case(scenario: Scenario, free: Sequence[str], targets: Sequence[str], assignments: Sequence[str]) -> _Case:
     """One design, with the problems of everything given at once."""
-    problems: list[str] = []
+    problems = Problems()
     setting = scenario
-    try:
+    with problems:
         setting = adjusted(scenario, assignments, named=free)
-    except GearheatError as error:
-        problems += error.problems
     flat = flat_of(setting)
     aims: list[Target] = []
     for text in targets:
-        try:
+        with problems:
             aims.append(_target(flat, text))
-        except GearheatError as error:
-            problems += error.problems
     for name in free:
-        try:
+        with problems:
             flat.locate(name)
-        except GearheatError as error:
-            problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return _Case(setting, flat, tuple(aims), tuple(free))
 
 

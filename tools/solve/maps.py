@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -14,17 +13,13 @@ from ...model.run.design import design
 from ...model.units import from_si, shown, text
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
 from ...scenarios.scenario import Scenario, parse_assignments
-from ..show.columns import table_text
-from ..show.console import write
-from ..show.display import Display, optional
+from ..show.display import Columns, optional
+from ..show.picture import Picture
 from . import sampling
 from .settings import adjusted, flat_of
 from .steady import conditions, leading_outputs
 from .sweep_plan import Request, plan_sweep
 from .sweep_rows import local
-
-if TYPE_CHECKING:
-    from ..show.plotting import Picture
 
 #: Ranges where none is given, as shares of the operating point [1].
 USUAL = (0.2, 1.2)
@@ -54,7 +49,7 @@ def usual_range(scenario: Scenario, path: str) -> str:
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Map(Display):
+class Map(Columns):
     """Outputs over speed and torque.
 
     Attributes:
@@ -73,10 +68,9 @@ class Map(Display):
         """The rig and the number of points."""
         return f"{self.rig}: map of {len(next(iter(self.columns.values())))} points"
 
-    @property
-    def head(self) -> list[str]:
-        """Names with units, as the CSV file has them."""
-        return [f"{name} [{self.units[name]}]" for name in self.columns]
+    def titled(self) -> Mapping[str, np.ndarray]:
+        """Columns of all points by their titles."""
+        return {f"{name} [{self.units[name]}]": column for name, column in self.columns.items()}
 
     def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """Range of each column."""
@@ -102,19 +96,7 @@ class Map(Display):
         Raises:
             DataError: pandas is not installed
         """
-        return optional("pandas").DataFrame(dict(zip(self.head, self.columns.values(), strict=True)))
-
-    def save(self, path: str | Path) -> Path:
-        """Write all points as CSV.
-
-        Args:
-            path: file to write
-
-        Raises:
-            DataError: it cannot be written
-        """
-        write(Path(path), table_text(self.head, list(self.columns.values())))
-        return Path(path)
+        return optional("pandas").DataFrame(self.titled())
 
     def drawing(self) -> Picture:
         """A panel of contours for each output."""
@@ -172,7 +154,7 @@ def map_outputs(
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class Rating(Display):
+class Rating(Columns):
     """Thermal power over room temperature and speed.
 
     Attributes:
@@ -212,17 +194,9 @@ class Rating(Display):
             "without_result": dict(self.without_result),
         }
 
-    def save(self, path: str | Path) -> Path:
-        """Write all points as CSV.
-
-        Args:
-            path: file to write
-
-        Raises:
-            DataError: it cannot be written
-        """
-        write(Path(path), table_text(list(self.columns), list(self.columns.values())))
-        return Path(path)
+    def titled(self) -> Mapping[str, np.ndarray]:
+        """Columns of all points by their titles."""
+        return self.columns
 
 
 def rating(

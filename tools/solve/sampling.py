@@ -14,7 +14,7 @@ from typing import Literal
 import numpy as np
 
 from ...model.core.flat import Quantity
-from ...model.errors import GearheatError, ScenarioError
+from ...model.errors import Problems, ScenarioError
 from ...model.units import from_si, shown, to_si
 
 #: Rows of the largest sweep that is not taken for a slip of the keyboard.
@@ -66,7 +66,7 @@ def read(texts: Sequence[str]) -> tuple[Written, ...]:
         ScenarioError: all texts that cannot be read, and names given twice
     """
     found: list[Written] = []
-    problems: list[str] = []
+    problems = Problems()
     for text in texts:
         if (match := _NORMAL.fullmatch(text)) is not None:
             name, mean, deviation, unit = match.groups()
@@ -85,8 +85,7 @@ def read(texts: Sequence[str]) -> tuple[Written, ...]:
     problems += [f'--vary: "{n}" is varied twice. Give it once.' for n in dict.fromkeys(names) if names.count(n) > 1]
     if not texts:
         problems.append('--vary is missing. Say what is varied, for example --vary "room.T=10..35 degC".')
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return tuple(found)
 
 
@@ -101,14 +100,11 @@ def axes(written: Sequence[Written], known: Mapping[str, Quantity]) -> tuple[Axi
         ScenarioError: wrong units, values out of range, ranges that are none
     """
     found: list[Axis] = []
-    problems: list[str] = []
+    problems = Problems()
     for w in written:
-        try:
+        with problems:
             found.append(_axis(w, known[w.name]))
-        except GearheatError as error:
-            problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return tuple(found)
 
 
@@ -123,9 +119,7 @@ def _axis(w: Written, quantity: Quantity) -> Axis:
     elif not second > first:
         raise ScenarioError(f"{where}: {w.first} is not below {w.second}. Write LOW..HIGH.")
     ends = (first,) if w.kind == "normal" else (first, second)
-    problems = [f"--vary: {problem}" for end in ends if (problem := quantity.problem(end)) is not None]
-    if problems:
-        raise ScenarioError(problems)
+    Problems(f"--vary: {problem}" for end in ends if (problem := quantity.problem(end)) is not None).check()
     return Axis(w.name, w.kind, first, second)
 
 
@@ -168,14 +162,11 @@ def gridded(axes: Sequence[Axis], text: str) -> np.ndarray:
         names = ", ".join(axis.name for axis in axes)
         raise ScenarioError(f"--grid {text}: {len(counts)} numbers for {len(axes)} varied ({names}). Give one each.")
     _check(int(np.prod([float(n) for n in counts])), "--grid")
-    lines = [axis.at(_shares(axis, n)) for axis, n in zip(axes, counts, strict=True)]
+    lines = [
+        axis.at(np.linspace(0.0, 1.0, n) if axis.kind == "uniform" and n > 1 else (np.arange(n) + 0.5) / n)
+        for axis, n in zip(axes, counts, strict=True)
+    ]
     return np.stack(np.meshgrid(*lines, indexing="ij"), axis=-1).reshape(-1, len(axes))
-
-
-def _shares(axis: Axis, n: int) -> np.ndarray:
-    if axis.kind == "uniform" and n > 1:
-        return np.linspace(0.0, 1.0, n)
-    return (np.arange(n) + 0.5) / n
 
 
 def _check(rows: int, option: str) -> None:

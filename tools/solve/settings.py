@@ -10,7 +10,7 @@ from typing import Any
 from ...model.core.declare import Choice, Parameter, declared
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
-from ...model.errors import GearheatError, ScenarioError, suggestion
+from ...model.errors import GearheatError, Problems, ScenarioError, suggestion
 from ...model.laws.film_map import FilmMap
 from ...model.machines.spec import Spec, assemble
 from ...scenarios.film_map import map_named, names_map
@@ -45,14 +45,13 @@ def adjusted(
     """
     assignments = assignments_of(assignments, scenario.settable)
     choices, problems = _choices(scenario.spec, assignments)
-    problems += _doubled(assignments)
+    names = [_name(text) for text in assignments]
+    twice = [name for name in dict.fromkeys(names) if name and names.count(name) > 1]
+    problems += [f'"{name}" is set twice. Set it once.' for name in twice]
     values: dict[str, float] = {}
-    try:
+    with problems:
         values = parse_assignments(scenario, (a for a in assignments if _name(a) not in choice_paths(scenario.spec)))
-    except GearheatError as error:
-        problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     shafts = scenario.shaft_paths()
     ends = [name for name in dict.fromkeys((*values, *named)) if name in shafts]
     driven = deduced(scenario.given, ends) if drive is None else drive
@@ -113,11 +112,11 @@ def parameter_of(spec: Spec, path: str) -> Parameter | None:
     return declared(spec.types[kinds[0]], Parameter).get(key) if kinds else None
 
 
-def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], list[str]]:
+def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], Problems]:
     """The choices among the assignments, and what is wrong with them."""
     known = choice_paths(spec)
     values: dict[str, Any] = {}
-    problems: list[str] = []
+    problems = Problems()
     for text in assignments:
         if (path := _name(text)) not in known:
             continue
@@ -145,11 +144,6 @@ def _filled(scenario: Scenario, assignments: Sequence[str]) -> dict[str, str]:
         if (part := _name(text)) in parts:
             found |= scenario.entry_sources(part, text.partition("=")[2].strip(), SET)
     return {path: source for path, source in found.items() if path not in single}
-
-
-def _doubled(assignments: Iterable[str]) -> list[str]:
-    names = [_name(text) for text in assignments]
-    return [f'"{name}" is set twice. Set it once.' for name in dict.fromkeys(names) if name and names.count(name) > 1]
 
 
 def _name(assignment: str) -> str:

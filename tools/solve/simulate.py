@@ -19,9 +19,9 @@ from ...model.units import SHOWN, from_si, in_unit, shown
 from ...scenarios.duty import duty_names, read_duty
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
-from ..show.columns import series
-from ..show.console import write
-from ..show.display import Display, optional
+from ..show.columns import titled
+from ..show.display import Columns, optional
+from ..show.picture import Picture
 from .settings import adjusted, flat_of
 from .steady import outside_of
 from .unchecked import unchecked
@@ -29,14 +29,13 @@ from .unchecked import unchecked
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from ..show.plotting import Picture
 
 #: A duty: a CSV file, or a DataFrame whose column names have units, "time [min]" first.
 Duty = str | Path | Any
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class TimeSeries(Display):
+class TimeSeries(Columns):
     """Temperatures, speeds, torques and losses over time.
 
     Attributes:
@@ -99,8 +98,7 @@ class TimeSeries(Display):
         Raises:
             DataError: pandas is not installed
         """
-        index = optional("pandas").Index(self.time, name="time [s]")
-        return optional("pandas").DataFrame(self._titled(), index=index)
+        return optional("pandas").DataFrame(self.titled()).set_index("time [s]")
 
     def to_xarray(self) -> Any:
         """A Dataset over time [s] in SI, units as attributes.
@@ -112,21 +110,9 @@ class TimeSeries(Display):
         held = {name: ("time", column, {"units": self.units[name]}) for name, column in self.columns.items()}
         return xarray.Dataset(held, coords={"time": ("time", self.time, {"units": "s"})})
 
-    def _titled(self) -> dict[str, np.ndarray]:
-        """Columns in the units shown to a person, by their titles."""
-        return {f"{n} [{shown(self.units[n])}]": from_si(c, self.units[n]) for n, c in self.columns.items()}
-
-    def save(self, path: str | Path) -> Path:
-        """Write the series as CSV, units in the header.
-
-        Args:
-            path: file to write
-
-        Raises:
-            DataError: it cannot be written
-        """
-        write(Path(path), series(self.time, self.columns, self.units))
-        return Path(path)
+    def titled(self) -> Mapping[str, np.ndarray]:
+        """Time [s] and columns in the units shown to a person, by their titles."""
+        return {"time [s]": self.time, **titled(self.columns, self.units)}
 
     @classmethod
     def load(cls, path: str | Path) -> TimeSeries:

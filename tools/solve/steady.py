@@ -15,18 +15,14 @@ from ...model.run.steady import steady as solve
 from ...model.units import from_si, shown
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
-from ..show.display import Quantities
+from ..show.display import HEAD, Quantities
 from ..show.heat_paths import heat_flows, heat_paths
+from ..show.picture import Picture
 from .settings import adjusted, flat_of
 from .unchecked import unchecked
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-
-    from ..show.plotting import Picture
-
-#: Columns of a table of values.
-HEAD = ("name", "value", "unit", "meaning")
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -66,15 +62,6 @@ class SteadyState(Quantities):
     def first(self) -> list[str]:
         """What a first answer holds."""
         return first_of(self.scenario, self.flat, self.result.columns)
-
-    def rows(self, names: Sequence[str]) -> list[tuple[str, float, str, str]]:
-        """Rows of a table under `HEAD`.
-
-        Args:
-            names: the values in it
-        """
-        units = self.result.units
-        return [(n, from_si(self[n], units[n]), shown(units[n]), self.flat.quantity(n).doc) for n in names]
 
     def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """The first answer."""

@@ -9,7 +9,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 
@@ -19,14 +19,12 @@ from ...model.units import from_si, shown
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, written
 from ..show.console import counting, note
 from ..show.display import Display, optional
+from ..show.picture import Picture
 from . import sampling
 from .simulate import Duty, duty_file
 from .sweep_file import Column, Store, words, work_file, write_table
 from .sweep_plan import MOST_DRAWN, Plan, Request, plan_sweep
 from .sweep_rows import TELLING, Block, clustered, local
-
-if TYPE_CHECKING:
-    from ..show.plotting import Picture
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -257,15 +255,10 @@ class Summary:
 
     def outputs(self) -> Iterator[tuple[str, str, str, list[float]]]:
         """Path, unit and meaning of each output, with its least, mean and largest value."""
-        for i, name in enumerate(self.plan.job.outputs):
+        means = self.sum / max(self.count, 1)
+        for name, *numbers in zip(self.plan.job.outputs, self.low, means, self.high, strict=True):
             q = self.plan.flat.quantity(name)
-            numbers = (self.low[i], self.sum[i] / max(self.count, 1), self.high[i])
-            yield (
-                name,
-                shown(q.unit),
-                q.doc,
-                [from_si(float(v), q.unit) for v in numbers] if self.count else [np.nan] * 3,
-            )
+            yield name, shown(q.unit), q.doc, [from_si(float(v), q.unit) if self.count else np.nan for v in numbers]
 
     def as_dict(self, out: Path | None) -> dict[str, Any]:
         """The summary as an object.

@@ -151,15 +151,6 @@ def words(status: np.ndarray) -> list[str]:
     return [names[int(s)] for s in status]
 
 
-def parquet_missing() -> str | None:
-    """What is wrong where a Parquet file is asked for and the package that writes it is not there."""
-    try:
-        import pyarrow.parquet  # noqa: F401
-    except ImportError:
-        return '-o FILE.parquet needs the package "pyarrow". Install it: pip install "gearheat[parquet]", or write .csv'
-    return None
-
-
 def write_table(out: Path, columns: Sequence[Column], blocks: Iterator[Sequence[np.ndarray]]) -> None:
     """Write the table block by block beside its place, and move it there.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,7 @@ import numpy as np
 
 from ...fmu.batch import Batch
 from ...model.core.flat import FlatModel
-from ...model.errors import GearheatError, ScenarioError, SolveError
+from ...model.errors import Problems, ScenarioError, SolveError
 from ...model.files import flows
 from ...model.run.point import problem_of
 from ...model.run.schedule import Schedule
@@ -26,8 +27,8 @@ from . import sampling
 from .settings import adjusted, flat_of
 from .simulate import first_temperatures
 from .steady import leading_outputs, outside_of
-from .sweep_file import SUFFIXES, Column, parquet_missing
-from .sweep_rows import TELLING, Job, dask_missing
+from .sweep_file import SUFFIXES, Column
+from .sweep_rows import TELLING, Job
 from .uncertainties import UNCERTAINTY, reasons, sampled, shares
 from .unchecked import unchecked
 
@@ -65,7 +66,7 @@ class Request:
 class Plan:
     """A sweep, ready to run: the values of its rows (rows, axes) and what is done with them.
 
-    `unchecked` holds the catalogue entries in use with values that were compared with no print, `drawn` the outputs
+    `unchecked` holds the catalogue entries in use with values never checked against a print, `drawn` the outputs
     that a picture shows.
     """
 
@@ -136,32 +137,24 @@ def plan_sweep(request: Request) -> Plan:
     written: tuple[sampling.Written, ...] = ()
     problems = _problems(request)
     vary = [text for text in request.vary if text != UNCERTAINTY]
-    try:
+    with problems:
         written = sampling.read(vary) if vary or not request.vary else ()
-    except GearheatError as error:
-        problems += error.problems
     names = [w.name for w in written]
     given = {text.partition("=")[0].strip() for text in request.assignments}
     problems += [f"--vary: {name} is set as well. Take one away." for name in names if name in given]
     scenario = scenario_of(request.rig)
     scheduled: tuple[str, ...] = ()
-    try:
+    with problems:
         scheduled = duty_names(request.duty) if request.duty is not None else ()
-    except GearheatError as error:
-        problems += error.problems
-    try:
+    with problems:
         scenario = adjusted(scenario, request.assignments, named=[*names, *scheduled])
-    except GearheatError as error:
-        problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     flat = flat_of(scenario)
     kinds = ("input", "parameter", "state") if request.kind == "warmup" else ("input", "parameter")
     found = [problem_of(flat, name, kinds, "--vary") for name in names]
     found += [problem_of(flat, name, ("state", "output"), "--output") for name in _outputs(request)]
     found += [f"--vary: {name} is given by the duty. Take one away." for name in names if name in scheduled]
-    if problems := [p for p in found if p]:
-        raise ScenarioError(problems)
+    Problems(filter(None, found)).check()
     axes = sampling.axes(written, {name: flat.quantity(name) for name in names})
     if request.grid is not None:
         values = sampling.gridded(axes, request.grid)
@@ -185,15 +178,15 @@ def _sampled(
     return (*axes, *more), np.column_stack([values[:, : len(axes)], uncertain])
 
 
-def _problems(request: Request) -> list[str]:
+def _problems(request: Request) -> Problems:
     """What is wrong with the options themselves."""
     found: list[str | None] = []
     if request.out is not None and request.out.suffix not in SUFFIXES and not flows(request.out):
         found.append(f"-o {request.out}: unknown kind of file. Its name must end in {' or '.join(SUFFIXES)}.")
     elif request.out is not None and request.out.suffix == ".parquet":
-        found.append(parquet_missing())
+        found.append(_missing("pyarrow", "-o FILE.parquet", "parquet", ", or write .csv"))
     if request.scheduler is not None:
-        found.append(dask_missing())
+        found.append(_missing("distributed", "--scheduler", "dask", ""))
     if UNCERTAINTY in request.vary:
         options = {"--plot": request.drawn, "--grid": request.grid}
         found += [f"{name} does not go with --vary {UNCERTAINTY}. Leave it out." for name, v in options.items() if v]
@@ -206,7 +199,16 @@ def _problems(request: Request) -> list[str]:
         found.append(f"--{timed[0]} belongs to a warm-up. Add --kind warmup, or leave it out.")
     if request.kind == "warmup" and (request.duty is None) == (request.duration is None):
         found.append('A warm-up lasts either as long as its --duty or a --duration, for example "330 min". Give one.')
-    return [problem for problem in found if problem]
+    return Problems(filter(None, found))
+
+
+def _missing(package: str, option: str, extra: str, otherwise: str) -> str | None:
+    """What is wrong where an option needs a package that is not installed."""
+    try:
+        import_module(package)
+    except ImportError:
+        return f'{option} needs the package "{package}". Install it: pip install "gearheat[{extra}]"{otherwise}'
+    return None
 
 
 def _outputs(request: Request) -> list[str]:

@@ -93,15 +93,6 @@ def local(job: Job, blocks: Iterable[Block], threads: int) -> Iterator[Block]:
         yield number, job.rows(values, threads)
 
 
-def dask_missing() -> str | None:
-    """What is wrong where a cluster is asked for and Dask is not there."""
-    try:
-        import distributed  # noqa: F401
-    except ImportError:
-        return '--scheduler needs the package "distributed". Install it: pip install "gearheat[dask]"'
-    return None
-
-
 def clustered(job: Job, blocks: Iterable[Block], address: str) -> Iterator[Block]:
     """The finished blocks in the order in which the workers of a Dask cluster finish them.
 

@@ -11,8 +11,8 @@ from ...fmu.variables import Variable
 from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError
 from ...model.machines.roles import Roles
+from ...scenarios.nuisances import nuisances
 from ...scenarios.scenario import Scenario
-from ..diagnose.library.nuisances import nuisances
 from .sampling import Axis
 from .steady import leading_outputs
 

@@ -11,7 +11,7 @@ from ...scenarios.scenario import Scenario
 
 
 def unchecked(scenario: Scenario, flat: FlatModel, filled: Iterable[tuple[str, str]] = ()) -> list[dict[str, Any]]:
-    """Catalogue entries in use with values that were compared with no print, without those that have no effect.
+    """Catalogue entries in use with values that were never checked against a print; values without effect left out.
 
     Args:
         scenario: the rig as set

@@ -21,11 +21,11 @@ from ...model.run.steady import steady
 from ...model.sources import LawInfo
 from ...model.units import to_si
 from ...scenarios.document import paths
+from ...scenarios.measured.readings import measured_rows, table_columns
 from ...scenarios.measured.study import measured_of
 from ...scenarios.published import Row
 from ...scenarios.scenario import Scenario, parse_assignments
-from ..compare.losses import at_readings, contacts_at_operating_point, held
-from ..compare.readings import measured_rows, table_columns
+from ..solve.losses import at_readings, contacts_at_operating_point, held
 from ..solve.settings import adjusted, choice_paths, flat_of, parameter_of
 from .expressions import evaluate
 from .verdicts import Value, number_of

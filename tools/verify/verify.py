@@ -23,8 +23,7 @@ from ..show.console import counting, write
 from ..show.display import Display
 from ..show.pages import page
 from .model_values import RigValues, single
-from .table import counts_table, details, remarks
-from .verdicts import NOT_REPRODUCED, VERDICTS, Machine, Value, Verdict, counts, judged, kinds
+from .verdicts import HEAD, NOT_REPRODUCED, VERDICTS, Machine, Value, Verdict, counts, judged, kinds, lines
 
 A = TypeVar("A")
 B = TypeVar("B")
@@ -45,7 +44,19 @@ class Verification(Display):
     @cached_property
     def found(self) -> dict[str, Any]:
         """The JSON object."""
-        return as_dict(self.machines, self.laws)
+        every = [verdict for machine in self.machines for verdict in machine.verdicts] + list(self.laws)
+        return {
+            "schema": "gearheat.verify/1",
+            "counts": counts(every),
+            "kinds": kinds(every),
+            "machines": [machine.as_dict() for machine in self.machines],
+            "laws": {
+                "counts": counts(self.laws),
+                "kinds": kinds(self.laws),
+                "rows": [{"law": v.row.law, **v.as_dict()} for v in self.laws],
+            },
+            "sources": _cited(verdict.row.where for verdict in every),
+        }
 
     @property
     def failed(self) -> int:
@@ -59,15 +70,29 @@ class Verification(Display):
 
     def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """Counts of each rig, of the laws and of all."""
-        return counts_table(self.found)
+        found = self.found
+        named = [*((m["name"], m) for m in found["machines"] if m["rows"]), ("laws", found["laws"]), ("in all", found)]
+        body = [[name, *part["counts"].values(), *part["kinds"].values()] for name, part in named]
+        return ("", *VERDICTS, *found["kinds"]), body
 
     def details(self) -> Iterator[tuple[str, Sequence[str], Sequence[Sequence[Any]]]]:
         """Title, head and rows of the numbers of each rig, then of the laws."""
-        return details(self.machines, self.laws)
+        for machine in self.machines:
+            if machine.verdicts:
+                yield f"{machine.name}: {machine.doc}", HEAD, lines(machine.verdicts)
+        if self.laws:
+            yield "Laws", HEAD, lines(self.laws)
 
     def remarks(self) -> Iterator[str]:
         """Rigs without published numbers, and by name what fails."""
-        return remarks(self.machines, self.laws)
+        for machine in self.machines:
+            if not machine.verdicts:
+                yield f"{machine.name}: has no published numbers. {machine.reproduces}".strip()
+        failed = [f"{m.name}: {v.row.name}" for m in self.machines for v in m.verdicts if v.verdict == NOT_REPRODUCED]
+        failed += [f"{v.row.law}: {v.row.name}" for v in self.laws if v.verdict == NOT_REPRODUCED]
+        if failed:
+            numbers = "1 published number is" if len(failed) == 1 else f"{len(failed)} published numbers are"
+            yield f"{numbers} not reproduced: {'; '.join(failed)}."
 
     def as_dict(self) -> dict[str, Any]:
         """The JSON object."""
@@ -136,28 +161,6 @@ def published_of(scenario: Scenario) -> tuple[Row, ...]:
         return read_published(path) if path.is_file() else ()
     except ScenarioError as error:
         raise ScenarioError([f"{scenario.name}: {problem}" for problem in error.problems]) from None
-
-
-def as_dict(machines: Sequence[Machine], laws: Sequence[Verdict]) -> dict[str, Any]:
-    """The object of `--json`.
-
-    Args:
-        machines: the rigs
-        laws: verdicts on the golden rows of laws
-    """
-    every = [verdict for machine in machines for verdict in machine.verdicts] + list(laws)
-    return {
-        "schema": "gearheat.verify/1",
-        "counts": counts(every),
-        "kinds": kinds(every),
-        "machines": [machine.as_dict() for machine in machines],
-        "laws": {
-            "counts": counts(laws),
-            "kinds": kinds(laws),
-            "rows": [{"law": v.row.law, **v.as_dict()} for v in laws],
-        },
-        "sources": _cited(verdict.row.where for verdict in every),
-    }
 
 
 def _cited(places: Iterable[str]) -> dict[str, str]:

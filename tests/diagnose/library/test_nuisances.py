@@ -10,8 +10,9 @@ from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import list_rigs
+from gearheat.scenarios.nuisances import nuisances
 from gearheat.tools.diagnose.library.forms import Context
-from gearheat.tools.diagnose.library.nuisances import habit, nuisances
+from gearheat.tools.diagnose.library.thin_films import thin_film_friction
 
 RIGS = tuple(list_rigs())
 
@@ -102,7 +103,7 @@ def test_every_path_is_a_parameter_of_the_rig(case, rig):
 
 def test_friction_in_thin_films_is_none_until_a_reference_tells_it(case):
     c = case("helical_two_stage")
-    films = habit(Context(c.roles, c.ranges, c.sensors))
+    films = thin_film_friction(Context(c.roles, c.ranges, c.sensors))
     assert films.sd == 0.0 and films.wide == 1.0
     flat = flatten(assemble(c.scenario.spec.with_parts(films.parts, films.connections, EXTRA_PARTS)))
     none, some = (
@@ -110,4 +111,4 @@ def test_friction_in_thin_films_is_none_until_a_reference_tells_it(case):
     )
     assert none["oil.T"][0] == pytest.approx(c.nominal["oil.T"][0], abs=1e-4)
     assert some["oil.T"][0] > none["oil.T"][0] + 0.1
-    assert habit(Context(case("harmonic_printed").roles, c.ranges, c.sensors)) is None
+    assert thin_film_friction(Context(case("harmonic_printed").roles, c.ranges, c.sensors)) is None

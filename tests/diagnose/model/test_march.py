@@ -16,7 +16,8 @@ from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import read_card
 from gearheat.scenarios.measured.read import read_campaign
 from gearheat.scenarios.measured.table import Campaign
-from gearheat.tools.diagnose.library.cause import Cause, Form, Nuisance, Shape, Size
+from gearheat.scenarios.nuisances import Nuisance
+from gearheat.tools.diagnose.library.cause import Cause, Form, Shape, Size
 from gearheat.tools.diagnose.model import duty
 from gearheat.tools.diagnose.model.duty import STEADY
 from gearheat.tools.diagnose.model.formula import Formula

@@ -12,10 +12,10 @@ from gearheat.model.errors import DataError
 from gearheat.model.machines.roles import Roles
 from gearheat.scenarios.load import list_rigs, load
 from gearheat.scenarios.measured.card import Card, read_card
-from gearheat.scenarios.measured.oils import oil_values
+from gearheat.scenarios.measured.lubrication import oil_values
 from gearheat.scenarios.measured.sensors import sensors_of
 from gearheat.scenarios.measured.write import as_json, as_toml, default_card
-from gearheat.tools.diagnose.library.nuisances import nuisances, usual_priors
+from gearheat.scenarios.nuisances import nuisances, usual_priors
 
 FIRST = {
     "schema": "gearheat.card/1",

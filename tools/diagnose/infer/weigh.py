@@ -172,7 +172,7 @@ class _Weighing:
 
         residual = problem.measured - near.look.shown + J[:, : problem.nz] @ near.look.z + effects
         self.linear = sets.Linear(terms, residual, covariance, scaled, self.prior, critical, self.most)
-        starts = [np.zeros(len(noise.loose)), near.noise.scales]
+        starts = [[0.0] * len(noise.loose), near.noise.scales.tolist()]
         return sets.search(self.linear, starts, lambda share: self.progress(stage, begun + 0.1 * share), scatters)
 
     def _fit_alone(self, wanted: Collection[str]) -> None:

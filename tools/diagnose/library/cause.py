@@ -59,9 +59,9 @@ class Shape:
 
 @dataclass(frozen=True)
 class Mostly(Shape):
-    """One that mostly stands at its lower bound, at its upper one now and then, and anywhere between as a third way.
+    """A share that is usually at its lower bound, sometimes at its upper one, rarely between.
 
-    An even prior would make data pay for telling the bound from all other values.
+    A uniform prior would cost evidence for putting the share at its bound.
     """
 
     def at(self, u: Num) -> Num:
@@ -71,7 +71,7 @@ class Mostly(Shape):
 
 @dataclass(frozen=True)
 class Small(Shape):
-    """One that usually is near its lower bound and may be anywhere: the cube root of its place is even."""
+    """A value usually near its lower bound: the cube root of its position in the range is uniform."""
 
     def at(self, u: Num) -> Num:
         """The value at a standard normal number."""
@@ -166,28 +166,6 @@ class Cause:
     def family(self) -> str:
         """The class it counts with, itself where it has none."""
         return self.like.partition(":")[0] or self.id
-
-
-@dataclass(frozen=True)
-class Nuisance:
-    """What may differ from the rig file without being a fault: parameters whose logarithm changes by sd times z.
-
-    Args:
-        name: in words
-        paths: parameter -> exponent; its value is base * exp(exponent * sd * z)
-        sd: prior standard deviation of the logarithm
-        wide: the same where a healthy reference campaign of the same rig tells the parameters
-        refilled: whether another filling or mounting changes it, by half of its sd
-        parts, connections: what is added to the machine for it, neutral
-    """
-
-    name: str
-    paths: Mapping[str, float]
-    sd: float
-    wide: float
-    refilled: bool = False
-    parts: tuple[PartSpec, ...] = ()
-    connections: tuple[tuple[str, ...], ...] = ()
 
 
 @dataclass(frozen=True)

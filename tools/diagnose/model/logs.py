@@ -164,7 +164,7 @@ class Filter:
             z: knobs of each window (N, k)
             free: whether samples that count do not correct the states; no slopes then
             slopes: whether slope and curvature are wanted
-            progress: told the share done
+            progress: called with the share done
         """
         order = np.argsort(-data.there.sum(axis=1), kind="stable")
         found = _Pass(self, data.some(order), z[order], free, slopes and not free).through(progress)

@@ -25,7 +25,7 @@ DAY = 0.35
 #: Share of a nuisance's prior by which another filling or mounting changes it.
 REFILLED = 0.5
 #: A further probe of the same body stands elsewhere: standard deviation of the share of the wall or room it sees.
-ELSEWHERE = 0.08
+PLACEMENT_ERROR = 0.08
 #: What the model leaves of a rig that a reference tells: share of the typical reading's rise or torque, per feature.
 REMAINDER = {"temperature": 0.8, "other": 0.0005}
 
@@ -122,8 +122,8 @@ def given_tolerance(o: Observed, seen: Seen) -> Iterator[tuple[str, np.ndarray]]
         yield s.name, -s.offset_sd * (seen.local[:, g] * signs).sum(axis=1)
 
 
-def elsewhere(o: Observed, seen: Seen) -> np.ndarray:
-    """Effects (m, k) of further probes of a body that see something of its surroundings."""
+def placement_error(o: Observed, seen: Seen) -> np.ndarray:
+    """Placement error of every further probe of a body: effects (m, k) of reading partly what surrounds it."""
     columns, known, place = [], set[str](), list(zip(o.row, shares(o), strict=True))
     walls = [i for i, s in enumerate(o.read) if s.kind == "wall_temp"]
     for i, s in enumerate(o.read):
@@ -131,7 +131,7 @@ def elsewhere(o: Observed, seen: Seen) -> np.ndarray:
             mine, others = ((o.entries.sensor == k).nonzero()[0] for k in (i, walls[0]))
             own, wall = ({place[e]: seen.shown[e] for e in entries} for entries in (mine, others))
             effect = np.array([own[at] - wall.get(at, own[at]) if at in own else 0.0 for at in place])
-            columns.append(np.where(o.entries.sensor == i, ELSEWHERE * effect, 0.0))
+            columns.append(np.where(o.entries.sensor == i, PLACEMENT_ERROR * effect, 0.0))
         known.add(s.reads)
     return np.array(columns).reshape(len(columns), o.m).T
 
@@ -254,7 +254,7 @@ def terms(campaigns: Sequence[Observed], seen: Sequence[Seen], day_sd: float, da
     pairs = list(enumerate(zip(campaigns, seen, strict=True)))
     days = [(k, day_sd * per_group(s.by[:, day], o.campaign.test[o.row])) for k, (o, s) in pairs]
     found.append(Term("days", stacked(days, sizes), loose=DAY))
-    found.append(Term("further probes", stacked([(k, elsewhere(o, s)) for k, (o, s) in pairs], sizes)))
+    found.append(Term("further probes", stacked([(k, placement_error(o, s)) for k, (o, s) in pairs], sizes)))
     fillings = [(k, c) for k, (o, s) in pairs for c in _fillings(o, s)]
     if fillings:
         found.append(Term("fillings", stacked(fillings, sizes)))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ....scenarios.measured.table import Campaign
-from ..library.cause import Nuisance
+from ....scenarios.nuisances import Nuisance
 from .duty import duty
 from .entries import Entries
 from .formula import Formula
@@ -246,7 +246,7 @@ class _Look:
         return len(self.settings)
 
     def _run(self, turned: bool, wanted: Collection[int] = ()) -> Marched:
-        """Logged courses show their own clock: they run at their full pace."""
+        """Readings of all rows. Logged series use their own time stamps; a shortened dwell does not apply to them."""
         found = self._paced(self.pace, turned, wanted)
         if not (along := self.o.along).any():
             return found

@@ -16,7 +16,8 @@ from ....model.core.flatten import flatten
 from ....model.errors import FmuError
 from ....model.machines.spec import Spec, assemble
 from ....model.parts.free_form import EXTRA_PARTS
-from ..library.cause import Form, Nuisance
+from ....scenarios.nuisances import Nuisance
+from ..library.cause import Form
 from .many import Compiled, library, record
 
 

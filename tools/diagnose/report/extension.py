@@ -16,12 +16,13 @@ from ....model.core.declare import Output, Parameter, declared
 from ....model.machines.spec import PartSpec
 from ....model.parts.free_form import EXTRA_PARTS
 from ....model.units import from_si
+from ....scenarios.nuisances import Nuisance
 from ....scenarios.scenario import Scenario
 from ....scenarios.write import DIAGNOSED, rig_text
 from ..answer.estimate import posterior
 from ..answer.findings import Calibrated
 from ..infer.found import Found, Hypothesis
-from ..library.cause import Cause, Form, Nuisance, Row, Size, Theta, Values
+from ..library.cause import Cause, Form, Row, Size, Theta, Values
 from ..setting import Setting
 from . import phrases
 from .phrases import name_of

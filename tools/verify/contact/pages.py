@@ -7,34 +7,13 @@ import io
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
-from jinja2 import Environment
-
 from ...show.console import cell
+from ...show.pages import page
 from .rows import Found, Job
 
 Row = Mapping[str, Any]
 COLUMNS = ("item", "case", "quantity", "reference", "ours", "deviation", "tolerance", "verdict")
 SUMMARY = ("what", "rows", "within", "outside", "largest deviation", "tolerance")
-HTML = """<!doctype html>
-<html lang="en"><head><meta charset="utf-8">
-<meta name="viewport" content="width=device-width"><title>gearheat: the contact solver, verified</title><style>
-body { font: 15px/1.5 sans-serif; max-width: 70rem; margin: 2rem auto; padding: 0 1rem; }
-table { border-collapse: collapse; font-size: .9rem; } td, th { padding: .2rem .6rem; border-bottom: 1px solid #ddd; }
-td { text-align: left; } .outside { background: #fcf1ea; } svg { max-width: 100%; height: auto; }
-.scroll { overflow-x: auto; }
-</style></head><body>
-<h1>The contact solver, verified</h1>
-<h2>Summary</h2>
-{{ table(summary_columns, summary) }}
-{% for title, figure in figures.items() %}<h2>{{ title }}</h2><figure>{{ figure | safe }}</figure>
-{% endfor %}<h2>All rows</h2>
-{{ table(columns, body) }}
-</body></html>
-"""
-TABLE = """{% macro table(columns, rows) %}<div class="scroll"><table>
-<tr>{% for c in columns %}<th>{{ c }}</th>{% endfor %}</tr>
-{% for row in rows %}<tr class="{{ row[-1] }}">{% for v in row %}<td>{{ v }}</td>{% endfor %}</tr>
-{% endfor %}</table></div>{% endmacro %}"""
 
 
 def rows(found: Sequence[tuple[Job, Found]]) -> list[Row]:
@@ -125,14 +104,9 @@ def html(table: Sequence[Row], figures: Mapping[str, str]) -> str:
         table: all rows
         figures: title -> SVG text
     """
-    page = Environment(autoescape=True).from_string(TABLE + HTML)
-    return page.render(
-        summary_columns=SUMMARY,
-        summary=summary(table),
-        columns=COLUMNS,
-        body=[_cells(row) for row in table],
-        figures=figures,
-    )
+    tables = {"summary_columns": SUMMARY, "summary": summary(table), "columns": COLUMNS}
+    body = [_cells(row) for row in table]
+    return page("gearheat.tools.verify", "contact.html", **tables, body=body, figures=figures)
 
 
 def as_csv(table: Sequence[Row]) -> str:

@@ -1,0 +1,169 @@
+"""What may differ from the rig file without being a fault: groups of parameters with priors, found by roles."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+
+from ..model.machines.roles import Roles
+from ..model.machines.spec import PartSpec
+from .scenario import Scenario
+
+#: Relative standard deviations where neither card nor rig file says more, by the key of a card.
+DEFAULT_SD: Mapping[str, float] = {
+    "mu": 0.10,
+    "brg": 0.12,
+    "seal": 0.15,
+    "hconv": 0.08,
+    "rad": 0.08,
+    "gow": 0.20,
+    "gwh": 0.20,
+    "cap": 0.10,
+}
+
+
+@dataclass(frozen=True)
+class Nuisance:
+    """What may differ from the rig file without being a fault: parameters whose logarithm changes by sd times z.
+
+    Args:
+        name: in words
+        paths: parameter -> exponent; its value is base * exp(exponent * sd * z)
+        sd: prior standard deviation of the logarithm
+        wide: the same where a healthy reference campaign of the same rig tells the parameters
+        refilled: whether another filling or mounting changes it, by half of its sd
+        parts, connections: what is added to the machine for it, neutral
+    """
+
+    name: str
+    paths: Mapping[str, float]
+    sd: float
+    wide: float
+    refilled: bool = False
+    parts: tuple[PartSpec, ...] = ()
+    connections: tuple[tuple[str, ...], ...] = ()
+
+
+@dataclass(frozen=True)
+class Group:
+    """Parameters that differ together.
+
+    Args:
+        name: in words
+        key: of the card
+        wide: standard deviation where a healthy campaign tells them
+        paths: roles of a machine -> parameter with its exponent
+        share: of the key's standard deviation
+        refilled: whether another filling or mounting changes them
+    """
+
+    name: str
+    key: str
+    wide: float
+    paths: Callable[[Roles], Mapping[str, float]]
+    share: float = 1.0
+    refilled: bool = False
+
+
+def _alike(paths: Sequence[str]) -> dict[str, float]:
+    return dict.fromkeys(paths, 1.0)
+
+
+def _to(roles: Roles, bodies: Sequence[str]) -> list[str]:
+    """Conductors on the oil's side that meet one of the bodies."""
+    return [c for c in roles.oil_side if any(roles.at(p, "body") in bodies for p in roles.bodies_of(c))]
+
+
+def _oil_inside(roles: Roles) -> Mapping[str, float]:
+    hot = {roles.at(place.inner, "body") for place in roles.places["teeth"]}
+    return _alike(roles.scaled(*_to(roles, [b for b in hot if b])))
+
+
+def _oil_outside(roles: Roles) -> Mapping[str, float]:
+    return {p: 1.0 for p in roles.scaled(*roles.oil_side) if p not in _oil_inside(roles)}
+
+
+def _emissivity(roles: Roles) -> dict[str, float]:
+    return {f"{name}.emissivity": 1.0 for name in roles.surfaces}
+
+
+def _convection(roles: Roles) -> Mapping[str, float]:
+    """More area that radiates no more for it; a housing that tells its area has a factor of its own."""
+    paths: dict[str, float] = {}
+    for name in roles.surfaces:
+        paths |= _alike(roles.scaled(name))
+        if f"{name}.A" in paths:
+            paths[f"{name}.emissivity"] = -1.0
+    return paths
+
+
+#: All groups. Of the foundation a card says nothing, so it has half of what convection has.
+GROUPS: tuple[Group, ...] = (
+    Group("mesh friction", "mu", 0.4, lambda r: _alike(r.scaled(*r.parts("teeth")))),
+    Group("bearing loss", "brg", 0.4, lambda r: _alike(r.scaled(*r.parts("bearing")))),
+    Group("seal loss", "seal", 0.5, lambda r: _alike(r.scaled(*r.parts("seal")))),
+    Group("churning", "seal", 0.5, lambda r: _alike(r.scaled(*r.having("churning"))), refilled=True),
+    Group("radiation", "rad", 0.6, _emissivity),
+    Group("oil to what turns", "gow", 0.6, _oil_inside, refilled=True),
+    Group("oil to other bodies", "gow", 0.6, _oil_outside, refilled=True),
+    Group("between bodies", "gwh", 0.6, lambda r: _alike(r.scaled(*r.contacts))),
+    Group("capacities", "cap", 0.5, lambda r: _alike(r.scaled(*r.inside, *r.outside, *r.having("bath")))),
+    Group("capacities inside", "cap", 0.5, lambda r: _alike(r.scaled(*r.inside))),
+    Group("coolers", "hconv", 0.7, lambda r: _alike(r.scaled(*r.coolers))),
+    Group("foundation", "hconv", 0.7, lambda r: _alike(r.scaled(*r.foundation)), share=0.5),
+    Group("convection", "hconv", 0.6, _convection),
+)
+
+
+def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mapping[str, float]) -> tuple[Nuisance, ...]:
+    """All groups that the machine has, each with its prior.
+
+    Args:
+        roles: of the machine
+        prior_sd: of the card: relative standard deviations by "mu", "PartType.parameter" or "part.parameter"
+        uncertainties: path -> standard uncertainty that the rig file states, in SI; what the card says counts more
+    """
+    base = {f"{p.name}.{key}": value for p in roles.spec.parts for key, value in p.values.items()}
+    kinds = {p.name: p.type for p in roles.spec.parts}
+
+    def sd_of(group: Group, path: str) -> float:
+        """Standard deviation of one parameter: the card's own, the rig file's, or that of the group."""
+        part, _, key = path.partition(".")
+        stated = uncertainties.get(path)
+        for known in (path, f"{kinds[part]}.{key}"):
+            if known in prior_sd:
+                return prior_sd[known]
+        if stated and group.key not in prior_sd:
+            return abs(stated / float(base[path]))
+        return group.share * prior_sd.get(group.key, DEFAULT_SD[group.key])
+
+    found: list[Nuisance] = []
+    for group in GROUPS:
+        signs = {path: sign for path, sign in group.paths(roles).items() if base.get(path) != 0.0}  # zero stays zero
+        # an emissivity that makes up for an area follows it
+        sds = {path: sd_of(group, path if sign > 0 else f"{path.partition('.')[0]}.A") for path, sign in signs.items()}
+        if signs:
+            most = max(sds.values())
+            exponents = {path: sign * (sds[path] / most if most else 1.0) for path, sign in signs.items()}
+            found.append(Nuisance(group.name, exponents, most, group.wide, group.refilled))
+    return tuple(found)
+
+
+def usual_priors(scenario: Scenario) -> dict[str, float]:
+    """Relative standard deviation by part type and parameter, and of single parts that differ from their type's.
+
+    Args:
+        scenario: the rig, whose stated uncertainties count
+    """
+    kinds = {part.name: part.type for part in scenario.spec.parts}
+    own: dict[str, float] = {}
+    for nuisance in nuisances(Roles.of(scenario.spec), {}, scenario.uncertainties):
+        for path, exponent in nuisance.paths.items():
+            if exponent > 0:
+                own.setdefault(path, float(f"{nuisance.sd * exponent:.4g}"))
+    found: dict[str, float] = {}
+    for path, sd in own.items():
+        part, _, key = path.rpartition(".")
+        if found.setdefault(f"{kinds[part]}.{key}", sd) != sd:
+            found[path] = sd
+    return found
