@@ -7,18 +7,20 @@ import pytest
 #: Files that take more than 10 s, the longest first. A parallel run hands out whole files in this order, then the rest:
 #: what a file's tests share is made once, and no processor waits at the end for a long file that began late.
 LONGEST = (
-    "challenge/test_hidden.py",
-    "fmu/test_operating_points.py",
-    "static/test_readme.py",
-    "diagnose/infer/test_logs.py",
     "tools/test_every_rig.py",
+    "static/test_readme.py",
+    "challenge/test_hidden.py",
+    "diagnose/infer/test_logs.py",
+    "fmu/test_every_parameter.py",
     "tools/test_docs.py",
     "diagnose/test_readings_and_logs.py",
     "fmu/test_duties.py",
     "diagnose/test_pages.py",
+    "fmu/test_operating_points.py",
     "diagnose/library/test_causes.py",
-    "static/test_package.py",
+    "fmu/test_cold_start.py",
     "diagnose/infer/test_looks.py",
+    "static/test_package.py",
 )
 
 

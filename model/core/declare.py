@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
+from functools import cache
 from typing import Any, ClassVar
 
 import casadi as ca
@@ -203,6 +204,12 @@ def declared(owner: type, kind: type) -> dict[str, Any]:
         owner: class of a component or port
         kind: class of the declarations
     """
+    return dict(_declared(owner, kind))
+
+
+@cache
+def _declared(owner: type, kind: type) -> dict[str, Any]:
+    """The same, looked for once a class: rigs make thousands of parts of the same few classes."""
     found: dict[str, Any] = {}
     for base in reversed(owner.__mro__):
         found.update(vars(base))

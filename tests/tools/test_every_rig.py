@@ -1,7 +1,9 @@
 """Every shipped rig through every command, at its own operating point."""
 
 import csv
+from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,26 +29,44 @@ def rig(request: pytest.FixtureRequest) -> str:
     return str(request.param)
 
 
-def test_steady_losses_and_show(gearheat, rig: str) -> None:
-    found = gearheat("steady", rig, "--json", "-").json
+@pytest.fixture(scope="module")
+def told() -> dict[tuple[str, str], dict[str, Any]]:
+    """What commands without options have told of a rig, by both."""
+    return {}
+
+
+@pytest.fixture
+def json_of(gearheat, rig: str, told) -> Callable[[str], dict[str, Any]]:
+    """What a command without options tells of the rig; asked once."""
+
+    def answer(command: str) -> dict[str, Any]:
+        if (command, rig) not in told:
+            told[command, rig] = gearheat(command, rig, "--json", "-").json
+        return told[command, rig]
+
+    return answer
+
+
+def test_steady_losses_and_show(gearheat, rig: str, json_of) -> None:
+    found = json_of("steady")
     assert found["energy_residual"] < 1e-6
     losses = gearheat("losses", rig, "--json", "-")
     assert losses.code == 0 and losses.json["rows"], losses.err
-    shown = gearheat("show", rig, "--json", "-").json
+    shown = json_of("show")
     assert shown["rig"] == rig and shown["no_steady_state"] == []
     assert gearheat("show", rig, "--errata").code == 0
 
 
-def test_design_gives_the_target_back(gearheat, rig: str) -> None:
+def test_design_gives_the_target_back(gearheat, rig: str, json_of) -> None:
     """The room that makes the warmest body 2 K warmer than it is, or without bodies the speed that gives an output."""
-    before = gearheat("steady", rig, "--json", "-").json
+    before = json_of("steady")
     bodies = {name: before["values"][name] for name in before["states"] if before["units"][name] == "degC"}
     if bodies:
         name = max(bodies, key=bodies.__getitem__)
         free, target, unit = "room.T", bodies[name] + 2.0, "degC"
         assert (free in before["inputs"]) or pytest.skip("the room of this rig is not given")
     else:
-        shown = gearheat("show", rig, "--json", "-").json
+        shown = json_of("show")
         (free,) = [q["name"] for q in shown["inputs"] if q["name"].endswith(".w")]
         name = next(q["name"] for q in shown["outputs"] if q["unit"] in ("um", "m", "mm"))
         unit = before["units"][name]
@@ -58,8 +78,8 @@ def test_design_gives_the_target_back(gearheat, rig: str) -> None:
     assert after["values"][name] == pytest.approx(target, rel=1e-5)
 
 
-def test_sweep_agrees_with_steady(gearheat, rig: str, tmp_path: Path) -> None:
-    inputs = gearheat("show", rig, "--json", "-").json["inputs"]
+def test_sweep_agrees_with_steady(gearheat, rig: str, json_of, tmp_path: Path) -> None:
+    inputs = json_of("show")["inputs"]
     speed = next(q for q in inputs if q["name"].endswith(".w"))
     low, high = sorted((0.8 * speed["value"], speed["value"]))
     out = tmp_path / "sweep.csv"
@@ -67,7 +87,7 @@ def test_sweep_agrees_with_steady(gearheat, rig: str, tmp_path: Path) -> None:
     found = gearheat("sweep", rig, "--vary", vary, "--grid", "3", "-o", out, "--json", "-")
     assert found.code == 0, found.err
     table = columns(out)
-    steady = gearheat("steady", rig, "--json", "-").json
+    steady = json_of("steady")
     row = int(np.argmin(np.abs(next(v for k, v in table.items() if k.startswith(speed["name"])) - speed["value"])))
     for name, value in steady["values"].items():
         column = next((v for k, v in table.items() if k.partition(" [")[0] == name), None)
@@ -75,11 +95,11 @@ def test_sweep_agrees_with_steady(gearheat, rig: str, tmp_path: Path) -> None:
             assert column[row] == pytest.approx(value, rel=1e-5, abs=1e-6), name
 
 
-def test_a_warm_up_in_fmpy_is_that_of_simulate(gearheat, rig: str, tmp_path: Path) -> None:
+def test_a_warm_up_in_fmpy_is_that_of_simulate(gearheat, rig: str, json_of, tmp_path: Path) -> None:
     fmu, duty, out = tmp_path / "rig.fmu", tmp_path / "duty.csv", tmp_path / "out.csv"
     assert gearheat("export", "--platform", "host", rig, "-o", fmu).code == 0
     assert validate_fmu(str(fmu)) == []
-    inputs = gearheat("show", rig, "--json", "-").json["inputs"]
+    inputs = json_of("show")["inputs"]
     line = ",".join(repr(q["value"]) for q in inputs)
     duty.write_text(
         "time [s]," + ",".join(f"{q['name']} [{q['unit']}]" for q in inputs) + f"\n0,{line}\n{END},{line}\n"

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from typing import Any
 
 from ...model.core.declare import Choice, Parameter, declared
@@ -160,7 +160,7 @@ def laws(flat: FlatModel) -> list[dict[str, Any]]:
 
 def errata_of(scenario: Scenario) -> list[dict[str, str]]:
     """The places where the rig's sources are wrong."""
-    return [e.model_dump() for e in scenario.errata]
+    return [asdict(e) for e in scenario.errata]
 
 
 def _line(q: Quantity) -> dict[str, Any]:
