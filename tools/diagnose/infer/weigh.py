@@ -21,9 +21,9 @@ from .draws import correction
 from .evidence import WIDTHS, White
 from .fit import Fit, bounds, fitted
 from .found import Extra, Found, Hypothesis
-from .prior import Prior
+from .prior import GROSS, Prior
 from .problem import Acting, Aside, Problem
-from .terms import Term, gross, remainders, sizes, spreads
+from .terms import ERRORS, Term, gross, remainders, sizes, spreads
 
 #: Linearisations at most: as calibrated, as the file or the healthy campaign says, and at the best hypotheses.
 LOOKS = 4
@@ -45,13 +45,13 @@ QUICK = 3
 FIRST = 2.0
 
 Progress = Callable[[str, float], None]
-#: What tells sets apart: forms of the causes, terms that scatter.
-_Key = tuple[frozenset[Formula], frozenset[str]]
+#: What tells sets apart: forms of the causes, terms that scatter, readings that are gross.
+_Key = tuple[frozenset[Formula], frozenset[str], frozenset[Aside]]
 
 
 @dataclass(frozen=True, eq=False)
 class _Combination:
-    """Sets of terms with the same forms and the same scatters, and the likeliest of them."""
+    """Sets of terms with the same forms, scatters and gross readings, and the likeliest of them."""
 
     key: _Key
     best: sets.TermSet
@@ -118,8 +118,7 @@ class _Weighing:
 
     def run(self, wanted: Collection[str]) -> Found:
         """Everything."""
-        nothing: _Key = (frozenset(), frozenset())
-        self.hypotheses[nothing] = Hypothesis((), self.null, self.null.evidence + self.critical)
+        self._keep((frozenset(), frozenset(), self.problem.aside), self.null, (), {})
         self._fit_alone(wanted)
         for k in range(LOOKS if self.p_any < QUIET else 1):
             best = max(self.hypotheses.values(), key=lambda h: h.log_joint).fit
@@ -185,15 +184,13 @@ class _Weighing:
         n = ALONE if self.p_any < QUIET else QUIET_ALONE
         for k in [*list(best.values())[:n], *(best[c] for c in wanted if c in best)]:
             formula = self.formulas[k]
-            key: _Key = (frozenset([formula]), frozenset())
-            if key not in self.hypotheses:
-                start = self.first.start(k)
+            start, own = self.first.start(k), np.flatnonzero([f.cause.id == formula.cause.id for f in self.formulas])
+            logs = {self.formulas[i].form.name: float(value[i]) for i in own}
+            for aside in {self.problem.aside, self.whole.aside}:
                 with suppress(SolveError):
                     z, _ = self.null.moved(self.problem, start.effect)
-                    fit = fitted(self.problem, [start.acting], z, self.null.noise.scales)
-                    own = np.flatnonzero([f.cause.id == formula.cause.id for f in self.formulas])
-                    logs = {self.formulas[i].form.name: float(value[i]) for i in own}
-                    self._keep(key, fit, (), {formula.cause.id: logs})
+                    fit = fitted(self.whole.without(aside), [start.acting], z, self.null.noise.scales)
+                    self._keep((frozenset([formula]), frozenset(), aside), fit, (), {formula.cause.id: logs})
 
     def _fit_sets(self, found: Sequence[sets.TermSet], near: Fit, share: float) -> None:
         """Fits the likeliest sets with the forms, scatters and starts that they promise."""
@@ -218,14 +215,15 @@ class _Weighing:
     def _key(self, s: sets.TermSet) -> _Key:
         terms = self.linear.terms
         forms = [t.formula for k in s.members if (t := terms[k]).formula is not None]
-        return frozenset(forms), frozenset(terms[k].label for k, _ in s.scatter.beside)
+        aside = self.whole.aside | _aside(terms, s)
+        return frozenset(forms), frozenset(terms[k].label for k, _ in s.scatter.beside), aside
 
     def _forms(self, own: _Combination, all_: Iterable[_Combination]) -> dict[str, dict[str, float]]:
-        """Cause -> form -> log weight, over the combinations with the same causes and scatters."""
+        """Cause -> form -> log weight, over the combinations that differ in their forms alone."""
         causes = {f.cause.id for f in own.key[0]}
         logs: dict[str, dict[str, float]] = {c: {} for c in causes}
         for other in all_:
-            if other.key[1] == own.key[1] and {f.cause.id for f in other.key[0]} == causes:
+            if other.key[1:] == own.key[1:] and {f.cause.id for f in other.key[0]} == causes:
                 for f in other.key[0]:
                     known = logs[f.cause.id].get(f.form.name, -np.inf)
                     logs[f.cause.id][f.form.name] = float(np.logaddexp(known, other.log))
@@ -245,7 +243,7 @@ class _Weighing:
         z, t = np.clip(J.T @ a, -6.0, 6.0), v * (G.T @ a)
         acting = [_started(terms[k], x) for k, x in zip(s.members, t, strict=True) if terms[k].formula is not None]
         extra = tuple(term.scatter(width) for term, width in scatters)
-        problem = self.problem.beside(extra)
+        problem = self.whole.without(own.key[2]).beside(extra)
         fit = fitted(problem, acting, z, np.array(s.scatter.scales))
         extras = tuple(
             Extra(t.name, t.formula.form.name, w, (), t.columns, float(np.log(t.formula.form.weight)))
@@ -256,20 +254,35 @@ class _Weighing:
         self._keep(own.key, fit, extras, forms)
 
     def _keep(self, key: _Key, fit: Fit, extras: tuple[Extra, ...], forms: dict[str, dict[str, float]]) -> None:
-        """A fitted hypothesis with its log joint probability; forms that were not fitted count as they look."""
+        """A fitted hypothesis with its log joint probability."""
         acting = [a.formula for a in fit.look.acting]
         causes = (*(f.cause.id for f in acting), *(e.cause for e in extras if e.cause))
         log = fit.evidence + sum(float(np.log(f.form.weight)) for f in acting)
         log += sum(e.log_prior for e in extras)
         log += self.prior(causes) if causes else self.critical
-        for own in forms.values():
-            log += float(logsumexp(list(own.values())) - max(own.values()))
+        log += len(key[2] - self.whole.aside) * float(np.log(GROSS * Problem.FAR / ERRORS[1]))
         self.hypotheses[key] = Hypothesis(causes, fit, float(log), extras, forms)
+
+    def _with_forms(self) -> list[Hypothesis]:
+        """All hypotheses; with the best of those that differ in their forms alone, forms that were not fitted count."""
+        alike: dict[tuple[object, ...], list[Hypothesis]] = {}
+        for key, h in self.hypotheses.items():
+            alike.setdefault((frozenset(h.causes), *key[1:]), []).append(h)
+        found = []
+        for own in alike.values():
+            own.sort(key=lambda h: -h.log_joint)
+            best, log = own[0], own[0].log_joint
+            for a in best.fit.look.acting:
+                logs, known = best.forms.get(a.id, {}), {_form(h, a.id) for h in own}
+                more = [value - logs[_form(best, a.id)] for name, value in logs.items() if name not in known]
+                log += float(np.log1p(np.exp(np.minimum(more, 0.0)).sum()))
+            found += [replace(best, log_joint=log), *own[1:]]
+        return found
 
     def _weighed(self) -> Found:
         """All hypotheses with their probabilities, the leading ones corrected by draws of the exact model."""
         self.progress("draws of the exact model", 0.9)
-        found, done = list(self.hypotheses.values()), set[int]()
+        found, done = self._with_forms(), set[int]()
         while True:
             best = max(h.log_joint for h in found)
             near = [k for k, h in enumerate(found) if k not in done and h.log_joint >= best - NEAR]
@@ -280,6 +293,7 @@ class _Weighing:
                 found[k] = replace(found[k], log_joint=found[k].log_joint + by.log, error=by.error)
             done.update(near)
         found.sort(key=lambda h: -h.log_joint)
+        self.problem = self.whole.without(next(key[2] for key, h in self.hypotheses.items() if h.fit is found[0].fit))
         logs = np.array([h.log_joint for h in found])
         _, e = self.null.linear(self.problem)
         return Found(
@@ -300,6 +314,11 @@ class _Weighing:
 def _aside(terms: Sequence[Term], leader: sets.TermSet) -> frozenset[Aside]:
     """The gross readings of a set."""
     return frozenset(a for k in leader.members if (a := terms[k].aside) is not None)
+
+
+def _form(h: Hypothesis, cause: str) -> str:
+    """Name of the form that a cause has in a hypothesis."""
+    return next(a.formula.form.name for a in h.fit.look.acting if a.id == cause)
 
 
 def _as_fitted(acting: Acting, column: np.ndarray, prior: Prior) -> Term:
