@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import casadi as ca
@@ -13,7 +13,7 @@ from ....model.parts.free_form import step
 from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size, Theta, Values
 from .extras import Extras
-from .forms import SIDE, Context, Regime, shared
+from .forms import SIDE, Context, Regime, declared, linear, one_or_all, weighed
 
 AIR = "moving air: a better coefficient and faster air are one answer"
 DAYS = "day to day: humidity and other scatter of the days are one answer unless humidity is measured"
@@ -34,7 +34,7 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
     at = Context(roles, ranges, sensors)
     if roles.surfaces:
         yield air(at)
-        yield emissivity(roles)
+        yield emissivity(at)
     if roles.room and (roles.foundation or roles.surfaces):
         yield foundation(at)
     if roles.contacts:
@@ -44,37 +44,27 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
     if roles.surfaces and "humidity" in ranges.known:
         yield humidity(at)
     if roles.coolers:
-        yield cooler(roles)
+        yield cooler(at)
     if roles.thermostats or roles.switches:
-        yield thermostat(roles, ranges)
-    if roles.surfaces:
-        yield fan(roles)
-
-
-def factors(paths: Sequence[str], size: str) -> Callable[[Theta, Row], Values]:
-    """Values times the exponential of the size.
-
-    Args:
-        paths: of the values
-        size: its name
-    """
-
-    def values(theta: Theta, row: Row) -> Values:
-        return {path: row.base[path] * ca.exp(theta[size]) for path in paths}
-
-    return values
-
-
-def each(roles: Roles, parts: Sequence[str], size: str) -> tuple[Form, ...]:
-    """Factors on what all parts do together, and on what each of several does.
-
-    Args:
-        roles: of the machine
-        parts: their names
-        size: name of the factor's logarithm
-    """
-    return shared(
-        [(parts, factors(roles.scaled(*parts), size))], [((p,), factors(roles.scaled(p), size)) for p in parts]
+        yield thermostat(at)
+    yield from declared(
+        at,
+        "cooling.fan",
+        "A fan moves less or more air than stated: it stands still, slips, is dirty, or blows beside the housing.",
+        Size("factor", "1", "relative change of the flow of the fan", 0.5, -1.0, 1.5),
+        "the speed of the air measured; the fan switched off at one point",
+        ("T", "room", "direction", "order"),
+        AIR,
+        acts_on="rise",
+    )
+    yield from declared(
+        at,
+        "cooling.oil_flow",
+        "Less or more oil circulates: a pump that is worn, a filter that is clogged, a nozzle that is blocked.",
+        Size("ln_factor", "1", "logarithm of the factor on the flow", 0.5, -3.0, 1.5),
+        "the pressure behind the pump and the filter",
+        ("T", "order"),
+        acts_on="rise",
     )
 
 
@@ -89,27 +79,22 @@ def air(at: Context) -> Cause:
         id="cooling.air",
         doc="More or less convection: draught, a cover, a fan.",
         size=at.conductance("conductance to the air more than assumed", 0.14, -0.45, 1.15),
-        forms=Extras("air", at).conductors(ports, shapes, at.regimes(("T", "direction", "order"))),
+        forms=Extras("air", at).conductors(ports, shapes, at.regimes(("T", "room", "direction", "order"))),
         exposes="a fan switched on and off at one point; a cold room",
         like=AIR,
         acts_on="rise",
     )
 
 
-def emissivity(roles: Roles) -> Cause:
+def emissivity(at: Context) -> Cause:
     """A surface that radiates differently."""
-
-    def values(names: Sequence[str]) -> Callable[[Theta, Row], Values]:
-        paths = [f"{name}.emissivity" for name in names]
-        return lambda theta, row: {path: row.base[path] * (1 + theta["factor"]) for path in paths}
-
-    brightest = max(float(roles.spec.part(name).values["emissivity"]) for name in roles.surfaces)
-    single = [((name,), values([name])) for name in roles.surfaces]
+    surfaces = at.roles.surfaces
+    brightest = max(float(at.roles.spec.part(name).values["emissivity"]) for name in surfaces)
     return Cause(
         id="cooling.emissivity",
         doc="Another emissivity: bare metal instead of paint, dust, a shiny cover.",
         size=Size("factor", "1", "relative change of the emissivity", 0.35, -0.95, max(1 / brightest - 1, 0.02)),
-        forms=shared([(roles.surfaces, values(roles.surfaces))], single),
+        forms=one_or_all({name: [f"{name}.emissivity"] for name in surfaces}, "factor", at, law=linear),
         exposes="a cold room; a painted patch",
         acts_on="rise",
     )
@@ -141,7 +126,7 @@ def contact(at: Context) -> Cause:
 
         def changed(theta: Theta, row: Row) -> Values:
             R = theta["R"] * ca.exp(theta["e"] * (row.rise / ranges.rise - 1))
-            R = R if limit is None else R * limit.share(theta, row) * limit.by_rise(theta, row, ranges)
+            R = R if limit is None else R * limit.gate(theta, row, ranges)
             return {path: row.base[path] / smooth_abs(1 + R * G, 0.05) * smooth_abs(1.0, 0.05) for path in paths}
 
         words = (name if len(roles.contacts) > 1 else "", limit.name if limit else "")
@@ -176,22 +161,23 @@ def oil_wall(at: Context) -> Cause:
     roles, speed = at.roles, at.first("speed")
     shapes = (Shape("c", "1", "exponent of the speed in that logarithm", -0.8, 0.8, 0.0, 0.3),)
 
-    def values(names: Sequence[str]) -> Callable[[Theta, Row], Values]:
+    def form(names: Sequence[str], words: str = "") -> Form:
         paths = roles.scaled(*names)
 
         def changed(theta: Theta, row: Row) -> Values:
             log = theta["ln_factor"] * at.by_speed(row, theta, "c")
             return {path: row.base[path] * ca.exp(3 * ca.tanh(log / 3)) for path in paths}
 
-        return changed
+        return Form(words, shapes=shapes if speed else (), values=changed)
 
-    together = [(names, values(names)) for names in dict.fromkeys((roles.wetted, roles.oil_side)) if names]
-    single = [((name,), values((name,))) for name in roles.oil_side if (name,) != roles.wetted]
+    groups = [names for names in dict.fromkeys((roles.wetted, roles.oil_side)) if names]
+    together = [form(names, ", ".join(names) if k else "") for k, names in enumerate(groups)]
+    single = [form((name,), name) for name in roles.oil_side if (name,) != roles.wetted]
     return Cause(
         id="cooling.oil_wall",
         doc="Another conductance between oil and bodies: level, foam, deposits.",
         size=Size("ln_factor", "1", "logarithm of the factor on the conductance", 0.5, -3.0, 2.2),
-        forms=shared(together, single, shapes if speed else ()),
+        forms=weighed(together, single),
         exposes="transients; a second probe in the wall",
         acts_on=speed,
     )
@@ -218,25 +204,28 @@ def humidity(at: Context) -> Cause:
     )
 
 
-def cooler(roles: Roles) -> Cause:
+def cooler(at: Context) -> Cause:
     """A cooler that takes less or more."""
+    groups = {name: at.roles.scaled(name) for name in at.roles.coolers}
     return Cause(
         id="cooling.cooler",
         doc="Another conductance of a cooler: fouled on the air or the oil side, less flow.",
         size=Size("ln_factor", "1", "logarithm of the factor on the conductance", 0.4, -4.0, 1.5),
-        forms=each(roles, roles.coolers, "ln_factor"),
+        forms=one_or_all(groups, "ln_factor", at, ("room", "order")),
         exposes="inlet and outlet temperatures of the cooler on both sides",
         acts_on="rise",
     )
 
 
-def thermostat(roles: Roles, ranges: Ranges) -> Cause:
+def thermostat(at: Context) -> Cause:
     """A thermostat that keeps another temperature, or is stuck."""
+    roles, ranges = at.roles, at.ranges
     keeps: dict[str, tuple[str, ...]] = {name: (f"{name}.dT",) for name in roles.thermostats}
     keeps |= {name: (f"{name}.T_open", f"{name}.T_close") for name in roles.switches}
 
-    def values(names: Sequence[str]) -> Callable[[Theta, Row], Values]:
-        return lambda theta, row: {path: row.base[path] + theta["dT"] for n in names for path in keeps[n]}
+    def kept(names: Sequence[str], words: str = "") -> Form:
+        paths = [path for name in names for path in keeps[name]]
+        return Form(words, values=lambda theta, row: {path: row.base[path] + theta["dT"] for path in paths})
 
     opened = [name for name in roles.coolers if roles.nets.classes[name].role == "cooler"]
 
@@ -248,7 +237,7 @@ def thermostat(roles: Roles, ranges: Ranges) -> Cause:
         return found | {f"{n}.G_open": G * left for n, G in whole.items()}
 
     span, names = ranges.rise, tuple(keeps)
-    forms = shared([(names, values(names))], [((n,), values((n,))) for n in names])
+    forms = weighed([kept(names)], [kept((name,), name) for name in names])
     if opened:
         forms = tuple(replace(f, weight=0.7 * f.weight) for f in forms)
         forms += (Form("stuck part open, or part closed", 0.3, values=stuck),)
@@ -258,17 +247,4 @@ def thermostat(roles: Roles, ranges: Ranges) -> Cause:
         size=Size("dT", "K", "temperature kept less that set", 0.1 * span, -0.8 * span, 0.8 * span),
         forms=forms,
         exposes="a probe where the thermostat measures; the set point moved",
-    )
-
-
-def fan(roles: Roles) -> Cause:
-    """Air that is faster or slower than stated."""
-    return Cause(
-        id="cooling.fan",
-        doc="The air along the surfaces is faster or slower than stated: a fan that fails, ducts, a draught.",
-        size=Size("ln_factor", "1", "logarithm of the factor on the speed of the air", 0.5, -4.0, 2.5),
-        forms=(Form(values=factors([f"{room}.k_air" for room in roles.having("room")], "ln_factor")),),
-        exposes="the speed of the air measured; the fan switched off at one point",
-        like=AIR,
-        acts_on="rise",
     )

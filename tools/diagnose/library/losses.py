@@ -17,7 +17,7 @@ from ....model.machines.roles import Place, Roles
 from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Ranges, Row, Shape, Size, Small, Theta, Values
 from .extras import Extras
-from .forms import INNER_SHARE, Changes, Context, Regime, oil_share, shared
+from .forms import INNER_SHARE, Context, Regime, declared, oil_share, weighed
 
 NO_LOAD = "no-load oil loss: churning, windage and oil level differ only in how the oil is reached"
 SHAFTS = "friction of shafts: preload and seal drag are the same torque to every steady instrument"
@@ -49,6 +49,7 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
         yield oil_viscosity(at)
     if bearings := roles.places["bearing"]:
         yield bearing_preload(at, bearings)
+    yield from rubbing(at)
     if seals := roles.places["seal"]:
         yield seal_drag(at, seals)
     if teeth := roles.places["teeth"]:
@@ -129,7 +130,7 @@ def oil_viscosity(at: Context) -> Cause:
         fed = [place for place in places if at.roles.at(place.lubricant, "bath") in names]
         return at.roles.scaled(*(part for place in fed for part in place.parts))
 
-    def values(names: Sequence[str]) -> Changes:
+    def form(names: Sequence[str], words: str = "") -> Form:
         beside = {"friction": users(names, "teeth"), "drag": users(names, "bearing", "seal")}
         beside["stir"] = at.roles.scaled(*at.roles.oil_side) if at.roles.bath in names else ()
 
@@ -139,7 +140,7 @@ def oil_viscosity(at: Context) -> Cause:
             shares |= {path: theta[key] for key, paths in beside.items() for path in paths}
             return {path: row.base[path] * ca.exp(theta["ln_factor"] * share) for path, share in shares.items()}
 
-        return thicker
+        return Form(words, shapes=shapes, values=thicker)
 
     shapes = (
         Shape("slope", "1", "relative difference of that logarithm between 100 and 40 degC", -0.9, 0.9, 0.0, 0.4),
@@ -153,7 +154,7 @@ def oil_viscosity(at: Context) -> Cause:
         id="losses.oil_viscosity",
         doc="The oil is thicker or thinner than assumed; it acts on all that the oil wets.",
         size=Size("ln_factor", "1", "logarithm of the factor on the viscosity", 0.4, -1.6, 1.6),
-        forms=shared([(baths, values(baths))], [((bath,), values((bath,))) for bath in baths], shapes),
+        forms=weighed([form(baths)], [form((bath,), bath) for bath in baths]),
         exposes="a viscosity measurement of a sample; a warm-up from cold",
         acts_on=at.first("oil_temp"),
     )
@@ -163,6 +164,23 @@ def _rubbing(forms: Iterable[Form]) -> tuple[Form, ...]:
     """The same; those that set in at a speed, a load or a temperature only add: something begins to rub there."""
     onsets = tuple(Regime.WORDS.values())
     return tuple(replace(f, only_adds=f.regime.get("quantity", "").startswith(onsets)) for f in forms)
+
+
+def rubbing(at: Context) -> Iterator[Cause]:
+    """Parts whose whole friction is larger or smaller, whatever they carry."""
+    factor = Size("ln_factor", "1", "logarithm of the factor on the friction", 0.5, -1.5, 2.5)
+    doc = "Friction of bearings, with their load, is larger or smaller: dirt, wear, damage, another cage or clearance."
+    exposes = "temperature or noise at the bearings; another load at one speed"
+    speed = at.first("speed")
+    yield from declared(at, "losses.bearing_friction", doc, factor, exposes, ("order",), SHAFTS, acts_on=speed)
+    doc = "The preload of a pair of bearings is not that set, or it settles."
+    size = Size("ln_factor", "1", "logarithm of the factor on the preload", 0.5, -3.0, 2.5)
+    exposes = "drag torque measured by hand; points at two temperatures of the shaft"
+    yield from declared(at, "losses.pair_preload", doc, size, exposes, ("order",), SHAFTS, acts_on=speed)
+    doc = "A clutch or brake drags more or less where it is open."
+    yield from declared(
+        at, "losses.clutch_drag", doc, factor, "a run with the clutch taken out", ("order",), acts_on=speed
+    )
 
 
 def bearing_preload(at: Context, places: Sequence[Place]) -> Cause:
@@ -263,7 +281,8 @@ def film_starvation(at: Context, places: Sequence[Place]) -> Cause:
     wet, varies = all(place.lubricant for place in places), at.ranges.varies
     kinds: list[Form] = []
     if wet:
-        kinds += extras.losses(places, (film, *shapes), weight=STARVED[0], as_keys=thin)
+        thinned = extras.losses(places, (film, *shapes), as_keys=thin)
+        kinds += [replace(form, weight=STARVED[0] * form.weight) for form in thinned]
     if wet and varies("film"):
         kinds.append(replace(extras.with_parts(made, shapes, Regime("film", above=False)), weight=STARVED[1]))
     if varies("w") or not kinds:

@@ -10,8 +10,8 @@ from ....model.laws.smooth import smooth_max
 from ....model.machines.roles import Roles
 from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
-from .cooling import DAYS, factors
-from .forms import COURSES
+from .cooling import DAYS
+from .forms import COURSES, factors
 
 #: What early readings are a share of where they are early by a time [s].
 EARLY = 7200.0

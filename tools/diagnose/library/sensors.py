@@ -38,6 +38,7 @@ class Kind:
         share, most: share of the typical reading (of the oil's rise, for thermometers) that an error usually is at
             least, and at most
         gain, gain_most: the same for an error of the gain
+        least: what an error usually is at least, whatever is typical [unit]
         calibrate: what shows its offset and gain
     """
 
@@ -48,6 +49,7 @@ class Kind:
     most: float
     gain: float
     gain_most: float
+    least: float
     calibrate: str
 
 
@@ -55,12 +57,12 @@ BATH = "all probes in one bath at two temperatures; readings at rest in a room o
 TARE = "a tare with the shafts uncoupled; a calibration with a lever arm; points at small load"
 REPEAT = "the first point repeated at the end; a check of the zero before each test"
 KINDS: Mapping[str, Kind] = {
-    "oil_temp": Kind("oil probe", "K", 4.0, 0.03, 0.4, 0.03, 0.3, BATH),
-    "wall_temp": Kind("probe on a body", "K", 4.0, 0.03, 0.4, 0.03, 0.3, BATH),
-    "ambient": Kind("room probe", "K", 5.0, 0.035, 0.4, 0.03, 0.3, BATH),
-    "torque": Kind("torque transducer", "N.m", 2.0, 0.003, 0.03, 0.003, 0.03, TARE),
-    "speed": Kind("speed reading", "rad/s", 2.0, 0.01, 0.1, 0.04, 0.15, "a stroboscope"),
-    "power": Kind("power meter", "W", 2.0, 0.005, 0.05, 0.01, 0.1, "a second power meter"),
+    "oil_temp": Kind("oil probe", "K", 4.0, 0.03, 0.4, 0.03, 0.3, 1.0, BATH),
+    "wall_temp": Kind("probe on a body", "K", 4.0, 0.03, 0.4, 0.03, 0.3, 1.0, BATH),
+    "ambient": Kind("room probe", "K", 5.0, 0.035, 0.4, 0.03, 0.3, 1.0, BATH),
+    "torque": Kind("torque transducer", "N.m", 2.0, 0.003, 0.03, 0.003, 0.03, 1e-9, TARE),
+    "speed": Kind("speed reading", "rad/s", 2.0, 0.01, 0.1, 0.04, 0.15, 1e-9, "a stroboscope"),
+    "power": Kind("power meter", "W", 2.0, 0.005, 0.05, 0.01, 0.1, 1e-9, "a second power meter"),
 }
 #: Stable identifiers that are not named as the others.
 NAMES = {"sensor.ambient.offset": "sensor.ambient.bias", "sensor.torque.since": "sensor.torque.step"}
@@ -133,7 +135,7 @@ class _Instruments:
             signed: whether it may be negative; no standard deviation is
         """
         offset, kind = max(s.offset_sd / max(self.scale[s.name], 0.1) for s in self.own), self.kind
-        sd = share * max(kind.tolerance * offset, kind.share * self.typical, 1e-9)
+        sd = share * max(kind.tolerance * offset, kind.share * self.typical, kind.least)
         high = max(kind.most * self.typical, 8 * sd)
         larger = "" if len(set(self.scale.values())) == 1 else ", of the one that reads most, others in proportion"
         return Size("error", kind.unit, doc + larger, sd, -high if signed else 0.0, high)

@@ -13,8 +13,7 @@ from ....model.machines.spec import PartSpec
 from ....model.parts.free_form import step
 from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
-from .cooling import factors
-from .forms import Context
+from .forms import Context, factors
 from .heat import bodies
 
 #: A body gives no more than this share of its capacity.
