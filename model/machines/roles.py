@@ -192,8 +192,9 @@ class Roles:
         place = {name: p.name for found in self.places.values() for p in found for name in p.parts}
         failing: dict[str, dict[str, float]] = {}
         for p in self.spec.parts:
-            for key, exponent in faults_of(self.spec.types[p.type]).get(cause, {}).items():
-                if self.value(path := f"{p.name}.{key}"):  # nothing is no part of it
+            kind = self.spec.types[p.type]
+            for key, exponent in faults_of(kind).get(cause, {}).items():
+                if key in declared(kind, Parameter) and self.value(path := f"{p.name}.{key}"):
                     failing.setdefault(place.get(p.name, p.name), {})[path] = exponent
         return failing
 
@@ -293,7 +294,8 @@ class _Nets:
 
     def shaft(self) -> str:
         """The shaft end or clutch of which the torque is given, or else the speed."""
-        readers = [p for p in self.spec.parts if p.name in self.of("shaft_end", "clutch")]
+        able = {name for name in self.of("shaft_end", "clutch") if declared(self.classes[name], ShaftReading)}
+        readers = [p for p in self.spec.parts if p.name in able]
         if not readers:
             raise ScenarioError(
                 f"{self.spec.name}: there is no shaft end, so nothing says how it turns. Add a ShaftEnd."

@@ -109,7 +109,7 @@ class OilToHousing(Component):
 
     role: ClassVar[str] = "conductor"
     scale: ClassVar[tuple[str, ...]] = ("h",)
-    faults: ClassVar[Faults] = {"cooling.oil_wall": {"h": 1.0}}
+    faults: ClassVar[Faults] = {"cooling.oil_wall": {}}
 
     oil = HeatPort()
     flat = HeatPort()

@@ -51,7 +51,7 @@ def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[
         at,
         "cooling.fan",
         "A fan moves less or more air than stated: it stands still, slips, is dirty, or blows beside the housing.",
-        Size("factor", "1", "relative change of the flow of the fan", 0.5, -1.0, 1.5),
+        Size("ln_factor", "1", "logarithm of the factor on the flow; -3 and less: it stands", 0.8, -4.0, 1.5),
         "the speed of the air measured; the fan switched off at one point",
         ("T", "room", "direction", "order"),
         AIR,

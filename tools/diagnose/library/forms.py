@@ -304,9 +304,9 @@ def declared(
 
     Args:
         at: what it is made for
-        cause, doc, size, exposes, like, acts_on: of it; a size named "factor" adds to 1, others are logarithms
+        cause, doc, size, exposes, like, acts_on: of it; the size is a logarithm
         quantities: of its regimes
     """
     if groups := at.roles.failing(cause):
-        forms = one_or_all(groups, size.name, at, quantities, linear if size.name == "factor" else ca.exp)
+        forms = one_or_all(groups, size.name, at, quantities)
         yield Cause(cause, doc, size, forms, exposes, like, acts_on)
