@@ -8,10 +8,8 @@ from dataclasses import replace
 import casadi as ca
 
 from ....model.laws.smooth import smooth_abs
-from ....model.machines.roles import Roles
 from ....model.parts.free_form import step
-from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Ranges, Row, Shape, Size, Theta, Values
+from .cause import Cause, Form, Row, Shape, Size, Theta, Values
 from .extras import Extras
 from .forms import SIDE, Context, Regime, declared, linear, one_or_all, weighed
 
@@ -23,29 +21,26 @@ HUMIDITY_SPAN = 0.15
 HUMIDITY = 0.5
 
 
-def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
+def causes(at: Context) -> Iterator[Cause]:
     """All causes of the family that the machine's parts allow.
 
     Args:
-        roles: of the machine
-        ranges: of the data
-        sensors: of the campaign
+        at: machine, data and instruments
     """
-    at = Context(roles, ranges, sensors)
-    if roles.surfaces:
+    if at.roles.surfaces:
         yield air(at)
         yield emissivity(at)
-    if roles.room and (roles.foundation or roles.surfaces):
+    if at.roles.room and (at.roles.foundation or at.roles.surfaces):
         yield foundation(at)
-    if roles.contacts:
+    if at.roles.contacts:
         yield contact(at)
-    if roles.oil_side:
+    if at.roles.oil_side:
         yield oil_wall(at)
-    if roles.surfaces and "humidity" in ranges.known:
+    if at.roles.surfaces and "humidity" in at.ranges.known:
         yield humidity(at)
-    if roles.coolers:
+    if at.roles.coolers:
         yield cooler(at)
-    if roles.thermostats or roles.switches:
+    if at.roles.thermostats or at.roles.switches:
         yield thermostat(at)
     yield from declared(
         at,

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 from ....model.machines.roles import Roles
-from ....scenarios.measured.table import Sensor
-from .cause import Cause, Mostly, Ranges, Shape, Small
+from .cause import Cause, Mostly, Shape, Small
 from .extras import Extras
 from .forms import Context, weighed
 
@@ -15,17 +14,14 @@ from .forms import Context, weighed
 STANDS = 0.05
 
 
-def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
+def causes(at: Context) -> Iterator[Cause]:
     """All causes of the family.
 
     Args:
-        roles: of the machine
-        ranges: of the data
-        sensors: of the campaign
+        at: machine, data and instruments
     """
-    at = Context(roles, ranges, sensors)
     yield external_source(at)
-    if "logs" in ranges.known:
+    if "logs" in at.ranges.known:
         yield parked(at)
 
 

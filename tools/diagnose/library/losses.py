@@ -13,9 +13,8 @@ from dataclasses import replace
 
 import casadi as ca
 
-from ....model.machines.roles import Place, Roles
-from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Ranges, Row, Shape, Size, Small, Theta, Values
+from ....model.machines.roles import Place
+from .cause import Cause, Form, Row, Shape, Size, Small, Theta, Values
 from .extras import Extras
 from .forms import INNER_SHARE, Context, Regime, declared, oil_share, weighed
 
@@ -34,25 +33,23 @@ WET = Shape(
 STARVED = (0.5, 0.42, 0.08)
 
 
-def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
+def causes(at: Context) -> Iterator[Cause]:
     """All causes of the family that the machine's parts allow.
 
     Args:
-        roles: of the machine
-        ranges: of the data
-        sensors: of the campaign
+        at: machine, data and instruments
     """
-    at = Context(roles, ranges, sensors)
-    if wet := roles.places["churning"]:
+    places = at.roles.places
+    if wet := places["churning"]:
         yield from no_load(at, wet)
-    if roles.bath:
+    if at.roles.bath:
         yield oil_viscosity(at)
-    if bearings := roles.places["bearing"]:
+    if bearings := places["bearing"]:
         yield bearing_preload(at, bearings)
     yield from rubbing(at)
-    if seals := roles.places["seal"]:
+    if seals := places["seal"]:
         yield seal_drag(at, seals)
-    if teeth := roles.places["teeth"]:
+    if teeth := places["teeth"]:
         yield mesh_friction(at, teeth)
         if at.both_ways:
             yield mesh_direction(at, teeth)

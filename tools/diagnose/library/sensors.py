@@ -11,10 +11,9 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ....model.machines.roles import Roles
 from ....model.parts.free_form import step
 from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Mostly, Num, Ranges, Row, Shape, Size, Theta
+from .cause import Cause, Form, Mostly, Num, Row, Shape, Size, Theta
 from .forms import COURSES, FROM_THEN, PLACE, USUAL, WIDTH, Context, Course, since
 from .probes import heated, lag, position, swapped
 from .readings import one_of, wrong
@@ -95,17 +94,14 @@ def turned(mode: Mode) -> Mode:
     )
 
 
-def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
+def causes(at: Context) -> Iterator[Cause]:
     """All errors of all kinds of instruments that there are.
 
     Args:
-        roles: of the machine
-        ranges: of the data
-        sensors: of the campaign
+        at: machine, data and instruments
     """
-    at = Context(roles, ranges, sensors)
-    for name in dict.fromkeys(s.kind for s in sensors if s.kind in KINDS):
-        own = [s for s in sensors if s.kind == name]
+    for name in dict.fromkeys(s.kind for s in at.sensors if s.kind in KINDS):
+        own = [s for s in at.sensors if s.kind == name]
         yield from _Instruments(name, own, at).causes()
         if name == "oil_temp":
             yield from position(at, own)
