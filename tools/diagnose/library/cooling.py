@@ -11,7 +11,7 @@ from ....model.laws.smooth import smooth_abs
 from ....model.parts.free_form import step
 from .cause import Cause, Form, Row, Shape, Size, Theta, Values
 from .extras import Extras
-from .forms import SIDE, Context, Regime, declared, linear, one_or_all, weighed
+from .forms import SIDE, Context, Regime, linear, scaled, weighed
 
 AIR = "moving air: a better coefficient and faster air are one answer"
 DAYS = "day to day: humidity and other scatter of the days are one answer unless humidity is measured"
@@ -27,40 +27,35 @@ def causes(at: Context) -> Iterator[Cause]:
     Args:
         at: machine, data and instruments
     """
-    if at.roles.surfaces:
+    roles = at.roles
+    if roles.surfaces:
         yield air(at)
-        yield emissivity(at)
-    if at.roles.room and (at.roles.foundation or at.roles.surfaces):
+        yield from emissivity(at)
+    if roles.room and (roles.foundation or roles.surfaces):
         yield foundation(at)
-    if at.roles.contacts:
+    if roles.contacts:
         yield contact(at)
-    if at.roles.oil_side:
+    if roles.oil_side:
         yield oil_wall(at)
-    if at.roles.surfaces and "humidity" in at.ranges.known:
+    if roles.surfaces and "humidity" in at.ranges.known:
         yield humidity(at)
-    if at.roles.coolers:
-        yield cooler(at)
-    if at.roles.thermostats or at.roles.switches:
+    doc = "Another conductance of a cooler: fouled on the air or the oil side, less flow."
+    size = Size("ln_factor", "1", "logarithm of the factor on the conductance", 0.4, -4.0, 1.5)
+    exposes = "inlet and outlet temperatures of the cooler on both sides"
+    cause = Cause("cooling.cooler", doc, size, (), exposes, acts_on="rise")
+    yield from scaled(at, cause, ("room", "order"), {name: roles.scaled(name) for name in roles.coolers})
+    if roles.thermostats or roles.switches:
         yield thermostat(at)
-    yield from declared(
-        at,
-        "cooling.fan",
-        "A fan moves less or more air than stated: it stands still, slips, is dirty, or blows beside the housing.",
-        Size("ln_factor", "1", "logarithm of the factor on the flow; -3 and less: it stands", 0.8, -4.0, 1.5),
-        "the speed of the air measured; the fan switched off at one point",
-        ("T", "room", "direction", "order"),
-        AIR,
-        acts_on="rise",
-    )
-    yield from declared(
-        at,
-        "cooling.oil_flow",
-        "Less or more oil circulates: a pump that is worn, a filter that is clogged, a nozzle that is blocked.",
-        Size("ln_factor", "1", "logarithm of the factor on the flow", 0.5, -3.0, 1.5),
-        "the pressure behind the pump and the filter",
-        ("T", "order"),
-        acts_on="rise",
-    )
+    doc = "A fan moves less or more air than stated: it stands still, slips, is dirty, or blows beside the housing."
+    size = Size("ln_factor", "1", "logarithm of the factor on the flow; -3 and less: it stands", 0.8, -4.0, 1.5)
+    exposes = "the speed of the air measured; the fan switched off at one point"
+    cause = Cause("cooling.fan", doc, size, (), exposes, AIR, "rise")
+    yield from scaled(at, cause, ("T", "room", "direction", "order"))
+    doc = "Less or more oil circulates: a pump that is worn, a filter that is clogged, a nozzle that is blocked."
+    size = Size("ln_factor", "1", "logarithm of the factor on the flow", 0.5, -3.0, 1.5)
+    exposes = "the pressure behind the pump and the filter"
+    cause = Cause("cooling.oil_flow", doc, size, (), exposes, acts_on="rise")
+    yield from scaled(at, cause, ("T", "order"))
 
 
 def air(at: Context) -> Cause:
@@ -81,18 +76,14 @@ def air(at: Context) -> Cause:
     )
 
 
-def emissivity(at: Context) -> Cause:
+def emissivity(at: Context) -> Iterator[Cause]:
     """A surface that radiates differently."""
     surfaces = at.roles.surfaces
     brightest = max(float(at.roles.spec.part(name).values["emissivity"]) for name in surfaces)
-    return Cause(
-        id="cooling.emissivity",
-        doc="Another emissivity: bare metal instead of paint, dust, a shiny cover.",
-        size=Size("factor", "1", "relative change of the emissivity", 0.35, -0.95, max(1 / brightest - 1, 0.02)),
-        forms=one_or_all({name: [f"{name}.emissivity"] for name in surfaces}, "factor", at, law=linear),
-        exposes="a cold room; a painted patch",
-        acts_on="rise",
-    )
+    doc = "Another emissivity: bare metal instead of paint, dust, a shiny cover."
+    size = Size("factor", "1", "relative change of the emissivity", 0.35, -0.95, max(1 / brightest - 1, 0.02))
+    cause = Cause("cooling.emissivity", doc, size, (), "a cold room; a painted patch", acts_on="rise")
+    yield from scaled(at, cause, groups={name: [f"{name}.emissivity"] for name in surfaces}, law=linear)
 
 
 def foundation(at: Context) -> Cause:
@@ -196,19 +187,6 @@ def humidity(at: Context) -> Cause:
         exposes="humidity logged in every test, two days with the same point",
         like=DAYS,
         acts_on="humidity",
-    )
-
-
-def cooler(at: Context) -> Cause:
-    """A cooler that takes less or more."""
-    groups = {name: at.roles.scaled(name) for name in at.roles.coolers}
-    return Cause(
-        id="cooling.cooler",
-        doc="Another conductance of a cooler: fouled on the air or the oil side, less flow.",
-        size=Size("ln_factor", "1", "logarithm of the factor on the conductance", 0.4, -4.0, 1.5),
-        forms=one_or_all(groups, "ln_factor", at, ("room", "order")),
-        exposes="inlet and outlet temperatures of the cooler on both sides",
-        acts_on="rise",
     )
 
 

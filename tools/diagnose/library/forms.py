@@ -231,58 +231,20 @@ def weighed(general: Sequence[Form], single: Sequence[Form] = (), sides: Sequenc
     return tuple(replace(form, weight=share / len(forms)) for forms, share in groups for form in forms)
 
 
-def _exponents(paths: Iterable[str] | Mapping[str, float]) -> Mapping[str, float]:
-    return paths if isinstance(paths, Mapping) else dict.fromkeys(paths, 1.0)
+#: Paths of values, with the exponents of a factor where not all of them are 1.
+Paths = Iterable[str] | Mapping[str, float]
 
 
-def factors(
-    paths: Iterable[str] | Mapping[str, float],
-    size: str,
-    law: Callable[[Num], Num] = ca.exp,
-    share: Callable[[Theta, Row], Num] = lambda theta, row: 1.0,
-) -> Changes:
-    """Values times a factor: `exp` of the size as a rule.
+def factors(paths: Paths, size: str, law: Callable[[Num], Num] = ca.exp) -> Changes:
+    """Values times a factor.
 
     Args:
-        paths: of the values, with the exponents of the factor where not all of them are 1
+        paths: of the values
         size: its name
         law: factor of a size
-        share: how much of the size acts in a row
     """
-    exponents = _exponents(paths)
-
-    def values(theta: Theta, row: Row) -> Values:
-        acts = theta[size] * share(theta, row)
-        return {path: row.base[path] * law(exponent * acts) for path, exponent in exponents.items()}
-
-    return values
-
-
-def one_or_all(
-    groups: Mapping[str, Iterable[str] | Mapping[str, float]],
-    size: str,
-    at: Context,
-    quantities: Iterable[str] = (),
-    law: Callable[[Num], Num] = ca.exp,
-) -> tuple[Form, ...]:
-    """Factors on what all parts of a kind do, on what each of several does, and on all in each regime.
-
-    Args:
-        groups: name of a part or place -> paths, as `factors` takes them
-        size: name of the size
-        at: what they are made for
-        quantities: of the regimes, as `Context.regimes` takes them, but for speed and load
-        law: factor of a size
-    """
-    every = {path: e for group in groups.values() for path, e in _exponents(group).items()}
-
-    def limited(limit: Regime) -> Form:
-        values = factors(every, size, law, lambda theta, row: limit.gate(theta, row, at.ranges))
-        return Form(limit.name, shapes=limit.shapes(at.ranges), values=values, regime=limit.told)
-
-    single = [Form(name, values=factors(paths, size, law)) for name, paths in groups.items()]
-    sides = [limited(limit) for limit in at.regimes(quantities)]
-    return weighed([Form(values=factors(every, size, law))], single, sides)
+    exponents = paths if isinstance(paths, Mapping) else dict.fromkeys(paths, 1.0)
+    return lambda theta, row: {path: row.base[path] * law(e * theta[size]) for path, e in exponents.items()}
 
 
 def linear(size: Num) -> Num:
@@ -290,23 +252,35 @@ def linear(size: Num) -> Num:
     return 1 + size
 
 
-def declared(
+def scaled(
     at: Context,
-    cause: str,
-    doc: str,
-    size: Size,
-    exposes: str,
+    cause: Cause,
     quantities: Iterable[str] = (),
-    like: str = "",
-    acts_on: str = "",
+    groups: Mapping[str, Paths] | None = None,
+    law: Callable[[Num], Num] = ca.exp,
 ) -> Iterator[Cause]:
-    """A cause that parts declare with the parameters that carry it, where the machine has such parts.
+    """A cause that is a factor on what all parts of a kind do, on what one of several does, or on all in a regime.
 
     Args:
         at: what it is made for
-        cause, doc, size, exposes, like, acts_on: of it; the size is a logarithm
-        quantities: of its regimes
+        cause: without its forms
+        quantities: of the regimes, as `Context.regimes` takes them, but for speed and load
+        groups: part or place -> paths of its values; what parts declare for the cause if None, and no cause without
+        law: factor of a size
     """
-    if groups := at.roles.failing(cause):
-        forms = one_or_all(groups, size.name, at, quantities)
-        yield Cause(cause, doc, size, forms, exposes, like, acts_on)
+    size, found = cause.size.name, at.roles.failing(cause.id) if groups is None else groups
+    changes = {name: factors(paths, size, law) for name, paths in found.items()}
+
+    def every(theta: Theta, row: Row) -> Values:
+        return {path: value for values in changes.values() for path, value in values(theta, row).items()}
+
+    def limited(limit: Regime) -> Form:
+        def values(theta: Theta, row: Row) -> Values:
+            return every({**theta, size: theta[size] * limit.gate(theta, row, at.ranges)}, row)
+
+        return Form(limit.name, shapes=limit.shapes(at.ranges), values=values, regime=limit.told)
+
+    single = [Form(name, values=values) for name, values in changes.items()]
+    if changes:
+        sides = [limited(limit) for limit in at.regimes(quantities)]
+        yield replace(cause, forms=weighed([Form(values=every)], single, sides))

@@ -16,7 +16,7 @@ import casadi as ca
 from ....model.machines.roles import Place
 from .cause import Cause, Form, Row, Shape, Size, Small, Theta, Values
 from .extras import Extras
-from .forms import INNER_SHARE, Context, Regime, declared, oil_share, weighed
+from .forms import INNER_SHARE, Context, Regime, oil_share, scaled, weighed
 
 NO_LOAD = "no-load oil loss: churning, windage and oil level differ only in how the oil is reached"
 SHAFTS = "friction of shafts: preload and seal drag are the same torque to every steady instrument"
@@ -165,19 +165,16 @@ def _rubbing(forms: Iterable[Form]) -> tuple[Form, ...]:
 
 def rubbing(at: Context) -> Iterator[Cause]:
     """Parts whose whole friction is larger or smaller, whatever they carry."""
-    factor = Size("ln_factor", "1", "logarithm of the factor on the friction", 0.5, -1.5, 2.5)
+    factor, speed = Size("ln_factor", "1", "logarithm of the factor on the friction", 0.5, -1.5, 2.5), at.first("speed")
     doc = "Friction of bearings, with their load, is larger or smaller: dirt, wear, damage, another cage or clearance."
     exposes = "temperature or noise at the bearings; another load at one speed"
-    speed = at.first("speed")
-    yield from declared(at, "losses.bearing_friction", doc, factor, exposes, ("order",), SHAFTS, acts_on=speed)
+    yield from scaled(at, Cause("losses.bearing_friction", doc, factor, (), exposes, SHAFTS, speed), ("order",))
     doc = "The preload of a pair of bearings is not that set, or it settles."
     size = Size("ln_factor", "1", "logarithm of the factor on the preload", 0.5, -3.0, 2.5)
     exposes = "drag torque measured by hand; points at two temperatures of the shaft"
-    yield from declared(at, "losses.pair_preload", doc, size, exposes, ("order",), SHAFTS, acts_on=speed)
-    doc = "A clutch or brake drags more or less where it is open."
-    yield from declared(
-        at, "losses.clutch_drag", doc, factor, "a run with the clutch taken out", ("order",), acts_on=speed
-    )
+    yield from scaled(at, Cause("losses.pair_preload", doc, size, (), exposes, SHAFTS, speed), ("order",))
+    doc, exposes = "A clutch or brake drags more or less where it is open.", "a run with the clutch or brake taken out"
+    yield from scaled(at, Cause("losses.clutch_drag", doc, factor, (), exposes, acts_on=speed), ("order",))
 
 
 def bearing_preload(at: Context, places: Sequence[Place]) -> Cause:

@@ -15,8 +15,7 @@ from ....model.parts.free_form import step
 from ....scenarios.measured.table import Sensor
 from .cause import Cause, Form, Mostly, Num, Row, Shape, Size, Theta
 from .forms import COURSES, FROM_THEN, PLACE, USUAL, WIDTH, Context, Course, since
-from .probes import heated, lag, position, swapped
-from .readings import one_of, wrong
+from .probes import heated, lag, one_of, position, swapped, wrong
 
 #: Share of the offsets that show on one side of a speed, a load or what is read only, each.
 ONE_SIDE = 0.025
@@ -149,16 +148,11 @@ class _Instruments:
         return tuple(found)
 
     def _form(self, sensor: Sensor, mode: Mode, size: str) -> Form:
-        form = wrong(sensor, size, self._error(sensor, mode, size))
+        scale = 1.0 if size == "gain" else self.scale[sensor.name]
+        form = wrong(sensor, size, lambda theta, row, value: scale * mode.factor(theta, row, value))
         name = ", ".join(filter(None, (sensor.name if len(self.own) > 1 else "", mode.name)))
         weight, regime = mode.weight / len(self.own), mode.regime or {}
         return replace(form, name=name, weight=weight, shapes=mode.shapes, spread=mode.spread, regime=regime)
-
-    def _error(self, sensor: Sensor, mode: Mode, size: str) -> Callable[[Theta, Row, Num], Num]:
-        if size == "gain":
-            return mode.factor
-        scale = self.scale[sensor.name]
-        return lambda theta, row, value: scale * mode.factor(theta, row, value)
 
     def cause(
         self,
@@ -170,17 +164,7 @@ class _Instruments:
         acts_on: str = "",
         common: float = 1.0,
     ) -> Cause:
-        """A cause of this kind.
-
-        Args:
-            key: end of its identifier
-            doc: in words
-            size: how much
-            modes: its forms
-            exposes: the experiment that shows it
-            acts_on: see `Cause`
-            common: see `Cause`
-        """
+        """A cause of this kind: `key` ends its identifier, `modes` are its forms, the others those of `Cause`."""
         known = f"sensor.{self.name}.{key}"
         forms = self.forms(modes, size.name)
         return Cause(NAMES.get(known, known), doc, size, forms, exposes, acts_on=acts_on, common=common)
