@@ -112,7 +112,7 @@ def write_campaign(folder: Path, rig: Path, fault: str, seed: int) -> Path:
         for s in sensors:
             value = state[s.reads] + offsets[s.name] + s.repeat_sd * rng.standard_normal()
             unit = {"torque": "N.m", "speed": "rad/s"}.get(s.kind, "K")
-            columns[s.column].append(round(from_si(value * s.sign(np.array(1.0)), unit), 3))
+            columns[s.column].append(round(from_si(value * float(s.sign(np.array(1.0))), unit), 3))
     lines = [",".join(columns), *(",".join(map(str, row)) for row in zip(*columns.values(), strict=True))]
     path = folder / f"{fault.split(maxsplit=1)[0]}.csv"
     path.write_text("\n".join(lines) + "\n", "utf-8")
