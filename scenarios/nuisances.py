@@ -106,7 +106,7 @@ GROUPS: tuple[Group, ...] = (
     Group("radiation", "rad", 0.6, _emissivity),
     Group("oil to what turns", "gow", 0.6, _oil_inside, refilled=True),
     Group("oil to other bodies", "gow", 0.6, _oil_outside, refilled=True),
-    Group("between bodies", "gwh", 0.6, lambda r: _alike(r.scaled(*r.contacts))),
+    Group("between bodies", "gwh", 0.6, lambda r: _alike(r.scaled(*r.contacts, *r.walls))),
     Group("capacities", "cap", 0.5, lambda r: _alike(r.scaled(*r.inside, *r.outside, *r.having("bath")))),
     Group("capacities inside", "cap", 0.5, lambda r: _alike(r.scaled(*r.inside))),
     Group("coolers", "hconv", 0.7, lambda r: _alike(r.scaled(*r.coolers))),

@@ -30,6 +30,11 @@ class Equation:
         return self.lhs - self.rhs
 
 
+#: Identifier of a cause -> parameters of a part that carry it, with the exponent of the cause's factor in each.
+Faults = Mapping[str, Mapping[str, float]]
+#: Of a part that is what it is: nothing of it can fail.
+SOUND: Faults = {}
+
 #: A relation and the expression of the value that tells whether it holds.
 Related = tuple[Relation, Any]
 
@@ -55,6 +60,8 @@ class Component:
     Attributes:
         role: what the part is to whoever looks for parts by what they do ("teeth", "bearing", "surface"); "" for none
         scale: parameters of which a common factor is one on what the part does: its loss, conductance or capacity
+        faults: causes by which it may fail, by their identifiers, each with the parameters that carry it and their
+            exponents, {} where the cause acts beside the part; None for those of its role
         told: names of the values that it is constructed with
 
     Raises:
@@ -63,6 +70,7 @@ class Component:
 
     role: ClassVar[str] = ""
     scale: ClassVar[tuple[str, ...]] = ()
+    faults: ClassVar[Faults | None] = None
 
     def __init__(self, name: str, **values: Any) -> None:
         self.name = name

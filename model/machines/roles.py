@@ -7,11 +7,36 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
-from ..core.component import Component
+from ..core.component import SOUND, Component, Faults
 from ..core.declare import Parameter, Port, declared
 from ..errors import ScenarioError
 from ..parts.ports import Flange, HeatPort, Lubricant, ShaftReading
 from .spec import PartSpec, Spec
+
+#: Causes by which parts of a role may fail, where their class says no more. What a conductor is, what it joins tells.
+FAULTS: Mapping[str, Faults] = {
+    "teeth": {"losses.mesh_friction": {}, "losses.mesh_direction": {}, "losses.film_starvation": {}},
+    "bearing": {"losses.bearing_friction": {"k_loss": 1.0}, "losses.bearing_preload": {}},
+    "seal": {"losses.seal_drag": {}},
+    "churning": {"losses.churning": {}, "losses.windage": {}, "losses.oil_level": {}},
+    "brake": {"losses.clutch_drag": {"k_loss": 1.0}},
+    "bath": {"losses.oil_viscosity": {}, "losses.oil_level": {}},
+    "grease": {"losses.oil_viscosity": {}},
+    "pump": {"cooling.oil_flow": {"V_disp": 1.0}},
+    "jet": {"cooling.oil_wall": {}},
+    "surface": {"cooling.air": {}, "cooling.emissivity": {}},
+    "fan": {"cooling.fan": {"k_v": 1.0}},
+    "cooler": {"cooling.cooler": {"G_open": 1.0}},
+    "conductor": {"cooling.contact": {}, "cooling.oil_wall": {}, "cooling.foundation": {}, "cooling.cooler": {}},
+    "thermostat": {"cooling.thermostat": {}},
+    "switch": {"cooling.thermostat": {}},
+    "body": {"thermal.mass": {}},
+    "heater": {"heat.external_source": {}},
+    "motor": {"heat.external_source": {}},
+    "clutch": SOUND,
+    "shaft_end": SOUND,
+    "room": SOUND,
+}
 
 #: Roles of parts that brake a shaft, as a component class states them.
 BRAKES = ("teeth", "bearing", "seal", "churning")
@@ -52,7 +77,8 @@ class Roles:
         room: the first room, "" without one
         surfaces: parts between a body and the room's air
         foundation: conductors to a room, coolers: coolers, and conductors to something that keeps its temperature
-        oil_side: conductors between the oil and bodies, contacts: between bodies
+        oil_side: conductors between the oil and bodies
+        contacts, walls: between bodies: joints, gaps and gaskets, and what is of solid material
         inside, outside: bodies that teeth and inner rings heat, and those of the housing
         thermostats: parts that keep their temperature, switches: those that open coolers at some temperature
     """
@@ -72,6 +98,7 @@ class Roles:
     coolers: tuple[str, ...]
     oil_side: tuple[str, ...]
     contacts: tuple[str, ...]
+    walls: tuple[str, ...]
     inside: tuple[str, ...]
     outside: tuple[str, ...]
     thermostats: tuple[str, ...]
@@ -160,9 +187,29 @@ class Roles:
         """Names of all parts at the places of a role."""
         return tuple(name for place in self.places[role] for name in place.parts)
 
+    def failing(self, cause: str) -> dict[str, dict[str, float]]:
+        """Parts that a cause acts in by their own parameters: place -> path -> exponent of the cause's factor."""
+        place = {name: p.name for found in self.places.values() for p in found for name in p.parts}
+        failing: dict[str, dict[str, float]] = {}
+        for p in self.spec.parts:
+            kind = self.spec.types[p.type]
+            for key, exponent in faults_of(kind).get(cause, {}).items():
+                if key in declared(kind, Parameter) and self.value(path := f"{p.name}.{key}"):
+                    failing.setdefault(place.get(p.name, p.name), {})[path] = exponent
+        return failing
+
     def scaled(self, *parts: str) -> tuple[str, ...]:
         """Paths of the parameters that scale what the parts do."""
         return tuple(f"{p}.{key}" for p in parts for key in self.spec.types[self.spec.part(p).type].scale)
+
+
+def faults_of(kind: type[Component]) -> Faults:
+    """Causes by which a part of a type may fail; none where neither its class nor its role declares any.
+
+    Args:
+        kind: class of the part
+    """
+    return FAULTS.get(kind.role, SOUND) if kind.faults is None else kind.faults
 
 
 class _Nets:
@@ -247,7 +294,8 @@ class _Nets:
 
     def shaft(self) -> str:
         """The shaft end or clutch of which the torque is given, or else the speed."""
-        readers = [p for p in self.spec.parts if p.name in self.of("shaft_end", "clutch")]
+        able = {name for name in self.of("shaft_end", "clutch") if declared(self.classes[name], ShaftReading)}
+        readers = [p for p in self.spec.parts if p.name in able]
         if not readers:
             raise ScenarioError(
                 f"{self.spec.name}: there is no shaft end, so nothing says how it turns. Add a ShaftEnd."
@@ -288,10 +336,12 @@ def _found(nets: _Nets) -> Roles:
     kept_by = tuple(c for c in conductors if ends[c] & kept and c not in foundation)
     inner = [c for c in conductors if c not in (*foundation, *kept_by)]
     oil_side = tuple(c for c in inner if oil in ends[c])
-    contacts = tuple(c for c in inner if oil not in ends[c])
+    between = tuple(c for c in inner if oil not in ends[c])
+    contacts = tuple(c for c in between if "cooling.contact" in faults_of(nets.classes[c]))
+    exchangers = tuple(c for c in between if faults_of(nets.classes[c]).get("cooling.cooler"))
     surfaces = nets.of("surface")
     outer = (nets.heat_nets([*surfaces, *foundation]) - air) - {oil}
-    inside, outside = nets.inside_outside(contacts, outer)
+    inside, outside = nets.inside_outside(between, outer)
     if not (warm := nets.body_of(oil) or next(iter((*inside, *outside)), "")):
         raise ScenarioError(f"{nets.spec.name}: nothing stores heat. Add an OilBath or a HeatCapacity.")
     shaft = nets.shaft()
@@ -313,9 +363,10 @@ def _found(nets: _Nets) -> Roles:
         room=next(iter(rooms), ""),
         surfaces=surfaces,
         foundation=foundation,
-        coolers=(*kept_by, *nets.of("cooler")),
+        coolers=(*kept_by, *nets.of("cooler"), *exchangers),
         oil_side=oil_side,
         contacts=contacts,
+        walls=tuple(c for c in between if c not in (*contacts, *exchangers)),
         inside=inside,
         outside=outside,
         thermostats=keeping,

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import ClassVar
 
-from ..core.component import Component, Equation, equation
+from ..core.component import Component, Equation, Faults, equation
 from ..core.declare import Input, Output, Parameter, State
 from ..laws.smooth import Num, friction_sign, smooth_positive
 from .friction import Friction
@@ -59,6 +59,8 @@ class FrictionClutch(Coupling):
 
 class OneWayClutch(Coupling):
     """One-way clutch: a drives b forwards; where b is faster, it overruns with a small drag."""
+
+    faults: ClassVar[Faults] = {"losses.clutch_drag": {"tau_drag": 1.0}}
 
     tau_max = Parameter("N.m", "torque capacity of the locked clutch", nominal=100.0, above=0.0)
     tau_drag = Parameter("N.m", "drag torque while b overruns", at_least=0.0)

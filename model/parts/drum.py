@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar
 
-from ..core.component import Component, Equation, equation
+from ..core.component import SOUND, Component, Equation, Faults, equation
 from ..core.declare import Choice, Parameter
 from ..laws.convection import mixed
 from ..laws.drum import cooling_area, forced_rotating_cylinder, gear_churning_loss, source_coefficient
@@ -104,6 +104,8 @@ class BeltContact(Conductor):
 
 class BeltPull(Component):
     """What a belt does to the bearings of the drum it runs over: the pull of both its ends, shared by two bearings."""
+
+    faults: ClassVar[Faults] = SOUND
 
     reading = ShaftReading(must_meet=True)
     load = BearingLoad()

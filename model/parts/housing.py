@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar
 
-from ..core.component import Component, Equation, Related, equation
+from ..core.component import SOUND, Component, Equation, Faults, Related, equation
 from ..core.declare import Output, Parameter
 from ..laws.conduction import cylinder_wall, plane_wall
 from ..laws.convection import (
@@ -39,6 +39,7 @@ class RoundHousing(Component):
 
     role: ClassVar[str] = "conductor"
     scale: ClassVar[tuple[str, ...]] = ("k",)
+    faults: ClassVar[Faults] = SOUND
 
     flat_inner = HeatPort()
     flat_outer = HeatPort()
@@ -108,6 +109,7 @@ class OilToHousing(Component):
 
     role: ClassVar[str] = "conductor"
     scale: ClassVar[tuple[str, ...]] = ("h",)
+    faults: ClassVar[Faults] = {"cooling.oil_wall": {}}
 
     oil = HeatPort()
     flat = HeatPort()

@@ -10,7 +10,7 @@ import math
 from collections.abc import Iterator
 from typing import ClassVar
 
-from ..core.component import Component, Equation, equation
+from ..core.component import Component, Equation, Faults, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.oil_circuit import (
     M_WIDTH,
@@ -136,6 +136,8 @@ class OilPump(OilLine):
 class OilFilter(OilLine):
     """A filter, or a pipe: a pressure loss in proportion to flow and viscosity, up to that of its bypass valve."""
 
+    faults: ClassVar[Faults] = {"cooling.oil_flow": {"dp_ref": -1.0}}
+
     lubricant = Lubricant()
 
     dp_ref = Parameter("Pa", "pressure lost at the reference flow and viscosity", nominal=1e5, above=0.0)
@@ -156,6 +158,8 @@ class OilNozzle(OilLine):
     The oil falls into a sump: connect `b` with its inlet. Where the jet cools a gear, an OilExchanger lies between.
     """
 
+    faults: ClassVar[Faults] = {"cooling.oil_flow": {"d": 0.5}}
+
     lubricant = Lubricant()
 
     d = Parameter("m", "diameter of the orifice", nominal=2e-3, above=0.0)
@@ -174,6 +178,7 @@ class OilExchanger(OilLine):
 
     role: ClassVar[str] = "conductor"
     scale: ClassVar[tuple[str, ...]] = ("G",)
+    faults: ClassVar[Faults] = {"cooling.cooler": {"G": 1.0}}
 
     wall = HeatPort()
     opening = Opening()

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import ClassVar
 
-from ..core.component import Component, Equation, equation
+from ..core.component import Component, Equation, Faults, equation
 from ..core.declare import Choice, Output, Parameter
 from ..laws.preload import preload_force, preloaded_axial_load, thermal_interference
 from .ports import BearingLoad, HeatPort
@@ -17,6 +18,8 @@ class PreloadedPair(Component):
     when the shaft warms against the housing face to face, and falls back to back where the bearings are far apart. A
     light-alloy housing changes it also where all is equally warm.
     """
+
+    faults: ClassVar[Faults] = {"losses.pair_preload": {"F_set": 1.0}}
 
     inner = HeatPort("the shaft, whose temperature is sensed")
     outer = HeatPort("the housing, whose temperature is sensed")

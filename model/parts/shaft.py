@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import ClassVar
 
-from ..core.component import Component, Equation, equation
+from ..core.component import SOUND, Component, Equation, Faults, equation
 from ..core.declare import Choice, Given, Input, Output, Parameter, State
 from ..laws.smooth import Num, smooth_abs
 from .ports import Flange, ShaftReading
@@ -52,6 +52,8 @@ class ShaftEnd(Component):
 class FixedFlange(Component):
     """A shaft or ring held by the housing."""
 
+    faults: ClassVar[Faults] = SOUND
+
     flange = Flange()
 
     def equations(self) -> Iterator[Equation]:
@@ -61,6 +63,8 @@ class FixedFlange(Component):
 
 class FanLoad(Component):
     """A load whose torque grows with the square of the speed; its power leaves the model."""
+
+    faults: ClassVar[Faults] = SOUND
 
     flange = Flange()
 
@@ -80,6 +84,8 @@ class FanLoad(Component):
 
 class Inertia(Component):
     """Rotating mass, reduced to its shaft; left out (`dynamic` false) where the speed is prescribed."""
+
+    faults: ClassVar[Faults] = SOUND
 
     flange = Flange()
 
@@ -147,6 +153,8 @@ class TurningFrame(Component):
     of its shafts. No power is lost: the carrier holds against the torque that the shaft brings.
     """
 
+    faults: ClassVar[Faults] = SOUND
+
     shaft = Flange()
     carrier = Flange()
     relative = Flange()
@@ -164,6 +172,8 @@ class TorqueSplit(Component):
     Two rigid paths between the same shafts are statically indeterminate: the stiffness of the paths decides the
     share, and this model has none. The paths fix the speed of b, so that it turns with the others is checked.
     """
+
+    faults: ClassVar[Faults] = SOUND
 
     flange = Flange()
     a = Flange()
@@ -189,6 +199,8 @@ class Efficiency(Component):
 
     The loss torque follows from the powers, so no ratio has to agree with that of the gears.
     """
+
+    faults: ClassVar[Faults] = SOUND
 
     a = ShaftReading()
     b = ShaftReading()

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import ClassVar
 
 import casadi as ca
 
-from ..core.component import Component, Equation, Related, equation
+from ..core.component import SOUND, Component, Equation, Faults, Related, equation
 from ..core.declare import Parameter
 from ..laws.smooth import Num, smooth_abs
 from .ports import BearingLoad, ToothForce
@@ -20,6 +21,8 @@ class ShaftSupport(Component):
 
     A positive axial force pushes the gear towards bearing a: of a bevel gear, the apex is on the side of bearing b.
     """
+
+    faults: ClassVar[Faults] = SOUND
 
     mesh = ToothForce()
     load_a = BearingLoad()

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from typing import ClassVar
 
-from ..core.component import Component, Equation, Related, equation
+from ..core.component import SOUND, Component, Equation, Faults, Related, equation
 from ..core.declare import Input, Output, Parameter, State
 from ..laws.conduction import cylinder_wall, fin_efficiency, plane_wall
 from ..laws.convection import (
@@ -99,6 +99,7 @@ class PlaneWall(Conductor):
     """A plane wall."""
 
     scale: ClassVar[tuple[str, ...]] = ("k",)
+    faults: ClassVar[Faults] = SOUND
 
     k = Parameter("W/(m.K)", "thermal conductivity", above=0.0)
     A = Parameter("m2", "area", above=0.0)
@@ -113,6 +114,7 @@ class CylinderWall(Conductor):
     """A cylindrical wall, from inside (a) to outside (b)."""
 
     scale: ClassVar[tuple[str, ...]] = ("k",)
+    faults: ClassVar[Faults] = SOUND
 
     k = Parameter("W/(m.K)", "thermal conductivity", above=0.0)
     L = Parameter("m", "length of the cylinder", above=0.0)

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 #: The first name of a class stands for it.
 CLASSES: tuple[tuple[str, ...], ...] = (
-    ("losses.bearing_preload", "losses.seal_drag"),
+    ("losses.bearing_preload", "losses.seal_drag", "losses.bearing_friction", "losses.pair_preload"),
     ("losses.churning", "losses.windage", "losses.oil_level"),
     ("cooling.humidity", "procedure.day_scatter"),
     ("sensor.torque.step", "sensor.torque.since"),

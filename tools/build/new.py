@@ -258,7 +258,6 @@ def _bodies(made: Unit) -> dict[str, float]:
         "wall": made.wall,
         "G_seats": 4000 * sum(math.pi * d * b for d, b in seats),
         "G_rings": 2.0 * 2 * len(made.shafts),
-        "G_through": 50 * made.area / made.wall,
         "area": made.area,
         "length": made.length,
         "width_box": made.width,

@@ -162,8 +162,7 @@ def test_classes_that_count_as_one_answer(case):
     shared = {frozenset(ids) for ids in families.values() if len(ids) > 1}
     assert shared == {
         frozenset({"losses.churning", "losses.windage", "losses.oil_level"}),
-        frozenset({"losses.bearing_preload", "losses.seal_drag"}),
-        frozenset({"cooling.air", "cooling.fan"}),
+        frozenset({"losses.bearing_preload", "losses.seal_drag", "losses.bearing_friction"}),
         frozenset({"cooling.humidity", "procedure.day_scatter"}),
     }
 

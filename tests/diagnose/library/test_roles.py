@@ -87,7 +87,7 @@ def test_every_rig_has_teeth_a_room_and_bodies_on_one_side_each(rig):
     assert roles.places["teeth"] and roles.room and roles.ends and roles.cooling
     assert not set(roles.inside) & set(roles.outside)
     assert {*roles.inside, *roles.outside} == set(roles.having("body"))
-    conductors = (*roles.foundation, *roles.coolers, *roles.oil_side, *roles.contacts)
+    conductors = (*roles.foundation, *roles.coolers, *roles.oil_side, *roles.contacts, *roles.walls)
     assert sorted(conductors) == sorted(roles.having("conductor", "jet", "cooler"))
     known = {f"{p.name}.{key}" for p in spec.parts for key in vars_of(spec, p)}
     assert set(roles.scaled(*(p.name for p in spec.parts))) <= known

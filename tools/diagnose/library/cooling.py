@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 
 import casadi as ca
 
 from ....model.laws.smooth import smooth_abs
-from ....model.machines.roles import Roles
 from ....model.parts.free_form import step
-from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Ranges, Row, Shape, Size, Theta, Values
+from .cause import Cause, Form, Row, Shape, Size, Theta, Values
 from .extras import Extras
-from .forms import SIDE, Context, Regime, shared
+from .forms import SIDE, Context, Regime, linear, scaled, weighed
 
 AIR = "moving air: a better coefficient and faster air are one answer"
 DAYS = "day to day: humidity and other scatter of the days are one answer unless humidity is measured"
@@ -23,59 +21,41 @@ HUMIDITY_SPAN = 0.15
 HUMIDITY = 0.5
 
 
-def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
+def causes(at: Context) -> Iterator[Cause]:
     """All causes of the family that the machine's parts allow.
 
     Args:
-        roles: of the machine
-        ranges: of the data
-        sensors: of the campaign
+        at: machine, data and instruments
     """
-    at = Context(roles, ranges, sensors)
+    roles = at.roles
     if roles.surfaces:
         yield air(at)
-        yield emissivity(roles)
+        yield from emissivity(at)
     if roles.room and (roles.foundation or roles.surfaces):
         yield foundation(at)
     if roles.contacts:
         yield contact(at)
     if roles.oil_side:
         yield oil_wall(at)
-    if roles.surfaces and "humidity" in ranges.known:
+    if roles.surfaces and "humidity" in at.ranges.known:
         yield humidity(at)
-    if roles.coolers:
-        yield cooler(roles)
+    doc = "Another conductance of a cooler: fouled on the air or the oil side, less flow."
+    size = Size("ln_factor", "1", "logarithm of the factor on the conductance", 0.4, -4.0, 1.5)
+    exposes = "inlet and outlet temperatures of the cooler on both sides"
+    cause = Cause("cooling.cooler", doc, size, (), exposes, acts_on="rise")
+    yield from scaled(at, cause, ("room", "order"), {name: roles.scaled(name) for name in roles.coolers})
     if roles.thermostats or roles.switches:
-        yield thermostat(roles, ranges)
-    if roles.surfaces:
-        yield fan(roles)
-
-
-def factors(paths: Sequence[str], size: str) -> Callable[[Theta, Row], Values]:
-    """Values times the exponential of the size.
-
-    Args:
-        paths: of the values
-        size: its name
-    """
-
-    def values(theta: Theta, row: Row) -> Values:
-        return {path: row.base[path] * ca.exp(theta[size]) for path in paths}
-
-    return values
-
-
-def each(roles: Roles, parts: Sequence[str], size: str) -> tuple[Form, ...]:
-    """Factors on what all parts do together, and on what each of several does.
-
-    Args:
-        roles: of the machine
-        parts: their names
-        size: name of the factor's logarithm
-    """
-    return shared(
-        [(parts, factors(roles.scaled(*parts), size))], [((p,), factors(roles.scaled(p), size)) for p in parts]
-    )
+        yield thermostat(at)
+    doc = "A fan moves less or more air than stated: it stands still, slips, is dirty, or blows beside the housing."
+    size = Size("ln_factor", "1", "logarithm of the factor on the flow; -3 and less: it stands", 0.8, -4.0, 1.5)
+    exposes = "the speed of the air measured; the fan switched off at one point"
+    cause = Cause("cooling.fan", doc, size, (), exposes, AIR, "rise")
+    yield from scaled(at, cause, ("T", "room", "direction", "order"))
+    doc = "Less or more oil circulates: a pump that is worn, a filter that is clogged, a nozzle that is blocked."
+    size = Size("ln_factor", "1", "logarithm of the factor on the flow", 0.5, -3.0, 1.5)
+    exposes = "the pressure behind the pump and the filter"
+    cause = Cause("cooling.oil_flow", doc, size, (), exposes, acts_on="rise")
+    yield from scaled(at, cause, ("T", "order"))
 
 
 def air(at: Context) -> Cause:
@@ -89,30 +69,21 @@ def air(at: Context) -> Cause:
         id="cooling.air",
         doc="More or less convection: draught, a cover, a fan.",
         size=at.conductance("conductance to the air more than assumed", 0.14, -0.45, 1.15),
-        forms=Extras("air", at).conductors(ports, shapes, at.regimes(("T", "direction", "order"))),
+        forms=Extras("air", at).conductors(ports, shapes, at.regimes(("T", "room", "direction", "order"))),
         exposes="a fan switched on and off at one point; a cold room",
         like=AIR,
         acts_on="rise",
     )
 
 
-def emissivity(roles: Roles) -> Cause:
+def emissivity(at: Context) -> Iterator[Cause]:
     """A surface that radiates differently."""
-
-    def values(names: Sequence[str]) -> Callable[[Theta, Row], Values]:
-        paths = [f"{name}.emissivity" for name in names]
-        return lambda theta, row: {path: row.base[path] * (1 + theta["factor"]) for path in paths}
-
-    brightest = max(float(roles.spec.part(name).values["emissivity"]) for name in roles.surfaces)
-    single = [((name,), values([name])) for name in roles.surfaces]
-    return Cause(
-        id="cooling.emissivity",
-        doc="Another emissivity: bare metal instead of paint, dust, a shiny cover.",
-        size=Size("factor", "1", "relative change of the emissivity", 0.35, -0.95, max(1 / brightest - 1, 0.02)),
-        forms=shared([(roles.surfaces, values(roles.surfaces))], single),
-        exposes="a cold room; a painted patch",
-        acts_on="rise",
-    )
+    surfaces = at.roles.surfaces
+    brightest = max(float(at.roles.spec.part(name).values["emissivity"]) for name in surfaces)
+    doc = "Another emissivity: bare metal instead of paint, dust, a shiny cover."
+    size = Size("factor", "1", "relative change of the emissivity", 0.35, -0.95, max(1 / brightest - 1, 0.02))
+    cause = Cause("cooling.emissivity", doc, size, (), "a cold room; a painted patch", acts_on="rise")
+    yield from scaled(at, cause, groups={name: [f"{name}.emissivity"] for name in surfaces}, law=linear)
 
 
 def foundation(at: Context) -> Cause:
@@ -141,7 +112,7 @@ def contact(at: Context) -> Cause:
 
         def changed(theta: Theta, row: Row) -> Values:
             R = theta["R"] * ca.exp(theta["e"] * (row.rise / ranges.rise - 1))
-            R = R if limit is None else R * limit.share(theta, row) * limit.by_rise(theta, row, ranges)
+            R = R if limit is None else R * limit.gate(theta, row, ranges)
             return {path: row.base[path] / smooth_abs(1 + R * G, 0.05) * smooth_abs(1.0, 0.05) for path in paths}
 
         words = (name if len(roles.contacts) > 1 else "", limit.name if limit else "")
@@ -176,22 +147,23 @@ def oil_wall(at: Context) -> Cause:
     roles, speed = at.roles, at.first("speed")
     shapes = (Shape("c", "1", "exponent of the speed in that logarithm", -0.8, 0.8, 0.0, 0.3),)
 
-    def values(names: Sequence[str]) -> Callable[[Theta, Row], Values]:
+    def form(names: Sequence[str], words: str = "") -> Form:
         paths = roles.scaled(*names)
 
         def changed(theta: Theta, row: Row) -> Values:
             log = theta["ln_factor"] * at.by_speed(row, theta, "c")
             return {path: row.base[path] * ca.exp(3 * ca.tanh(log / 3)) for path in paths}
 
-        return changed
+        return Form(words, shapes=shapes if speed else (), values=changed)
 
-    together = [(names, values(names)) for names in dict.fromkeys((roles.wetted, roles.oil_side)) if names]
-    single = [((name,), values((name,))) for name in roles.oil_side if (name,) != roles.wetted]
+    groups = [names for names in dict.fromkeys((roles.wetted, roles.oil_side)) if names]
+    together = [form(names, ", ".join(names) if k else "") for k, names in enumerate(groups)]
+    single = [form((name,), name) for name in roles.oil_side if (name,) != roles.wetted]
     return Cause(
         id="cooling.oil_wall",
         doc="Another conductance between oil and bodies: level, foam, deposits.",
         size=Size("ln_factor", "1", "logarithm of the factor on the conductance", 0.5, -3.0, 2.2),
-        forms=shared(together, single, shapes if speed else ()),
+        forms=weighed(together, single),
         exposes="transients; a second probe in the wall",
         acts_on=speed,
     )
@@ -218,25 +190,15 @@ def humidity(at: Context) -> Cause:
     )
 
 
-def cooler(roles: Roles) -> Cause:
-    """A cooler that takes less or more."""
-    return Cause(
-        id="cooling.cooler",
-        doc="Another conductance of a cooler: fouled on the air or the oil side, less flow.",
-        size=Size("ln_factor", "1", "logarithm of the factor on the conductance", 0.4, -4.0, 1.5),
-        forms=each(roles, roles.coolers, "ln_factor"),
-        exposes="inlet and outlet temperatures of the cooler on both sides",
-        acts_on="rise",
-    )
-
-
-def thermostat(roles: Roles, ranges: Ranges) -> Cause:
+def thermostat(at: Context) -> Cause:
     """A thermostat that keeps another temperature, or is stuck."""
+    roles, ranges = at.roles, at.ranges
     keeps: dict[str, tuple[str, ...]] = {name: (f"{name}.dT",) for name in roles.thermostats}
     keeps |= {name: (f"{name}.T_open", f"{name}.T_close") for name in roles.switches}
 
-    def values(names: Sequence[str]) -> Callable[[Theta, Row], Values]:
-        return lambda theta, row: {path: row.base[path] + theta["dT"] for n in names for path in keeps[n]}
+    def kept(names: Sequence[str], words: str = "") -> Form:
+        paths = [path for name in names for path in keeps[name]]
+        return Form(words, values=lambda theta, row: {path: row.base[path] + theta["dT"] for path in paths})
 
     opened = [name for name in roles.coolers if roles.nets.classes[name].role == "cooler"]
 
@@ -248,7 +210,7 @@ def thermostat(roles: Roles, ranges: Ranges) -> Cause:
         return found | {f"{n}.G_open": G * left for n, G in whole.items()}
 
     span, names = ranges.rise, tuple(keeps)
-    forms = shared([(names, values(names))], [((n,), values((n,))) for n in names])
+    forms = weighed([kept(names)], [kept((name,), name) for name in names])
     if opened:
         forms = tuple(replace(f, weight=0.7 * f.weight) for f in forms)
         forms += (Form("stuck part open, or part closed", 0.3, values=stuck),)
@@ -258,17 +220,4 @@ def thermostat(roles: Roles, ranges: Ranges) -> Cause:
         size=Size("dT", "K", "temperature kept less that set", 0.1 * span, -0.8 * span, 0.8 * span),
         forms=forms,
         exposes="a probe where the thermostat measures; the set point moved",
-    )
-
-
-def fan(roles: Roles) -> Cause:
-    """Air that is faster or slower than stated."""
-    return Cause(
-        id="cooling.fan",
-        doc="The air along the surfaces is faster or slower than stated: a fan that fails, ducts, a draught.",
-        size=Size("ln_factor", "1", "logarithm of the factor on the speed of the air", 0.5, -4.0, 2.5),
-        forms=(Form(values=factors([f"{room}.k_air" for room in roles.having("room")], "ln_factor")),),
-        exposes="the speed of the air measured; the fan switched off at one point",
-        like=AIR,
-        acts_on="rise",
     )

@@ -9,7 +9,7 @@ from ....model.laws.oil import kinematic_viscosity
 from ....model.machines.roles import Place
 from ....model.machines.spec import PartSpec
 from .cause import Form, Num, Row, Shape, Theta, Values
-from .forms import BESIDE, MOST_PLACES, ONE_PLACE, SIDE, Context, Regime
+from .forms import Context, Regime, weighed
 
 #: An extra part and what it meets.
 Made = tuple[PartSpec, tuple[tuple[str, ...], ...]]
@@ -98,23 +98,21 @@ class Extras:
         places: Sequence[Place],
         shapes: Iterable[Shape],
         limits: Sequence[Regime] = (),
-        weight: float = 1.0,
         as_keys: Keys = as_they_are,
         heats: str = "",
     ) -> tuple[Form, ...]:
-        """Losses: one form for all places, one for each of several, one for each regime; they share the weight.
+        """Losses: one form for all places, one for each of several, one for each regime.
 
         Args:
             places: where it may act
             shapes: of all forms; named as parameters of the extra part
             limits: regimes
-            weight: of all forms together
             as_keys: size, shapes and row -> parameters of the extra part, where they are not the same
             heats: port that takes the oil's share of the heat, where it is not the oil
         """
         made = [self.loss(place, k, len(places), heats) for k, place in enumerate(places)]
         kept = tuple(s for s in shapes if s.name != "b" or all(place.lubricant for place in places))
-        return self.forms(made, [place.name for place in places], kept, limits, weight, as_keys)
+        return self.forms(made, [place.name for place in places], kept, limits, as_keys)
 
     def conductors(
         self,
@@ -138,7 +136,6 @@ class Extras:
         names: Sequence[str],
         shapes: tuple[Shape, ...],
         limits: Sequence[Regime] = (),
-        weight: float = 1.0,
         as_keys: Keys = as_they_are,
     ) -> tuple[Form, ...]:
         """One form for all parts, one for each of several, one for each regime.
@@ -148,18 +145,12 @@ class Extras:
             names: of their places
             shapes: of all forms
             limits: regimes
-            weight: of all forms together
             as_keys: size, shapes and row -> parameters of the extra part
         """
-        single = list(zip(names, made, strict=True)) if 1 < len(made) <= MOST_PLACES else []
-        places = (BESIDE if limits else ONE_PLACE) if single else 0.0
-        general = 1 - places - SIDE * len(limits)
-        found = [replace(self.with_parts(made, shapes, None, as_keys), weight=weight * general)]
-        for name, part in single:
-            own = self.with_parts([part], shapes, None, as_keys)
-            found.append(replace(own, name=name, weight=weight * places / len(single)))
-        found += [replace(self.with_parts(made, shapes, limit, as_keys), weight=weight * SIDE) for limit in limits]
-        return tuple(found)
+        alone = [self.with_parts([part], shapes, None, as_keys) for part in made]
+        single = [replace(form, name=name) for name, form in zip(names, alone, strict=True)]
+        sides = [self.with_parts(made, shapes, limit, as_keys) for limit in limits]
+        return weighed([self.with_parts(made, shapes, None, as_keys)], single, sides)
 
     def with_parts(
         self, made: Sequence[Made], shapes: Iterable[Shape], limit: Regime | None = None, as_keys: Keys = as_they_are
@@ -177,7 +168,7 @@ class Extras:
         def values(theta: Theta, row: Row) -> Values:
             given = as_keys(theta, row)
             keys = {key: given[key] for key in KEYS if key in given}
-            share = (1.0 if limit is None else limit.share(theta, row)) / len(names)
+            share = (1.0 if limit is None else limit.share(theta, row, self.ranges)) / len(names)
             keys |= {size: given[size] * share for size in ("P_ref", "G_ref") if size in given}
             if limit is not None:
                 keys |= limit.limits(theta, self.ranges)

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import casadi as ca
 
@@ -11,7 +11,7 @@ from ....model.laws.smooth import smooth_abs
 from ....model.machines.roles import Roles
 from ....model.parts.free_form import step
 from ....scenarios.measured.table import Sensor
-from .cause import Form, Num, Ranges, Row, Shape, Size, Theta, Values
+from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
 
 #: What changes values of the machine.
 Changes = Callable[[Theta, Row], Values]
@@ -26,6 +26,8 @@ SIDE = 0.05
 USUAL = 0.04
 #: Share of the middle speed below which what follows the speed no longer does.
 SLOW = 0.05
+#: Temperatures that range over less have no sides [K].
+LEAST_SPAN = 5.0
 #: No more places than these have forms of their own.
 MOST_PLACES = 6
 WIDTH = Shape("width", "1", "how gradually it sets in at the threshold, over the usual", 0.4, 3.0, 1.0, 0.75)
@@ -74,12 +76,18 @@ def oil_share(mean: float, sd: float) -> Shape:
 
 @dataclass(frozen=True)
 class Regime:
-    """One side of a quantity ("w", "tau", "T", "film"), one direction ("direction"), or from a test on ("order")."""
+    """One side of a quantity ("w", "tau", "T", "film", "room"), one direction, or from a test on ("order").
+
+    Args:
+        quantity, above: what is limited, and to which side
+        sensor: that shows the temperature of the room
+    """
 
     quantity: str
     above: bool
+    sensor: str = ""
 
-    WORDS = {"w": "speed", "tau": "load", "T": "temperature", "film": "film"}
+    WORDS = {"w": "speed", "tau": "load", "T": "temperature", "film": "film", "room": "room temperature"}
 
     @property
     def name(self) -> str:
@@ -94,26 +102,39 @@ class Regime:
         """Threshold and width."""
         if self.quantity in ("direction", "order"):
             return (PLACE,) if self.quantity == "order" else ()
-        unit = {"w": "rad/s", "tau": "N.m", "T": "K", "film": "m2/s2"}[self.quantity]
-        low, high = ranges.low[self.quantity], ranges.high[self.quantity]
+        unit = {"w": "rad/s", "tau": "N.m", "film": "m2/s2"}.get(self.quantity, "K")
+        low, high = self.bounds(ranges)
         threshold = Shape("threshold", unit, f"threshold of the {self.WORDS[self.quantity]}", low, high)
         return (threshold,) if self.quantity == "film" else (threshold, WIDTH)
 
-    def share(self, theta: Theta, row: Row) -> Num:
-        """How much of the size acts in a row."""
-        return since(theta, row) if self.quantity == "order" else 1.0
+    def bounds(self, ranges: Ranges) -> tuple[float, float]:
+        """Range of its quantity in the data."""
+        name = self.sensor or self.quantity
+        return ranges.low[name], ranges.high[name]
 
-    def by_rise(self, theta: Theta, row: Row, ranges: Ranges) -> Num:
-        """How much of the size acts by the oil's temperature, told from its rise over a room as it usually is."""
-        if self.quantity != "T":
-            return 1.0
-        oil, span = ranges.mid["T"] + row.rise - ranges.rise, ranges.high["T"] - ranges.low["T"]
+    def share(self, theta: Theta, row: Row, ranges: Ranges) -> Num:
+        """How much of the size acts in a row, by what no part of the machine knows."""
+        if self.quantity == "order":
+            return since(theta, row)
+        return self._beyond(row.sensors[self.sensor], theta, ranges) if self.quantity == "room" else 1.0
+
+    def gate(self, theta: Theta, row: Row, ranges: Ranges) -> Num:
+        """How much of the size acts in a row; the oil's temperature is told from its rise over a usual room."""
+        if self.quantity == "T":
+            return self._beyond(ranges.mid["T"] + row.rise - ranges.rise, theta, ranges)
+        if self.quantity == "direction":
+            return (1 + (row.direction if self.above else -row.direction)) / 2
+        return self.share(theta, row, ranges)
+
+    def _beyond(self, value: Num, theta: Theta, ranges: Ranges) -> Num:
+        """Whether a value lies on its side of the threshold."""
+        low, high = self.bounds(ranges)
         side = 1.0 if self.above else -1.0
-        return step(side * (oil - theta["threshold"]) / (USUAL * span * theta["width"]))
+        return step(side * (value - theta["threshold"]) / (USUAL * (high - low) * theta["width"]))
 
     def limits(self, theta: Theta, ranges: Ranges) -> dict[str, Num]:
         """Values of an extra part by key."""
-        if self.quantity == "order":
+        if self.quantity in ("order", "room"):
             return {}
         if self.quantity == "direction":
             return {"backward" if self.above else "forward": 0.0}
@@ -184,27 +205,82 @@ class Context:
         return Size("G_ref", "W/K", doc, sd * G, low * G, high * G)
 
     def regimes(self, quantities: Iterable[str]) -> tuple[Regime, ...]:
-        """Both sides of each quantity ("w", "tau", "T", "direction") that varies enough; from a test on ("order")."""
-        least = {"w": 0.1, "tau": 0.1, "T": 5.0 / self.ranges.mid.get("T", 330.0)}
-        known = {"direction": self.both_ways, "order": "order" in self.ranges.known}
-        kept = [q for q in quantities if (known[q] if q in known else self.ranges.varies(q, least[q]))]
-        return tuple(Regime(q, above) for q in kept for above in ((True, False) if q != "order" else (True,)))
+        """Both sides of each quantity (as those of `Regime`) that varies enough; from a test on ("order")."""
+        room, ranges = self.first("ambient"), self.ranges
+        known = {"direction": self.both_ways, "order": "order" in ranges.known}
+        known["room"] = bool(room) and ranges.varies(room, LEAST_SPAN / ranges.mid[room])
+        known |= {q: ranges.varies(q) for q in ("w", "tau")}
+        known["T"] = ranges.varies("T", LEAST_SPAN / ranges.mid.get("T", 330.0))
+        sides = {"order": (True,)}
+        kept = [(q, above) for q in quantities if known[q] for above in sides.get(q, (True, False))]
+        return tuple(Regime(q, above, room if q == "room" else "") for q, above in kept)
 
 
-def shared(
-    together: Sequence[tuple[Sequence[str], Changes]],
-    single: Sequence[tuple[Sequence[str], Changes]],
-    shapes: tuple[Shape, ...] = (),
-) -> tuple[Form, ...]:
-    """Forms that change values of all parts of a kind, and of each of several.
+def weighed(general: Sequence[Form], single: Sequence[Form] = (), sides: Sequence[Form] = ()) -> tuple[Form, ...]:
+    """Forms with their shares of a cause's prior: for all parts, for each of several, for each regime.
 
     Args:
-        together: groups of parts with what changes their values; the first has no name
-        single: the same for each part
-        shapes: of all forms
+        general: forms for all parts; at least one
+        single: one for each part
+        sides: one for each regime
     """
-    own = list(single) if 1 < len(single) <= MOST_PLACES else []
-    general = (1 - ONE_PLACE if own else 1.0) / len(together)
-    found = [Form(", ".join(p) if k else "", general, shapes, values=v) for k, (p, v) in enumerate(together)]
-    found += [Form(", ".join(p), ONE_PLACE / len(own), shapes, values=v) for p, v in own]
-    return tuple(found)
+    kept = single if 1 < len(single) <= MOST_PLACES else ()
+    places = (BESIDE if sides else ONE_PLACE) if kept else 0.0
+    limited = SIDE * len(sides)
+    groups = ((general, 1 - places - limited), (kept, places), (sides, limited))
+    return tuple(replace(form, weight=share / len(forms)) for forms, share in groups for form in forms)
+
+
+#: Paths of values, with the exponents of a factor where not all of them are 1.
+Paths = Iterable[str] | Mapping[str, float]
+
+
+def factors(paths: Paths, size: str, law: Callable[[Num], Num] = ca.exp) -> Changes:
+    """Values times a factor.
+
+    Args:
+        paths: of the values
+        size: its name
+        law: factor of a size
+    """
+    exponents = paths if isinstance(paths, Mapping) else dict.fromkeys(paths, 1.0)
+    return lambda theta, row: {path: row.base[path] * law(e * theta[size]) for path, e in exponents.items()}
+
+
+def linear(size: Num) -> Num:
+    """A factor that may fall to nothing."""
+    return 1 + size
+
+
+def scaled(
+    at: Context,
+    cause: Cause,
+    quantities: Iterable[str] = (),
+    groups: Mapping[str, Paths] | None = None,
+    law: Callable[[Num], Num] = ca.exp,
+) -> Iterator[Cause]:
+    """A cause that is a factor on what all parts of a kind do, on what one of several does, or on all in a regime.
+
+    Args:
+        at: what it is made for
+        cause: without its forms
+        quantities: of the regimes, as `Context.regimes` takes them, but for speed and load
+        groups: part or place -> paths of its values; what parts declare for the cause if None, and no cause without
+        law: factor of a size
+    """
+    size, found = cause.size.name, at.roles.failing(cause.id) if groups is None else groups
+    changes = {name: factors(paths, size, law) for name, paths in found.items()}
+
+    def every(theta: Theta, row: Row) -> Values:
+        return {path: value for values in changes.values() for path, value in values(theta, row).items()}
+
+    def limited(limit: Regime) -> Form:
+        def values(theta: Theta, row: Row) -> Values:
+            return every({**theta, size: theta[size] * limit.gate(theta, row, at.ranges)}, row)
+
+        return Form(limit.name, shapes=limit.shapes(at.ranges), values=values, regime=limit.told)
+
+    single = [Form(name, values=values) for name, values in changes.items()]
+    if changes:
+        sides = [limited(limit) for limit in at.regimes(quantities)]
+        yield replace(cause, forms=weighed([Form(values=every)], single, sides))

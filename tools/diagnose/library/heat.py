@@ -2,30 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 from ....model.machines.roles import Roles
-from ....scenarios.measured.table import Sensor
-from .cause import Cause, Mostly, Ranges, Shape, Small
+from .cause import Cause, Mostly, Shape, Small
 from .extras import Extras
-from .forms import SIDE, Context
+from .forms import Context, weighed
 
 #: A machine stands below this share of its typical speed, with as gradual a change.
 STANDS = 0.05
 
 
-def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
+def causes(at: Context) -> Iterator[Cause]:
     """All causes of the family.
 
     Args:
-        roles: of the machine
-        ranges: of the data
-        sensors: of the campaign
+        at: machine, data and instruments
     """
-    at = Context(roles, ranges, sensors)
     yield external_source(at)
-    if "logs" in ranges.known:
+    if "logs" in at.ranges.known:
         yield parked(at)
 
 
@@ -42,23 +38,19 @@ def external_source(at: Context) -> Cause:
     inside, outside = bodies(at.roles)
     shapes = (
         Mostly("a", "1", "exponent of the speed", 0.0, 2.2),
+        Mostly("c", "1", "exponent of the load: of a motor's heat, the square of its current", 0.0, 2.0),
         Small("oil_share", "1", "share of the heat that goes into the oil", 0.0, 0.5),
         Small("inner_share", "1", "share of the rest that enters by the shaft", 0.0, 1.0),
     )
     made = [extras.heat(inside, port, k, len(outside)) for k, port in enumerate(outside)]
-    single = [extras.with_parts([part], shapes) for part in made]
-    limits = at.regimes(("w", "tau", "direction", "order"))
-    sides = [extras.with_parts(made[-1:], shapes, limit) for limit in limits]
-    share = 1 - SIDE * len(sides)
+    alone = [extras.with_parts([part], shapes) for part in made]
+    sides = [extras.with_parts(made[-1:], shapes, x) for x in at.regimes(("w", "tau", "room", "direction", "order"))]
     names = [port.partition(".")[0] if len(outside) > 1 else "" for port in outside]
     return Cause(
         id="heat.external_source",
         doc="Heat from a motor, a neighbour or the sun: it warms, and no torque shows it.",
         size=at.power("heat flow rate", 0.085, -0.3, 1.2),
-        forms=(
-            *(replace(f, name=n, weight=share / len(single)) for f, n in zip(single, names, strict=True)),
-            *(replace(f, weight=SIDE) for f in sides),
-        ),
+        forms=weighed([replace(f, name=n) for f, n in zip(alone, names, strict=True)], sides=sides),
         exposes="temperatures with the gearbox at rest and its neighbours running",
         acts_on=at.first("speed"),
     )

@@ -59,6 +59,11 @@ GAINS = {
     "speed": ("sensor.speed.gain", "The speed reading is wrong by a share of itself.", 0.02, 0.003),
     "power": ("sensor.power.gain", "The power reading is wrong by a share of itself.", 0.03, 0.02),
 }
+#: Causes that parts declare with parameters of their own, and in words.
+FLOWS = {
+    "cooling.fan": "A fan moves less or more air.",
+    "cooling.oil_flow": "Less or more oil circulates: a pump, a filter or a nozzle.",
+}
 
 
 def knobs(roles: Roles, sensors: Sequence[Sensor]) -> tuple[Knob, ...]:
@@ -99,6 +104,9 @@ def _cooling(roles: Roles) -> Iterator[Knob]:
         paths = {f"{name}.T_open": 1.0, f"{name}.T_close": 1.0}
         doc = "The thermostat opens at another temperature."
         yield Knob(f"{name}: set point", "cooling.thermostat", doc, "K", 3.0, 1.0, shifted=paths)
+    for cause, doc in FLOWS.items():
+        for name, paths in roles.failing(cause).items():
+            yield Knob(f"{name}: flow", cause, doc, usual=0.5, sd=0.2, scaled=paths)
     jets = roles.having("jet")
     for name in jets:
         yield _factor(f"{name}: oil flow", "cooling.oil_wall", "Less or more oil reaches a body.", *roles.scaled(name))

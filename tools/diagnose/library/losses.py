@@ -13,11 +13,10 @@ from dataclasses import replace
 
 import casadi as ca
 
-from ....model.machines.roles import Place, Roles
-from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Ranges, Row, Shape, Size, Small, Theta, Values
+from ....model.machines.roles import Place
+from .cause import Cause, Form, Row, Shape, Size, Small, Theta, Values
 from .extras import Extras
-from .forms import INNER_SHARE, Changes, Context, Regime, oil_share, shared
+from .forms import INNER_SHARE, Context, Regime, oil_share, scaled, weighed
 
 NO_LOAD = "no-load oil loss: churning, windage and oil level differ only in how the oil is reached"
 SHAFTS = "friction of shafts: preload and seal drag are the same torque to every steady instrument"
@@ -34,24 +33,23 @@ WET = Shape(
 STARVED = (0.5, 0.42, 0.08)
 
 
-def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
+def causes(at: Context) -> Iterator[Cause]:
     """All causes of the family that the machine's parts allow.
 
     Args:
-        roles: of the machine
-        ranges: of the data
-        sensors: of the campaign
+        at: machine, data and instruments
     """
-    at = Context(roles, ranges, sensors)
-    if wet := roles.places["churning"]:
+    places = at.roles.places
+    if wet := places["churning"]:
         yield from no_load(at, wet)
-    if roles.bath:
+    if at.roles.bath:
         yield oil_viscosity(at)
-    if bearings := roles.places["bearing"]:
+    if bearings := places["bearing"]:
         yield bearing_preload(at, bearings)
-    if seals := roles.places["seal"]:
+    yield from rubbing(at)
+    if seals := places["seal"]:
         yield seal_drag(at, seals)
-    if teeth := roles.places["teeth"]:
+    if teeth := places["teeth"]:
         yield mesh_friction(at, teeth)
         if at.both_ways:
             yield mesh_direction(at, teeth)
@@ -129,7 +127,7 @@ def oil_viscosity(at: Context) -> Cause:
         fed = [place for place in places if at.roles.at(place.lubricant, "bath") in names]
         return at.roles.scaled(*(part for place in fed for part in place.parts))
 
-    def values(names: Sequence[str]) -> Changes:
+    def form(names: Sequence[str], words: str = "") -> Form:
         beside = {"friction": users(names, "teeth"), "drag": users(names, "bearing", "seal")}
         beside["stir"] = at.roles.scaled(*at.roles.oil_side) if at.roles.bath in names else ()
 
@@ -139,7 +137,7 @@ def oil_viscosity(at: Context) -> Cause:
             shares |= {path: theta[key] for key, paths in beside.items() for path in paths}
             return {path: row.base[path] * ca.exp(theta["ln_factor"] * share) for path, share in shares.items()}
 
-        return thicker
+        return Form(words, shapes=shapes, values=thicker)
 
     shapes = (
         Shape("slope", "1", "relative difference of that logarithm between 100 and 40 degC", -0.9, 0.9, 0.0, 0.4),
@@ -153,7 +151,7 @@ def oil_viscosity(at: Context) -> Cause:
         id="losses.oil_viscosity",
         doc="The oil is thicker or thinner than assumed; it acts on all that the oil wets.",
         size=Size("ln_factor", "1", "logarithm of the factor on the viscosity", 0.4, -1.6, 1.6),
-        forms=shared([(baths, values(baths))], [((bath,), values((bath,))) for bath in baths], shapes),
+        forms=weighed([form(baths)], [form((bath,), bath) for bath in baths]),
         exposes="a viscosity measurement of a sample; a warm-up from cold",
         acts_on=at.first("oil_temp"),
     )
@@ -163,6 +161,20 @@ def _rubbing(forms: Iterable[Form]) -> tuple[Form, ...]:
     """The same; those that set in at a speed, a load or a temperature only add: something begins to rub there."""
     onsets = tuple(Regime.WORDS.values())
     return tuple(replace(f, only_adds=f.regime.get("quantity", "").startswith(onsets)) for f in forms)
+
+
+def rubbing(at: Context) -> Iterator[Cause]:
+    """Parts whose whole friction is larger or smaller, whatever they carry."""
+    factor, speed = Size("ln_factor", "1", "logarithm of the factor on the friction", 0.5, -1.5, 2.5), at.first("speed")
+    doc = "Friction of bearings, with their load, is larger or smaller: dirt, wear, damage, another cage or clearance."
+    exposes = "temperature or noise at the bearings; another load at one speed"
+    yield from scaled(at, Cause("losses.bearing_friction", doc, factor, (), exposes, SHAFTS, speed), ("order",))
+    doc = "The preload of a pair of bearings is not that set, or it settles."
+    size = Size("ln_factor", "1", "logarithm of the factor on the preload", 0.5, -3.0, 2.5)
+    exposes = "drag torque measured by hand; points at two temperatures of the shaft"
+    yield from scaled(at, Cause("losses.pair_preload", doc, size, (), exposes, SHAFTS, speed), ("order",))
+    doc, exposes = "A clutch or brake drags more or less where it is open.", "a run with the clutch or brake taken out"
+    yield from scaled(at, Cause("losses.clutch_drag", doc, factor, (), exposes, acts_on=speed), ("order",))
 
 
 def bearing_preload(at: Context, places: Sequence[Place]) -> Cause:
@@ -263,7 +275,8 @@ def film_starvation(at: Context, places: Sequence[Place]) -> Cause:
     wet, varies = all(place.lubricant for place in places), at.ranges.varies
     kinds: list[Form] = []
     if wet:
-        kinds += extras.losses(places, (film, *shapes), weight=STARVED[0], as_keys=thin)
+        thinned = extras.losses(places, (film, *shapes), as_keys=thin)
+        kinds += [replace(form, weight=STARVED[0] * form.weight) for form in thinned]
     if wet and varies("film"):
         kinds.append(replace(extras.with_parts(made, shapes, Regime("film", above=False)), weight=STARVED[1]))
     if varies("w") or not kinds:

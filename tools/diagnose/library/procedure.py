@@ -8,10 +8,9 @@ import casadi as ca
 
 from ....model.laws.smooth import smooth_max
 from ....model.machines.roles import Roles
-from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
-from .cooling import DAYS, factors
-from .forms import COURSES
+from .cause import Cause, Form, Num, Row, Shape, Size, Theta, Values
+from .cooling import DAYS
+from .forms import COURSES, Context, factors
 
 #: What early readings are a share of where they are early by a time [s].
 EARLY = 7200.0
@@ -23,20 +22,18 @@ AT_RANDOM = 0.15
 HALVES = {"": (1.0, 1.0, 0.6), "first half": (1.0, 0.0, 0.25), "later halves": (0.0, 1.0, 0.15)}
 
 
-def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
+def causes(at: Context) -> Iterator[Cause]:
     """All causes of the family.
 
     Args:
-        roles: of the machine
-        ranges: of the data
-        sensors: of the campaign
+        at: machine, data and instruments
     """
-    if "dwell" in ranges.known:
+    if "dwell" in at.ranges.known:
         yield not_stationary()
-    if "order" in ranges.known:
-        yield order(roles)
-        if roles.cooling:
-            yield day_scatter(roles)
+    if "order" in at.ranges.known:
+        yield order(at.roles)
+        if at.roles.cooling:
+            yield day_scatter(at.roles)
 
 
 def _pace(missing: Num) -> Num:

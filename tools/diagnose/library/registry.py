@@ -14,11 +14,12 @@ from . import cooling, heat, losses, procedure, thermal
 from . import sensors as instruments
 from .cause import Cause, Ranges
 from .check import problems
+from .forms import Context
 
-#: What makes the causes of a family.
+#: What makes the causes of a user's family.
 Family = Callable[[Roles, Ranges, Sequence[Sensor]], Iterable[Cause]]
 #: Our own, in the order of the taxonomy.
-FAMILIES: tuple[Family, ...] = (
+FAMILIES: tuple[Callable[[Context], Iterable[Cause]], ...] = (
     losses.causes,
     heat.causes,
     cooling.causes,
@@ -44,7 +45,7 @@ def library(
     Raises:
         DataError: files and packages without causes, and causes that are none, all at once
     """
-    found = {cause.id: cause for family in FAMILIES for cause in family(roles, ranges, sensors)}
+    found = {cause.id: cause for family in FAMILIES for cause in family(Context(roles, ranges, sensors))}
     wrong: list[str] = []
     for name, family in _others(extra_files, wrong):
         try:

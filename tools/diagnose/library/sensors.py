@@ -11,13 +11,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
-from ....model.machines.roles import Roles
 from ....model.parts.free_form import step
 from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Mostly, Num, Ranges, Row, Shape, Size, Theta
+from .cause import Cause, Form, Mostly, Num, Row, Shape, Size, Theta
 from .forms import COURSES, FROM_THEN, PLACE, USUAL, WIDTH, Context, Course, since
-from .probes import heated, lag, position, swapped
-from .readings import one_of, wrong
+from .probes import heated, lag, one_of, position, swapped, wrong
 
 #: Share of the offsets that show on one side of a speed, a load or what is read only, each.
 ONE_SIDE = 0.025
@@ -38,6 +36,7 @@ class Kind:
         share, most: share of the typical reading (of the oil's rise, for thermometers) that an error usually is at
             least, and at most
         gain, gain_most: the same for an error of the gain
+        least: what an error usually is at least, whatever is typical [unit]
         calibrate: what shows its offset and gain
     """
 
@@ -48,6 +47,7 @@ class Kind:
     most: float
     gain: float
     gain_most: float
+    least: float
     calibrate: str
 
 
@@ -55,12 +55,12 @@ BATH = "all probes in one bath at two temperatures; readings at rest in a room o
 TARE = "a tare with the shafts uncoupled; a calibration with a lever arm; points at small load"
 REPEAT = "the first point repeated at the end; a check of the zero before each test"
 KINDS: Mapping[str, Kind] = {
-    "oil_temp": Kind("oil probe", "K", 4.0, 0.03, 0.4, 0.03, 0.3, BATH),
-    "wall_temp": Kind("probe on a body", "K", 4.0, 0.03, 0.4, 0.03, 0.3, BATH),
-    "ambient": Kind("room probe", "K", 5.0, 0.035, 0.4, 0.03, 0.3, BATH),
-    "torque": Kind("torque transducer", "N.m", 2.0, 0.003, 0.03, 0.003, 0.03, TARE),
-    "speed": Kind("speed reading", "rad/s", 2.0, 0.01, 0.1, 0.04, 0.15, "a stroboscope"),
-    "power": Kind("power meter", "W", 2.0, 0.005, 0.05, 0.01, 0.1, "a second power meter"),
+    "oil_temp": Kind("oil probe", "K", 4.0, 0.03, 0.4, 0.03, 0.3, 1.0, BATH),
+    "wall_temp": Kind("probe on a body", "K", 4.0, 0.03, 0.4, 0.03, 0.3, 1.0, BATH),
+    "ambient": Kind("room probe", "K", 5.0, 0.035, 0.4, 0.03, 0.3, 1.0, BATH),
+    "torque": Kind("torque transducer", "N.m", 2.0, 0.003, 0.03, 0.003, 0.03, 1e-9, TARE),
+    "speed": Kind("speed reading", "rad/s", 2.0, 0.01, 0.1, 0.04, 0.15, 1e-9, "a stroboscope"),
+    "power": Kind("power meter", "W", 2.0, 0.005, 0.05, 0.01, 0.1, 1e-9, "a second power meter"),
 }
 #: Stable identifiers that are not named as the others.
 NAMES = {"sensor.ambient.offset": "sensor.ambient.bias", "sensor.torque.since": "sensor.torque.step"}
@@ -93,17 +93,14 @@ def turned(mode: Mode) -> Mode:
     )
 
 
-def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
+def causes(at: Context) -> Iterator[Cause]:
     """All errors of all kinds of instruments that there are.
 
     Args:
-        roles: of the machine
-        ranges: of the data
-        sensors: of the campaign
+        at: machine, data and instruments
     """
-    at = Context(roles, ranges, sensors)
-    for name in dict.fromkeys(s.kind for s in sensors if s.kind in KINDS):
-        own = [s for s in sensors if s.kind == name]
+    for name in dict.fromkeys(s.kind for s in at.sensors if s.kind in KINDS):
+        own = [s for s in at.sensors if s.kind == name]
         yield from _Instruments(name, own, at).causes()
         if name == "oil_temp":
             yield from position(at, own)
@@ -133,7 +130,7 @@ class _Instruments:
             signed: whether it may be negative; no standard deviation is
         """
         offset, kind = max(s.offset_sd / max(self.scale[s.name], 0.1) for s in self.own), self.kind
-        sd = share * max(kind.tolerance * offset, kind.share * self.typical, 1e-9)
+        sd = share * max(kind.tolerance * offset, kind.share * self.typical, kind.least)
         high = max(kind.most * self.typical, 8 * sd)
         larger = "" if len(set(self.scale.values())) == 1 else ", of the one that reads most, others in proportion"
         return Size("error", kind.unit, doc + larger, sd, -high if signed else 0.0, high)
@@ -151,16 +148,11 @@ class _Instruments:
         return tuple(found)
 
     def _form(self, sensor: Sensor, mode: Mode, size: str) -> Form:
-        form = wrong(sensor, size, self._error(sensor, mode, size))
+        scale = 1.0 if size == "gain" else self.scale[sensor.name]
+        form = wrong(sensor, size, lambda theta, row, value: scale * mode.factor(theta, row, value))
         name = ", ".join(filter(None, (sensor.name if len(self.own) > 1 else "", mode.name)))
         weight, regime = mode.weight / len(self.own), mode.regime or {}
         return replace(form, name=name, weight=weight, shapes=mode.shapes, spread=mode.spread, regime=regime)
-
-    def _error(self, sensor: Sensor, mode: Mode, size: str) -> Callable[[Theta, Row, Num], Num]:
-        if size == "gain":
-            return mode.factor
-        scale = self.scale[sensor.name]
-        return lambda theta, row, value: scale * mode.factor(theta, row, value)
 
     def cause(
         self,
@@ -172,17 +164,7 @@ class _Instruments:
         acts_on: str = "",
         common: float = 1.0,
     ) -> Cause:
-        """A cause of this kind.
-
-        Args:
-            key: end of its identifier
-            doc: in words
-            size: how much
-            modes: its forms
-            exposes: the experiment that shows it
-            acts_on: see `Cause`
-            common: see `Cause`
-        """
+        """A cause of this kind: `key` ends its identifier, `modes` are its forms, the others those of `Cause`."""
         known = f"sensor.{self.name}.{key}"
         forms = self.forms(modes, size.name)
         return Cause(NAMES.get(known, known), doc, size, forms, exposes, acts_on=acts_on, common=common)

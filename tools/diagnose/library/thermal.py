@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import replace
 
 import casadi as ca
@@ -11,28 +11,23 @@ import numpy as np
 from ....model.machines.roles import Roles
 from ....model.machines.spec import PartSpec
 from ....model.parts.free_form import step
-from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Num, Ranges, Row, Shape, Size, Theta, Values
-from .cooling import factors
-from .forms import Context
+from .cause import Cause, Form, Num, Row, Shape, Size, Theta, Values
+from .forms import Context, factors
 from .heat import bodies
 
 #: A body gives no more than this share of its capacity.
 LEFT = 0.95
 
 
-def causes(roles: Roles, ranges: Ranges, sensors: Sequence[Sensor]) -> Iterator[Cause]:
+def causes(at: Context) -> Iterator[Cause]:
     """All causes of the family.
 
     Args:
-        roles: of the machine
-        ranges: of the data
-        sensors: of the campaign
+        at: machine, data and instruments
     """
-    at = Context(roles, ranges, sensors)
-    if roles.inside or roles.outside:
-        yield mass(roles)
-    if forms := [*capacity_moved(roles), *heat_moved(roles), *losses_moved(at)]:
+    if at.roles.inside or at.roles.outside:
+        yield mass(at.roles)
+    if forms := [*capacity_moved(at.roles), *heat_moved(at.roles), *losses_moved(at)]:
         yield Cause(
             id="thermal.split",
             doc="Capacity, or the heat of losses, belongs to what turns instead of to the housing or the oil.",
