@@ -42,9 +42,8 @@ def test_what_predicts_the_same_is_as_likely_as_its_prior(wrong: tuple[Setting, 
     found = wrong[1]
     top = found.hypotheses[0]
     same = [replace(top, causes=c, log_joint=top.log_joint - 20.0) for c in (("cooling.air",), (TRUE, "cooling.air"))]
-    far = next(
-        h for h in found.hypotheses if len(h.causes) == 1 and not np.allclose(h.fit.look.shown, top.fit.look.shown)
-    )
+    others = [h for h in found.hypotheses if len(h.causes) == 1]
+    far = max(others, key=lambda h: np.linalg.norm(h.fit.look.shown - top.fit.look.shown))
     hypotheses = (top, *same, replace(far, causes=("losses.churning",), log_joint=top.log_joint - 20.0))
     logs = np.array([h.log_joint for h in hypotheses]) - top.log_joint
     few = replace(found, hypotheses=hypotheses, probabilities=np.exp(logs) / np.exp(logs).sum())
