@@ -23,7 +23,7 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import ScenarioError, suggestion
 from ..model.run.audit import SLACK
 from ..model.run.schedule import Schedule
-from .batch_library import BESIDE, Duty, address, broken_relations, driver, instructions, rows_from, shared, widened
+from .batch_library import BESIDE, Duty, address, broken_relations, driver, instructions, rows_from, share_rows, widen
 from .batch_source import EXTRA, relations_source, steady_source, warmup_source
 from .grid import Grid, grid
 
@@ -170,7 +170,7 @@ class Batch:
             problems.append(f"{self.name}: arrays of different lengths: {sorted(s[0] for s in lengths)}. Give one.")
         if problems:
             raise ScenarioError(problems)
-        u, p, start = (_stacked(group, given) for group in groups)
+        u, p, start = (_stack(group, given) for group in groups)
         return u, p, start
 
     def steady(
@@ -196,17 +196,17 @@ class Batch:
         home = np.array([q.start for q in self.inputs])
         x, y = np.empty((n, len(self.states))), np.empty((n, len(self.outputs) + EXTRA))
         status, iterations = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
-        run = driver("batch_steady", widened(self.steady_source, instructions(), BESIDE))
+        run = driver("batch_steady", widen(self.steady_source, instructions(), BESIDE))
 
         def block(a: int, b: int) -> int:
             results = [address(array[a:]) for array in (x, y, status, iterations)]
             return int(run(b - a, *rows_from(vectors, a), address(home), *results))
 
-        shared(block, n, STEADY_BLOCK, threads)
+        share_rows(block, n, STEADY_BLOCK, threads)
         k = len(self.outputs)
         supply, throughput, outside = y[:, k], y[:, k + 1], y[:, k + 2]
         rows = Rows(self.columns, x, y[:, :k], status, iterations, supply, np.zeros(n), throughput, outside)
-        return _marked(rows, verdict, self.outputs)
+        return _mark_rows(rows, verdict, self.outputs)
 
     def warmup(
         self,
@@ -241,16 +241,16 @@ class Batch:
         m = len(points.row_time)
         x, y, energy = np.empty((n, m, len(self.states))), np.empty((n, m, len(self.outputs))), np.empty((n, 4))
         status, steps = np.empty(n, dtype=np.int32), np.empty(n, dtype=np.int32)
-        run = driver("batch_warmup", widened(self.warmup_source, instructions(), BESIDE))
+        run = driver("batch_warmup", widen(self.warmup_source, instructions(), BESIDE))
 
         def block(a: int, b: int) -> int:
             results = [address(array[a:]) for array in (x, y, energy, status, steps)]
             return int(run(b - a, ctypes.byref(duty), *rows_from(vectors, a), m, *results))
 
-        shared(block, n, WARMUP_BLOCK, threads)
+        share_rows(block, n, WARMUP_BLOCK, threads)
         supplied, gained, throughput, outside = energy.T
         rows = Rows(self.columns, x, y, status, steps, supplied, gained, throughput, outside, points.row_time)
-        return _marked(rows, verdict, self.outputs)
+        return _mark_rows(rows, verdict, self.outputs)
 
     def prepared(
         self,
@@ -317,7 +317,7 @@ class Batch:
         return problems
 
 
-def _stacked(group: Sequence[Quantity], given: Mapping[str, np.ndarray]) -> np.ndarray:
+def _stack(group: Sequence[Quantity], given: Mapping[str, np.ndarray]) -> np.ndarray:
     """Values of a group in order: a vector, or a row per entry of the arrays given."""
     columns = [given.get(q.name, np.array(q.start)) for q in group]
     if not columns:
@@ -339,7 +339,7 @@ def _in_range(limits: tuple[np.ndarray, ...], vector: np.ndarray) -> Any:
     return (np.isfinite(vector) & above & below).all(axis=-1)
 
 
-def _marked(rows: Rows, verdict: np.ndarray, outputs: Sequence[Quantity]) -> Rows:
+def _mark_rows(rows: Rows, verdict: np.ndarray, outputs: Sequence[Quantity]) -> Rows:
     """The rows, without those whose values or outputs are out of range or whose values contradict each other."""
     rows.status[:] = np.where(verdict == Status.OK, rows.status, verdict)
     for i, q in enumerate(outputs):

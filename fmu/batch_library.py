@@ -58,7 +58,7 @@ def driver(name: str, source: str) -> Any:
 
 
 @cache
-def widened(source: str, instructions: str, beside: int = 0) -> str:
+def widen(source: str, instructions: str, beside: int = 0) -> str:
     """A C text of wrapper/lanes.h made for processors with one of `WIDER`; as it is without any.
 
     Args:
@@ -167,7 +167,7 @@ def broken_relations(source: str, p: np.ndarray) -> np.ndarray:
     return broken
 
 
-def shared(block: Callable[[int, int], int], n: int, size: int, threads: int) -> None:
+def share_rows(block: Callable[[int, int], int], n: int, size: int, threads: int) -> None:
     """Do n rows in blocks on some threads; ctypes lets go of the interpreter while C runs.
 
     Args:

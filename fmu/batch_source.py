@@ -11,7 +11,7 @@ from ..model.core.flat import FlatModel
 from . import emit, rosenbrock
 from .equations import equations, full, hoist
 from .fixed import wrapper
-from .source import defined, newton_constants
+from .source import define_macros, newton_constants
 from .variables import table
 
 #: What a steady row holds behind the model's outputs: supply [W], throughput [W], law arguments outside their range,
@@ -120,7 +120,9 @@ def _sizes(flat: FlatModel) -> dict[str, int]:
 
 def _text(sizes: Mapping[str, Any], above: Sequence[str], generated: Sequence[str], below: Sequence[str]) -> str:
     """Sizes, the fixed text above the generated tables and functions, these, and the fixed text below them."""
-    return "\n".join([defined({**sizes, **newton_constants()}), *map(wrapper, above), *generated, *map(wrapper, below)])
+    return "\n".join(
+        [define_macros({**sizes, **newton_constants()}), *map(wrapper, above), *generated, *map(wrapper, below)]
+    )
 
 
 def _ranges(flat: FlatModel) -> list[str]:

@@ -64,7 +64,7 @@ def start_choice(room: str | None = None) -> Choice:
     return Choice(START, doc, (given, *([at_room] if room else []), steady), fixed=True, room=room or "")
 
 
-def reduced(choices: Iterable[Choice], flat: FlatModel) -> Iterator[Choice]:
+def drop_idle(choices: Iterable[Choice], flat: FlatModel) -> Iterator[Choice]:
     """The choices without values of parameters that a model does not have; those of parameters left without any go.
 
     Args:

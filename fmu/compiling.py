@@ -132,7 +132,9 @@ def binary(source: str, platform: Platform, *, headers: Mapping[str, str] = Mapp
     return made
 
 
-def together(build: Callable[[Platform], bytes], platforms: Sequence[Platform], progress: Progress) -> dict[str, bytes]:
+def compile_all(
+    build: Callable[[Platform], bytes], platforms: Sequence[Platform], progress: Progress
+) -> dict[str, bytes]:
     """The binaries of several platforms by name, made side by side.
 
     Args:

@@ -51,7 +51,7 @@ class Described:
     def _quantity(self, v: Any) -> Quantity:
         declared = v.declaredType
         unit = v.unit or (declared.unit if declared is not None else None) or "1"
-        low, high = (_bound(v, declared, key, end) for key, end in (("min", -math.inf), ("max", math.inf)))
+        low, high = (_read_bound(v, declared, key, end) for key, end in (("min", -math.inf), ("max", math.inf)))
         mark = " (difference)" if unit == "K" and v.name in self.differences else ""
         return Quantity(v.name, f"{unit}{mark}", v.description or "", low=low, high=high)
 
@@ -71,7 +71,7 @@ def settable(v: Any) -> bool:
     return v.variability != "constant" and (v.causality == "input" or v.initial in ("exact", "approx"))
 
 
-def described(path: Path) -> Described:
+def describe(path: Path) -> Described:
     """The description of an FMU that this machine can play.
 
     Raises:
@@ -120,9 +120,9 @@ def _unplayable(description: Any, here: str, held: Sequence[str]) -> str:
 
 def _differences(root: ET.Element) -> frozenset[str]:
     """Names of the variables that are marked as relative quantities, or whose type is; FMPy passes the mark over."""
-    types = {t.get("name") for t, real in _reals(root, "TypeDefinitions", "SimpleType", "Float64Type") if _marked(real)}
+    types = {t.get("name") for t, real in _reals(root, "TypeDefinitions", "SimpleType", "Float64Type") if _marks(real)}
     variables = _reals(root, "ModelVariables", "ScalarVariable", "Float64")
-    return frozenset(str(v.get("name")) for v, r in variables if _marked(r) or r.get("declaredType") in types)
+    return frozenset(str(v.get("name")) for v, r in variables if _marks(r) or r.get("declaredType") in types)
 
 
 def _reals(root: ET.Element, group: str, of_2: str, of_3: str) -> Iterator[tuple[ET.Element, ET.Element]]:
@@ -134,11 +134,11 @@ def _reals(root: ET.Element, group: str, of_2: str, of_3: str) -> Iterator[tuple
         yield element, element
 
 
-def _marked(real: ET.Element) -> bool:
+def _marks(real: ET.Element) -> bool:
     return real.get("relativeQuantity") in ("true", "1")
 
 
-def _bound(v: Any, declared: Any, key: str, otherwise: float) -> float:
+def _read_bound(v: Any, declared: Any, key: str, otherwise: float) -> float:
     """Lowest or highest value, of the variable or of its type."""
     texts = (getattr(v, key, None), getattr(declared, key, None))
     return float(next((text for text in texts if text is not None), otherwise))

@@ -102,11 +102,11 @@ def dependencies(model: Equations, table: Table) -> Dependencies:
         found.append([tuple(first + j for j in np.flatnonzero(row).tolist()) for row in depends])
     x, u, p = found
     step = tuple(tuple(sorted(a + b)) for a, b in zip(x, u, strict=True))
-    p = [on + _chosen_by(on, table) for on in p]
+    p = [on + _find_choices(on, table) for on in p]
     return Dependencies(step, tuple(tuple(sorted(a + b)) for a, b in zip(step, p, strict=True)))
 
 
-def _chosen_by(parameters: Iterable[int], table: Table) -> tuple[int, ...]:
+def _find_choices(parameters: Iterable[int], table: Table) -> tuple[int, ...]:
     """Value references of the choices that give values to any of some parameters."""
     names = {table.variables[r].name for r in parameters}
     return tuple(v.reference for v in table.of("choice") if v.choice and v.choice.parameters & names)

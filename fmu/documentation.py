@@ -116,8 +116,8 @@ def documentation(
         ranges=list(
             dict.fromkeys((c.component, c.law.name, c.argument, f"{c.low:g} .. {c.high:g}") for c in flat.checks)
         ),
-        cited=_cited(flat, about),
-        checks=[*_compared(flat), *checks],
+        cited=_list_citations(flat, about),
+        checks=[*_list_comparisons(flat), *checks],
     )
 
 
@@ -130,13 +130,13 @@ def _template() -> Template:
         lstrip_blocks=True,
         keep_trailing_newline=True,
         extensions=["jinja2.ext.do"],
-        finalize=_escaped,
+        finalize=_escape,
     )
     page.filters["place"] = lambda title: re.sub("[^a-z]+", "-", title.lower())
     return page.get_template("documentation.html")
 
 
-def _escaped(value: object) -> Markup:
+def _escape(value: object) -> Markup:
     """A value as HTML with the entities of the standard library, so that pages do not change with those of Jinja."""
     return value if isinstance(value, Markup) else Markup(escape(str(value)))
 
@@ -201,13 +201,13 @@ def _kinds(parameters: Sequence[Variable], sources: Mapping[str, str]) -> str:
     return ", ".join(f"{number} {kind}" for kind, number in sorted(count.items()) if number)
 
 
-def _cited(flat: FlatModel, about: About) -> list[tuple[object, ...]]:
+def _list_citations(flat: FlatModel, about: About) -> list[tuple[object, ...]]:
     """What the keys stand for that laws and values cite."""
     keys = {law.source for law in flat.laws} | {text.partition(",")[0].strip() for text in about.sources.values()}
     return [(s.key, s.author, s.year, s.title, s.where) for key, s in sorted(sources().items()) if key in keys]
 
 
-def _compared(flat: FlatModel) -> list[tuple[str, str]]:
+def _list_comparisons(flat: FlatModel) -> list[tuple[str, str]]:
     compared = sum(law.verified for law in flat.laws)
     said = f"{compared} of {len(flat.laws)}"
     return [("laws that reproduce numbers printed in their source", said)] if flat.laws else []

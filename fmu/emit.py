@@ -71,17 +71,17 @@ def function(f: Any, prefix: str = "model_", kind: str = "double", whole: int = 
     takes = [f"const {kind} *{f.name_in(i)}" for i in range(f.n_in())]
     gives = [f"{kind} *{f.name_out(i)}" for i in range(f.n_out())]
     arguments = [f.name_in(i) for i in range(f.n_in())] + [f.name_out(i) for i in range(f.n_out())]
-    shared, powers = _shared_divisors(f), _neighbouring_powers(f)
+    shared, powers = _share_divisors(f), _neighbouring_powers(f)
     lines = [line for k in range(f.n_instructions()) for line in _instruction(f, k, shared, powers, kind)]
     name, signature = f"{prefix}{f.name()}", ", ".join(takes + gives)
     if len(lines) > whole:
         return _in_pieces(name, signature, arguments, lines, kind, piece)
     names = [f"a{i}" for i in range(f.sz_w())] + [name for name, first in (*shared.values(), *powers.values()) if first]
     used = {word for line in lines for word in line.reads}
-    return _defined(f"{name}({signature})", kind, names, [a for a in arguments if a not in used], lines)
+    return _define_function(f"{name}({signature})", kind, names, [a for a in arguments if a not in used], lines)
 
 
-def _defined(head: str, kind: str, names: Sequence[str], unused: Sequence[str], lines: Sequence[_Line]) -> str:
+def _define_function(head: str, kind: str, names: Sequence[str], unused: Sequence[str], lines: Sequence[_Line]) -> str:
     """A C function with its local variables; what it does not use of its arguments is said."""
     declared = [f"  {kind} " + ", ".join(names[k : k + 20]) + ";" for k in range(0, len(names), 20)]
     said = [f"  (void){name};" for name in unused]
@@ -101,9 +101,9 @@ def _in_pieces(
         used = {word for line in body for word in line.reads}
         unused = [argument for argument in (*arguments, "w") if argument not in used]
         names = list(dict.fromkeys(line.sets for line in body if line.sets))
-        texts.append("APART " + _defined(f"{name}_{k}({signature}, {kind} *w)", kind, names, unused, body))
+        texts.append("APART " + _define_function(f"{name}_{k}({signature}, {kind} *w)", kind, names, unused, body))
         calls.append(_Line(f"  {name}_{k}({', '.join([*arguments, 'w'])});", "", ()))
-    return "\n".join([*texts, _defined(f"{name}({signature})", kind, [f"w[{max(len(place), 1)}]"], [], calls)])
+    return "\n".join([*texts, _define_function(f"{name}({signature})", kind, [f"w[{max(len(place), 1)}]"], [], calls)])
 
 
 def _with_transfers(lines: Sequence[_Line], taken: set[str], handed: set[str], place: Mapping[str, int]) -> list[_Line]:
@@ -143,7 +143,7 @@ def _crossing(pieces: Sequence[Sequence[_Line]], arguments: set[str]) -> tuple[l
     return taken, handed[::-1]
 
 
-def _shared_divisors(f: Any) -> dict[int, tuple[str, bool]]:
+def _share_divisors(f: Any) -> dict[int, tuple[str, bool]]:
     """Division -> name of the reciprocal it multiplies by, and whether it is the first to use it.
 
     Only where several divide by the same value: derivatives repeat their function's divisors, and a division costs as

@@ -34,8 +34,8 @@ from pathlib import Path
 
 from ..model.core.flat import FlatModel
 from . import fmi3_source
-from .choices import Choice, reduced, start_choice
-from .compiling import Platform, Progress, binary, platforms, store, together
+from .choices import Choice, drop_idle, start_choice
+from .compiling import Platform, Progress, binary, compile_all, platforms, store
 from .description import Owner, build_description, dependencies, description, identifier
 from .documentation import About, PartText, documentation
 from .effective import effective
@@ -44,7 +44,7 @@ from .fixed import icon
 from .leading import Directions, Uncertain, leading
 from .metadata import metadata
 from .parameter_set import parameter_set
-from .related import Related, related
+from .related import Related, relate
 from .source import GUID_MARK, source
 from .terminals import terminals
 from .unpacking import remember
@@ -101,7 +101,7 @@ def export(
         FmuError: a start value is wrong, nothing uncertain has an effect, the compiler or writing the file fails
     """
     path, chosen = Path(path), platforms(platform, fmi)
-    kept, variables = _exported(flat, dict(start or {}), choices, audit, uncertain.shown if uncertain else ())
+    kept, variables = _prepare_model(flat, dict(start or {}), choices, audit, uncertain.shown if uncertain else ())
     code, told, directions = _code(kept, variables, fmi, owner=owner, with_sources=with_sources, uncertain=uncertain)
     about = About(sources or {}, uncertainties or {}, figures or {}, parts, _idle(flat, kept), directions, with_sources)
     content = {
@@ -112,9 +112,9 @@ def export(
         **({"sources/all.c": code.encode()} if with_sources else {})
         | _binaries(flat.name, code, chosen, fmi, progress),
     }
-    _made(path, content)
+    _write_archive(path, content)
     if verify is not None:
-        _made(path, content | {_PAGE: documentation(kept, variables, about, verify(path), fmi=fmi).encode()})
+        _write_archive(path, content | {_PAGE: documentation(kept, variables, about, verify(path), fmi=fmi).encode()})
     return path
 
 
@@ -125,7 +125,7 @@ def _idle(flat: FlatModel, kept: FlatModel) -> tuple[str, ...]:
 
 def _binaries(name: str, code: str, chosen: Sequence[Platform], fmi: int, progress: Progress) -> dict[str, bytes]:
     headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
-    made = together(lambda platform: binary(built, platform, headers=headers), chosen, progress)
+    made = compile_all(lambda platform: binary(built, platform, headers=headers), chosen, progress)
     return {f"binaries/{p.name}/{identifier(name)}{p.suffix}": made[p.name] for p in chosen}
 
 
@@ -138,13 +138,13 @@ def _of_fmi_3(name: str, variables: Table, with_sources: bool) -> dict[str, byte
     } | built
 
 
-def _made(path: Path, content: Mapping[str, bytes]) -> None:
+def _write_archive(path: Path, content: Mapping[str, bytes]) -> None:
     written = archive(content)
     store(path, written)
     remember(written)
 
 
-def _exported(
+def _prepare_model(
     flat: FlatModel, start: Mapping[str, float], choices: Iterable[Choice], audit: bool, deviating: Sequence[str]
 ) -> tuple[FlatModel, Table]:
     """The model without idle parameters, and its variables with their start values."""
@@ -152,7 +152,7 @@ def _exported(
     kept = effective(flat, start)
     known = {q.name for q in (*kept.states, *kept.inputs, *kept.parameters)}
     own = {name: value for name, value in start.items() if name in known}
-    return kept, table(kept, own, reduced(choices, kept), deviating, audit=audit)
+    return kept, table(kept, own, drop_idle(choices, kept), deviating, audit=audit)
 
 
 def _code(
@@ -180,7 +180,7 @@ def _extra(flat: FlatModel, variables: Table, about: About, others: Related) -> 
     parameters = [v.quantity for v in variables.of("parameter")]
     doc, sources, sd = f"start values of {flat.name}", about.sources, about.uncertainties
     values = parameter_set(flat.name, parameters, doc=doc, sources=sources, uncertainties=sd)
-    return related(values, metadata(flat, values, "parameters.ssv", sources, sd), others)
+    return relate(values, metadata(flat, values, "parameters.ssv", sources, sd), others)
 
 
 def _guid(content: bytes) -> str:

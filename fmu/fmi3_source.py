@@ -23,7 +23,7 @@ def headers() -> dict[str, str]:
     return {name: (folder / name).read_text(encoding="utf-8") for name in _HEADERS}
 
 
-def included(name: str) -> str:
+def include_header(name: str) -> str:
     """The beginning of the source: the standard's header, with names that no other FMU in a program has.
 
     Args:

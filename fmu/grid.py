@@ -59,7 +59,7 @@ def grid(
     regular = begin + step * np.arange(int((stop - begin) / step * (1 + 1e-12)) + 1)
     given = [t[(t > begin) & (t < stop)] for t, _ in columns.values()]
     wanted = regular if output_times is None else np.asarray(output_times, dtype=float)
-    time = _merged([np.array([begin, stop]), *given, wanted, regular], 1e-9 * (1 + abs(stop) + abs(begin)))
+    time = _merge_times([np.array([begin, stop]), *given, wanted, regular], 1e-9 * (1 + abs(stop) + abs(begin)))
     value = (
         np.array([_limit(t, v, time[:-1], "right") for t, v in columns.values()]).reshape(len(columns), len(time) - 1).T
     )
@@ -96,7 +96,7 @@ def _problems(
     return problems
 
 
-def _merged(groups: list[np.ndarray], apart: float) -> np.ndarray:
+def _merge_times(groups: list[np.ndarray], apart: float) -> np.ndarray:
     """All times in order; of times that only round-off keeps apart the one of the earliest group stays."""
     kept = np.unique(groups[0])
     for group in groups[1:]:

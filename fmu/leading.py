@@ -81,7 +81,7 @@ class Directions:
         return tuple(np.flatnonzero(self.parameters.any(axis=1)).tolist())
 
 
-def shown(table: Table) -> tuple[int, ...]:
+def locate_deviations(table: Table) -> tuple[int, ...]:
     """Positions, among the states and behind them the outputs, of what has a standard deviation.
 
     Args:
@@ -125,7 +125,7 @@ def leading(flat: FlatModel, model: Equations, table: Table, reasons: tuple[Unce
     kept = turned[:, :count]
     kept = kept * np.sign(kept[np.abs(kept).argmax(axis=0), range(count)])  # either sign would do
     return Directions(
-        _rounded(full.parameters @ kept), _rounded(full.states @ kept), reasons, max(float(short[count - 1]), 0.0)
+        _round(full.parameters @ kept), _round(full.states @ kept), reasons, max(float(short[count - 1]), 0.0)
     )
 
 
@@ -135,7 +135,7 @@ def _changes(variables: Sequence[Variable], reasons: Sequence[Uncertainty]) -> n
     return np.array(changes).reshape(len(variables), len(reasons))
 
 
-def _rounded(matrix: np.ndarray) -> np.ndarray:
+def _round(matrix: np.ndarray) -> np.ndarray:
     return np.array([[float(f"{value:.{_DIGITS}g}") for value in row] for row in matrix]).reshape(matrix.shape)
 
 
@@ -151,7 +151,7 @@ def _slopes(flat: FlatModel, model: Equations, table: Table, full: Directions) -
     x = np.array([run[name] for name in states])
     z = algebra(flat).solve_rows(x, np.tile(u[:, None], len(times)), np.tile(p[:, None], len(times)), None)
     x = np.vstack([x, np.zeros((2 * table.audit, len(times)))])
-    linear = Sensitivities(model, full.count, full.moving, shown(table))
+    linear = Sensitivities(model, full.count, full.moving, locate_deviations(table))
     c = model.constants(p)
     p_dot, s = full.parameters, full.states
     c_dot = np.hstack([model.constants_directional(p, column).full() for column in p_dot.T])

@@ -14,7 +14,7 @@ from typing import Self
 import numpy as np
 
 from ..model.errors import FmuError, suggestion
-from .described import Described, described, is_real, is_whole, settable
+from .described import Described, describe, is_real, is_whole, settable
 from .grid import Grid, Inputs, grid
 from .slave import Slave, Slave2, Slave3
 
@@ -87,7 +87,7 @@ class Player:
         Raises:
             FmuError: the file is no FMU for co-simulation of FMI 2.0 or 3.0, or holds no binary for this machine
         """
-        self.described = fmu if isinstance(fmu, Described) else described(Path(fmu))
+        self.described = fmu if isinstance(fmu, Described) else describe(Path(fmu))
         self._path = self.described.path
         self._description = self.described.description
         self._variables = self.described.variables
@@ -143,7 +143,7 @@ class Player:
         Raises:
             FmuError: unknown names, times that make no sense, or a call the FMU refuses, with its own message
         """
-        columns = self._recorded(record)
+        columns = self._list_recorded(record)
         self._check(inputs, dict(start or {}))
         points = grid(inputs, begin, stop, step, output_times)
         self._check_steps(points, step)
@@ -155,7 +155,7 @@ class Player:
         kind = Slave2 if self._description.fmiVersion == "2.0" else Slave3
         return kind(self._path, self._description, self._folder)
 
-    def _recorded(self, record: Sequence[str] | None) -> list[str]:
+    def _list_recorded(self, record: Sequence[str] | None) -> list[str]:
         known = self._variables
         if record is None:
             return [n for n, v in known.items() if v.causality in ("output", "input") and is_real(v)]
@@ -195,14 +195,14 @@ class Player:
 
     def _initialise(self, start: Mapping[str, float], points: Grid, tolerance: float | None) -> Slave:
         """The instance in step mode, at the first point."""
-        slave = self._renewed()
+        slave = self._renew()
         self._begin_with(slave, start)
         slave.begin(tolerance, points.time[0], points.time[-1])
         self._set(slave, points.names, points.value[0])
         slave.initialized()
         return slave
 
-    def _renewed(self) -> Slave:
+    def _renew(self) -> Slave:
         """An instance as new: reset, or where an FMU cannot do that, another one."""
         slave = self._slave
         if slave is None:

@@ -53,7 +53,7 @@ class Related:
     experiment: Experiment | None = None
 
 
-def related(parameters: bytes, metadata: bytes, others: Related = Related()) -> dict[str, bytes]:
+def relate(parameters: bytes, metadata: bytes, others: Related = Related()) -> dict[str, bytes]:
     """Paths inside the FMU and content of the manifest and the files it lists.
 
     Args:

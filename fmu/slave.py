@@ -58,13 +58,13 @@ class Slave(ABC):
         identity = {"guid": description.guid, "instanceName": description.modelName}
         place = {"unzipDirectory": folder, "modelIdentifier": description.coSimulation.modelIdentifier}
         try:
-            self._fmu = self._opened({**identity, **place})
+            self._fmu = self._open({**identity, **place})
         except Exception as error:  # FMPy raises bare Exception
             raise FmuError(f"{self._name} cannot be loaded: {self.said() or error}") from error
         self._bind(description)
 
     @abstractmethod
-    def _opened(self, arguments: dict[str, Any]) -> Any:
+    def _open(self, arguments: dict[str, Any]) -> Any:
         """The instance as FMPy has it."""
 
     @abstractmethod
@@ -123,7 +123,7 @@ class Slave2(Slave):
     )
     _counted = False
 
-    def _opened(self, arguments: dict[str, Any]) -> Any:
+    def _open(self, arguments: dict[str, Any]) -> Any:
         self._callbacks = fmi2CallbackFunctions()
         self._callbacks.logger = fmi2CallbackLoggerTYPE(
             lambda _, __, status, ___, message: self._heard(status, message)
@@ -163,7 +163,7 @@ class Slave3(Slave):
     )
     _counted = True
 
-    def _opened(self, arguments: dict[str, Any]) -> Any:
+    def _open(self, arguments: dict[str, Any]) -> Any:
         fmu = FMU3Slave(**arguments)
         fmu.instantiate(logMessage=lambda _, status, __, message: self._heard(status, message))
         return fmu

@@ -17,7 +17,7 @@ from .choices import ROOM, START, STEADY
 from .description import TOLERANCE, identifier
 from .equations import Equations
 from .fixed import tables, wrapper
-from .leading import Directions, shown
+from .leading import Directions, locate_deviations
 from .rosenbrock import RODAS3
 from .sensitivity import Sensitivities
 from .units import fmi_unit
@@ -53,14 +53,14 @@ def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, direct
     head = f"/* {_comment(flat.name)}: FMI {fmi}.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
     functions = model.functions if fmi == 2 else (*model.functions, *model.adjoint_functions)
     if directions is not None:
-        functions += Sensitivities(model, directions.count, directions.moving, shown(table)).functions
+        functions += Sensitivities(model, directions.count, directions.moving, locate_deviations(table)).functions
     values = [_sizes(flat, model, table, directions), _tables(flat, table), _directions(directions)]
     generated = "\n".join([*values, *map(emit.function, functions)])
     instead = {} if directions is None else _UNCERTAIN
     texts = [wrapper(instead.get(name, name)) for name in tables("wrapper")["files"][f"fmi{fmi}"]]
     if fmi == 2:
         return "\n".join([head, _fmi_headers(), generated, *texts])
-    included = fmi3_source.included(identifier(flat.name))
+    included = fmi3_source.include_header(identifier(flat.name))
     return "\n".join([head, included, generated, *map(fmi3_source.in_words_of_3, texts)])
 
 
@@ -94,10 +94,10 @@ def _sizes(flat: FlatModel, model: Equations, table: Table, directions: Directio
         "MODEL_NAME": _string(flat.name),
         "MODEL_GUID": _string(GUID_MARK),
     }
-    return "#include <math.h>\n\n" + defined(sizes | newton_constants())
+    return "#include <math.h>\n\n" + define_macros(sizes | newton_constants())
 
 
-def defined(values: Mapping[str, Any]) -> str:
+def define_macros(values: Mapping[str, Any]) -> str:
     """Definitions for the preprocessor."""
     return "".join(f"#define {name} {value}\n" for name, value in values.items())
 

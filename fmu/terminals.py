@@ -38,10 +38,10 @@ def terminals(table: Table) -> bytes:
     Args:
         table: the variables of the FMU
     """
-    return xml("terminals.xml", terminals=list(_found(table)))
+    return xml("terminals.xml", terminals=list(_list_terminals(table)))
 
 
-def _found(table: Table) -> Iterator[_Terminal]:
+def _list_terminals(table: Table) -> Iterator[_Terminal]:
     """The terminals in the order of their potentials."""
     known = {(v.name, v.quantity.unit): v for v in table if v.kind in ("state", "input", "output")}
     for (name, unit), v in known.items():

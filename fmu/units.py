@@ -67,7 +67,7 @@ def unit(name: str) -> Unit:
         return Unit(name, factor, exponents, tuple(Display(**one) for one in shown))
     zero = model_units.from_si(0.0, name)
     slope = model_units.from_si(1.0, name) - zero
-    words = model_units.shown(name)
+    words = model_units.show_unit(name)
     own = () if words == name else (Display(words, float(f"{slope:.15g}"), zero),)
     return Unit(name, factor, exponents, own)
 

@@ -59,7 +59,7 @@ def remember(content: bytes) -> None:
         store(_note(hashlib.sha256(content).hexdigest()), b"")
 
 
-def trusted(path: Path) -> bool:
+def is_trusted(path: Path) -> bool:
     """Whether an FMU was made by gearheat on this machine.
 
     Args:

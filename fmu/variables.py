@@ -156,10 +156,10 @@ def table(
         FmuError: a start value is unknown, not settable, or out of its range; a name appears twice; what shall have a
             standard deviation is neither a state nor an output
     """
-    states, inputs, parameters, problems = _started(flat, dict(start or {}))
+    states, inputs, parameters, problems = _collect_starts(flat, dict(start or {}))
     states += _audit_states(flat) if audit else ()
     chosen = tuple(choices)
-    parameters = tuple(replace(q, doc=_chosen(q, chosen)) for q in parameters)
+    parameters = tuple(replace(q, doc=_describe_choice(q, chosen)) for q in parameters)
     derivatives = tuple(_derivative(q) for q in states)
     variables: list[Variable] = []
     groups = {"state": states, "input": inputs, "output": _outputs(flat), "parameter": parameters}
@@ -189,7 +189,7 @@ def _inside(end: float, direction: float) -> float:
 Group = tuple[Quantity, ...]
 
 
-def _started(flat: FlatModel, start: dict[str, float]) -> tuple[Group, Group, Group, list[str]]:
+def _collect_starts(flat: FlatModel, start: dict[str, float]) -> tuple[Group, Group, Group, list[str]]:
     """States, inputs and parameters with their start values, and what is wrong with them."""
     groups = [flat.states, flat.inputs, flat.parameters]
     settable = {q.name for group in groups for q in group}
@@ -243,7 +243,7 @@ def _doc(flat: FlatModel, q: Quantity) -> str:
     return f"{q.doc}, follows from {known}" if known else q.doc
 
 
-def _chosen(q: Quantity, choices: Iterable[Choice]) -> str:
+def _describe_choice(q: Quantity, choices: Iterable[Choice]) -> str:
     """What a parameter is; of one that a choice gives values also which counts."""
     by = [c.name for c in choices if q.name in c.parameters]
     return f"{q.doc}; {by[0]} sets it unless it differs from its start value" if by else q.doc

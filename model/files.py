@@ -22,7 +22,7 @@ _KNOWN: ContextVar[dict[tuple[int, int], bool] | None] = ContextVar("_KNOWN", de
 
 
 @contextmanager
-def inputs_kept() -> Iterator[None]:
+def keep_inputs() -> Iterator[None]:
     """Within the block, what `reading` is told of cannot be written over."""
     token = _KNOWN.set({})
     try:
@@ -33,11 +33,11 @@ def inputs_kept() -> Iterator[None]:
 
 def reading(path: Path) -> Path:
     """The path of a file that is about to be read."""
-    _noted(path, read=True)
+    _note(path, read=True)
     return path
 
 
-def _noted(path: Path, *, read: bool) -> None:
+def _note(path: Path, *, read: bool) -> None:
     """A file as read or made by the command, whichever came first."""
     known = _KNOWN.get()
     if known is not None and path.is_file():
@@ -94,7 +94,7 @@ def replacing(path: Path) -> Iterator[Path]:
     through = flows(path)
     handle, name = tempfile.mkstemp(prefix=f".{path.name}.", dir=None if through else path.parent)
     os.close(handle)
-    _noted(Path(name), read=False)
+    _note(Path(name), read=False)
     try:
         yield Path(name)
         if through:

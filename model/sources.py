@@ -119,7 +119,7 @@ def law(
             uses = _uses.get()
             if uses is not None:
                 bound = signature.bind(*args, **kwargs).arguments
-                uses.append(LawUse(info, {name: _ranged(name, bound) for name in limits if _given(name, bound)}))
+                uses.append(LawUse(info, {name: _pick(name, bound) for name in limits if _has(name, bound)}))
             return function(*args, **kwargs)
 
         called.law = info  # type: ignore[attr-defined]
@@ -134,12 +134,12 @@ def _formula(function: Callable[..., Any]) -> str:
     return " ; ".join(" ".join(formula.split()) for formula in found)
 
 
-def _given(name: str, bound: Mapping[str, Any]) -> bool:
+def _has(name: str, bound: Mapping[str, Any]) -> bool:
     """Whether a call gives all arguments that a range names."""
     return all(operand in bound for operand in name.split(" ")[::2])
 
 
-def _ranged(name: str, bound: Mapping[str, Any]) -> Any:
+def _pick(name: str, bound: Mapping[str, Any]) -> Any:
     """What a range limits: an argument, or two of them joined."""
     first, *rest = name.split(" ")
     return _BETWEEN[rest[0]](bound[first], bound[rest[1]]) if rest else bound[first]

@@ -47,7 +47,7 @@ def _registry() -> Any:
     return pint.UnitRegistry()
 
 
-def spelled(unit: str, *, turns: bool = True) -> str:
+def spell_unit(unit: str, *, turns: bool = True) -> str:
     """A unit as the rest of the program writes it: "Nm" is "N.m", and "1/min" is "rpm".
 
     Args:
@@ -60,11 +60,11 @@ def spelled(unit: str, *, turns: bool = True) -> str:
 
 def _pint_unit(text: str) -> str:
     """The model's spelling of a unit in pint's: a dot between letters multiplies, a digit behind one is a power."""
-    text = re.sub(r"(?<!\d)\.|\.(?!\d)", "*", spelled(text, turns=False).replace("·", "*").replace("^", "**"))
+    text = re.sub(r"(?<!\d)\.|\.(?!\d)", "*", spell_unit(text, turns=False).replace("·", "*").replace("^", "**"))
     return "" if text == "1" else re.sub(r"([a-zA-Z])(\d)", r"\1**\2", text)
 
 
-def split(text: str) -> tuple[float, str]:
+def split_quantity(text: str) -> tuple[float, str]:
     """'62 mm' -> (62.0, 'mm'). Raises ValueError where there is no number."""
     stripped = text.strip().replace("\N{MINUS SIGN}", "-")  # as documents have it
     head, _, tail = stripped.partition(" ")
@@ -97,18 +97,18 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
     if isinstance(value, int | float):
         if target != "1":
             raise ScenarioError(
-                f'{name} = {value} has no unit. Write "{value} {shown(unit)}" (expected a unit like {target}).'
+                f'{name} = {value} has no unit. Write "{value} {show_unit(unit)}" (expected a unit like {target}).'
             )
         return _finite(float(value), name, value)
     try:
-        number, written = split(value)
+        number, written = split_quantity(value)
     except ValueError:
         raise ScenarioError(
             f'{name} = "{value}" is no number with a unit. Write for example "{example(unit)}".'
         ) from None
     if not written and target != "1":
         raise ScenarioError(
-            f'{name} = "{value}" has no unit. Write "{value} {shown(unit)}" (expected a unit like {target}).'
+            f'{name} = "{value}" has no unit. Write "{value} {show_unit(unit)}" (expected a unit like {target}).'
         )
     if written == target:
         return _finite(number, name, value)
@@ -118,7 +118,7 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
                 f'{name} = "{value}": "{written}" may mean revolutions or radians. Write rpm, Hz (revolutions per'
                 " second) or rad/s."
             )
-        written = ROTATIONS.get(written, spelled(written))
+        written = ROTATIONS.get(written, spell_unit(written))
 
     ureg = _registry()
     try:
@@ -128,7 +128,7 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
         result = ureg.Quantity(number, source).to(_pint_unit(target)).magnitude
     except Exception:  # the parser of units fails on odd text in many ways, and all mean the same to the user
         raise ScenarioError(
-            f'{name} = "{value}": unit "{written}" does not fit {shown(unit)}. Write for example "{example(unit)}".'
+            f'{name} = "{value}": unit "{written}" does not fit {show_unit(unit)}. Write for example "{example(unit)}".'
         ) from None
     return _finite(float(result), name, value)
 
@@ -139,7 +139,7 @@ def _magnitude(unit: str) -> Any:
     one = _registry().Quantity(1.0, _pint_unit(what))
     if not at:
         return one
-    number, of = split(at)
+    number, of = split_quantity(at)
     return one / _registry().Quantity(number, _pint_unit(of))
 
 
@@ -189,7 +189,7 @@ def si_of(value: float | str) -> float:
     if not isinstance(value, str):
         return value
     try:
-        number, unit = split(value)
+        number, unit = split_quantity(value)
     except ValueError:
         raise ScenarioError(f'"{value}" is no number with a unit. Write for example "62 mm".') from None
     kind_of(unit)
@@ -202,7 +202,7 @@ def _finite(number: float, name: str, value: object) -> float:
     return number
 
 
-def shown(unit: str) -> str:
+def show_unit(unit: str) -> str:
     """The unit in which a quantity of the SI unit `unit` is shown to a person."""
     return "K" if unit.endswith("(difference)") else DISPLAY.get(unit, unit)
 
@@ -230,10 +230,10 @@ def text(number: float, unit: str, digits: int = 6) -> str:
         digits: significant digits to write
     """
     written = f"{from_si(number, unit):.{digits}g}"
-    return written if unit == "1" else f"{written} {shown(unit)}"
+    return written if unit == "1" else f"{written} {show_unit(unit)}"
 
 
 def example(unit: str) -> str:
     """A value a user could write for a unit."""
     typical = {"K": "60 degC", "rad/s": "1450 rpm", "m": "62 mm", "m2": "0.8 m2", "N.m": "40 N.m", "1": "0.5"}
-    return typical.get(unit, f"1 {shown(unit)}")
+    return typical.get(unit, f"1 {show_unit(unit)}")

@@ -30,7 +30,7 @@ from typing import Any
 from pydantic import Field
 
 from ..model.errors import ScenarioError, suggestion
-from .repeats import flat, joined, meant, nets
+from .repeats import flat, join_tables, nets, spell_out
 from .tables import Strict
 
 
@@ -65,7 +65,7 @@ class Unfolded:
     problems: list[str] = field(default_factory=list)
 
 
-def assembled(file: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+def expand_assemblies(file: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
     """A rig file without assemblies, and all that is wrong with these.
 
     Args:
@@ -80,11 +80,11 @@ def assembled(file: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[s
         tables = Assemblies.read(file, {"assembly": raw["assembly"]}).assembly
     except ScenarioError as error:
         return rest, list(error.problems)
-    found = unfolded(file, parts, connect, tables)
+    found = unfold(file, parts, connect, tables)
     return rest | {"part": found.parts, "connect": found.connect}, found.problems
 
 
-def unfolded(
+def unfold(
     file: str,
     parts: Mapping[str, Any],
     connect: Mapping[str, Any],
@@ -108,7 +108,7 @@ def unfolded(
         elif use in above:
             found.problems.append(f'{file} [assembly.{use}]: holds itself, by part "{written}". Leave that part out.')
         else:
-            for name in meant(written):
+            for name in spell_out(written):
                 _place(file, name, table, assemblies, (*above, use), found)
     for net, ports in connect.items():
         for name, own in nets(net, ports):
@@ -126,7 +126,7 @@ def _place(
 ) -> None:
     """One use of an assembly, its parts and nets under the name of the use."""
     assembly = assemblies[above[-1]]
-    inner = unfolded(file, dict(_told(file, name, table, assembly, found)), assembly.connect, assemblies, above)
+    inner = unfold(file, dict(_expand(file, name, table, assembly, found)), assembly.connect, assemblies, above)
     found.problems += inner.problems
     found.parts |= {f"{name}_{part}": own for part, own in inner.parts.items()}
     found.connect |= {f"{name}_{net}": [f"{name}_{p}" for p in flat(ports)] for net, ports in inner.connect.items()}
@@ -134,18 +134,20 @@ def _place(
         found.met[f"{name}.{port}"] = f"{name}_{inner.met.get(target, target)}"
 
 
-def _told(
+def _expand(
     file: str, name: str, table: Mapping[str, Any], assembly: AssemblyTable, found: Unfolded
 ) -> Iterator[tuple[str, Any]]:
     """The parts of an assembly one by one, with the values that its use gives them."""
-    members = {member: dict(values) for written, values in assembly.part.items() for member in meant(written)}
+    members = {member: dict(values) for written, values in assembly.part.items() for member in spell_out(written)}
     where = f"{file} [part.{name}]"
-    for key, values in ((k, values) for written, values in table.items() if written != "use" for k in meant(written)):
+    for key, values in (
+        (k, values) for written, values in table.items() if written != "use" for k in spell_out(written)
+    ):
         if key not in members:
             close = suggestion(key, members) or f" Its parts: {', '.join(members)}."
             found.problems.append(f'{where}: the assembly has no part "{key}".{close}')
         elif not isinstance(values, Mapping):
             found.problems.append(f"{where}: {key} is no table. Write {key}.NAME = ... for each of its values.")
         else:
-            members[key] = joined(members[key], values)
+            members[key] = join_tables(members[key], values)
     yield from members.items()

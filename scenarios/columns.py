@@ -8,7 +8,7 @@ from collections.abc import Mapping
 import numpy as np
 
 from ..model.errors import ScenarioError
-from ..model.units import spelled, to_si
+from ..model.units import spell_unit, to_si
 
 #: What the ending of a column's name says about its unit.
 ENDINGS: Mapping[str, str] = {
@@ -38,7 +38,7 @@ def split_unit(column: str) -> tuple[str, str]:
         column: with a unit as its ending or in brackets ("M_ab [Nm]"); the unit is "" where there is none
     """
     if match := _BRACKET.fullmatch(column.strip()):
-        return match[1], spelled(match[2])
+        return match[1], spell_unit(match[2])
     for ending, unit in ENDINGS.items():
         if column.endswith(ending) and len(column) > len(ending):
             return column.removesuffix(ending), unit

@@ -22,7 +22,7 @@ import numpy as np
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
 from ..model.run.schedule import Schedule
-from ..model.units import shown, to_si
+from ..model.units import show_unit, to_si
 from .columns import split_unit
 from .csv_table import number, raise_all, read_cells
 
@@ -35,7 +35,7 @@ _LARGE = 1e6
 def duty_names(path: str | Path) -> tuple[str, ...]:
     """The inputs named in the header of a duty table, to tell which quantities it drives."""
     header, _ = read_cells(Path(path))
-    return tuple(_split(cell)[0] for cell in header[1:])
+    return tuple(_split_header(cell)[0] for cell in header[1:])
 
 
 def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> Schedule:
@@ -73,7 +73,7 @@ def read_duty(path: str | Path, inputs: FlatModel | Mapping[str, Quantity]) -> S
     return Schedule(values.pop(TIME.name), values)
 
 
-def _split(cell: str) -> tuple[str, str]:
+def _split_header(cell: str) -> tuple[str, str]:
     """Name and unit of a header cell."""
     match = re.fullmatch(r"(.*?)\s*\[(.*)\]", cell)
     return (match[1], match[2].strip()) if match else (cell, "")
@@ -84,7 +84,7 @@ def _column(cell: str, known: Mapping[str, Quantity]) -> tuple[Quantity, float, 
 
     Raises DataError for an unknown name, a missing or a wrong unit.
     """
-    name, unit = _split(cell)
+    name, unit = _split_header(cell)
     if TIME.name in known:
         name, unit = split_unit(cell)
         if name.casefold() not in (TIME.name, "t"):
@@ -94,7 +94,7 @@ def _column(cell: str, known: Mapping[str, Quantity]) -> tuple[Quantity, float, 
         close = suggestion(name, known) or f" Inputs: {', '.join(known)}."
         raise DataError(f'there is no input "{name}".{close}')
     quantity = known[name]
-    remedy = f'Write it in brackets: "{name} [{shown(quantity.unit)}]".'
+    remedy = f'Write it in brackets: "{name} [{show_unit(quantity.unit)}]".'
     if not unit and quantity.unit != "1":
         raise DataError(f'column "{cell}" has no unit. {remedy}')
     try:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ..model.core.declare import Parameter, declared
+from ..model.core.declare import Parameter, list_declared
 from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.parts import PARTS
 from ..model.units import to_si
@@ -77,7 +77,7 @@ def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
     Raises:
         ScenarioError: all problems of the file at once
     """
-    units = {key: d.unit for cls in PARTS.values() for key, d in declared(cls, Parameter).items()}
+    units = {key: d.unit for cls in PARTS.values() for key, d in list_declared(cls, Parameter).items()}
     units |= DESCRIPTIVE.get(kind, {})
     entries: dict[str, Entry] = {}
     problems = Problems()
@@ -89,7 +89,7 @@ def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
         values = {key: value for key, value in table.items() if key not in (*ABOUT, CHECKED)}
         sources, wrong = sources_of(where, {key: value for key, value in table.items() if key != CHECKED})
         problems += wrong
-        checked, wrong = _checked(where, table.get(CHECKED), values)
+        checked, wrong = _read_checks(where, table.get(CHECKED), values)
         problems += wrong
         for key, value in values.items():
             if key not in units:
@@ -102,7 +102,7 @@ def read_catalogue(kind: str, path: Path) -> dict[str, Entry]:
     return entries
 
 
-def _checked(where: str, given: object, values: Mapping[str, Any]) -> tuple[dict[str, str], list[str]]:
+def _read_checks(where: str, given: object, values: Mapping[str, Any]) -> tuple[dict[str, str], list[str]]:
     """What each value was compared with, from a text for all of them, a table of texts, or false; and what is wrong."""
     told = dict.fromkeys(values, given) if isinstance(given, str) else {} if given is False else given
     if not isinstance(told, Mapping) or not all(isinstance(text, str) and text.strip() for text in told.values()):

@@ -75,7 +75,7 @@ def read_film_map(path: Path, name: str = "") -> FittedMap:
         DataError: all that is wrong with the file at once; too few contacts
     """
     table, problems = parse(path, COLUMNS)
-    rows = _solved(table, problems)
+    rows = _find_solved(table, problems)
     raise_all(problems, path.name)
     if not rows:
         raise DataError(f"{path.name}: 0 contacts with a film. Solve other loads, speeds or temperatures.")
@@ -132,7 +132,7 @@ def distinct(values: np.ndarray) -> np.ndarray:
     return known[np.append(True, np.diff(known) > 1e-6 * np.abs(known[1:]))] if len(known) else known
 
 
-def _solved(table: Table, problems: list[str]) -> list[int]:
+def _find_solved(table: Table, problems: list[str]) -> list[int]:
     """Rows that hold a film; a row that says so and does not is a problem."""
     if any(column not in table.columns for column in ("status", "h_c [m]", "h_min [m]")):
         problems += [
@@ -168,7 +168,7 @@ def _place(line: np.ndarray, low: float, high: float) -> np.ndarray:
     return np.asarray((2 * np.log(line) - np.log(low) - np.log(high)) / np.log(high / low))
 
 
-def map_named(text: str, folder: Path) -> FilmMap:
+def find_map(text: str, folder: Path) -> FilmMap:
     """The law that a rig file names.
 
     Args:
@@ -197,4 +197,4 @@ def film_maps(values: Mapping[str, Any], folder: Path) -> dict[str, FilmMap]:
     Raises:
         DataError: all that is wrong with the files
     """
-    return {key: map_named(raw, folder) for key, raw in values.items() if names_map(raw)}
+    return {key: find_map(raw, folder) for key, raw in values.items() if names_map(raw)}

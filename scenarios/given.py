@@ -40,7 +40,7 @@ def scenario_of(rig: RigLike) -> Scenario:
     return load(rig) if isinstance(rig, str | Path) else rig.scenario
 
 
-def written(value: Any, quantity: Quantity | None = None) -> str:
+def spell(value: Any, quantity: Quantity | None = None) -> str:
     """A value as the command line has it.
 
     Args:
@@ -65,4 +65,4 @@ def assignments_of(given: Settings, known: Callable[[], Mapping[str, Quantity]])
     if not isinstance(given, Mapping):
         return list(given)
     quantities = known()
-    return [f"{name}={written(value, quantities.get(name))}" for name, value in given.items()]
+    return [f"{name}={spell(value, quantities.get(name))}" for name, value in given.items()]

@@ -32,19 +32,19 @@ from typing import Any
 
 from ..model.core.component import Component
 from ..model.core.connect import nets
-from ..model.core.declare import Port, State, declared
+from ..model.core.declare import Port, State, list_declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, Problems, ScenarioError, suggestion
 from ..model.machines.spec import LAYOUTS, PartSpec, Spec, assemble, layout
 from ..model.parts import PARTS
 from ..model.parts.free_form import EXTRA_PARTS
 from ..model.units import to_si
-from .assemblies import assembled
+from .assemblies import expand_assemblies
 from .columns import split_unit
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
-from .own_parts import installed_types, own_type
-from .repeats import expanded
+from .own_parts import load_installed_types, load_type
+from .repeats import expand
 from .scenario import Erratum, Instrument, Protocol, Scenario
 from .shipped import RIGS, list_rigs
 from .tables import RigTable, validate
@@ -72,7 +72,7 @@ def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None =
         ScenarioError: everything wrong with the file at once
     """
     path = _find(name_or_path)
-    known = installed_types() | PARTS | EXTRA_PARTS if types is None else types
+    known = load_installed_types() | PARTS | EXTRA_PARTS if types is None else types
     return _Loader(path, read_toml(path), known).scenario()
 
 
@@ -100,8 +100,8 @@ class _Loader:
         self.file = path.name
         self.name = path.resolve().parent.name if path.name == "rig.toml" else path.stem
         self.table: RigTable
-        plain, folded = assembled(self.file, raw)
-        whole, repeated = expanded(self.file, plain)
+        plain, folded = expand_assemblies(self.file, raw)
+        whole, repeated = expand(self.file, plain)
         self.table, wrong = validate(self.file, whole)
         self.problems = Problems(wrong + folded + repeated)
         if self.table.kind not in LAYOUTS and (self.table.kind or not self.problems):
@@ -145,7 +145,7 @@ class _Loader:
         for kind in dict.fromkeys(str(table.get("type", "")) for table in self.table.part.values()):
             if ":" in kind:
                 try:
-                    cls = own_type(kind, {**self.known, **found})
+                    cls = load_type(kind, {**self.known, **found})
                 except ScenarioError as error:
                     self.problems += [f"{self.file}: {problem}" for problem in error.problems]
                 else:
@@ -235,7 +235,7 @@ class _Loader:
         return {end: tuple(quantities) for end, quantities in self.table.drive.items()}
 
     def _spec(self, parts: Mapping[str, PartValues]) -> Spec:
-        ports = [f"{name}.{port}" for name, cls in self.types.items() for port in declared(cls, Port)]
+        ports = [f"{name}.{port}" for name, cls in self.types.items() for port in list_declared(cls, Port)]
         for net, members in self.table.connect.items():
             where = f"{self.file} [connect] {net}"
             self.problems += [
@@ -250,7 +250,7 @@ class _Loader:
 
     def _one_body_of_two(self) -> list[str]:
         """Nets of the file that share a port, which makes one of them, and that hold different storages."""
-        stores = {name for name, cls in self.types.items() if declared(cls, State)}
+        stores = {name for name, cls in self.types.items() if list_declared(cls, State)}
         held = {net: {port.partition(".")[0] for port in ports} & stores for net, ports in self.table.connect.items()}
         first: dict[str, str] = {}
         problems = []

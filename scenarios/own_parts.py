@@ -19,7 +19,7 @@ GROUP = "gearheat.parts"
 
 
 @cache
-def installed_types() -> dict[str, type[Component]]:
+def load_installed_types() -> dict[str, type[Component]]:
     """Part types of installed packages, by name.
 
     Raises:
@@ -29,7 +29,7 @@ def installed_types() -> dict[str, type[Component]]:
     problems = Problems()
     for entry in sorted(entry_points(group=GROUP), key=lambda e: e.name):
         try:
-            found[entry.name] = own_type(entry.value, {})
+            found[entry.name] = load_type(entry.value, {})
         except ScenarioError as error:
             problems += [f"package {entry.name}: {problem}" for problem in error.problems]
     problems += [
@@ -39,7 +39,7 @@ def installed_types() -> dict[str, type[Component]]:
     return found
 
 
-def own_type(kind: str, known: Mapping[str, type[Component]]) -> type[Component]:
+def load_type(kind: str, known: Mapping[str, type[Component]]) -> type[Component]:
     """The class that "module:Class" names.
 
     Args:

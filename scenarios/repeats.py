@@ -41,7 +41,7 @@ def options(text: str) -> list[str]:
     return [word.strip() for word in match[1].split(",")]
 
 
-def meant(text: str) -> list[str]:
+def spell_out(text: str) -> list[str]:
     """All that a text stands for: "a_{1,2}" is "a_1" and "a_2".
 
     Args:
@@ -49,22 +49,22 @@ def meant(text: str) -> list[str]:
     """
     if not (found := options(text)):
         return [text]
-    return [whole for word in found for whole in meant(_BRACES.sub(word, text, count=1))]
+    return [whole for word in found for whole in spell_out(_BRACES.sub(word, text, count=1))]
 
 
-def joined(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
+def join_tables(base: Mapping[str, Any], own: Mapping[str, Any]) -> dict[str, Any]:
     """The table of a part over that which it builds on.
 
     Args:
         base: keys and values
         own: those that go before them
     """
-    base = _sourced(base, own)
+    base = _attribute_values(base, own)
     both = [key for key in ADDED if isinstance(base.get(key), Mapping) and isinstance(own.get(key), Mapping)]
     return {**base, **own, **{key: {**base[key], **own[key]} for key in both}}
 
 
-def _sourced(base: Mapping[str, Any], own: Mapping[str, Any]) -> Mapping[str, Any]:
+def _attribute_values(base: Mapping[str, Any], own: Mapping[str, Any]) -> Mapping[str, Any]:
     """The table a part builds on, its `source` told value by value where the part has a `source` for its own values."""
     if "source" not in own or not isinstance(singles := base.get("sources", {}), Mapping):
         return base
@@ -73,7 +73,7 @@ def _sourced(base: Mapping[str, Any], own: Mapping[str, Any]) -> Mapping[str, An
     return {**base, "sources": default | {key: text for key, text in singles.items() if key not in own}}
 
 
-def expanded(file: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
+def expand(file: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[str]]:
     """A rig file without templates and braces, and all that is wrong with these.
 
     Args:
@@ -92,8 +92,8 @@ def expanded(file: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[st
     if isinstance(parts := raw.get("part"), Mapping):
         found["part"] = {}
         for written, table in parts.items():
-            whole = _used(f"{file} [part.{written}]", table, templates, problems)
-            for name in meant(written):
+            whole = _use_template(f"{file} [part.{written}]", table, templates, problems)
+            for name in spell_out(written):
                 if name in found["part"]:
                     problems.append(f'{file} [part.{written}]: there is a part "{name}" already. Rename one.')
                 found["part"][name] = whole
@@ -104,7 +104,7 @@ def expanded(file: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any], list[st
     return found, problems
 
 
-def _used(where: str, table: Any, templates: Mapping[str, Any], problems: list[str]) -> Any:
+def _use_template(where: str, table: Any, templates: Mapping[str, Any], problems: list[str]) -> Any:
     """The table of a part with what its template holds."""
     if not isinstance(table, Mapping) or "use" not in table:
         return table
@@ -113,7 +113,7 @@ def _used(where: str, table: Any, templates: Mapping[str, Any], problems: list[s
         close = suggestion(str(name), templates) or f" Templates: {', '.join(templates) or 'none'}."
         problems.append(f'{where}: there is no template "{name}".{close}')
         return own
-    return joined(templates[name], own)
+    return join_tables(templates[name], own)
 
 
 def flat(texts: Any) -> Any:
@@ -124,7 +124,7 @@ def flat(texts: Any) -> Any:
     """
     if not isinstance(texts, list):
         return texts
-    return [name for text in texts for name in (meant(text) if isinstance(text, str) else [text])]
+    return [name for text in texts for name in (spell_out(text) if isinstance(text, str) else [text])]
 
 
 def nets(written: str, ports: Any) -> list[tuple[str, Any]]:

@@ -8,7 +8,7 @@ from math import hypot
 from pathlib import Path
 
 from ..model.core.component import Component
-from ..model.core.declare import Given, Input, declared
+from ..model.core.declare import Given, Input, list_declared
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.machines.spec import Spec
@@ -149,7 +149,7 @@ class Scenario:
 
     def inputs(self) -> dict[str, Quantity]:
         """All that may be given over time, by path, whatever is driven."""
-        return quantities(self.types, lambda cls: declared(cls, Input))
+        return quantities(self.types, lambda cls: list_declared(cls, Input))
 
     def with_values(self, values: Mapping[str, float], source: str = "given by the user") -> Scenario:
         """The scenario with values replaced.
@@ -182,11 +182,11 @@ class Scenario:
     def driven_by(self, names: Iterable[str]) -> Scenario:
         """The scenario driven by those of the named inputs that are shaft quantities, the rest as the rig says."""
         shafts = self.shaft_paths()
-        return self.driven(deduced(self.given, [name for name in names if name in shafts]))
+        return self.driven(deduce_drive(self.given, [name for name in names if name in shafts]))
 
     def shaft_paths(self) -> set[str]:
         """Paths of the quantities that may be given at the shaft ends."""
-        return {f"{name}.{key}" for name, cls in self.types.items() for key in declared(cls, Given)}
+        return {f"{name}.{key}" for name, cls in self.types.items() for key in list_declared(cls, Given)}
 
     def driven_paths(self) -> set[str]:
         """Paths of the inputs of the model as it is driven: rooms, loads, what is given at the shaft ends."""
@@ -264,7 +264,7 @@ class Scenario:
         return {entry: tuple(paths) for entry, paths in found.items()}
 
 
-def deduced(given: Mapping[str, tuple[str, ...]], names: Iterable[str]) -> dict[str, tuple[str, ...]]:
+def deduce_drive(given: Mapping[str, tuple[str, ...]], names: Iterable[str]) -> dict[str, tuple[str, ...]]:
     """The drive that follows from the shaft quantities named ("sun.w"), each kind in place of that of `given`.
 
     As many quantities as before are given: with two torques named, the speed follows.
@@ -302,12 +302,12 @@ def parse_assignments(target: Scenario | FlatModel, texts: Iterable[str]) -> dic
     problems = Problems()
     for text in texts:
         with problems:
-            values |= _assigned(target, known, text)
+            values |= _parse_assigned(target, known, text)
     problems.check()
     return values
 
 
-def _assigned(target: Scenario | FlatModel, known: Mapping[str, Quantity], text: str) -> dict[str, float]:
+def _parse_assigned(target: Scenario | FlatModel, known: Mapping[str, Quantity], text: str) -> dict[str, float]:
     path, equals, raw = (part.strip() for part in text.partition("="))
     if not (path and equals and raw):
         raise ScenarioError(f'"{text}" is no assignment. Write name=value with its unit, for example "room.T=20 degC".')

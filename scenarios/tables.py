@@ -151,7 +151,7 @@ def problem_of(name: str, error: Mapping[str, Any], top: type[Strict]) -> str:
         top: model of the whole file
     """
     steps = error["loc"]
-    model, expected = _expected(steps, top)
+    model, expected = _find_expected(steps, top)
     *tables, key = steps if isinstance(steps[-1], str) else steps[:-1]
     place = "".join(f" {t + 1}" if isinstance(t, int) else f".{t}" for t in tables).lstrip(".")
     where = f"{name} [{place}]" if place else name
@@ -163,7 +163,7 @@ def problem_of(name: str, error: Mapping[str, Any], top: type[Strict]) -> str:
     return f"{where}: {key} = {error['input']!r} does not fit. Expected: {expected}."
 
 
-def _expected(steps: Iterable[str | int], top: type[Strict]) -> tuple[type[Strict] | None, str]:
+def _find_expected(steps: Iterable[str | int], top: type[Strict]) -> tuple[type[Strict] | None, str]:
     """The innermost model on the way to a place, and what the last known key on it means."""
     model: type[Strict] | None = top
     meaning = ""

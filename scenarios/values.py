@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from ..model.core.component import Component
-from ..model.core.declare import Choice, Declaration, Input, Output, Parameter, State, declared
+from ..model.core.declare import Choice, Declaration, Input, Output, Parameter, State, list_declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, Problems, ScenarioError, suggestion
 from ..model.parts import PARTS
-from ..model.units import in_unit, spelled, split, to_si
+from ..model.units import in_unit, spell_unit, split_quantity, to_si
 from .document import ABOUT, sources_of
 from .entries import Entry, entry
 from .shipped import FILES
@@ -81,12 +81,12 @@ class PartValues:
 
 def settable(cls: type[Component]) -> dict[str, Declaration]:
     """What may be given a value: parameters, start values of states, inputs."""
-    return {k: d for kind in (Parameter, State, Input) for k, d in declared(cls, kind).items()}
+    return {k: d for kind in (Parameter, State, Input) for k, d in list_declared(cls, kind).items()}
 
 
 def readable(cls: type[Component]) -> dict[str, Declaration]:
     """What a result can show: outputs, states and inputs."""
-    return {k: d for kind in (Output, State, Input) for k, d in declared(cls, kind).items()}
+    return {k: d for kind in (Output, State, Input) for k, d in list_declared(cls, kind).items()}
 
 
 def quantities(
@@ -166,10 +166,10 @@ def unit_of(raw: object) -> str:
     Args:
         raw: a number, or text with a unit ("62 mm")
     """
-    return spelled(split(raw)[1]) if isinstance(raw, str) else ""
+    return spell_unit(split_quantity(raw)[1]) if isinstance(raw, str) else ""
 
 
-def meant(key: str, known: Mapping[str, str]) -> str | None:
+def guess(key: str, known: Mapping[str, str]) -> str | None:
     """The declared name that a misspelt key probably stands for, by its spelling or by its meaning.
 
     Args:
@@ -220,7 +220,7 @@ class _PartReader:
     def __init__(self, where: str, name: str, cls: type[Component]) -> None:
         self.where, self.name, self.cls = where, name, cls
         self.declarations = settable(cls)
-        self.choices: dict[str, Choice] = declared(cls, Choice)
+        self.choices: dict[str, Choice] = list_declared(cls, Choice)
         self.meanings = {key: d.doc for key, d in self.declarations.items()}
         self.meanings |= {key: choice.doc for key, choice in self.choices.items()}
         self.result = PartValues()
@@ -292,7 +292,7 @@ class _PartReader:
                 self.result.uncertainties[key] = standard_deviation(name, raw, self.declarations[key].unit)
 
     def _unknown(self, key: str) -> str:
-        if (name := meant(key, self.meanings)) is None:
+        if (name := guess(key, self.meanings)) is None:
             return f'{self.where}: unknown key "{key}". Known: {", ".join(self.meanings) or "none"}.'
         return f'{self.where}: unknown key "{key}". Did you mean "{name}" ({_brief(self.meanings[name])})?'
 
@@ -301,7 +301,7 @@ class _PartReader:
         try:
             self.cls(self.name, **self.result.values)
         except GearheatError as error:
-            excused = tuple(f"{key} is missing" for key in (*failed, *(meant(key, self.meanings) for key in failed)))
+            excused = tuple(f"{key} is missing" for key in (*failed, *(guess(key, self.meanings) for key in failed)))
             for problem in error.problems:
                 own = problem.removeprefix(f"{self.cls.__name__} {self.name}: ")
                 if not own.startswith(excused) and (complete or " is missing (" not in own):

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from typing import Any
 
 from ..model.core.component import Component
-from ..model.core.declare import Choice, declared
+from ..model.core.declare import Choice, list_declared
 from ..model.core.flat import Quantity
 from ..model.laws.film_map import FilmMap
 from ..model.machines.spec import PartSpec
@@ -75,7 +75,7 @@ def _sensor(instrument: Instrument, units: Mapping[str, Quantity]) -> dict[str, 
 
 def _part_values(part: PartSpec, cls: type[Component]) -> dict[str, Any]:
     """Values with units and choices of a part."""
-    declarations, choices = settable(cls), declared(cls, Choice)
+    declarations, choices = settable(cls), list_declared(cls, Choice)
     values = {k: _value(v, declarations[k].unit) for k, v in part.values.items() if k in declarations}
     chosen = {k: v for k, v in part.values.items() if k in choices and k not in _DRIVEN}
     return values | {k: str(v) if isinstance(v, FilmMap) else v for k, v in chosen.items()}

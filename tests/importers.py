@@ -29,11 +29,11 @@ from gearheat.fmu.export import export
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import PartSpec, Spec, assemble
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.scenarios.load import load
 from gearheat.scenarios.scenario import Scenario
-from gearheat.tools.export.systems import groups_of, taken_apart, write_system
+from gearheat.tools.export.systems import groups_of, split_rig, write_system
 from gearheat.tools.solve.settings import flat_of
 
 #: Communication step of the FMUs and of the coupled system [s], and how long they run.
@@ -94,7 +94,7 @@ def rows() -> Iterator[Row]:
         flat, fmus = _fmus(folder)
         exact = _exact(flat, HOURS)
         system = folder / "plant.ssp"
-        write_system(RIG, taken_apart(RIG, GROUPS, {}), system)
+        write_system(RIG, split_rig(RIG, GROUPS, {}), system)
         whole = _exact(flat_of(RIG), HOUR)
         for fmi, fmu in fmus.items():
             for kind in ("CoSimulation", "ModelExchange"):
@@ -132,7 +132,7 @@ def _fmus(folder: Path) -> tuple[FlatModel, Mapping[int, Path]]:
 
 def _exact(flat: FlatModel, stop: float) -> dict[str, float]:
     """Temperatures at the end by CVODES."""
-    duty = stepped([(stop, {q.name: q.start for q in flat.inputs})])
+    duty = join_phases([(stop, {q.name: q.start for q in flat.inputs})])
     found = simulate(flat, duty, times=[stop])
     return {q.name: float(found[q.name][-1]) for q in flat.states}
 

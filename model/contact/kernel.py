@@ -42,7 +42,7 @@ class Deformation:
 
     def __init__(self, nx: int, ny: int, hx: float, hy: float, factor: float) -> None:
         self.near = factor * love(nx, ny, hx, hy)
-        self._size = (_padded(2 * ny - 1), _padded(2 * nx - 1))
+        self._size = (_pad_length(2 * ny - 1), _pad_length(2 * nx - 1))
         self._shape = (ny, nx)
         even = np.zeros(self._size)
         even[:ny, :nx] = self.near
@@ -58,6 +58,6 @@ class Deformation:
         return np.asarray(scipy.fft.irfft2(spectrum, s=self._size)[:ny, :nx])
 
 
-def _padded(n: int) -> int:
+def _pad_length(n: int) -> int:
     """Length of a fast transform of at least n points."""
     return int(scipy.fft.next_fast_len(n, real=True))

@@ -9,10 +9,10 @@ import numpy as np
 from ..errors import ScenarioError
 from .case import Array, Contact
 from .film import Film, friction
-from .line_grid import LineGrid, graded
-from .line_start import settled
+from .line_grid import LineGrid, grade_grid
+from .line_start import settle
 from .line_system import LineState, Moment
-from .line_unit import LineUnit, flooded, layer, line_unit
+from .line_unit import LineUnit, find_flooded_ends, layer, line_unit
 
 #: Film in whose place none is, for its shear [m].
 LEAST_FILM = 1e-12
@@ -42,7 +42,7 @@ def solve_line(
         SolveError: no solution found
     """
     unit = line_unit(contact)
-    first, last = domain or flooded(contact)
+    first, last = domain or find_flooded_ends(contact)
     if n < FEWEST or not first < -1 < 1 < last:
         raise ScenarioError(
             f"contact: n = {n} nodes from {first:g} to {last:g} half widths. Give at least {FEWEST} nodes that reach "
@@ -50,12 +50,12 @@ def solve_line(
         )
 
     def grid(nodes: int) -> LineGrid:
-        return graded(first, last, nodes, layer(contact))
+        return grade_grid(first, last, nodes, layer(contact))
 
     def heights(x: Array) -> Array:
         return np.zeros_like(x) if roughness is None else roughness(x * unit.dry.a)
 
-    moment, state = settled(unit, grid, n, heights, tolerance)
+    moment, state = settle(unit, grid, n, heights, tolerance)
     return film_of(unit, contact, moment, state)
 
 

@@ -11,10 +11,10 @@ from ..errors import ScenarioError, SolveError
 from .case import Array, Contact
 from .film import Film
 from .line import film_of
-from .line_grid import LineGrid, graded
-from .line_start import settled
+from .line_grid import LineGrid, grade_grid
+from .line_start import settle
 from .line_system import LineState, Moment, newton
-from .line_unit import flooded, line_unit
+from .line_unit import find_flooded_ends, line_unit
 
 #: How often a time step may be halved before the cycle is given up.
 HALVINGS = 8
@@ -85,16 +85,16 @@ class _March:
     ) -> None:
         self.contacts, self.times, self.surfaces, self.tolerance = contacts, times, surfaces, tolerance
         self.unit = line_unit(contacts[0])
-        spans = [np.multiply(domain or flooded(c), line_unit(c).dry.a / self.unit.dry.a) for c in contacts]
+        spans = [np.multiply(domain or find_flooded_ends(c), line_unit(c).dry.a / self.unit.dry.a) for c in contacts]
         first, last = min(s[0] for s in spans), max(s[1] for s in spans)
         self.span = float(first), float(last)
         self.t, self.contact, self.moved = times[0], contacts[0], np.zeros(2)
-        self.moment, self.state = settled(self.unit, self._grid, n, lambda x: self._heights(x, self.moved), tolerance)
+        self.moment, self.state = settle(self.unit, self._grid, n, lambda x: self._heights(x, self.moved), tolerance)
         self.grid = self.moment.grid
         self.past = Past(self._mass(self.moment, self.state))
 
     def _grid(self, n: int) -> LineGrid:
-        return graded(*self.span, n, 0.0)
+        return grade_grid(*self.span, n, 0.0)
 
     def _heights(self, x: Array, moved: Array) -> Array:
         """Sum of the heights of both surfaces at the nodes [m]."""

@@ -57,7 +57,7 @@ class LineGrid:
         return np.concatenate([inner[:1], inner, inner[-1:]])
 
 
-def graded(first: float, last: float, n: int, layer: float) -> LineGrid:
+def grade_grid(first: float, last: float, n: int, layer: float) -> LineGrid:
     """A grid with nodes gathered about x = -1 and x = 1.
 
     Args:

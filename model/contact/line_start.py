@@ -31,7 +31,7 @@ ROUGHER = 0.25
 LEAST_STEP = 0.02
 
 
-def settled(
+def settle(
     unit: LineUnit, grids: Callable[[int], LineGrid], n: int, heights: Callable[[Array], Array], tolerance: float
 ) -> tuple[Moment, LineState]:
     """The equations of the units' contact in steady state, and their solution.

@@ -111,7 +111,7 @@ def newton(moment: Moment, p: Array, h_0: float, tolerance: float = 1e-10, steps
             break
         if not np.isfinite(d).all():
             break
-        at = _searched(at, d)
+        at = _search(at, d)
         norms.append(at.norm)
     raise SolveError(
         f"contact: no film found on {len(p)} nodes of a line (residual {norms[-1]:.1e} after {len(norms) - 1} steps). "
@@ -119,7 +119,7 @@ def newton(moment: Moment, p: Array, h_0: float, tolerance: float = 1e-10, steps
     )
 
 
-def _searched(at: _Point, d: Array) -> _Point:
+def _search(at: _Point, d: Array) -> _Point:
     """The point that a step leads to, shortened where the film would be used up or the residual rise."""
     share = min(1.0, LARGEST_STEP / max(float(np.abs(d[:-1]).max()), 1e-300))
     if not at.moment.dry:

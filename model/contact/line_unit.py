@@ -82,7 +82,7 @@ def layer(contact: Contact) -> float:
     return float(min(max(LAYER * film_number(contact) ** (2 / 3), 0.01), 1.0))
 
 
-def flooded(contact: Contact) -> tuple[float, float]:
+def find_flooded_ends(contact: Contact) -> tuple[float, float]:
     """First and last x of a flooded contact, over its half width; the oil comes from where the speed says."""
     width = sqrt(2 * film_number(contact))
     inlet, outlet = -(3.0 + 12 * width + 8 * width**2 / (1 + width)), 1.5 + 2 * width

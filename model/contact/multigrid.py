@@ -80,7 +80,7 @@ class Cycle:
         grid = linear.grid
         self.linear = linear
         if grid.n <= COARSEST:
-            self._direct = _factored(linear)
+            self._direct = _factor(linear)
             return
         self._relax = LineRelaxation(linear.by_p, linear.by_h, grid.deformation.near, linear.active, (grid.hx, grid.hy))
         coarse = replace(reynolds, hx=2 * reynolds.hx, hy=2 * reynolds.hy)
@@ -119,7 +119,7 @@ class Cycle:
         return p, float(found[-1])
 
 
-def _factored(linear: Linear) -> tuple[Array, np.ndarray]:
+def _factor(linear: Linear) -> tuple[Array, np.ndarray]:
     """LU factors of the equations of all active nodes and of the load."""
     grid, n = linear.grid, linear.grid.n
     active = linear.active.ravel()

@@ -14,7 +14,7 @@ from .film import Film, film_of
 from .grid import Grid, prolong, restrict
 from .line import solve_line
 from .newton import Problem, State, newton
-from .scale import REST, Scaled, checked, units
+from .scale import REST, Scaled, check_film, units
 
 #: Height of a rough surface [m] at places x and y [m].
 Height = Callable[[Array, Array], Array]
@@ -58,7 +58,7 @@ def solve(
     if not (contact.R_y < inf or contact.edge_radius > 0):
         profile = None if roughness is None else partial(_along, roughness)
         return solve_line(contact, n=n, domain=domain[:2] if domain else None, roughness=profile, tolerance=tolerance)
-    case = Scaled(checked(contact), units(contact))
+    case = Scaled(check_film(contact), units(contact))
     grid = case.grid(nodes(n), domain)
     state = steady(case, grid, roughness, tolerance, floor)
     if not state.residuals[-1] < tolerance:

@@ -141,7 +141,7 @@ class Scaled:
         return -x_out * k / (parts - k), x_out, slender + ends + 0.5 + 0.45 * ahead
 
 
-def checked(contact: Contact) -> Contact:
+def check_film(contact: Contact) -> Contact:
     """The contact, if it has a film in the plane.
 
     Raises:

@@ -19,7 +19,7 @@ from .film import Film, film_of
 from .grid import Grid
 from .newton import Problem, State, newton
 from .point import FLOOR, STEPS, Height, gap, nodes, steady
-from .scale import Scaled, Units, checked, units
+from .scale import Scaled, Units, check_film, units
 
 #: How often a step that finds no film is halved.
 HALVINGS = 6
@@ -71,7 +71,7 @@ class Course:
             contact: the contact
             moved: how far the two surfaces have moved [m]
         """
-        return gap(Scaled(contact, self.unit), self.grid, *map(_shifted, self.surfaces, moved))
+        return gap(Scaled(contact, self.unit), self.grid, *map(_shift, self.surfaces, moved))
 
     def moment(self, t: float, moved: tuple[float, float], contact: Contact, state: State) -> Moment:
         """A solved moment.
@@ -148,12 +148,12 @@ def solve_transient(
         raise ScenarioError(
             f"contact: {len(times)} times and {len(contacts)} contacts. Give one contact a time, times increasing."
         )
-    course = _course([checked(c) for c in contacts], nodes(n), domain, (roughness_1, roughness_2), tolerance, floor)
+    course = _course([check_film(c) for c in contacts], nodes(n), domain, (roughness_1, roughness_2), tolerance, floor)
     start = steady(Scaled(contacts[0], course.unit), course.grid, None, tolerance, floor)
     past = [course.moment(times[0], (0.0, 0.0), contacts[0], start)]
     films = [_film(course, past[-1])]
     for t, contact in zip(times[1:], contacts[1:], strict=True):
-        past = _advanced(course, past, t, contact, HALVINGS)
+        past = _advance(course, past, t, contact, HALVINGS)
         films.append(_film(course, past[-1]))
     return tuple(films)
 
@@ -175,7 +175,7 @@ def _course(
     return Course(grid, unit, surfaces, tolerance, floor)
 
 
-def _advanced(course: Course, past: list[Moment], t: float, contact: Contact, halvings: int) -> list[Moment]:
+def _advance(course: Course, past: list[Moment], t: float, contact: Contact, halvings: int) -> list[Moment]:
     """The last two moments up to time t, by half steps where a whole one finds no film."""
     found = course.after(past, t, contact)
     if found is not None:
@@ -183,8 +183,8 @@ def _advanced(course: Course, past: list[Moment], t: float, contact: Contact, ha
     if not halvings:
         raise SolveError(f"contact: no film found at t = {t:g} s. Give times closer to one another, or a finer grid.")
     middle = _between(past[-1].contact, contact)
-    past = _advanced(course, past, (past[-1].t + t) / 2, middle, halvings - 1)
-    return _advanced(course, past, t, contact, halvings - 1)
+    past = _advance(course, past, (past[-1].t + t) / 2, middle, halvings - 1)
+    return _advance(course, past, t, contact, halvings - 1)
 
 
 def _between(a: Contact, b: Contact) -> Contact:
@@ -197,7 +197,7 @@ def _between(a: Contact, b: Contact) -> Contact:
     return replace(b, F=mean("F"), u_1=mean("u_1"), u_2=mean("u_2"), R_x=mean("R_x", -1), R_y=mean("R_y", -1))
 
 
-def _shifted(height: Height | None, moved: float) -> Height | None:
+def _shift(height: Height | None, moved: float) -> Height | None:
     """A surface after it has moved along x."""
     return None if height is None else lambda x, y: height(x - moved, y)
 

@@ -12,8 +12,8 @@ import casadi as ca
 from ..errors import ScenarioError, suggestion
 from ..sources import LawUse, recording
 from ..units import text
-from .declare import Choice, Declaration, Given, Input, Output, Parameter, Port, State, Variable, declared
-from .flat import Relation, broken
+from .declare import Choice, Declaration, Given, Input, Output, Parameter, Port, State, Variable, list_declared
+from .flat import Relation, find_broken
 
 
 @dataclass(frozen=True, eq=False)
@@ -75,16 +75,16 @@ class Component:
     def __init__(self, name: str, **values: Any) -> None:
         self.name = name
         cls = type(self)
-        self.choices = {k: values.pop(k, d.default) for k, d in declared(cls, Choice).items()}
+        self.choices = {k: values.pop(k, d.default) for k, d in list_declared(cls, Choice).items()}
         self.told = frozenset(values)
-        self.ports = {k: d.bound(f"{name}.{k}") for k, d in declared(cls, Port).items() if self.has(k)}
-        possible: dict[str, Parameter] = {k: d for k, d in declared(cls, Parameter).items() if self.has(k)}
+        self.ports = {k: d.bound(f"{name}.{k}") for k, d in list_declared(cls, Port).items() if self.has(k)}
+        possible: dict[str, Parameter] = {k: d for k, d in list_declared(cls, Parameter).items() if self.has(k)}
         parameters = {k: d for k, d in possible.items() if k in self.told or not d.optional}
         self.derived = {k: d for k, d in parameters.items() if d.derived is not None and k not in values}
         self.parameters = {k: d for k, d in parameters.items() if k not in self.derived}
-        self.states: dict[str, State] = {k: d for k, d in declared(cls, State).items() if self.has(k)}
-        self.variables: dict[str, Variable] = declared(cls, Variable)
-        self.inputs: dict[str, Input] = declared(cls, Input)
+        self.states: dict[str, State] = {k: d for k, d in list_declared(cls, State).items() if self.has(k)}
+        self.variables: dict[str, Variable] = list_declared(cls, Variable)
+        self.inputs: dict[str, Input] = list_declared(cls, Input)
         names = (*parameters, *self.states, *self.variables, *self.inputs)
         self.symbols = {k: ca.SX.sym(f"{name}.{k}") for k in names}
         self.derivatives = {k: ca.SX.sym(f"der({name}.{k})") for k in self.states}
@@ -97,7 +97,7 @@ class Component:
 
     def _problems(self, values: dict[str, Any]) -> list[str]:
         cls = type(self)
-        settable: dict[str, Declaration] = {**declared(cls, Parameter), **declared(cls, State), **self.inputs}
+        settable: dict[str, Declaration] = {**list_declared(cls, Parameter), **list_declared(cls, State), **self.inputs}
         where = f"{type(self).__name__} {self.name}"
         found = []
         for key in values.keys() - settable.keys():
@@ -110,7 +110,7 @@ class Component:
             value = self.values[key]
             if (problem := settable[key].quantity(f"{self.name}.{key}").problem(value)) is not None:
                 found.append(f"{where}: {problem}")
-        for key, c in declared(type(self), Choice).items():
+        for key, c in list_declared(type(self), Choice).items():
             if not c.takes(self.choices[key]):
                 options = ", ".join(str(o) for o in c.options)
                 wrong = (
@@ -149,7 +149,7 @@ class Component:
         """The relations that do not hold between the values given."""
         found = [(relation, self._number(value)) for relation, value in self.all_relations()]
         known = [(relation, value) for relation, value in found if value is not None]
-        for relation, value in broken([r for r, _ in known], [v for _, v in known]):
+        for relation, value in find_broken([r for r, _ in known], [v for _, v in known]):
             keys = [path.removeprefix(f"{self.name}.") for path in relation.parameters]
             given = ", ".join(f"{key} = {text(self.values[key], self.parameters[key].unit, 6)}" for key in keys)
             yield relation.problem(value, given)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from ..errors import StructureError, suggestion
 from .component import Component
-from .declare import Port, declared
+from .declare import Port, list_declared
 from .ports_check import open_ports
 
 Connection = tuple[str, ...]
@@ -44,13 +44,13 @@ def nets(assembly: Assembly) -> list[list[Port]]:
     problems = _problems(assembly, ports)
     if problems:
         raise StructureError(problems)
-    found = _merged(assembly, ports)
+    found = _merge_nets(assembly, ports)
     if problems := open_ports(assembly.name, assembly.parts, found):
         raise StructureError(problems)
     return found
 
 
-def _merged(assembly: Assembly, ports: dict[str, Port]) -> list[list[Port]]:
+def _merge_nets(assembly: Assembly, ports: dict[str, Port]) -> list[list[Port]]:
     """The ports of each net, connections that share one joined."""
     net_of = {path: [port] for path, port in ports.items()}
     for connection in assembly.connections:
@@ -84,7 +84,7 @@ def _absent(assembly: Assembly) -> dict[str, str]:
     return {
         f"{part.name}.{key}": port.absent
         for part in assembly.parts
-        for key, port in declared(type(part), Port).items()
+        for key, port in list_declared(type(part), Port).items()
         if key not in part.ports
     }
 

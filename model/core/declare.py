@@ -185,19 +185,19 @@ class Port:
     @classmethod
     def potentials(cls) -> dict[str, Potential]:
         """The potentials of this type of port."""
-        return declared(cls, Potential)
+        return list_declared(cls, Potential)
 
     @classmethod
     def flows(cls) -> dict[str, Flow]:
         """The flows of this type of port."""
-        return declared(cls, Flow)
+        return list_declared(cls, Flow)
 
     def power(self) -> Any:
         """Power that enters the owner through this port [W]; none for ports that carry information."""
         return 0.0
 
 
-def declared(owner: type, kind: type) -> dict[str, Any]:
+def list_declared(owner: type, kind: type) -> dict[str, Any]:
     """All declarations of a kind on a class, base classes first, in the order written; a class may redeclare a name.
 
     Args:

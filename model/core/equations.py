@@ -39,7 +39,7 @@ def rows_of(part: Component) -> list[Equation]:
         raise
     except Exception as error:  # whatever a part's author got wrong
         after = f'after equation "{rows[-1].name.partition(": ")[2]}" of ' if rows else ""
-        raise StructureError(_told(part, f"{part.name}: {after}{type(part).__name__}", error)) from None
+        raise StructureError(_describe_error(part, f"{part.name}: {after}{type(part).__name__}", error)) from None
     if not rows and (part.ports or part.symbols):
         raise StructureError(
             f"{part.name}: {type(part).__name__} has no equations. Write a method equations() that yields one for each "
@@ -74,12 +74,12 @@ def energies_of(part: Component) -> tuple[list[Any], Any]:
         raise
     except Exception as error:  # whatever a part's author got wrong
         where = f"{part.name}: supplied_power or stored_energy of {type(part).__name__}"
-        raise StructureError(_told(part, where, error)) from None
+        raise StructureError(_describe_error(part, where, error)) from None
 
 
-def _told(part: Component, where: str, error: Exception) -> str:
+def _describe_error(part: Component, where: str, error: Exception) -> str:
     """An error inside the equations of a part in words."""
-    if isinstance(error, KeyError | AttributeError) and (missing := _undeclared(part, error)):
+    if isinstance(error, KeyError | AttributeError) and (missing := _find_undeclared(part, error)):
         if missing == "equations":
             return f"{where} has no equations. Write a method equations() that yields them."
         known = [*part.symbols, *part.ports, *part.choices]
@@ -98,7 +98,7 @@ def _told(part: Component, where: str, error: Exception) -> str:
     return f"{where}: {' '.join(said.split()).rstrip('.')}. Correct what follows: its sides are scalars."
 
 
-def _undeclared(part: Component, error: KeyError | AttributeError) -> str:
+def _find_undeclared(part: Component, error: KeyError | AttributeError) -> str:
     """The name that was asked for and is not there."""
     if isinstance(error, KeyError):
         return str(error.args[0]) if error.args else ""

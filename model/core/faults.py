@@ -127,7 +127,7 @@ class Faults:
             said = [r for r in said if self._inputs_of([r])] or said
         said.sort(key=lambda r: not self._inputs_of([r]))
         parts = {_part(r) for r in said}
-        ports = [] if given else [port for net in twice for port in _owned(net, parts)]
+        ports = [] if given else [port for net in twice for port in _list_ports(net, parts)]
         ports = ports or self._ends(unknowns, parts)
         where = f" (at {some([p.name for p in ports])})" if ports else ""
         what, remedy = self._contradiction(relation, given, ports)
@@ -140,37 +140,39 @@ class Faults:
     ) -> tuple[str, str]:
         """What some equations say too much, and what to do about it."""
         held = [] if relation is None else [relation.states[k] for k in relation.acting]
-        states, owners = [f"{part.name}.{key}" for part, key in held], listed([part.name for part, _ in held])
+        states, owners = [f"{part.name}.{key}" for part, key in held], name_all([part.name for part, _ in held])
         ways = [self._drop(given)] if given else []
         if relation is not None and given and states:
             ways += [f"leave {owners} out"]
         if relation is not None and len(given) + len(states) > 1:
             ways += [words for words in dict.fromkeys(type(p).instead for p in ports) if words]
         if states and given:
-            what = f"{listed(states)} is a state, but tied rigidly to {listed(given)}, which is given."
+            what = f"{name_all(states)} is a state, but tied rigidly to {name_all(given)}, which is given."
         elif states:
-            what = f"{listed(states)} is a state, but what it is tied to holds it at one value."
+            what = f"{name_all(states)} is a state, but what it is tied to holds it at one value."
             ways = [f"Free {owners} or leave it out; where a loop closes, its ratios have to fit"]
         elif len(given) > 1:
-            what = f"{listed(given)} are given, but one of them follows from the rest."
+            what = f"{name_all(given)} are given, but one of them follows from the rest."
         elif given:
             what = f"{given[0]} is given, but what it is tied to holds it at one value."
             ways += ["free what holds it; where a loop closes, its ratios have to fit"]
         elif relation is not None and any(type(p).flows() for p in ports):
             what = "two equations say the same, so nothing says what flows on either way."
-            ways = [f"Take {listed(list(dict.fromkeys(map(_owner, ports))), 'or')} away"]
+            ways = [f"Take {name_all(list(dict.fromkeys(map(_owner, ports))), 'or')} away"]
             ways += [words for words in dict.fromkeys(type(p).divides for p in ports) if words]
         else:
             what = "two equations say the same or contradict each other."
-            ways = [f"Connect {listed([p.name for p in ports], 'or')} elsewhere" if ports else "Take one of them away"]
+            ways = [
+                f"Connect {name_all([p.name for p in ports], 'or')} elsewhere" if ports else "Take one of them away"
+            ]
         return what, ", or ".join(ways)
 
     def _drop(self, given: Sequence[str]) -> str:
         """How not to give one of some inputs: by the part's choice, or without the part."""
         free = [path for path in given if path in self.chosen]
         parts = dict.fromkeys(path.rpartition(".")[0] for path in given if path not in self.chosen)
-        ways = [f"Do not give {listed(free, 'or')}"] if free else []
-        ways += [f"{'t' if free else 'T'}ake {listed(list(parts), 'or')} away"] if parts else []
+        ways = [f"Do not give {name_all(free, 'or')}"] if free else []
+        ways += [f"{'t' if free else 'T'}ake {name_all(list(parts), 'or')} away"] if parts else []
         return ", or ".join(ways)
 
     def _inputs_of(self, rows: Sequence[Equation]) -> list[str]:
@@ -197,7 +199,7 @@ class Faults:
         ports = [
             port
             for net in self.nets
-            for port in _owned(net, parts)
+            for port in _list_ports(net, parts)
             if not names.isdisjoint((*_of_net(net), *(f"{port.name}.{k}" for k in type(port).flows())))
         ]
         ports = [port for port in ports if type(port).flows()] or ports
@@ -213,13 +215,13 @@ class Faults:
         """
         names = {self.unknowns[c].name: None for c in chosen}
         if deaf := self._deaf(names):
-            return Fault(tuple(self._told(net) for net in deaf), True)
+            return Fault(tuple(self._describe(net) for net in deaf), True)
         levels = [name for net in self.nets if type(net[0]).flows() for name in _of_net(net) if name in names]
         givable = [path for path in self.givable if path in names]
         inside = set(chosen)
         missing = len(inside) - sum(1 for row in self.columns if not inside.isdisjoint(row))
         several = f"{missing} of " if 1 < missing < len(givable) else ""
-        which = f"{several}{listed(givable, 'and' if missing == len(givable) else 'or')}"
+        which = f"{several}{name_all(givable, 'and' if missing == len(givable) else 'or')}"
         remedy = f"Give {which}, or connect" if givable else "Give a value, connect"
         what = some(levels or givable or sorted(names, key=lambda name: name.count(".")))
         text = (
@@ -241,7 +243,7 @@ class Faults:
                 found.append(net)
         return found
 
-    def _told(self, net: Sequence[Port]) -> str:
+    def _describe(self, net: Sequence[Port]) -> str:
         kind, names = type(net[0]), [port.name for port in net]
         if len(net) == 1:
             return f"{self.model}: {names[0]} is connected to nothing: {kind.missing}. Connect it to {kind.source}."
@@ -257,7 +259,7 @@ def _owner(port: Port) -> str:
     return port.name.rpartition(".")[0]
 
 
-def _owned(net: Sequence[Port], parts: set[str]) -> list[Port]:
+def _list_ports(net: Sequence[Port], parts: set[str]) -> list[Port]:
     """The ports of a net that belong to some parts."""
     return [port for port in net if _owner(port) in parts]
 
@@ -276,7 +278,7 @@ def some(names: Sequence[str]) -> str:
     return ", ".join(names[:SHOWN]) + more
 
 
-def listed(names: Sequence[str], word: str = "and") -> str:
+def name_all(names: Sequence[str], word: str = "and") -> str:
     """All names, the last two with a word between them.
 
     Args:

@@ -109,7 +109,7 @@ class Relation:
         return f'"{self.name}" does not hold: {self.value} is {found}, expected {self.bounds} ({given}).\n{self.remedy}'
 
 
-def broken(relations: Sequence[Relation], values: Sequence[float]) -> list[tuple[Relation, float]]:
+def find_broken(relations: Sequence[Relation], values: Sequence[float]) -> list[tuple[Relation, float]]:
     """The relations that do not hold; of a part where one has a value, not those that merely have none.
 
     Args:
@@ -210,9 +210,9 @@ class FlatModel:
         if not self.relations:
             return {}
         values = [float(v) for v in self.relation_function(p).full().ravel()]
-        return {r: f"{r.component}: {r.problem(v, self._given(r, p))}" for r, v in broken(self.relations, values)}
+        return {r: f"{r.component}: {r.problem(v, self._spell(r, p))}" for r, v in find_broken(self.relations, values)}
 
-    def _given(self, relation: Relation, p: np.ndarray) -> str:
+    def _spell(self, relation: Relation, p: np.ndarray) -> str:
         places = [(name, self.index[name][1]) for name in relation.parameters if name in self.index]
         own = f"{relation.component}."
         return ", ".join(f"{n.removeprefix(own)} = {text(p[i], self.parameters[i].unit, 6)}" for n, i in places)

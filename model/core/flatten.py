@@ -173,7 +173,7 @@ def _quantities(items: list[tuple[Component, str]], kind: str) -> tuple[Quantity
 
 def _outputs(parts: Iterable[Component], joined: Mapping[str, str]) -> list[tuple[Any, Quantity]]:
     """Symbol and quantity of every output of the parts."""
-    shown = ((part, k, d) for part in parts for k, d in _shown(part, joined).items())
+    shown = ((part, k, d) for part in parts for k, d in _list_outputs(part, joined).items())
     return [(part.symbols[k], _output(part, k, d, joined)) for part, k, d in shown]
 
 
@@ -183,7 +183,7 @@ def _flows(assembly: Assembly, flows: Container[str]) -> list[tuple[Any, Quantit
     return [(port.symbols[k], d.quantity(path)) for port, k, d in every if (path := f"{port.name}.{k}") in flows]
 
 
-def _shown(part: Component, joined: Mapping[str, str]) -> dict[str, Declaration]:
+def _list_outputs(part: Component, joined: Mapping[str, str]) -> dict[str, Declaration]:
     """The outputs of a part, behind those of its states that follow others."""
     following: dict[str, Declaration] = {k: d for k, d in part.states.items() if f"{part.name}.{k}" in joined}
     return {**following, **part.outputs()}

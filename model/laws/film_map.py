@@ -88,7 +88,7 @@ class FilmMap:
         @law(source="Gearheat", where=self.name, valid="contacts of the map", ranges=ranges, verified=False)
         def film_map(load: Num, speed: Num, eta_0: Num) -> list[Num]:
             values = (load, speed, eta_0)
-            return [_held(v, *limits) for v, limits in zip(values, self.ranges, strict=True)]
+            return [_find_place(v, *limits) for v, limits in zip(values, self.ranges, strict=True)]
 
         load = smooth_abs(F, F_WIDTH) / (R if self.shape == "line" else R * R)
         return film_map(load, smooth_abs(u_sum, U_WIDTH) / (2 * R), eta_0)
@@ -97,7 +97,7 @@ class FilmMap:
         return ca.exp(sum(c * b for c, b in zip(fit.coefficients, products(z, self.degrees), strict=True)))
 
 
-def _held(value: Num, low: float, high: float) -> Num:
+def _find_place(value: Num, low: float, high: float) -> Num:
     """Place of the logarithm of a value in a range, -1 to 1, and at the edge outside it; 0 in a range of one value."""
     if not high > low * (1 + 1e-9):
         return 0.0

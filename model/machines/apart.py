@@ -11,7 +11,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ..core.connect import nets
-from ..core.declare import Input, Parameter, Port, State, declared
+from ..core.declare import Input, Parameter, Port, State, list_declared
 from ..errors import ScenarioError, suggestion
 from ..parts import PARTS
 from ..parts.ports import AirPort, HeatPort
@@ -44,7 +44,7 @@ class Pieces:
     shared: Mapping[str, tuple[str, ...]]
 
 
-def apart(spec: Spec, groups: Mapping[str, Sequence[str]]) -> Pieces:
+def cut_machine(spec: Spec, groups: Mapping[str, Sequence[str]]) -> Pieces:
     """Cut a machine.
 
     Args:
@@ -140,8 +140,8 @@ class _Cut:
             home = self.piece_of[body]
             stand_in = self._stand_in(body, ports)
             parts[piece].append(stand_in)
-            connections[piece] += _met(stand_in, ports)
-            if "T" in declared(self._type(body), Input):
+            connections[piece] += _list_nets(stand_in, ports)
+            if "T" in list_declared(self._type(body), Input):
                 shared[f"{body}.T"] = (*shared.get(f"{body}.T", (home,)), piece)
                 continue
             several = sum(where == piece and self.piece_of[b] == home for b, where in self.away) > 1
@@ -171,22 +171,22 @@ class _Cut:
 
     def _gives_temperature(self, port: Port) -> bool:
         kind = self._type(_owner(port))
-        return isinstance(port, HeatPort) and "T" in {**declared(kind, State), **declared(kind, Input)}
+        return isinstance(port, HeatPort) and "T" in {**list_declared(kind, State), **list_declared(kind, Input)}
 
     def _heat_port(self, body: str) -> str:
         """A heat port of a body that is none to moving air."""
-        ports = declared(self._type(body), Port).items()
+        ports = list_declared(self._type(body), Port).items()
         return next(f"{body}.{key}" for key, p in ports if isinstance(p, HeatPort) and not isinstance(p, AirPort))
 
     def _stand_in(self, body: str, ports: Iterable[Port]) -> PartSpec:
         """The part of a body's name and temperature in a piece that is without it."""
         kind = "Room" if any(isinstance(port, AirPort) for port in ports) else "PrescribedTemperature"
-        known = {**declared(PARTS[kind], Parameter), **declared(PARTS[kind], Input)}
+        known = {**list_declared(PARTS[kind], Parameter), **list_declared(PARTS[kind], Input)}
         values = self.spec.part(body).values
         return PartSpec(body, kind, {key: value for key, value in values.items() if key in known})
 
 
-def _met(stand_in: PartSpec, ports: Sequence[Port]) -> list[tuple[str, ...]]:
+def _list_nets(stand_in: PartSpec, ports: Sequence[Port]) -> list[tuple[str, ...]]:
     """The nets of a stand-in: one of moving air, one of the rest."""
     air = [port.name for port in ports if isinstance(port, AirPort)]
     rest = [port.name for port in ports if not isinstance(port, AirPort)]

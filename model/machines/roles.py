@@ -8,7 +8,7 @@ from functools import cached_property
 from typing import Any
 
 from ..core.component import SOUND, Component, Faults
-from ..core.declare import Parameter, Port, declared
+from ..core.declare import Parameter, Port, list_declared
 from ..errors import ScenarioError
 from ..parts.ports import Flange, HeatPort, Lubricant, ShaftReading
 from .spec import PartSpec, Spec
@@ -107,7 +107,7 @@ class Roles:
     @staticmethod
     def of(spec: Spec) -> Roles:
         """The roles in a machine. Raises ScenarioError where nothing turns or nothing stores heat."""
-        return _found(_Nets(spec))
+        return _find_roles(_Nets(spec))
 
     @property
     def reading(self) -> str:
@@ -116,13 +116,13 @@ class Roles:
 
     def reading_of(self, part: str) -> str:
         """Port of a part that reads speed and torque."""
-        return f"{part}.{next(iter(declared(self.nets.classes[part], ShaftReading)))}"
+        return f"{part}.{next(iter(list_declared(self.nets.classes[part], ShaftReading)))}"
 
     def value(self, path: str) -> Any:
         """What the rig file says of a parameter, or its default."""
         part, _, key = path.partition(".")
         stated = self.spec.part(part).values
-        return stated[key] if key in stated else declared(self.nets.classes[part], Parameter)[key].default
+        return stated[key] if key in stated else list_declared(self.nets.classes[part], Parameter)[key].default
 
     def conductance(self, conductor: str) -> float:
         """What the rig file makes of a conductor between bodies [W/K]."""
@@ -194,7 +194,7 @@ class Roles:
         for p in self.spec.parts:
             kind = self.spec.types[p.type]
             for key, exponent in faults_of(kind).get(cause, {}).items():
-                if key in declared(kind, Parameter) and self.value(path := f"{p.name}.{key}"):
+                if key in list_declared(kind, Parameter) and self.value(path := f"{p.name}.{key}"):
                     failing.setdefault(place.get(p.name, p.name), {})[path] = exponent
         return failing
 
@@ -240,7 +240,7 @@ class _Nets:
 
     def ports(self, part: str, kind: type[Port]) -> list[str]:
         """Connected ports of a kind."""
-        return [path for key in declared(self.classes[part], kind) if (path := f"{part}.{key}") in self.net]
+        return [path for key in list_declared(self.classes[part], kind) if (path := f"{part}.{key}") in self.net]
 
     def ports_of_lubricant(self, part: str) -> list[str]:
         """Connected ports of a part that carry a lubricant."""
@@ -265,7 +265,7 @@ class _Nets:
     def tap(self) -> str:
         """Port of the bath's lubricant, "" without a bath."""
         return (
-            next((f"{self.bath}.{key}" for key in declared(self.classes[self.bath], Lubricant)), "")
+            next((f"{self.bath}.{key}" for key in list_declared(self.classes[self.bath], Lubricant)), "")
             if self.bath
             else ""
         )
@@ -294,7 +294,7 @@ class _Nets:
 
     def shaft(self) -> str:
         """The shaft end or clutch of which the torque is given, or else the speed."""
-        able = {name for name in self.of("shaft_end", "clutch") if declared(self.classes[name], ShaftReading)}
+        able = {name for name in self.of("shaft_end", "clutch") if list_declared(self.classes[name], ShaftReading)}
         readers = [p for p in self.spec.parts if p.name in able]
         if not readers:
             raise ScenarioError(
@@ -325,7 +325,7 @@ class _Nets:
         return tuple(b for b in bodies if b not in outside), outside
 
 
-def _found(nets: _Nets) -> Roles:
+def _find_roles(nets: _Nets) -> Roles:
     """All roles in the nets of a machine."""
     rooms, keeping = nets.of("room"), nets.of("thermostat")
     air, kept = nets.heat_nets(rooms), nets.heat_nets(keeping)

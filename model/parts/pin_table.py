@@ -35,7 +35,7 @@ def pin_table(mesh: PinMesh, film: Film) -> ContactTable:
         film: torque, speed and lubricant, in numbers
     """
     rows = [_row(mesh, film, degree) for degree in range(181)]
-    sums = list(_recovered(mesh, film))
+    sums = list(_recover(mesh, film))
     worst, at = max(sums, key=lambda found: abs(found[0] - 1))
     totals = {
         "torque_recovery": sum(found for found, _ in sums) / len(sums),
@@ -58,7 +58,7 @@ def _row(mesh: PinMesh, film: Film, degree: int) -> dict[str, float]:
     return {key: float(value) for key, value in found.items()}
 
 
-def _recovered(mesh: PinMesh, film: Film) -> Iterator[tuple[float, float]]:
+def _recover(mesh: PinMesh, film: Film) -> Iterator[tuple[float, float]]:
     """Sum of force times lever over the torque of a disc, and the angle of the first pin [deg], over a pin's pitch."""
     pitch = 2 * pi / mesh.Zp
     for k in range(POSITIONS):

@@ -67,10 +67,10 @@ class WormPair(Component):
         yield equation("tooth friction", self.mu, self.k_mu * self.lubricant.X_L * worm_friction(self.v_slide))
         yield equation("locking", self.locking, self.mu / (ca.cos(self.alpha_n) * ca.tan(gamma)))
         yield equation("force on the wheel", self.F_t, 2 * smooth_abs(self.wheel.tau, width) / (self.m_x * self.z_2))
-        yield from self._told(F_n, gamma, drive)
+        yield from self._exchange_forces(F_n, gamma, drive)
         yield equation("loss heats the gears", self.gears.Q_flow, -self.P_loss)
 
-    def _told(self, F_n: Num, gamma: Num, drive: Num) -> Iterator[Equation]:
+    def _exchange_forces(self, F_n: Num, gamma: Num, drive: Num) -> Iterator[Equation]:
         """What is tangential on one gear is axial on the other."""
         F_t1 = worm_tangential_force(F_n, self.alpha_n, gamma, self.mu, drive)
         for name, force, F_t, F_a in (

@@ -57,7 +57,7 @@ def words(flat: FlatModel, part: str, y: np.ndarray, digits: int = 6) -> dict[st
     return {q.name.rpartition(".")[2]: text(float(value), q.unit, digits) for q, value in of_part}
 
 
-def unsolved(implicit: Mapping[str, float]) -> Iterator[str]:
+def list_unsolved(implicit: Mapping[str, float]) -> Iterator[str]:
     """The implicit equations that do not hold, in words.
 
     Args:

@@ -205,7 +205,7 @@ def _by_scan(search: Search, begin: Equilibrium) -> Design:
     tried.sort(key=lambda t: t.share)
     crossings = _crossings(tried, goal)
     if not crossings and any(t.at is not None for t in tried):
-        tried = sorted(tried + search.scan(_refined(tried, goal), None), key=lambda t: t.share)
+        tried = sorted(tried + search.scan(_refine(tried, goal), None), key=lambda t: t.share)
         crossings = _crossings(tried, goal)
     crossings.sort(key=lambda pair: abs(pair[0].share - home))
     for a, b in crossings:
@@ -221,7 +221,7 @@ def _crossings(tried: Sequence[Tried], goal: float) -> list[tuple[Tried, Tried]]
     ]
 
 
-def _refined(tried: Sequence[Tried], goal: float) -> list[float]:
+def _refine(tried: Sequence[Tried], goal: float) -> list[float]:
     """More points around the one that comes nearest."""
     best = min((i for i, t in enumerate(tried) if t.at is not None), key=lambda i: abs(tried[i].y - goal))
     low, high = tried[max(best - 1, 0)].share, tried[min(best + 1, len(tried) - 1)].share

@@ -62,20 +62,20 @@ def least_change(
         return design(flat, free, equal, values)
     problems: list[str] = []
     for size in range(len(limits) + 1):
-        found = list(_solved(flat, free, targets, equal, list(combinations(limits, size)), values, problems))
+        found = list(_solve_groups(flat, free, targets, equal, list(combinations(limits, size)), values, problems))
         if found:
             best, *others = sorted(found, key=lambda d: change(flat, d, values))
-            return replace(best, notes=(*best.notes, *(_told(flat, d) for d in others)))
+            return replace(best, notes=(*best.notes, *(_describe(flat, d) for d in others)))
     if not problems:
-        there = unchanged(flat, targets, values)
-        missed = ", ".join(_missed(flat, t, there) for t in targets if not _met(flat, t, there))
+        there = evaluate_unchanged(flat, targets, values)
+        missed = ", ".join(_describe_miss(flat, t, there) for t in targets if not _meets(flat, t, there))
         if not missed:
             return replace(there, notes=(MET,))
         raise ScenarioError(f"design: {missed}. Free more with --free: a parameter or an input that may change.")
     raise SolveError(list(dict.fromkeys(problems))[:TOLD])
 
 
-def unchanged(flat: FlatModel, targets: Sequence[Target], values: Mapping[str, float]) -> Design:
+def evaluate_unchanged(flat: FlatModel, targets: Sequence[Target], values: Mapping[str, float]) -> Design:
     """The steady state as it is, whether it meets the targets or not.
 
     Args:
@@ -125,7 +125,7 @@ def rank(flat: FlatModel, found: Design, targets: Sequence[Target], values: Mapp
     return missed, change(flat, found, values), sum(margins)
 
 
-def _solved(
+def _solve_groups(
     flat: FlatModel,
     free: Sequence[str],
     targets: Sequence[Target],
@@ -139,11 +139,11 @@ def _solved(
         aims = {**equal, **{t.name: t.value for t in group}}
         for chosen in combinations(free, len(aims)):
             try:
-                found = design(flat, chosen, aims, values) if aims else unchanged(flat, targets, values)
+                found = design(flat, chosen, aims, values) if aims else evaluate_unchanged(flat, targets, values)
             except SolveError as error:
                 problems += error.problems if aims else ()
                 continue
-            if all(_met(flat, t, found) for t in targets):
+            if all(_meets(flat, t, found) for t in targets):
                 yield found if aims else replace(found, notes=(MET,))
 
 
@@ -151,17 +151,17 @@ def _size(flat: FlatModel, target: Target) -> float:
     return max(abs(target.value), flat.quantity(target.name).nominal)
 
 
-def _met(flat: FlatModel, target: Target, found: Design) -> bool:
+def _meets(flat: FlatModel, target: Target, found: Design) -> bool:
     return target.margin(float(found.result[target.name][0])) <= CLOSE * _size(flat, target)
 
 
-def _told(flat: FlatModel, found: Design) -> str:
+def _describe(flat: FlatModel, found: Design) -> str:
     """Another way to meet the targets, in words."""
     ways = (f"{name} = {text(value, flat.quantity(name).unit)}" for name, value in found.values.items())
     return f"or with a larger change: {', '.join(ways)}"
 
 
-def _missed(flat: FlatModel, target: Target, found: Design) -> str:
+def _describe_miss(flat: FlatModel, target: Target, found: Design) -> str:
     unit = flat.quantity(target.name).unit
     value = text(float(found.result[target.name][0]), unit)
     return f"{target.name} is {value}, which is not {target.sign} {text(target.value, unit)}"

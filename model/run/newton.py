@@ -188,7 +188,7 @@ def pseudo_transient(system: System, z: np.ndarray, box: Box, n: int) -> Root:
     step = float(np.clip(1 / max(states.size(residual[:n]), 1e-12), 1e-6, 1e3))
     taken = 0
     while taken < MOST_RELAX and step > SHORTEST:
-        step = min(step, CAUTION / max(growth(reduced(jacobian, n)), 1e-300))
+        step = min(step, CAUTION / max(growth(reduce_jacobian(jacobian, n)), 1e-300))
         inner = newton(_euler(system, z, step, n), z, box, MOST_EULER)
         taken += max(inner.steps, 1)
         if not inner.found or states.size(((inner.z - z) / (1 + np.abs(z) / (STRIDE * box.scale)))[:n]) > FAR:
@@ -203,7 +203,7 @@ def pseudo_transient(system: System, z: np.ndarray, box: Box, n: int) -> Root:
     return Root(z, False, taken)
 
 
-def reduced(jacobian: np.ndarray, n: int) -> np.ndarray:
+def reduce_jacobian(jacobian: np.ndarray, n: int) -> np.ndarray:
     """Jacobian of the first n residuals in the first n unknowns where the others keep theirs at zero; NaN if none.
 
     Args:

@@ -10,7 +10,7 @@ from ..core.flat import FlatModel
 from ..errors import SolveError
 from ..sources import LawInfo
 from .algebra import algebra
-from .audit import SLACK, imbalance, out_of_range, unsolved, words
+from .audit import SLACK, imbalance, list_unsolved, out_of_range, words
 from .result import Audit, Outside, Result
 
 
@@ -79,8 +79,8 @@ def result(
     """
     groups = ((flat.states, x), (flat.inputs, u), (flat.outputs, evaluated["y"]))
     columns = {q.name: row for quantities, values in groups for q, row in zip(quantities, values, strict=True)}
-    implicit = left(flat, evaluated["residual"])
-    problems = [*out_of_range(flat, columns), *unsolved(implicit), *imbalance(flat, evaluated, audit, tolerance)]
+    implicit = find_residuals(flat, evaluated["residual"])
+    problems = [*out_of_range(flat, columns), *list_unsolved(implicit), *imbalance(flat, evaluated, audit, tolerance)]
     if problems:
         raise SolveError([f"{kind}: {problem}" for problem in problems])
     return Result(
@@ -91,7 +91,7 @@ def result(
         units={name: flat.quantity(name).unit for name in columns},
         audit=audit,
         outside=outside(flat, evaluated),
-        laws=cited(flat.laws),
+        laws=cite_laws(flat.laws),
         implicit=implicit,
     )
 
@@ -120,7 +120,7 @@ def outside(flat: FlatModel, evaluated: Mapping[str, np.ndarray]) -> tuple[Outsi
     return tuple(found.values())
 
 
-def left(flat: FlatModel, residual: np.ndarray) -> dict[str, float]:
+def find_residuals(flat: FlatModel, residual: np.ndarray) -> dict[str, float]:
     """Largest residual of each implicit equation over the rows.
 
     Args:
@@ -130,6 +130,6 @@ def left(flat: FlatModel, residual: np.ndarray) -> dict[str, float]:
     return {name: float(np.max(np.abs(row))) for name, row in zip(flat.residual_names, residual, strict=True)}
 
 
-def cited(laws: Iterable[LawInfo]) -> tuple[str, ...]:
+def cite_laws(laws: Iterable[LawInfo]) -> tuple[str, ...]:
     """The laws at work with the place they come from, each once, in the order of use."""
     return tuple(dict.fromkeys(f"{law.name} ({law.source}, {law.where})" for law in laws))

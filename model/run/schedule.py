@@ -53,7 +53,7 @@ class Schedule:
         return [slice(int(a), int(b)) for a, b in pairs]
 
 
-def stepped(phases: Iterable[tuple[float, Mapping[str, float | tuple[float, float]]]]) -> Schedule:
+def join_phases(phases: Iterable[tuple[float, Mapping[str, float | tuple[float, float]]]]) -> Schedule:
     """A schedule from phases (duration [s], input -> constant value or (begin, end)).
 
     An input that a phase does not name keeps the value at the end of the phase before.

@@ -11,7 +11,7 @@ import numpy as np
 from ..core.flat import FlatModel, Quantity
 from ..errors import SolveError
 from .fast import Fast, once
-from .newton import FIRST_STRIDE, LEAST_STRIDE, STRIDE, Box, System, newton, reduced, stable
+from .newton import FIRST_STRIDE, LEAST_STRIDE, STRIDE, Box, System, newton, reduce_jacobian, stable
 from .point import Point
 from .steady import Equilibrium, equilibrium, rates, unknowns_box
 
@@ -198,7 +198,7 @@ class Search:
         if not root.found or (np.abs(self.aims(found, f) - goal) > MET * self.size).any() or not self.allowed(here.p):
             return None
         jacobian = rates(self.flat)(found.x, found.z, here.u, here.p)[1].reshape(self.n, self.n)
-        return (found, f) if stable(reduced(jacobian, len(found.x))) else None
+        return (found, f) if stable(reduce_jacobian(jacobian, len(found.x))) else None
 
     def _split(self, z: np.ndarray) -> tuple[Equilibrium, np.ndarray]:
         n = len(self.flat.states)
@@ -252,7 +252,7 @@ class Search:
         """Starts spread evenly over the ranges (Halton 1960), the same every time."""
         bases = _primes(len(self.free))
         for k in range(1, count + 1):
-            yield np.array([r.at(_reversed_digits(k, b)) for r, b in zip(self.ranges, bases, strict=True)])
+            yield np.array([r.at(_reverse_digits(k, b)) for r, b in zip(self.ranges, bases, strict=True)])
 
 
 @once
@@ -280,7 +280,7 @@ def _primes(count: int) -> list[int]:
     return found
 
 
-def _reversed_digits(k: int, base: int) -> float:
+def _reverse_digits(k: int, base: int) -> float:
     """The digits of k mirrored at the point."""
     value, place = 0.0, 1.0
     while k:

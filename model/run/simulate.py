@@ -63,7 +63,7 @@ def simulate(
         raise ScenarioError(asked)
     begin = point(flat, values, start, who="simulate", taken=schedule.values)
     stretches = _stretches(flat, schedule, begin.u)
-    rows = _rows(schedule, stretches) if times is None else _asked(np.asarray(times, dtype=float), stretches)
+    rows = _rows(schedule, stretches) if times is None else _pick_rows(np.asarray(times, dtype=float), stretches)
     transient = Transient(flat, begin.x, begin.p, tolerance)
     run: Callable[..., tuple[np.ndarray, np.ndarray, np.ndarray]] = getattr(transient, method)
     x = np.empty((len(flat.states), len(rows.time)))
@@ -72,7 +72,7 @@ def simulate(
     now, energy = begin.x, np.zeros(2)
     for k, stretch in enumerate(stretches):
         here = np.flatnonzero(rows.stretch == k)
-        grid = _merged(stretch.time, rows.time[here])
+        grid = _merge_times(stretch.time, rows.time[here])
         try:
             path, algebraic, gained = run(stretch, grid, now)
         except Failure as failure:
@@ -143,12 +143,12 @@ def _rows(schedule: Schedule, stretches: Sequence[Stretch]) -> _Rows:
     times = []
     for s in stretches:
         inside = every[(every > s.begin) & (every < s.end)]
-        times.append(_merged(np.array([s.begin, s.end]), inside))
+        times.append(_merge_times(np.array([s.begin, s.end]), inside))
     owners = [np.full(len(t), k) for k, t in enumerate(times)]
     return _Rows(np.concatenate(times), np.concatenate(owners))
 
 
-def _asked(times: np.ndarray, stretches: Sequence[Stretch]) -> _Rows:
+def _pick_rows(times: np.ndarray, stretches: Sequence[Stretch]) -> _Rows:
     """The rows asked for: at a jump the side after it, where a time comes twice the first of them before it."""
     begins = np.array([s.begin for s in stretches])
     stretch = np.maximum(np.searchsorted(begins, times, side="right") - 1, 0)
@@ -157,7 +157,7 @@ def _asked(times: np.ndarray, stretches: Sequence[Stretch]) -> _Rows:
     return _Rows(times, stretch - at_jump)
 
 
-def _merged(edges: np.ndarray, times: np.ndarray) -> np.ndarray:
+def _merge_times(edges: np.ndarray, times: np.ndarray) -> np.ndarray:
     """Edges and times in order; times that round-off alone keeps from an edge or each other are one."""
     every = np.unique(np.concatenate([edges, times]))
     apart = 1e-9 * (1.0 + edges[-1] - edges[0])
@@ -184,7 +184,7 @@ def _result(
     tolerance: float,
 ) -> Result:
     evaluated = evaluate(flat, x, u, begin.p, z)
-    stored = _stored(flat)
+    stored = _make_energy(flat)
     ends = [float(stored(state, u[:, k], begin.p)) for state, k in ((begin.x, 0), (last, -1))]
     held = float(max(np.abs(evaluated["stored"]).max(), *map(abs, ends)))
     audit = Audit(float(energy[0]), ends[1] - ends[0], float(energy[1]), held)
@@ -192,7 +192,7 @@ def _result(
 
 
 @once
-def _stored(flat: FlatModel) -> Any:
+def _make_energy(flat: FlatModel) -> Any:
     """CasADi function (x, u, p) -> energy of the states."""
     return ca.Function("stored", [flat.x, flat.u, flat.p], [flat.stored])
 

@@ -13,7 +13,7 @@ from ..errors import SolveError
 from ..units import text
 from .algebra import algebra
 from .fast import Fast, once
-from .newton import STRIDE, Box, Root, System, homotopy, newton, pseudo_transient, reduced, stable
+from .newton import STRIDE, Box, Root, System, homotopy, newton, pseudo_transient, reduce_jacobian, stable
 from .point import Point, point
 from .result import Audit, Result
 from .rows import evaluate, result
@@ -206,7 +206,7 @@ class _Search:
         return root.found
 
     def _stable(self, w: np.ndarray) -> bool:
-        return stable(reduced(self.system(w)[1], self.n))
+        return stable(reduce_jacobian(self.system(w)[1], self.n))
 
     def steady_between(self, start: np.ndarray, end: np.ndarray) -> bool:
         """Whether nothing between two points would run away: else the machine decides by itself where it settles."""
@@ -232,7 +232,7 @@ class _Search:
         """Why there is no equilibrium, in words."""
         flat, n = self.flat, self.n
         rate, jacobian = self.system(self.last)
-        if (loose := self._loose(reduced(jacobian, n))) is not None:
+        if (loose := self._loose(reduce_jacobian(jacobian, n))) is not None:
             return f"nothing holds {loose}: it keeps any value. Connect what drives or cools it, or give it a load."
         scale = self.box.scale[:n]
         worst = int(np.argmax(np.abs(np.where(np.isfinite(rate[:n]), rate[:n], np.inf)) / scale))

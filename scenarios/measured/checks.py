@@ -48,7 +48,7 @@ SAME = 0.01
 OUTLYING = 0.25
 
 
-def checked(campaign: Campaign, nominal: Nominal, oils: Oils, *, points: bool = False) -> Campaign:
+def check(campaign: Campaign, nominal: Nominal, oils: Oils, *, points: bool = False) -> Campaign:
     """The campaign with warnings of what is odd about it.
 
     Args:
@@ -67,7 +67,7 @@ def checked(campaign: Campaign, nominal: Nominal, oils: Oils, *, points: bool = 
         *_scales(campaign, nominal),
     ]
     if not points and not problems:
-        problems += [*_repeated_columns(campaign), *_against_model(campaign, nominal, oils)]
+        problems += [*_find_repeated_columns(campaign), *_against_model(campaign, nominal, oils)]
     if not points and not problems:
         problems += _balance(campaign, nominal)
     raise_all(problems, campaign.name)
@@ -111,7 +111,7 @@ def outlying(campaign: Campaign, points: Campaign) -> list[str]:
         known, asked = np.abs(campaign.values[sensor.name]), np.abs(points.values[sensor.name])
         far = int(((asked > (1 + OUTLYING) * known.max()) | (asked < (1 - OUTLYING) * known.min())).sum())
         if far:
-            low, high = (_shown(sensor, value) for value in (known.min(), known.max()))
+            low, high = (_format_value(sensor, value) for value in (known.min(), known.max()))
             found.append(
                 f"{points.name}: {sensor.column} of {far} points is far outside of {low} to {high}."
                 " Their prediction is an extrapolation."
@@ -119,7 +119,7 @@ def outlying(campaign: Campaign, points: Campaign) -> list[str]:
     return found
 
 
-def _shown(sensor: Sensor, value: float) -> str:
+def _format_value(sensor: Sensor, value: float) -> str:
     return text(float(value), SI[sensor.kind], 4)
 
 
@@ -193,12 +193,12 @@ def _scales(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
             continue
         row = int(np.nanargmax(np.abs(campaign.values[sensor.name])))
         yield (
-            f"{_place(campaign, row)}: {sensor.column} is at most {_shown(sensor, largest)}, the rig runs at"
-            f" {_shown(sensor, usual)}. Check its unit, which is taken for {sensor.unit}."
+            f"{_place(campaign, row)}: {sensor.column} is at most {_format_value(sensor, largest)}, the rig runs at"
+            f" {_format_value(sensor, usual)}. Check its unit, which is taken for {sensor.unit}."
         )
 
 
-def _repeated_columns(campaign: Campaign) -> Iterator[str]:
+def _find_repeated_columns(campaign: Campaign) -> Iterator[str]:
     """Columns that hold the same numbers."""
     for k, sensor in enumerate(campaign.sensors):
         for other in campaign.sensors[:k]:
@@ -238,7 +238,7 @@ def _constant(campaign: Campaign, sensor: Sensor, model: Sequence[float]) -> Ite
     varies = np.ptp(np.abs(model)) > max(SMALL_RISE if SI[sensor.kind] == "K" else SAME * np.max(np.abs(model)), 1e-9)
     if len(known) > LEAST_TESTS and np.ptp(known) == 0.0 and varies:
         yield (
-            f"{campaign.name}: {sensor.column} is {_shown(sensor, known[0])} in all {len(known)} rows."
+            f"{campaign.name}: {sensor.column} is {_format_value(sensor, known[0])} in all {len(known)} rows."
             " Give what was read, or leave out the column."
         )
 
@@ -253,14 +253,14 @@ def _torque(
     if 1 / factor <= middle <= factor:
         return
     row, (read, model) = next(iter(pairs.items()))
-    where = f"{_place(campaign, row)}: {sensor.column} gives {_shown(sensor, read)}"
+    where = f"{_place(campaign, row)}: {sensor.column} gives {_format_value(sensor, read)}"
     if 1 / factor <= -middle <= factor:
         yield (
-            f"{where}, the model {_shown(sensor, model)}: its sign is the other one. Turn it, or say"
+            f"{where}, the model {_format_value(sensor, model)}: its sign is the other one. Turn it, or say"
             " magnitude = true of this sensor in the card."
         )
     else:
-        yield f"{where}, the model {_shown(sensor, model)}. Check its unit, which is taken for {sensor.unit}."
+        yield f"{where}, the model {_format_value(sensor, model)}. Check its unit, which is taken for {sensor.unit}."
 
 
 def _rise(campaign: Campaign, sensor: Sensor, pairs: dict[int, tuple[float, float]]) -> Iterator[str]:

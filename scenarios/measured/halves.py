@@ -33,15 +33,15 @@ def with_unread(campaign: Campaign) -> Campaign:
     usual, times = courses.most_common(1)[0]
     if campaign.steady or len(usual) < 2 or times < USUAL * campaign.n_tests:
         return campaign
-    plan = [entry for own in rows for entry in _completed(own, [steps[row] for row in own], usual)]
+    plan = [entry for own in rows for entry in _complete_test(own, [steps[row] for row in own], usual)]
     if all(step is None for _, step in plan):
         return campaign
     inside = np.diff(campaign.test) == 0
     rooms = [s.name for s in campaign.given if s.kind == "ambient"]
-    return _built(campaign, plan, {n: float(np.nanmedian(np.diff(campaign.values[n])[inside])) for n in rooms})
+    return _build(campaign, plan, {n: float(np.nanmedian(np.diff(campaign.values[n])[inside])) for n in rooms})
 
 
-def _completed(own: Sequence[int], steps: Sequence[Step], usual: Sequence[Step]) -> list[tuple[int, Step | None]]:
+def _complete_test(own: Sequence[int], steps: Sequence[Step], usual: Sequence[Step]) -> list[tuple[int, Step | None]]:
     """Rows of a test, with the step of the usual course before each that is missing: (row it is made of, step)."""
     plan: list[tuple[int, Step | None]] = []
     left = list(usual)
@@ -55,7 +55,7 @@ def _completed(own: Sequence[int], steps: Sequence[Step], usual: Sequence[Step])
     return plan
 
 
-def _built(campaign: Campaign, plan: Sequence[tuple[int, Step | None]], change: Mapping[str, float]) -> Campaign:
+def _build(campaign: Campaign, plan: Sequence[tuple[int, Step | None]], change: Mapping[str, float]) -> Campaign:
     """The campaign with the rows of a plan; `change` is the median from each reading of a room to the next [K]."""
     source = np.array([row for row, _ in plan])
     unread = np.array([step is not None for _, step in plan])

@@ -20,7 +20,7 @@ from ..columns import in_si, split_unit
 from ..csv_table import raise_all
 from ..scenario import Scenario
 from .card import Card
-from .read import placed
+from .read import place_sensor
 from .sensors import SI, sensors_of
 from .table import Sensed, Sensor
 
@@ -108,7 +108,7 @@ def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
         DataError: everything wrong with the file, at once
     """
     header, cells, lines = _cells(path)
-    sensors, problems = placed(sensors_of(scenario, card), header, card, path.name)
+    sensors, problems = place_sensor(sensors_of(scenario, card), header, card, path.name)
     if not any(s.role == "read" for s in sensors):
         problems.append(f"{path.name} line 1: no column of a sensor that is compared. Name yours in the card: columns.")
     time_column = next((h for h in header if h in TIMES or split_unit(h)[0] in TIMES), "")
@@ -120,7 +120,7 @@ def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
     raise_all(problems, path.name)
     segments = cells.get(card.columns.get("segment", "segment"))
     stretch, step = _stretches(time, segments, path.name, lines)
-    values, gross = _set_aside(values, sensors, stretch, lines)
+    values, gross = _remove_outliers(values, sensors, stretch, lines)
     return Log(path.name, sensors, values, time, stretch, step, lines, dated, gross)
 
 
@@ -129,7 +129,7 @@ def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]
     try:
         if path.suffix in (".parquet", ".pq"):
             return _parquet(path)
-        with _opened(path) as file:
+        with _open(path) as file:
             reader = csv.reader(file)
             header = [h.strip() for h in next(reader, [])]
             rows = [(reader.line_num, row) for row in reader if any(row)]
@@ -146,7 +146,7 @@ def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]
     return header, columns, np.array([line for line, _ in rows])
 
 
-def _opened(path: Path) -> IO[str]:
+def _open(path: Path) -> IO[str]:
     if reading(path).suffix == ".gz":
         return gzip.open(path, "rt", encoding="utf-8-sig")
     return path.open(encoding="utf-8-sig")
@@ -224,7 +224,7 @@ def _stretches(
     return np.concatenate([[0], np.cumsum(breaks)]), step
 
 
-def _set_aside(
+def _remove_outliers(
     values: dict[str, np.ndarray], sensors: Sequence[Sensor], stretch: np.ndarray, lines: np.ndarray
 ) -> tuple[dict[str, np.ndarray], tuple[Gross, ...]]:
     """Single spikes and impossible temperatures are found and become missing."""

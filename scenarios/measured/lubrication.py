@@ -123,7 +123,7 @@ GROUPS = ("gears", "bearings", "needles", "seals")
 LUBRICANTS = {"oil": "bath", "grease": "grease"}
 
 
-def lubricated(spec: Spec, lubrication: Mapping[str, str]) -> Spec:
+def lubricate(spec: Spec, lubrication: Mapping[str, str]) -> Spec:
     """The machine with parts connected to the lubricants that a card names.
 
     Args:

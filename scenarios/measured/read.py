@@ -9,17 +9,17 @@ from pathlib import Path
 import numpy as np
 
 from ...model.errors import Problems, suggestion
-from ...model.units import spelled
+from ...model.units import spell_unit
 from ..columns import in_si, split_unit
 from ..csv_table import Column, Table, parse, raise_all, read_cells
 from ..scenario import Scenario
 from .card import Card
-from .checks import checked
+from .checks import check
 from .context import CONTEXT, DIRECTIONS, Cells, contradictions, floats, order_warnings
 from .halves import with_unread
 from .lubrication import oil_problems, oil_values, oil_warnings
 from .nominal import Nominal
-from .sensors import SI, driven_by, sensors_of
+from .sensors import SI, drive_by, sensors_of
 from .table import Campaign, Sensor
 
 
@@ -38,7 +38,7 @@ def read_campaign(path: Path, scenario: Scenario, card: Card, *, points: bool = 
     return _Reader(path, scenario, card, points).campaign()
 
 
-def placed(
+def place_sensor(
     declared: Sequence[Sensor], header: Sequence[str], card: Card, name: str
 ) -> tuple[tuple[Sensor, ...], Problems]:
     """The sensors that a table has, each with its column, and what is wrong: columns that drive the model are missing.
@@ -56,7 +56,7 @@ def placed(
         column = next(iter(same or [h for h in header if split_unit(h)[0] in names]), None)
         if column is not None:
             unit = card.units.get(column, split_unit(column)[1] or sensor.unit)
-            found.append(replace(sensor, column=column, unit=spelled(unit)))
+            found.append(replace(sensor, column=column, unit=spell_unit(unit)))
         elif sensor.role == "given":
             problems.append(
                 f'{name} line 1: column "{sensor.column}" drives the model ({sensor.reads}) and is missing.'
@@ -73,7 +73,7 @@ class _Reader:
         self.path, self.scenario, self.card, self.points = path, scenario, card, points
         self.header, self.rows = read_cells(path)
         declared = sensors_of(scenario, card)
-        self.sensors, self.problems = placed(declared, self.header, card, path.name)
+        self.sensors, self.problems = place_sensor(declared, self.header, card, path.name)
         context = {name: card.columns.get(name, name) for name in CONTEXT}
         self.context = {name: column for name, column in context.items() if column in self.header}
         if not (points or any(s.role == "read" for s in self.sensors)):
@@ -93,10 +93,10 @@ class _Reader:
         minutes = {name: self._si(cells, name) for name, (_, _, si) in CONTEXT.items() if si}
         raise_all(self.problems, self.path.name)
         found = self._ordered(cells, values, minutes)
-        nominal = Nominal(driven_by(self.scenario, self.sensors))
+        nominal = Nominal(drive_by(self.scenario, self.sensors))
         known = {oil: oil_values(self.scenario, oil, self.card) for oil in oils}
         warned = replace(found, warnings=(*found.warnings, *oil_warnings(self.scenario, found.oil, self.card)))
-        return with_unread(checked(warned, nominal, known, points=self.points))
+        return with_unread(check(warned, nominal, known, points=self.points))
 
     def _columns(self) -> list[Column]:
         found = [
@@ -123,7 +123,7 @@ class _Reader:
         unit = self.card.units.get(column, split_unit(column)[1] or split_unit(name)[1])
         numbers = cells.numbers(name)
         with self.problems:
-            numbers = in_si(numbers, spelled(unit), CONTEXT[name][2], name=f"{self.path.name} {column}")
+            numbers = in_si(numbers, spell_unit(unit), CONTEXT[name][2], name=f"{self.path.name} {column}")
         return numbers
 
     def _ordered(self, cells: Cells, values: dict[str, np.ndarray], si: dict[str, np.ndarray]) -> Campaign:

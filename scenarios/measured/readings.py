@@ -51,7 +51,7 @@ def sources(scenario: Scenario, warm: Sequence[Sensor] = ()) -> dict[str, str]:
     return found | {c: f"{parts[0]}.{key}" for c, key in LOSSES.items() if parts}
 
 
-def simulated(scenario: Scenario, paths: Mapping[str, str], values: Mapping[str, float]) -> dict[str, float]:
+def convert_results(scenario: Scenario, paths: Mapping[str, str], values: Mapping[str, float]) -> dict[str, float]:
     """The simulated columns of a row, from model values in SI.
 
     Args:
@@ -88,12 +88,12 @@ def measured_rows(study: Measured) -> list[dict[str, Any]]:
     c, lost, points = study.campaign, measured_losses(study), set_points(study)
     rows: list[dict[str, Any]] = []
     for k in range(c.n):
-        read = {column_of(s): _shown(s, c.values[s.name][k]) for s in study.warm}
+        read = {column_of(s): _convert(s, c.values[s.name][k]) for s in study.warm}
         read |= {name: float(values[k]) for name, values in lost.items()}
-        row: dict[str, Any] = {ROOM: _shown(study.rooms[0], c.values[study.rooms[0].name][k])} if study.rooms else {}
+        row: dict[str, Any] = {ROOM: _convert(study.rooms[0], c.values[study.rooms[0].name][k])} if study.rooms else {}
         row |= {f"{name}_meas": value for name, value in read.items()}
         row |= {"grid": c.mounting[c.test[k]] or None} | {name: values[k] for name, values in points.items()}
-        rows.append(row | {column_of(s): _shown(s, c.values[s.name][k]) for s in drives(study)})
+        rows.append(row | {column_of(s): _convert(s, c.values[s.name][k]) for s in drives(study)})
     return rows
 
 
@@ -110,7 +110,7 @@ def set_points(study: Measured) -> dict[str, list[float]]:
         if column in study.campaign.others:
             found[column] = [float(cell or math.nan) for cell in study.campaign.others[column]]
         elif given:
-            found[column] = _levels([abs(_shown(given[0], v)) for v in study.campaign.values[given[0].name]])
+            found[column] = _levels([abs(_convert(given[0], v)) for v in study.campaign.values[given[0].name]])
     return found
 
 
@@ -128,14 +128,14 @@ def _levels(values: Sequence[float]) -> list[float]:
 def table_columns(study: Measured) -> list[dict[str, float]]:
     """The number columns of the measured table for each row, by the names they have there."""
     c = study.campaign
-    columns = {s.column: [_shown(s, value) for value in c.values[s.name]] for s in c.sensors}
+    columns = {s.column: [_convert(s, value) for value in c.values[s.name]] for s in c.sensors}
     for name, cells in c.others.items():
         with suppress(ValueError):
             columns[name] = [float(cell) for cell in cells]
     return [{name: values[k] for name, values in columns.items()} for k in range(c.n)]
 
 
-def _shown(sensor: Sensor, value: float) -> float:
+def _convert(sensor: Sensor, value: float) -> float:
     """A value in the unit of its column."""
     return round(from_si(float(value), SI[sensor.kind]), 9)
 
@@ -179,7 +179,7 @@ def read_result(path: Path, study: Measured) -> Table:
     return table
 
 
-def joined(table: Table, study: Measured) -> list[dict[str, Any]]:
+def join_readings(table: Table, study: Measured) -> list[dict[str, Any]]:
     """Rows of the readings that both tables have, in the order of the measured one.
 
     Args:

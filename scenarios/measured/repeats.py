@@ -84,8 +84,8 @@ def scatters(campaign: Campaign, found: Sequence[Repeat]) -> tuple[Scatter, ...]
     rooms = [s.repeat_sd for s in campaign.given if s.kind == "ambient"]
     made = []
     for sensor in campaign.read:
-        total, freedom = _pooled([group.total[sensor.name] for group in found])
-        difference, _ = _pooled([group.difference[sensor.name] for group in found])
+        total, freedom = _pool([group.total[sensor.name] for group in found])
+        difference, _ = _pool([group.difference[sensor.name] for group in found])
         both = bool((campaign.direction < 0).any())
         room = rooms[0] if rooms and sensor.kind.endswith("_temp") else 0.0
         stated = float(np.hypot(sensor.repeat_sd, room))
@@ -94,7 +94,7 @@ def scatters(campaign: Campaign, found: Sequence[Repeat]) -> tuple[Scatter, ...]
     return tuple(made)
 
 
-def _pooled(groups: Sequence[np.ndarray]) -> tuple[float, int]:
+def _pool(groups: Sequence[np.ndarray]) -> tuple[float, int]:
     """Pooled standard deviation of values in groups, and its degrees of freedom."""
     known = [values[np.isfinite(values)] for values in groups]
     freedom = sum(len(values) - 1 for values in known if len(values) > 1)

@@ -8,14 +8,14 @@ from pathlib import Path
 import numpy as np
 
 from ...model.errors import Problems
-from ...model.units import spelled
+from ...model.units import spell_unit
 from ..columns import in_si, split_unit
 from ..csv_table import Column, Table, parse, raise_all, read_cells
 from ..scenario import Scenario
 from .card import Card
 from .context import DIRECTIONS, floats
 from .logs import TIMES
-from .read import placed
+from .read import place_sensor
 from .sensors import SI, sensors_of
 
 #: Columns beside sensors and time: which test, which of its rows (0 in a stop), and which direction (0 in a stop).
@@ -61,7 +61,7 @@ def read_samples(path: Path, scenario: Scenario, card: Card) -> Samples:
     """
     header, _ = read_cells(path)
     declared = sensors_of(scenario, card)
-    sensors, _ = placed(declared, header, card, path.name)
+    sensors, _ = place_sensor(declared, header, card, path.name)
     named = {
         c.name: Column(card.columns.get(c.name, c.name), c.doc, c.kind, c.required, options=c.options) for c in CONTEXT
     }
@@ -75,7 +75,7 @@ def read_samples(path: Path, scenario: Scenario, card: Card) -> Samples:
         names = ", ".join(s.column for s in declared if s.role == "read" and SI[s.kind] == "K")
         problems.append(f"{path.name} line 1: there is no thermometer to compare. Add at least one of: {names}.")
     problems += _backward(table, named["test"].name, time)
-    seconds = _si(table, time, spelled(card.units.get(time, split_unit(time)[1] or "s")), "s", problems)
+    seconds = _si(table, time, spell_unit(card.units.get(time, split_unit(time)[1] or "s")), "s", problems)
     values = {s.name: _si(table, s.column, s.unit, SI[s.kind], problems) for s in compared}
     raise_all(problems, path.name)
     context = {key: table.columns.get(c.name) for key, c in named.items()}

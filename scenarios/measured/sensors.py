@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
-from ...model.core.declare import State, declared
+from ...model.core.declare import State, list_declared
 from ...model.core.flat import Quantity
 from ...model.errors import DataError, Problems, suggestion
 from ...model.parts.lubrication import OilBath
 from ...model.parts.shaft import ShaftEnd
 from ...model.parts.thermal import Room
-from ...model.units import spelled, text, to_si
+from ...model.units import spell_unit, text, to_si
 from ..columns import split_unit
 from ..scenario import Instrument, Scenario
 from ..values import deviation
@@ -166,7 +166,7 @@ class _Sensors:
         return deviation(where, f"{number!r} {unit}".strip(), si)
 
     def _unit(self, instrument: Instrument) -> str:
-        return spelled(self.card.units.get(instrument.column, instrument.unit or split_unit(instrument.column)[1]))
+        return spell_unit(self.card.units.get(instrument.column, instrument.unit or split_unit(instrument.column)[1]))
 
     def _completed(self, instrument: Instrument) -> Sensor:
         kind = instrument.kind or self._kind(instrument)
@@ -205,7 +205,7 @@ class _Sensors:
         quantity = self.known[instrument.reads]
         value = abs(self.nominal.value(instrument.reads))
         full = value if value > 0 else quantity.nominal
-        return _rounded(repeat * full, quantity.unit), _rounded(offset * full, quantity.unit)
+        return _round(repeat * full, quantity.unit), _round(offset * full, quantity.unit)
 
     def _signs(self, instrument: Instrument, kind: str) -> tuple[float, float]:
         """Sign of the model's value where the column holds magnitudes: loads turn round with the direction."""
@@ -220,12 +220,12 @@ class _Sensors:
         return sign, -sign if kind == "torque" else sign
 
 
-def _rounded(value: float, unit: str) -> float:
+def _round(value: float, unit: str) -> float:
     """A value with two digits in the unit that a person reads."""
     return to_si(text(value, unit, 2), unit)
 
 
-def driven_by(scenario: Scenario, sensors: Iterable[Sensor]) -> Scenario:
+def drive_by(scenario: Scenario, sensors: Iterable[Sensor]) -> Scenario:
     """The rig driven by what a campaign gives at its shaft ends.
 
     Args:
@@ -253,6 +253,6 @@ def default_instruments(scenario: Scenario) -> tuple[Instrument, ...]:
             rooms.append(f"{name}.T")
         if issubclass(cls, ShaftEnd):
             paths += [f"{name}.w", f"{name}.tau"]
-        elif issubclass(cls, Room) or "T" in declared(cls, State):
+        elif issubclass(cls, Room) or "T" in list_declared(cls, State):
             paths.append(f"{name}.T")
     return tuple(Instrument("T_amb", "T_amb_C", path) if rooms == [path] else instrument_of(path) for path in paths)

@@ -11,10 +11,10 @@ from ..given import RigLike, scenario_of
 from ..scenario import Scenario
 from ..write import DIAGNOSED, SET
 from .card import Card, read_card
-from .lubrication import lubricated, oil_values
+from .lubrication import lubricate, oil_values
 from .nominal import Nominal
 from .read import read_campaign
-from .sensors import driven_by
+from .sensors import drive_by
 from .table import Campaign, Sensor
 
 
@@ -75,7 +75,7 @@ class Measured:
         return int(names[test]) if all(name.isdigit() for name in names) else test + 1
 
 
-def measured_of(scenario: Scenario, data: str | Path | None = None, card: str | Path | None = None) -> Measured | None:
+def read_study(scenario: Scenario, data: str | Path | None = None, card: str | Path | None = None) -> Measured | None:
     """A rig with the readings in a table, or with its own; None for a rig without any.
 
     Args:
@@ -94,11 +94,11 @@ def measured_of(scenario: Scenario, data: str | Path | None = None, card: str | 
     told = Card() if card is None else read_card(Path(card))
     campaign = read_campaign(path, scenario, told)
     diagnosed = any(source.startswith(DIAGNOSED) for source in scenario.value_sources.values())
-    spec = scenario.spec if diagnosed else lubricated(scenario.spec, told.lubrication)
-    return Measured(driven_by(replace(scenario, spec=spec), campaign.sensors), campaign, told)
+    spec = scenario.spec if diagnosed else lubricate(scenario.spec, told.lubrication)
+    return Measured(drive_by(replace(scenario, spec=spec), campaign.sensors), campaign, told)
 
 
-def loaded(rig: RigLike, extended: str | Path | None = None) -> Scenario:
+def load_rig(rig: RigLike, extended: str | Path | None = None) -> Scenario:
     """A rig, or its extension with the rig's own measured table.
 
     Args:

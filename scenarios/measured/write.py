@@ -73,7 +73,7 @@ def as_toml(card: Card) -> str:
 def _table(name: str, doc: str, model: Strict) -> Iterator[str]:
     """A table and the tables in it: first its plain keys."""
     if name:
-        yield from ("", *_said(f"[{name}]", doc))
+        yield from ("", *_write_line(f"[{name}]", doc))
     inner: list[tuple[str, str, Any]] = []
     for key, field in type(model).model_fields.items():
         value, written = getattr(model, key), field.alias or key
@@ -83,9 +83,9 @@ def _table(name: str, doc: str, model: Strict) -> Iterator[str]:
         if isinstance(value, BaseModel | Mapping):
             inner.append((f"{name}.{written}".lstrip("."), doc, value))
         elif value is None:
-            yield from _said(f"# {written} = ...", doc)
+            yield from _write_line(f"# {written} = ...", doc)
         else:
-            yield from _said(f"{written} = {json.dumps(value, ensure_ascii=False)}", doc)
+            yield from _write_line(f"{written} = {json.dumps(value, ensure_ascii=False)}", doc)
     for path, said, value in inner:
         yield from _table(path, said, value) if isinstance(value, Strict) else _mapping(path, said, value)
 
@@ -94,16 +94,16 @@ def _mapping(name: str, doc: str, entries: Mapping[str, Any]) -> Iterator[str]:
     """A table whose keys are names of the rig."""
     nested = {key: value for key, value in entries.items() if isinstance(value, Strict)}
     if not nested:
-        yield from ("", *_said(f"[{name}]", doc))
+        yield from ("", *_write_line(f"[{name}]", doc))
     for key, value in entries.items():
         if key in nested:
             yield from _table(f"{name}.{_key(key)}", doc, value)
         else:
             said = CONTEXT[key][0] if name == "columns" and key in CONTEXT else ""
-            yield from _said(f"{_key(key)} = {json.dumps(value, ensure_ascii=False)}", said)
+            yield from _write_line(f"{_key(key)} = {json.dumps(value, ensure_ascii=False)}", said)
 
 
-def _said(line: str, doc: str) -> Iterator[str]:
+def _write_line(line: str, doc: str) -> Iterator[str]:
     """A line with its comment behind it, or above it where both are wider than a screen of 80 columns."""
     one = f"{line}  # {doc}" if doc else line
     if len(one) <= WIDTH:

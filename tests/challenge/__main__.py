@@ -27,7 +27,7 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
 
 @app.command()
-@console.guarded
+@console.guard
 def challenge(
     sheet: Annotated[
         Literal["own", "foreign", "textbook", "rigs", "practice", "all"],

@@ -25,7 +25,7 @@ from challenge.signal_to_noise import Noise, Rivals, snr_of
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import DataError
 from gearheat.model.machines.spec import assemble
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate as run_model
 from gearheat.model.run.steady import steady_table
 from gearheat.scenarios.load import load
@@ -47,7 +47,7 @@ def test_own_rig_is_the_model() -> None:
     begin, first, second = plan.room[:, j] + KELVIN
     restart = first + (second - first) * plan.stop[j] / (plan.stop[j] + plan.dwell[1, j])
     w, tau = plan.n[0, j] * math.pi / 30, plan.load[0, j]
-    duty = stepped(
+    duty = join_phases(
         [
             (14400.0, {"carrier.w": w, "carrier.tau": tau, "room.T": (begin, first)}),
             (60.0 * plan.stop[j], {"carrier.w": 0.0, "carrier.tau": 0.0, "room.T": (first, restart)}),

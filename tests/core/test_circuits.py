@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.run.rows import evaluate_at
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from small_parts import Battery, Capacitor, Ground, Inductor, Resistor, model, rc, rl
 
@@ -25,14 +25,14 @@ def test_rl_equation(i: float, V: float) -> None:
 
 def test_rc_charges_as_in_closed_form() -> None:
     t = np.linspace(0.0, 0.5, 51)
-    run = simulate(rc(R=100.0, C=1e-3), stepped([(0.5, {"battery.V": 5.0})]), times=t)
+    run = simulate(rc(R=100.0, C=1e-3), join_phases([(0.5, {"battery.V": 5.0})]), times=t)
     assert run["capacitor.u"] == pytest.approx(5 * (1 - np.exp(-t / 0.1)), abs=1e-6)
     assert run["resistor.P"] == pytest.approx((5 * np.exp(-t / 0.1)) ** 2 / 100, abs=1e-6)
 
 
 def test_rl_builds_up_as_in_closed_form() -> None:
     t = np.linspace(0.0, 1.0, 51)
-    run = simulate(rl(R=10.0, L=2.0), stepped([(1.0, {"battery.V": 5.0})]), times=t)
+    run = simulate(rl(R=10.0, L=2.0), join_phases([(1.0, {"battery.V": 5.0})]), times=t)
     assert run["coil.j"] == pytest.approx(0.5 * (1 - np.exp(-t / 0.2)), abs=1e-7)
 
 
@@ -41,7 +41,7 @@ def test_rlc_rings_as_in_closed_form() -> None:
     parts = (Battery("e"), Resistor("r", R=R), Inductor("l", L=L), Capacitor("c", C=C), Ground("g"))
     flat = model(*parts, nets=[("e.a", "r.a"), ("r.b", "l.a"), ("l.b", "c.a"), ("c.b", "e.b", "g.pin")])
     t = np.linspace(0.0, 2.0, 41)
-    run = simulate(flat, stepped([(2.0, {"e.V": V})]), times=t, tolerance=1e-10)
+    run = simulate(flat, join_phases([(2.0, {"e.V": V})]), times=t, tolerance=1e-10)
     a = R / (2 * L)
     w = np.sqrt(1 / (L * C) - a**2)
     expected = V * (1 - np.exp(-a * t) * (np.cos(w * t) + a / w * np.sin(w * t)))

@@ -10,7 +10,7 @@ from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError, StructureError
 from gearheat.model.parts import PARTS
 from gearheat.model.run.rows import evaluate_at
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from small_parts import Ambient, Body, Conductor, Flywheel, Speed, model
@@ -71,13 +71,13 @@ def test_what_was_joined_stays_visible_and_says_so() -> None:
     assert told.doc == "angular velocity; mill.w follows rotor.w"
     assert told.unit == "rad/s"
     with pytest.raises(ScenarioError, match=r"mill\.w is an output .*mill\.w follows rotor\.w"):
-        simulate(flat, stepped([(1.0, {"input.tau": 1.0})]), start={"mill.w": 1.0})
+        simulate(flat, join_phases([(1.0, {"input.tau": 1.0})]), start={"mill.w": 1.0})
 
 
 def test_a_lossy_run_of_two_inertias_conserves_energy() -> None:
     flat = gearbox(1.0, "rotor", "mill")
     run = simulate(
-        flat, stepped([(5.0, {"input.tau": 50.0, "output.tau": 20.0})]), start={"rotor.w": 30.0}, times=range(6)
+        flat, join_phases([(5.0, {"input.tau": 50.0, "output.tau": 20.0})]), start={"rotor.w": 30.0}, times=range(6)
     )
     assert run["mill.w"] == pytest.approx(-run["rotor.w"] / 2, rel=1e-12)
     assert run["rotor.w"][-1] > run["rotor.w"][0]

@@ -10,7 +10,7 @@ from gearheat.fmu.batch import Batch, Rows, Status
 from gearheat.fmu.batch_library import processor
 from gearheat.model.core.flat import FlatModel, Quantity
 from gearheat.model.errors import FmuError, ScenarioError, SolveError
-from gearheat.model.run.schedule import Schedule, stepped
+from gearheat.model.run.schedule import Schedule, join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from small_parts import Battery, Ground, Resistor, brake, gear, model, motor
@@ -122,7 +122,7 @@ def test_threads_and_neighbours_leave_the_bits_alone(heat: Batch, monkeypatch: p
     for threads in (2, 5):
         assert same(alone, heat.steady(*arrays, threads=threads))
     assert same(alone, heat.steady(*(a[31:45] if a.ndim == 2 else a for a in arrays)), slice(31, 45))
-    duty = stepped([(600.0, {"room.T": (290.0, 300.0)}), (600.0, {"room.T": 280.0})])
+    duty = join_phases([(600.0, {"room.T": (290.0, 300.0)}), (600.0, {"room.T": 280.0})])
     few = tuple(a[:10] if a.ndim == 2 else a for a in arrays)
     alone = heat.warmup(duty, *few, times=[300.0, 1200.0], threads=1)
     assert same(alone, heat.warmup(duty, *few, times=[300.0, 1200.0], threads=3))
@@ -134,7 +134,7 @@ def test_a_pickled_batch_gives_the_same_rows(heat: Batch) -> None:
     assert same(heat.steady(*arrays), pickle.loads(pickle.dumps(heat)).steady(*arrays))
 
 
-DUTY = stepped(
+DUTY = join_phases(
     [
         (1800.0, {"load.tau": 20.0, "room.T": 293.15}),
         (900.0, {"load.tau": (20.0, 60.0)}),
@@ -187,7 +187,7 @@ def test_rows_that_cannot_be_solved_leave_the_others_alone() -> None:
     assert np.isnan(rows.y[1:4]).all()
     assert np.isnan(rows.residual[1:4]).all()
     assert rows.x[0].tobytes() == rows.x[4].tobytes()
-    duty = stepped([(1e6, {"room.T": 300.0})])
+    duty = join_phases([(1e6, {"room.T": 300.0})])
     warm = batch.warmup(duty, *batch.vectors(values), times=[10.0, 1e6])
     assert warm.status.tolist() == [Status.OK, Status.STOPPED, Status.OUT_OF_RANGE, Status.OUT_OF_RANGE, Status.OK]
     assert np.isnan(warm.x[1:4]).all()
@@ -206,7 +206,10 @@ def test_a_row_alone_is_the_row_in_a_crowd() -> None:
     values = crowd(n)
     values["oil.T"][[0, 20]] = 1e5  # the oil has no viscosity any more: not a number, or at once out of range
     arrays = batch.vectors(values)
-    duty, times = stepped([(3e3, {"room.T": 290.0}), (1e6, {"room.T": (290.0, 300.0)})]), [0.0, 10.0, 3e3, 3e3, 1.003e6]
+    duty, times = (
+        join_phases([(3e3, {"room.T": 290.0}), (1e6, {"room.T": (290.0, 300.0)})]),
+        [0.0, 10.0, 3e3, 3e3, 1.003e6],
+    )
     rows = batch.warmup(duty, *arrays, times=times, threads=1)
     assert set(rows.status) > {Status.OK, Status.STOPPED}
     assert len(set(rows.iterations)) > 5
@@ -223,7 +226,7 @@ def test_the_processor_leaves_the_bits_alone(heat: Batch, monkeypatch: pytest.Mo
     if not processor():
         pytest.skip("this processor has the basic instructions alone")
     arrays = heat.vectors(spread(30, governor__w=(50, 300), load__tau=(-50, 50), housing__A=(0.2, 2)))
-    duty = stepped([(600.0, {"room.T": (290.0, 300.0)}), (600.0, {"room.T": 280.0})])
+    duty = join_phases([(600.0, {"room.T": (290.0, 300.0)}), (600.0, {"room.T": 280.0})])
     own, settled = heat.warmup(duty, *arrays, times=[300.0, 1200.0]), heat.steady(*arrays)
     for name in ("", *processor()):
         monkeypatch.setattr("gearheat.fmu.batch.instructions", lambda name=name: name)
@@ -235,7 +238,7 @@ def test_a_start_where_the_model_has_no_value() -> None:
     batch = Batch(well())
     rows = batch.steady(*batch.vectors({"particle.x": np.array([1e200, 0.5])}))
     assert rows.status.tolist() == [Status.NOT_FINITE, Status.OK]
-    rows = batch.warmup(stepped([(1.0, {"push.F": 0.0})]), *batch.vectors({"particle.x": np.array([1e200, 0.5])}))
+    rows = batch.warmup(join_phases([(1.0, {"push.F": 0.0})]), *batch.vectors({"particle.x": np.array([1e200, 0.5])}))
     assert rows.status.tolist() == [Status.NOT_FINITE, Status.OK]
 
 
@@ -244,7 +247,7 @@ def test_a_model_without_states() -> None:
     batch = Batch(model(Battery("battery"), Resistor("resistor", R=5.0), Ground("ground"), nets=nets))
     rows = batch.steady(*batch.vectors({"battery.V": np.array([10.0, 20.0])}))
     assert rows["resistor.P"].tolist() == [20.0, 80.0]
-    warm = batch.warmup(stepped([(1.0, {"battery.V": (0.0, 10.0)})]), times=[0.5, 1.0])
+    warm = batch.warmup(join_phases([(1.0, {"battery.V": (0.0, 10.0)})]), times=[0.5, 1.0])
     assert warm["resistor.P"][0] == pytest.approx([5.0, 20.0])
 
 

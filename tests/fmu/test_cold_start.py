@@ -8,7 +8,7 @@ from gearheat.fmu.export import export
 from gearheat.fmu.play import play
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
@@ -33,7 +33,7 @@ def test_a_cold_start_runs_through(rig: str, end: str, tmp_path: Path) -> None:
     given, start = duty(rig, end), dict.fromkeys((q.name for q in flat.states), COLD)
     times = np.arange(0, HOURS * 3600 + FINE / 2, FINE)
     minutes = slice(None, None, int(COARSE / FINE))
-    run = simulate(flat, stepped([(HOURS * 3600.0, given)]), start=start, times=times)
+    run = simulate(flat, join_phases([(HOURS * 3600.0, given)]), start=start, times=times)
     fmu = export(flat, tmp_path / "cold.fmu", start=given | start)
     played = play(fmu, {}, stop=times[-1], step=COARSE)
     assert np.abs(played["oil.T"] - run["oil.T"][minutes]).max() < 1e-3
@@ -54,7 +54,7 @@ def test_a_shaft_turned_by_next_to_nothing(end: str, tmp_path: Path) -> None:
     w = {"sun": 200.0, "carrier": 50.0}[end] * np.pi / 30
     given = {f"{end}.w": w, f"{end}.tau": 0.4, "room.T": COLD}
     start = dict.fromkeys((q.name for q in flat.states), COLD)
-    run = simulate(flat, stepped([(3600.0, given)]), start=start, times=[0.0, 3600.0])
+    run = simulate(flat, join_phases([(3600.0, given)]), start=start, times=[0.0, 3600.0])
     assert 20 < run["sun_bearing.P_loss"][0] < 300 and run["efficiency.eta"].min() >= 0
     assert run["efficiency.eta"].max() < 1e-6  # both shafts drive
     played = play(export(flat, tmp_path / "m.fmu", start=given | start), {}, stop=3600.0, step=60.0)

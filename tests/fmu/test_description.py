@@ -13,7 +13,7 @@ import pytest
 from fmpy.validation import validate_fmu
 from fmu_in_c import planetary
 from gearheat.fmu import units
-from gearheat.fmu.choices import reduced
+from gearheat.fmu.choices import drop_idle
 from gearheat.fmu.description import description, identifier, identity, values
 from gearheat.fmu.equations import equations
 from gearheat.fmu.export import export
@@ -164,7 +164,7 @@ def test_what_a_user_reads_of_every_variable_of_every_rig(rig: str) -> None:
     scenario = load(rig)
     flat = flatten(assemble(scenario.spec))
     deviating = [q.name for q in flat.states]
-    variables = list(table(flat, choices=reduced(choices_of(scenario), flat), deviating=deviating))
+    variables = list(table(flat, choices=drop_idle(choices_of(scenario), flat), deviating=deviating))
     assert {v.kind for v in variables} >= {"choice", "deviation"}
     told = Counter(identity(v)["description"] for v in variables)
     assert [text for text, n in told.items() if n > 1 or not text] == []

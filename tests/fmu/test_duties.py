@@ -15,7 +15,7 @@ from for_each import ALL
 from gearheat.scenarios.load import load
 from gearheat.tools.bench.c_importer import Compiler, program
 from gearheat.tools.export.fmu import operating_start
-from gearheat.tools.solve.settings import adjusted, driven_at, flat_of
+from gearheat.tools.solve.settings import adjust, drive_at, flat_of
 from gearheat.tools.solve.simulate import first_temperatures
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="processor time is asked of Linux")
@@ -43,7 +43,7 @@ def facts(tmp_path_factory: pytest.TempPathFactory) -> Facts:
     def made(variant: str) -> Path:
         rig, shaft, given, _ = VARIANTS[variant]
         scenario = load(rig)
-        setting = adjusted(scenario, drive=driven_at(scenario, shaft, given))
+        setting = adjust(scenario, drive=drive_at(scenario, shaft, given))
         flat = flat_of(setting)
         start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, ())
         return unpacked(flat, folder / variant, start)

@@ -209,11 +209,11 @@ def test_platforms_are_made_side_by_side_and_a_failure_is_told() -> None:
         return platform.name.encode()
 
     told: list[tuple[str, float]] = []
-    made = compiling.together(build, both, lambda done, share: told.append((done, share)))
+    made = compiling.compile_all(build, both, lambda done, share: told.append((done, share)))
     assert made == {"linux64": b"linux64", "win64": b"win64"}
     assert [share for _, share in told] == [0.5, 1.0]
     with pytest.raises(FmuError, match="compiling for x86_64-linux"):
-        compiling.together(lambda p: compiling.binary("int wrong = ;", p), both[:1], lambda done, share: None)
+        compiling.compile_all(lambda p: compiling.binary("int wrong = ;", p), both[:1], lambda done, share: None)
 
 
 def test_platforms_by_name() -> None:

@@ -8,7 +8,7 @@ import pytest
 from fmpy.validation import validate_fmu
 from gearheat.fmu.export import export
 from gearheat.fmu.play import play
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from small_parts import Ambient, Body, Conductor, Flywheel, LossyGear, Torque, model
 
@@ -31,6 +31,6 @@ def test_two_inertias_through_a_gear_are_one_state(tmp_path: Path) -> None:
 
     start, duty = {"rotor.w": 30.0}, {"drive.tau": 10.0, "load.tau": -12.0}
     played = play(path, {}, 5.0, 1.0, start={**start, **duty}, tolerance=1e-9)
-    own = simulate(flat, stepped([(5.0, duty)]), start=start, times=played.time)
+    own = simulate(flat, join_phases([(5.0, duty)]), start=start, times=played.time)
     assert played["mill.w"] == pytest.approx(own["mill.w"], rel=1e-6)
     assert played["mill.w"] == pytest.approx(played["rotor.w"] / 3, rel=1e-12)

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from gearheat.fmu import emit
-from gearheat.fmu.batch_library import address, load, processor, widened
+from gearheat.fmu.batch_library import address, load, processor, widen
 
 SETS = ("", *sorted(processor()))
 TAKES = {"exp": 1, "log": 1, "tanh": 1, "pow": 2, "fmin": 2, "fmax": 2}
@@ -28,7 +28,7 @@ def library(text: str, names: list[str], instructions: str) -> ctypes.CDLL:
         "  for (j = 0; j < LANES && k + j < n; j++) for (i = 0; i < n_out; i++) out[(k + j) * n_out + i] = y[i][j]; } }"
         for name in names
     ]
-    return load(widened("\n".join([*head, text, *runs]), instructions))
+    return load(widen("\n".join([*head, text, *runs]), instructions))
 
 
 def call(made: ctypes.CDLL, name: str, rows: np.ndarray, n_out: int = 1) -> np.ndarray:

@@ -25,7 +25,7 @@ from gearheat.model.machines.spec import Spec, assemble
 from gearheat.model.parts import PARTS
 from gearheat.model.run.audit import LEFT, out_of_range
 from gearheat.model.run.rows import evaluate
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import list_rigs, load
 from one_part import between_sources, oil_at
@@ -185,7 +185,7 @@ def alike(flat: FlatModel, x: np.ndarray, u: np.ndarray, folder: Path, opened: C
     one = opened(export(flat, folder / "m.fmu"))
     refs = [one.refs[q.name] for q in (*flat.states, *flat.inputs)]
     outputs = [one.refs[q.name] for q in flat.outputs]
-    rows = Batch(flat).warmup(stepped([(1e-9, {})]), u.T.copy(), None, x.T.copy(), times=[0.0])
+    rows = Batch(flat).warmup(join_phases([(1e-9, {})]), u.T.copy(), None, x.T.copy(), times=[0.0])
     answered = 0
     for k in range(n):
         y, problem = told(flat, x[:, k], u[:, k])

@@ -16,7 +16,7 @@ from fmu_in_c import gcc
 from gearheat.fmu.batch import Batch
 from gearheat.fmu.equations import equations
 from gearheat.fmu.export import export
-from gearheat.fmu.leading import SHORTFALL, Uncertain, Uncertainty, leading, shown
+from gearheat.fmu.leading import SHORTFALL, Uncertain, Uncertainty, leading, locate_deviations
 from gearheat.fmu.play import Player, play
 from gearheat.fmu.sensitivity import Sensitivities
 from gearheat.fmu.variables import table
@@ -104,7 +104,7 @@ def test_a_step_costs_less_than_three_plain_ones(models: SimpleNamespace) -> Non
     """Counted in operations: a sensitivity step beside each step of the solver."""
     model, variables = equations(models.heat), table(models.heat, deviating=HEAT.shown)
     found = leading(models.heat, model, variables, HEAT.reasons)
-    added = Sensitivities(model, found.count, found.moving, shown(variables)).move
+    added = Sensitivities(model, found.count, found.moving, locate_deviations(variables)).move
     assert added.n_instructions() < 2 * model.step.n_instructions()
 
 

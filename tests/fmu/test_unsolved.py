@@ -13,7 +13,7 @@ from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import SolveError
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
@@ -38,14 +38,14 @@ def test_runs_name_the_equation(flat: FlatModel) -> None:
     with pytest.raises(SolveError, match=f'"{EQUATION}" has no solution'):
         steady(flat, values)
     with pytest.raises(SolveError, match=f'simulate: at 0 s the equation "{EQUATION}" has no solution'):
-        simulate(flat, stepped([(60.0, {})]), values=values)
+        simulate(flat, join_phases([(60.0, {})]), values=values)
     with pytest.raises(SolveError):
         design(flat, ["cooling.A"], {"oil.T": 330.0}, values)
 
 
 def test_rows_that_lock_say_so(flat: FlatModel) -> None:
     batch = Batch(flat)
-    rows = batch.warmup(stepped([(60.0, {})]), *batch.vectors({"stage_1.k_mu": np.array([1.0, LOCKED])}))
+    rows = batch.warmup(join_phases([(60.0, {})]), *batch.vectors({"stage_1.k_mu": np.array([1.0, LOCKED])}))
     assert rows.status.tolist() == [Status.OK, Status.NO_SOLUTION]
     rows = batch.steady(*batch.vectors({"stage_1.k_mu": np.array([1.0, LOCKED])}))
     assert rows.status.tolist() == [Status.OK, Status.NO_SOLUTION]

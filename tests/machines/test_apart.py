@@ -3,7 +3,7 @@
 import pytest
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError
-from gearheat.model.machines.apart import REST, Joint, Pieces, apart
+from gearheat.model.machines.apart import REST, Joint, Pieces, cut_machine
 from gearheat.model.machines.spec import PartSpec, Spec, assemble
 
 PARTS = (
@@ -34,7 +34,7 @@ def inputs(pieces: Pieces, name: str) -> set[str]:
 
 
 def test_pieces_pass_temperatures_and_heat() -> None:
-    pieces = apart(BLOCK, {"cooler": ("cooler",), "room": ROOM})
+    pieces = cut_machine(BLOCK, {"cooler": ("cooler",), "room": ROOM})
     assert list(pieces.specs) == [REST, "cooler", "room"]
     assert set(pieces.joints) == {
         Joint(REST, "oil.T", "cooler", "oil.T"),
@@ -52,13 +52,13 @@ def test_pieces_pass_temperatures_and_heat() -> None:
 
 
 def test_two_bodies_of_one_piece_are_told_apart() -> None:
-    pieces = apart(BLOCK, {"cooler": ("cooler", "fins"), "room": ROOM})
+    pieces = cut_machine(BLOCK, {"cooler": ("cooler", "fins"), "room": ROOM})
     assert {"cooler_oil.Q_flow", "cooler_wall.Q_flow"} <= inputs(pieces, REST)
     assert "cooler.Q_flow" in inputs(pieces, "room")
 
 
 def test_a_given_temperature_is_given_to_each() -> None:
-    pieces = apart(BLOCK, {"world": ("outdoors",), "room": ("room", "walls")})
+    pieces = cut_machine(BLOCK, {"world": ("outdoors",), "room": ("room", "walls")})
     assert pieces.shared == {"outdoors.T": ("world", "room")}
     assert "outdoors.T" in inputs(pieces, "room")
 
@@ -75,14 +75,14 @@ def test_a_given_temperature_is_given_to_each() -> None:
 )
 def test_groups_that_do_not_work(groups: dict[str, tuple[str, ...]], says: str) -> None:
     with pytest.raises(ScenarioError, match=says):
-        apart(BLOCK, groups)
+        cut_machine(BLOCK, groups)
 
 
 def test_only_heat_is_cut_and_only_at_bodies() -> None:
     through = BLOCK.with_parts([PartSpec("sleeve", "ThermalConductor", {"G": 5.0})], [("walls.b", "sleeve.b")])
     bare = Spec("bare", "", through.parts, (*NETS[:4], ("walls.b", "sleeve.a"), ("sleeve.b", "outdoors.heat")))
     with pytest.raises(ScenarioError, match="no part of it is a body"):
-        apart(bare, {"out": ("sleeve", "outdoors")})
+        cut_machine(bare, {"out": ("sleeve", "outdoors")})
     shaft = [PartSpec("motor", "ShaftEnd", {"given": ("w",)}), PartSpec("fan", "FanLoad", {"k": 0.1})]
     with pytest.raises(ScenarioError, match=r"it is a Flange\. Only nets of heat ports are cut"):
-        apart(BLOCK.with_parts(shaft, [("motor.flange", "fan.flange")]), {"fan": ("fan",)})
+        cut_machine(BLOCK.with_parts(shaft, [("motor.flange", "fan.flange")]), {"fan": ("fan",)})

@@ -7,7 +7,7 @@ from gearheat.model.core.connect import Assembly
 from gearheat.model.core.flatten import flatten
 from gearheat.model.parts import PARTS
 from gearheat.model.run.result import Result
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 
@@ -29,7 +29,7 @@ def run(coupling: Component, phases: list, start: dict[str, float] | None = None
     )
     flat = flatten(Assembly("drive", "", parts, nets))
     stop = sum(duration for duration, _ in phases)
-    return simulate(flat, stepped(phases), start=start, times=np.linspace(0.0, stop, 41), method="lsoda")
+    return simulate(flat, join_phases(phases), start=start, times=np.linspace(0.0, stop, 41), method="lsoda")
 
 
 def test_a_clutch_is_open_slips_at_its_capacity_and_then_holds() -> None:
@@ -71,7 +71,7 @@ def test_a_brake_stops_a_shaft_and_keeps_its_energy_as_heat() -> None:
         PARTS["HeatCapacity"]("body", C=500.0),
     )
     nets = (("motor.flange", "rotor.flange", "brake.shaft"), ("brake.inner", "brake.outer", "body.heat"))
-    duty = stepped([(1.0, {"brake.tau_max": 20.0, "motor.tau": 5.0})])
+    duty = join_phases([(1.0, {"brake.tau_max": 20.0, "motor.tau": 5.0})])
     found = simulate(flatten(Assembly("b", "", parts, nets)), duty, start={"rotor.w": 100.0}, times=[0.5, 1.0])
     assert found["rotor.w"] == pytest.approx([25.0, 0.0], abs=1e-3)
     supplied = 5.0 * 100.0**2 * 0.1 / (2 * 15.0)  # by the motor while it slows down

@@ -7,7 +7,7 @@ import math
 import casadi as ca
 import numpy as np
 import pytest
-from gearheat.model.core.declare import declared
+from gearheat.model.core.declare import list_declared
 from gearheat.model.laws.rolling import boundary_share
 from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.parts.ports import Flange, HeatPort
@@ -87,7 +87,7 @@ def test_part_conserves_energy(kind: str, choices: dict, seed: int) -> None:
 
 
 #: Parts that turn torque into heat.
-BRAKING = [k for k, v in PARTS.items() if declared(v, Flange) and declared(v, HeatPort)]
+BRAKING = [k for k, v in PARTS.items() if list_declared(v, Flange) and list_declared(v, HeatPort)]
 
 
 @pytest.mark.parametrize("kind", BRAKING)

@@ -9,7 +9,7 @@ from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import SolveError, StructureError
 from gearheat.model.parts import PARTS
 from gearheat.model.run.design import design
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 
@@ -95,7 +95,7 @@ class TestFourSquare:
     def test_rotors_on_its_shafts_are_one_state(self) -> None:
         """By its energy a rotor on a half of the pinion shaft counts 1.5 squared. What accelerates it passes a mesh,
         whose loss it changes by some percent of a percent."""
-        duty = stepped([(5.0, {"motor.tau": 60.0, "clutch.tau": 183.4})])
+        duty = join_phases([(5.0, {"motor.tau": 60.0, "clutch.tau": 183.4})])
         speeds = {}
         for inertias in (1, 3):
             flat = four_square(inertias=inertias)
@@ -116,7 +116,7 @@ class TestRefused:
         with pytest.raises(SolveError) as steadily:
             steady(flat, given)
         with pytest.raises(SolveError) as over_time:
-            simulate(flat, stepped([(5.0, given)]))
+            simulate(flat, join_phases([(5.0, given)]))
         with pytest.raises(SolveError) as sought:
             design(flat, ["cooler.G"], {"oil.T": 360.0}, given)
         for error in (steadily, over_time, sought):

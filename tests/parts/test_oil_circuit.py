@@ -15,7 +15,7 @@ from gearheat.model.laws.oil_circuit import carried_enthalpy, laminar_pressure, 
 from gearheat.model.machines.spec import PartSpec, assemble
 from gearheat.model.parts import PARTS
 from gearheat.model.run.rows import evaluate_at
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
@@ -201,7 +201,7 @@ def test_every_operating_point_conserves(flat: FlatModel) -> None:
 def test_a_warm_up_from_the_cold_ends_at_the_steady_state(scenario: Scenario, flat: FlatModel) -> None:
     """The bypass of the filter lets oil of -30 degC pass; nothing is lost on the way."""
     cold = {f"{k}.T": 243.15 for k in ("tank", "upper", "gear")}
-    run = simulate(flat, stepped([(40000.0, scenario.operating_point)]), start=cold)
+    run = simulate(flat, join_phases([(40000.0, scenario.operating_point)]), start=cold)
     rest = steady(flat, scenario.operating_point)
     assert run.audit.residual < 1e-6
     for name in cold:
@@ -268,7 +268,7 @@ def test_oil_that_finds_no_way_back_is_refused(scenario: Scenario) -> None:
     hose = PartSpec("hose", "OilNozzle", {"d": 5e-3, "C_d": 0.7})
     nets = (("upper.outlet", "hose.a"), ("hose.b", "tank.inlet"), ("hose.lubricant", "tank.lubricant"))
     with pytest.raises(GearheatError, match=r"its oil would change by .*runs_over = true"):
-        simulate(flatten(assemble(spec.with_parts((hose,), nets))), stepped([(1.0, scenario.operating_point)]))
+        simulate(flatten(assemble(spec.with_parts((hose,), nets))), join_phases([(1.0, scenario.operating_point)]))
 
 
 def test_a_circuit_without_a_sump_has_no_pressure() -> None:

@@ -8,7 +8,7 @@ from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
 from gearheat.model.parts import PARTS
 from gearheat.model.run.rows import evaluate_at
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 
 OIL = dict(nu_40=2.2e-4, nu_100=1.9e-5, rho_15=895.0, alpha_T=-6.2e-4, s_p=9.904, t_p=0.139, X_L=1.0)
@@ -68,7 +68,7 @@ def test_a_hanging_load_stays_or_falls(values, held):
     """A load at the wheel, no torque at the worm, two seconds."""
     flat = model(values, rotor=True)
     inputs = {q.name: q.start for q in flat.inputs} | {"a.tau": 0.0, "b.tau": -20.0}
-    found = simulate(flat, stepped([(2.0, inputs)]))
+    found = simulate(flat, join_phases([(2.0, inputs)]))
     assert (abs(found["rotor.w"][-1]) < 1e-4) == held
 
 

@@ -7,8 +7,8 @@ import pytest
 from gearheat.model.core.component import Component, Equation, equation
 from gearheat.model.core.declare import Input, Output
 from gearheat.model.errors import SolveError
-from gearheat.model.run.audit import unsolved
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.audit import list_unsolved
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from small_parts import Ambient, Body, Conductor, Friction, Speed, model
@@ -44,7 +44,7 @@ def test_a_part_that_makes_energy_is_named() -> None:
     with pytest.raises(SolveError, match=message):
         steady(flat, {"drive.w": 10.0})
     with pytest.raises(SolveError, match=message):
-        simulate(flat, stepped([(3600.0, {"drive.w": 10.0})]))
+        simulate(flat, join_phases([(3600.0, {"drive.w": 10.0})]))
 
 
 def test_a_sound_model_passes() -> None:
@@ -59,8 +59,8 @@ def test_a_negative_loss_is_named() -> None:
 
 
 def test_an_open_equation_is_named() -> None:
-    assert list(unsolved({"gear: loss": 1e-9})) == []
-    (told,) = unsolved({"gear: loss": float("nan"), "bearing: torque": 1e-8})
+    assert list(list_unsolved({"gear: loss": 1e-9})) == []
+    (told,) = list_unsolved({"gear: loss": float("nan"), "bearing: torque": 1e-8})
     assert '"gear: loss" leaves nan' in told
 
 
@@ -68,6 +68,6 @@ def test_a_state_that_is_joined_is_in_the_balance() -> None:
     """Two bodies at one place: what one of them gains is in the other's equation."""
     parts = (Body("one", C=100.0), Body("two", C=300.0), Conductor("foot", G=2.0), Ambient("room"))
     flat = model(*parts, nets=[("one.heat", "two.heat", "foot.a"), ("foot.b", "room.heat")])
-    run = simulate(flat, stepped([(600.0, {"one.Q": 50.0})]))
+    run = simulate(flat, join_phases([(600.0, {"one.Q": 50.0})]))
     assert run.audit.residual < 1e-7
     assert np.isfinite(run["one.T"]).all()

@@ -7,7 +7,7 @@ import pytest
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
@@ -46,7 +46,7 @@ def test_a_cold_bearing_brakes_before_it_has_warmed_up(driven: FlatModel, T: flo
     """Every loss at the first moment is that of a warmer start or more, but the teeth: they are lubricated better."""
     losses = []
     for start in (273.15 + T, 273.15 + T + 15.0):
-        run = simulate(driven, stepped([(1e-3, {})]), start=dict.fromkeys((q.name for q in driven.states), start))
+        run = simulate(driven, join_phases([(1e-3, {})]), start=dict.fromkeys((q.name for q in driven.states), start))
         losses.append({name: run[name][0] for name in run.columns if "bearing" in name or "churning" in name})
     assert all(losses[0][name] > losses[1][name] for name in losses[0] if name.endswith("P_loss"))
 
@@ -56,20 +56,20 @@ def test_a_cold_bearing_brakes_before_it_has_warmed_up(driven: FlatModel, T: flo
 )
 def test_a_rig_at_rest_stays_at_rest(free: FlatModel, tau_in: float, tau_out: float) -> None:
     """Below its breakaway torque, without load and with one that hangs on it, no shaft creeps by 0.001 rpm."""
-    run = simulate(free, stepped([(600.0, {"input.tau": tau_in, "output.tau": tau_out})]), start={"rotor.w": 0.0})
+    run = simulate(free, join_phases([(600.0, {"input.tau": tau_in, "output.tau": tau_out})]), start={"rotor.w": 0.0})
     assert np.abs(run["input.w"]).max() < 1e-3 * RPM
     assert run.audit.residual < 1e-6
 
 
 def test_a_rig_breaks_away_above_it(free: FlatModel) -> None:
-    run = simulate(free, stepped([(60.0, {"input.tau": 0.1, "output.tau": 0.0})]), start={"rotor.w": 0.0})
+    run = simulate(free, join_phases([(60.0, {"input.tau": 0.1, "output.tau": 0.0})]), start={"rotor.w": 0.0})
     assert run["input.w"][-1] > 10 * RPM
 
 
 def test_oil_below_its_pour_point_is_named(driven: FlatModel) -> None:
     """ISO VG 220 mineral pours above -18 degC; the warm point names nothing of the oil."""
     start = dict.fromkeys((q.name for q in driven.states), 253.15)
-    run = simulate(driven, stepped([(60.0, {"room.T": 253.15})]), start=start)
+    run = simulate(driven, join_phases([(60.0, {"room.T": 253.15})]), start=start)
     (found,) = [o for o in run.outside if o.component == "oil"]
     assert (found.law, found.argument) == ("kinematic_viscosity", "T - T_pour")
     assert found.lowest == pytest.approx(-2.0, abs=0.01)
@@ -82,5 +82,5 @@ def test_an_oil_without_a_pour_point_is_not_judged() -> None:
     assert "T_pour" in parts[0].values
     unknown = reducer({"oil.T_pour": 0.0})
     start = dict.fromkeys((q.name for q in unknown.states), 253.15)
-    run = simulate(unknown, stepped([(1.0, {"room.T": 253.15})]), start=start)
+    run = simulate(unknown, join_phases([(1.0, {"room.T": 253.15})]), start=start)
     assert not [o for o in run.outside if o.component == "oil"]

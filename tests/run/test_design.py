@@ -5,7 +5,7 @@ import pytest
 from gearheat.model.errors import ScenarioError, SolveError
 from gearheat.model.run.design import choose, design
 from gearheat.model.run.least import Target, change, least_change
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.sensitivity import sensitivities
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
@@ -21,7 +21,7 @@ def test_a_conductance_for_an_oil_temperature(start: float) -> None:
     found = design(brake(), ["foot.G"], {"oil.T": 370.0}, {**WARM, "foot.G": start})
     assert found.result["oil.T"][0] == pytest.approx(370.0, abs=1e-6)
     assert found.values["foot.G"] == pytest.approx(9.5644835, rel=1e-6)
-    end = simulate(brake(), stepped([(1e6, WARM)]), values=found.values, times=[1e6])
+    end = simulate(brake(), join_phases([(1e6, WARM)]), values=found.values, times=[1e6])
     assert end["oil.T"][0] == pytest.approx(370.0, abs=1e-4)
     assert abs(found.residuals["oil.T"]) < 1e-6
     assert found.condition == pytest.approx(1.0)

@@ -6,7 +6,7 @@ import pytest
 from gearheat.model.core.component import Component
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.errors import SolveError
-from gearheat.model.run.schedule import Schedule, stepped
+from gearheat.model.run.schedule import Schedule, join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from hypothesis import given, settings
@@ -82,7 +82,7 @@ def duties(draw: st.DrawFn, machine: Machine) -> Schedule:
     for _ in range(draw(st.integers(1, 4))):
         inputs = {name: draw(st.one_of(v, st.tuples(v, v))) for name, v in names.items()}
         phases.append((draw(log_floats(0.5, 7200.0)), inputs))
-    return stepped(phases)
+    return join_phases(phases)
 
 
 @settings(max_examples=40, deadline=None, derandomize=True)
@@ -109,7 +109,7 @@ def test_steady_is_where_a_run_ends(data: st.DataObject) -> None:
     if machine.geared:
         values["load.tau"] = data.draw(st.floats(-2.0, 2.0))
     try:
-        end = simulate(flat, stepped([(1e8, values)]), times=[1e8])
+        end = simulate(flat, join_phases([(1e8, values)]), times=[1e8])
     except SolveError:
         with pytest.raises(SolveError):
             steady(flat, values)

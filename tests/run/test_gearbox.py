@@ -9,7 +9,7 @@ from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import SolveError
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady, steady_table
 from gearheat.scenarios.load import load
@@ -31,7 +31,7 @@ def flat() -> FlatModel:
 def test_a_day_on_the_rig(flat: FlatModel) -> None:
     """240 min multiplier, 90 min reducer, 5 min stop: energy is kept and 240 min are long enough for steady."""
     turned = {"carrier.w": 150 * RPM, "carrier.tau": -2000.0}
-    duty = stepped([(14400.0, NOMINAL), (5400.0, turned), (300.0, {"carrier.w": 0.0, "carrier.tau": 0.0})])
+    duty = join_phases([(14400.0, NOMINAL), (5400.0, turned), (300.0, {"carrier.w": 0.0, "carrier.tau": 0.0})])
     run = simulate(flat, duty)
     assert run.audit.residual < 1e-6
     assert max(run.implicit.values(), default=0.0) < 1e-9
@@ -86,7 +86,7 @@ def test_torque_at_both_ends(w: float) -> None:
     """The machine goes where the run goes, from rest and from speed."""
     both = gearbox(carrier=("tau",), sun=("tau",))
     values = {"carrier.tau": 2500.0, "sun.tau": -620.0}
-    end = simulate(both, stepped([(1e6, values)]), start={"rotor.w": w}, times=[1e6])
+    end = simulate(both, join_phases([(1e6, values)]), start={"rotor.w": w}, times=[1e6])
     point = steady(both, values, guess={"rotor.w": w})
     assert point["rotor.w"][0] == pytest.approx(end["rotor.w"][0], abs=1e-5)
     assert point["oil.T"][0] == pytest.approx(end["oil.T"][0], abs=1e-4)
@@ -105,7 +105,7 @@ def test_an_overload_does_not_pass_in_silence(flat: FlatModel) -> None:
 
 def test_a_housing_for_an_oil_temperature(flat: FlatModel) -> None:
     found = design(flat, ["cooling.A"], {"oil.T": 345.0}, NOMINAL)
-    end = simulate(flat, stepped([(1e6, NOMINAL)]), values=found.values, times=[1e6])
+    end = simulate(flat, join_phases([(1e6, NOMINAL)]), values=found.values, times=[1e6])
     assert end["oil.T"][0] == pytest.approx(345.0, abs=1e-4)
     h = 0.01
     ends = [design(flat, ["cooling.A"], {"oil.T": 345.0 + s}, NOMINAL).values["cooling.A"] for s in (h, -h)]

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from gearheat.model.errors import DataError
-from gearheat.model.run.schedule import Schedule, stepped
+from gearheat.model.run.schedule import Schedule, join_phases
 
 
 def duty(time: list[float], **values: list[float]) -> Schedule:
@@ -11,7 +11,7 @@ def duty(time: list[float], **values: list[float]) -> Schedule:
 
 
 def test_phases_keep_what_they_do_not_name() -> None:
-    schedule = stepped([(60.0, {"w": 1.0, "T": 300.0}), (30.0, {"w": (2.0, 4.0)}), (10.0, {"tau": 5.0})])
+    schedule = join_phases([(60.0, {"w": 1.0, "T": 300.0}), (30.0, {"w": (2.0, 4.0)}), (10.0, {"tau": 5.0})])
     assert schedule.time.tolist() == [0.0, 60.0, 60.0, 90.0, 90.0, 100.0]
     assert schedule.values["w"].tolist() == [1.0, 1.0, 2.0, 4.0, 4.0, 4.0]
     assert schedule.values["T"].tolist() == [300.0] * 6

@@ -5,12 +5,12 @@ import time
 import numpy as np
 import pytest
 from gearheat.model.errors import ScenarioError, SolveError
-from gearheat.model.run.schedule import Schedule, stepped
+from gearheat.model.run.schedule import Schedule, join_phases
 from gearheat.model.run.simulate import simulate
 from small_parts import Ambient, Conductor, Heater, Thermometer, brake, gear, model, motor, rc
 
 #: Charging, a ramp, a jump to zero.
-DUTY = stepped([(0.1, {"battery.V": 5.0}), (0.2, {"battery.V": (5.0, 9.0)}), (0.1, {"battery.V": 0.0})])
+DUTY = join_phases([(0.1, {"battery.V": 5.0}), (0.2, {"battery.V": (5.0, 9.0)}), (0.1, {"battery.V": 0.0})])
 TIMES = np.linspace(0.0, 0.4, 81)
 
 
@@ -45,7 +45,7 @@ def test_error_follows_the_tolerance() -> None:
 
 
 def test_methods_agree_on_a_motor_that_warms_up() -> None:
-    duty = stepped([(600.0, {"drive.tau": 5.0}), (1200.0, {"drive.tau": (5.0, 3.0)}), (600.0, {"drive.tau": 0.0})])
+    duty = join_phases([(600.0, {"drive.tau": 5.0}), (1200.0, {"drive.tau": (5.0, 3.0)}), (600.0, {"drive.tau": 0.0})])
     one, other = (simulate(motor(), duty, method=m) for m in ("idas", "lsoda"))
     assert one["body.T"] == pytest.approx(other["body.T"], abs=1e-5)
     assert one["rotor.w"] == pytest.approx(other["rotor.w"], abs=1e-4)
@@ -53,7 +53,7 @@ def test_methods_agree_on_a_motor_that_warms_up() -> None:
 
 
 def test_rows_every_minute_and_both_sides_of_jumps() -> None:
-    duty = stepped([(90.0, {"drive.w": 10.0}), (60.0, {"drive.w": 20.0})])
+    duty = join_phases([(90.0, {"drive.w": 10.0}), (60.0, {"drive.w": 20.0})])
     run = simulate(brake(), duty)
     assert run.index.tolist() == [0.0, 60.0, 90.0, 90.0, 120.0, 150.0]
     assert run["drive.w"].tolist() == [10.0, 10.0, 10.0, 20.0, 20.0, 20.0]
@@ -63,7 +63,7 @@ def test_rows_every_minute_and_both_sides_of_jumps() -> None:
 
 
 def test_rows_at_times_asked_for() -> None:
-    duty = stepped([(90.0, {"drive.w": 10.0}), (60.0, {"drive.w": (20.0, 30.0)})])
+    duty = join_phases([(90.0, {"drive.w": 10.0}), (60.0, {"drive.w": (20.0, 30.0)})])
     run = simulate(brake(), duty, times=[5.0, 90.0, 120.0, 150.0])
     assert run.index.tolist() == [5.0, 90.0, 120.0, 150.0]
     assert run["drive.w"].tolist() == [10.0, 20.0, 25.0, 30.0]
@@ -72,7 +72,7 @@ def test_rows_at_times_asked_for() -> None:
 
 
 def test_times_do_not_change_the_solution() -> None:
-    duty = stepped([(600.0, {"drive.w": (0.0, 150.0)}), (600.0, {"drive.w": 50.0})])
+    duty = join_phases([(600.0, {"drive.w": (0.0, 150.0)}), (600.0, {"drive.w": 50.0})])
     coarse = simulate(brake(), duty, times=[600.0, 1200.0])
     fine = simulate(brake(), duty, times=np.linspace(0.0, 1200.0, 2401))
     assert fine["oil.T"][[1200, 2400]] == pytest.approx(coarse["oil.T"], abs=1e-5)
@@ -95,7 +95,7 @@ def test_a_duty_that_does_not_start_at_zero() -> None:
 
 
 def test_inputs_that_the_duty_does_not_name() -> None:
-    duty = stepped([(60.0, {"drive.w": 10.0})])
+    duty = join_phases([(60.0, {"drive.w": 10.0})])
     assert simulate(brake(), duty)["room.T"].tolist() == [300.0, 300.0]
     given = simulate(brake(), duty, values={"room.T": 280.0, "foot.G": 7.0})
     assert given["room.T"].tolist() == [280.0, 280.0]
@@ -103,12 +103,14 @@ def test_inputs_that_the_duty_does_not_name() -> None:
 
 
 def test_start_and_parameters() -> None:
-    run = simulate(rc(), stepped([(0.3, {"battery.V": 0.0})]), start={"capacitor.u": 4.0}, values={"resistor.R": 50.0})
+    run = simulate(
+        rc(), join_phases([(0.3, {"battery.V": 0.0})]), start={"capacitor.u": 4.0}, values={"resistor.R": 50.0}
+    )
     assert run["capacitor.u"][-1] == pytest.approx(4 * np.exp(-0.3 / 0.05), abs=1e-6)
 
 
 def test_result_knows_units_laws_and_where_they_end() -> None:
-    run = simulate(brake(), stepped([(36000.0, {"drive.w": 300.0})]))
+    run = simulate(brake(), join_phases([(36000.0, {"drive.w": 300.0})]))
     assert run.units["oil.T"] == "K"
     assert run.units["bearing.P_loss"] == "W"
     assert run.laws == ("radiated (Example, eq. 1)",)
@@ -120,7 +122,7 @@ def test_result_knows_units_laws_and_where_they_end() -> None:
 
 
 def test_implicit_residuals_are_reported() -> None:
-    run = simulate(gear(), stepped([(600.0, {"drive.w": 100.0, "load.tau": -30.0}), (60.0, {"load.tau": -300.0})]))
+    run = simulate(gear(), join_phases([(600.0, {"drive.w": 100.0, "load.tau": -30.0}), (60.0, {"load.tau": -300.0})]))
     assert run.implicit.keys() == {"gear: loss"}
     assert 0 <= run.implicit["gear: loss"] < 1e-8
 
@@ -128,27 +130,27 @@ def test_implicit_residuals_are_reported() -> None:
 def test_a_model_without_states() -> None:
     parts = (Ambient("room"), Conductor("g", G=2.0), Heater("q"), Thermometer("t"))
     flat = model(*parts, nets=[("room.heat", "g.a"), ("g.b", "q.heat", "t.heat")])
-    run = simulate(flat, stepped([(120.0, {"q.Q": (0.0, 10.0)})]))
+    run = simulate(flat, join_phases([(120.0, {"q.Q": (0.0, 10.0)})]))
     assert run["t.T"].tolist() == pytest.approx([300.0, 302.5, 305.0])
     assert run.audit.residual < 1e-9
 
 
 def test_same_input_same_bytes() -> None:
-    duty = stepped([(600.0, {"drive.tau": 5.0}), (600.0, {"drive.tau": -5.0})])
+    duty = join_phases([(600.0, {"drive.tau": 5.0}), (600.0, {"drive.tau": -5.0})])
     one, other = simulate(motor(), duty), simulate(motor(), duty)
     assert all(one[name].tobytes() == other[name].tobytes() for name in one.columns)
     assert one.audit == other.audit
 
 
 def test_a_warm_up_takes_well_below_a_second() -> None:
-    flat, duty = brake(), stepped([(335 * 60.0, {"drive.w": 100.0})])
+    flat, duty = brake(), join_phases([(335 * 60.0, {"drive.w": 100.0})])
     begin = time.perf_counter()
     simulate(flat, duty)
     assert time.perf_counter() - begin < 0.5
 
 
 def test_all_wrong_names_and_values_at_once() -> None:
-    duty = stepped([(60.0, {"drive.w": 10.0, "drve.w": 1.0, "room.T": -5.0})])
+    duty = join_phases([(60.0, {"drive.w": 10.0, "drve.w": 1.0, "room.T": -5.0})])
     with pytest.raises(ScenarioError) as caught:
         simulate(brake(), duty, times=[70.0], method="lsode")
     text = str(caught.value)
@@ -159,7 +161,7 @@ def test_all_wrong_names_and_values_at_once() -> None:
 
 
 def test_wrong_values_and_starts() -> None:
-    duty = stepped([(60.0, {"drive.w": 10.0})])
+    duty = join_phases([(60.0, {"drive.w": 10.0})])
     with pytest.raises(ScenarioError) as caught:
         simulate(
             brake(), duty, start={"oil.TT": 1.0, "foot.G": 1.0}, values={"drive.w": 1.0, "oil.C": -1.0, "oil.T": 3.0}
@@ -180,14 +182,14 @@ def test_a_duty_of_no_duration() -> None:
 
 def test_a_state_that_leaves_its_range() -> None:
     with pytest.raises(SolveError, match=r"body\.T leaves its range \(0 \.\.\. 2000 K\) at 720 s"):
-        simulate(motor(thinning=0.2), stepped([(3600.0, {"drive.tau": 100.0})]))
+        simulate(motor(thinning=0.2), join_phases([(3600.0, {"drive.tau": 100.0})]))
 
 
 @pytest.mark.parametrize("method", ["idas", "lsoda"])
 def test_a_blow_up_names_time_and_state(method: str) -> None:
     """Friction that grows with its own heat runs away within a minute."""
     with pytest.raises(SolveError) as caught:
-        simulate(brake(thinning=-0.02), stepped([(3600.0, {"drive.w": 100.0})]), method=method, times=[3600.0])
+        simulate(brake(thinning=-0.02), join_phases([(3600.0, {"drive.w": 100.0})]), method=method, times=[3600.0])
     text = str(caught.value)
     assert "simulate: the run stops at 41.3" in text
     assert "oil.T has reached" in text
@@ -203,5 +205,5 @@ def test_a_method_that_gives_up_alone_names_the_other(monkeypatch: pytest.Monkey
 
 
 def test_a_coupling_so_weak_that_its_square_underflows() -> None:
-    run = simulate(motor(thinning=1e-147), stepped([(1e4, {"drive.tau": 1.0})]), times=[1e4])
+    run = simulate(motor(thinning=1e-147), join_phases([(1e4, {"drive.tau": 1.0})]), times=[1e4])
     assert run.audit.residual < 1e-6

@@ -8,7 +8,7 @@ import pytest
 from gearheat.model.core.component import Equation, equation
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.errors import ScenarioError, SolveError
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady, steady_table
 from hypothesis import given, settings
@@ -120,7 +120,7 @@ def test_of_several_balances_the_one_where_the_machine_goes(w: float, runs: bool
     """Balances at rest, near 6 rad/s (unstable) and near 50 rad/s: the start decides as it does for the run."""
     flat = stribeck()
     point = steady(flat, {"drive.tau": 2.0}, guess={"rotor.w": w})
-    end = simulate(flat, stepped([(1e5, {"drive.tau": 2.0})]), start={"rotor.w": w}, times=[1e5])
+    end = simulate(flat, join_phases([(1e5, {"drive.tau": 2.0})]), start={"rotor.w": w}, times=[1e5])
     assert (point["rotor.w"][0] > 40.0) == runs
     assert point["rotor.w"][0] == pytest.approx(end["rotor.w"][0], abs=1e-4)
 
@@ -182,10 +182,10 @@ def test_the_last_solutions_of_a_thermal_runaway() -> None:
         low, high = (middle, high) if solvable(middle) else (low, middle)
     assert 30.0 < low < 33.0  # from the fold of the two balances by hand
     near = steady(flat, {"drive.w": 0.99 * low})
-    end = simulate(flat, stepped([(1e7, {"drive.w": 0.99 * low})]), times=[1e7])
+    end = simulate(flat, join_phases([(1e7, {"drive.w": 0.99 * low})]), times=[1e7])
     assert near["oil.T"][0] == pytest.approx(end["oil.T"][0], abs=1e-4)
     with pytest.raises(SolveError):
-        simulate(flat, stepped([(1e7, {"drive.w": 1.01 * high})]), times=[1e7])
+        simulate(flat, join_phases([(1e7, {"drive.w": 1.01 * high})]), times=[1e7])
 
 
 def test_all_points_without_solution_are_named() -> None:

@@ -10,7 +10,7 @@ from bearing_rig import BEARING, with_bearings
 from gearheat.model.core.connect import nets
 from gearheat.model.errors import ScenarioError
 from gearheat.model.machines.spec import assemble
-from gearheat.scenarios.assemblies import assembled
+from gearheat.scenarios.assemblies import expand_assemblies
 from gearheat.scenarios.load import load
 
 BEARINGS = (
@@ -82,7 +82,7 @@ def test_assemblies_hold_assemblies():
         [connect]
         end = ["big.out", "y.p"]
     """)
-    found, problems = assembled("rig.toml", raw)
+    found, problems = expand_assemblies("rig.toml", raw)
     assert not problems
     assert found["part"] == {"big_n_1_x": {"type": "T"}, "big_n_2_x": {"type": "T", "k": 3}}
     assert found["connect"] == {"big_between": ["big_n_1_x.p", "big_n_2.q"], "end": ["big_n_2_x.p", "y.p"]}

@@ -1,7 +1,7 @@
 """Every value of every part, written wrongly: refused with its place, what was found, and what to write instead."""
 
 from for_each import for_each
-from gearheat.model.core.declare import Parameter, declared
+from gearheat.model.core.declare import Parameter, list_declared
 from gearheat.model.parts import PARTS
 from gearheat.scenarios.values import part_values, settable
 
@@ -39,7 +39,7 @@ def test_values_that_are_none(kind):
 
 @for_each(PARTS)
 def test_values_out_of_range(kind):
-    for key, d in declared(PARTS[kind], Parameter).items():
+    for key, d in list_declared(PARTS[kind], Parameter).items():
         unit = "" if d.unit == "1" else f" {d.unit.removesuffix('(difference)').strip()}"
         low, high = (d.at_least if d.above is None else d.above), (d.at_most if d.below is None else d.below)
         for bound, beyond in ((low, -1.0), (high, 1.0)):

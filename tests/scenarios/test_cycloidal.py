@@ -10,7 +10,7 @@ from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import RIGS, load
@@ -165,7 +165,7 @@ def test_physical_rig_says_that_the_rated_torque_is_too_much(model) -> None:
 def test_steady_is_where_a_simulation_ends_and_design_finds_80_degC(model, rig: str) -> None:
     flat = model(rig)
     at = {q.name: q.start for q in flat.inputs} | {"output.tau": -150.0 if rig in PRINTED else -290.0}
-    run = simulate(flat, stepped([(40 * 3600.0, at)]), times=np.array([0.0, 40 * 3600.0]))
+    run = simulate(flat, join_phases([(40 * 3600.0, at)]), times=np.array([0.0, 40 * 3600.0]))
     assert run["oil.T"][-1] == pytest.approx(steady(flat, at)["oil.T"][0], abs=0.01)
     assert run.audit.residual < 1e-6
     for free in ("room.air_speed", "housing.A_flat_outer"):

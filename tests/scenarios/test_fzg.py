@@ -14,7 +14,7 @@ from gearheat.model.laws.mesh import tooth_loss_factor
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
 from gearheat.model.run.result import Result
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady, steady_table
 from gearheat.model.units import to_si
@@ -137,14 +137,14 @@ class TestRefused:
         with pytest.raises(SolveError, match=self.says):
             steady(flat, self.given)
         with pytest.raises(SolveError, match=self.says):
-            simulate(flat, stepped([(60.0, {"motor.w": to_si("1450 rpm", "rad/s")})]), values=self.given)
+            simulate(flat, join_phases([(60.0, {"motor.w": to_si("1450 rpm", "rad/s")})]), values=self.given)
         with pytest.raises(SolveError, match=self.says):
             design(flat, ["clutch.tau"], {"motor.tau": 6.0}, self.given)
 
     def test_by_a_sweep_row_by_row(self, flat: FlatModel) -> None:
         batch = Batch(flat)
         teeth = batch.vectors({"slave_gears.z_1": np.array([16.0, 15.0]), "slave_gears.z_2": np.array([24.0, 25.0])})
-        duty = stepped([(600.0, {"clutch.tau": 183.4})])
+        duty = join_phases([(600.0, {"clutch.tau": 183.4})])
         for rows in (batch.steady(*teeth), batch.warmup(duty, *teeth)):
             assert rows.status.tolist() == [Status.OK, Status.OUT_OF_RANGE]
             assert np.isfinite(rows["motor.tau"][0]).all() and np.isnan(rows["motor.tau"][1]).all()

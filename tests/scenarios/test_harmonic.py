@@ -10,7 +10,7 @@ from gearheat.model.errors import ScenarioError, SolveError
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
 from gearheat.model.run.result import Result
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
@@ -52,7 +52,7 @@ class TestPrinted:
         assert found.values["wave_generator.w"] == pytest.approx(expected, rel=1e-4)
 
     def test_the_contact_is_named_with_its_regime(self, printed: FlatModel) -> None:
-        duty = stepped([(600.0, {q.name: q.start for q in printed.inputs})])
+        duty = join_phases([(600.0, {q.name: q.start for q in printed.inputs})])
         for result in (steady(printed, {}), simulate(printed, duty, times=np.array([0.0, 600.0]))):
             (found,) = [o for o in result.outside if o.regime]
             assert (found.component, found.argument) == ("mesh", "rigid_isoviscous")
@@ -105,7 +105,7 @@ class TestPhysical:
         assert here["mesh.Lambda_Rz"][0] == pytest.approx(here["mesh.h_min"][0] / 0.8e-6)
 
     def test_steady_is_where_a_simulation_ends(self, physical: FlatModel) -> None:
-        held = stepped([(86400.0, {q.name: q.start for q in physical.inputs})])
+        held = join_phases([(86400.0, {q.name: q.start for q in physical.inputs})])
         run = simulate(physical, held, times=np.array([0.0, 86400.0]))
         assert run["oil.T"][-1] == pytest.approx(steady(physical, {})["oil.T"][0], abs=0.01)
         assert run.audit.residual < 1e-6

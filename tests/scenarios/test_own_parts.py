@@ -97,12 +97,12 @@ def test_parts_of_installed_packages_are_known_by_name(monkeypatch, tmp_path):
     monkeypatch.syspath_prepend(str(tmp_path))
     offered = [EntryPoint("Stone", "shop_parts:Stone", own_parts.GROUP)]
     monkeypatch.setattr(own_parts, "entry_points", lambda group: offered)
-    own_parts.installed_types.cache_clear()
+    own_parts.load_installed_types.cache_clear()
     try:
-        assert own_parts.installed_types()["Stone"].__name__ == "Stone"
-        own_parts.installed_types.cache_clear()
+        assert own_parts.load_installed_types()["Stone"].__name__ == "Stone"
+        own_parts.load_installed_types.cache_clear()
         offered.append(EntryPoint("Rock", "shop_parts:Rock", own_parts.GROUP))
         with pytest.raises(ScenarioError, match=r'package Rock: .*has no part "Rock"'):
             load("planetary")
     finally:
-        own_parts.installed_types.cache_clear()
+        own_parts.load_installed_types.cache_clear()

@@ -9,7 +9,7 @@ import pytest
 from bearing_rig import BEARING, WHOLE, with_bearings
 from gearheat.model.errors import ScenarioError
 from gearheat.scenarios.load import load
-from gearheat.scenarios.repeats import expanded, meant
+from gearheat.scenarios.repeats import expand, spell_out
 
 BEARINGS = (
     f"[template.ball]\n{BEARING}"
@@ -86,14 +86,14 @@ def test_the_source_of_a_part_is_that_of_its_own_values_alone(tmp_path):
     ],
 )
 def test_what_braces_stand_for(text, names):
-    assert meant(text) == names
+    assert spell_out(text) == names
 
 
 def test_nets_go_with_their_ports_or_join_them():
     raw = tomllib.loads(
         '[connect]\n"n_{1,2}" = ["a_{1,2}.x", "b.{p,q,r}"]\nall = ["a_{1,2}.y"]\n[losses]\nP = ["a_{1,2}.P"]'
     )
-    found, problems = expanded("rig.toml", raw)
+    found, problems = expand("rig.toml", raw)
     assert not problems
     assert found["connect"] == {
         "n_1": ["a_1.x", "b.p", "b.q", "b.r"],

@@ -9,7 +9,7 @@ from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
 from gearheat.model.run.rows import evaluate_at
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.model.sources import sources
@@ -158,7 +158,7 @@ class TestHelical:
     def test_steady_is_where_a_simulation_ends(self, helical: FlatModel) -> None:
         final = steady(helical, {})
         assert 0.96 < final["efficiency.eta"][0] < 0.98
-        held = stepped([(86400.0, {q.name: q.start for q in helical.inputs})])
+        held = join_phases([(86400.0, {q.name: q.start for q in helical.inputs})])
         run = simulate(helical, held, times=np.array([0.0, 86400.0]))
         assert run["oil.T"][-1] == pytest.approx(final["oil.T"][0], abs=0.01)
         assert run.audit.residual < 1e-6

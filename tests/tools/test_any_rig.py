@@ -7,7 +7,7 @@ import csv
 import pytest
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.readings import measured_rows
-from gearheat.scenarios.measured.study import measured_of
+from gearheat.scenarios.measured.study import read_study
 from made_tables import made, written
 
 RIG = "helical_two_stage"
@@ -32,7 +32,7 @@ def files(tmp_path_factory):
 
 
 def test_loss_and_efficiency_follow_from_the_rigs_own_ratio(files):
-    study = measured_of(load(RIG), *files)
+    study = read_study(load(RIG), *files)
     assert study is not None
     for row in measured_rows(study):
         w, ratio = row["n_input_rpm"] * 3.141592653589793 / 30, 77 / 20 * 62 / 19
@@ -44,7 +44,7 @@ def test_loss_and_efficiency_follow_from_the_rigs_own_ratio(files):
 
 
 def test_without_a_torque_no_loss_is_shown(tmp_path):
-    study = measured_of(load(RIG), written(tmp_path / "data.csv", made(load(RIG))))
+    study = read_study(load(RIG), written(tmp_path / "data.csv", made(load(RIG))))
     assert study is not None
     assert all("loss_Nm_meas" not in row and "T_oil_C_meas" in row for row in measured_rows(study))
 

@@ -18,7 +18,7 @@ from gearheat.model.files import reading
 from gearheat.tools.cli import __main__ as entry
 from gearheat.tools.cli import app as cli
 from gearheat.tools.show import console
-from gearheat.tools.show.console import EVERY, as_json, cell, counting, folder, guarded, table, writable, write
+from gearheat.tools.show.console import EVERY, as_json, cell, counting, folder, guard, table, writable, write
 
 
 def test_json_holds_no_value_that_is_no_json():
@@ -65,7 +65,7 @@ def test_a_folder_is_made_with_its_parents(tmp_path):
     [(SolveError(["one", "two"]), 2, "error: one\nerror: two\n"), (KeyboardInterrupt(), 130, "interrupted\n")],
 )
 def test_problems_become_exit_codes(capsys, raised, code, said):
-    @guarded
+    @guard
     def command() -> None:
         raise raised
 
@@ -76,7 +76,7 @@ def test_problems_become_exit_codes(capsys, raised, code, said):
 
 
 def test_what_is_not_foreseen_is_not_hidden():
-    @guarded
+    @guard
     def command() -> None:
         raise ZeroDivisionError
 
@@ -106,7 +106,7 @@ def test_what_a_command_reads_is_not_written_over(tmp_path, capsys):
     source.write_text("before")
     link.symlink_to(source)
 
-    @guarded
+    @guard
     def command(out: Path) -> None:
         reading(source)
         writable(out)
@@ -121,7 +121,7 @@ def test_what_a_command_reads_is_not_written_over(tmp_path, capsys):
     assert (source.read_text(), other.read_text()) == ("before", "after")
     write(source, "later")  # no command that reads it
 
-    @guarded
+    @guard
     def again() -> None:
         write(other, "made")
         reading(other)
@@ -200,7 +200,7 @@ def test_a_full_device_is_a_message(arguments, said):
 
 
 def test_a_full_disk_is_a_message(capsys):
-    @guarded
+    @guard
     def command() -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC), "/tmp/gearheat-x")
 

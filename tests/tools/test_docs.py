@@ -35,7 +35,7 @@ def test_a_docstring_becomes_a_formula_and_a_list() -> None:
 
 
 def test_every_law_stands_once_among_the_equations() -> None:
-    text = laws.filled((PAGES / "theory" / "laws.md").read_text(encoding="utf-8"))
+    text = laws.fill_blocks((PAGES / "theory" / "laws.md").read_text(encoding="utf-8"))
     named = re.findall(r"^\*\*\[(\w+)\]\(\.\./generated/laws/(\w+)\.md#", text, re.MULTILINE)
     assert sorted(named) == sorted((law.__name__, name) for name in laws.law_modules() for law in laws.laws_of(name))
     assert text.count("```{math}") >= len(named)
@@ -43,7 +43,7 @@ def test_every_law_stands_once_among_the_equations() -> None:
 
 
 def test_the_limits_tell_ranges_evidence_and_the_readings_there_are() -> None:
-    page = laws.filled((PAGES / "trust" / "limits.md").read_text(encoding="utf-8"))
+    page = laws.fill_blocks((PAGES / "trust" / "limits.md").read_text(encoding="utf-8"))
     assert "| [friction_schlenk](" in page
     assert re.search(r"^\| \[Friction of contact seals\]\(\S+\) \| 2 \| 1 \| \d+ \| \d+ \|$", page, re.MULTILINE)
     with (RIGS / "planetary" / "measured.csv").open(encoding="utf-8") as file:

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from gearheat.scenarios.load import load
-from gearheat.scenarios.measured.study import Measured, measured_of
+from gearheat.scenarios.measured.study import Measured, read_study
 from gearheat.tools.compare.campaign import Run, runs_of
 from gearheat.tools.solve.settings import flat_of
 
@@ -21,7 +21,7 @@ def first_run(study: Measured | None) -> Run:
 @pytest.fixture(scope="module")
 def run() -> Run:
     """The first test of the shipped campaign."""
-    return first_run(measured_of(load("planetary")))
+    return first_run(read_study(load("planetary")))
 
 
 def test_signs_and_jumps(run: Run) -> None:
@@ -48,7 +48,7 @@ def test_every_temperature_starts_as_the_room(run: Run) -> None:
 def test_columns_of_the_table_overrule_the_protocol(tmp_path: Path) -> None:
     lines = (HEADER + ",T_start_C,T_amb_start_C,stop_min", ROWS[0] + ",21,22,", ROWS[1] + ",21,22,20")
     (path := tmp_path / "data.csv").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    run = first_run(measured_of(load("planetary"), path))
+    run = first_run(read_study(load("planetary"), path))
     np.testing.assert_array_equal(run.schedule.time / 60, [0, 240, 240, 260, 260, 350])
     assert run.schedule.values["room.T"][:2] - 273.15 == pytest.approx([22, 25])
     assert run.start["oil.T"] == pytest.approx(294.15)

@@ -24,7 +24,7 @@ from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 from gearheat.scenarios.write import rig_text
 from gearheat.tools.show.network import network_svg
-from gearheat.tools.solve.settings import adjusted, flat_of
+from gearheat.tools.solve.settings import adjust, flat_of
 
 SSV = "{http://ssp-standard.org/SSP1/SystemStructureParameterValues}"
 ABOUT = "{urn:org.gearheat:provenance:1}provenance"
@@ -159,7 +159,7 @@ def test_an_oil_that_is_chosen_gives_the_steady_state_of_the_rig_with_it(exporte
     item = found["choices"]["oil.oil"].index("PAGD") + 1
     with Player(path) as player:
         played = player.run({}, 60, 60, start={"start": 3, "oil.oil": item})
-    flat = flat_of(adjusted(load("planetary"), ["oil=PAGD"]))
+    flat = flat_of(adjust(load("planetary"), ["oil=PAGD"]))
     expected = steady(flat, {})
     for q in (*flat.states, flat.quantity("efficiency.P_loss")):
         assert played[q.name] == pytest.approx(np.full(2, expected[q.name][0]), rel=1e-9), q.name
@@ -269,7 +269,7 @@ def test_sets_of_the_rig_and_of_every_oil(exported):
 def test_a_set_from_the_folder_moves_the_fmu_as_the_oil_moves_the_rig(exported):
     path, _ = exported["carrier-speed"]
     oil = values((path.with_suffix("") / "oils" / "MINR.ssv").read_bytes())
-    flat = flat_of(adjusted(load("planetary"), ["oil=MINR"]))
+    flat = flat_of(adjust(load("planetary"), ["oil=MINR"]))
     vectors = [flat.starts(kind) for kind in ("state", "input", "parameter")]
     expected = evaluate_at(flat, *vectors)["y"]
     names = [q.name for q in flat.outputs]

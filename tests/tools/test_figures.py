@@ -12,7 +12,7 @@ import pytest
 from fabricated_findings import AIR, CHURNING, EMISSIVITY, KINDS, OFFSET, WINDAGE, explained
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.compare import plots
-from gearheat.tools.compare.errors import measured
+from gearheat.tools.compare.errors import channels_of
 from gearheat.tools.diagnose.answer.evidence import Rows, View
 from gearheat.tools.diagnose.answer.plan import Outlook, Plan, Planned, PlannedCause, PlannedPair
 from gearheat.tools.diagnose.report import figures, plan
@@ -99,7 +99,7 @@ def test_of_a_run(drawn: list[Figure]) -> None:
     curves = {
         t: {"time": time, **{n: 20 + time / 1e3 for n in ("T_oil_C", "T_wall_C", "T_amb_C")}} for t in (1, 16, 22, 36)
     }
-    channels = measured(rows)
+    channels = channels_of(rows)
     plots.parity(rows, channels)
     plots.residuals(rows, channels, {"T_oil_K": 0.3})
     plots.warm_up(curves, rows)

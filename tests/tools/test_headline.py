@@ -13,7 +13,7 @@ from gearheat.fmu.play import Player
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
-from gearheat.scenarios.measured.study import measured_of
+from gearheat.scenarios.measured.study import read_study
 from gearheat.tools.compare.campaign import runs_of
 from gearheat.tools.docs.blocks import PAGES
 from gearheat.tools.solve.settings import flat_of
@@ -29,7 +29,7 @@ def result(tmp_path_factory: pytest.TempPathFactory) -> dict:
 
 @pytest.fixture(scope="module")
 def rig():
-    study = measured_of(load("planetary"))
+    study = read_study(load("planetary"))
     assert study is not None
     return study, flat_of(study.scenario)
 

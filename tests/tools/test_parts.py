@@ -6,7 +6,7 @@ import json
 import tomllib
 
 from for_each import for_each
-from gearheat.model.core.declare import Parameter, Port, declared
+from gearheat.model.core.declare import Parameter, Port, list_declared
 from gearheat.model.parts import PARTS
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.describe import parts, schema
@@ -22,9 +22,9 @@ def test_all_types_are_listed(gearheat):
 
 @for_each(PARTS)
 def test_everything_about_a_type(kind):
-    found = parts.described(kind)
-    assert [p["name"] for p in found["parameters"]] == list(declared(PARTS[kind], Parameter))
-    assert [p["name"] for p in found["ports"]] == list(declared(PARTS[kind], Port))
+    found = parts.describe_part(kind)
+    assert [p["name"] for p in found["parameters"]] == list(list_declared(PARTS[kind], Parameter))
+    assert [p["name"] for p in found["ports"]] == list(list_declared(PARTS[kind], Port))
     assert found["equations"]
     for line in (*found["parameters"], *found["ports"], *found["outputs"]):
         assert line["doc"], line

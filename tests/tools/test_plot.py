@@ -15,7 +15,7 @@ from gearheat.tools.show.courses import courses
 from gearheat.tools.show.fields import Field, fields
 from gearheat.tools.show.heat_paths import heat_flows, heat_paths
 from gearheat.tools.show.plotting import write_picture
-from gearheat.tools.show.sankey import heat_picture, placed
+from gearheat.tools.show.sankey import heat_picture, place_columns
 from gearheat.tools.solve.steady import conditions
 from pages import problems_of, words_that_collide
 
@@ -29,7 +29,7 @@ def test_heat_paths_balance_and_begin_at_the_losses(rig):
     flat = flatten(assembly, flows=heat_flows(assembly))
     values = {name: float(c[0]) for name, c in steady(flat, conditions(scenario, flat)).columns.items()}
     paths = heat_paths(assembly, values)
-    places = placed(paths)
+    places = place_columns(paths)
     least = 2e-3 * max(p.Q_flow for p in paths)  # flows too small to tell
     made = taken = 0.0
     for name in places:

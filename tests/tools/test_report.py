@@ -4,7 +4,7 @@ import re
 
 import numpy as np
 import pytest
-from gearheat.tools.compare.errors import compare, measured
+from gearheat.tools.compare.errors import channels_of, compare
 from gearheat.tools.compare.plots import breakdown, parity, residuals, warm_up
 from gearheat.tools.compare.results import error_lines
 from gearheat.tools.compare.rivals import rivals
@@ -22,8 +22,8 @@ def curves():
 
 def test_every_figure_is_one_svg_with_the_same_bytes_each_time(rows, curves):
     makers = {
-        "parity": lambda: parity(rows, measured(rows)[:1]),
-        "residuals": lambda: residuals(rows, measured(rows)[:1], {"T_oil_K": 0.3}),
+        "parity": lambda: parity(rows, channels_of(rows)[:1]),
+        "residuals": lambda: residuals(rows, channels_of(rows)[:1], {"T_oil_K": 0.3}),
         "warm_up": lambda: warm_up(curves, rows),
         "breakdown": lambda: breakdown(rows, ("P_mesh_W", "P_seal_W")),
     }
@@ -35,7 +35,7 @@ def test_every_figure_is_one_svg_with_the_same_bytes_each_time(rows, curves):
 
 
 def test_noise_band_is_drawn_only_where_there_is_a_noise_floor(rows):
-    assert residuals(rows, measured(rows)[:1], {"T_oil_K": 0.3}) != residuals(rows, measured(rows)[:1], {})
+    assert residuals(rows, channels_of(rows)[:1], {"T_oil_K": 0.3}) != residuals(rows, channels_of(rows)[:1], {})
 
 
 def test_rivals_and_noise_floor_stand_in_the_summary(rows):

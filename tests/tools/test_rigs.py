@@ -12,7 +12,7 @@ from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.scenarios import load as rig_files
 from gearheat.scenarios.load import load
 from gearheat.scenarios.write import rig_text
-from gearheat.tools.solve.settings import adjusted, flat_of
+from gearheat.tools.solve.settings import adjust, flat_of
 
 #: 40 W at 20 rad/s, everywhere.
 VALUES = {"P_ref": 40.0, "w_ref": 20.0, "tau_ref": 1500.0, "a": 1.0, "c": 0.0, "forward": 1.0, "backward": 1.0}
@@ -42,7 +42,7 @@ def test_the_physics_knows_no_fit_terms(extended: Path) -> None:
 
 
 def test_a_rig_with_fit_terms_loads_and_can_be_set(extended: Path) -> None:
-    scenario = adjusted(load(extended), ["extra_churning.P_ref=30 W"])
+    scenario = adjust(load(extended), ["extra_churning.P_ref=30 W"])
     assert scenario.spec.part("extra_churning").values["P_ref"] == 30.0
     assert "extra_churning.P" in flat_of(scenario).index
 

@@ -6,8 +6,8 @@ from gearheat.model.errors import ScenarioError
 from gearheat.model.run.design import design
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
-from gearheat.scenarios.scenario import deduced
-from gearheat.tools.solve.settings import adjusted, driven_at, flat_of
+from gearheat.scenarios.scenario import deduce_drive
+from gearheat.tools.solve.settings import adjust, drive_at, flat_of
 
 GIVEN = {"carrier": ("w", "tau")}
 
@@ -24,18 +24,18 @@ GIVEN = {"carrier": ("w", "tau")}
     ],
 )
 def test_named_quantities_take_the_place_of_given_ones(named, drive):
-    found = deduced(GIVEN, named)
+    found = deduce_drive(GIVEN, named)
     assert {end: set(quantities) for end, quantities in found.items()} == {e: set(q) for e, q in drive.items()}
 
 
 def test_a_machine_driven_by_torques_alone_keeps_its_speed_as_a_state():
-    flat = flat_of(adjusted(load("planetary"), ["carrier.tau=2500 N.m", "sun.tau=-600 N.m"]))
+    flat = flat_of(adjust(load("planetary"), ["carrier.tau=2500 N.m", "sun.tau=-600 N.m"]))
     assert "rotor.w" in {q.name for q in flat.states}
     assert {"carrier.tau", "sun.tau"} <= {q.name for q in flat.inputs}
 
 
 def test_settings_reach_the_model_in_si():
-    scenario = adjusted(load("planetary"), ["cooling.A=5000 cm2", "room.T=0 degC", "wall.T=40 degC", "oil=MINE"])
+    scenario = adjust(load("planetary"), ["cooling.A=5000 cm2", "room.T=0 degC", "wall.T=40 degC", "oil=MINE"])
     flat = flat_of(scenario)
     assert flat.quantity("cooling.A").start == pytest.approx(0.5)
     assert flat.quantity("room.T").start == pytest.approx(273.15)
@@ -51,25 +51,25 @@ def test_inputs_that_are_no_shaft_quantities_leave_the_drive_alone():
 
 def test_drives_of_an_fmu():
     scenario = load("planetary")
-    assert driven_at(scenario, None, "speed") == dict(scenario.given)
-    assert driven_at(scenario, "sun", "speed") == {"sun": ("w", "tau")}
-    assert driven_at(scenario, None, "torque") == {"carrier": ("tau",), "sun": ("tau",)}
+    assert drive_at(scenario, None, "speed") == dict(scenario.given)
+    assert drive_at(scenario, "sun", "speed") == {"sun": ("w", "tau")}
+    assert drive_at(scenario, None, "torque") == {"carrier": ("tau",), "sun": ("tau",)}
     with pytest.raises(ScenarioError, match="shaft end"):
-        driven_at(scenario, "room", "speed")
+        drive_at(scenario, "room", "speed")
 
 
 class TestDerived:
     """A parameter that follows from others: set or named by the user, it has a value of its own."""
 
     def test_set_it_holds(self):
-        flat = flat_of(adjusted(load("helical_two_stage"), ["stage_1.eps_alpha=1.5"]))
+        flat = flat_of(adjust(load("helical_two_stage"), ["stage_1.eps_alpha=1.5"]))
         assert flat.quantity("stage_1.eps_alpha").start == 1.5
         assert "stage_1.eps_alpha" not in flat.derived
         assert steady(flat, {})["stage_1.mu"][0] != steady(flat, {"stage_1.eps_alpha": 1.6})["stage_1.mu"][0]
 
     def test_named_it_begins_with_the_value_it_had(self):
         scenario = load("helical_two_stage")
-        flat = flat_of(adjusted(scenario, named=["stage_1.H_v", "stage_1.z_1"]))
+        flat = flat_of(adjust(scenario, named=["stage_1.H_v", "stage_1.z_1"]))
         assert flat.index["stage_1.H_v"][0] == "parameter"
         assert flat.quantity("stage_1.H_v").start == flat_of(scenario).quantity("stage_1.H_v").start
         found = design(flat, ["stage_1.H_v"], {"stage_1.P_loss": 45.0}, {})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from gearheat.tools.show.stacked import stacked
+from gearheat.tools.show.stacked import print_stacked
 
 MINE = ("--stages", "bevel,helical", "--ratio", "20", "--power", "5.5 kW", "--speed", "1450 rpm")
 
@@ -64,7 +64,7 @@ def test_sentences_stand_beside_or_under_their_row(monkeypatch, capsys) -> None:
     printed = {}
     for width in (30, 60, 120):
         monkeypatch.setenv("COLUMNS", str(width))
-        stacked("Values", head, rows, 2)
+        print_stacked("Values", head, rows, 2)
         printed[width] = capsys.readouterr().out
         assert max(map(len, printed[width].splitlines())) <= width
         assert all(word in words(printed[width]) for word in ("what it means in words", "where it is from", "1.5"))

@@ -41,7 +41,7 @@ AXES = (Axis("a", "uniform", -2.0, 4.0), Axis("b", "normal", 10.0, 2.0))
 
 
 def test_a_latin_hypercube_has_one_row_in_every_slice() -> None:
-    values = sampling.sampled(AXES, 200, "lhs", seed=3)
+    values = sampling.draw_sample(AXES, 200, "lhs", seed=3)
     assert sorted(np.floor((values[:, 0] + 2.0) / 6.0 * 200).astype(int)) == list(range(200))
     assert values[:, 1].mean() == pytest.approx(10.0, abs=0.02)
     assert values[:, 1].std() == pytest.approx(2.0, rel=0.02)
@@ -50,23 +50,23 @@ def test_a_latin_hypercube_has_one_row_in_every_slice() -> None:
 
 @pytest.mark.parametrize("method", ["lhs", "monte-carlo"])
 def test_the_seed_decides_the_sample(method: str) -> None:
-    first = sampling.sampled(AXES, 50, method, seed=0)
-    assert first.tobytes() == sampling.sampled(AXES, 50, method, seed=0).tobytes()
-    assert (first != sampling.sampled(AXES, 50, method, seed=1)).any()
+    first = sampling.draw_sample(AXES, 50, method, seed=0)
+    assert first.tobytes() == sampling.draw_sample(AXES, 50, method, seed=0).tobytes()
+    assert (first != sampling.draw_sample(AXES, 50, method, seed=1)).any()
     assert np.isfinite(first).all()
 
 
 def test_chance_covers_the_range() -> None:
-    values = sampling.sampled(AXES, 5000, "monte-carlo", seed=0)[:, 0]
+    values = sampling.draw_sample(AXES, 5000, "monte-carlo", seed=0)[:, 0]
     assert -2.0 <= values.min() < -1.98
     assert 3.98 < values.max() <= 4.0
     assert values.mean() == pytest.approx(1.0, abs=0.1)
 
 
 def test_a_grid_goes_from_end_to_end_and_the_last_axis_runs_fastest() -> None:
-    values = sampling.gridded((AXES[0], Axis("c", "uniform", 0.0, 1.0)), "3 x 2")
+    values = sampling.lay_grid((AXES[0], Axis("c", "uniform", 0.0, 1.0)), "3 x 2")
     assert values.tolist() == [[-2, 0], [-2, 1], [1, 0], [1, 1], [4, 0], [4, 1]]
-    middles = sampling.gridded((AXES[1],), "2")[:, 0]
+    middles = sampling.lay_grid((AXES[1],), "2")[:, 0]
     assert middles == pytest.approx([10 - 2 * 0.6744897501960817, 10 + 2 * 0.6744897501960817])
 
 
@@ -416,4 +416,4 @@ def test_a_duty_and_a_range_for_the_same_input(gearheat, tmp_path) -> None:
 
 def test_seeds_below_zero() -> None:
     with pytest.raises(ScenarioError):
-        sampling.sampled(AXES, 3, "lhs", seed=-1)
+        sampling.draw_sample(AXES, 3, "lhs", seed=-1)

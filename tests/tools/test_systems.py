@@ -12,9 +12,9 @@ import pytest
 from fmpy.ssp.simulation import simulate_ssp
 from fmpy.ssp.ssd import read_ssd
 from gearheat.model.errors import ScenarioError
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
-from gearheat.tools.export.systems import groups_of, taken_apart, write_system
+from gearheat.tools.export.systems import groups_of, split_rig, write_system
 from gearheat.tools.solve.settings import flat_of
 from importers import RIG
 from lxml import etree
@@ -25,7 +25,7 @@ GROUPS = groups_of(["cooler", "room = room, walls, outdoors"])
 @pytest.fixture(scope="module")
 def system(tmp_path_factory: pytest.TempPathFactory) -> Path:
     path = tmp_path_factory.mktemp("ssp") / "block.ssp"
-    write_system(RIG, taken_apart(RIG, GROUPS, {}), path)
+    write_system(RIG, split_rig(RIG, GROUPS, {}), path)
     return path
 
 
@@ -49,7 +49,7 @@ def test_the_file_is_sound(system: Path) -> None:
 
 
 def test_all_fmus_start_where_the_rig_does() -> None:
-    taken = taken_apart(RIG, GROUPS, {"oil.T": 350.0})
+    taken = split_rig(RIG, GROUPS, {"oil.T": 350.0})
     assert taken.starts["gearbox"]["oil.T"] == taken.starts["cooler"]["oil.T"] == 350.0
     assert taken.starts["gearbox"]["cooler.Q_flow"] == pytest.approx(-8.0 * (350.0 - 290.0))
     assert taken.starts["room"]["cooler.Q_flow"] == pytest.approx(8.0 * (350.0 - 290.0))
@@ -60,7 +60,7 @@ def test_the_error_of_coupling_falls_with_the_step(system: Path) -> None:
     whole, errors = flat_of(RIG), []
     for step in (10.0, 5.0, 2.5):
         coupled = simulate_ssp(str(system), stop_time=600.0, step_size=step)
-        duty = stepped([(600.0, {q.name: q.start for q in whole.inputs})])
+        duty = join_phases([(600.0, {q.name: q.start for q in whole.inputs})])
         alone = simulate(whole, duty, times=np.append(0.0, coupled["time"] + step))
         errors.append(np.abs(coupled["gearbox.oil.T"] - alone["oil.T"][1:]).max())
     orders = np.log2(np.array(errors[:-1]) / errors[1:])
@@ -70,7 +70,7 @@ def test_the_error_of_coupling_falls_with_the_step(system: Path) -> None:
 
 def test_inputs_of_several_fmus_are_those_of_the_system(tmp_path: Path) -> None:
     path = tmp_path / "apart.ssp"
-    found = write_system(RIG, taken_apart(RIG, groups_of(["world=outdoors", "room=room,walls"]), {}), path)
+    found = write_system(RIG, split_rig(RIG, groups_of(["world=outdoors", "room=room,walls"]), {}), path)
     assert found["inputs"] == ["outdoors.T"]
     coupled = simulate_ssp(str(path), stop_time=60.0, step_size=10.0, input={"outdoors.T": lambda time: 270.0})
     assert coupled["room.outdoors.T"][-1] == 270.0
@@ -86,7 +86,7 @@ def test_what_does_not_work_is_told(gearheat, tmp_path: Path) -> None:
     with pytest.raises(ScenarioError, match="named twice"):
         groups_of(["room=room", "room=walls"])
     with pytest.raises(ScenarioError, match="no part"):
-        taken_apart(replace(RIG, name="other"), {"a": ["b"]}, {})
+        split_rig(replace(RIG, name="other"), {"a": ["b"]}, {})
 
 
 def test_an_fmu_that_would_exchange_nothing_is_refused(gearheat, tmp_path: Path) -> None:

@@ -13,7 +13,7 @@ from gearheat.model.core.flat import FlatModel
 from gearheat.scenarios.load import load
 from gearheat.scenarios.scenario import Scenario
 from gearheat.tools.solve.settings import flat_of
-from gearheat.tools.solve.uncertainties import reasons, sampled
+from gearheat.tools.solve.uncertainties import draw_values, reasons
 
 #: A shipped rig whose code is short.
 SMALL = "cycloidal_areas"
@@ -36,7 +36,7 @@ def test_stated_values_stand_for_themselves_and_others_in_groups(planetary: tupl
 
 def test_drawn_values_have_the_medians_and_deviations_that_are_told(planetary: tuple[Scenario, FlatModel]) -> None:
     flat, found = planetary[1], reasons(*planetary)
-    axes, values = sampled(found, flat, np.random.default_rng(2).standard_normal((4000, len(found))))
+    axes, values = draw_values(found, flat, np.random.default_rng(2).standard_normal((4000, len(found))))
     for k, axis in enumerate(axes):
         within = flat.quantity(axis.name).high
         if axis.first * np.exp(4 * axis.second / axis.first) < within:

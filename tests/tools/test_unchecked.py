@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 from gearheat.scenarios.load import load
-from gearheat.scenarios.measured.study import measured_of
+from gearheat.scenarios.measured.study import read_study
 from gearheat.scenarios.write import rig_text
 from gearheat.tools.solve.losses import oils_of
-from gearheat.tools.solve.settings import adjusted, flat_of
-from gearheat.tools.solve.unchecked import unchecked
+from gearheat.tools.solve.settings import adjust, flat_of
+from gearheat.tools.solve.unchecked import find_unchecked
 
 OIL = {
     "catalogue": "oil",
@@ -22,8 +22,8 @@ LINE = (
 
 
 def found(rig: str, *assignments: str) -> list[dict]:
-    scenario = adjusted(load(rig), assignments)
-    return unchecked(scenario, flat_of(scenario))
+    scenario = adjust(load(rig), assignments)
+    return find_unchecked(scenario, flat_of(scenario))
 
 
 def test_what_is_unchecked_and_acts_is_named() -> None:
@@ -59,7 +59,7 @@ def test_written_rig_still_says_it(tmp_path) -> None:
 def test_oils_of_a_campaign_count() -> None:
     """Each test runs with its own oil: two of the four lack a printed value beside the pour point."""
     scenario = load("planetary")
-    told = unchecked(scenario, flat_of(scenario), oils_of(measured_of(scenario)))
+    told = find_unchecked(scenario, flat_of(scenario), oils_of(read_study(scenario)))
     unprinted = {e["entry"]: [path for path in e["values"] if path != "oil.T_pour"] for e in told}
     assert unprinted == {"PAOR": [], "MINR": [], "MINE": ["oil.s_p", "oil.t_p"], "PAGD": ["oil.c_p"]}
 

@@ -11,7 +11,7 @@ from gearheat.scenarios.golden import golden_rows
 from gearheat.scenarios.load import RIGS, list_rigs
 from gearheat.scenarios.published import Row, read_published
 from gearheat.tools.docs.blocks import PAGES
-from gearheat.tools.verify.verdicts import CONTRADICTED, NOT_REPRODUCED, REPRODUCED, VERDICTS, Value, judged
+from gearheat.tools.verify.verdicts import CONTRADICTED, NOT_REPRODUCED, REPRODUCED, VERDICTS, Value, judge
 from gearheat.tools.verify.verify import law_of
 from pages import problems_of
 
@@ -60,40 +60,40 @@ class TestVerdicts:
     def test_within_the_tolerance_in_the_unit_of_the_number(self) -> None:
         """A tolerance in K is one in degC; one in mm is one in um."""
         warm = row(published="139.1 degC", tol="0.6 K")
-        assert judged(warm, Value(273.15 + 139.5, "K")).verdict == REPRODUCED
-        assert judged(warm, Value(273.15 + 139.8, "K")).verdict == NOT_REPRODUCED
-        assert judged(warm, Value(273.15 + 139.5, "K")).model == pytest.approx(139.5)
+        assert judge(warm, Value(273.15 + 139.5, "K")).verdict == REPRODUCED
+        assert judge(warm, Value(273.15 + 139.8, "K")).verdict == NOT_REPRODUCED
+        assert judge(warm, Value(273.15 + 139.5, "K")).model == pytest.approx(139.5)
         film = row(published="0.88 um", tol="0.001 mm", path="mesh.h_min")
-        assert judged(film, Value(1.8e-6, "m")).verdict == REPRODUCED
-        assert judged(film, Value(1.9e-6, "m")).verdict == NOT_REPRODUCED
+        assert judge(film, Value(1.8e-6, "m")).verdict == REPRODUCED
+        assert judge(film, Value(1.9e-6, "m")).verdict == NOT_REPRODUCED
 
     def test_relative_to_the_corrected_number(self) -> None:
         both = row(published="2 W", corrected="4 W", why="twice", rel=0.1, path="P")
-        assert judged(both, Value(3.7, "W")).verdict == CONTRADICTED
-        assert judged(both, Value(2.0, "W")).verdict == NOT_REPRODUCED
+        assert judge(both, Value(3.7, "W")).verdict == CONTRADICTED
+        assert judge(both, Value(2.0, "W")).verdict == NOT_REPRODUCED
 
     def test_a_recomputed_number_contradicts_nothing(self) -> None:
-        assert judged(row(recomputed="4 W", tol=0.1), Value(4.0, "W")).verdict == REPRODUCED
-        assert judged(row(corrected="4 W", why="hand", tol=0.1), Value(4.0, "W")).kind == "recomputed"
+        assert judge(row(recomputed="4 W", tol=0.1), Value(4.0, "W")).verdict == REPRODUCED
+        assert judge(row(corrected="4 W", why="hand", tol=0.1), Value(4.0, "W")).kind == "recomputed"
 
     def test_a_contradiction_shows_what_the_model_gives(self) -> None:
-        found = judged(row(published="1 MPa", contradiction=True, why="no closed form"), Value(2e6, "Pa"))
+        found = judge(row(published="1 MPa", contradiction=True, why="no closed form"), Value(2e6, "Pa"))
         assert (found.verdict, found.model, found.unit, found.why) == (CONTRADICTED, 2.0, "MPa", "no closed form")
 
     def test_words_in_print_that_begin_with_a_number_have_no_unit(self) -> None:
         words = row(published="1 - x / P = -61", corrected=0.9996, why="sign", tol=0.001, path="eta")
-        assert judged(words, Value(0.9995)).verdict == CONTRADICTED
+        assert judge(words, Value(0.9995)).verdict == CONTRADICTED
         shown = row(published="1 of 4", contradiction=True, why="three", unit="1", path="n")
-        assert judged(shown, Value(3.0)).model == 3.0
+        assert judge(shown, Value(3.0)).model == 3.0
 
     def test_a_statement_holds_or_not(self) -> None:
-        assert judged(row(published="rising"), Value(True)).verdict == REPRODUCED
-        assert judged(row(published="rising"), Value(False)).verdict == NOT_REPRODUCED
+        assert judge(row(published="rising"), Value(True)).verdict == REPRODUCED
+        assert judge(row(published="rising"), Value(False)).verdict == NOT_REPRODUCED
         corrected = row(published="rising", corrected="falling", why="sign")
-        assert judged(corrected, Value(True)).verdict == CONTRADICTED
+        assert judge(corrected, Value(True)).verdict == CONTRADICTED
 
     def test_no_solution_is_not_reproduced_and_says_why(self) -> None:
-        found = judged(row(published="1 degC", tol="1 K"), Value(None, problem="no steady state"))
+        found = judge(row(published="1 degC", tol="1 K"), Value(None, problem="no steady state"))
         assert (found.verdict, found.why, found.shown) == (NOT_REPRODUCED, "no steady state", "no solution")
 
     @pytest.mark.parametrize(
@@ -109,7 +109,7 @@ class TestVerdicts:
     )
     def test_rows_that_do_not_fit_their_value_are_refused(self, values, value, says) -> None:
         with pytest.raises(ScenarioError, match=re.escape(says)):
-            judged(row(**values), value)
+            judge(row(**values), value)
 
 
 GOOD = """

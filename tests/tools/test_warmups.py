@@ -5,7 +5,7 @@ import pytest
 from gearheat.fmu.batch import Batch, Status
 from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
-from gearheat.model.run.schedule import stepped
+from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.scenarios.load import list_rigs, load
 
@@ -20,7 +20,7 @@ def test_a_rig_warms_up_as_it_is_simulated(name: str) -> None:
     load_name = next(iter(torques + [q.name for q in flat.parameters if q.unit == "N"]))
     room = next(q for q in flat.inputs if q.name == f"{spec.of_type('Room')[0]}.T")
     speed = next(q for q in flat.inputs if q.name.endswith(".w"))
-    duty = stepped(
+    duty = join_phases(
         [
             (3600.0, {speed.name: speed.start, room.name: room.start}),
             (1800.0, {speed.name: 0.0, room.name: (room.start, room.start - 10.0)}),

@@ -22,7 +22,7 @@ from ...fmu.play import Player
 from ...model.core.flat import FlatModel
 from ...model.run.simulate import simulate
 from ...scenarios.load import load
-from ...scenarios.measured.study import measured_of
+from ...scenarios.measured.study import read_study
 from ..compare import campaign
 from ..show.console import answer, note, say, table
 from ..solve.settings import flat_of
@@ -171,23 +171,23 @@ def _resident(pid: int) -> float:
 def _integration(rig: str, tests: str | None) -> dict[str, Any]:
     """Processor time of the integration alone: all tests through the FMU, and through LSODA, in one process."""
     scenario = load(rig)
-    study = measured_of(scenario)
+    study = read_study(scenario)
     scenario = study.scenario if study else scenario
     flat = flat_of(scenario)
     runs = campaign.runs_of(scenario, flat, study, tests)
     states = [q.name for q in flat.states]
     note(f"{len(runs)} tests: reference")
-    exact = _simulated(flat, runs, "idas", REFERENCE)
+    exact = _simulate(flat, runs, "idas", REFERENCE)
     fmu_s: list[float] = []
     lsoda: list[dict[str, float]] = []
     with tempfile.TemporaryDirectory() as folder, Player(export(flat, Path(folder) / "rig.fmu")) as player:
-        values = _played(player, runs, states)
-        fmu_error = _apart(values, exact)
+        values = _play(player, runs, states)
+        fmu_error = _differ(values, exact)
         for tolerance in TOLERANCES:  # both by turns, so that a busy moment of the machine meets both
             note(f"FMU, then LSODA with tolerance {tolerance:g}")
-            fmu_s += [timed(lambda: _played(player, runs, states))[0] for _ in range(3)]
-            took, values = timed(partial(_simulated, flat, runs, "lsoda", tolerance))
-            lsoda.append({"tolerance": tolerance, "s": took, "error_K": _apart(values, exact)})
+            fmu_s += [timed(lambda: _play(player, runs, states))[0] for _ in range(3)]
+            took, values = timed(partial(_simulate, flat, runs, "lsoda", tolerance))
+            lsoda.append({"tolerance": tolerance, "s": took, "error_K": _differ(values, exact)})
     equal = [run for run in lsoda if run["error_K"] <= fmu_error] or lsoda[-1:]
     best = min(equal, key=lambda run: run["s"])
     middle = float(np.median(fmu_s))
@@ -202,7 +202,7 @@ def _integration(rig: str, tests: str | None) -> dict[str, Any]:
     }
 
 
-def _simulated(flat: FlatModel, runs: Sequence[campaign.Run], method: str, tolerance: float) -> np.ndarray:
+def _simulate(flat: FlatModel, runs: Sequence[campaign.Run], method: str, tolerance: float) -> np.ndarray:
     """States at all readings."""
     names = {q.name for q in flat.states}
     found = []
@@ -221,7 +221,7 @@ def _simulated(flat: FlatModel, runs: Sequence[campaign.Run], method: str, toler
     return np.concatenate(found)
 
 
-def _played(player: Player, runs: Sequence[campaign.Run], states: Sequence[str]) -> np.ndarray:
+def _play(player: Player, runs: Sequence[campaign.Run], states: Sequence[str]) -> np.ndarray:
     """States at all readings."""
     found = []
     for run in runs:
@@ -237,7 +237,7 @@ def _both_sides(run: campaign.Run) -> list[float]:
     return [m for m in run.moments for _ in range(2 if m < run.schedule.stop else 1)]
 
 
-def _apart(values: np.ndarray, exact: np.ndarray) -> float:
+def _differ(values: np.ndarray, exact: np.ndarray) -> float:
     return float(np.max(np.abs(values - exact)))
 
 

@@ -42,7 +42,7 @@ def from_c(fmu: Path, folder: Path, speed: str, truth: np.ndarray, flat: FlatMod
         truth: states at the ends of the stages; errors are those of temperatures [K]
     """
     facts = unpack(fmu, folder / "unpacked")
-    lines = _measured(_costs(folder / "unpacked" / "sources" / "all.c"), facts, speed)
+    lines = _measure(_costs(folder / "unpacked" / "sources" / "all.c"), facts, speed)
     single = {words[0]: float(words[1]) for words in lines if words[0] != "warmup"}
     rhs = single["rhs"]
     found: dict[str, Any] = {"rhs_s": rhs, "step_rhs": single["step"] / rhs, "outputs_rhs": single["outputs"] / rhs}
@@ -66,7 +66,7 @@ def run_in_rhs(fmu: Path, folder: Path) -> float:
         folder: where it may be unpacked
     """
     facts = unpack(fmu, folder)
-    found = {words[0]: float(words[1]) for words in _measured(_costs(folder / "sources" / "all.c"), facts)}
+    found = {words[0]: float(words[1]) for words in _measure(_costs(folder / "sources" / "all.c"), facts)}
     return found["run"] / found["rhs"]
 
 
@@ -75,7 +75,7 @@ def rhs_s(flat: FlatModel) -> float:
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder) / "all.c"
         path.write_text(source(flat, equations(flat), table(flat)), encoding="utf-8")
-        return {words[0]: float(words[1]) for words in _measured(_costs(path))}["rhs"]
+        return {words[0]: float(words[1]) for words in _measure(_costs(path))}["rhs"]
 
 
 def chain(n: int) -> Assembly:
@@ -112,7 +112,7 @@ def growth(n: int) -> dict[str, float]:
         costs = _costs(path)
         ended = os.times()
         compiled = ended.children_user + ended.children_system - began.children_user - began.children_system
-        cost = {words[0]: float(words[1]) for words in _measured(costs)}
+        cost = {words[0]: float(words[1]) for words in _measure(costs)}
         size = costs.stat().st_size
     return {
         "nodes": n,
@@ -126,7 +126,7 @@ def growth(n: int) -> dict[str, float]:
     }
 
 
-def _measured(*arguments: object) -> list[list[str]]:
+def _measure(*arguments: object) -> list[list[str]]:
     """The lines of `importer/measure.c`, in words."""
     command = [str(program([HERE / "measure.c"])), *map(str, arguments)]
     out = subprocess.run(command, check=True, capture_output=True, text=True)

@@ -24,7 +24,7 @@ from ...fmu.play import Player
 from ...model.core.flat import FlatModel
 from ...model.run.algebra import algebra
 from ...model.run.fast import Fast
-from ...model.run.schedule import Schedule, stepped
+from ...model.run.schedule import Schedule, join_phases
 from ...model.run.simulate import simulate
 from ...scenarios.load import load
 from ..solve.settings import flat_of
@@ -61,7 +61,7 @@ def measure(
     scenario = load(rig)
     flat = flat_of(scenario)
     speed = next(q.name for q in flat.inputs if q.name.endswith(".w"))
-    duty = stepped([(STAGE, {speed: share * flat.quantity(speed).start}) for share in STAGES])
+    duty = join_phases([(STAGE, {speed: share * flat.quantity(speed).start}) for share in STAGES])
     ends = [STAGE * (k + 1) for k in range(len(STAGES))]
     reference = simulate(flat, duty, times=ends, tolerance=1e-12)
     truth = np.stack([reference[q.name] for q in flat.states], axis=1)
@@ -81,21 +81,21 @@ def measure(
     found["growth"] = [growth(n) for n in chains]
     found["massless"] = [massless(n) for n in conductors]
     found["goals"] = [
-        {"goal": goal, "bound": f"{sign} {bound:g}", "measured": found[key], "met": _met(found[key], sign, bound)}
+        {"goal": goal, "bound": f"{sign} {bound:g}", "measured": found[key], "met": _meets(found[key], sign, bound)}
         for goal, (key, sign, bound) in TABLES["goals"].items()
         if key in found
     ]
     return found
 
 
-def _met(value: float, sign: str, bound: float) -> bool:
+def _meets(value: float, sign: str, bound: float) -> bool:
     return value <= bound if sign == "<=" else value >= bound
 
 
 Run = Callable[[float], np.ndarray]
 
 
-def _clocked(work: Callable[[], np.ndarray], truth: np.ndarray) -> tuple[float, float]:
+def _clock(work: Callable[[], np.ndarray], truth: np.ndarray) -> tuple[float, float]:
     """Least processor time of five runs, and their largest error."""
     runs = [timed(work) for _ in range(5)]
     return min(seconds for seconds, _ in runs), float(np.abs(runs[-1][1] - truth).max())
@@ -107,7 +107,7 @@ def _as_accurate(run: Run, truth: np.ndarray, error: float) -> Peer:
         found = float(np.abs(run(tolerance) - truth).max())  # and what is compiled once is compiled
         if found <= error:
             break
-    return Peer(*_clocked(lambda: run(tolerance), truth), tolerance)
+    return Peer(*_clock(lambda: run(tolerance), truth), tolerance)
 
 
 def _peers(
@@ -128,8 +128,8 @@ def _peers(
         return lambda tolerance: _fmpy(fmu, duty, ends, speed, names, kind, tolerance)
 
     with Player(fmu) as player:
-        peers = {"this project's Player, this FMU, 60 s": Peer(*_clocked(played, truth), 1e-5)}
-    peers["FMPy, this FMU, 60 s"] = Peer(*_clocked(lambda: fmpy("CoSimulation")(1e-5), truth), 1e-5)
+        peers = {"this project's Player, this FMU, 60 s": Peer(*_clock(played, truth), 1e-5)}
+    peers["FMPy, this FMU, 60 s"] = Peer(*_clock(lambda: fmpy("CoSimulation")(1e-5), truth), 1e-5)
     peers["FMPy, model exchange, its CVode"] = _as_accurate(fmpy("ModelExchange"), truth, error)
     peers["CasADi IDAS from Python"] = _as_accurate(idas, truth, error)
     peers["SciPy LSODA"] = _as_accurate(_scipy(flat, ends, speed, "LSODA"), truth, error)

@@ -12,10 +12,10 @@ import numpy as np
 
 from ...fmu.batch import Batch
 from ...model.core.flat import FlatModel
-from ...model.run.schedule import Schedule, stepped
+from ...model.run.schedule import Schedule, join_phases
 from ...model.run.simulate import simulate
 from ...scenarios.load import load
-from ..solve.settings import adjusted, flat_of
+from ..solve.settings import adjust, flat_of
 from ..solve.sweep import sweep
 from .costs import STAGE, STAGES
 from .harness import timed
@@ -54,7 +54,7 @@ def measure(
         other work on the machine does not lengthen; for the warm-ups `error_K`, the largest deviation of a temperature
         from a run of the same model with a tolerance of 1e-11
     """
-    scenario = adjusted(load(rig))
+    scenario = adjust(load(rig))
     flat = flat_of(scenario)
     batch = Batch(flat)
     load_name = next(q.name for q in flat.inputs if q.name.endswith(".tau"))
@@ -67,8 +67,8 @@ def measure(
     arrays = batch.vectors(values)
     few = tuple(a[:warmups] if a.ndim == 2 else a for a in arrays)
     duty = _duty(flat)
-    steady = _timed(lambda n: batch.steady(*arrays, threads=n), rows, threads, repeats)
-    warmup = _timed(lambda n: batch.warmup(duty, *few, threads=n), warmups, threads, repeats)
+    steady = _time(lambda n: batch.steady(*arrays, threads=n), rows, threads, repeats)
+    warmup = _time(lambda n: batch.warmup(duty, *few, threads=n), warmups, threads, repeats)
     warmup["error_K"] = _error(batch, flat, duty)
     found = {"rig": scenario.name, "steady": steady, "warmup_330_min": warmup}
     return found if not swept else {**found, "sweep": _sweep(rig, load_name, room, values, swept)}
@@ -76,10 +76,10 @@ def measure(
 
 def _duty(flat: FlatModel) -> Schedule:
     speeds = [q for q in flat.inputs if q.name.endswith(".w")]
-    return stepped((STAGE, {q.name: part * q.start for q in speeds}) for part in STAGES)
+    return join_phases((STAGE, {q.name: part * q.start for q in speeds}) for part in STAGES)
 
 
-def _timed(run: Callable[[int], Any], rows: int, threads: Sequence[int], repeats: int) -> dict[str, Any]:
+def _time(run: Callable[[int], Any], rows: int, threads: Sequence[int], repeats: int) -> dict[str, Any]:
     """Rows in a second, by the clock and by the processor."""
     steps = float(run(1).iterations.mean())  # and the code is compiled
     speeds: dict[str, float] = {}

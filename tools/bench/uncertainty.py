@@ -21,10 +21,10 @@ from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError
 from ...model.run.schedule import Schedule
 from ...scenarios.load import load
-from ..solve.sampling import sampled as drawn
-from ..solve.settings import adjusted, flat_of
+from ..solve.sampling import draw_sample as drawn
+from ..solve.settings import adjust, flat_of
 from ..solve.simulate import first_temperatures
-from ..solve.uncertainties import sampled, shares, uncertain
+from ..solve.uncertainties import collect_uncertain, draw_values, shares
 from .costs import run_in_rhs
 
 #: The warm-up.
@@ -62,9 +62,9 @@ def measure(rig: str, draws: int = 10_000) -> dict[str, Any]:
     """
     if draws < FEWEST:
         raise ScenarioError(f"--draws {draws}: too few for a scatter. Give at least {FEWEST}.")
-    scenario = adjusted(load(rig))
+    scenario = adjust(load(rig))
     flat = flat_of(scenario)
-    what, start = uncertain(scenario, flat), first_temperatures(scenario, flat, None)
+    what, start = collect_uncertain(scenario, flat), first_temperatures(scenario, flat, None)
     times = EVERY * np.arange(1, round(DURATION / EVERY) + 1)
     found = np.concatenate(list(_draws(flat, what, start, times, draws)))
     if len(found) < max(FEWEST, draws // 2):
@@ -74,7 +74,7 @@ def measure(rig: str, draws: int = 10_000) -> dict[str, Any]:
         names = [f"{name}.sd" for name in what.shown]
         run = play(full, {}, DURATION, STEP, record=names, output_times=times)
         told = {"rig": scenario.name, "draws": draws, "failed": draws - len(found)}
-        told |= {"outputs": _compared(flat, what.shown, run.values, found, times)}
+        told |= {"outputs": _compare(flat, what.shown, run.values, found, times)}
         plain = export(flat, Path(folder) / "plain.fmu", start=start)
         alone, with_them = (run_in_rhs(fmu, Path(folder) / fmu.stem) for fmu in (plain, full))
     return told | {"cost": {"plain_rhs": alone, "uncertain_rhs": with_them, "ratio": with_them / alone}}
@@ -86,7 +86,7 @@ def _draws(
     """What is shown of the rows that have a result, block by block (rows, times, shown)."""
     batch, duty = Batch(flat), Schedule(np.array([0.0, DURATION]), {})
     sizes = drawn(shares(what.reasons), draws, "monte-carlo", SEED)
-    axes, values = sampled(what.reasons, flat, sizes)
+    axes, values = draw_values(what.reasons, flat, sizes)
     for first in range(0, draws, BLOCK):
         block = values[first : first + BLOCK]
         rows = batch.warmup(
@@ -97,7 +97,7 @@ def _draws(
         yield np.stack([rows[name] for name in what.shown], axis=2)[rows.status == Status.OK]
 
 
-def _compared(
+def _compare(
     flat: FlatModel, shown: tuple[str, ...], told: np.ndarray, found: np.ndarray, times: np.ndarray
 ) -> list[dict[str, Any]]:
     """Each output that scatters where the FMU (times, shown) differs most from the draws (rows, times, shown).

@@ -215,7 +215,11 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
     shape |= {"z_1": s.z_1, "z_2": s.z_2, "b": s.b, "beta": f"{math.degrees(s.beta):.6f}", "rule": rule, "c": c}
     found = {"name": f"stage_{k + 1}", "churning": f"churning_{k + 1}", "wetting": f"oil_gears_{k + 1}"}
     found |= {"driver": "pinion", "driven": "wheel"}
-    return found | shape | {"r": s.reach, "m": s.m_n, "height": sump.height_of_axes(made), "A_wet": sump.wetted(s)}
+    return (
+        found
+        | shape
+        | {"r": s.reach, "m": s.m_n, "height": sump.height_of_axes(made), "A_wet": sump.compute_wetted_area(s)}
+    )
 
 
 def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:

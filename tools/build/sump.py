@@ -66,7 +66,7 @@ def stands_in_oil(made: Unit, bearing: str) -> bool:
     return level is not None and height_of_axes(made) - si_of(catalogue("bearing")[bearing].values["D"]) / 2 < level
 
 
-def wetted(stage: Stage) -> float:
+def compute_wetted_area(stage: Stage) -> float:
     """Half of the sides of a stage's wheels and their rims [m2].
 
     Args:

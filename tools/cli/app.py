@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..show.console import guarded
+from ..show.console import guard
 from . import developers, diagnosis, fmu, measured, rigs, solve, verify
 
 app = typer.Typer(
@@ -55,7 +55,7 @@ PANELS = {
 }
 for _panel, _commands in PANELS.items():
     for _command in _commands:
-        app.command(_command.__name__.strip("_").replace("_", "-"), rich_help_panel=_panel)(guarded(_command))
+        app.command(_command.__name__.strip("_").replace("_", "-"), rich_help_panel=_panel)(guard(_command))
 
 
 def program() -> None:

@@ -12,7 +12,7 @@ import typer
 
 from ..show import console
 from ..show.notes import print_outside, print_unchecked
-from ..show.stacked import stacked
+from ..show.stacked import print_stacked
 from .options import Everything, Json, Rig
 
 
@@ -120,7 +120,7 @@ def _print_overview(about: gh.Description) -> None:
     console.table("Parts", ("type", "number", "names"), lines)
     head = ("name", "value", "unit", "doc", "source")
     given = [line for line in found["inputs"] if line["source"] != "default"]
-    stacked("Inputs", head, [[line[key] for key in head] for line in given], 2)
+    print_stacked("Inputs", head, [[line[key] for key in head] for line in given], 2)
     if others := [line["name"] for line in found["inputs"] if line not in given]:
         console.say(f"Inputs left at their defaults: {', '.join(others)}")
     console.say(f"States: {', '.join(line['name'] for line in found['states']) or 'none'}")
@@ -131,22 +131,22 @@ def _print_overview(about: gh.Description) -> None:
         console.say(f"Sensors: {', '.join(found['sensors'])}")
     print()
     if (effects := about.effects()) is not None:
-        stacked(*effects, 2)
+        print_stacked(*effects, 2)
     counts = [f"{len(found[key])} {key}" for key in ("parameters", "choices", "outputs", "laws")]
     console.say(f"{', '.join(counts)} with --all")
 
 
 def _print_everything(found: dict[str, Any]) -> None:
     valued = ("name", "value", "unit", "doc")
-    stacked("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")), 1)
+    print_stacked("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")), 1)
     known = ("name", "value", "kind", "uncertainty", "unit", "doc", "source")
-    stacked("Parameters", known, _rows([{**p, **(p["written"] or {})} for p in found["parameters"]], known), 2)
-    stacked("Choices", ("name", "value", "doc"), _rows(found["choices"], ("name", "value", "doc")), 1)
-    stacked("Inputs", (*valued, "source"), _rows(found["inputs"], (*valued, "source")), 2)
-    stacked("States (with start value)", valued, _rows(found["states"], valued), 1)
-    stacked("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")), 1)
+    print_stacked("Parameters", known, _rows([{**p, **(p["written"] or {})} for p in found["parameters"]], known), 2)
+    print_stacked("Choices", ("name", "value", "doc"), _rows(found["choices"], ("name", "value", "doc")), 1)
+    print_stacked("Inputs", (*valued, "source"), _rows(found["inputs"], (*valued, "source")), 2)
+    print_stacked("States (with start value)", valued, _rows(found["states"], valued), 1)
+    print_stacked("Outputs", ("name", "unit", "doc"), _rows(found["outputs"], ("name", "unit", "doc")), 1)
     keys = ("law", "verified", "where", "valid", "source")
-    stacked("Laws", keys, _rows(found["laws"], keys), 3)
+    print_stacked("Laws", keys, _rows(found["laws"], keys), 3)
 
 
 def _print_errata(about: gh.Description) -> None:

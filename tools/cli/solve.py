@@ -27,7 +27,7 @@ def steady(
     """Steady temperatures and losses at one operating point."""
     console.plottable(plot)
     state = gh.steady(extended or rig, set_ or [])
-    found = _drawn(state.as_dict(), plot, state)
+    found = _write_picture(state.as_dict(), plot, state)
     shows = list(state.result.columns) if everything else state.first
     console.answer(found, json, lambda: _print_point(state.title, state.rows(shows), found))
 
@@ -128,7 +128,7 @@ def sweep(
         scheduler=scheduler,
         draw=plot is not None,
     )
-    found = _drawn(rows.as_dict(), plot, rows, say=False)
+    found = _write_picture(rows.as_dict(), plot, rows, say=False)
     console.answer(found, json, lambda: _print_sweep(rows, found))
     rows.check()
 
@@ -149,7 +149,7 @@ def map_(
     console.plottable(plot)
     points = gh.map(rig, speed=speed, torque=torque, grid=grid, output=output or [], set=set_ or [])
     points.save(out)
-    found = _drawn({**points.as_dict(), "out": str(out)}, plot, points, say=False)
+    found = _write_picture({**points.as_dict(), "out": str(out)}, plot, points, say=False)
     console.answer(found, json, lambda: _print_map(points, found))
 
 
@@ -172,7 +172,7 @@ def rating(
     console.answer(found, json, lambda: _print_rating(powers))
 
 
-def _drawn(found: dict[str, Any], plot: Path | None, result: Display, *, say: bool = True) -> dict[str, Any]:
+def _write_picture(found: dict[str, Any], plot: Path | None, result: Display, *, say: bool = True) -> dict[str, Any]:
     """The object with the place of its picture, which is written."""
     if plot is None:
         return found
@@ -184,7 +184,7 @@ def _drawn(found: dict[str, Any], plot: Path | None, result: Display, *, say: bo
 def print_run(run: gh.TimeSeries, out: Path, plot: Path | None, json: str | None) -> None:
     """Write a time series and its picture, and say where it ends."""
     run.save(out)
-    found = _drawn({**run.as_dict(), "out": str(out)}, plot, run)
+    found = _write_picture({**run.as_dict(), "out": str(out)}, plot, run)
     console.answer(found, json, lambda: print_end(out, found))
 
 

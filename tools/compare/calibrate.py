@@ -15,12 +15,12 @@ from ...fmu.export import export
 from ...fmu.play import Player
 from ...model.core.flat import FlatModel, Quantity
 from ...model.errors import DataError, Problems, SolveError
-from ...model.units import from_si, shown, to_si
+from ...model.units import from_si, show_unit, to_si
 from ...scenarios.given import RigLike, Settings, scenario_of
-from ...scenarios.measured.study import Measured, measured_of
+from ...scenarios.measured.study import Measured, read_study
 from ..show.console import note
 from ..show.display import Answer
-from ..solve.settings import adjusted, flat_of
+from ..solve.settings import adjust, flat_of
 from . import campaign
 
 #: Relative step of the difference quotients; well above what the FMU's own tolerance leaves.
@@ -97,13 +97,13 @@ def calibrate(
         >>> import gearheat as gh
         >>> gh.calibrate("planetary", ["cooling.A"], grid="PAOR-16")  # doctest: +SKIP
     """
-    scenario = adjusted(scenario_of(rig), set, named=free)
-    study = measured_of(scenario, data, card)
+    scenario = adjust(scenario_of(rig), set, named=free)
+    study = read_study(scenario, data, card)
     if study is None:
         raise DataError(f"{scenario.name}: there are no measured data to fit to. Give them as --data FILE.")
     scenario = study.scenario
     flat = flat_of(scenario)
-    quantities = _bounded(_checked(flat, free), bounds)
+    quantities = _parse_bounds(_check_free(flat, free), bounds)
     chosen = _of_grid(study, campaign.runs_of(scenario, flat, study), grid)
     fit = fit_parameters(study, flat, quantities, chosen)
     found = {
@@ -116,7 +116,7 @@ def calibrate(
                 "value": from_si(float(fit.values[i]), q.unit),
                 "standard_error": float(fit.standard_errors[i]) * (from_si(1.0, q.unit) - from_si(0.0, q.unit)),
                 "start": from_si(float(fit.start[i]), q.unit),
-                "unit": shown(q.unit),
+                "unit": show_unit(q.unit),
                 "at_bound": bool(np.isnan(fit.standard_errors[i])),
             }
             for i, q in enumerate(quantities)
@@ -131,7 +131,7 @@ def calibrate(
     return Calibration(fit, found)
 
 
-def _checked(flat: FlatModel, free: Sequence[str]) -> list[Quantity]:
+def _check_free(flat: FlatModel, free: Sequence[str]) -> list[Quantity]:
     problems = Problems()
     for name in free:
         with problems:
@@ -143,7 +143,7 @@ def _checked(flat: FlatModel, free: Sequence[str]) -> list[Quantity]:
     return [flat.quantity(name) for name in free]
 
 
-def _bounded(quantities: Sequence[Quantity], bounds: Sequence[str]) -> list[Quantity]:
+def _parse_bounds(quantities: Sequence[Quantity], bounds: Sequence[str]) -> list[Quantity]:
     """The quantities with the ranges of texts such as "cooling.A=0.4 m2..1.2 m2"."""
     found = {q.name: q for q in quantities}
     problems = Problems()
@@ -191,7 +191,7 @@ def fit_parameters(
 
         def errors(z: np.ndarray) -> np.ndarray:
             values = {q.name: float(v) for q, v in zip(quantities, z * scale, strict=True)}
-            simulated = [_simulated(player, study, run, sensor.reads, values) for run in runs]
+            simulated = [_make_simulation(player, study, run, sensor.reads, values) for run in runs]
             return np.asarray(np.concatenate(simulated) - measured)
 
         low, high = (np.array([getattr(q, side) for q in quantities]) / scale for side in ("low", "high"))
@@ -219,16 +219,16 @@ def fit_parameters(
     )
 
 
-def _simulated(
+def _make_simulation(
     player: Player, study: Measured, run: campaign.Run, path: str, values: Mapping[str, float]
 ) -> np.ndarray:
     """The oil temperature at every reading of a test [K], with other values of parameters."""
-    start = {**run.start, **(_settled(study, run, values) if study.campaign.steady else {}), **values}
+    start = {**run.start, **(_find_start(study, run, values) if study.campaign.steady else {}), **values}
     stop, moments = run.schedule.stop, list(run.moments)
     return player.run(run.inputs, stop, 60.0, start=start, record=[path], output_times=moments).values[:, 0]
 
 
-def _settled(study: Measured, run: campaign.Run, values: Mapping[str, float]) -> dict[str, float]:
+def _find_start(study: Measured, run: campaign.Run, values: Mapping[str, float]) -> dict[str, float]:
     """The steady state with other parameters that a test begins with; nothing where there is none."""
     states = {q.name for q in study.nominal.flat.states}
     known = {name: value for name, value in run.start.items() if name not in states}

@@ -20,7 +20,7 @@ from ...model.errors import ScenarioError
 from ...model.run.point import point
 from ...model.run.result import Outside
 from ...model.run.rows import evaluate, outside
-from ...model.run.schedule import stepped
+from ...model.run.schedule import join_phases
 from ...scenarios.measured import readings
 from ...scenarios.measured.study import Measured
 from ...scenarios.scenario import Scenario
@@ -55,8 +55,8 @@ def runs_of(scenario: Scenario, flat: FlatModel, study: Measured | None, tests: 
         ScenarioError: tests that the campaign does not have
     """
     if study is None:
-        return (_held(scenario, flat),)
-    wanted = _wanted(tests, study)
+        return (_hold(scenario, flat),)
+    wanted = _parse_tests(tests, study)
     played = effective(flat)  # the FMU lacks what has no effect
     indices = range(study.campaign.n_tests)
     return tuple(_run_of(study, played, test) for test in indices if study.number(test) in wanted)
@@ -91,7 +91,7 @@ def _run_of(study: Measured, flat: FlatModel, test: int) -> Run:
     return Run(
         study.number(test),
         c.oil[test],
-        stepped(phases),
+        join_phases(phases),
         kept,
         tuple(moments[k] for k in read),
         tuple(rows[k] for k in read),
@@ -107,16 +107,16 @@ def _rooms_at_start(study: Measured, test: int) -> dict[str, float]:
     return {path: float(stated) if np.isfinite(stated) else T + c.room_begin for path, T in own.items()}
 
 
-def _held(scenario: Scenario, flat: FlatModel) -> Run:
+def _hold(scenario: Scenario, flat: FlatModel) -> Run:
     """The operating point held from a start at room temperature."""
     from ..solve.simulate import first_temperatures
 
     inputs = {q.name: q.start for q in flat.inputs if q.name in scenario.operating_point}
     oil = next((entry for kinds in scenario.entries.values() for kind, entry in kinds.items() if kind == "oil"), "")
-    return Run(1, oil, stepped([(HOLD, inputs)]), first_temperatures(scenario, flat, None), (HOLD,), ())
+    return Run(1, oil, join_phases([(HOLD, inputs)]), first_temperatures(scenario, flat, None), (HOLD,), ())
 
 
-def _wanted(tests: str | None, study: Measured) -> set[int]:
+def _parse_tests(tests: str | None, study: Measured) -> set[int]:
     """Numbers in a text such as "1,13,22-26"."""
     known = {study.number(test) for test in range(study.campaign.n_tests)}
     if tests is None:
@@ -134,7 +134,7 @@ def _wanted(tests: str | None, study: Measured) -> set[int]:
     return wanted
 
 
-def recorded(scenario: Scenario, flat: FlatModel, study: Measured | None) -> dict[str, str]:
+def list_kept(scenario: Scenario, flat: FlatModel, study: Measured | None) -> dict[str, str]:
     """What is kept of a played test, path -> SI unit: states, what drives it, what is compared, losses, the audit."""
     given = {s.reads for s in study.campaign.given} if study else set()
     names = [q.name for q in flat.states]
@@ -182,17 +182,17 @@ def crew(workers: int) -> Iterator[ProcessPoolExecutor | None]:
 
 def play_all(todo: Sequence[Job], pool: ProcessPoolExecutor | None) -> dict[int, list[dict[str, float]]]:
     """The readings of every test; tests that were finished before with the same inputs are not played again."""
-    done = {job.run.test: kept for job in todo if (kept := playing.finished(job)) is not None}
+    done = {job.run.test: kept for job in todo if (kept := playing.reread(job)) is not None}
     if done:
         note(f"{len(done)} of {len(todo)} tests were finished before")
     left = [job for job in todo if job.run.test not in done]
-    for k, (job, found) in enumerate(_played(left, pool), start=len(done) + 1):
+    for k, (job, found) in enumerate(_play_jobs(left, pool), start=len(done) + 1):
         done[job.run.test] = found
         note(f"played test {job.run.test} ({k} of {len(todo)})")
     return {job.run.test: done[job.run.test] for job in todo}
 
 
-def _played(left: Sequence[Job], pool: ProcessPoolExecutor | None) -> Iterator[tuple[Job, list[dict[str, float]]]]:
+def _play_jobs(left: Sequence[Job], pool: ProcessPoolExecutor | None) -> Iterator[tuple[Job, list[dict[str, float]]]]:
     if pool is None:
         for job in left:
             yield job, playing.play(job)
@@ -211,7 +211,7 @@ def rows(
     read = readings.measured_rows(study) if study else []
     for run in found:
         for k, (moment, values) in enumerate(zip(run.moments, played[run.test], strict=True)):
-            result = readings.simulated(scenario, paths, values)
+            result = readings.convert_results(scenario, paths, values)
             result |= {"time_s": moment, "energy_residual": values["energy_residual"]}
             if study is None:
                 made.append({"point": k + 1, "test": run.test, "direction": 1, "oil": run.oil, **result})

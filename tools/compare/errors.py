@@ -89,7 +89,7 @@ def numbers(rows: Rows, column: str) -> np.ndarray:
     return np.array([math.nan if row.get(column) is None else float(row[column]) for row in rows])
 
 
-def measured(rows: Rows) -> tuple[Channel, ...]:
+def channels_of(rows: Rows) -> tuple[Channel, ...]:
     """The channels that the rows have measured values of: thermometers, then the loss torque."""
     names = dict.fromkeys(name.removesuffix("_meas") for row in rows for name in row if name.endswith("_C_meas"))
     warm = [
@@ -101,7 +101,7 @@ def measured(rows: Rows) -> tuple[Channel, ...]:
 
 def present(rows: Rows) -> tuple[Channel, ...]:
     """The channels that at least one row has both simulated and measured."""
-    return tuple(c for c in measured(rows) if np.isfinite(errors(rows, c)).any())
+    return tuple(c for c in channels_of(rows) if np.isfinite(errors(rows, c)).any())
 
 
 def errors(rows: Rows, channel: Channel) -> np.ndarray:
@@ -189,7 +189,7 @@ def noise_floor(rows: Rows) -> dict[str, Any]:
     """
     groups = repeats(rows)
     floor: dict[str, Any] = {}
-    for channel in measured(rows):
+    for channel in channels_of(rows):
         left = errors(rows, channel)
         squares = [left[list(group)].var(ddof=1) * (len(group) - 1) for group in groups]
         freedom = sum(len(group) - 1 for group in groups)

@@ -80,7 +80,7 @@ class Job:
         return self.folder / f"test-{self.run.test:02d}.{suffix}"
 
 
-def finished(job: Job) -> list[dict[str, float]] | None:
+def reread(job: Job) -> list[dict[str, float]] | None:
     """The readings of a test that was played before with the same inputs and FMU; None if it has to be played."""
     try:
         kept = json.loads(job.place("json").read_text(encoding="utf-8"))

@@ -97,7 +97,7 @@ def replay(
     scenario, known = scenario_of(rig), read_card(None if card is None else Path(card))
     first = read_log(Path(fit), scenario, known)
     own, _ = filter_of(scenario, first)
-    pieces = _split(first, until)
+    pieces = _split_log(first, until)
     rivals = Rivals(pieces[0], own.given, own.read)
     others = [read_log(Path(path), scenario, known) for path in logs]
     found = []
@@ -107,7 +107,7 @@ def replay(
     return Replays(tuple(found))
 
 
-def _split(log: Log, until: int | None) -> list[Log]:
+def _split_log(log: Log, until: int | None) -> list[Log]:
     """The log before and from a year on."""
     if until is None:
         return [log]

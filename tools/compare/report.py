@@ -16,7 +16,7 @@ from ..describe import description as describe
 from ..show.notes import unchecked_lines
 from ..show.pages import html_table, page
 from . import plots
-from .errors import Comparison, Rows, measured, numbers, present
+from .errors import Comparison, Rows, channels_of, numbers, present
 from .results import error_lines, group_lines
 from .rivals import Score
 
@@ -45,7 +45,7 @@ def render(
         curves: some tests over time, columns as in `plots.warm_up`
         outside: laws that were used outside their range
     """
-    rows, laws = found["rows"], describe.cited(flat)
+    rows, laws = found["rows"], describe.cite_laws(flat)
     parameters = describe.parameters(scenario, flat)
     errata = [(e.place, e.says, e.should_be, e.evidence) for e in scenario.errata]
     return page(
@@ -53,7 +53,7 @@ def render(
         "report.html",
         rig=scenario,
         found=found,
-        compared=None if comparison is None else _compared(rows, comparison, scores),
+        compared=None if comparison is None else _describe_errors(rows, comparison, scores),
         tests=len({row["test"] for row in rows}),
         warm_up=Markup(plots.warm_up(curves, rows)) if curves else "",
         breakdown=_breakdown(rows, [c for c in scenario.losses if c.startswith("P_") and c != "P_total_W"]),
@@ -76,7 +76,7 @@ def _breakdown(rows: Rows, losses: Sequence[str]) -> Markup:
     return Markup(plots.shares(rows[0], losses) if len(rows) == 1 else plots.breakdown(rows, losses))
 
 
-def _compared(rows: Rows, comparison: Comparison, scores: Sequence[Score]) -> dict[str, Any]:
+def _describe_errors(rows: Rows, comparison: Comparison, scores: Sequence[Score]) -> dict[str, Any]:
     """What the page says about measured values."""
     channels = present(rows)
     noise = comparison.noise_floor
@@ -112,7 +112,7 @@ def _outside(outside: Sequence[Outside]) -> Markup:
 
 
 def _readings(rows: Rows) -> Markup:
-    columns = [c.column for c in measured(rows)]
+    columns = [c.column for c in channels_of(rows)]
     head = [*READING, *(name for column in columns for name in (column, f"{column}_meas"))]
     head = [name for name in head if any(name in row for row in rows)]
     return html_table(head, [[row.get(name) for name in head] for row in rows])

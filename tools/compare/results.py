@@ -9,8 +9,8 @@ from typing import Any
 
 from ...model.errors import DataError
 from ...scenarios.given import RigLike
-from ...scenarios.measured.readings import column_of, drives, joined, read_result
-from ...scenarios.measured.study import loaded, measured_of
+from ...scenarios.measured.readings import column_of, drives, join_readings, read_result
+from ...scenarios.measured.study import load_rig, read_study
 from ..show.console import note
 from ..show.display import Answer
 from .errors import GROUPINGS, Comparison
@@ -64,9 +64,9 @@ def compare(result: str | Path, data: str | Path, rig: RigLike, *, card: str | P
         >>> import gearheat as gh
         >>> gh.compare("out/rows.csv", "measured.csv", "planetary")  # doctest: +SKIP
     """
-    study = measured_of(loaded(rig), data, card)
+    study = read_study(load_rig(rig), data, card)
     assert study is not None  # there is a table
-    rows = joined(read_result(Path(result), study), study)
+    rows = join_readings(read_result(Path(result), study), study)
     for warning in study.campaign.warnings:
         note(f"warning: {warning}")
     if not rows:

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from .errors import Channel, Rows, distinct, measured, numbers, rms
+from .errors import Channel, Rows, channels_of, distinct, numbers, rms
 
 Design = Callable[[Rows, Channel, Sequence[str]], np.ndarray]
 
@@ -84,14 +84,14 @@ def _score(rival: Rival, rows: Rows, drives: Sequence[str]) -> Score:
     coefficients: dict[str, list[float]] = {}
     in_sample: dict[str, float] = {}
     left_out: dict[str, float] = {}
-    for channel in measured(rows):
+    for channel in channels_of(rows):
         design, target = rival.design(rows, channel, drives), _target(rows, channel)
         if not (np.isfinite(target).all() and np.isfinite(design).all()):
             continue
         fit = least_squares(design, target)
         coefficients[channel.key] = [float(c) for c in fit]
         in_sample[channel.key] = rms(design @ fit - target)
-        left_out[channel.key] = rms(_held_out(design, target, [row.get("test") for row in rows]))
+        left_out[channel.key] = rms(_cross_validate(design, target, [row.get("test") for row in rows]))
     return Score(rival.name, rival.doc, coefficients, in_sample, left_out)
 
 
@@ -107,7 +107,7 @@ def least_squares(design: np.ndarray, target: np.ndarray) -> np.ndarray:
     return np.asarray(np.linalg.lstsq(design / scale, target, rcond=None)[0] / scale)
 
 
-def _held_out(design: np.ndarray, target: np.ndarray, tests: Sequence[Any]) -> np.ndarray:
+def _cross_validate(design: np.ndarray, target: np.ndarray, tests: Sequence[Any]) -> np.ndarray:
     """Error of each reading under the fit to all other tests (both directions of a test share a day and an oil)."""
     error = np.full(len(target), np.nan)
     for test in dict.fromkeys(tests):

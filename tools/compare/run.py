@@ -12,17 +12,17 @@ from typing import Any, cast
 import numpy as np
 
 from ...model.core.flat import FlatModel
-from ...model.units import shown, to_si
+from ...model.units import show_unit, to_si
 from ...scenarios.given import RigLike, Settings
 from ...scenarios.measured.readings import ROOM, column_of, drives, sources
-from ...scenarios.measured.study import Measured, loaded, measured_of
+from ...scenarios.measured.study import Measured, load_rig, read_study
 from ...scenarios.scenario import Scenario
 from ..export.fmu import write_fmu
 from ..show.columns import rows_text
 from ..show.console import as_json, folder, note, write
 from ..solve.losses import oils_of
-from ..solve.settings import adjusted, flat_of
-from ..solve.unchecked import unchecked
+from ..solve.settings import adjust, flat_of
+from ..solve.unchecked import find_unchecked
 from . import campaign
 from .errors import Rows, compare, present
 from .playing import Job
@@ -86,8 +86,8 @@ def run(
     began, out = time.perf_counter(), Path(out)
     dt = to_si(step, "s", name="--step")
     with campaign.crew(jobs) as pool:
-        scenario = adjusted(loaded(rig, extended), set)
-        study = measured_of(scenario, data, card)
+        scenario = adjust(load_rig(rig, extended), set)
+        study = read_study(scenario, data, card)
         scenario = study.scenario if study else scenario
         flat = flat_of(scenario)
         found = campaign.runs_of(scenario, flat, study, tests)
@@ -95,7 +95,7 @@ def run(
         fmu = write_fmu(scenario, flat, out / f"{scenario.name}.fmu")
         note(f"exported {fmu}")
         digest = hashlib.sha256(fmu.read_bytes()).hexdigest()
-        record = campaign.recorded(scenario, flat, study)
+        record = campaign.list_kept(scenario, flat, study)
         todo = [Job(one, fmu, digest, dt, record, kept) for one in found]
         played = campaign.play_all(todo, pool)
     rows = campaign.rows(scenario, study, found, played)
@@ -111,7 +111,7 @@ def run(
         "rows": rows,
         **(nothing if comparison is None else summarise(comparison, scores)),
         "energy_residual_max": max(row["energy_residual"] for row in rows),
-        "unchecked": unchecked(scenario, flat, oils_of(study)),
+        "unchecked": find_unchecked(scenario, flat, oils_of(study)),
     }
     columns = _curves(scenario, study)
     curves = {test: _curve(kept / f"test-{test:02d}.csv", columns, flat) for test in _telling(rows)}
@@ -137,12 +137,12 @@ def _telling(rows: Rows) -> list[int]:
     """Tests whose time series is drawn: the lightest and the heaviest of each of the first three oils."""
     chosen: list[int] = []
     for oil in list(dict.fromkeys(row["oil"] for row in rows))[:3]:
-        mine = sorted((row for row in rows if row["oil"] == oil), key=_lost)
+        mine = sorted((row for row in rows if row["oil"] == oil), key=_find_loss)
         chosen += [mine[0]["test"], mine[-1]["test"]]
     return list(dict.fromkeys(chosen))
 
 
-def _lost(row: Mapping[str, Any]) -> float:
+def _find_loss(row: Mapping[str, Any]) -> float:
     """Loss power of a row; a rig without an efficiency, such as a closed loop, has only that of its losses table."""
     return float(row.get("P_loss_W", row.get("P_total_W", 0.0)))
 
@@ -153,6 +153,8 @@ def _curve(path: Path, columns: Mapping[str, str], flat: FlatModel) -> dict[str,
         head = file.readline().strip().split(",")
         values = np.loadtxt(file, delimiter=",", ndmin=2)
     names = {
-        c: f"{p} [{shown(flat.quantity(p).unit)}]" for c, p in columns.items() if c.endswith("_C") and p in flat.index
+        c: f"{p} [{show_unit(flat.quantity(p).unit)}]"
+        for c, p in columns.items()
+        if c.endswith("_C") and p in flat.index
     }
     return {"time": values[:, 0]} | {c: values[:, head.index(name)] for c, name in names.items() if name in head}

@@ -6,19 +6,19 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from ...model.core.declare import Choice, Parameter, declared
+from ...model.core.declare import Choice, Parameter, list_declared
 from ...model.core.flat import FlatModel, Quantity
 from ...model.errors import SolveError
 from ...model.run.result import Result
 from ...model.run.steady import steady
 from ...model.sources import LawInfo
-from ...model.units import from_si, in_unit, shown, text
+from ...model.units import from_si, in_unit, show_unit, text
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.display import Answer
 from ..solve.settings import flat_of
 from ..solve.steady import conditions, leading_outputs, outside_of
-from ..solve.unchecked import unchecked
+from ..solve.unchecked import find_unchecked
 from .overview import effects_table
 from .parts import first_line, law_line
 
@@ -101,7 +101,7 @@ def show(rig: RigLike) -> Description:
         "laws": laws(flat),
         "outside": outside_of(rest) if rest is not None else [],
         "no_steady_state": no_steady_state,
-        "unchecked": unchecked(scenario, flat),
+        "unchecked": find_unchecked(scenario, flat),
         "errata": errata_of(scenario),
     }
     return Description(scenario, flat, rest, found)
@@ -120,7 +120,7 @@ def source_of(scenario: Scenario, path: str) -> str:
     if path in scenario.value_sources:
         return scenario.value_sources[path]
     part, _, key = path.rpartition(".")
-    parameter = declared(scenario.spec.types[scenario.spec.part(part).type], Parameter).get(key)
+    parameter = list_declared(scenario.spec.types[scenario.spec.part(part).type], Parameter).get(key)
     return "follows from the other values" if parameter is not None and parameter.derived else "default"
 
 
@@ -141,21 +141,21 @@ def choices(scenario: Scenario) -> list[dict[str, Any]]:
     """The structural choices of all parts, with what is chosen."""
     found = []
     for part in scenario.spec.parts:
-        for key, choice in declared(scenario.spec.types[part.type], Choice).items():
+        for key, choice in list_declared(scenario.spec.types[part.type], Choice).items():
             value = part.values.get(key, choice.default)
             value = str(value) if choice.also is not None and isinstance(value, choice.also) else value
             found.append({"name": f"{part.name}.{key}", "value": value, "options": choice.options, "doc": choice.doc})
     return found
 
 
-def cited(flat: FlatModel) -> tuple[LawInfo, ...]:
+def cite_laws(flat: FlatModel) -> tuple[LawInfo, ...]:
     """The laws a model uses, each once."""
     return tuple({(law.name, law.source, law.where): law for law in flat.laws}.values())
 
 
 def laws(flat: FlatModel) -> list[dict[str, Any]]:
     """The laws a model uses with what they cite, and whether a golden row from print verifies them."""
-    return [{**law_line(law), "verified": law.verified} for law in cited(flat)]
+    return [{**law_line(law), "verified": law.verified} for law in cite_laws(flat)]
 
 
 def errata_of(scenario: Scenario) -> list[dict[str, str]]:
@@ -164,11 +164,11 @@ def errata_of(scenario: Scenario) -> list[dict[str, str]]:
 
 
 def _line(q: Quantity) -> dict[str, Any]:
-    return {"name": q.name, "value": from_si(q.start, q.unit), "unit": shown(q.unit), "doc": q.doc}
+    return {"name": q.name, "value": from_si(q.start, q.unit), "unit": show_unit(q.unit), "doc": q.doc}
 
 
 def _output(q: Quantity) -> dict[str, Any]:
-    return {"name": q.name, "unit": shown(q.unit), "doc": q.doc}
+    return {"name": q.name, "unit": show_unit(q.unit), "doc": q.doc}
 
 
 def _kind(scenario: Scenario, flat: FlatModel, path: str) -> str:

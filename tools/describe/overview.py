@@ -7,13 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from ...model.core.declare import declared
+from ...model.core.declare import list_declared
 from ...model.core.flat import FlatModel
 from ...model.errors import SolveError
 from ...model.parts.ports import Flange, HeatPort
 from ...model.run.result import Result
 from ...model.run.sensitivity import sensitivities
-from ...model.units import from_si, shown
+from ...model.units import from_si, show_unit
 from ...scenarios.scenario import Scenario
 from ..show.console import cell
 from ..solve.steady import conditions, leading_outputs
@@ -49,9 +49,9 @@ def effects_table(
     for line, changes in ranked:
         own = {**line, **(line["written"] or {})}
         shows = [c if unit == "K" else from_si(c, unit) for c, unit in zip(changes, units, strict=True)]
-        body.append([own["name"], own["value"], own["unit"], *map(_signed, shows), own["doc"], own["source"]])
+        body.append([own["name"], own["value"], own["unit"], *map(_format_change, shows), own["doc"], own["source"]])
     keys = [name.rpartition(".")[2] for name in of]
-    heads = [f"{key} [{unit if unit == 'K' else shown(unit)}]" for key, unit in zip(keys, units, strict=True)]
+    heads = [f"{key} [{unit if unit == 'K' else show_unit(unit)}]" for key, unit in zip(keys, units, strict=True)]
     title = f"Parameters that matter most: what {100 * SHARE:g} % more of each does to {' and '.join(of)}"
     return title, ("name", "value", "unit", *heads, "doc", "source"), body
 
@@ -90,8 +90,8 @@ def effects(
 
 
 def _thermal(cls: type) -> bool:
-    return bool(declared(cls, HeatPort)) and not declared(cls, Flange)
+    return bool(list_declared(cls, HeatPort)) and not list_declared(cls, Flange)
 
 
-def _signed(value: float) -> str:
+def _format_change(value: float) -> str:
     return f"+{cell(value)}" if value > 0 else cell(value)

@@ -12,12 +12,12 @@ from importlib.resources import files
 from typing import Any
 
 from ...model.core.component import Component
-from ...model.core.declare import Choice, Declaration, Input, Output, Parameter, Port, State, declared
+from ...model.core.declare import Choice, Declaration, Input, Output, Parameter, Port, State, list_declared
 from ...model.core.flat import Quantity
 from ...model.errors import ScenarioError, suggestion
 from ...model.parts import PARTS
 from ...model.sources import LawInfo, recording, sources
-from ...model.units import from_si, shown, text, to_si
+from ...model.units import from_si, show_unit, text, to_si
 from ...scenarios.entries import DESCRIPTIVE, Entry, catalogue
 from ...scenarios.load import load
 from ...scenarios.scenario import Scenario
@@ -68,10 +68,10 @@ def parts(kind: str | None = None) -> PartTypes:
         return PartTypes({"schema": "gearheat.parts/1", "types": types})
     if kind not in PARTS:
         raise ScenarioError(f'there is no part type "{kind}".{suggestion(kind, PARTS)} See `gearheat parts`.')
-    return PartTypes({"schema": "gearheat.part/1", **described(kind)})
+    return PartTypes({"schema": "gearheat.part/1", **describe_part(kind)})
 
 
-def described(kind: str) -> dict[str, Any]:
+def describe_part(kind: str) -> dict[str, Any]:
     """Ports, parameters, choices, inputs, states, outputs, equations, sources and an example of a part type.
 
     Args:
@@ -84,14 +84,14 @@ def described(kind: str) -> dict[str, Any]:
         "type": kind,
         "role": cls.role,
         "doc": inspect.cleandoc(cls.__doc__ or ""),
-        "ports": [_port(name, port) for name, port in declared(cls, Port).items()],
-        "parameters": [_parameter(name, d) for name, d in declared(cls, Parameter).items()],
+        "ports": [_port(name, port) for name, port in list_declared(cls, Port).items()],
+        "parameters": [_parameter(name, d) for name, d in list_declared(cls, Parameter).items()],
         "choices": [
-            {"name": name, "options": [str(o) for o in c.options], "default": _told(c.default), "doc": c.doc}
-            for name, c in declared(cls, Choice).items()
+            {"name": name, "options": [str(o) for o in c.options], "default": _format_value(c.default), "doc": c.doc}
+            for name, c in list_declared(cls, Choice).items()
         ],
         **{
-            title: [_line(name, d) for name, d in declared(cls, of).items()]
+            title: [_line(name, d) for name, d in list_declared(cls, of).items()]
             for title, of in (("inputs", Input), ("states", State), ("outputs", Output))
         },
         "entries": [k for k in FILES if any(_fits(e, cls) for e in catalogue(k).values())],
@@ -104,7 +104,7 @@ def described(kind: str) -> dict[str, Any]:
 
 def _port(name: str, port: Port) -> dict[str, Any]:
     kind = type(port)
-    carried = ", ".join(f"{n} [{shown(d.unit)}]" for n, d in {**kind.potentials(), **kind.flows()}.items())
+    carried = ", ".join(f"{n} [{show_unit(d.unit)}]" for n, d in {**kind.potentials(), **kind.flows()}.items())
     return {"name": name, "type": kind.__name__, "carries": carried, "must_meet": port.needed, "doc": _meaning(port)}
 
 
@@ -113,7 +113,7 @@ def _meaning(port: Port) -> str:
 
 
 def _line(name: str, d: Declaration) -> dict[str, Any]:
-    return {"name": name, "unit": shown(d.unit), "range": range_of(d.quantity(name)), "doc": d.doc}
+    return {"name": name, "unit": show_unit(d.unit), "range": range_of(d.quantity(name)), "doc": d.doc}
 
 
 def _parameter(name: str, d: Parameter) -> dict[str, Any]:
@@ -136,7 +136,7 @@ def _fits(entry: Entry, cls: type[Component]) -> bool:
 
 
 @cache
-def _shipped() -> tuple[Scenario, ...]:
+def _load_shipped() -> tuple[Scenario, ...]:
     return tuple(load(rig) for rig in list_rigs())
 
 
@@ -146,12 +146,12 @@ def _example(kind: str) -> tuple[str, dict[str, Any], Mapping[str, str]]:
     The sizes of parts that need some which fit each other are those of a template, the rest nominal ones.
     """
     found: list[tuple[str, dict[str, Any], Mapping[str, str]]] = []
-    for scenario in _shipped():
+    for scenario in _load_shipped():
         for name in scenario.spec.of_type(kind):
             found.append((scenario.name, dict(scenario.spec.part(name).values), scenario.entries.get(name, {})))
     if found:
         return next((e for e in found if e[2]), found[0])
-    known: dict[str, Parameter] = declared(PARTS[kind], Parameter)
+    known: dict[str, Parameter] = list_declared(PARTS[kind], Parameter)
     needed = {k: d for k, d in known.items() if d.default is None and d.derived is None and not d.optional}
     grown = {k: d.nominal * (1 + i / 2 if d.unit == "m" else 1) for i, (k, d) in enumerate(needed.items())}
     return "", grown | _typical().get(kind, {}), {}
@@ -187,7 +187,7 @@ def _snippet(kind: str, values: Mapping[str, Any], entries: Mapping[str, str]) -
     cls = PARTS[kind]
     lines = ["[part.name]", f'type = "{kind}"', *(f'{k} = "{name}"  # catalogue' for k, name in entries.items())]
     brought = {k for entry, name in entries.items() for k in catalogue(entry)[name].values}
-    for key, d in {**settable(cls), **declared(cls, Choice)}.items():
+    for key, d in {**settable(cls), **list_declared(cls, Choice)}.items():
         default = d.default if isinstance(d, Parameter | Choice) else None
         if key not in values or key in brought or values[key] == default:
             continue
@@ -195,7 +195,7 @@ def _snippet(kind: str, values: Mapping[str, Any], entries: Mapping[str, str]) -
         lines.append(f"{key} = {_toml(written)}  # {d.doc}")
     if len(lines) > 2:
         lines.append('source = "assumed: where these values are from"')
-    ports = [f'net_{k} = ["name.{k}", "..."]  # {_meaning(port)}' for k, port in declared(cls, Port).items()]
+    ports = [f'net_{k} = ["name.{k}", "..."]  # {_meaning(port)}' for k, port in list_declared(cls, Port).items()]
     return "\n".join([*lines, "", "[connect]", *ports]) + "\n"
 
 
@@ -207,7 +207,7 @@ def _toml(value: Any) -> str:
     return f"{value:.6g}" if isinstance(value, int | float) else f'"{value}"'
 
 
-def _told(value: Any) -> str:
+def _format_value(value: Any) -> str:
     return "" if value is None else str(value).lower() if isinstance(value, bool) else str(value)
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from ...model.core.component import Component
-from ...model.core.declare import Choice, declared
+from ...model.core.declare import Choice, list_declared
 from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError
 from ...model.machines.spec import PartSpec, Spec
@@ -20,7 +20,7 @@ from ...scenarios.shipped import list_rigs
 from ...scenarios.write import rig_text
 from ..show.console import write
 from ..show.display import Quantities
-from ..solve.settings import adjusted, choice_paths, flat_of
+from ..solve.settings import adjust, choice_paths, flat_of
 from .description import Description, show
 from .parts import first_line
 
@@ -60,7 +60,7 @@ class Rig(Quantities):
         """
         if name in choice_paths(self.scenario.spec):
             part, _, key = name.rpartition(".")
-            choice = declared(self.scenario.spec.types[self.parts[part]], Choice)[key]
+            choice = list_declared(self.scenario.spec.types[self.parts[part]], Choice)[key]
             return self.scenario.spec.part(part).values.get(key, choice.default)
         return self.flat.quantity(name).start
 
@@ -73,7 +73,7 @@ class Rig(Quantities):
         Raises:
             ScenarioError: all that is wrong with them
         """
-        return Rig(adjusted(self.scenario, set))
+        return Rig(adjust(self.scenario, set))
 
     def join(self, *parts: Component, nets: Iterable[Sequence[str]]) -> Rig:
         """The rig with parts added, of types of one's own, too.
@@ -89,7 +89,7 @@ class Rig(Quantities):
         spec = self.scenario.spec
         if taken := [part.name for part in parts if part.name in self.parts]:
             raise ScenarioError([f'{self.name}: there is a part "{n}" already. Give it another name.' for n in taken])
-        added = [PartSpec(part.name, type(part).__name__, _given(part)) for part in parts]
+        added = [PartSpec(part.name, type(part).__name__, _collect_values(part)) for part in parts]
         types = {type(part).__name__: type(part) for part in parts}
         sources = {f"{part.name}.{key}": ADDED for part in added for key in part.values}
         joined = spec.with_parts(added, [tuple(net) for net in nets], types)
@@ -126,9 +126,9 @@ class Rig(Quantities):
         return Path(path)
 
 
-def _given(part: Component) -> dict[str, Any]:
+def _collect_values(part: Component) -> dict[str, Any]:
     """Values and choices that a part was made with."""
-    usual = declared(type(part), Choice)
+    usual = list_declared(type(part), Choice)
     chosen = {key: value for key, value in part.choices.items() if value != usual[key].default}
     return {key: part.values[key] for key in sorted(part.told)} | chosen
 

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from ...model.core.declare import Choice, declared
+from ...model.core.declare import Choice, list_declared
 from ...model.parts import PARTS
-from ...model.units import example, shown
+from ...model.units import example, show_unit
 from ...scenarios.entries import catalogue
 from ...scenarios.shipped import FILES
 from ...scenarios.tables import PartTable, RigTable
@@ -38,10 +38,10 @@ def _part_schema(kind: str, common: Mapping[str, Any]) -> dict[str, Any]:
     cls = PARTS[kind]
     properties: dict[str, Any] = {"type": {"const": kind, "description": first_line(cls)}, "use": common["use"]}
     for key, d in settable(cls).items():
-        about = ", ".join(filter(None, (d.doc, range_of(d.quantity(key)), shown(d.unit) if d.unit != "1" else "")))
+        about = ", ".join(filter(None, (d.doc, range_of(d.quantity(key)), show_unit(d.unit) if d.unit != "1" else "")))
         taken = ["number", "string"] if d.unit == "1" else ["string"]
         properties[key] = {"type": taken, "description": about, "examples": [example(d.unit)]}
-    for key, c in declared(cls, Choice).items():
+    for key, c in list_declared(cls, Choice).items():
         plain = [o for o in c.options if isinstance(o, str | bool | int | float)]
         options = {"enum": plain} if plain and len(plain) == len(c.options) and c.also is None else {}
         properties[key] = {"description": c.doc, **options}

@@ -10,9 +10,9 @@ from pathlib import Path
 from ...model.machines.roles import Roles
 from ...model.machines.spec import Spec
 from ...scenarios.measured.card import Card
-from ...scenarios.measured.lubrication import lubricated, oils_of
+from ...scenarios.measured.lubrication import lubricate, oils_of
 from ...scenarios.measured.nominal import Nominal
-from ...scenarios.measured.sensors import driven_by
+from ...scenarios.measured.sensors import drive_by
 from ...scenarios.measured.table import Campaign
 from ...scenarios.nuisances import Nuisance, nuisances
 from ...scenarios.scenario import Scenario
@@ -53,7 +53,7 @@ class Setting:
     @cached_property
     def ratios(self) -> Mapping[str, float]:
         """Speed of each shaft end over that of the first that turns."""
-        return Nominal(driven_by(self.scenario, self.problem.data.campaign.sensors)).ratios
+        return Nominal(drive_by(self.scenario, self.problem.data.campaign.sensors)).ratios
 
 
 def setting(
@@ -77,8 +77,8 @@ def setting(
     Raises:
         GearheatError: rig, card and data do not go together
     """
-    driven = driven_by(scenario, data.sensors)
-    spec = lubricated(driven.spec, card.lubrication)
+    driven = drive_by(scenario, data.sensors)
+    spec = lubricate(driven.spec, card.lubrication)
     roles = Roles.of(spec)
     campaigns = [c for c in (data, reference, *others) if c is not None]
     oils = oils_of(driven, card, [name for c in campaigns for name in c.oil])

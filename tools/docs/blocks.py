@@ -146,7 +146,7 @@ class Reader:
             path = os.pathsep.join((str(Path(sys.executable).parent), os.environ["PATH"]))
             run = subprocess.run(words, env={**os.environ, "PATH": path}, capture_output=True, text=True, check=False)
             return run.returncode, run.stdout + run.stderr
-        code, out, said = called(self.program, words[1:])
+        code, out, said = call(self.program, words[1:])
         return code, out + said
 
 
@@ -156,7 +156,7 @@ def read(program: TyperGroup, arguments: list[str]) -> None:
     program.commands[name].make_context(name, rest)
 
 
-def called(program: TyperGroup, arguments: list[str]) -> tuple[int, str, str]:
+def call(program: TyperGroup, arguments: list[str]) -> tuple[int, str, str]:
     """Exit code, standard output and standard error of a command, run in this process."""
     out, said = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(said):

@@ -17,7 +17,7 @@ from ...model.errors import GearheatError
 from ..show.console import folder, note
 from . import commands, reference
 from .blocks import FENCE, MARKS, PAGES, run_pages
-from .laws import filled
+from .laws import fill_blocks
 from .markdown import TABLES
 
 
@@ -80,11 +80,11 @@ def gather(program: TyperGroup, public: Mapping[str, Any], source: Path) -> Path
         (place / name).write_text(text, encoding="utf-8")
     reference.copy_pictures(place)
     for page in source.rglob("*.md"):
-        page.write_text(filled(captioned(page.read_text(encoding="utf-8"))), encoding="utf-8")
+        page.write_text(fill_blocks(add_captions(page.read_text(encoding="utf-8"))), encoding="utf-8")
     return source
 
 
-def captioned(text: str) -> str:
+def add_captions(text: str) -> str:
     """A page whose blocks of files have the file's name as caption."""
 
     def block(match: re.Match[str]) -> str:

@@ -14,7 +14,7 @@ from typing import Any
 from typer.core import TyperGroup
 
 from ...model.errors import GearheatError
-from .blocks import called
+from .blocks import call
 from .markdown import TABLES, code, page
 
 DUTY = "time [min],input.w [rpm],output.tau [N.m],room.T [degC]\n0,1450,-500,20\n10,1450,-500,20\n"
@@ -54,7 +54,7 @@ def _default(param: Any) -> str:
 
 def _keys_of(program: TyperGroup, command: str) -> dict[str, str]:
     """Every key of the JSON of a command, with its type."""
-    ended, out, said = called(program, [*shlex.split(command), "--json", "-"])
+    ended, out, said = call(program, [*shlex.split(command), "--json", "-"])
     if ended:
         raise GearheatError(f"docs: gearheat {command} ends with {ended}: {said}")
     return dict(_keys(json.loads(out)))

@@ -20,14 +20,14 @@ from typing import Any
 from ...model import laws
 from ...model.sources import LawInfo
 from ...scenarios.golden import golden_rows
-from .markdown import code, docstring, table, told_arguments, words
+from .markdown import code, docstring, list_arguments, table, words
 
 BLOCK = re.compile(r"^```\{(laws|ranges|evidence)\} *(.*)\n```$", re.MULTILINE)
 
 Law = Callable[..., Any]
 
 
-def filled(text: str) -> str:
+def fill_blocks(text: str) -> str:
     """A page with what its blocks ask for."""
     return BLOCK.sub(_block, text)
 
@@ -87,7 +87,7 @@ def _link(module: str, law: Law) -> str:
 
 def _equation(module: str, law: Law, rows: int) -> str:
     physics = {p.name for p in inspect.signature(law).parameters.values() if p.kind == p.POSITIONAL_OR_KEYWORD}
-    symbols = "; ".join(f"`{key}` {words(text)}" for key, text in told_arguments(law) if key in physics)
+    symbols = "; ".join(f"`{key}` {words(text)}" for key, text in list_arguments(law) if key in physics)
     about = ". ".join(f"{key}: {words(value)}" for key, value in facts(info(law), rows).items() if value)
     return f"**{_link(module, law)}**: {docstring(law)}{symbols}\n\n*{about}.*\n\n"
 

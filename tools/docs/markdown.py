@@ -61,7 +61,7 @@ def docstring(of: Any) -> str:
     return "\n\n".join(piece.strip() for piece in shown if piece.strip()) + "\n\n"
 
 
-def told_arguments(of: Any) -> list[tuple[str, str]]:
+def list_arguments(of: Any) -> list[tuple[str, str]]:
     """The arguments that a docstring tells, with what it says of them."""
     told = (inspect.getdoc(of) or "").partition("Args:\n")[2].partition("\n\n")[0]
     return re.findall(r"^    (\w[\w, ]*): (.*(?:\n {5,}.*)*)", told, re.MULTILINE)
@@ -69,7 +69,7 @@ def told_arguments(of: Any) -> list[tuple[str, str]]:
 
 def arguments(of: Any) -> str:
     """The arguments that a docstring tells, as a list."""
-    found = told_arguments(of)
+    found = list_arguments(of)
     return "".join(f"- `{name}`: {words(text)}\n" for name, text in found) + "\n" if found else ""
 
 

@@ -28,7 +28,7 @@ from ...scenarios.measured.write import as_toml, default_card
 from ...scenarios.nuisances import usual_priors
 from ...scenarios.shipped import FILES, RIGS, list_rigs
 from ...scenarios.tables import CampaignTable, ErratumTable, RigTable, SensorTable
-from ..describe.parts import described
+from ..describe.parts import describe_part
 from ..diagnose.library.cause import Cause
 from ..diagnose.library.registry import library
 from ..diagnose.model.ranges import ranges_of
@@ -45,13 +45,13 @@ def pages() -> Iterator[tuple[str, str]]:
     """Path below the folder of generated pages, and text, of every page."""
     yield "parts/index.md", page("parts", parts=PARTS)
     for kind in PARTS:
-        yield f"parts/{kind}.md", page("part", kind=kind, part=described(kind), lists=TABLES["lists"])
+        yield f"parts/{kind}.md", page("part", kind=kind, part=describe_part(kind), lists=TABLES["lists"])
     yield from _laws()
     yield "rig_file.md", _rig_file()
     scenario = load("helical_two_stage")
     yield "card_file.md", page("card_file", card=as_toml(default_card(scenario, usual_priors(scenario))))
-    turns = _grouped({**PER_MINUTE, **ROTATIONS})
-    yield "units.md", page("units", spellings=_grouped(SPELLINGS), turns=turns, unclear=UNCLEAR)
+    turns = _group({**PER_MINUTE, **ROTATIONS})
+    yield "units.md", page("units", spellings=_group(SPELLINGS), turns=turns, unclear=UNCLEAR)
     yield "catalogues.md", page("catalogues", catalogues={kind: catalogue(kind) for kind in FILES})
     yield "causes.md", page("causes", causes=_causes())
     rigs, reproduces = list_rigs(), list_rigs("reproduces")
@@ -91,7 +91,7 @@ def _rig_file() -> str:
     return page("rig_file", text=text, example=inspect.cleandoc(example), rest=rest, models=models)
 
 
-def _grouped(spellings: dict[str, str]) -> list[tuple[str, list[str]]]:
+def _group(spellings: dict[str, str]) -> list[tuple[str, list[str]]]:
     return [(unit, list(same)) for unit, same in groupby(spellings, key=lambda s: spellings[s])]
 
 

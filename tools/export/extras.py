@@ -20,7 +20,7 @@ from ...fmu.variables import STORED, SUPPLIED, THROUGHPUT, tidy
 from ...model.core.flat import FlatModel
 from ...model.errors import GearheatError
 from ...model.run.result import Result
-from ...model.run.schedule import Schedule, stepped
+from ...model.run.schedule import Schedule, join_phases
 from ...model.run.simulate import simulate
 from ...scenarios.entries import catalogue
 from ...scenarios.scenario import Scenario
@@ -45,9 +45,9 @@ def reference_duty(flat: FlatModel, start: Mapping[str, float], shafts: Containe
     values = {q.name: float(start.get(q.name, q.start)) for q in flat.inputs}
     driven = [q for q in flat.inputs if q.name in shafts]
     if any(q.unit == "rad/s" for q in driven) or not driven:
-        return stepped([(7200.0, values), (7200.0, {q.name: values[q.name] / 2 for q in driven})])
+        return join_phases([(7200.0, values), (7200.0, {q.name: values[q.name] / 2 for q in driven})])
     first = max((q.name for q in driven), key=lambda name: abs(values[name]))
-    return stepped([(20.0, values), (20.0, {first: 1.005 * values[first]}), (20.0, {first: values[first]})])
+    return join_phases([(20.0, values), (20.0, {first: 1.005 * values[first]}), (20.0, {first: values[first]})])
 
 
 def step_of(duty: Schedule) -> float:
@@ -88,7 +88,7 @@ def experiment(flat: FlatModel, duty: Schedule, run: Result | GearheatError) -> 
     return Experiment("reference", doc, duty.stop, step_of(duty), TOLERANCE, inputs, results(names, run.index, values))
 
 
-def checked(fmu: Path, flat: FlatModel, duty: Schedule, own: Result | GearheatError) -> tuple[tuple[str, str], ...]:
+def check_fmu(fmu: Path, flat: FlatModel, duty: Schedule, own: Result | GearheatError) -> tuple[tuple[str, str], ...]:
     """What was checked with this FMU, and the result: it is played over the reference duty beside the model's own run.
 
     Results are bounds, the next power of ten above what was found, so that the same model gives the same text.
@@ -110,14 +110,14 @@ def checked(fmu: Path, flat: FlatModel, duty: Schedule, own: Result | GearheatEr
     for unit, word in (("K", "temperature"), ("rad/s", "speed")):
         apart = [np.abs(played[q.name] - own[q.name]).max() for q in flat.states if q.unit == unit]
         if apart:
-            rows.append((f"{word}: {what}", f"below {_bound(max(apart))} {unit}"))
+            rows.append((f"{word}: {what}", f"below {_bound_above(max(apart))} {unit}"))
     if not audit:
         return tuple(rows)
     gained = played[STORED] - played[STORED][0]
     residual = np.abs(played[SUPPLIED] - gained).max() / played[THROUGHPUT][-1]
     return (
         *rows,
-        ("energy in less energy stored over that run, relative to the throughput", f"below {_bound(residual)}"),
+        ("energy in less energy stored over that run, relative to the throughput", f"below {_bound_above(residual)}"),
     )
 
 
@@ -131,7 +131,7 @@ def _plays_here(fmu: Path) -> bool:
     return fmpy.platform in fmpy.supported_platforms(str(fmu))
 
 
-def _bound(value: float) -> str:
+def _bound_above(value: float) -> str:
     """The next power of ten above a value."""
     return f"1e{math.floor(math.log10(max(value, _ROUND_OFF))) + 1}"
 

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from ...fmu.choices import Choice, Item, reduced, start_choice
+from ...fmu.choices import Choice, Item, drop_idle, start_choice
 from ...fmu.compiling import platforms
 from ...fmu.description import Owner
 from ...fmu.effective import effective
@@ -28,11 +28,11 @@ from ...scenarios.scenario import Scenario
 from ..show.console import folder, lasting, progress_bar, writable
 from ..show.display import Answer
 from ..show.network import network_svg
-from ..solve.settings import Drive, adjusted, driven_at, flat_of
+from ..solve.settings import Drive, adjust, drive_at, flat_of
 from ..solve.simulate import first_temperatures
-from ..solve.uncertainties import uncertain
-from ..solve.unchecked import unchecked
-from .extras import checked, experiment, reference_duty, reference_run, sets_of_oils, write_extras
+from ..solve.uncertainties import collect_uncertain
+from ..solve.unchecked import find_unchecked
+from .extras import check_fmu, experiment, reference_duty, reference_run, sets_of_oils, write_extras
 from .page import figures_of, text_of
 
 #: Shares of the operating point's torques at which a machine on torques alone is looked for that holds its speed.
@@ -65,8 +65,8 @@ class Asked:
         """The rig, the rig as set and driven, its model, and start values that are not those of the model."""
         scenario = scenario_of(self.rig)
         asked = self.drive is not None or self.given == "torque"
-        drive: Drive | None = driven_at(scenario, self.drive, self.given) if asked else None
-        setting = adjusted(scenario, self.assignments, drive=drive)
+        drive: Drive | None = drive_at(scenario, self.drive, self.given) if asked else None
+        setting = adjust(scenario, self.assignments, drive=drive)
         flat = flat_of(setting)
         start = first_temperatures(setting, flat, None) | operating_start(scenario, setting, flat, self.assignments)
         return scenario, setting, flat, start
@@ -130,16 +130,16 @@ def export_rig(asked: Asked) -> Exported:
     beside = folder(asked.extras) if asked.extras is not None else None
     duty = reference_duty(flat, start, setting.shaft_paths())
     options = asked.options | {"start": start, "fmi": asked.fmi}
-    options["uncertain"] = uncertain(setting, flat) if asked.uncertainty else None
+    options["uncertain"] = collect_uncertain(setting, flat) if asked.uncertainty else None
     kept, run = effective(flat, start), reference_run(flat, duty, start)
     options["others"] = Related(sets_of_oils(setting, kept, told=asked.with_origins), experiment(flat, duty, run))
     options["drawn"] = figures_of(assemble(setting.spec), flat, start, run)
     with progress_bar() as options["progress"]:
-        write_fmu(setting, flat, asked.out, verify=lambda fmu: checked(fmu, flat, duty, run), **options)
+        write_fmu(setting, flat, asked.out, verify=lambda fmu: check_fmu(fmu, flat, duty, run), **options)
     named = {q.name for q in kept.parameters}
     origins = sources_of(setting, kept) if asked.with_origins else None
     written = [] if beside is None else write_extras(asked.out, beside, setting, kept, duty, start, origins)
-    choices = reduced(choices_of(setting), kept)
+    choices = drop_idle(choices_of(setting), kept)
     found = {
         "schema": "gearheat.export/1",
         "rig": scenario.name,
@@ -154,7 +154,7 @@ def export_rig(asked: Asked) -> Exported:
         "choices": {c.name: [i.name for i in c.items] for c in choices},
         "without_effect": [q.name for q in flat.parameters if q.name not in named],
         "extras": [str(path) for path in written],
-        "unchecked": unchecked(setting, flat),
+        "unchecked": find_unchecked(setting, flat),
     }
     return Exported(found)
 
@@ -221,7 +221,7 @@ def operating_start(
     if masses and not fixed & (names | masses):
         free = masses | names | first_temperatures(setting, flat, None).keys()
         return {name: value for name, value in _holding(own, flat, names).items() if name in free - fixed}
-    at = _evaluated(own, first_temperatures(setting, own, None))
+    at = _evaluate(own, first_temperatures(setting, own, None))
     shafts = {name: at[name] for name in sorted(names) if name in at}
     start = {q.name: shafts[q.name] for q in flat.inputs if q.name in shafts and q.name not in fixed}
     return start | _speeds(flat, shafts, {q.name for q in flat.states} & fixed)
@@ -256,7 +256,7 @@ def _holding(own: FlatModel, flat: FlatModel, names: set[str]) -> dict[str, floa
     return dict.fromkeys([*torques, *(q.name for q in flat.states if q.unit == "rad/s")], 0.0)
 
 
-def _evaluated(flat: FlatModel, states: Mapping[str, float]) -> dict[str, float]:
+def _evaluate(flat: FlatModel, states: Mapping[str, float]) -> dict[str, float]:
     """Inputs and outputs of a model at its start values."""
     here = point(flat, None, states, who="export")
     y = evaluate_at(flat, here.x, here.u, here.p)["y"]
@@ -269,8 +269,8 @@ def _speeds(flat: FlatModel, shafts: Mapping[str, float], fixed: set[str]) -> di
     ends = [q.name for q in flat.outputs if q.name in shafts and q.unit == "rad/s"]
     if not masses or not ends:
         return {}
-    rest = _evaluated(flat, dict.fromkeys(masses, 0.0))
-    columns = [_evaluated(flat, {name: float(name == one) for name in masses}) for one in masses]
+    rest = _evaluate(flat, dict.fromkeys(masses, 0.0))
+    columns = [_evaluate(flat, {name: float(name == one) for name in masses}) for one in masses]
     slope = np.array([[column[end] - rest[end] for column in columns] for end in ends])
     wanted = np.array([shafts[end] - rest[end] for end in ends])
     speeds = np.linalg.lstsq(slope, wanted, rcond=None)[0]

@@ -63,16 +63,16 @@ def _warm_up(flat: FlatModel, run: Result) -> Figure:
     )
     panels[0].set(ylabel="temperature [°C]", title=title)
     for i, name in enumerate(bodies):
-        panels[0].plot(run.index / 60, _rounded(run[name] - 273.15), color=COLOURS[i % len(COLOURS)], label=name)
+        panels[0].plot(run.index / 60, _round(run[name] - 273.15), color=COLOURS[i % len(COLOURS)], label=name)
     if loss:
-        panels[1].plot(run.index / 60, _rounded(run[loss]), color=COLOURS[-1], label=loss)
+        panels[1].plot(run.index / 60, _round(run[loss]), color=COLOURS[-1], label=loss)
         panels[1].set(ylabel="loss [W]", ylim=(0, None))
     panels[-1].set_xlabel("time [min]")
     legend(figure, panels[0])
     return figure
 
 
-def _rounded(values: np.ndarray) -> list[float]:
+def _round(values: np.ndarray) -> list[float]:
     """Values to as many digits as do not differ from one machine to another."""
     return [float(f"{value:.{DIGITS}g}") for value in values]
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ...fmu.described import Described, described, settable
+from ...fmu.described import Described, describe, settable
 from ...model.errors import FmuError, GearheatError, ScenarioError, suggestion
 from ...model.units import to_si
 from ...scenarios.duty import read_duty
@@ -32,13 +32,13 @@ def play(fmu: str | Path, duty: Duty, *, step: str = "60 s", set: Settings = (),
         >>> gh.play("planetary.fmu", "duty.csv").plot("oil.T")  # doctest: +SKIP
     """
     from ...fmu.play import Player
-    from ...fmu.unpacking import trusted
+    from ...fmu.unpacking import is_trusted
 
     fmu = Path(fmu)
     dt = to_si(step, "s", name="--step")
-    about = described(fmu)
+    about = describe(fmu)
     made_by = about.description.generationTool or "an unknown tool"
-    if not trusted(fmu):
+    if not is_trusted(fmu):
         if not trust:
             raise FmuError(
                 f"{fmu}: was not made by gearheat on this machine (but by {made_by}), and playing it runs native code"
@@ -82,7 +82,7 @@ def _start(about: Described, assignments: Sequence[str]) -> dict[str, float]:
         name, _, written = (part.strip() for part in text.partition("="))
         try:
             if name in wholes:
-                values[name] = _whole(name, written, wholes[name])
+                values[name] = _parse_whole(name, written, wholes[name])
             elif name in known:
                 values[name] = to_si(written, known[name].unit, name=name)
             else:
@@ -96,7 +96,7 @@ def _start(about: Described, assignments: Sequence[str]) -> dict[str, float]:
     return values
 
 
-def _whole(name: str, written: str, items: Mapping[str, int]) -> int:
+def _parse_whole(name: str, written: str, items: Mapping[str, int]) -> int:
     """A whole number, or that of an item by its name."""
     if written in items:
         return items[written]

@@ -17,7 +17,7 @@ from ...fmu.ssp import Element, End, System, ssp
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
 from ...model.errors import ScenarioError
-from ...model.machines.apart import Pieces, apart
+from ...model.machines.apart import Pieces, cut_machine
 from ...model.machines.spec import assemble
 from ...model.run.rows import evaluate_at
 from ...scenarios.scenario import Scenario
@@ -42,9 +42,9 @@ def export_system(groups: Sequence[str], asked: Asked) -> Exported:
         raise ScenarioError([f"{option} does not go with --ssp. Leave it out." for option in refused])
     platforms(asked.platform)
     _, setting, _, start = asked.prepared()
-    taken = taken_apart(setting, groups_of(groups), start)
+    taken = split_rig(setting, groups_of(groups), start)
     coupled = {piece for joint in taken.pieces.joints for piece in (joint.giver, joint.taker)}
-    if alone := [_alone(setting, name, parts) for name, parts in groups_of(groups).items() if name not in coupled]:
+    if alone := [_refuse(setting, name, parts) for name, parts in groups_of(groups).items() if name not in coupled]:
         raise ScenarioError(alone)
     options = asked.options
     with progress_bar() as options["progress"]:
@@ -52,7 +52,7 @@ def export_system(groups: Sequence[str], asked: Asked) -> Exported:
     return Exported(found)
 
 
-def _alone(setting: Scenario, name: str, parts: Sequence[str]) -> str:
+def _refuse(setting: Scenario, name: str, parts: Sequence[str]) -> str:
     """Why parts that pass nothing on are no FMU."""
     inputs = setting.inputs()
     if given := [part for part in parts if f"{part}.T" in inputs]:
@@ -89,7 +89,7 @@ def groups_of(texts: Sequence[str]) -> dict[str, list[str]]:
     return found
 
 
-def taken_apart(setting: Scenario, groups: Mapping[str, Sequence[str]], start: Mapping[str, float]) -> Taken:
+def split_rig(setting: Scenario, groups: Mapping[str, Sequence[str]], start: Mapping[str, float]) -> Taken:
     """The models of a rig's pieces, all starting where the whole rig does.
 
     Args:
@@ -102,7 +102,7 @@ def taken_apart(setting: Scenario, groups: Mapping[str, Sequence[str]], start: M
     """
     whole = flat_of(setting)
     known = {**{q.name: q.start for q in (*whole.states, *whole.inputs)}, **start}
-    pieces = apart(setting.spec, groups)
+    pieces = cut_machine(setting.spec, groups)
     flats = {name: flatten(assemble(spec)) for name, spec in pieces.specs.items()}
     starts = {
         name: {q.name: known[q.name] for q in (*flat.states, *flat.inputs) if q.name in known}

@@ -76,7 +76,7 @@ class MapCase:
     fixed: Mapping[str, float]
 
 
-def varied(vary: Sequence[str]) -> dict[str, Axis]:
+def parse_ranges(vary: Sequence[str]) -> dict[str, Axis]:
     """The ranges written on the command line or in a case file.
 
     Raises:
@@ -120,8 +120,8 @@ def from_file(path: Path, vary: Sequence[str]) -> MapCase:
     ranges: dict[str, Axis] = {}
     with problems:
         in_file = raw.get("vary", {})
-        ranges = varied([f"{k}={v}" for k, v in in_file.items() if k != "source"]) | varied(vary)
-    oil = _named_oil(str(oil_name), found["oil"], problems) if oil_name else _constant_oil(found["oil"])
+        ranges = parse_ranges([f"{k}={v}" for k, v in in_file.items() if k != "source"]) | parse_ranges(vary)
+    oil = _find_oil(str(oil_name), found["oil"], problems) if oil_name else _constant_oil(found["oil"])
     known = {"F": found["contact"].get("F"), "u_m": found["contact"].get("u_m"), "T": found["oil"].get("T")}
     if not oil_name:
         known["T"] = known["T"] or 313.15  # the oil is the same at any temperature
@@ -202,7 +202,7 @@ def _constant_oil(values: Mapping[str, float]) -> Oil:
     return lambda T: (values["eta_0"], values["alpha_p"])
 
 
-def _named_oil(name: str, values: Mapping[str, float], problems: Problems) -> Oil:
+def _find_oil(name: str, values: Mapping[str, float], problems: Problems) -> Oil:
     """An oil of the catalogue; values beside it stand in its place."""
     with problems:
         oil = oil_of(oil_values(name))
@@ -234,7 +234,7 @@ def from_rig(scenario: Scenario, part: str | None, vary: Sequence[str]) -> MapCa
     """
     assembly = assemble(scenario.spec)
     told = {p.name: p for p in assembly.parts if isinstance(p, TellsFilmContact)}
-    chosen = told[_chosen(scenario, part, tuple(told))]
+    chosen = told[_choose_part(scenario, part, tuple(told))]
     flat = flat_of(scenario)
     result = steady(flat, conditions(scenario, flat))
     c = chosen.film_contact(values_of(chosen, flat, result))
@@ -245,7 +245,7 @@ def from_rig(scenario: Scenario, part: str | None, vary: Sequence[str]) -> MapCa
             "without load or speed has no film. Give the rig an operating point with both."
         )
     ranges = {k: Axis(k, "uniform", ABOUT[k][0] * v, ABOUT[k][1] * v) for k, v in (("F", c.F), ("u_m", u_m))}
-    ranges |= {"T": Axis("T", "uniform", *WARM)} | varied(vary)
+    ranges |= {"T": Axis("T", "uniform", *WARM)} | parse_ranges(vary)
     values: dict[str, Any] = {"R_x": c.R_x, "length": c.length, "E_eff": c.E_eff, "sigma": c.sigma, "R_y": c.R_y}
     values["slide_roll"] = abs(c.u_1 - c.u_2) / u_m
     values |= {} if c.mu_boundary is None else {"mu_boundary": c.mu_boundary}
@@ -254,7 +254,7 @@ def from_rig(scenario: Scenario, part: str | None, vary: Sequence[str]) -> MapCa
     return _case((scenario.name, chosen.name), values, {}, oil, ranges, {})
 
 
-def _chosen(scenario: Scenario, part: str | None, told: tuple[str, ...]) -> str:
+def _choose_part(scenario: Scenario, part: str | None, told: tuple[str, ...]) -> str:
     """Name of the part whose contact it is."""
     parts = [p.name for p in scenario.spec.parts]
     if part is not None and part not in parts:

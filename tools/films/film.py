@@ -16,14 +16,14 @@ from ...model.errors import Problems, ScenarioError, SolveError
 from ...model.laws.film import asperity_share, mixed_friction
 from ...model.laws.film_line import line_film_central
 from ...model.laws.film_point import point_film_central
-from ...model.units import from_si, shown
+from ...model.units import from_si, show_unit
 from ...scenarios.film_map import COLUMNS, FAILED, OK, read_film_map
 from ...scenarios.load import load
 from ..show.columns import rows_text
 from ..show.console import counting, note, writable, write
 from ..show.display import Answer
 from ..show.picture import Picture
-from ..solve.settings import adjusted
+from ..solve.settings import adjust
 from ..solve.sweep_file import Store, work_file
 from .case import AXES, MapCase, from_file, from_rig
 
@@ -118,10 +118,10 @@ def film(
         raise ScenarioError(
             f"--nodes {count}: give 2^k + 1, at least {FINER}: a film is compared with that on half of them."
         )
-    kept = solved(case, points, count, out)
+    kept = solve_points(case, points, count, out)
     write(out, table_of(case, points, kept))
     wrong = [(p, k[-1]) for p, k in zip(points, kept, strict=True) if k[-1] != FOUND]
-    failed = [f"{_named(case, point)}: {WRONG[status][1]}" for point, status in wrong]
+    failed = [f"{_name_point(case, point)}: {WRONG[status][1]}" for point, status in wrong]
     fitted = read_film_map(out)
     if drawn is not None:
         from ..show.plotting import write_picture
@@ -140,7 +140,7 @@ def film(
             a.name: {
                 "low": from_si(a.first, units[a.name]),
                 "high": from_si(a.second, units[a.name]),
-                "unit": shown(units[a.name]),
+                "unit": show_unit(units[a.name]),
             }
             for a in case.axes
         },
@@ -172,7 +172,7 @@ def case_of(
         if part is not None or assignments:
             raise ScenarioError(f"{path.name}: --part and --set belong to a rig. Leave them out.")
         return from_file(path, vary)
-    return from_rig(adjusted(load(rig), assignments), part, vary)
+    return from_rig(adjust(load(rig), assignments), part, vary)
 
 
 def grid_of(case: MapCase, written: str | None) -> np.ndarray:
@@ -217,7 +217,7 @@ def contact_at(case: MapCase, point: np.ndarray) -> Contact:
     return replace(case.contact, F=F, u_1=u_m * (1 + slide), u_2=u_m * (1 - slide), lubricant=oil)
 
 
-def solved(case: MapCase, points: np.ndarray, nodes: int, out: Path) -> np.ndarray:
+def solve_points(case: MapCase, points: np.ndarray, nodes: int, out: Path) -> np.ndarray:
     """What is kept of each point (n, KEPT): a run that was interrupted goes on from the points it has finished.
 
     Args:
@@ -305,10 +305,10 @@ def formula_of(contact: Contact) -> float:
     return float(point_film_central(oil.eta_0, u_sum, oil.alpha_p, contact.F, *shape))
 
 
-def _named(case: MapCase, point: np.ndarray) -> str:
+def _name_point(case: MapCase, point: np.ndarray) -> str:
     """A point in words."""
     words = [
-        f"{name} = {from_si(float(v), AXES[name].unit):.4g} {shown(AXES[name].unit)}"
+        f"{name} = {from_si(float(v), AXES[name].unit):.4g} {show_unit(AXES[name].unit)}"
         for name, v in zip(AXES, point, strict=True)
         if name in {axis.name for axis in case.axes}
     ]

@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 
 from ...model.core.component import Component, Equation, equation
-from ...model.core.declare import Output, Port, declared
+from ...model.core.declare import Output, Port, list_declared
 from ...model.errors import Problems
 from ...model.machines.spec import PartSpec, Spec, assemble
 from ...model.parts.equivalent import CylindricalPair, pair_of
@@ -53,7 +53,7 @@ def machine_of(scenario: Scenario, bearing_types: Sequence[str], dips: Mapping[s
     probed = replace(scenario, spec=with_readings(scenario.spec, read))
     flat = flat_of(probed)
     at = {path: float(column[0]) for path, column in steady(flat, conditions(probed, flat)).columns.items()}
-    dips = {**_told_dips(scenario, parts, pairs, at), **dips}
+    dips = {**_read_dips(scenario, parts, pairs, at), **dips}
     meshes = tuple(_mesh(name, pair, at, dips) for name, pair in pairs.items())
     bearings = tuple(_bearing(part, at) for part in parts.values() if type(part).__name__ in bearing_types)
     seals = tuple(
@@ -73,8 +73,8 @@ def machine_of(scenario: Scenario, bearing_types: Sequence[str], dips: Mapping[s
         T_oil=at[f"{baths[0]}.T"],
         T_room=at[f"{rooms[0]}.T"],
         P_in=sum(max(0.0, at[f"{end}.P"]) for end in ends) if passes else None,
-        ours=_ours(parts, at),
-        untreated=tuple(_untreated(scenario, parts, treated, at)),
+        ours=_group_losses(parts, at),
+        untreated=tuple(_list_untreated(scenario, parts, treated, at)),
     )
 
 
@@ -108,7 +108,7 @@ def _mesh(name: str, pair: CylindricalPair, at: Values, dips: Mapping[str, float
     return Mesh(name, pair, at[f"{name}.F_t"], (pinion, wheel), depths)
 
 
-def _told_dips(scenario: Scenario, parts: Parts, pairs: Mapping[str, CylindricalPair], at: Values) -> dict[str, float]:
+def _read_dips(scenario: Scenario, parts: Parts, pairs: Mapping[str, CylindricalPair], at: Values) -> dict[str, float]:
     """Depths of the gears for which a churning part on the same shaft, of the same pitch radius, knows its own [m].
 
     Such a part declares its pitch radius `r` and shows the depth `h` to which the pitch circle dips.
@@ -131,11 +131,11 @@ def _bearing(part: Component, at: Values) -> Turning:
 
 
 def _is_surface(part: Component) -> bool:
-    air = any(isinstance(port, AirPort) for port in declared(type(part), Port).values())
+    air = any(isinstance(port, AirPort) for port in list_declared(type(part), Port).values())
     return part.role == "surface" and air and {"A", "emissivity"} <= part.values.keys()
 
 
-def _ours(parts: Parts, at: Values) -> dict[str, dict[str, float]]:
+def _group_losses(parts: Parts, at: Values) -> dict[str, dict[str, float]]:
     found: dict[str, dict[str, float]] = {kind: {} for kind in (*KINDS.values(), "other")}
     for name, part in parts.items():
         if part.role and f"{name}.P_loss" in at:
@@ -143,7 +143,7 @@ def _ours(parts: Parts, at: Values) -> dict[str, dict[str, float]]:
     return found
 
 
-def _untreated(scenario: Scenario, parts: Parts, treated: set[str], at: Values) -> Iterator[Untreated]:
+def _list_untreated(scenario: Scenario, parts: Parts, treated: set[str], at: Values) -> Iterator[Untreated]:
     """Losses without a rule, and ways of heat that are no surface."""
     left = {name: p for name, p in parts.items() if name not in treated and p.role and p.role != "churning"}
     for name, part in left.items():
@@ -159,7 +159,7 @@ def _untreated(scenario: Scenario, parts: Parts, treated: set[str], at: Values) 
 def _leads_out(scenario: Scenario, name: str, part: Component) -> bool:
     """Whether a heat port of a part meets a room, or another thing of given temperature, that it is not itself."""
     ends = scenario.spec.of_type(Room.__name__, PrescribedTemperature.__name__)
-    heat = {f"{name}.{key}" for key, port in declared(type(part), Port).items() if isinstance(port, HeatPort)}
+    heat = {f"{name}.{key}" for key, port in list_declared(type(part), Port).items() if isinstance(port, HeatPort)}
     met = {path.rpartition(".")[0] for net in scenario.spec.connections if heat & set(net) for path in net}
     return name not in ends and not met.isdisjoint(ends)
 
@@ -207,7 +207,7 @@ def with_readings(spec: Spec, parts: Iterable[str]) -> Spec:
     """
     probes, nets = [], []
     for part in parts:
-        for key, port in declared(spec.types[spec.part(part).type], Port).items():
+        for key, port in list_declared(spec.types[spec.part(part).type], Port).items():
             if (kind := READINGS.get(type(port))) is not None:
                 probes.append(PartSpec(reading(part, key), kind.__name__))
                 nets.append((f"{reading(part, key)}.port", f"{part}.{key}"))

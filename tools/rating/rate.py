@@ -16,7 +16,7 @@ from ...model.units import from_si
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.values import in_range
 from ..show.display import Answer
-from ..solve.settings import adjusted
+from ..solve.settings import adjust
 from .gather import machine_of
 from .machine import Machine
 from .methods import FACTORS, METHODS, Method
@@ -89,15 +89,15 @@ def rate_by_method(
     known = METHODS[method]
     T_limit = in_range("", limit, LIMIT)
     k_given = None if k is None else in_range("", k, K)
-    scenario = adjusted(scenario_of(rig), set)
+    scenario = adjust(scenario_of(rig), set)
     machine = machine_of(scenario, tuple(FACTORS), _depths(dip))
-    found = compared(machine, known, T_limit, k_given)
+    found = compare(machine, known, T_limit, k_given)
     return MethodRating(
         known.title, {"schema": "gearheat.reference/1", "rig": scenario.name, "method": method, **found}
     )
 
 
-def compared(machine: Machine, method: Method, T_limit: float, k: float | None) -> dict[str, Any]:
+def compare(machine: Machine, method: Method, T_limit: float, k: float | None) -> dict[str, Any]:
     """Everything that a method says of a machine, beside the model.
 
     Args:

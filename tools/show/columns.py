@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping
 
 import numpy as np
 
-from ...model.units import from_si, shown
+from ...model.units import from_si, show_unit
 
 
 def titled(columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> dict[str, np.ndarray]:
@@ -16,7 +16,7 @@ def titled(columns: Mapping[str, np.ndarray], units: Mapping[str, str]) -> dict[
         columns: name -> values in SI
         units: SI unit of each
     """
-    return {f"{name} [{shown(units[name])}]": from_si(column, units[name]) for name, column in columns.items()}
+    return {f"{name} [{show_unit(units[name])}]": from_si(column, units[name]) for name, column in columns.items()}
 
 
 def rows_text(head: Iterable[str], rows: Iterable[Iterable[float | str | None]]) -> str:

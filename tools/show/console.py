@@ -22,7 +22,7 @@ from typing import Any, ParamSpec
 
 from ...fmu.compiling import Progress
 from ...model.errors import DataError, GearheatError, ScenarioError
-from ...model.files import flows, inputs_kept, place, replacing
+from ...model.files import flows, keep_inputs, place, replacing
 from ...model.screen import fitting
 
 P = ParamSpec("P")
@@ -41,13 +41,13 @@ LEAST = 14
 EVERY = 30.0
 
 
-def guarded(command: Callable[P, None]) -> Callable[P, None]:
+def guard(command: Callable[P, None]) -> Callable[P, None]:
     """A command whose problems end it with exit code 2, one problem after the other on stderr and no traceback."""
 
     @functools.wraps(command)
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
         try:
-            with inputs_kept():
+            with keep_inputs():
                 command(*args, **kwargs)
             sys.stdout.flush()
         except GearheatError as error:

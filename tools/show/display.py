@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ...model.errors import DataError
-from ...model.units import from_si, in_unit, shown
+from ...model.units import from_si, in_unit, show_unit
 from .console import as_json, cell, write
 from .picture import Picture
 
@@ -179,7 +179,7 @@ class Quantities(Display):
             names: of the values in it
         """
         known = [self.flat.quantity(name) for name in names]
-        return [(q.name, from_si(float(self[q.name]), q.unit), shown(q.unit), q.doc) for q in known]
+        return [(q.name, from_si(float(self[q.name]), q.unit), show_unit(q.unit), q.doc) for q in known]
 
 
 def lines_of(values: Mapping[str, Any]) -> list[tuple[str, Any]]:

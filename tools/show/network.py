@@ -49,8 +49,8 @@ def network_svg(assembly: Assembly) -> str:
         boxes = _boxes(assembly, kind)
         if not boxes:
             continue
-        places, size = _placed(boxes)
-        drawn.append(f'<g transform="translate(0,{top:g})">{_drawn(boxes, places, *colours)}</g>')
+        places, size = _place_boxes(boxes)
+        drawn.append(f'<g transform="translate(0,{top:g})">{_draw_boxes(boxes, places, *colours)}</g>')
         top, width = top + size[1], max(width, size[0])
     head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {top:g}" width="{width:g}" role="img"'
     style = 'font-family="sans-serif" font-size="12" text-anchor="middle"'
@@ -104,7 +104,7 @@ def _layers(boxes: list[Box], near: list[set[int]]) -> list[int]:
 Places = Mapping[int, tuple[float, float]]
 
 
-def _placed(boxes: list[Box]) -> tuple[Places, tuple[float, float]]:
+def _place_boxes(boxes: list[Box]) -> tuple[Places, tuple[float, float]]:
     """Centres of the boxes, column by column in the order of their neighbours, and the size of the whole."""
     near = [set(box.to) for box in boxes]
     for i, box in enumerate(boxes):
@@ -129,7 +129,7 @@ def _placed(boxes: list[Box]) -> tuple[Places, tuple[float, float]]:
     return places, (_COLUMN * len(columns), max(heights) + _GAP)
 
 
-def _drawn(boxes: list[Box], places: Places, fill: str, stroke: str) -> str:
+def _draw_boxes(boxes: list[Box], places: Places, fill: str, stroke: str) -> str:
     lines = [
         f'<line x1="{places[i][0]:g}" y1="{places[i][1]:g}" x2="{places[j][0]:g}" y2="{places[j][1]:g}" '
         f'stroke="{stroke}"/>'

@@ -61,7 +61,7 @@ def as_data(value: Any) -> Markup:
 
 
 @cache
-def vendored() -> dict[str, Markup]:
+def load_plot_library() -> dict[str, Markup]:
     """The plot library of the pages: its script, style and licence."""
     names = {"script": "uPlot.iife.min.js", "css": "uPlot.min.css", "licence": "uPlot.LICENSE"}
     folder = files(OWN).joinpath("vendor")

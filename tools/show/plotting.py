@@ -9,7 +9,7 @@ from matplotlib.axes import Axes
 
 from .console import write
 from .drawing import png, svg
-from .pages import OWN, as_data, html_table, page, vendored
+from .pages import OWN, as_data, html_table, load_plot_library, page
 from .picture import Picture
 
 #: Width and height of a figure that is made for a result [inch].
@@ -34,7 +34,7 @@ def _page(picture: Picture, drawn: str) -> str:
         figure=Markup(drawn),
         table=html_table(picture.columns, picture.rows) if picture.rows else "",
         data=as_data(picture.courses) if picture.courses else "",
-        **vendored(),
+        **load_plot_library(),
     )
 
 

@@ -63,9 +63,9 @@ def sankey(paths: Sequence[Path], temperatures: Mapping[str, str], title: str) -
         temperatures: name of a place -> its temperature as it is written there
         title: above it
     """
-    places = placed(paths)
+    places = place_columns(paths)
     scale = TALL / max((place.Q_flow for place in places.values()), default=1.0)
-    height = _arranged(list(places.values()), paths, scale)
+    height = _arrange(list(places.values()), paths, scale)
     last = max(place.column for place in places.values())
     width = COLUMN * (last + 1)
     figure, (panel,) = empty(width, height + 0.5, 1, 1)
@@ -78,7 +78,7 @@ def sankey(paths: Sequence[Path], temperatures: Mapping[str, str], title: str) -
     return figure
 
 
-def placed(paths: Sequence[Path]) -> dict[str, Place]:
+def place_columns(paths: Sequence[Path]) -> dict[str, Place]:
     """The places by name, each in a column behind all that it has its heat from; what gives none on comes last."""
     names = dict.fromkeys(name for path in paths for name in (path.begins, path.ends))
     given = {name: sum(p.Q_flow for p in paths if p.begins == name) for name in names}
@@ -99,7 +99,7 @@ def placed(paths: Sequence[Path]) -> dict[str, Place]:
     return places
 
 
-def _arranged(places: Sequence[Place], paths: Sequence[Path], scale: float) -> float:
+def _arrange(places: Sequence[Place], paths: Sequence[Path], scale: float) -> float:
     """Set the heights of all places, column by column in the order of what they have their heat from.
 
     Returns:

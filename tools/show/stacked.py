@@ -18,7 +18,7 @@ GAP = 3
 MARGIN = 2
 
 
-def stacked(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]], below: int) -> None:
+def print_stacked(title: str, columns: Sequence[str], rows: Iterable[Sequence[Any]], below: int) -> None:
     """Print a table; its last columns, sentences, stand under each row where they do not fit beside it.
 
     Args:

@@ -10,14 +10,14 @@ from typing import Any, cast
 from ...model.core.flat import FlatModel, Quantity
 from ...model.errors import Problems, ScenarioError, SolveError, suggestion
 from ...model.run.design import Design
-from ...model.run.least import Target, least_change, rank, unchanged
-from ...model.units import from_si, shown
-from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, written
+from ...model.run.least import Target, evaluate_unchanged, least_change, rank
+from ...model.units import from_si, show_unit
+from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, spell
 from ...scenarios.scenario import Scenario, parse_assignments
 from ..show.display import HEAD, Answer, Quantities
-from .settings import adjusted, flat_of
+from .settings import adjust, flat_of
 from .steady import conditions, first_of, point_of
-from .unchecked import unchecked
+from .unchecked import find_unchecked
 
 #: Name of all entries of a catalogue that fit.
 ALL = "all"
@@ -44,7 +44,7 @@ class _Case:
         own = self.setting.entry_values(part, name)
         if any(self.flat.index.get(path, ("", 0))[0] != "parameter" for path in own):
             return None
-        return replace(self, setting=adjusted(self.setting, [f"{part}={name}"], named=self.free), own=own)
+        return replace(self, setting=adjust(self.setting, [f"{part}={name}"], named=self.free), own=own)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -124,7 +124,7 @@ def design(
     targets, assignments = list(target), assignments_of(set, scenario.settable)
     if isinstance(target, Mapping):
         known = scenario.readable()
-        targets = [_written_target(name, value, known.get(name)) for name, value in target.items()]
+        targets = [_format_target(name, value, known.get(name)) for name, value in target.items()]
     found: dict[str, Any] = {"schema": "gearheat.design/1", "rig": scenario.name}
     case = _case(scenario, free, targets, assignments)
     if part is None:
@@ -137,7 +137,7 @@ def design(
         other = case.filled(part, name) or _case(scenario, free, targets, [*assignments, f"{part}={name}"])
         try:
             search = least_change(other.flat, other.free, other.targets, other.values) if free else None
-            solution = search or unchanged(other.flat, other.targets, other.values)
+            solution = search or evaluate_unchanged(other.flat, other.targets, other.values)
         except SolveError as error:
             unsolved.append({part: name, "problems": list(error.problems)})
             continue
@@ -149,9 +149,9 @@ def design(
     return DesignAnswer(case.setting, case.flat, found | {"among": part, "alternatives": [*best_first, *unsolved]})
 
 
-def _written_target(name: str, value: Any, quantity: Quantity | None) -> str:
+def _format_target(name: str, value: Any, quantity: Quantity | None) -> str:
     """A target as the command line has it."""
-    text = written(value, quantity)
+    text = spell(value, quantity)
     return f"{name}{text}" if text[:1] in "<>" else f"{name}={text}"
 
 
@@ -171,7 +171,7 @@ def _case(scenario: Scenario, free: Sequence[str], targets: Sequence[str], assig
     problems = Problems()
     setting = scenario
     with problems:
-        setting = adjusted(scenario, assignments, named=free)
+        setting = adjust(scenario, assignments, named=free)
     flat = flat_of(setting)
     aims: list[Target] = []
     for text in targets:
@@ -209,7 +209,7 @@ def _solution(case: _Case, solution: Design) -> dict[str, Any]:
         for i, name in enumerate(solution.values)
     }
     point = point_of(flat, solution.result)
-    units = {name: shown(flat.quantity(name).unit) for name in (*solution.values, *(t.name for t in case.targets))}
+    units = {name: show_unit(flat.quantity(name).unit) for name in (*solution.values, *(t.name for t in case.targets))}
     missed = rank(flat, solution, case.targets, case.values)[0]
     return {
         "free": {name: from_si(value, flat.quantity(name).unit) for name, value in solution.values.items()},
@@ -220,5 +220,5 @@ def _solution(case: _Case, solution: Design) -> dict[str, Any]:
         "notes": list(solution.notes),
         **point,
         "units": point["units"] | units,
-        "unchecked": unchecked(case.setting, flat),
+        "unchecked": find_unchecked(case.setting, flat),
     }

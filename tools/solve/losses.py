@@ -20,13 +20,13 @@ from ...scenarios.entries import catalogue
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
 from ...scenarios.measured.lubrication import bath_of
 from ...scenarios.measured.readings import about
-from ...scenarios.measured.study import Measured, measured_of
+from ...scenarios.measured.study import Measured, read_study
 from ...scenarios.scenario import Scenario
 from ..show.display import Answer
 from .contacts import contacts_at, part_with_contacts
-from .settings import adjusted, choice_paths, flat_of
+from .settings import adjust, choice_paths, flat_of
 from .steady import conditions, outside_of
-from .unchecked import unchecked
+from .unchecked import find_unchecked
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -86,10 +86,10 @@ def losses(
     if power_flow is not None and not flows:
         raise ScenarioError(f"{scenario.name}: no part has a choice of power flow. Leave out --power-flow.")
     chosen = [f"{path}={power_flow}" for path in flows if power_flow is not None]
-    scenario = adjusted(scenario, [*assignments_of(set, scenario.settable), *chosen])
+    scenario = adjust(scenario, [*assignments_of(set, scenario.settable), *chosen])
     if not scenario.losses:
         raise ScenarioError(f"{scenario.path.name}: there is no table [losses]. Say which outputs each column sums.")
-    study, flat = measured_of(scenario, data, card), flat_of(scenario)
+    study, flat = read_study(scenario, data, card), flat_of(scenario)
     at_point: dict[str, Any] = {}
     if study:
         rows = at_readings(study, temperature)
@@ -106,7 +106,7 @@ def losses(
         },
         "rows": rows,
         **at_point,
-        "unchecked": unchecked(scenario, flat, oils_of(study)),
+        "unchecked": find_unchecked(scenario, flat, oils_of(study)),
     }
     cycle = contacts_at_operating_point(scenario) if contacts else None
     if cycle is not None:
@@ -142,7 +142,7 @@ def at_readings(study: Measured, temperature: str) -> list[dict[str, Any]]:
     if temperature == "model":
         columns: dict[str, np.ndarray] = dict(steady_table(flat, values).columns)
     else:
-        columns = held(flat, values, [float(T) for T in T_read])
+        columns = hold(flat, values, [float(T) for T in T_read])
     T_oil = T_read if temperature == "measured" else columns[sensor.reads]
     total = next((columns[f"{part}.P_loss"] for part in scenario.spec.of_type(Efficiency.__name__)), None)
     rows = []
@@ -154,7 +154,7 @@ def at_readings(study: Measured, temperature: str) -> list[dict[str, Any]]:
     return rows
 
 
-def held(
+def hold(
     flat: FlatModel, values: Sequence[Mapping[str, float]], temperatures: Sequence[float]
 ) -> dict[str, np.ndarray]:
     """All outputs, inputs and parameters with every temperature of the model at a given value.

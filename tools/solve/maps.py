@@ -10,13 +10,13 @@ import numpy as np
 
 from ...model.errors import ScenarioError, SolveError
 from ...model.run.design import design
-from ...model.units import from_si, shown, text
+from ...model.units import from_si, show_unit, text
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
 from ...scenarios.scenario import Scenario, parse_assignments
 from ..show.display import Columns, optional
 from ..show.picture import Picture
 from . import sampling
-from .settings import adjusted, flat_of
+from .settings import adjust, flat_of
 from .steady import conditions, leading_outputs
 from .sweep_plan import Request, plan_sweep
 from .sweep_rows import local
@@ -150,7 +150,7 @@ def map_outputs(
     names = [*paths, *shows]
     columns = [*plan.values.T, *rows[:, : len(shows)].T]
     found = {n: from_si(c, plan.flat.quantity(n).unit) for n, c in zip(names, columns, strict=True)}
-    return Map(plan.rig, found, {n: shown(plan.flat.quantity(n).unit) for n in names})
+    return Map(plan.rig, found, {n: show_unit(plan.flat.quantity(n).unit) for n in names})
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -231,12 +231,12 @@ def rating(
     if place is None:
         raise ScenarioError(f"{scenario.name}: has no room, so no heat leaves it.")
     varied = sampling.read([f"{place}={room or '0..40 degC'}", f"{driven}={speed or usual_range(scenario, driven)}"])
-    setting = adjusted(scenario, set, named=[place, driven])
+    setting = adjust(scenario, set, named=[place, driven])
     flat = flat_of(setting)
     (written,) = [limit] if isinstance(limit, str) else assignments_of(limit, scenario.readable)
     aim = parse_assignments(flat, [written])
     axes = sampling.axes(varied, {name: flat.quantity(name) for name in (place, driven)})
-    values = sampling.gridded(axes, grid)
+    values = sampling.lay_grid(axes, grid)
     powers, torques = np.full(len(values), np.nan), np.full(len(values), np.nan)
     load = abs(scenario.operating_point[torque])
     side = -1.0 if scenario.operating_point[torque] < 0 else 1.0

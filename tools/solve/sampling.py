@@ -15,7 +15,7 @@ import numpy as np
 
 from ...model.core.flat import Quantity
 from ...model.errors import Problems, ScenarioError
-from ...model.units import from_si, shown, to_si
+from ...model.units import from_si, show_unit, to_si
 
 #: Rows of the largest sweep that is not taken for a slip of the keyboard.
 MOST_ROWS = 100_000_000
@@ -123,7 +123,7 @@ def _axis(w: Written, quantity: Quantity) -> Axis:
     return Axis(w.name, w.kind, first, second)
 
 
-def sampled(axes: Sequence[Axis], rows: int, method: str, seed: int) -> np.ndarray:
+def draw_sample(axes: Sequence[Axis], rows: int, method: str, seed: int) -> np.ndarray:
     """Values of a random sample, the same for the same seed (rows, axes).
 
     Args:
@@ -147,7 +147,7 @@ def sampled(axes: Sequence[Axis], rows: int, method: str, seed: int) -> np.ndarr
     return np.column_stack([axis.at(shares[:, k]) for k, axis in enumerate(axes)])
 
 
-def gridded(axes: Sequence[Axis], text: str) -> np.ndarray:
+def lay_grid(axes: Sequence[Axis], text: str) -> np.ndarray:
     """Values of a grid such as "20x10" (rows, axes), the last axis running fastest.
 
     A uniform axis goes from end to end, a normal one through the middles of slices of equal probability.
@@ -174,7 +174,7 @@ def _check(rows: int, option: str) -> None:
         raise ScenarioError(f"{option}: {rows} rows. Give at least 1 and at most {MOST_ROWS}.")
 
 
-def described(axis: Axis, quantity: Quantity) -> dict[str, object]:
+def describe_axis(axis: Axis, quantity: Quantity) -> dict[str, object]:
     """An axis for a summary, in the unit shown to a person."""
     first = from_si(axis.first, quantity.unit)
     second = from_si(axis.second, quantity.unit)
@@ -183,4 +183,4 @@ def described(axis: Axis, quantity: Quantity) -> dict[str, object]:
     words = {"uniform": ("low", "high"), "normal": ("mean", "deviation"), "lognormal": ("median", "deviation")}[
         axis.kind
     ]
-    return {"kind": axis.kind, words[0]: first, words[1]: second, "unit": shown(quantity.unit)}
+    return {"kind": axis.kind, words[0]: first, words[1]: second, "unit": show_unit(quantity.unit)}

@@ -7,21 +7,21 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ...model.core.declare import Choice, Parameter, declared
+from ...model.core.declare import Choice, Parameter, list_declared
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
 from ...model.errors import GearheatError, Problems, ScenarioError, suggestion
 from ...model.laws.film_map import FilmMap
 from ...model.machines.spec import Spec, assemble
-from ...scenarios.film_map import map_named, names_map
+from ...scenarios.film_map import find_map, names_map
 from ...scenarios.given import Settings, assignments_of
-from ...scenarios.scenario import Scenario, deduced, parse_assignments
+from ...scenarios.scenario import Scenario, deduce_drive, parse_assignments
 from ...scenarios.write import SET
 
 Drive = Mapping[str, tuple[str, ...]]
 
 
-def adjusted(
+def adjust(
     scenario: Scenario,
     assignments: Settings = (),
     *,
@@ -54,13 +54,13 @@ def adjusted(
     problems.check()
     shafts = scenario.shaft_paths()
     ends = [name for name in dict.fromkeys((*values, *named)) if name in shafts]
-    driven = deduced(scenario.given, ends) if drive is None else drive
+    driven = deduce_drive(scenario.given, ends) if drive is None else drive
     if idle := [name for name in ends if name.rpartition(".")[2] not in driven.get(name.rpartition(".")[0], ())]:
         raise ScenarioError([f"{name} is set, but it follows from what drives the rig. Take it out." for name in idle])
     set_up = scenario.with_values(values, SET).driven(driven)
-    sources = {**set_up.value_sources, **_filled(scenario, assignments)}
+    sources = {**set_up.value_sources, **_list_filled_sources(scenario, assignments)}
     set_up = replace(set_up, spec=set_up.spec.with_values(choices), value_sources=sources)
-    return set_up.with_values(_derived(set_up.spec, named), SET)
+    return set_up.with_values(_derive_values(set_up.spec, named), SET)
 
 
 def flat_of(scenario: Scenario) -> FlatModel:
@@ -68,7 +68,7 @@ def flat_of(scenario: Scenario) -> FlatModel:
     return flatten(assemble(scenario.spec))
 
 
-def driven_at(scenario: Scenario, shaft: str | None, given: str) -> dict[str, tuple[str, ...]]:
+def drive_at(scenario: Scenario, shaft: str | None, given: str) -> dict[str, tuple[str, ...]]:
     """The drive of an FMU.
 
     Args:
@@ -91,11 +91,11 @@ def driven_at(scenario: Scenario, shaft: str | None, given: str) -> dict[str, tu
 
 def choice_paths(spec: Spec) -> dict[str, Choice]:
     """Choices of all parts by path; those without options follow from the drive."""
-    found = {f"{p.name}.{key}": c for p in spec.parts for key, c in declared(spec.types[p.type], Choice).items()}
+    found = {f"{p.name}.{key}": c for p in spec.parts for key, c in list_declared(spec.types[p.type], Choice).items()}
     return {path: choice for path, choice in found.items() if choice.options}
 
 
-def _derived(spec: Spec, named: Iterable[str]) -> dict[str, float]:
+def _derive_values(spec: Spec, named: Iterable[str]) -> dict[str, float]:
     """The values that named parameters have which follow from others."""
     following = [name for name in named if (d := parameter_of(spec, name)) is not None and d.derived is not None]
     if not following:
@@ -109,7 +109,7 @@ def parameter_of(spec: Spec, path: str) -> Parameter | None:
     """The declaration of the parameter of a path, None where there is none."""
     part, _, key = path.rpartition(".")
     kinds = [p.type for p in spec.parts if p.name == part]
-    return declared(spec.types[kinds[0]], Parameter).get(key) if kinds else None
+    return list_declared(spec.types[kinds[0]], Parameter).get(key) if kinds else None
 
 
 def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], Problems]:
@@ -126,7 +126,7 @@ def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], Pr
             values[path] = options[written.lower()]
         elif known[path].also is FilmMap and names_map(written):
             try:
-                values[path] = map_named(written, Path())
+                values[path] = find_map(written, Path())
             except GearheatError as error:
                 problems += [f"{path}: {problem}" for problem in error.problems]
         else:
@@ -135,7 +135,7 @@ def _choices(spec: Spec, assignments: Iterable[str]) -> tuple[dict[str, Any], Pr
     return values, problems
 
 
-def _filled(scenario: Scenario, assignments: Sequence[str]) -> dict[str, str]:
+def _list_filled_sources(scenario: Scenario, assignments: Sequence[str]) -> dict[str, str]:
     """Sources of the values that parts filled from a catalogue have, but for those that are set one by one."""
     parts = {part.name for part in scenario.spec.parts}
     single = {_name(text) for text in assignments}

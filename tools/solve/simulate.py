@@ -15,16 +15,16 @@ from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError, suggestion
 from ...model.run.schedule import Schedule
 from ...model.run.simulate import simulate as integrate
-from ...model.units import SHOWN, from_si, in_unit, shown
+from ...model.units import SHOWN, from_si, in_unit, show_unit
 from ...scenarios.duty import duty_names, read_duty
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.columns import titled
 from ..show.display import Columns, optional
 from ..show.picture import Picture
-from .settings import adjusted, flat_of
+from .settings import adjust, flat_of
 from .steady import outside_of
-from .unchecked import unchecked
+from .unchecked import find_unchecked
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -78,7 +78,7 @@ class TimeSeries(Columns):
     def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
         """First and last value of each column, states first."""
         ends = [(n, self.units[n], float(c[0]), float(c[-1])) for n, c in self.columns.items()]
-        rows = [(n, from_si(first, unit), from_si(last, unit), shown(unit)) for n, unit, first, last in ends]
+        rows = [(n, from_si(first, unit), from_si(last, unit), show_unit(unit)) for n, unit, first, last in ends]
         return ("name", "first", "last", "unit"), rows
 
     def as_dict(self) -> dict[str, Any]:
@@ -88,7 +88,7 @@ class TimeSeries(Columns):
             "rows": len(self.time),
             "stop_s": float(self.time[-1]),
             "final": {name: from_si(float(column[-1]), self.units[name]) for name, column in self.columns.items()},
-            "units": {name: shown(self.units[name]) for name in self.columns},
+            "units": {name: show_unit(self.units[name]) for name in self.columns},
             **self.about[1],
         }
 
@@ -154,7 +154,7 @@ class TimeSeries(Columns):
         drawn = names or [name for name in self.columns if self.units[name] == "K"]
         for name in drawn:
             panel.plot(self.time / 60, from_si(self[name], self.units[name]), label=name)
-        units = dict.fromkeys(shown(self.units[name]) for name in drawn)
+        units = dict.fromkeys(show_unit(self.units[name]) for name in drawn)
         panel.set(title=self.name, xlabel="time [min]", ylabel=", ".join(units))
         panel.legend()
         return panel
@@ -193,7 +193,7 @@ def simulate(rig: RigLike, duty: Duty, set: Settings = ()) -> TimeSeries:
         >>> run.plot("oil.T", "wall.T")  # doctest: +SKIP
     """
     with duty_file(duty) as path:
-        scenario = adjusted(scenario_of(rig), set, named=duty_names(path))
+        scenario = adjust(scenario_of(rig), set, named=duty_names(path))
         flat = flat_of(scenario)
         schedule = read_duty(path, flat)
     result = integrate(flat, schedule, start=first_temperatures(scenario, flat, schedule))
@@ -202,7 +202,7 @@ def simulate(rig: RigLike, duty: Duty, set: Settings = ()) -> TimeSeries:
         "energy_residual": result.audit.residual,
         "outside": outside_of(result),
         "laws": list(result.laws),
-        "unchecked": unchecked(scenario, flat),
+        "unchecked": find_unchecked(scenario, flat),
     }
     name = f"{scenario.name}, {path.stem}"
     return TimeSeries(name, result.index, result.columns, result.units, (before, behind))

@@ -6,20 +6,20 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from ...model.core.declare import Port, State, declared
+from ...model.core.declare import Port, State, list_declared
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
 from ...model.machines.spec import assemble
 from ...model.run.result import Result
 from ...model.run.steady import steady as solve
-from ...model.units import from_si, shown
+from ...model.units import from_si, show_unit
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.scenario import Scenario
 from ..show.display import HEAD, Quantities
 from ..show.heat_paths import heat_flows, heat_paths
 from ..show.picture import Picture
-from .settings import adjusted, flat_of
-from .unchecked import unchecked
+from .settings import adjust, flat_of
+from .unchecked import find_unchecked
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -74,7 +74,7 @@ class SteadyState(Quantities):
             "rig": self.scenario.name,
             "plot": None,
             **point_of(self.flat, self.result),
-            "unchecked": unchecked(self.scenario, self.flat),
+            "unchecked": find_unchecked(self.scenario, self.flat),
         }
 
     def drawing(self) -> Picture:
@@ -120,7 +120,7 @@ def steady(rig: RigLike, set: Settings = ()) -> SteadyState:
         >>> hot.to("oil.T", "degC") > 80
         True
     """
-    scenario = adjusted(scenario_of(rig), set)
+    scenario = adjust(scenario_of(rig), set)
     flat = flat_of(scenario)
     return SteadyState(scenario, flat, solve(flat, conditions(scenario, flat)))
 
@@ -141,8 +141,8 @@ def first_of(scenario: Scenario, flat: FlatModel, values: Iterable[str]) -> list
 
 def leading_outputs(scenario: Scenario) -> list[str]:
     """What a picture shows of a rig: the temperature of its oil, or of its first body; losses and efficiencies."""
-    warm = [p for p in scenario.spec.parts if "T" in declared(scenario.spec.types[p.type], State)]
-    warm.sort(key=lambda p: "lubricant" not in declared(scenario.spec.types[p.type], Port))
+    warm = [p for p in scenario.spec.parts if "T" in list_declared(scenario.spec.types[p.type], State)]
+    warm.sort(key=lambda p: "lubricant" not in list_declared(scenario.spec.types[p.type], Port))
     meters = scenario.spec.of_type("Efficiency")
     return [*(f"{p.name}.T" for p in warm[:1]), *(f"{name}.{key}" for name in meters for key in ("P_loss", "eta"))]
 
@@ -156,7 +156,7 @@ def point_of(flat: FlatModel, result: Result) -> dict[str, Any]:
     """A steady result as an object: values by path in the units shown to a person, and how far it can be trusted."""
     return {
         "values": {name: from_si(float(column[0]), result.units[name]) for name, column in result.columns.items()},
-        "units": {name: shown(unit) for name, unit in result.units.items()},
+        "units": {name: show_unit(unit) for name, unit in result.units.items()},
         "inputs": [q.name for q in flat.inputs],
         "states": [q.name for q in flat.states],
         "energy_residual": result.audit.residual,

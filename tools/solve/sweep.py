@@ -15,8 +15,8 @@ import numpy as np
 
 from ...fmu.batch import Status
 from ...model.errors import SolveError
-from ...model.units import from_si, shown
-from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, written
+from ...model.units import from_si, show_unit
+from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, spell
 from ..show.console import counting, note
 from ..show.display import Display, optional
 from ..show.picture import Picture
@@ -24,7 +24,7 @@ from . import sampling
 from .simulate import Duty, duty_file
 from .sweep_file import Column, Store, words, work_file, write_table
 from .sweep_plan import MOST_DRAWN, Plan, Request, plan_sweep
-from .sweep_rows import TELLING, Block, clustered, local
+from .sweep_rows import TELLING, Block, local, run_on_cluster
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -102,7 +102,7 @@ class Sweep(Display):
         columns = {name: ends[:, plan.job.outputs.index(name)] for name in plan.drawn}
         columns = {axis.name: plan.values[:, k] for k, axis in enumerate(plan.axes)} | columns
         units = {name: plan.flat.quantity(name).unit for name in columns}
-        shows = [Field(n, shown(units[n]), Column(n, units[n]).values(c)) for n, c in columns.items()]
+        shows = [Field(n, show_unit(units[n]), Column(n, units[n]).values(c)) for n, c in columns.items()]
         names = " and ".join(axis.name for axis in plan.axes)
         return fields(f"{plan.rig}: {names}", shows[: len(plan.axes)], shows[len(plan.axes) :])
 
@@ -160,7 +160,7 @@ def sweep(
     texts, counts = list(vary), []
     if isinstance(vary, Mapping):
         known = scenario.settable()
-        texts = [f"{n}={written(ends[0], known.get(n))}..{written(ends[1], known.get(n))}" for n, ends in vary.items()]
+        texts = [f"{n}={spell(ends[0], known.get(n))}..{spell(ends[1], known.get(n))}" for n, ends in vary.items()]
         counts = [str(ends[2]) for ends in vary.values() if len(ends) > 2]
     with duty_file(duty) if duty is not None else nullcontext() as path, tempfile.TemporaryDirectory() as folder:
         request = Request(
@@ -200,7 +200,7 @@ def run_sweep(request: Request, folder: Path) -> Sweep:
             note(f"{done} of {len(plan.values)} rows were finished before: {store.path}")
         todo: Iterable[Block] = ((k, plan.values[blocks[k]]) for k in left)
         if request.scheduler is not None:
-            solved = clustered(plan.job, todo, request.scheduler)
+            solved = run_on_cluster(plan.job, todo, request.scheduler)
         else:
             solved = local(plan.job, todo, request.jobs)
         began = time.perf_counter()
@@ -258,7 +258,7 @@ class Summary:
         means = self.sum / max(self.count, 1)
         for name, *numbers in zip(self.plan.job.outputs, self.low, means, self.high, strict=True):
             q = self.plan.flat.quantity(name)
-            yield name, shown(q.unit), q.doc, [from_si(float(v), q.unit) if self.count else np.nan for v in numbers]
+            yield name, show_unit(q.unit), q.doc, [from_si(float(v), q.unit) if self.count else np.nan for v in numbers]
 
     def as_dict(self, out: Path | None) -> dict[str, Any]:
         """The summary as an object.
@@ -274,7 +274,7 @@ class Summary:
             "out": out and str(out),
             "rows": len(plan.values),
             "status": {status.name.lower(): n for status, n in self.statuses.items() if n},
-            "varied": {a.name: sampling.described(a, plan.flat.quantity(a.name)) for a in plan.axes},
+            "varied": {a.name: sampling.describe_axis(a, plan.flat.quantity(a.name)) for a in plan.axes},
             "outputs": {
                 name: {"unit": unit, "low": low, "mean": mean, "high": high}
                 for name, unit, _, (low, mean, high) in self.outputs()

@@ -17,7 +17,7 @@ import numpy as np
 from ...fmu.batch import Status
 from ...model.errors import DataError
 from ...model.files import flows, replacing
-from ...model.units import from_si, shown
+from ...model.units import from_si, show_unit
 from ..show.console import note
 
 #: First bytes of a work file.
@@ -138,7 +138,7 @@ class Column:
     @property
     def title(self) -> str:
         """The name with the unit shown to a person."""
-        return self.name if self.unit is None else f"{self.name} [{shown(self.unit)}]"
+        return self.name if self.unit is None else f"{self.name} [{show_unit(self.unit)}]"
 
     def values(self, numbers: np.ndarray) -> np.ndarray:
         """Numbers in SI as the table shows them."""

@@ -24,13 +24,13 @@ from ...scenarios.duty import duty_names, read_duty
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
 from . import sampling
-from .settings import adjusted, flat_of
+from .settings import adjust, flat_of
 from .simulate import first_temperatures
 from .steady import leading_outputs, outside_of
 from .sweep_file import SUFFIXES, Column
 from .sweep_rows import TELLING, Job
-from .uncertainties import UNCERTAINTY, reasons, sampled, shares
-from .unchecked import unchecked
+from .uncertainties import UNCERTAINTY, draw_values, reasons, shares
+from .unchecked import find_unchecked
 
 #: Rows of a block: what an interruption may cost, and what a worker of a cluster gets at a time.
 BLOCKS = {"steady": 8192, "warmup": 256}
@@ -147,7 +147,7 @@ def plan_sweep(request: Request) -> Plan:
     with problems:
         scheduled = duty_names(request.duty) if request.duty is not None else ()
     with problems:
-        scenario = adjusted(scenario, request.assignments, named=[*names, *scheduled])
+        scenario = adjust(scenario, request.assignments, named=[*names, *scheduled])
     problems.check()
     flat = flat_of(scenario)
     kinds = ("input", "parameter", "state") if request.kind == "warmup" else ("input", "parameter")
@@ -157,24 +157,24 @@ def plan_sweep(request: Request) -> Plan:
     Problems(filter(None, found)).check()
     axes = sampling.axes(written, {name: flat.quantity(name) for name in names})
     if request.grid is not None:
-        values = sampling.gridded(axes, request.grid)
+        values = sampling.lay_grid(axes, request.grid)
     else:
-        axes, values = _sampled(request, scenario, flat, axes)
+        axes, values = _draw_rows(request, scenario, flat, axes)
     job = _job(request, scenario, flat, tuple(axis.name for axis in axes))
     drawn = _outputs(request) or leading_outputs(scenario) or job.outputs[:MOST_PANELS]
-    return Plan(scenario.name, request.kind, axes, values, job, flat, unchecked(scenario, flat), drawn)
+    return Plan(scenario.name, request.kind, axes, values, job, flat, find_unchecked(scenario, flat), drawn)
 
 
-def _sampled(
+def _draw_rows(
     request: Request, scenario: Scenario, flat: FlatModel, axes: tuple[sampling.Axis, ...]
 ) -> tuple[tuple[sampling.Axis, ...], np.ndarray]:
     """Axes and values of random rows, all uncertain parameters among them where they are asked for."""
-    drawn = partial(sampling.sampled, rows=request.sample or 0, method=request.method, seed=request.seed)
+    drawn = partial(sampling.draw_sample, rows=request.sample or 0, method=request.method, seed=request.seed)
     if UNCERTAINTY not in request.vary:
         return axes, drawn(axes)
     why = reasons(scenario, flat, [axis.name for axis in axes])
     values = drawn((*axes, *shares(why)))
-    more, uncertain = sampled(why, flat, values[:, len(axes) :])
+    more, uncertain = draw_values(why, flat, values[:, len(axes) :])
     return (*axes, *more), np.column_stack([values[:, : len(axes)], uncertain])
 
 

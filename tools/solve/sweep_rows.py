@@ -93,7 +93,7 @@ def local(job: Job, blocks: Iterable[Block], threads: int) -> Iterator[Block]:
         yield number, job.rows(values, threads)
 
 
-def clustered(job: Job, blocks: Iterable[Block], address: str) -> Iterator[Block]:
+def run_on_cluster(job: Job, blocks: Iterable[Block], address: str) -> Iterator[Block]:
     """The finished blocks in the order in which the workers of a Dask cluster finish them.
 
     Raises:

@@ -63,7 +63,9 @@ def shares(found: Sequence[Uncertainty]) -> tuple[Axis, ...]:
     return tuple(Axis(reason.name, "normal", 0.0, 1.0) for reason in found)
 
 
-def sampled(found: Sequence[Uncertainty], flat: FlatModel, sizes: np.ndarray) -> tuple[tuple[Axis, ...], np.ndarray]:
+def draw_values(
+    found: Sequence[Uncertainty], flat: FlatModel, sizes: np.ndarray
+) -> tuple[tuple[Axis, ...], np.ndarray]:
     """Values of all uncertain parameters, none beyond the range of its parameter.
 
     Their logarithms are normal, as in a diagnosis before it has seen data; a parameter that is zero is normal itself.
@@ -92,7 +94,7 @@ def sampled(found: Sequence[Uncertainty], flat: FlatModel, sizes: np.ndarray) ->
     return axes, np.clip(values, *np.array(ends).T)
 
 
-def uncertain(scenario: Scenario, flat: FlatModel) -> Uncertain:
+def collect_uncertain(scenario: Scenario, flat: FlatModel) -> Uncertain:
     """What an FMU of a rig needs for its standard deviations: of temperatures, and of the loss and the efficiency.
 
     Args:

@@ -10,7 +10,7 @@ from ...model.core.flat import FlatModel
 from ...scenarios.scenario import Scenario
 
 
-def unchecked(scenario: Scenario, flat: FlatModel, filled: Iterable[tuple[str, str]] = ()) -> list[dict[str, Any]]:
+def find_unchecked(scenario: Scenario, flat: FlatModel, filled: Iterable[tuple[str, str]] = ()) -> list[dict[str, Any]]:
     """Catalogue entries in use with values that were never checked against a print; values without effect left out.
 
     Args:

@@ -22,11 +22,11 @@ from ...model.sources import LawInfo
 from ...model.units import to_si
 from ...scenarios.document import paths
 from ...scenarios.measured.readings import measured_rows, table_columns
-from ...scenarios.measured.study import measured_of
+from ...scenarios.measured.study import read_study
 from ...scenarios.published import Row
 from ...scenarios.scenario import Scenario, parse_assignments
-from ..solve.losses import at_readings, contacts_at_operating_point, held
-from ..solve.settings import adjusted, choice_paths, flat_of, parameter_of
+from ..solve.losses import at_readings, contacts_at_operating_point, hold
+from ..solve.settings import adjust, choice_paths, flat_of, parameter_of
 from .expressions import evaluate
 from .verdicts import Value, number_of
 
@@ -64,7 +64,7 @@ class RigValues:
         Raises:
             ScenarioError: the row names what the rig does not have
         """
-        found = {"steady": self._steady, "held": self._held, "design": self._design}
+        found = {"steady": self._steady, "held": self._hold, "design": self._design}
         found |= {"losses": self._at_readings, "contacts": self._contacts}
         try:
             return found[row.run](row)
@@ -74,20 +74,20 @@ class RigValues:
     def _steady(self, row: Row) -> Value:
         setting = self._setting(_assignments(row))
         result = steady(setting.flat, setting.values, guess=setting.states)
-        return _read(row.path, setting, {name: float(column[0]) for name, column in result.columns.items()})
+        return _read_value(row.path, setting, {name: float(column[0]) for name, column in result.columns.items()})
 
-    def _held(self, row: Row) -> Value:
+    def _hold(self, row: Row) -> Value:
         setting = self._setting(_assignments(row))
-        columns = held(setting.flat, [setting.values], [to_si(row.temperature, "K", name="temperature")])
-        return _read(row.path, setting, {name: float(column[0]) for name, column in columns.items()})
+        columns = hold(setting.flat, [setting.values], [to_si(row.temperature, "K", name="temperature")])
+        return _read_value(row.path, setting, {name: float(column[0]) for name, column in columns.items()})
 
     def _design(self, row: Row) -> Value:
-        free, targets = _listed(row.free), _listed(row.target)
+        free, targets = _as_list(row.free), _as_list(row.target)
         setting = self._setting(_assignments(row), free)
         aims = parse_assignments(setting.flat, targets)
         solution = design(setting.flat, free, aims, setting.values, guess=setting.states)
         columns = {name: float(column[0]) for name, column in solution.result.columns.items()}
-        return _read(row.path or free[0], setting, columns | dict(solution.values))
+        return _read_value(row.path or free[0], setting, columns | dict(solution.values))
 
     def _contacts(self, row: Row) -> Value:
         """A total of the contacts over a mesh cycle, or their columns: all of them, or at one angle."""
@@ -111,11 +111,11 @@ class RigValues:
     def _cycle(self, assignments: tuple[str, ...]) -> ContactTable:
         """The contacts at the operating point with values set."""
         if assignments not in self._cycles:
-            self._cycles[assignments] = contacts_at_operating_point(adjusted(self.scenario, assignments))
+            self._cycles[assignments] = contacts_at_operating_point(adjust(self.scenario, assignments))
         return self._cycles[assignments]
 
     def _at_readings(self, row: Row) -> Value:
-        readings = selected(self._readings(_assignments(row)), row.select)
+        readings = select_rows(self._readings(_assignments(row)), row.select)
         if not readings:
             raise ScenarioError(f"no reading of {self.scenario.name} has {row.select}.")
 
@@ -129,8 +129,8 @@ class RigValues:
     def _readings(self, assignments: tuple[str, ...]) -> list[dict[str, Any]]:
         """The losses at all measured readings beside what was measured, a row each."""
         if assignments not in self._losses:
-            scenario = adjusted(self.scenario, assignments)
-            if (study := measured_of(scenario)) is None:
+            scenario = adjust(self.scenario, assignments)
+            if (study := read_study(scenario)) is None:
                 raise ScenarioError(f"{scenario.name} has no measured readings.")
             read, table = measured_rows(study), table_columns(study)
             rows = zip(study.read_rows, at_readings(study, "measured"), strict=True)
@@ -144,7 +144,7 @@ class RigValues:
         numbers = parse_assignments(self.scenario, [text for text in assignments if text not in chosen])
         named = [*numbers, *free]
         own = [name for name in named if (p := parameter_of(self.scenario.spec, name)) is not None and p.derived]
-        structural = adjusted(self.scenario, chosen, named=named)
+        structural = adjust(self.scenario, chosen, named=named)
         key = (tuple(chosen), tuple(own), tuple(structural.given.items()))
         if key not in self._structures:
             self._structures[key] = (structural, flat_of(structural))
@@ -158,7 +158,7 @@ class RigValues:
         )
 
 
-def selected(rows: Iterable[Mapping[str, Any]], select: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+def select_rows(rows: Iterable[Mapping[str, Any]], select: Mapping[str, Any]) -> list[Mapping[str, Any]]:
     """The rows whose columns have the values asked for, in the order of the first column that lists several.
 
     Args:
@@ -189,7 +189,7 @@ def single(path: str, value_of: Callable[[str], Any]) -> float | bool:
         raise ScenarioError(f"{path}: {error}.") from None
 
 
-def _read(path: str, setting: _Setting, columns: Mapping[str, float]) -> Value:
+def _read_value(path: str, setting: _Setting, columns: Mapping[str, float]) -> Value:
     """A path, or an expression in paths, of a result."""
     flat = setting.flat
     given = {q.name: q.start for q in flat.parameters} | dict(setting.values)
@@ -209,5 +209,5 @@ def _assignments(row: Row) -> tuple[str, ...]:
     return tuple(f"{path}={value}" for path, value in paths(row.set))
 
 
-def _listed(text: str | list[str]) -> list[str]:
+def _as_list(text: str | list[str]) -> list[str]:
     return [text] if isinstance(text, str) else list(text)

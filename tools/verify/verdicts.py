@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from ...model.errors import ScenarioError
-from ...model.units import in_unit, kind_of, shown, split
+from ...model.units import in_unit, kind_of, show_unit, split_quantity
 from ...scenarios.published import Number, Row
 
 REPRODUCED = "reproduced"
@@ -107,9 +107,9 @@ class Verdict:
             "where": row.where,
             "kind": self.kind,
             "run": row.run,
-            "published": as_printed(row.published, row.unit),
-            "corrected": as_printed(row.corrected, row.unit),
-            "recomputed": as_printed(row.recomputed, row.unit),
+            "published": format_printed(row.published, row.unit),
+            "corrected": format_printed(row.corrected, row.unit),
+            "recomputed": format_printed(row.recomputed, row.unit),
             "model": self.model,
             "unit": self.unit,
             "expected": self.expected,
@@ -146,7 +146,7 @@ class Machine:
         }
 
 
-def as_printed(number: Number | None, unit: str) -> str | None:
+def format_printed(number: Number | None, unit: str) -> str | None:
     """A number as a reader sees it, with its unit.
 
     Args:
@@ -164,7 +164,7 @@ def _difference(unit: str) -> str:
     return "K" if unit == "degC" else unit
 
 
-def judged(row: Row, found: Value) -> Verdict:
+def judge(row: Row, found: Value) -> Verdict:
     """The verdict on a row.
 
     Args:
@@ -181,7 +181,7 @@ def judged(row: Row, found: Value) -> Verdict:
     if row.is_statement:
         raise ScenarioError(f"{row.name}: has no tolerance. Give tol or rel, or a path that compares.")
     unit = _unit_of(row, found)
-    value = found.value if found.labelled else _converted(row, found, unit)
+    value = found.value if found.labelled else _convert(row, found, unit)
     if row.contradiction:
         return Verdict(row, CONTRADICTED, unit, value, why=row.why)
     expected = _number(row, unit)
@@ -202,19 +202,19 @@ def _on_statement(row: Row, holds: bool) -> Verdict:
 
 def _unit_of(row: Row, found: Value) -> str:
     """The unit in which a row is shown: that of its number, else the row's own, else the value's."""
-    written = _split(row.expected)[1] if isinstance(row.expected, str) else ""
+    written = _split_text(row.expected)[1] if isinstance(row.expected, str) else ""
     if written and not (row.contradiction and row.unit):
         return written
     if row.unit or row.contradiction:
-        return row.unit or shown(found.unit) or "1"
-    if isinstance(row.expected, str) and _split(row.expected)[0] is None:
+        return row.unit or show_unit(found.unit) or "1"
+    if isinstance(row.expected, str) and _split_text(row.expected)[0] is None:
         raise ScenarioError(f'{row.name}: "{row.expected}" is no number with a unit. Write for example "139.1 degC".')
     if found.unit not in ("", "1"):
-        raise ScenarioError(f"{row.name}: has no unit. Give unit, for example {shown(found.unit)}.")
+        raise ScenarioError(f"{row.name}: has no unit. Give unit, for example {show_unit(found.unit)}.")
     return "1"
 
 
-def _converted(row: Row, found: Value, unit: str) -> float:
+def _convert(row: Row, found: Value, unit: str) -> float:
     """The model's value in the unit of the row."""
     if found.unit and kind_of(found.unit) != kind_of(unit):
         raise ScenarioError(f'{row.name}: unit "{unit}" does not fit {found.unit} of {row.path or "the value"}.')
@@ -226,14 +226,14 @@ def _number(row: Row, unit: str) -> float:
     expected = row.expected
     if not isinstance(expected, str):
         return float("nan") if expected is None else float(expected)
-    return _split(expected)[0] or 0.0
+    return _split_text(expected)[0] or 0.0
 
 
 def _tolerance(row: Row, unit: str) -> float:
     """The distance allowed in the unit of the row; a difference of temperatures in K is one in degC."""
     if not isinstance(row.tol, str):
         return float(row.tol or 0.0)
-    number, written = _split(row.tol)
+    number, written = _split_text(row.tol)
     if number is None or (written and kind_of(written) != kind_of(unit)):
         raise ScenarioError(f'{row.name}: tol = "{row.tol}" does not fit "{unit}".')
     return number * _size(written or unit) / _size(unit)
@@ -245,9 +245,9 @@ def _size(unit: str) -> float:
     return 1.0 / (in_unit(1.0, unit) - in_unit(0.0, unit))
 
 
-def _split(text: str) -> tuple[float | None, str]:
+def _split_text(text: str) -> tuple[float | None, str]:
     try:
-        return split(text)
+        return split_quantity(text)
     except ValueError:
         return None, ""
 
@@ -288,9 +288,9 @@ def lines(verdicts: Sequence[Verdict]) -> list[list[Any]]:
 def _line(v: Verdict, why: str) -> list[Any]:
     row = v.row
     told = f"{v.verdict}: {why}" if why else v.verdict
-    other = as_printed(row.corrected if row.recomputed is None else row.recomputed, row.unit) or ""
+    other = format_printed(row.corrected if row.recomputed is None else row.recomputed, row.unit) or ""
     name = f"{row.law}: {row.name}" if row.law else row.name
-    numbers = [as_printed(row.published, row.unit) or "", other, v.shown, v.allowed]
+    numbers = [format_printed(row.published, row.unit) or "", other, v.shown, v.allowed]
     return [name, row.where, *numbers, told]
 
 

@@ -23,7 +23,7 @@ from ..show.console import counting, write
 from ..show.display import Display
 from ..show.pages import page
 from .model_values import RigValues, single
-from .verdicts import HEAD, NOT_REPRODUCED, VERDICTS, Machine, Value, Verdict, counts, judged, kinds, lines
+from .verdicts import HEAD, NOT_REPRODUCED, VERDICTS, Machine, Value, Verdict, counts, judge, kinds, lines
 
 A = TypeVar("A")
 B = TypeVar("B")
@@ -55,7 +55,7 @@ class Verification(Display):
                 "kinds": kinds(self.laws),
                 "rows": [{"law": v.row.law, **v.as_dict()} for v in self.laws],
             },
-            "sources": _cited(verdict.row.where for verdict in every),
+            "sources": _list_citations(verdict.row.where for verdict in every),
         }
 
     @property
@@ -130,7 +130,7 @@ def verify(rig: RigLike | None = None) -> Verification:
     laws = [row for row in golden_rows() if rig is None or law_of(row) in rigs[0].laws]
     with counting("values", sum(map(len, rows)) + len(laws)) as advance:
         machines = _each(lambda pair: _machine(pair[0], pair[1], advance), list(zip(rigs, rows, strict=True)))
-        return Verification(machines, verified(laws, None, advance))
+        return Verification(machines, judge_rows(laws, None, advance))
 
 
 def _each(work: Callable[[A], B], items: Sequence[A]) -> list[B]:
@@ -163,7 +163,7 @@ def published_of(scenario: Scenario) -> tuple[Row, ...]:
         raise ScenarioError([f"{scenario.name}: {problem}" for problem in error.problems]) from None
 
 
-def _cited(places: Iterable[str]) -> dict[str, str]:
+def _list_citations(places: Iterable[str]) -> dict[str, str]:
     """The sources whose keys stand in places such as "Dias2014, table 5.7": key -> author, year and title."""
     words = {word for place in places for word in re.findall(r"\w+", place)}
     return {key: s.cited for key, s in sources().items() if key in words}
@@ -171,11 +171,11 @@ def _cited(places: Iterable[str]) -> dict[str, str]:
 
 def _machine(values: RigValues, rows: Sequence[Row], advance: Callable[[int], None]) -> Machine:
     scenario = values.scenario
-    verdicts = verified(rows, values, advance)
+    verdicts = judge_rows(rows, values, advance)
     return Machine(scenario.name, scenario.doc, scenario.reproduces, verdicts, tuple(errata_of(scenario)))
 
 
-def verified(
+def judge_rows(
     rows: Sequence[Row], rig: RigValues | None, advance: Callable[[int], None] = lambda _: None
 ) -> tuple[Verdict, ...]:
     """The verdict on each row.
@@ -195,7 +195,7 @@ def verified(
         if not known.keys() >= set(row.of.values()):  # what is wrong with the others is told
             continue
         try:
-            verdict = judged(row, _value(row, rig, known))
+            verdict = judge(row, _value(row, rig, known))
             known[row.name] = verdict
             found.append((row, verdict))
         except GearheatError as error:

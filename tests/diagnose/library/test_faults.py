@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from gearheat.model.core.component import SOUND
-from gearheat.model.core.declare import Parameter, declared
+from gearheat.model.core.declare import Parameter, list_declared
 from gearheat.model.machines.roles import FAULTS, Roles, faults_of
 from gearheat.model.machines.spec import PartSpec
 from gearheat.model.parts import PARTS
@@ -27,7 +27,7 @@ def test_a_part_type_says_by_what_it_may_fail(kind):
     assert cls.faults is not None or cls.role in FAULTS, "declare `faults`, SOUND where nothing can fail"
     for cause, keys in faults_of(cls).items():
         assert cause in NAMES
-        assert set(keys) <= set(declared(cls, Parameter))
+        assert set(keys) <= set(list_declared(cls, Parameter))
 
 
 def test_what_adds_to_a_model_does_not_fail():

@@ -9,7 +9,7 @@ import numpy as np
 from ....model.errors import DataError
 from ....scenarios.measured.card import Card
 from ....scenarios.measured.nominal import Nominal
-from ....scenarios.measured.sensors import driven_by, sensors_of
+from ....scenarios.measured.sensors import drive_by, sensors_of
 from ....scenarios.measured.table import Campaign, Sensor
 from ....scenarios.scenario import Scenario
 
@@ -37,7 +37,7 @@ def planned_campaign(scenario: Scenario, card: Card, points: Campaign | None) ->
     sensors = sensors_of(scenario, card)
     if not any(s.role == "read" for s in sensors):
         raise DataError(f"{scenario.name}: no sensor is compared. Declare one under [sensors] in the rig file.")
-    nominal = Nominal(driven_by(scenario, sensors))
+    nominal = Nominal(drive_by(scenario, sensors))
     campaign = _grid(scenario, card, sensors, nominal) if points is None else points
     read = tuple(s for s in sensors if s.role == "read" and s.name not in campaign.values)
     campaign = replace(campaign, sensors=(*campaign.sensors, *read))

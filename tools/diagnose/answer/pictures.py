@@ -8,7 +8,7 @@ import numpy as np
 from scipy.special import logsumexp
 from scipy.stats import chi2
 
-from ....model.core.faults import listed
+from ....model.core.faults import name_all
 from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.evidence import White, log_bayes_factors
 from ..infer.found import Found, Hypothesis
@@ -160,6 +160,6 @@ def _asks(sensor: Sensor, read: Sequence[Sensor]) -> str:
     others = [s for s in read if s is not sensor]
     warm = [s for s in others if s.kind.endswith("_temp")]
     if sensor.kind.endswith("_temp") and warm:
-        rest = listed([channels.words(s) for s in others if s not in warm])
+        rest = name_all([channels.words(s) for s in others if s not in warm])
         return f"{channels.words(sensor)} against the other thermometers{f' and {rest}' if rest else ''}"
-    return f"{channels.words(sensor)}, given {listed([channels.words(s) for s in others])}"
+    return f"{channels.words(sensor)}, given {name_all([channels.words(s) for s in others])}"

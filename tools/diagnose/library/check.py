@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 
 import numpy as np
 
-from ....model.core.declare import Parameter, declared
+from ....model.core.declare import Parameter, list_declared
 from ....model.errors import suggestion
 from ....model.machines.spec import Spec
 from ....model.parts.free_form import EXTRA_PARTS
@@ -61,7 +61,7 @@ def parameters(spec: Spec) -> dict[str, float]:
     """Path -> value of all parameters that a rig file states or that have a default."""
     values: dict[str, float] = {}
     for part in spec.parts:
-        for key, d in declared(spec.types[part.type], Parameter).items():
+        for key, d in list_declared(spec.types[part.type], Parameter).items():
             value = part.values.get(key, d.default)
             if isinstance(value, (int, float)):
                 values[f"{part.name}.{key}"] = float(value)

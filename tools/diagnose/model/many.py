@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from ....fmu import emit
-from ....fmu.batch_library import address, instructions, load, widened
+from ....fmu.batch_library import address, instructions, load, widen
 
 
 class Compiled:
@@ -72,7 +72,7 @@ def _loaded(text: str) -> ctypes.CDLL:
     """A library whose text works on some rows side by side."""
     above = [f"#include <{name}.h>" for name in ("math", "stdint", "stdlib", "string")]
     lanes = (files("gearheat.fmu") / "wrapper" / "lanes.h").read_text(encoding="utf-8")
-    return load(widened("\n".join([*above, lanes, text]), instructions()))
+    return load(widen("\n".join([*above, lanes, text]), instructions()))
 
 
 def record(**values: int | np.ndarray) -> Any:

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ....fmu.batch_library import shared
+from ....fmu.batch_library import share_rows
 from .many import library, record
 from .plant import Plant
 
@@ -103,7 +103,7 @@ def march(
     chosen = range(len(plant.knobs)) if wanted is None else wanted
     duty = _duty(phases, x0, p, pace, np.isin(np.arange(len(plant.knobs)), list(chosen)))
     places = [ctypes.byref(r) for r in (plant.record, duty, result)]
-    shared(lambda begin, end: int(library().march(*places, begin, end)), n, n, 0 if n > 1 else 1)
+    share_rows(lambda begin, end: int(library().march(*places, begin, end)), n, n, 0 if n > 1 else 1)
     return Marched(found["y"], Slopes(found["by"], found["local"], found["tried"]) if turned else None)
 
 

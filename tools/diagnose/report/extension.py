@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ....model.core.declare import Output, Parameter, declared
+from ....model.core.declare import Output, Parameter, list_declared
 from ....model.machines.spec import PartSpec
 from ....model.parts.free_form import EXTRA_PARTS
 from ....model.units import from_si
@@ -146,7 +146,7 @@ def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scen
     """The scenario with a cause, and what of it the machine cannot hold."""
     form, outside = one.form, f"Not a matter of the machine, hence not below: {one.told}."
     with_parts = scenario.spec.with_parts(form.parts, form.connections, EXTRA_PARTS)
-    declarations = {p.name: declared(with_parts.types[p.type], Parameter) for p in with_parts.parts}
+    declarations = {p.name: list_declared(with_parts.types[p.type], Parameter) for p in with_parts.parts}
     base = {f"{name}.{key}": d.default for name, own in declarations.items() for key, d in own.items()}
     base |= {f"{p.name}.{key}": value for p in with_parts.parts for key, value in p.values.items()}
     changed = None if form.spread else _changed(form, one.theta, base)
@@ -158,7 +158,7 @@ def _added(scenario: Scenario, one: Applied, data: str, oils: int) -> tuple[Scen
     neutral = {f"{p.name}.{key}": value for p in form.parts for key, value in p.values.items()}
     values = {_renamed(path, names): value for path, value in (neutral | changed).items()}
     kinds = {p.name: with_parts.types[p.type] for p in parts}
-    lossy = [name for name, kind in kinds.items() if "P" in declared(kind, Output) and hasattr(kind, "shaft")]
+    lossy = [name for name, kind in kinds.items() if "P" in list_declared(kind, Output) and hasattr(kind, "shaft")]
     losses = {**scenario.losses, **{f"P_{name}_W": (f"{name}.P",) for name in lossy}}
     oil = {path.rpartition(".")[0] for path in changed} & {n for n, own in scenario.entries.items() if "oil" in own}
     notes = [f"{one.told}: the values below are of the rig's own oil; others change alike."] if oil and oils > 1 else []

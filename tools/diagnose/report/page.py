@@ -33,7 +33,7 @@ def render(findings: Findings) -> str:
         doubt=phrases.gains_nothing(findings),
         **{name: _sections(made(findings)) for name, made in tables.SECTIONS.items()},
         plot=_data(findings),
-        **pages.vendored(),
+        **pages.load_plot_library(),
     )
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable
 
-from ....model.core.faults import listed
+from ....model.core.faults import name_all
 from ..answer.evidence import Estimate, GrossReading, NuisanceOff, VarianceComponent
 from ..answer.findings import Answer, Cause, Findings, Gain, Impact
 from ..answer.numbers import LEAST_P
@@ -100,7 +100,7 @@ def names_of(causes: Iterable[str], last: str = "and", most: int = 100) -> str:
     """Causes in plain words with commas between and a word before the last one; the rest is counted beyond so many."""
     found = [name_of(c) for c in causes]
     more = [f"{len(found) - most} more"] if len(found) > most else []
-    return listed([*found[:most], *more], last)
+    return name_all([*found[:most], *more], last)
 
 
 def sentence(text: str) -> str:

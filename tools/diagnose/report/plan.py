@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Literal
 
-from ....model.core.faults import listed
+from ....model.core.faults import name_all
 from ...show.drawing import COLOURS, empty, legend, png, svg
 from ..answer.design import APART
 from ..answer.findings import Isolability
@@ -33,7 +33,7 @@ def sentence(plan: Plan) -> str:
         return f"No experiment here tells {names_of(plan.ids)} apart: they are one answer."
     best, last = plan.outlooks[0].experiments[0], (plan.together or plan.outlooks)[-1]
     several = len(last.experiments) > 1
-    what = f"{listed(last.experiments)} together" if several else plan.what(last.experiments[0])
+    what = f"{name_all(last.experiments)} together" if several else plan.what(last.experiments[0])
     reach = f"from {plan.now.smallest:.1f} to {last.smallest:.1f} standard deviations"
     limit = f"{plan.apart:g} standard deviations"
     found = {

@@ -45,7 +45,7 @@ def jobs(quick: bool) -> list[Job]:
     ]
 
 
-def _extrapolated(M: float, L: float, **more: Any) -> tuple[float, float, float]:
+def _extrapolate(M: float, L: float, **more: Any) -> tuple[float, float, float]:
     """H_c and H_min of second order on two grids, extrapolated, and the larger error of the load."""
     contact, U = cases.line(M, max(L, 1.0))
     oil = replace(cases.SIMPLE_OIL, alpha_p=cases.SIMPLE_OIL.alpha_p * L / max(L, 1.0))
@@ -57,7 +57,7 @@ def _extrapolated(M: float, L: float, **more: Any) -> tuple[float, float, float]
 
 def _table(case: Mapping[str, float], rel: float) -> Found:
     """One row of the table of another solver, whose first order is extrapolated."""
-    central, least, missing = _extrapolated(case["M"], case["L"])
+    central, least, missing = _extrapolate(case["M"], case["L"])
     name = f"M {case['M']:g} L {case['L']:g}"
     references = [2 * case[f"{h} 601"] - case[f"{h} 301"] for h in ("H_c", "H_min")]
     return {
@@ -71,7 +71,7 @@ def _table(case: Mapping[str, float], rel: float) -> Found:
 def _limit(limit: dict[str, Any]) -> Found:
     """A limit of the film."""
     rigid = limit["M"] < 1
-    central, least, missing = _extrapolated(limit["M"], limit["L"], **({"domain": WIDE} if rigid else {}))
+    central, least, missing = _extrapolate(limit["M"], limit["L"], **({"domain": WIDE} if rigid else {}))
     ours = least * limit["M"] if rigid else central * limit["M"] ** 0.2
     name = f"{limit['name']}, M {limit['M']:g} L {limit['L']:g}"
     return {"rows": [row(name, limit["value"], limit["reference"], ours, limit["rel"], missing)]}

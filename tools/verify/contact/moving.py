@@ -65,7 +65,7 @@ def _dent(share: float, n: int, steps: int) -> Found:
     places = [
         _place(x, line, at - AHEAD if share == 1.0 else at + AHEAD) for line, at in zip(change, dent, strict=True)
     ]
-    inside = _followed(places, dent)
+    inside = _find_moments(places, dent)
     slope = float(np.polyfit(moments[inside], np.array(places, dtype=float)[inside], 1)[0])
     name = f"M {M_STUDY:g} L {L_STUDY:g}, dented surface at {share:g} u_m"
     worst = max((f.load_error for f in films), key=abs)
@@ -82,7 +82,7 @@ def _dent(share: float, n: int, steps: int) -> Found:
     }
 
 
-def _followed(places: list[float | None], dent: np.ndarray) -> list[int]:
+def _find_moments(places: list[float | None], dent: np.ndarray) -> list[int]:
     """Moments from when the disturbance first is in the middle of the contact until it leaves it."""
     found: list[int] = []
     for i, at in enumerate(places):

@@ -36,7 +36,7 @@ def run(jobs: Sequence[Job], out: Path) -> list[tuple[Job, Found]]:
     place, found = folder(out / "work"), []
     for i, job in enumerate(jobs):
         path, made_by = place / f"{job.key}.json", fingerprint(job)
-        kept = _kept(path, made_by)
+        kept = _read_kept(path, made_by)
         if kept is None:
             note(f"[{i + 1}/{len(jobs)}] {job.item}: {job.name}")
             kept = json.loads(as_json(_result(job)))
@@ -54,7 +54,7 @@ def _result(job: Job) -> Found:
         return {"rows": [bound(job.name, "solutions found", 0.0, least=1.0)]}
 
 
-def _kept(path: Path, made_by: str) -> Found | None:
+def _read_kept(path: Path, made_by: str) -> Found | None:
     try:
         held = json.loads(path.read_text(encoding="utf-8"))
     except (OSError, ValueError):

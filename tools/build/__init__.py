@@ -1,0 +1,1 @@
+"""A rig from a name plate."""
