@@ -84,11 +84,13 @@ SCHEMES = {
 
 #: The page's section about the measured campaign of the planetary rig.
 SECTION = (PAGES / "trust" / "diagnosis.md").read_text("utf-8").partition("## The measured campaign\n")[2]
+#: What its leading sets have in common, as the page names them.
+IN_ALL = ("sensor.torque.step", "sensor.oil_temp.mounting", "sensor.ambient.random_walk")
 diagnosed_again = pytest.mark.skipif(os.environ.get("GEARHEAT_HIDDEN") != "all", reason="GEARHEAT_HIDDEN=all only")
 
 
 def gains_printed() -> dict[tuple[str, str], list[float]]:
-    """Scheme and channel -> errors before, after, both with the discrepancy, and of the regression."""
+    """Scheme and channel -> errors before, after, both interpolated, and of the regression."""
     lines = [line.strip("|").split("|") for line in SECTION.splitlines() if re.match(r"\| (some|one) ", line)]
     cells = [[cell.strip() for cell in line] for line in lines]
     return {
@@ -118,7 +120,7 @@ def test_the_tables_of_the_measured_campaign_hold_together() -> None:
     assert set(views) == {sensor.name for sensor in readings.sensors if sensor.role == "read"}
     for p, causes in views.values():
         assert 0 <= p <= 1 and causes and sum(causes.values()) <= 1 and set(causes) <= known
-    assert {"losses.seal_drag", "sensor.torque.random_walk"} <= known
+    assert set(IN_ALL) <= known
 
 
 @pytest.fixture(scope="module")
@@ -151,7 +153,7 @@ def test_the_channels_of_the_measured_campaign_say_what_the_page_prints(campaign
         for cause, probability in causes.items():
             assert alone[cause] == pytest.approx(probability, abs=0.02)
     best = campaign["answers"][0]
-    assert best["causes"] == [["losses.seal_drag"], ["sensor.torque.random_walk"]]
-    assert best["probability"] == pytest.approx(0.62, abs=0.02)
-    assert campaign["test"]["p_adequacy"] == pytest.approx(1e-6, rel=0.01)
-    assert all(["losses.seal_drag"] in answer["causes"] for answer in campaign["answers"])
+    assert best["causes"] == [[cause] for cause in IN_ALL]
+    assert best["probability"] == pytest.approx(0.42, abs=0.05)
+    assert campaign["test"]["p_adequacy"] == pytest.approx(0.46, abs=0.02)
+    assert all([cause] in answer["causes"] for answer in campaign["answers"] for cause in IN_ALL)
