@@ -119,12 +119,14 @@ class _Weighing:
     def run(self, wanted: Collection[str]) -> Found:
         """Everything."""
         self._keep((frozenset(), frozenset(), self.problem.aside), self.null, (), {})
-        self._fit_alone(wanted)
+        self._fit_alone(self.null, self.first, wanted)
         for k in range(LOOKS if self.p_any < QUIET else 1):
             best = max(self.hypotheses.values(), key=lambda h: h.log_joint).fit
             with suppress(SolveError):
                 near = self.null if k == 0 else self._home() if k == 1 else best
                 look = self.first if near is self.null else screen.look(self.problem, near, self.formulas)
+                if k == 1:
+                    self._fit_alone(near, look)
                 found = self._search(near, look, self.critical, "sets of causes", 0.3 + 0.15 * k)
                 self._fit_sets(found, near, 0.4 + 0.15 * k)
             if k > 1 and max(self.hypotheses.values(), key=lambda h: h.log_joint).fit is best:
@@ -174,9 +176,9 @@ class _Weighing:
         starts = [[0.0] * len(noise.loose), near.noise.scales.tolist()]
         return sets.search(self.linear, starts, lambda share: self.progress(stage, begun + 0.1 * share), scatters)
 
-    def _fit_alone(self, wanted: Collection[str]) -> None:
-        """Fits the causes that promise most each alone, and those that are wanted."""
-        log_bf = self.first.by_form(len(self.formulas))
+    def _fit_alone(self, near: Fit, look: screen.Look, wanted: Collection[str] = ()) -> None:
+        """Fits the causes that promise most at a linearisation each alone, and those that are wanted."""
+        log_bf = look.by_form(len(self.formulas))
         value = log_bf + [np.log(f.form.weight) + self.prior.share[f.cause.id] for f in self.formulas]
         best: dict[str, int] = {}
         for k in np.argsort(-value, kind="stable"):
@@ -184,11 +186,11 @@ class _Weighing:
         n = ALONE if self.p_any < QUIET else QUIET_ALONE
         for k in [*list(best.values())[:n], *(best[c] for c in wanted if c in best)]:
             formula = self.formulas[k]
-            start, own = self.first.start(k), np.flatnonzero([f.cause.id == formula.cause.id for f in self.formulas])
+            start, own = look.start(k), np.flatnonzero([f.cause.id == formula.cause.id for f in self.formulas])
             logs = {self.formulas[i].form.name: float(value[i]) for i in own}
             for aside in {self.problem.aside, self.whole.aside}:
                 with suppress(SolveError):
-                    z, _ = self.null.moved(self.problem, start.effect)
+                    z, _ = near.moved(self.problem, start.effect)
                     fit = fitted(self.whole.without(aside), [start.acting], z, self.null.noise.scales)
                     self._keep((frozenset([formula]), frozenset(), aside), fit, (), {formula.cause.id: logs})
 
@@ -261,7 +263,8 @@ class _Weighing:
         log += sum(e.log_prior for e in extras)
         log += self.prior(causes) if causes else self.critical
         log += len(key[2] - self.whole.aside) * float(np.log(GROSS * Problem.FAR / ERRORS[1]))
-        self.hypotheses[key] = Hypothesis(causes, fit, float(log), extras, forms)
+        if key not in self.hypotheses or log > self.hypotheses[key].log_joint:
+            self.hypotheses[key] = Hypothesis(causes, fit, float(log), extras, forms)
 
     def _with_forms(self) -> list[Hypothesis]:
         """All hypotheses; with the best of those that differ in their forms alone, forms that were not fitted count."""
