@@ -78,7 +78,8 @@ def test_hidden_effects_are_named_or_in_the_set_and_gross_readings_named(tmp_pat
     missed = [f"{o.truth}: {o.top} ({o.p_top:.2f})" for o in outcomes if not o.covered]
     assert len(missed) <= (1 - IN_SET) * len(outcomes), missed
     assert sum(o.exact for o in outcomes) >= FIRST * len(outcomes)
-    assert sum(o.sure_wrong for o in outcomes) <= (0.03 if ALL else 0.0) * len(outcomes)
+    # three in a hundred may be wrong and sure: of eight, one has a chance of .22, two of .02
+    assert sum(o.sure_wrong for o in outcomes) <= (0.03 * len(outcomes) if ALL else 1)
     gross = [o.gross for o in outcomes if o.gross is not None]
     assert gross and sum(gross) >= IN_SET * len(gross)
 
