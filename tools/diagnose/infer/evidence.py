@@ -79,8 +79,8 @@ def log_bayes_factors(
         v = width**2
         post = v / (1 + v * q)
         mean = post * s
-        inside = _mass(mean, np.sqrt(post), low, high)
-        prior = _mass(np.zeros_like(low), np.full_like(low, width), low, high)
+        inside = mass_inside(mean, np.sqrt(post), low, high)
+        prior = mass_inside(np.zeros_like(low), np.full_like(low, width), low, high)
         log = 0.5 * s * mean - 0.5 * np.log1p(v * q)
         found.append(log + np.log(np.maximum(inside, 1e-300)) - np.log(np.maximum(prior, 1e-300)))
     return np.asarray(np.logaddexp.reduce(found) - np.log(len(widths)))
@@ -101,10 +101,13 @@ def log_bayes_factor(g: np.ndarray, e: np.ndarray, low: np.ndarray, high: np.nda
         C = np.linalg.inv(A + np.diag(1 / D))
         mean, sd = C @ b, np.sqrt(np.diag(C))
         log = 0.5 * b @ mean - 0.5 * np.linalg.slogdet(np.eye(len(D)) + A * D)[1]
-        inside, prior = _mass(mean, sd, low, high), _mass(np.zeros_like(D), np.sqrt(D), low, high)
+        inside, prior = mass_inside(mean, sd, low, high), mass_inside(np.zeros_like(D), np.sqrt(D), low, high)
         logs.append(log + np.log(np.maximum(inside, 1e-300) / np.maximum(prior, 1e-300)).sum())
     return float(np.logaddexp.reduce(logs) - np.log(len(logs)))
 
 
-def _mass(mean: np.ndarray, sd: np.ndarray, low: np.ndarray, high: np.ndarray) -> np.ndarray:
+def mass_inside(
+    mean: np.ndarray | float, sd: np.ndarray | float, low: np.ndarray | float, high: np.ndarray | float
+) -> np.ndarray:
+    """Share of a normal distribution inside bounds."""
     return np.asarray(ndtr((high - mean) / sd) - ndtr((low - mean) / sd))

@@ -12,9 +12,9 @@ from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp, ndtr
+from scipy.special import logsumexp
 
-from .evidence import White, log_bayes_factors
+from .evidence import White, log_bayes_factors, mass_inside
 from .prior import SAME, Prior, kind
 from .terms import Term
 
@@ -95,6 +95,12 @@ class Linear:
         """Number of sizes and gross readings."""
         return next((k for k, t in enumerate(self.terms) if t.scatters), len(self.terms))
 
+    def scattered(self, scatter: Scatter) -> np.ndarray:
+        """Covariance of what scatters beside the loose terms (M, M)."""
+        columns = [width * self.terms[k].columns for k, width in scatter.beside]
+        whole = np.concatenate([np.zeros((len(self.residual), 0)), *columns], axis=1)
+        return np.asarray(whole @ whole.T)
+
 
 class Table:
     """What all terms have in common, whatever the scatter: their columns, priors and bounds as arrays."""
@@ -137,10 +143,8 @@ class Whitened:
 
     def __init__(self, table: Table, scatter: Scatter) -> None:
         self.table, self.scatter, linear = table, scatter, table.linear
-        self.V, log_prior = linear.covariance(scatter.scales)
-        for k, width in scatter.beside:
-            self.V = self.V + width**2 * linear.terms[k].columns @ linear.terms[k].columns.T
-        self.white = White.of(self.V)
+        V, log_prior = linear.covariance(scatter.scales)
+        self.white = White.of(V + linear.scattered(scatter))
         self.W, self.e = self.white(table.columns), self.white(linear.residual)
         self.length, self.along = (self.W**2).sum(axis=0), self.W.T @ self.e
         #: Log density of the residual without any size.
@@ -155,15 +159,11 @@ class Whitened:
         b = turned.T @ self.e
         return turned, b, float(0.5 * b @ b - np.log(np.diag(root)).sum())
 
-    def each(self, members: Sequence[int], widths: Sequence[float]) -> tuple[np.ndarray, np.ndarray, float]:
-        """s and q of every size beside a set (n,), and log density over none."""
-        turned, b, log = self.beside(members, widths)
-        tie = turned.T @ self.W
-        return self.along - b @ tie, np.maximum(self.length - (tie**2).sum(axis=0), 1e-12), log
-
     def gains(self, members: Sequence[int], widths: Sequence[float]) -> tuple[np.ndarray, np.ndarray, float]:
         """Log Bayes factor of every size beside a set (n,), its likeliest width (n,), and log density over none."""
-        s, q, log = self.each(members, widths)
+        turned, b, log = self.beside(members, widths)
+        tie = turned.T @ self.W
+        s, q = self.along - b @ tie, np.maximum(self.length - (tie**2).sum(axis=0), 1e-12)
         logs, at = np.empty(len(s)), np.empty(len(s))
         for k in self.table.groups:
             tried = self.table.linear.terms[int(k[0])].widths
@@ -182,7 +182,7 @@ class Whitened:
                 v = tried**2
                 logs = 0.5 * s**2 * v / (1 + v * q) - 0.5 * np.log1p(v * q)
                 post = v / (1 + v * q)
-                inside = _mass(post * s, np.sqrt(post), low, high) / _mass(0.0, tried, low, high)
+                inside = mass_inside(post * s, np.sqrt(post), low, high) / mass_inside(0.0, tried, low, high)
                 logs = logs + np.log(np.maximum(inside, 1e-300))
                 best = int(np.argmax(logs))
                 own[i] = float(tried[best])
@@ -269,16 +269,9 @@ class Whitened:
             beside = tuple(sorted((*self.scatter.beside, (k, float(terms[k].widths[best])))))
             yield own.log + float(found[best] + logs[k]), Scatter(self.scatter.scales, beside)
         columns = self.table.columns[:, list(own.members)] * np.array(own.widths)
-        known = columns @ columns.T
-        for k, width in self.scatter.beside:
-            known = known + width**2 * terms[k].columns @ terms[k].columns.T
-        scales = linear.scaled(known, self.scatter.scales)
+        scales = linear.scaled(columns @ columns.T + linear.scattered(self.scatter), self.scatter.scales)
         if np.abs(np.subtract(scales, self.scatter.scales)).max(initial=0.0) > 0.05:
             yield own.log + 1.0, Scatter(tuple(np.round(scales, 3)), self.scatter.beside)
-
-
-def _mass(mean: np.ndarray | float, sd: np.ndarray | float, low: float, high: float) -> np.ndarray:
-    return np.asarray(ndtr((high - mean) / sd) - ndtr((low - mean) / sd))
 
 
 def search(

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.formula import Formula
-from ..model.noise import Term as Scatter
+from ..model.noise import Term as NoiseTerm
 from ..model.noise import per_group, walk
 from .evidence import WIDTHS
 from .fit import Fit
@@ -60,9 +60,9 @@ class Term:
         """Whether it is a covariance of several columns."""
         return self.acting is None and self.aside is None
 
-    def scatter(self, width: float) -> Scatter:
+    def scatter(self, width: float) -> NoiseTerm:
         """The covariance term at a standard deviation."""
-        return Scatter(self.label, width * self.columns)
+        return NoiseTerm(self.label, width * self.columns)
 
     @property
     def label(self) -> str:

@@ -121,7 +121,7 @@ class _Weighing:
         self._keep((frozenset(), frozenset(), self.problem.aside), self.null, (), {})
         self._fit_alone(self.null, self.first, wanted)
         for k in range(LOOKS if self.p_any < QUIET else 1):
-            best = max(self.hypotheses.values(), key=lambda h: h.log_joint).fit
+            best = self._leader()
             with suppress(SolveError):
                 near = self.null if k == 0 else self._home() if k == 1 else best
                 look = self.first if near is self.null else screen.look(self.problem, near, self.formulas)
@@ -129,9 +129,13 @@ class _Weighing:
                     self._fit_alone(near, look)
                 found = self._search(near, look, self.critical, "sets of causes", 0.3 + 0.15 * k)
                 self._fit_sets(found, near, 0.4 + 0.15 * k)
-            if k > 1 and max(self.hypotheses.values(), key=lambda h: h.log_joint).fit is best:
+            if k > 1 and self._leader() is best:
                 break
         return self._weighed()
+
+    def _leader(self) -> Fit:
+        """The likeliest hypothesis so far."""
+        return max(self.hypotheses.values(), key=lambda h: h.log_joint).fit
 
     def _home(self) -> Fit:
         """Where the rig is as its healthy campaign says, or else its file.
@@ -188,9 +192,9 @@ class _Weighing:
             formula = self.formulas[k]
             start, own = look.start(k), np.flatnonzero([f.cause.id == formula.cause.id for f in self.formulas])
             logs = {self.formulas[i].form.name: float(value[i]) for i in own}
-            for aside in {self.problem.aside, self.whole.aside}:
+            z, _ = near.moved(self.problem, start.effect)
+            for aside in dict.fromkeys((self.problem.aside, self.whole.aside)):
                 with suppress(SolveError):
-                    z, _ = near.moved(self.problem, start.effect)
                     fit = fitted(self.whole.without(aside), [start.acting], z, self.null.noise.scales)
                     self._keep((frozenset([formula]), frozenset(), aside), fit, (), {formula.cause.id: logs})
 
@@ -236,11 +240,9 @@ class _Weighing:
         terms, s = self.linear.terms, own.best
         V, _ = self.linear.covariance(s.scatter.scales)
         scatters = [(terms[k], width) for k, width in s.scatter.beside]
-        for term, width in scatters:
-            V = V + width**2 * term.columns @ term.columns.T
         G = np.concatenate([np.zeros((len(V), 0)), *(terms[k].columns for k in s.members)], axis=1)
         v = np.array(s.widths) ** 2
-        a = White.of(V + G * v @ G.T).back(self.linear.residual)
+        a = White.of(V + self.linear.scattered(s.scatter) + G * v @ G.T).back(self.linear.residual)
         J = near.look.jacobian[:, : self.whole.nz]
         z, t = np.clip(J.T @ a, -6.0, 6.0), v * (G.T @ a)
         acting = [_started(terms[k], x) for k, x in zip(s.members, t, strict=True) if terms[k].formula is not None]
