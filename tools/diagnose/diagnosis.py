@@ -13,6 +13,7 @@ from .answer.findings import About, Alarm, Findings, Gain, Invisible
 from .answer.gain import gains
 from .answer.predict import predictions
 from .answer.quality import data_quality
+from .answer.residuals import average_residuals
 from .infer.found import Found
 from .infer.weigh import weigh
 from .library.cause import Cause
@@ -128,6 +129,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         sets=sets,
         next_experiment=compose.next_experiments(made, found, decision) if wrong and not request.quick else (),
         isolability=isolability(Effects(found.first.candidates, found.first.white)),
+        residuals=average_residuals(found),
         rows=rows,
         views=pictures.views(found),
         pictures=pictures.pictures(found, leader, rows.quantities),

@@ -58,5 +58,5 @@ def planned(inputs: PlanInputs, progress: Callable[[str, float], None]) -> Plan:
         raise DataError(f"--separate: {', '.join(scatter)} is a scatter, which a plan does not judge. Leave it out.")
     places = [k for k, c in enumerate(candidates) if c.id in request.causes]
     some = [candidates[k] for k in places]
-    found = design(made, problem, look, noise, some, effects[:, places], experiments(campaign))
+    found = design(made, problem, look, noise, some, effects[:, places], experiments(campaign, made.nominal.value))
     return Planner(found, request.causes, {c.id: c for c in made.causes}).plan(common, whole.visible)

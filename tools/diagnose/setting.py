@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -51,9 +51,9 @@ class Setting:
     oils: dict[str, dict[str, float]]
 
     @cached_property
-    def ratios(self) -> Mapping[str, float]:
-        """Speed of each shaft end over that of the first that turns."""
-        return Nominal(drive_by(self.scenario, self.problem.data.campaign.sensors)).ratios
+    def nominal(self) -> Nominal:
+        """Steady states of the rig as its file has it."""
+        return Nominal(drive_by(self.scenario, self.problem.data.campaign.sensors))
 
 
 def setting(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 from types import SimpleNamespace
 
@@ -14,6 +15,8 @@ from gearheat.tools.diagnose.answer.experiments import added, experiments
 from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
 from gearheat.tools.diagnose.answer.predict import simulated
 from gearheat.tools.diagnose.answer.quality import adequacy, scatters
+from gearheat.tools.diagnose.answer.residuals import average_residuals
+from gearheat.tools.diagnose.answer.rivals import constant_cooling
 from gearheat.tools.diagnose.infer import gross
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Aside, Problem
@@ -177,7 +180,7 @@ def test_predictions_of_the_data_are_nearer_with_the_cause(wrong: tuple[Setting,
 
 def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> None:
     setting, found = wrong
-    tried = experiments(found.problem.data.campaign)
+    tried = experiments(found.problem.data.campaign, setting.nominal.value)
     made = of_search(setting, found, CAUSES, tried)
     now = made.distances()
     assert {e.id for e in made.experiments} >= {"repeat", "bath", "cold_room"}
@@ -191,14 +194,75 @@ def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> 
 
 
 def test_added_tests_are_run_as_the_first_one(wrong: tuple[Setting, Found]) -> None:
-    campaign = wrong[1].problem.data.campaign
-    cold = next(e for e in experiments(campaign) if e.id == "cold_room")
+    setting, campaign = wrong[0], wrong[1].problem.data.campaign
+    tried = experiments(campaign, setting.nominal.value)
+    cold = next(e for e in tried if e.id == "cold_room")
     more = added(campaign, cold)
     room = next(s.name for s in campaign.given if s.kind == "ambient")
     assert more.n_tests == len(cold.tests) == 4
     assert more.values[room].max() < campaign.values[room].min() - 10.0
-    logged = added(campaign, next(e for e in experiments(campaign) if e.logged))
+    logged = added(campaign, next(e for e in tried if e.logged))
     assert np.isfinite(logged.dwell).all()
+
+
+def test_experiments_stay_within_the_rig_and_a_hall(wrong: tuple[Setting, Found]) -> None:
+    """At most the speed of the operating point, and no room below 5 degC, nor one that is hardly colder."""
+    setting, campaign = wrong[0], wrong[1].problem.data.campaign
+    speed, room = (next(s for s in campaign.given if s.kind == kind) for kind in ("speed", "ambient"))
+    fastest = np.abs(campaign.values[speed.name]).max()
+
+    def values(kind: str, scale: float, shift: float, usual: float) -> list[float]:
+        changed = {speed.name: scale * campaign.values[speed.name], room.name: campaign.values[room.name] + shift}
+        tried = experiments(replace(campaign, values=campaign.values | changed), lambda path: usual)
+        return [test[kind] for e in tried for test in e.tests if kind in test]
+
+    assert max(values("speed", 1.0, 0.0, fastest)) == pytest.approx(fastest)
+    assert max(values("speed", 0.5, 0.0, fastest)) == pytest.approx(0.8 * fastest)
+    assert max(values("speed", 0.8, 0.0, fastest)) == pytest.approx(fastest)
+    assert min(values("ambient", 1.0, 0.0, fastest)) >= 278.15
+    assert not values("ambient", 1.0, 278.15 - campaign.values[room.name].min(), fastest)
+    made = of_search(setting, wrong[1], CAUSES, experiments(campaign, setting.nominal.value))
+    weights = dict.fromkeys(CAUSES, 0.25)
+    assert all(r.separation_after >= r.separation_before + 0.1 for r in ranked(made, weights))
+
+
+def test_residuals_stand_out_where_a_mounting_errs(clean: tuple[Setting, Found]) -> None:
+    found = clean[1]
+    problem = copy(found.problem)
+    o, n = problem.data, problem.data.campaign.n_tests
+    mounting = tuple("AB"[k % 2] for k in range(n))
+    o = copy(o)
+    o.campaign = replace(o.campaign, mounting=mounting)
+    problem.data, problem.campaigns = o, [o]
+    assert not any(r.stands_out for r in average_residuals(replace(found, problem=problem)))
+    oil = next(i for i, s in enumerate(o.read) if s.kind == "oil_temp")
+    errs = (o.kind == oil) & (np.array(mounting)[o.campaign.test[o.row]] == "B")
+    problem.measured = problem.measured + 3.0 * errs
+    told = average_residuals(replace(found, problem=problem))
+    apart = [r for r in told if r.stands_out]
+    assert apart
+    assert {r.channel for r in apart} == {o.read[oil].name}
+    assert all(r.cell[0] == "B" for r in apart if r.by[0] == "mounting")
+    one = next(r for r in told if r.by == ("mounting", "speed") and r.cell[0] == "B" and r.channel == o.read[oil].name)
+    assert one.mean == pytest.approx(3.0, abs=1.0)
+    assert {r.by for r in told} == {("mounting", "speed"), ("load", "speed"), ("running order",)}
+
+
+def test_a_rival_that_says_nothing_of_a_reading_is_left_out(wrong: tuple[Setting, Found]) -> None:
+    o = wrong[1].problem.data
+    rows, kept = np.arange(o.campaign.n), np.arange(o.campaign.n) % 4 > 0
+    for i, s in enumerate(o.read):
+        said = constant_cooling(o, i, rows, kept)
+        assert (said is None) == (not s.kind.endswith("_temp"))
+
+
+def test_a_place_in_the_running_order_is_a_test_with_its_date(clean: tuple[Setting, Found]) -> None:
+    campaign = clean[1].problem.data.campaign
+    dated = replace(campaign, date=tuple(f"2024-03-{k + 1:02d}" for k in range(campaign.n_tests)))
+    assert campaign.n_tests == 16
+    assert estimate.first_test(dated, 0.868) == "test 15 (2024-03-15)"
+    assert estimate.first_test(campaign, 0.0) == "test 1"
+    assert estimate.first_test(campaign, 1.0) == "test 16"
 
 
 def test_a_cause_is_like_itself_alone(wrong: tuple[Setting, Found]) -> None:

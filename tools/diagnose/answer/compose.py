@@ -50,8 +50,15 @@ def causes(made: Setting, found: Found, decision: Decision) -> tuple[findings.Ca
         chance = decision.marginal.get(id, Chance(0.0, 0.0))
         known: dict[str, Any] = {}
         if cause is not None:
-            known = {"doc": cause.doc, "exposes": cause.exposes, "like": cause.like, "detectable": smallest.get(id)}
-            known |= {"usual": cause.size.sd, "unit": cause.size.unit, "meaning": cause.size.doc}
+            known = {"doc": cause.doc, "exposes": cause.exposes, "like": cause.like}
+            sizes = [size for size in (smallest.get(id), cause.size.sd) if size is not None]
+            unit, (*smallest_of, usual) = estimate.shown(cause.size, sizes)
+            known |= {
+                "usual": usual,
+                "unit": unit,
+                "meaning": cause.size.doc,
+                "detectable": next(iter(smallest_of), None),
+            }
             known |= _sized(made, id, found, decision) if chance.probability > LISTED else {}
         told.append(findings.Cause(id=id, **asdict(chance), **known))
     return tuple(sorted(told, key=lambda c: (-c.probability, c.id)))
@@ -68,7 +75,10 @@ def _sized(made: Setting, cause: str, found: Found, decision: Decision) -> dict[
     acting = next(((h, a) for h, _ in members for a in h.fit.look.acting if a.id == cause), None)
     if acting is not None:
         h, one = acting
-        own["regime"] = estimate.regime(one.formula.form, one.formula.theta(one.t))
+        form, theta = one.formula.form, one.formula.theta(one.t)
+        own["regime"] = estimate.regime(form, theta)
+        if form.regime.get("quantity") == "order above":
+            own["since"] = estimate.first_test(found.problem.data.campaign, theta[form.regime["shape"]])
         own["impact"] = impacts(made, found, h, cause)
     return own
 
@@ -77,7 +87,7 @@ def impacts(made: Setting, found: Found, h: Hypothesis, only: str | None = None)
     """Mean change of each compared sensor, and of the loss, by a hypothesis or by one of its causes."""
     o = found.problem.data
     means, sensors = estimate.sensor_means(o), {s.name: s for s in o.read}
-    if loss := estimate.loss_means(o, made.ratios):
+    if loss := estimate.loss_means(o, made.nominal.ratios):
         means |= {key: weights for key, weights in zip(LOSS, loss, strict=True) if len(weights)}
     told = {}
     for name, change in estimate.impact(found.problem, h, means, only).items():
@@ -134,5 +144,5 @@ def next_experiments(setting: Setting, found: Found, decision: Decision) -> tupl
     if len(causes) < 2:
         return ()
     weights = {c: max(decision.marginal[c].probability if c in decision.marginal else 0.0, LEAST) for c in causes}
-    made = of_search(setting, found, causes, experiments(found.problem.data.campaign))
+    made = of_search(setting, found, causes, experiments(found.problem.data.campaign, setting.nominal.value))
     return tuple(ranked(made, weights)[:TRIED])

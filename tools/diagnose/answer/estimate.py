@@ -10,13 +10,13 @@ import numpy as np
 from scipy.special import logsumexp
 from scipy.stats import norm
 
-from ....scenarios.measured.table import Sensor
+from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.evidence import WIDTHS, White, log_bayes_factors
 from ..infer.fit import Fit
 from ..infer.found import Found, Hypothesis
 from ..infer.problem import Acting, Problem
 from ..infer.screen import limits
-from ..library.cause import Cause, Form, Shape
+from ..library.cause import Cause, Form, Shape, Size
 from ..model.observe import Observed
 from . import channels
 from .decide import Member
@@ -89,9 +89,9 @@ def estimates(found: Found, cause: str, members: Sequence[Member]) -> tuple[Esti
 def _size(cause: Cause, centre: float, spread: float) -> Estimate:
     """A size by its mean and standard deviation, in half widths of its prior."""
     s = cause.size
-    low, value, high = (float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE))
-    bound = at_bound(value, s.low, s.high)
-    return Estimate(name=s.name, value=value, ci95=(low, high), unit=s.unit, doc=s.doc, at_bound=bound)
+    ends = [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)]
+    bound, (unit, (low, value, high)) = at_bound(ends[1], s.low, s.high), shown(s, ends)
+    return Estimate(name=s.name, value=value, ci95=(low, high), unit=unit, doc=s.doc, at_bound=bound)
 
 
 def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
@@ -114,7 +114,7 @@ def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
     return found
 
 
-def shown(shape: Shape, values: Sequence[float]) -> tuple[str, list[float]]:
+def shown(shape: Shape | Size, values: Sequence[float]) -> tuple[str, list[float]]:
     """Values of a shape in the unit people read: degC and rpm."""
     if shape.unit == "K" and shape.low > 150.0:
         return "degC", [v - 273.15 for v in values]
@@ -145,9 +145,9 @@ def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estima
     share = np.cumsum(np.exp(np.array(logs) - logsumexp(logs)))
     low, value, high = (float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975))
     size_of = next(f.cause.size for f in found.formulas if f.cause.id == cause)
-    sd = size_of.sd
+    unit, (low, value, high) = shown(size_of, [size_of.sd * v for v in (low, value, high)])
     doc = size_of.doc if "standard deviation" in size_of.doc else f"standard deviation of: {size_of.doc}"
-    return (Estimate(name=size_of.name, value=sd * value, ci95=(sd * low, sd * high), unit=size_of.unit, doc=doc),)
+    return (Estimate(name=size_of.name, value=value, ci95=(low, high), unit=unit, doc=doc),)
 
 
 def form_shares(cause: str, members: Sequence[Member]) -> dict[str, float]:
@@ -166,6 +166,14 @@ def form_shares(cause: str, members: Sequence[Member]) -> dict[str, float]:
             total[name] = total.get(name, 0.0) + p * share
     whole = sum(total.values()) or 1.0
     return dict(sorted(((n, v / whole) for n, v in total.items()), key=lambda item: (-item[1], item[0])))
+
+
+def first_test(campaign: Campaign, place: float) -> str:
+    """The first test behind a place in the running order, which goes from 0 to 1, with its date where it has one."""
+    later = np.flatnonzero(campaign.progress >= place)
+    row = int(later[np.argmin(campaign.progress[later])]) if len(later) else int(np.argmax(campaign.progress))
+    test = int(campaign.test[row])
+    return f"test {test + 1}{f' ({date})' if (date := campaign.date[test]) else ''}"
 
 
 def regime(form: Form, theta: Mapping[str, float]) -> dict[str, tuple[float | None, float | None]]:

@@ -42,7 +42,7 @@ def gains(found: Found, seed: int, progress: Callable[[float], None] = lambda sh
     Args:
         found: the answer of all data; only its settings and its gross readings are used
         seed: of all draws
-        progress: told the share done
+        progress: called with the share done
     """
     plans = schemes(found.problem.data.campaign)
     total, done, told = sum(len(folds) for folds in plans.values()), 0, []
@@ -102,7 +102,9 @@ def _gain(
     rows = o.row[entries]
     for name, rival in RIVALS.items():
         left = [rival(o, sensor, rows, ~np.isin(rows, fold)) for fold in folds if np.isin(rows, fold).any()]
-        rivals[name] = channels.difference(s, rms(np.concatenate(left)))
+        known = [e for e in left if e is not None]
+        if len(known) == len(left) and np.isfinite(error := rms(np.concatenate(known))):
+            rivals[name] = channels.difference(s, error)
     test = o.campaign.test[o.row[held[mine]]]
     left_out = [[channels.difference(s, rms(line[mine])) for line in side] for side in (before, after)]
     sides = [Gain.Both.model_validate({"without": one, "with": other}) for one, other in left_out]

@@ -9,14 +9,12 @@ from typing import Any, Literal
 from pydantic import Field
 
 from ..library.cause import Cause
-from .design import APART, Design, Pair, gain
+from .design import APART, WORTH, Design, Pair, gain
 from .findings import Isolability
 from .numbers import Model, Number
 
 #: Experiments that are done together, at most.
 TOGETHER = 3
-#: What another one has to add to the smallest distance or to all.
-WORTH = 0.1
 #: The campaign tells the causes apart, one experiment does, several together do, none does; or they are one answer.
 Verdict = Literal["apart", "one", "several", "none", "same"]
 

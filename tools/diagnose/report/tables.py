@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ..answer.channels import ENDINGS
-from ..answer.findings import Findings
+from ..answer.evidence import ResidualMean
+from ..answer.findings import Cause, Findings
 from .phrases import (
     SCHEMES,
     estimate,
@@ -24,8 +25,14 @@ from .phrases import (
     with_unit,
 )
 
-#: Causes and hypotheses in a table have at least this probability.
-LEAST = 0.01
+#: Causes and hypotheses in a table have at least this probability, the first of them any.
+LEAST = 0.05
+#: Below this probability the data rule out a look-alike.
+RULED_OUT = 0.01
+#: What the tables of residuals hold.
+MEANS = (
+    "Mean of measured less calibrated readings, before any cause, and how many; ! more than four standard errors off."
+)
 #: Experiments and rows at most this many.
 MOST = 10
 #: Causes that a channel names on its own, at most.
@@ -45,6 +52,26 @@ class Table:
 def tables(findings: Findings) -> list[Table]:
     """All tables that have rows, in the order of the page."""
     return [t for group in SECTIONS.values() for t in group(findings) if t.rows]
+
+
+def residuals(findings: Findings) -> list[Table]:
+    """Means of what the calibrated rig leaves, in the tables and channels in which some stand out."""
+    grouped: dict[tuple[str, tuple[str, ...]], list[ResidualMean]] = {}
+    for r in findings.residuals:
+        grouped.setdefault((r.channel, r.by), []).append(r)
+    found = []
+    for (channel, by), means in grouped.items():
+        if not any(r.stands_out for r in means):
+            continue
+        cells = {r.cell: f"{r.mean:+.2g}{' !' if r.stands_out else ''} ({r.n})" for r in means}
+        columns = tuple(dict.fromkeys(cell[1:] for cell in cells))
+        rows = [
+            (first, *(cells.get((first, *rest), "") for rest in columns))
+            for first in dict.fromkeys(cell[0] for cell in cells)
+        ]
+        head = (by[0], *(f"{by[1]} {rest[0]}" if rest else "mean" for rest in columns))
+        found.append(Table(f"{channel} [{means[0].unit}] over {' and '.join(by)}", head, rows, MEANS))
+    return found
 
 
 def quality(findings: Findings) -> list[Table]:
@@ -82,13 +109,19 @@ def quality(findings: Findings) -> list[Table]:
 
 def causes(findings: Findings) -> list[Table]:
     """Causes with their sizes, hypotheses, and what each channel says on its own."""
-    listed = [c for c in findings.causes if c.probability >= LEAST]
+    listed = list_causes(findings)
     ranked = [
         (percent(c.probability, c.mc_error), name_of(c.id), size(c), where(c), p_value(c.q, "q"), c.id) for c in listed
     ]
     sizes = [(name_of(c.id), p.name, estimate(p), meaning(p)) for c in listed for p in c.parameters]
-    joint = sorted(findings.hypotheses, key=lambda h: -h.probability)[:MOST]
-    together = [(percent(h.probability, h.mc_error), names_of(h.causes) or "nothing wrong") for h in joint]
+    joint = sorted(findings.hypotheses, key=lambda h: -h.probability)
+    together = [
+        (percent(h.probability, h.mc_error), names_of(h.causes) or "nothing wrong")
+        for k, h in enumerate(joint)
+        if k == 0 or h.probability >= LEAST
+    ]
+    if further := sum(h.probability for h in joint[len(together) :]):
+        together.append((percent(further), f"{len(joint) - len(together)} further ones together"))
     by_channel = []
     for v in findings.views:
         leading = ", ".join(f"{name_of(s.id)} {percent(s.probability, s.mc_error)}" for s in v.causes[:NAMED])
@@ -99,6 +132,11 @@ def causes(findings: Findings) -> list[Table]:
         Table("Hypotheses", ("probability", "causes"), together),
         Table("What each channel says on its own", ("channel", "asks", "p", "nothing wrong", "causes"), by_channel),
     ]
+
+
+def list_causes(findings: Findings) -> list[Cause]:
+    """The causes that a page lists one by one."""
+    return [c for c in findings.causes if c.probability >= LEAST or c.id in findings.named]
 
 
 def gain(findings: Findings) -> list[Table]:
@@ -133,7 +171,7 @@ def experiments(findings: Findings) -> list[Table]:
         (e.what or e.id, names_of(e.separates), sigma(e.separation_before), sigma(e.separation_after))
         for e in findings.next_experiment[:MOST]
     ]
-    exposing = [(name_of(c.id), c.exposes) for c in findings.causes if c.probability >= LEAST and c.exposes]
+    exposing = [(name_of(c.id), c.exposes) for c in list_causes(findings) if c.exposes]
     note = "Distances in standard deviations; below 3 two causes look alike."
     return [
         Table("What to measure next", ("experiment", "separates", "now", "then"), rows, note),
@@ -143,7 +181,10 @@ def experiments(findings: Findings) -> list[Table]:
 
 def sets(findings: Findings) -> list[Table]:
     """Look-alikes, what these data show of each cause, and what they cannot show."""
-    alike = [(names_of(s.causes), sigma(s.distance), s.reason) for s in findings.sets]
+    # a rival that the data rule out can be told apart, whatever the design says of usual sizes
+    unsettled = {c.id for c in findings.causes if c.probability >= RULED_OUT} | findings.named
+    kept = [(s, [c for c in s.causes if c in unsettled]) for s in findings.sets]
+    alike = [(names_of(causes), sigma(s.distance), s.reason) for s, causes in kept if len(causes) > 1]
     seen = [(name_of(i.cause), sigma(i.visible), name_of(i.nearest), sigma(i.distance)) for i in findings.isolability]
     smallest = [
         (name_of(c.id), *(with_unit(v, c.unit) or "not visible" for v in (c.detectable, c.usual)), c.meaning)
@@ -153,7 +194,12 @@ def sets(findings: Findings) -> list[Table]:
     blind = [(name_of(i.cause), i.reason) for i in findings.invisible]
     values = [(v.path, *(with_unit(x, v.unit) for x in (v.file, v.nominal, v.extended))) for v in findings.calibrated]
     return [
-        Table("Cannot be told apart", ("causes", "distance", "why"), alike, "Distance in standard deviations."),
+        Table(
+            "Cannot be told apart by these data",
+            ("causes", "distance", "why"),
+            alike,
+            "Distance in standard deviations.",
+        ),
         Table(
             "What this design can tell",
             ("cause", "from none", "nearest cause", "from it"),
@@ -167,7 +213,14 @@ def sets(findings: Findings) -> list[Table]:
 
 
 #: Name in the template of the page -> its tables, in the order of the page.
-SECTIONS = {"quality": quality, "causes": causes, "gains": gain, "experiments": experiments, "sets": sets}
+SECTIONS = {
+    "residuals": residuals,
+    "quality": quality,
+    "causes": causes,
+    "gains": gain,
+    "experiments": experiments,
+    "sets": sets,
+}
 
 
 def predictions_text(findings: Findings) -> str:
