@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 from .answer import compose, pictures
 from .answer.channels import channel
-from .answer.decide import Decision, calmed, decided
+from .answer.decide import Decision, decide, temper
 from .answer.design import Effects, isolability
 from .answer.estimate import played
 from .answer.findings import About, Alarm, Findings, Gain, Invisible
@@ -53,19 +53,20 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
     then("compiling the rig", 0.01)
     others = [inputs.points] if inputs.points is not None else []
     made = setting(inputs.scenario, inputs.card, data, inputs.reference, request.libraries, others)
-    found = weigh(
-        made.problem,
-        made.formulas,
-        request.alpha,
-        request.seed,
-        request.causes,
-        lambda stage, done: then(stage, 0.05 + 0.75 * done),
-        logs.whole.causes if logs else (),
+    found = temper(
+        weigh(
+            made.problem,
+            made.formulas,
+            request.alpha,
+            request.seed,
+            request.causes,
+            lambda stage, done: then(stage, 0.05 + 0.75 * done),
+            logs.whole.causes if logs else (),
+        )
     )
-    found = calmed(found)
     if logs:
         found = found.beside(logs.whole.log_bayes_factor)
-    decision = decided(found)
+    decision = decide(found)
     wrong = decision.verdict != "consistent"
     held: Sequence[Gain] = ()
     if wrong and not request.quick:

@@ -9,7 +9,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 from gearheat.tools.diagnose.answer import estimate, gain
-from gearheat.tools.diagnose.answer.decide import calmed, decided
+from gearheat.tools.diagnose.answer.decide import POWER, decide, invisible, temper
 from gearheat.tools.diagnose.answer.design import Effects, alike, of_search, ranked
 from gearheat.tools.diagnose.answer.experiments import added, experiments
 from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
@@ -30,29 +30,43 @@ CAUSES = (TRUE, "cooling.air", "losses.churning", "sensor.oil_temp.drift")
 OFFSET = 3.0
 
 
-def test_calm_probabilities_keep_their_order_and_that_of_nothing(wrong: tuple[Setting, Found]) -> None:
+def test_tempered_probabilities_keep_their_order_and_that_of_nothing(wrong: tuple[Setting, Found]) -> None:
     found = wrong[1]
-    calm = calmed(found)
-    before, after = decided(found), decided(calm)
+    tempered = temper(found)
+    before, after = decide(found), decide(tempered)
     assert [j.causes for j in before.joints if j.causes] == [j.causes for j in after.joints if j.causes]
-    assert calm.probabilities.sum() == pytest.approx(1.0)
+    assert tempered.probabilities.sum() == pytest.approx(1.0)
     assert after.joints[0].chance.probability < before.joints[0].chance.probability
     nothing = [not h.causes and not h.extras for h in found.hypotheses]
-    assert calm.probabilities[nothing] == pytest.approx(found.probabilities[nothing])
+    assert tempered.probabilities[nothing] == pytest.approx(found.probabilities[nothing])
 
 
-def test_what_predicts_the_same_is_as_likely_as_its_prior(wrong: tuple[Setting, Found]) -> None:
+def test_a_cause_that_the_design_cannot_show_leads_no_answer(wrong: tuple[Setting, Found]) -> None:
     found = wrong[1]
-    top = found.hypotheses[0]
-    same = [replace(top, causes=c, log_joint=top.log_joint - 20.0) for c in (("cooling.air",), (TRUE, "cooling.air"))]
-    others = [h for h in found.hypotheses if len(h.causes) == 1]
-    far = max(others, key=lambda h: np.linalg.norm(h.fit.look.shown - top.fit.look.shown))
-    hypotheses = (top, *same, replace(far, causes=("losses.churning",), log_joint=top.log_joint - 20.0))
-    logs = np.array([h.log_joint for h in hypotheses]) - top.log_joint
-    few = replace(found, hypotheses=hypotheses, probabilities=np.exp(logs) / np.exp(logs).sum())
-    alike, more, apart = calmed(few).probabilities[1:] / calmed(few).probabilities[0]
-    assert alike == pytest.approx(np.exp(found.prior(["cooling.air"]) - found.prior([TRUE])))
-    assert max(more, apart) < 1e-4
+    assert invisible(found) == set()
+    own = np.array([c.id == TRUE for c in found.first.candidates])
+    faint = replace(found.first, white=np.where(own, 1e-3, 1.0) * found.first.white)
+    hidden = replace(found, first=faint)
+    assert invisible(hidden) == {TRUE}
+    assert any(TRUE in h.causes for h in found.hypotheses)
+    decision = decide(temper(hidden))
+    assert TRUE not in decision.members
+    assert sum(j.chance.probability for j in decision.joints) == pytest.approx(1.0)
+
+
+def test_a_power_of_the_likelihood_ratio_keeps_the_prior(wrong: tuple[Setting, Found]) -> None:
+    """Answers as likely as their priors stay so; a ratio of evidence counts to the power."""
+    found = wrong[1]
+    nothing = next(h for h in found.hypotheses if not h.causes and not h.extras)
+    (one, other), prior = [next(h for h in found.hypotheses if h.causes == (c,)) for c in CAUSES[:2]], found.prior
+    for ratio in (0.0, 5.0):
+        hypotheses = tuple(
+            replace(h, log_joint=prior(h.causes) + value) for h, value in ((one, ratio), (other, 0.0), (nothing, -9.0))
+        )
+        p = temper(replace(found, hypotheses=hypotheses)).probabilities
+        expected = prior(one.causes) - prior(other.causes) + POWER * ratio
+        assert np.log(p[0] / p[1]) == pytest.approx(expected)
+        assert p.sum() == pytest.approx(1.0)
 
 
 def test_other_data_change_the_odds_by_what_they_say(wrong: tuple[Setting, Found]) -> None:
@@ -76,13 +90,13 @@ def test_one_gross_reading_is_found_and_sound_ones_beside_it_stay(clean: tuple[S
     bad = Aside(int(np.flatnonzero((problem.data.row == row) & (problem.data.kind == 0))[0]))
     found = weigh(problem, clean[1].formulas)
     assert found.problem.aside == {bad}
-    assert decided(found).verdict == "consistent"
+    assert decide(found).verdict == "consistent"
     (far,) = gross.distances(found.problem, found.null)
     assert far.size_sd == pytest.approx(20, rel=0.3)
 
 
 def test_the_cause_is_named_and_all_agrees(wrong: tuple[Setting, Found]) -> None:
-    decision = decided(wrong[1])
+    decision = decide(wrong[1])
     assert decision.verdict in ("explained", "ambiguous")
     assert decision.answers[0].causes == (TRUE,)
     assert decision.p_any < 0.05
@@ -92,7 +106,7 @@ def test_the_cause_is_named_and_all_agrees(wrong: tuple[Setting, Found]) -> None
 
 
 def test_clean_data_are_consistent(clean: tuple[Setting, Found]) -> None:
-    decision = decided(clean[1])
+    decision = decide(clean[1])
     assert decision.verdict == "consistent"
     assert not decision.answers
     assert decision.p_any > 0.05
@@ -105,14 +119,14 @@ def test_the_alarm_is_an_alarm_if_and_only_if_nothing_has_less_than_half(
     name: str, request: pytest.FixtureRequest
 ) -> None:
     found: Found = request.getfixturevalue(name)[1]
-    decision = decided(found)
+    decision = decide(found)
     nothing = next(j.chance.probability for j in decision.joints if not j.causes)
     assert (nothing < 0.5) == (decision.p_any < 0.05) == (decision.verdict != "consistent")
 
 
 def test_size_and_impact(wrong: tuple[Setting, Found]) -> None:
     found = wrong[1]
-    decision = decided(found)
+    decision = decide(found)
     size = estimate.estimates(found, TRUE, decision.members[TRUE])[0]
     assert size.ci95[0] < OFFSET < size.ci95[1]
     assert abs(size.value - OFFSET) < 1.0
@@ -150,7 +164,7 @@ def test_a_size_that_was_found_is_detectable(wrong: tuple[Setting, Found]) -> No
 
 def test_scatter_and_adequacy(clean: tuple[Setting, Found]) -> None:
     setting, found = clean
-    leader = decided(found).leader
+    leader = decide(found).leader
     for term in scatters(setting, found, leader):
         assert term.ci95[0] < term.card < term.ci95[1], term
     assert all(0.001 < p < 0.9999 for p in adequacy(found, leader).values())

@@ -16,6 +16,7 @@ from ..infer.found import Extra, Found
 from ..infer.problem import Aside, Problem
 from ..infer.weigh import weigh
 from . import channels
+from .decide import temper
 from .findings import Gain
 from .folds import schemes
 from .rivals import RIVALS
@@ -66,7 +67,7 @@ def _fold(found: Found, rows: np.ndarray, seed: int) -> _Fold:
     gross = {a.number for a in found.problem.aside if not a.sensor}
     held = np.array([i for i in np.flatnonzero(np.isin(found.problem.data.row, rows)) if i not in gross])
     problem = found.problem.without(frozenset(Aside(int(i)) for i in held))
-    own = weigh(problem, found.formulas, seed=seed, critical=found.critical)
+    own = temper(weigh(problem, found.formulas, seed=seed, critical=found.critical))
     p = np.where(own.probabilities > COUNTS, own.probabilities, 0.0)
     each = [_errors(own.problem, h.fit, h.extras, held) for h, share in zip(own.hypotheses, p, strict=True) if share]
     after = np.einsum("h,hdk->dk", p[p > 0] / p.sum(), each)
