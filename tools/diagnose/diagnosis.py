@@ -8,7 +8,7 @@ from .answer import compose, pictures
 from .answer.channels import channel
 from .answer.decide import Decision, decide, temper
 from .answer.design import Effects, isolability
-from .answer.estimate import played
+from .answer.estimate import impacts, played
 from .answer.findings import About, Alarm, Findings, Gain, Invisible
 from .answer.gain import gains
 from .answer.predict import predictions
@@ -121,7 +121,7 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         causes=compose.causes(made, found, decision),
         remainder=compose.remainder(found, decision),
         data_quality=data_quality(made, found, leader),
-        impact=compose.impacts(made, found, leader),
+        impact=impacts(found.problem, leader, made.nominal.ratios),
         gain=held[0] if held else None,
         gain_grouped=tuple(held[1:]),
         channels=tuple(channel(s) for s in data.sensors),

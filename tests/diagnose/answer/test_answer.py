@@ -130,10 +130,9 @@ def test_size_and_impact(wrong: tuple[Setting, Found]) -> None:
     size = estimate.estimates(found, TRUE, decision.members[TRUE])[0]
     assert size.ci95[0] < OFFSET < size.ci95[1]
     assert abs(size.value - OFFSET) < 1.0
-    means = estimate.sensor_means(found.problem.data)
-    changed = estimate.impact(found.problem, decision.leader, means)
+    changed = estimate.impacts(found.problem, decision.leader, wrong[0].nominal.ratios)
     oil = next(s.name for s in found.problem.data.read if s.kind == "oil_temp")
-    assert changed[oil].value == pytest.approx(size.value, rel=0.2)
+    assert changed[f"{oil}_K"].value == pytest.approx(size.value, rel=0.2)
 
 
 def test_the_loss_follows_the_torque_at_the_other_end(wrong: tuple[Setting, Found]) -> None:

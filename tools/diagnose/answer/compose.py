@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..infer.found import Found, Hypothesis
+from ..infer.found import Found
 from ..library.cause import Cause
 from ..setting import Setting
 from . import channels, estimate, findings
@@ -20,8 +20,6 @@ from .experiments import experiments
 MOST = 12
 #: The least probability of one.
 LISTED = 0.005
-#: Changes of the loss by name, with their units.
-LOSS = {"loss_Nm": "N.m", "heat_W": "W"}
 #: Causes between which experiments are judged.
 JUDGED = 4
 #: The least weight of one.
@@ -79,26 +77,8 @@ def _sized(made: Setting, cause: str, found: Found, decision: Decision) -> dict[
         own["regime"] = estimate.regime(form, theta)
         if form.regime.get("quantity") == "order above":
             own["since"] = estimate.first_test(found.problem.data.campaign, theta[form.regime["shape"]])
-        own["impact"] = impacts(made, found, h, cause)
+        own["impact"] = estimate.impacts(found.problem, h, made.nominal.ratios, cause)
     return own
-
-
-def impacts(made: Setting, found: Found, h: Hypothesis, only: str | None = None) -> dict[str, findings.Impact]:
-    """Mean change of each compared sensor, and of the loss, by a hypothesis or by one of its causes."""
-    o = found.problem.data
-    means, sensors = estimate.sensor_means(o), {s.name: s for s in o.read}
-    if loss := estimate.loss_means(o, made.nominal.ratios):
-        means |= {key: weights for key, weights in zip(LOSS, loss, strict=True) if len(weights)}
-    told = {}
-    for name, change in estimate.impact(found.problem, h, means, only).items():
-        if name in LOSS:
-            told[name] = findings.Impact(value=change.value, ci95=change.ci95, unit=LOSS[name], what="loss")
-            continue
-        s = sensors[name]
-        value, low, high = (channels.difference(s, v) for v in (change.value, *change.ci95))
-        unit, what = channels.unit_of_difference(s), channels.words(s)
-        told[channels.change_name(s)] = findings.Impact(value=value, ci95=(low, high), unit=unit, what=what)
-    return told
 
 
 def remainder(found: Found, decision: Decision) -> findings.Remainder | None:
