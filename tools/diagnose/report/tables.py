@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from ..answer.channels import ENDINGS
+from ..answer.design import APART
 from ..answer.evidence import ResidualMean
-from ..answer.findings import Cause, Findings
+from ..answer.findings import Cause, Findings, Isolability
 from .phrases import (
     SCHEMES,
     estimate,
@@ -24,11 +25,10 @@ from .phrases import (
     where,
     with_unit,
 )
+from .words import RULED_OUT
 
 #: Causes and hypotheses in a table have at least this probability, the first of them any.
 LEAST = 0.05
-#: Below this probability the data rule out a look-alike.
-RULED_OUT = 0.01
 #: What the tables of residuals hold.
 MEANS = (
     "Mean of measured less calibrated readings, before any cause, and how many; ! more than four standard errors off."
@@ -165,6 +165,17 @@ def gain(findings: Findings) -> list[Table]:
     ]
 
 
+def tell_design(found: Iterable[Isolability]) -> Table:
+    """What a design tells of each cause."""
+    rows = []
+    for i in found:
+        seen, apart = ("yes" if d is not None and min(d, i.visible) >= APART else "no" for d in (i.visible, i.distance))
+        rows.append((i.cause, sigma(i.visible), seen, name_of(i.nearest), sigma(i.distance), apart))
+    head = ("cause", "from none", "seen", "nearest cause", "from it", "told apart")
+    note = f"Distances in standard deviations at the usual size of each cause; seen and told apart from {APART:g} on."
+    return Table("What this design can tell", head, rows, note)
+
+
 def experiments(findings: Findings) -> list[Table]:
     """What to measure next, and what would show each probable cause."""
     rows = [
@@ -185,7 +196,6 @@ def sets(findings: Findings) -> list[Table]:
     unsettled = {c.id for c in findings.causes if c.probability >= RULED_OUT} | findings.named
     kept = [(s, [c for c in s.causes if c in unsettled]) for s in findings.sets]
     alike = [(names_of(causes), sigma(s.distance), s.reason) for s, causes in kept if len(causes) > 1]
-    seen = [(name_of(i.cause), sigma(i.visible), name_of(i.nearest), sigma(i.distance)) for i in findings.isolability]
     smallest = [
         (name_of(c.id), *(with_unit(v, c.unit) or "not visible" for v in (c.detectable, c.usual)), c.meaning)
         for c in findings.causes
@@ -200,12 +210,7 @@ def sets(findings: Findings) -> list[Table]:
             alike,
             "Distance in standard deviations.",
         ),
-        Table(
-            "What this design can tell",
-            ("cause", "from none", "nearest cause", "from it"),
-            seen,
-            "Distances in standard deviations at the usual size of each cause; below 3 it is not seen, or not told.",
-        ),
+        tell_design(findings.isolability),
         Table("Smallest size found in 80 of 100 such campaigns", ("cause", "smallest", "usual", "meaning"), smallest),
         Table("Causes that these data cannot show", ("cause", "why"), blind),
         Table("Calibrated values", ("value", "file", "calibrated", "with the causes"), values),

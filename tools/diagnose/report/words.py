@@ -5,6 +5,7 @@ The verdict itself is decided elsewhere; here it is put in words, and every sent
 
 from __future__ import annotations
 
+from ..answer.design import APART
 from ..answer.findings import UNEXPLAINED, Answer, Cause, Findings, Said
 from . import phrases
 from .phrases import name_of, names_of, sentence
@@ -17,8 +18,6 @@ ADEQUATE = 0.01
 TOO_GOOD = 0.99
 #: A scatter is told where it is so many times the card's, or as much less.
 SCATTER = 1.5
-#: Distances below this are none [standard deviations].
-APART = 3.0
 #: Answers beside the first two are listed from this probability on.
 LISTED = 0.05
 #: Longest list on the first screen.
