@@ -13,8 +13,7 @@ from challenge.printing import show as show_challenge
 from challenge.scoring import Outcome, report
 from gearheat import Calibration, CampaignRun, FilmTable, Replays
 from gearheat.tools.bench import bench
-from gearheat.tools.cli import fmu as exporting
-from gearheat.tools.cli import measured, verify
+from gearheat.tools.cli import fmu as exporting, measured, verify
 from gearheat.tools.cli.solve import print_end
 from gearheat.tools.diagnose.infer.replay import HOURS, Replayed
 

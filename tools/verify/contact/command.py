@@ -9,8 +9,7 @@ from typing import Any
 
 from ...show.console import folder, write
 from ...show.display import Display
-from . import cycle as cycles
-from . import figures, lines, moving, pages, steady, store, studies
+from . import cycle as cycles, figures, lines, moving, pages, steady, store, studies
 from .rows import Found, Job
 
 #: File of each figure.
