@@ -19,7 +19,7 @@ from typing import Any
 
 from ...model import laws
 from ...model.sources import LawInfo
-from ...scenarios.golden import golden_rows
+from ...scenarios.published import golden_rows
 from .markdown import code, docstring, list_arguments, table, words
 
 BLOCK = re.compile(r"^```\{(laws|ranges|evidence)\} *(.*)\n```$", re.MULTILINE)

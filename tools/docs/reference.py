@@ -19,13 +19,13 @@ from ...model.sources import sources
 from ...model.units import PER_MINUTE, ROTATIONS, SPELLINGS, UNCLEAR
 from ...scenarios import load as loading
 from ...scenarios.entries import catalogue
-from ...scenarios.golden import golden_rows
 from ...scenarios.load import load
 from ...scenarios.measured.card import read_card
 from ...scenarios.measured.lubrication import oils_of
 from ...scenarios.measured.read import read_campaign
 from ...scenarios.measured.write import as_toml, default_card
 from ...scenarios.nuisances import usual_priors
+from ...scenarios.published import golden_rows
 from ...scenarios.shipped import FILES, RIGS, list_rigs
 from ...scenarios.tables import CampaignTable, ErratumTable, RigTable, SensorTable
 from ..describe.parts import describe_part

@@ -124,8 +124,7 @@ class TimeSeries(Columns):
         Raises:
             DataError: it cannot be read
         """
-        from ...scenarios.columns import in_si, split_unit
-        from ...scenarios.csv_table import read_cells
+        from ...scenarios.csv_table import in_si, read_cells, split_unit
 
         header, rows = read_cells(Path(path))
         numbers = np.array([[float(text) for text in cells] for _, cells in rows])
