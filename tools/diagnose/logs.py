@@ -13,8 +13,7 @@ from ...model.errors import DataError
 from ...scenarios.measured.logs import Log, read_log
 from ...scenarios.measured.table import Sensor
 from ...scenarios.scenario import Scenario
-from .answer import channels
-from .answer import findings as f
+from .answer import channels, findings as f
 from .answer.evidence import DataQuality, Estimate, GrossReading, Picture, Rows
 from .answer.numbers import array
 from .infer.logs import Fleet, Moved, Progress, Question, Weighed, fleet, question, weigh

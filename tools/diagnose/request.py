@@ -13,8 +13,7 @@ from ...scenarios.measured.card import Card, read_card
 from ...scenarios.measured.checks import outlying, same_as_reference, too_small
 from ...scenarios.measured.invisible import invisible
 from ...scenarios.measured.read import read_campaign
-from ...scenarios.measured.samples import read_samples
-from ...scenarios.measured.series import series_of
+from ...scenarios.measured.series import read_samples, series_of
 from ...scenarios.measured.table import Campaign
 from ...scenarios.scenario import Scenario
 from ..show.console import writable
