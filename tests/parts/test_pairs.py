@@ -110,3 +110,17 @@ def test_a_good_bevel_pair_loses_half_a_percent_or_so(angle, spiral):
 def test_what_does_not_fit_is_refused_by_name(kind, values, words):
     with pytest.raises(ScenarioError, match=words):
         PARTS[kind]("pair", **values)
+
+
+def test_axial_forces_tilt_a_planet_at_its_own_radius():
+    """Sun and ring push a planet of 36 teeth in opposite directions at its reference circle.
+
+    By hand: r = 2 x 36 / (2 cos 10 deg) = 36.555 mm, 1 kN tan 10 deg = 176.33 N at each side, so that the two bearings,
+    21 mm apart, carry 2 x 176.33 x 36.555 / 21 = 613.88 N each, at right angles to the 1 kN of the tangential forces.
+    """
+    values = STEEL | dict(m_n=2e-3, beta=math.radians(10), b=0.042, z_2=36.0, N=3.0, a_w=0.0548, s_planet=0.021)
+    values |= dict(eps_alpha_sp=1.6, eps_alpha_pr=1.8, H_v_sp=0.2, H_v_pr=0.1, n_axial_carrier=0.0, n_axial_sun=0.0)
+    part = PARTS["PlanetarySet"]("set", **values | dict(z_1=18.0, z_3=90.0))
+    carried = next(e for e in part.equations() if e.name == "planet radially").rhs
+    found = part.number_at(carried, part.values | {"F_t_sp": 1000.0, "F_t_pr": 1000.0})
+    assert found == pytest.approx(math.hypot(1000.0, 613.88), abs=0.01)
