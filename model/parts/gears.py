@@ -17,7 +17,6 @@ from ..laws.gears import (
     tip_diameter,
     tip_thickness,
     transverse_base_pitch,
-    transverse_pressure_angle,
     undercut_shift,
 )
 from ..laws.mesh import mesh_loss, tooth_loss_factor
@@ -176,11 +175,12 @@ class HelicalGearPair(GearPair):
     force = ToothForce()
 
     def equations(self) -> Iterator[Equation]:
-        """One force between the two, for the shafts of both."""
+        """One force between the two along the line of action, for the shafts of both, at their working circles."""
         yield from super().equations()
-        alpha_t = transverse_pressure_angle(self.alpha_n, self.beta)
-        yield equation("tangential force told", self.force.F_t, self.F_t)
-        yield equation("radial force", self.force.F_r, self.F_t * ca.tan(alpha_t))
+        alpha_t, alpha_wt = self.working_angle()
+        F_bt = self.F_t / ca.cos(alpha_t)
+        yield equation("tangential force told", self.force.F_t, F_bt * ca.cos(alpha_wt))
+        yield equation("radial force", self.force.F_r, F_bt * ca.sin(alpha_wt))
         yield equation("axial force", self.force.F_a, self.F_t * ca.tan(self.beta))
 
 

@@ -124,3 +124,16 @@ def test_axial_forces_tilt_a_planet_at_its_own_radius():
     carried = next(e for e in part.equations() if e.name == "planet radially").rhs
     found = part.number_at(carried, part.values | {"F_t_sp": 1000.0, "F_t_pr": 1000.0})
     assert found == pytest.approx(math.hypot(1000.0, 613.88), abs=0.01)
+
+
+def test_the_force_of_a_pair_lies_on_its_line_of_action():
+    """FZG gears type C: 1 kN at the reference circle, by hand.
+
+    alpha_wt = acos(90 cos 20 deg / 91.5) = 22.438 deg, the base force 1000 / cos 20 deg = 1064.18 N; its components at
+    the working circle are 983.61 N and 406.18 N, where the pressure angle of the reference circle has 363.97 N.
+    """
+    part = PARTS["HelicalGearPair"]("pair", **SPUR)
+    named = {e.name: e.rhs for e in part.equations() if e.name in ("tangential force told", "radial force")}
+    told = {name: part.number_at(rhs, part.values | {"F_t": 1000.0}) for name, rhs in named.items()}
+    assert told["tangential force told"] == pytest.approx(983.61, abs=0.01)
+    assert told["radial force"] == pytest.approx(406.18, abs=0.02)
