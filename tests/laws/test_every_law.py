@@ -49,7 +49,7 @@ NOMINAL = {
     **{"phi_ish": 0.9, "T_pour": 240.0, "f_0": 7.0, "f_1": 2e-4, "P_1": 5000.0, "d_sh": 0.085, "c_sh": 73.4, "c": 50.0},
     **{"R_3": 2.8e-6, "R_4": 5.8, "S_3": 8.8e-3, "S_4": 117.0, "psi": 1e-3, "tau_0": 1.0, "C_trans": 1.0},
     **{"altitude": 800.0, "backlash": 1e-4},
-    **{"churning": 2e-4, "friction": 1.5e-4},
+    **{"churning": 2e-4, "friction": 1.5e-4, "slow": 0.4, "fast": 0.8, "thrown": 0.9},
     **{"V": 2e-3, "depth": 0.25, "volume": 0.5, "Fr": 350.0, "width": 0.15},
     **{"T_film": 310.0, "Pr": 0.7, "Re": 5e4, "h_natural": 5.0, "h_forced": 7.0, "A": 0.6},
     **{"T_s": 340.0, "T_f": 300.0, "L": 0.3, "height": 0.3, "v": 1.5, "T_1": 340.0, "T_2": 300.0, "emissivity": 0.9},
