@@ -14,12 +14,13 @@ from ..laws.gears import (
     addendum_contact_ratio,
     base_diameter,
     base_helix_angle,
+    overlap_ratio,
     tip_diameter,
     tip_thickness,
     transverse_base_pitch,
     undercut_shift,
 )
-from ..laws.mesh import mesh_loss, tooth_loss_factor
+from ..laws.mesh import line_loss_factor, line_sharing, mesh_loss, tooth_loss_factor
 from ..laws.smooth import Num, friction_sign, smooth_abs
 from .contacts import FilmContact, fits_map
 from .ports import Flange, ToothForce
@@ -45,6 +46,11 @@ class GearPair(ToothedPart):
     wheel = Flange()
 
     film = Choice(("grubin",), 'film: Grubin\'s formula, or a map, "map:FILE"', default="grubin", also=FilmMap)
+    load_sharing = Choice(
+        ("pairs", "lines"),
+        "load of the tooth loss factor: the same on every pair in contact, or along the lines of contact",
+        default="pairs",
+    )
     x_1 = Parameter("1", "profile shift of the pinion")
     x_2 = Parameter("1", "profile shift of the wheel")
     eps_alpha = Parameter("1", "transverse contact ratio", above=0.0, derived=lambda p: sum(p.addendum_ratios()))
@@ -137,7 +143,13 @@ class GearPair(ToothedPart):
         """Tooth loss factor from the geometry [1]."""
         beta_b = base_helix_angle(self.alpha_n, self.beta)
         z_a, z_b = self.teeth()
-        return tooth_loss_factor(z_a, z_b / z_a, beta_b, *self.addendum_ratios())
+        teeth = z_a, z_b / z_a, beta_b, *self.addendum_ratios()
+        by_pairs = tooth_loss_factor(*teeth)
+        if self.load_sharing == "pairs":
+            return by_pairs
+        return by_pairs + line_sharing(overlap_ratio(self.b, self.m_n, self.beta)) * (
+            line_loss_factor(*teeth) - by_pairs
+        )
 
     def film_contact(self, values: Mapping[str, float]) -> FilmContact:
         """The contact at the pitch point.

@@ -137,3 +137,13 @@ def test_the_force_of_a_pair_lies_on_its_line_of_action():
     told = {name: part.number_at(rhs, part.values | {"F_t": 1000.0}) for name, rhs in named.items()}
     assert told["tangential force told"] == pytest.approx(983.61, abs=0.01)
     assert told["radial force"] == pytest.approx(406.18, abs=0.02)
+
+
+def test_helical_teeth_share_their_load_along_their_lines_of_contact():
+    """Gears H501 and H951 of GEARpie, which integrates 0.188168 and 0.118446; spur gears have pairs alone."""
+    h501 = dict(m_n=3.5e-3, beta=math.radians(15), b=23e-3, z_1=20.0, z_2=30.0, x_1=0.1809, x_2=0.0891, a_w=91.5e-3)
+    lines, pairs = (PARTS["HelicalGearPair"]("pair", **STEEL | h501, load_sharing=x) for x in ("lines", "pairs"))
+    assert lines.values["H_v"] == pytest.approx(0.188168, rel=0.003)
+    assert pairs.values["H_v"] == pytest.approx(0.165353, rel=0.001)
+    spur, printed = (PARTS["HelicalGearPair"]("pair", **SPUR, load_sharing=x) for x in ("lines", "pairs"))
+    assert spur.values["H_v"] == pytest.approx(printed.values["H_v"], rel=1e-6)
