@@ -145,7 +145,7 @@ class Gain(Model):
     """Errors on readings that were held out, with everything repeated without them."""
 
     class Both(Model):
-        """The same predicted without and with what only interpolates from test to test."""
+        """The same predicted by sizes alone, and with what only interpolates: by tests, mountings, conditions."""
 
         without: Number
         with_: Number = Field(alias="with")
@@ -155,10 +155,13 @@ class Gain(Model):
     channel: str
     unit: str = "K"
     n: int
-    rmse_before: Number = Field(description="without what only interpolates from test to test: same as before.without")
+    rmse_before: Number = Field(description="without what only interpolates: same as before.without")
     rmse_after: Number = Field(description="the same as after.without")
     before: Both | None = Field(default=None, description="calibrated, no cause")
-    after: Both | None = Field(default=None, description="with the causes chosen without the held-out readings")
+    after: Both | None = Field(
+        default=None, description="all sets of causes, chosen and weighed without them, averaged"
+    )
+    leading: Both | None = Field(default=None, description="with the likeliest set alone, fitted exactly")
     ratio_ci90: Interval | None = Field(
         default=None, description="of rmse_after / rmse_before, tests drawn with replacement"
     )

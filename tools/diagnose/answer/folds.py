@@ -14,14 +14,14 @@ GAP = 0.06
 SMALL = 48
 #: Folds of its one scheme.
 FEW = 4
-#: Of each scheme of others.
+#: Of the tests of others.
 MOST = 3
 #: Fewer rows than these cannot be kept.
 LEAST = 6
 
 
 def schemes(c: Campaign) -> dict[str, list[np.ndarray]]:
-    """Scheme -> the rows of each fold; only schemes with two folds or more. More groups than folds are put together."""
+    """Scheme -> the rows of each fold; only schemes with two folds or more."""
     small = c.n < SMALL
     most = FEW if small else MOST
     single = c.n_tests <= most
@@ -32,7 +32,7 @@ def schemes(c: Campaign) -> dict[str, list[np.ndarray]]:
     for scheme, kind in () if small else (("leave-one-speed", "speed"), ("leave-one-load", "torque")):
         given = [s for s in c.given if s.kind == kind]
         if given:
-            found[scheme] = _joined(levels(np.abs(c.values[given[0].name])), most)
+            found[scheme] = levels(np.abs(c.values[given[0].name]))
     oils = np.array(c.oil)[c.test]
     if not small:
         found["leave-one-oil"] = [np.flatnonzero(oils == oil) for oil in dict.fromkeys(c.oil)]
@@ -44,12 +44,6 @@ def levels(values: np.ndarray) -> list[np.ndarray]:
     order = np.argsort(values, kind="stable")
     gaps = np.diff(values[order]) > GAP * max(float(np.ptp(values)), 1e-12)
     return [np.sort(rows) for rows in np.split(order, np.flatnonzero(gaps) + 1)]
-
-
-def _joined(groups: Sequence[np.ndarray], most: int) -> list[np.ndarray]:
-    """Neighbouring groups put together until there are few enough."""
-    parts = np.array_split(np.arange(len(groups)), min(most, len(groups)))
-    return [np.concatenate([groups[k] for k in part]) for part in parts]
 
 
 def _sound(folds: Sequence[np.ndarray], n: int) -> bool:

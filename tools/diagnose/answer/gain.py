@@ -10,31 +10,25 @@ from dataclasses import dataclass
 import numpy as np
 
 from ....model.errors import SolveError
-from ..infer.evidence import White
-from ..infer.fit import Fit, prior_precision
-from ..infer.found import Extra, Found
-from ..infer.problem import Aside, Problem
-from ..infer.weigh import weigh
+from ..infer.foresee import Foreseen, foresee
+from ..infer.found import Found
 from . import channels
-from .decide import temper
 from .findings import Gain
 from .folds import schemes
 from .rivals import RIVALS
 
 #: Draws of the bootstrap.
 DRAWS = 2000
-#: Probability from which a hypothesis of a fold counts.
-COUNTS = 0.01
+#: Causes that may act together in a fold.
+MOST = 8
 
 
 @dataclass(frozen=True)
 class _Fold:
-    """Errors (2, k) before and after on the entries `held` (k,), and the causes chosen."""
+    """Entries that are left out (k,), and what is foreseen of them."""
 
     held: np.ndarray
-    before: np.ndarray
-    after: np.ndarray
-    chosen: tuple[str, ...]
+    seen: Foreseen
 
 
 def gains(found: Found, seed: int, progress: Callable[[float], None] = lambda share: None) -> list[Gain]:
@@ -66,26 +60,7 @@ def _fold(found: Found, rows: np.ndarray, seed: int) -> _Fold:
     """Everything anew without the readings of some rows, and what it says of them."""
     gross = {a.number for a in found.problem.aside if not a.sensor}
     held = np.array([i for i in np.flatnonzero(np.isin(found.problem.data.row, rows)) if i not in gross])
-    problem = found.problem.without(frozenset(Aside(int(i)) for i in held))
-    own = temper(weigh(problem, found.formulas, seed=seed, critical=found.critical))
-    p = np.where(own.probabilities > COUNTS, own.probabilities, 0.0)
-    each = [_errors(own.problem, h.fit, h.extras, held) for h, share in zip(own.hypotheses, p, strict=True) if share]
-    after = np.einsum("h,hdk->dk", p[p > 0] / p.sum(), each)
-    return _Fold(held, _errors(own.problem, own.null, (), held), after, own.hypotheses[0].causes)
-
-
-def _errors(problem: Problem, fit: Fit, extras: Sequence[Extra], held: np.ndarray) -> np.ndarray:
-    """Errors (2, k) on held entries: without, with what only interpolates from test to test."""
-    look = fit.look
-    kept = np.setdiff1d(np.arange(problem.m), [a.number for a in problem.aside if not a.sensor])
-    prior = 1 / prior_precision(problem, look.acting)
-    S = fit.noise.covariance + look.jacobian * prior @ look.jacobian.T
-    r = problem.measured - look.shown + look.jacobian @ look.x
-    known = White.of(S[np.ix_(kept, kept)]).back(r[kept])
-    tie = S[np.ix_(held, kept)]
-    in_time = [e.size * e.columns for e in extras if e.cause is not None]
-    C = np.concatenate([np.zeros((problem.m, 0)), *in_time], axis=1)
-    return np.array([r[held] - (tie - C[held] @ C[kept].T) @ known, r[held] - tie @ known])
+    return _Fold(held, foresee(found.problem, found.formulas, held, found.critical, seed, MOST))
 
 
 def _gain(
@@ -94,7 +69,8 @@ def _gain(
     """One sensor's errors over all folds of a scheme."""
     o = found.problem.data
     held = np.concatenate([e.held for e in errors])
-    before, after = (np.concatenate([getattr(e, side) for e in errors], axis=1) for side in ("before", "after"))
+    sides = ("before", "after", "leading")
+    errors_by = {side: np.concatenate([getattr(e.seen, side) for e in errors], axis=1) for side in sides}
     mine = o.kind[held] == sensor
     if not mine.any():
         return None
@@ -107,21 +83,24 @@ def _gain(
         if len(known) == len(left) and np.isfinite(error := rms(np.concatenate(known))):
             rivals[name] = channels.difference(s, error)
     test = o.campaign.test[o.row[held[mine]]]
-    left_out = [[channels.difference(s, rms(line[mine])) for line in side] for side in (before, after)]
-    sides = [Gain.Both.model_validate({"without": one, "with": other}) for one, other in left_out]
+    both = {
+        side: Gain.Both.model_validate(
+            {key: channels.difference(s, rms(line[mine])) for key, line in zip(("without", "with"), lines, strict=True)}
+        )
+        for side, lines in errors_by.items()
+    }
     return Gain(
         scheme=scheme,
         channel=s.name,
         unit=channels.unit_of_difference(s),
         n=int(mine.sum()),
-        rmse_before=sides[0].without,
-        rmse_after=sides[1].without,
-        before=sides[0],
-        after=sides[1],
-        ratio_ci90=_bootstrap(before[0, mine], after[0, mine], test, seed),
+        rmse_before=both["before"].without,
+        rmse_after=both["after"].without,
+        **both,
+        ratio_ci90=_bootstrap(errors_by["before"][0, mine], errors_by["after"][0, mine], test, seed),
         noise_floor=channels.difference(s, noise_floor(found, sensor)),
         rivals=rivals,
-        chosen=dict(Counter(c for e in errors for c in e.chosen).most_common()),
+        chosen=dict(Counter(c for e in errors for c in e.seen.causes).most_common()),
         folds=len(folds),
     )
 

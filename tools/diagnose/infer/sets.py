@@ -101,6 +101,15 @@ class Linear:
         whole = np.concatenate([np.zeros((len(self.residual), 0)), *columns], axis=1)
         return np.asarray(whole @ whole.T)
 
+    def left(self, own: TermSet, kept: np.ndarray, held: np.ndarray) -> np.ndarray:
+        """What a set leaves of held entries, told by kept ones: by its sizes alone, and with what scatters (2, k)."""
+        beside, columns = self.scattered(own.scatter), [self.terms[k].columns for k in own.members]
+        G = np.concatenate([np.zeros((len(self.residual), 0)), *columns], axis=1) * np.array(own.widths)
+        whole = self.covariance(own.scatter.scales)[0] + beside + G @ G.T
+        known = White.of(whole[np.ix_(kept, kept)]).back(self.residual[kept])
+        left = self.residual[held] - whole[np.ix_(held, kept)] @ known
+        return np.array([left + beside[np.ix_(held, kept)] @ known, left])
+
 
 class Table:
     """What all terms have in common, whatever the scatter: their columns, priors and bounds as arrays."""

@@ -80,15 +80,22 @@ def weigh(
         wanted: causes that are fitted however they look
         critical: log prior odds of nothing against one cause, where they are known; draws of the null tell them else
     """
-    own = _Weighing(problem, formulas, seed, most, progress)
+    own = Weighing(problem, formulas, seed, most, progress)
     own.ask_alarm(alpha, critical)
     return own.run(wanted)
 
 
-class _Weighing:
+class Weighing:
     """One run; arguments as for `weigh`."""
 
-    def __init__(self, problem: Problem, formulas: Sequence[Formula], seed: int, most: int, progress: Progress) -> None:
+    def __init__(
+        self,
+        problem: Problem,
+        formulas: Sequence[Formula],
+        seed: int,
+        most: int,
+        progress: Progress = lambda stage, share: None,
+    ) -> None:
         self.whole, self.seed, self.most, self.progress = problem, seed, most, progress
         self.formulas = tuple(f for f in formulas if not f.form.spread)
         self.spreads = tuple(f for f in formulas if f.form.spread)
@@ -98,7 +105,7 @@ class _Weighing:
         null = fitted(problem, (), np.zeros(problem.nz))
         progress("effects of all causes", 0.1)
         first = screen.look(problem, null, self.formulas)
-        leader = self._search(null, first, FIRST, "gross readings", 0.2, QUICK)[0]
+        leader = self.search(null, first, FIRST, "gross readings", 0.2, QUICK)[0]
         self.problem = problem.without(problem.aside | _aside(self.linear.terms, leader))
         self.null, self.first = null, first
         if self.problem.aside != problem.aside:
@@ -118,24 +125,28 @@ class _Weighing:
 
     def run(self, wanted: Collection[str]) -> Found:
         """Everything."""
-        self._keep((frozenset(), frozenset(), self.problem.aside), self.null, (), {})
+        self.keep_null()
         self._fit_alone(self.null, self.first, wanted)
         for k in range(LOOKS if self.p_any < QUIET else 1):
-            best = self._leader()
+            best = self.leader().fit
             with suppress(SolveError):
                 near = self.null if k == 0 else self._home() if k == 1 else best
                 look = self.first if near is self.null else screen.look(self.problem, near, self.formulas)
                 if k == 1:
                     self._fit_alone(near, look)
-                found = self._search(near, look, self.critical, "sets of causes", 0.3 + 0.15 * k)
-                self._fit_sets(found, near, 0.4 + 0.15 * k)
-            if k > 1 and self._leader() is best:
+                found = self.search(near, look, self.critical, "sets of causes", 0.3 + 0.15 * k)
+                self.fit_sets(found, near, 0.4 + 0.15 * k)
+            if k > 1 and self.leader().fit is best:
                 break
         return self._weighed()
 
-    def _leader(self) -> Fit:
+    def keep_null(self) -> None:
+        """Nothing among the hypotheses."""
+        self._keep((frozenset(), frozenset(), self.problem.aside), self.null, (), {})
+
+    def leader(self) -> Hypothesis:
         """The likeliest hypothesis so far."""
-        return max(self.hypotheses.values(), key=lambda h: h.log_joint).fit
+        return max(self.hypotheses.values(), key=lambda h: h.log_joint)
 
     def _home(self) -> Fit:
         """Where the rig is as its healthy campaign says, or else its file.
@@ -149,7 +160,7 @@ class _Weighing:
         look = self.problem.look(z)
         return replace(self.null, look=look, noise=self.problem.noise(look))
 
-    def _search(
+    def search(
         self, near: Fit, look: screen.Look, critical: float, stage: str, begun: float, scatters: int = sets.SCATTERS
     ) -> list[sets.TermSet]:
         """The likeliest sets of terms at a linearisation."""
@@ -198,11 +209,11 @@ class _Weighing:
                     fit = fitted(self.whole.without(aside), [start.acting], z, self.null.noise.scales)
                     self._keep((frozenset([formula]), frozenset(), aside), fit, (), {formula.cause.id: logs})
 
-    def _fit_sets(self, found: Sequence[sets.TermSet], near: Fit, share: float) -> None:
+    def fit_sets(self, found: Sequence[sets.TermSet], near: Fit, share: float, most: int = FITTED) -> None:
         """Fits the likeliest sets with the forms, scatters and starts that they promise."""
         combinations = self._combinations(found)
-        for done, own in enumerate(combinations[:FITTED]):
-            self.progress("causes fitted together", share + 0.1 * done / FITTED)
+        for done, own in enumerate(combinations[:most]):
+            self.progress("causes fitted together", share + 0.1 * done / most)
             if own.log < combinations[0].log - WITHIN:
                 break
             if own.key in self.hypotheses:

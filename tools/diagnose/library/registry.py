@@ -14,6 +14,7 @@ from . import cooling, heat, losses, procedure, sensors as instruments, thermal
 from .cause import Cause, Ranges
 from .check import problems
 from .forms import Context
+from .mountings import with_mountings
 
 #: What makes the causes of a user's family.
 Family = Callable[[Roles, Ranges, Sequence[Sensor]], Iterable[Cause]]
@@ -44,7 +45,8 @@ def library(
     Raises:
         DataError: files and packages without causes, and causes that are none, all at once
     """
-    found = {cause.id: cause for family in FAMILIES for cause in family(Context(roles, ranges, sensors))}
+    at = Context(roles, ranges, sensors)
+    found = {cause.id: cause for family in FAMILIES for cause in with_mountings(family(at), at)}
     wrong: list[str] = []
     for name, family in _others(extra_files, wrong):
         try:

@@ -1,0 +1,103 @@
+"""Readings that are left out, foreseen: the same terms and the same search, with all sets averaged to first order.
+
+A leading set bends: the problem is linearised where it is fitted exactly, and all sets are weighed anew there.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import dataclass
+
+import numpy as np
+
+from ....model.errors import SolveError
+from ..model.formula import Formula
+from . import screen
+from .evidence import White
+from .fit import Fit, prior_precision
+from .found import Extra
+from .problem import Aside, Problem
+from .weigh import Weighing
+
+#: Linearisations: as calibrated, and at the leading set.
+LOOKS = 2
+#: Probability from which a set counts.
+COUNTS = 0.003
+
+
+@dataclass(frozen=True)
+class Foreseen:
+    """Errors of what is foreseen (2, k): without, with what only interpolates between tests, mountings, conditions.
+
+    Args:
+        before: as calibrated, without a cause
+        after: all sets averaged
+        leading: the likeliest set, fitted exactly
+        causes: of that set
+    """
+
+    before: np.ndarray
+    after: np.ndarray
+    leading: np.ndarray
+    causes: tuple[str, ...]
+
+
+def foresee(
+    problem: Problem, formulas: Sequence[Formula], held: np.ndarray, critical: float, seed: int, most: int
+) -> Foreseen:
+    """Everything anew without some readings, and how far it is off there.
+
+    Args:
+        problem: of all data
+        formulas: all forms of all causes
+        held: entries of readings that are left out (k,)
+        critical: log prior odds of nothing against one cause
+        seed: of the draws
+        most: causes that may act together
+
+    Raises:
+        SolveError: the model cannot be run without a cause
+    """
+    out = problem.without(problem.aside | {Aside(int(i)) for i in held})
+    own = Weighing(out, formulas, seed, most)
+    own.ask_alarm(0.05, critical)
+    own.keep_null()
+    near, look = own.null, own.first
+    for k in range(LOOKS):
+        with suppress(SolveError):
+            if k:
+                look = screen.look(own.problem, near, own.formulas)
+            found = own.search(near, look, critical, "sets of causes", 0.0)
+            linear, nearest = own.linear, near
+            own.fit_sets(found, near, 0.0, 1)
+        near = own.leader().fit
+        if near is nearest:
+            break
+    logs = np.array([s.log for s in found])
+    p = np.exp(logs - logs.max())
+    p = np.where(p > COUNTS * p.sum(), p, 0.0)
+    kept = _kept(own.problem)
+    after = sum(share * linear.left(s, kept, held) for s, share in zip(found, p / p.sum(), strict=True) if share)
+    leader = own.leader()
+    before, leading = (
+        left(own.problem, fit, extras, held) for fit, extras in ((own.null, ()), (leader.fit, leader.extras))
+    )
+    return Foreseen(before, np.asarray(after), leading, leader.causes)
+
+
+def _kept(problem: Problem) -> np.ndarray:
+    """Entries that are not set aside."""
+    return np.setdiff1d(np.arange(problem.m), [a.number for a in problem.aside if not a.sensor])
+
+
+def left(problem: Problem, fit: Fit, extras: Sequence[Extra], held: np.ndarray) -> np.ndarray:
+    """What a fit leaves of held entries: by its sizes alone, and with what scatters beside them (2, k)."""
+    look, kept = fit.look, _kept(problem)
+    prior = 1 / prior_precision(problem, look.acting)
+    S = fit.noise.covariance + look.jacobian * prior @ look.jacobian.T
+    r = problem.measured - look.shown + look.jacobian @ look.x
+    known = White.of(S[np.ix_(kept, kept)]).back(r[kept])
+    C = np.concatenate([np.zeros((problem.m, 0)), *(e.size * e.columns for e in extras)], axis=1)
+    whole = r[held] - S[np.ix_(held, kept)] @ known
+    return np.array([whole + C[held] @ (C[kept].T @ known), whole])
