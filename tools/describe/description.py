@@ -43,13 +43,11 @@ class Description(Answer):
         scenario: the rig
         flat: its model
         rest: its steady state at the operating point, where there is one
-        found: the JSON object
     """
 
     scenario: Scenario
     flat: FlatModel
     rest: Result | None
-    found: dict[str, Any]
 
     @property
     def title(self) -> str:
@@ -113,7 +111,7 @@ def show(rig: RigLike) -> Description:
         "unchecked": find_unchecked(scenario, flat),
         "errata": errata_of(scenario),
     }
-    return Description(scenario, flat, rest, found)
+    return Description(found, scenario, flat, rest)
 
 
 def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> tuple[Result | None, list[str]]:

@@ -6,7 +6,6 @@ import inspect
 import math
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -26,15 +25,8 @@ from ...scenarios.values import settable
 from ..show.display import Answer
 
 
-@dataclass(frozen=True, eq=False, repr=False)
 class PartTypes(Answer):
-    """All part types, or everything about one of them.
-
-    Attributes:
-        found: the JSON object
-    """
-
-    found: Mapping[str, Any]
+    """All part types, or everything about one of them."""
 
     @property
     def title(self) -> str:

@@ -78,15 +78,8 @@ class Asked:
         return told | alike | {"platform": self.platform}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
 class Exported(Answer):
-    """What was written.
-
-    Attributes:
-        found: the JSON object: file, checksum, inputs, outputs, parameters, or FMUs and connections of a system
-    """
-
-    found: Mapping[str, Any]
+    """What was written: file, checksum, inputs, outputs, parameters, or FMUs and connections of a system."""
 
     @property
     def path(self) -> Path:

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -49,15 +49,8 @@ FINER = 65
 WRONG = {LOST: (FAILED, "no film found"), COARSE: ("coarse", "the grid is too coarse; give more --nodes")}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
 class FilmTable(Answer):
-    """Films of a contact over load, speed and temperature, and the law fitted to them.
-
-    Attributes:
-        found: the JSON object
-    """
-
-    found: Mapping[str, Any]
+    """Films of a contact over load, speed and temperature, and the law fitted to them."""
 
     @property
     def title(self) -> str:
