@@ -36,7 +36,8 @@ from ..model.core.flat import FlatModel
 from . import fmi3_source
 from .choices import Choice, drop_idle, start_choice
 from .compiling import Platform, Progress, binary, compile_all, platforms, store
-from .description import Owner, build_description, dependencies, description, identifier
+from .described import remember
+from .description import Owner, build_description, dependencies, description, identifier, terminals
 from .documentation import About, PartText, documentation
 from .effective import effective
 from .equations import equations
@@ -45,8 +46,6 @@ from .leading import Directions, Uncertain, leading
 from .parameter_set import metadata, parameter_set
 from .related import Related, relate
 from .source import GUID_MARK, source
-from .terminals import terminals
-from .unpacking import remember
 from .variables import Table, table
 
 #: A check that was made and its result.

@@ -17,9 +17,8 @@ from .choices import ROOM, START, STEADY
 from .description import TOLERANCE, identifier
 from .equations import Equations
 from .fixed import tables, wrapper
-from .leading import Directions, locate_deviations
+from .leading import Directions, Sensitivities, locate_deviations
 from .rosenbrock import RODAS3
-from .sensitivity import Sensitivities
 from .units import fmi_unit
 from .variables import Table
 

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from .case import Contact, Lubricant
+from .case import Contact, Hertz, Lubricant, hertz
 from .film import Film
-from .hertz import Hertz, hertz
 from .line import solve_line
 from .line_cycle import solve_line_cycle
 from .point import solve

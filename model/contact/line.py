@@ -9,9 +9,8 @@ import numpy as np
 from ..errors import ScenarioError
 from .case import Array, Contact
 from .film import Film, friction
-from .line_grid import LineGrid, grade_grid
 from .line_start import settle
-from .line_system import LineState, Moment
+from .line_system import LineGrid, LineState, Moment, grade_grid
 from .line_unit import LineUnit, find_flooded_ends, layer, line_unit
 
 #: Film in whose place none is, for its shear [m].

@@ -11,9 +11,8 @@ from ..errors import ScenarioError, SolveError
 from .case import Array, Contact
 from .film import Film
 from .line import film_of
-from .line_grid import LineGrid, grade_grid
 from .line_start import settle
-from .line_system import LineState, Moment, newton
+from .line_system import LineGrid, LineState, Moment, grade_grid, newton
 from .line_unit import find_flooded_ends, line_unit
 
 #: How often a time step may be halved before the cycle is given up.

@@ -11,8 +11,7 @@ import numpy as np
 
 from ..errors import SolveError
 from .case import Array
-from .line_grid import LineGrid
-from .line_system import LineState, Moment, newton
+from .line_system import LineGrid, LineState, Moment, newton
 from .line_unit import LineUnit, film_number, numbers
 
 #: How many nodes the first grid has.

@@ -6,7 +6,7 @@ from gearheat.model.errors import ScenarioError, SolveError
 from gearheat.model.run.design import choose, design
 from gearheat.model.run.least import Target, change, least_change
 from gearheat.model.run.schedule import join_phases
-from gearheat.model.run.sensitivity import sensitivities
+from gearheat.model.run.search import sensitivities
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from hypothesis import given, settings, strategies as st

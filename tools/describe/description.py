@@ -13,7 +13,7 @@ from ...model.core.flat import FlatModel, Quantity
 from ...model.errors import SolveError
 from ...model.parts.ports import Flange, HeatPort
 from ...model.run.result import Result
-from ...model.run.sensitivity import sensitivities
+from ...model.run.search import sensitivities
 from ...model.run.steady import steady
 from ...model.sources import LawInfo
 from ...model.units import from_si, in_unit, show_unit, text

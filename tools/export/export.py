@@ -101,8 +101,8 @@ def play(fmu: str | Path, duty: Duty, *, step: str = "60 s", set: Settings = (),
         >>> import gearheat as gh
         >>> gh.play("planetary.fmu", "duty.csv").plot("oil.T")  # doctest: +SKIP
     """
+    from ...fmu.described import is_trusted
     from ...fmu.play import Player
-    from ...fmu.unpacking import is_trusted
 
     fmu = Path(fmu)
     dt = to_si(step, "s", name="--step")

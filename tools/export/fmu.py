@@ -31,8 +31,16 @@ from ..show.network import network_svg
 from ..solve.settings import Drive, adjust, drive_at, find_unchecked, flat_of
 from ..solve.simulate import first_temperatures
 from ..solve.uncertainties import collect_uncertain
-from .extras import check_fmu, experiment, reference_duty, reference_run, sets_of_oils, write_extras
-from .page import figures_of, text_of
+from .extras import (
+    check_fmu,
+    experiment,
+    figures_of,
+    reference_duty,
+    reference_run,
+    sets_of_oils,
+    text_of,
+    write_extras,
+)
 
 #: Shares of the operating point's torques at which a machine on torques alone is looked for that holds its speed.
 _SHARES = (1.0, 0.75, 0.5, 0.25, 0.1, 0.0)

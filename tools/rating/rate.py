@@ -17,8 +17,7 @@ from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.values import in_range
 from ..show.display import Answer
 from ..solve.settings import adjust
-from .gather import machine_of
-from .machine import Machine
+from .gather import Machine, machine_of
 from .methods import FACTORS, METHODS, Method
 
 #: Largest multiple of the load that a rating looks for.
