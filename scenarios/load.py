@@ -26,7 +26,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -176,7 +175,6 @@ class _Loader:
             uncertainties={f"{name}.{key}": u for name, part in parts.items() for key, u in part.uncertainties.items()},
             joint_uncertainties=joint,
             units={f"{name}.{key}": unit for name, part in parts.items() for key, unit in part.units.items()},
-            overrides=tuple(o for part in parts.values() for o in part.overrides),
             entries={name: part.entries for name, part in parts.items() if part.entries},
             errata=tuple(Erratum(**e.model_dump()) for e in self.table.errata),
             protocol=protocol,
@@ -301,7 +299,9 @@ class _Loader:
         found = {}
         for name, table in self.table.uncertainties.items():
             where = f"{self.file} [uncertainties.{name}]"
-            found[name] = self._taken(where, "value", table, partial(_changed, where))
+            found[name] = self._taken(
+                where, "value", table, lambda raw, q, at=where: deviation(f"{at}: {q.name}", raw, q.unit)
+            )
         return found
 
     def _protocol(self) -> Protocol | None:
@@ -328,8 +328,3 @@ class _Loader:
         if not path.is_file():
             self.problems.append(f"{path}: there is no such file. Check the path.")
         return path
-
-
-def _changed(where: str, raw: object, quantity: Quantity) -> float:
-    """What a value changes by."""
-    return deviation(f"{where}: {quantity.name}", raw, quantity.unit)

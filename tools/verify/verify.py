@@ -10,7 +10,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ...model.errors import GearheatError, ScenarioError
+from ...model.errors import GearheatError, Problems, ScenarioError
 from ...model.sources import LawInfo, sources
 from ...model.units import si_of
 from ...scenarios.given import RigLike, scenario_of
@@ -135,14 +135,11 @@ def verify(rig: RigLike | None = None) -> Verification:
 def _each(work: Callable[[A], B], items: Sequence[A]) -> list[B]:
     """Work done on each item, or the problems of all of them."""
     found: list[B] = []
-    problems: list[str] = []
+    problems = Problems()
     for item in items:
-        try:
+        with problems:
             found.append(work(item))
-        except ScenarioError as error:
-            problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return found
 
 
