@@ -33,7 +33,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from ..model.core.flat import FlatModel
-from . import fmi3_source
 from .choices import Choice, drop_idle, start_choice
 from .compiling import Platform, Progress, binary, compile_all, platforms, store
 from .described import remember
@@ -45,7 +44,7 @@ from .fixed import icon
 from .leading import Directions, Uncertain, leading
 from .parameter_set import metadata, parameter_set
 from .related import Related, relate
-from .source import GUID_MARK, source
+from .source import GUID_MARK, OF_LIBRARY, headers_of_3, source
 from .variables import Table, table
 
 #: A check that was made and its result.
@@ -122,7 +121,7 @@ def _idle(flat: FlatModel, kept: FlatModel) -> tuple[str, ...]:
 
 
 def _binaries(name: str, code: str, chosen: Sequence[Platform], fmi: int, progress: Progress) -> dict[str, bytes]:
-    headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
+    headers, built = (headers_of_3(), OF_LIBRARY + code) if fmi == 3 else ({}, code)
     made = compile_all(lambda platform: binary(built, platform, headers=headers), chosen, progress)
     return {f"binaries/{p.name}/{identifier(name)}{p.suffix}": made[p.name] for p in chosen}
 

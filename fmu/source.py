@@ -12,7 +12,7 @@ import numpy as np
 from ..model.core.flat import FlatModel
 from ..model.run import newton
 from ..model.run.algebra import GUESSES
-from . import emit, fmi3_source
+from . import emit
 from .choices import ROOM, START, STEADY
 from .description import TOLERANCE, identifier
 from .equations import Equations
@@ -37,6 +37,14 @@ GUID_MARK = "@GUID@"
 
 #: What stands in the place of another file where there are standard deviations.
 _UNCERTAIN = {"certain.c": "uncertain.c"}
+#: Before the source of a shared library, whose functions have the names of the standard.
+OF_LIBRARY = "#define FMI3_OVERRIDE_FUNCTION_PREFIX\n"
+
+#: The standard's headers; an importer that compiles the source brings its own.
+_HEADERS_3 = ("fmi3PlatformTypes.h", "fmi3FunctionTypes.h", "fmi3Functions.h")
+
+_TABLES = tables("wrapper")
+_DEFINITION = re.compile(rf"^(fmi2\w+) ({'|'.join(_TABLES['inner'])})\(", re.MULTILINE)
 
 
 def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, directions: Directions | None = None) -> str:
@@ -59,8 +67,8 @@ def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, direct
     texts = [wrapper(instead.get(name, name)) for name in tables("wrapper")["files"][f"fmi{fmi}"]]
     if fmi == 2:
         return "\n".join([head, _fmi_headers(), generated, *texts])
-    included = fmi3_source.include_header(identifier(flat.name))
-    return "\n".join([head, included, generated, *map(fmi3_source.in_words_of_3, texts)])
+    included = include_header(identifier(flat.name))
+    return "\n".join([head, included, generated, *map(in_words_of_3, texts)])
 
 
 def _fmi_headers() -> str:
@@ -197,3 +205,37 @@ def _comment(text: str) -> str:
 def _string(text: str) -> str:
     escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", " ")
     return f'"{escaped}"'
+
+
+def headers_of_3() -> dict[str, str]:
+    """Name and text of the standard's headers, unmodified."""
+    folder = files("fmpy") / "c-code"
+    return {name: (folder / name).read_text(encoding="utf-8") for name in _HEADERS_3}
+
+
+def include_header(name: str) -> str:
+    """The beginning of the source: the standard's header, with names that no other FMU in a program has.
+
+    Args:
+        name: of the model, as an identifier
+    """
+    prefix = f"#ifndef FMI3_FUNCTION_PREFIX\n#define FMI3_FUNCTION_PREFIX {name}_\n#endif\n"
+    return f'{prefix}#include "fmi3Functions.h"\n'
+
+
+def in_words_of_3(text: str) -> str:
+    """A file of the wrapper in the words of FMI 3.0.
+
+    Args:
+        text: of the file; one that is of FMI 3.0 stays as it is
+    """
+    text = _DEFINITION.sub(lambda found: f"static {found[1]} {_TABLES['inner'][found[2]]}(", text)
+    for said, instead in _TABLES["said"].items():
+        text = text.replace(said, instead)
+    return re.sub(r"\bfmi2\w+", _word, text)
+
+
+def _word(found: re.Match[str]) -> str:
+    word = found[0]
+    other = f"fmi3{word[4:]}".replace("FMUstate", "FMUState").replace("DeSerialize", "Deserialize")
+    return str(_TABLES["words"].get(word, other))

@@ -10,8 +10,7 @@ import numpy as np
 from ..errors import ScenarioError, SolveError
 from .case import Array, Contact
 from .film import Film
-from .line import film_of
-from .line_start import settle
+from .line import film_of, settle
 from .line_system import LineGrid, LineState, Moment, grade_grid, newton
 from .line_unit import find_flooded_ends, line_unit
 

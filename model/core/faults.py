@@ -11,9 +11,8 @@ import casadi as ca
 from ..errors import StructureError
 from .component import Equation
 from .connect import Assembly, floating, nets
-from .constraint import Constraint, Known
 from .declare import Given, Port
-from .reduce import tie
+from .reduce import Constraint, Known, tie
 from .solve import Matching, Unknown, columns_of, incidence
 
 #: Names shown of a set.

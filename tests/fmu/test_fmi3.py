@@ -23,8 +23,8 @@ from fmu_in_c import gcc, planetary
 from gearheat.fmu.compiling import platforms
 from gearheat.fmu.description import terminals
 from gearheat.fmu.equations import equations
-from gearheat.fmu.fmi3_source import headers
 from gearheat.fmu.play import play
+from gearheat.fmu.source import headers
 from gearheat.fmu.variables import table
 from gearheat.model.errors import FmuError
 from lxml import etree

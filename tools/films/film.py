@@ -24,7 +24,7 @@ from ..show.console import counting, note, writable, write
 from ..show.display import Answer
 from ..show.picture import Picture
 from ..solve.settings import adjust
-from ..solve.sweep_file import Store, work_file
+from ..solve.sweep_rows import Store, work_file
 from .case import AXES, MapCase, from_file, from_rig
 
 #: Points along load, speed and temperature.

@@ -22,9 +22,8 @@ from ..show.display import Display, optional
 from ..show.picture import Picture
 from . import sampling
 from .simulate import Duty, duty_file
-from .sweep_file import Column, Store, words, work_file, write_table
 from .sweep_plan import MOST_DRAWN, Plan, Request, plan_sweep
-from .sweep_rows import TELLING, Block, local, run_on_cluster
+from .sweep_rows import TELLING, Block, Column, Store, local, run_on_cluster, words, work_file, write_table
 
 
 @dataclass(frozen=True, eq=False, repr=False)

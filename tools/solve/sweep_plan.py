@@ -27,8 +27,7 @@ from . import sampling
 from .settings import adjust, find_unchecked, flat_of
 from .simulate import first_temperatures
 from .steady import leading_outputs, outside_of
-from .sweep_file import SUFFIXES, Column
-from .sweep_rows import TELLING, Job
+from .sweep_rows import SUFFIXES, TELLING, Column, Job
 from .uncertainties import UNCERTAINTY, draw_values, reasons, shares
 
 #: Rows of a block: what an interruption may cost, and what a worker of a cluster gets at a time.
