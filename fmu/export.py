@@ -168,7 +168,8 @@ def _code(
     without_guid = description(
         flat, model, variables, GUID_MARK, dependent, owner=owner, with_sources=with_sources, fmi=fmi
     )
-    guid = _guid(code.encode() + without_guid)
+    digest = hashlib.sha256(code.encode() + without_guid).digest()
+    guid = f"{{{uuid.UUID(bytes=digest[:16])}}}"
     return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode()), directions
 
 
@@ -178,10 +179,6 @@ def _extra(flat: FlatModel, variables: Table, about: About, others: Related) -> 
     doc, sources, sd = f"start values of {flat.name}", about.sources, about.uncertainties
     values = parameter_set(flat.name, parameters, doc=doc, sources=sources, uncertainties=sd)
     return relate(values, metadata(flat, values, "parameters.ssv", sources, sd), others)
-
-
-def _guid(content: bytes) -> str:
-    return "{" + str(uuid.UUID(bytes=hashlib.sha256(content).digest()[:16])) + "}"
 
 
 def archive(content: Mapping[str, bytes]) -> bytes:

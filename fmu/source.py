@@ -57,7 +57,8 @@ def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, direct
         fmi: version of the standard, 2 or 3; with 3 the compiler needs the standard's headers beside the text
         directions: of the standard deviations, where it has some
     """
-    head = f"/* {_comment(flat.name)}: FMI {fmi}.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
+    name = flat.name.replace("*/", "* /").replace("\n", " ")
+    head = f"/* {name}: FMI {fmi}.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
     functions = model.functions if fmi == 2 else (*model.functions, *model.adjoint_functions)
     if directions is not None:
         functions += Sensitivities(model, directions.count, directions.moving, locate_deviations(table)).functions
@@ -196,10 +197,6 @@ def _beginnings(table: Table) -> dict[str, int]:
 def _array(kind: str, name: str, values: Iterable[str]) -> str:
     rows = list(values) or ["0"]
     return f"static {kind} {name}[] = {{\n" + "".join(f"    {row},\n" for row in rows) + "};\n"
-
-
-def _comment(text: str) -> str:
-    return text.replace("*/", "* /").replace("\n", " ")
 
 
 def _string(text: str) -> str:

@@ -202,7 +202,7 @@ class _Loader:
         self.problems += problems
         self.value_sources |= sources
         written = dict(paths({k: v for k, v in self.table.operating_point.items() if k not in ABOUT}))
-        point = self._taken(where, "input", written, lambda raw, q: in_range(f"{where}: ", raw, q))
+        point = self._taken(where, "input", written, in_range)
         given = [f"{end}.{quantity}" for end, quantities in self.table.drive.items() for quantity in quantities]
         self.problems += [
             f"{where}: {path} is missing, which [drive] says is given. Give its usual value."
@@ -212,7 +212,7 @@ class _Loader:
         return point
 
     def _taken(
-        self, where: str, what: str, table: Mapping[str, Any], read: Callable[[Any, Quantity], float]
+        self, where: str, what: str, table: Mapping[str, Any], read: Callable[[str, Any, Quantity], float]
     ) -> dict[str, float]:
         """Values of a table by path, as they are read for a quantity that may be set."""
         found: dict[str, float] = {}
@@ -221,7 +221,7 @@ class _Loader:
                 self.problems.append(f'{where}: there is no {what} "{path}".{suggestion(path, self.settable)}')
                 continue
             with self.problems:
-                found[path] = read(raw, self.settable[path])
+                found[path] = read(f"{where}: ", raw, self.settable[path])
         return found
 
     def _drive(self) -> dict[str, tuple[str, ...]]:
@@ -299,9 +299,7 @@ class _Loader:
         found = {}
         for name, table in self.table.uncertainties.items():
             where = f"{self.file} [uncertainties.{name}]"
-            found[name] = self._taken(
-                where, "value", table, lambda raw, q, at=where: deviation(f"{at}: {q.name}", raw, q.unit)
-            )
+            found[name] = self._taken(where, "value", table, lambda at, raw, q: deviation(f"{at}{q.name}", raw, q.unit))
         return found
 
     def _protocol(self) -> Protocol | None:

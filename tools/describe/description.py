@@ -103,13 +103,17 @@ def show(rig: RigLike) -> Description:
         "choices": choices(scenario),
         "inputs": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.inputs],
         "states": [_line(q) for q in flat.states],
-        "outputs": [_output(q) for q in flat.outputs if q.name not in flat.derived],
+        "outputs": [
+            {"name": q.name, "unit": show_unit(q.unit), "doc": q.doc}
+            for q in flat.outputs
+            if q.name not in flat.derived
+        ],
         "sensors": dict(scenario.sensors),
         "laws": laws(flat),
         "outside": outside_of(rest) if rest is not None else [],
         "no_steady_state": no_steady_state,
         "unchecked": find_unchecked(scenario, flat),
-        "errata": errata_of(scenario),
+        "errata": [asdict(e) for e in scenario.errata],
     }
     return Description(found, scenario, flat, rest)
 
@@ -165,17 +169,8 @@ def laws(flat: FlatModel) -> list[dict[str, Any]]:
     return [{**law_line(law), "verified": law.verified} for law in cite_laws(flat)]
 
 
-def errata_of(scenario: Scenario) -> list[dict[str, str]]:
-    """The places where the rig's sources are wrong."""
-    return [asdict(e) for e in scenario.errata]
-
-
 def _line(q: Quantity) -> dict[str, Any]:
     return {"name": q.name, "value": from_si(q.start, q.unit), "unit": show_unit(q.unit), "doc": q.doc}
-
-
-def _output(q: Quantity) -> dict[str, Any]:
-    return {"name": q.name, "unit": show_unit(q.unit), "doc": q.doc}
 
 
 def _kind(scenario: Scenario, flat: FlatModel, path: str) -> str:

@@ -180,16 +180,11 @@ def sweep(
             scheduler,
             draw,
         )
-        return run_sweep(request, Path(folder))
+        return _run(request, Path(folder))
 
 
-def run_sweep(request: Request, folder: Path) -> Sweep:
-    """Plan, solve what an earlier run has not finished, write the table.
-
-    Args:
-        request: what is asked
-        folder: for the work file where nothing is written
-    """
+def _run(request: Request, folder: Path) -> Sweep:
+    """Plan, solve what an earlier run has not finished, write the table; a sweep without one works in the folder."""
     plan = plan_sweep(request)
     out, blocks = request.out, plan.blocks
     with Store(work_file(out or folder / "rows.csv"), plan.key, len(plan.job.outputs) + len(TELLING)) as store:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
@@ -17,7 +17,6 @@ from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.published import Row, golden_rows, read_published
 from ...scenarios.scenario import Scenario
 from ...scenarios.shipped import list_rigs
-from ..describe.description import errata_of
 from ..show.console import counting, write
 from ..show.display import Display
 from ..show.pages import page
@@ -168,7 +167,7 @@ def _list_citations(places: Iterable[str]) -> dict[str, str]:
 def _machine(values: RigValues, rows: Sequence[Row], advance: Callable[[int], None]) -> Machine:
     scenario = values.scenario
     verdicts = judge_rows(rows, values, advance)
-    return Machine(scenario.name, scenario.doc, scenario.reproduces, verdicts, tuple(errata_of(scenario)))
+    return Machine(scenario.name, scenario.doc, scenario.reproduces, verdicts, tuple(map(asdict, scenario.errata)))
 
 
 def judge_rows(

@@ -8,7 +8,7 @@ from math import log2
 
 import numpy as np
 
-from ....model.contact import Film, hertz, solve
+from ....model.contact import hertz, solve
 from . import cases
 from .rows import Found, Job, bound
 
@@ -49,12 +49,13 @@ def _order(grids: tuple[int, ...]) -> Found:
     """Differences between grids of halved distances, and the order they fall with."""
     contact, _ = cases.circular(M_STUDY, L_STUDY)
     films = [solve(contact, n=n, domain=DOMAIN, tolerance=1e-9) for n in grids]
+    pairs = list(pairwise(films))
     apart = {
-        "h_c": [abs(a.h_c - b.h_c) / b.h_c for a, b in _pairs(films)],
-        "h_min": [abs(a.h_min - b.h_min) / b.h_min for a, b in _pairs(films)],
-        "h, rms": [_rms(a.h, b.h) for a, b in _pairs(films)],
-        "p, rms": [_rms(a.p, b.p) for a, b in _pairs(films)],
-        "rolling moment": [abs(a.rolling_moment / b.rolling_moment - 1) for a, b in _pairs(films)],
+        "h_c": [abs(a.h_c - b.h_c) / b.h_c for a, b in pairs],
+        "h_min": [abs(a.h_min - b.h_min) / b.h_min for a, b in pairs],
+        "h, rms": [_rms(a.h, b.h) for a, b in pairs],
+        "p, rms": [_rms(a.p, b.p) for a, b in pairs],
+        "rolling moment": [abs(a.rolling_moment / b.rolling_moment - 1) for a, b in pairs],
     }
     name = f"M {M_STUDY:g} L {L_STUDY:g}, {grids[-3]}, {grids[-2]}, {grids[-1]} nodes a side"
     orders = {what: log2(d[-2] / d[-1]) for what, d in apart.items()}
@@ -64,10 +65,6 @@ def _order(grids: tuple[int, ...]) -> Found:
     a = hertz(contact).a
     spacing = [(f.x[1] - f.x[0]) / a for f in films]
     return {"rows": rows, "spacing": spacing, "apart": apart, "residuals": films[-1].residuals}
-
-
-def _pairs(films: list[Film]) -> list[tuple[Film, Film]]:
-    return list(pairwise(films))
 
 
 def _rms(coarse: np.ndarray, fine: np.ndarray) -> float:
