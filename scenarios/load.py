@@ -17,7 +17,7 @@
     sources = { V = "assumed: one litre" }
 
 Every table and key stands in `tables`: those of the file in `RigTable`, those that each part has in `PartTable`.
-A part's values are those of its type; one of your own is "my_module:MyClass", see `own_parts`. A name "x_{a,b}" stands
+A part's values are those of its type; one of your own is "my_module:MyClass", see `load_type`. A name "x_{a,b}" stands
 for two parts, see `repeats`; what use = NAME stands for, in `repeats` and `assemblies`.
 A source is a citation ("Dias2014, table 5.7") or one of "assumed: ...", "inferred: ...", "calibrated: ...".
 """
@@ -26,6 +26,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
+from functools import cache
+from importlib import import_module
+from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
@@ -40,13 +43,11 @@ from ..model.parts.free_form import EXTRA_PARTS
 from ..model.units import to_si
 from .assemblies import expand_assemblies
 from .csv_table import split_unit
-from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
-from .own_parts import load_installed_types, load_type
 from .repeats import expand
 from .scenario import Erratum, Instrument, Protocol, Scenario
 from .shipped import RIGS, list_rigs
-from .tables import RigTable, validate
+from .tables import ABOUT, RigTable, paths, read_toml, sources_of, validate
 from .values import (
     PartValues,
     deviation,
@@ -57,6 +58,9 @@ from .values import (
     settable,
     standard_deviation,
 )
+
+#: Entry points under which installed packages offer part types, "Cooler = my_package.parts:Cooler".
+GROUP = "gearheat.parts"
 
 
 def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None = None) -> Scenario:
@@ -326,3 +330,60 @@ class _Loader:
         if not path.is_file():
             self.problems.append(f"{path}: there is no such file. Check the path.")
         return path
+
+
+@cache
+def load_installed_types() -> dict[str, type[Component]]:
+    """Part types of installed packages, by name.
+
+    Raises:
+        ScenarioError: all that cannot be loaded, is no part or has another name than its class
+    """
+    found: dict[str, type[Component]] = {}
+    problems = Problems()
+    for entry in sorted(entry_points(group=GROUP), key=lambda e: e.name):
+        try:
+            found[entry.name] = load_type(entry.value, {})
+        except ScenarioError as error:
+            problems += [f"package {entry.name}: {problem}" for problem in error.problems]
+    problems += [
+        f'package {n}: its class is "{c.__name__}". Give both one name.' for n, c in found.items() if n != c.__name__
+    ]
+    problems.check()
+    return found
+
+
+def load_type(kind: str, known: Mapping[str, type[Component]]) -> type[Component]:
+    """The class of one's own that "module:Class" names, of an importable module.
+
+    Modules are looked for where Python looks, among what is installed and on PYTHONPATH, never beside the rig file: a
+    rig file of somebody else brings no code of its own.
+
+    Args:
+        kind: as the rig file has it
+        known: the classes of the project, by name
+
+    Raises:
+        ScenarioError: there is no such module or class, it fails, it is no part, or a part type has its name
+    """
+    module_name, _, name = kind.partition(":")
+    if not all(word.isidentifier() for word in module_name.split(".")):
+        raise ScenarioError(f'type "{kind}": names no module. Give module:Class.')
+    try:
+        module = import_module(module_name)
+    except ImportError as error:
+        raise ScenarioError(
+            f'type "{kind}": {error}. Install the package that has it, or put its folder on PYTHONPATH.'
+        ) from None
+    except Exception as error:  # a user's module may fail in any way
+        raise ScenarioError(f'type "{kind}": {module_name} fails: {type(error).__name__}: {error}.') from error
+    cls = getattr(module, name, None)
+    if not (isinstance(cls, type) and issubclass(cls, Component)):
+        parts = [n for n, c in vars(module).items() if isinstance(c, type) and issubclass(c, Component)]
+        close = suggestion(name, parts) or f" Its parts: {', '.join(parts) or 'none'}."
+        raise ScenarioError(f'type "{kind}": {module_name} has no part "{name}".{close}')
+    if known.get(cls.__name__, cls) is not cls:
+        raise ScenarioError(
+            f'type "{kind}": there is a part type "{cls.__name__}" already. Give the class another name.'
+        )
+    return cls

@@ -38,8 +38,7 @@ from pydantic import Field
 
 from ..model.errors import Problems, ScenarioError
 from .csv_table import number, read_cells
-from .document import paths, read_toml
-from .tables import Strict
+from .tables import Strict, paths, read_toml
 
 Number = str | float
 

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from .case import Contact, Hertz, Lubricant, hertz
+from .case import Contact, Hertz, Lubricant, Texture, gaussian_texture, hertz
 from .film import Film
 from .line import solve_line
 from .line_cycle import solve_line_cycle
 from .point import solve
-from .rough import Texture, gaussian_texture
 from .transient import solve_transient
 
 __all__ = [

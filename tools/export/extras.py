@@ -19,8 +19,7 @@ from ...fmu.documentation import PartText
 from ...fmu.export import export
 from ...fmu.parameter_set import parameter_set
 from ...fmu.play import Player
-from ...fmu.reference import TOLERANCE, results, stimuli, write_reference
-from ...fmu.related import Experiment
+from ...fmu.related import TOLERANCE, Experiment, results, stimuli, write_reference
 from ...fmu.variables import STORED, SUPPLIED, THROUGHPUT, tidy
 from ...model.core.component import Component
 from ...model.core.connect import Assembly

@@ -28,9 +28,9 @@ from ...scenarios.scenario import Scenario
 from ..show.console import folder, lasting, progress_bar, writable
 from ..show.display import Answer
 from ..show.network import network_svg
+from ..solve.sampling import collect_uncertain
 from ..solve.settings import Drive, adjust, drive_at, find_unchecked, flat_of
 from ..solve.simulate import first_temperatures
-from ..solve.uncertainties import collect_uncertain
 from .extras import (
     check_fmu,
     experiment,
