@@ -18,7 +18,7 @@ import numpy as np
 
 from ..model.errors import DataError, Problems, ScenarioError, suggestion
 from ..model.units import spell_unit, to_si
-from .tables import read_text
+from .document import read_text
 
 #: Columns in which a table of `gearheat sweep` says how each of its rows was found; nothing reads them.
 ACCOUNTS = ("row", "status", "iterations", "energy_residual [1]", "outside [1]")

@@ -13,8 +13,8 @@ from ..model.core.declare import Parameter, list_declared
 from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.parts import PARTS
 from ..model.units import to_si
+from .document import ABOUT, read_toml, sources_of
 from .shipped import CHECKED, FILES, FOLDER
-from .tables import ABOUT, read_toml, sources_of
 
 #: Keys that describe an entry to a reader, and that no part takes, with their SI unit.
 DESCRIPTIVE: Mapping[str, Mapping[str, str]] = {

@@ -43,11 +43,12 @@ from ..model.parts.free_form import EXTRA_PARTS
 from ..model.units import to_si
 from .assemblies import expand_assemblies
 from .csv_table import split_unit
+from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
 from .repeats import expand
 from .scenario import Erratum, Instrument, Protocol, Scenario
 from .shipped import RIGS, list_rigs
-from .tables import ABOUT, RigTable, paths, read_toml, sources_of, validate
+from .tables import RigTable, validate
 from .values import (
     PartValues,
     deviation,

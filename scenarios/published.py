@@ -38,7 +38,8 @@ from pydantic import Field
 
 from ..model.errors import Problems, ScenarioError
 from .csv_table import number, read_cells
-from .tables import Strict, paths, read_toml
+from .document import paths, read_toml
+from .tables import Strict
 
 Number = str | float
 

@@ -20,8 +20,8 @@ from collections.abc import Mapping
 from typing import Any
 
 from ..model.errors import suggestion
+from .document import ABOUT
 from .shipped import FILES
-from .tables import ABOUT
 from .values import UNCERTAINTIES
 
 #: Keys of a part's table that hold tables: a part adds to those of its template.

@@ -11,7 +11,7 @@ from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from .tables import ABOUT, read_toml
+from .document import ABOUT, read_toml
 
 _ROOT = Path(str(files("gearheat.scenarios")))
 

@@ -15,9 +15,9 @@ from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, Problems, ScenarioError, suggestion
 from ..model.parts import PARTS
 from ..model.units import in_unit, spell_unit, split_quantity, to_si
+from .document import ABOUT, sources_of
 from .entries import Entry, entry
 from .shipped import FILES
-from .tables import ABOUT, sources_of
 
 #: Key of the table of standard uncertainties of a part.
 UNCERTAINTIES = "uncertainties"

@@ -10,7 +10,8 @@ from typing import Any, Literal
 from pydantic import ConfigDict, Field, field_validator, model_validator
 
 from ...model.errors import DataError, GearheatError, Problems, suggestion
-from ..tables import SensorTable, Strict, read_text, read_toml
+from ..document import read_text, read_toml
+from ..tables import SensorTable, Strict
 
 #: Versions of the format that are read.
 SCHEMAS = ("gearheat.card/1", "gearheat.card/2")

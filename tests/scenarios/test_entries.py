@@ -7,8 +7,8 @@ from for_each import for_each
 from gearheat.model.errors import ScenarioError
 from gearheat.model.parts import PARTS
 from gearheat.model.sources import sources
+from gearheat.scenarios.document import SOURCE_KINDS
 from gearheat.scenarios.entries import FILES, Entry, catalogue, entry, read_catalogue
-from gearheat.scenarios.tables import SOURCE_KINDS
 from gearheat.scenarios.values import entry_values, oil_values, settable
 
 ENTRIES = [found for kind in FILES for found in catalogue(kind).values()]

@@ -13,9 +13,9 @@ from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from gearheat.model.sources import sources
+from gearheat.scenarios.document import SOURCE_KINDS
 from gearheat.scenarios.load import list_rigs, load
 from gearheat.scenarios.scenario import Scenario
-from gearheat.scenarios.tables import SOURCE_KINDS
 
 NAMES = tuple(list_rigs())
 

@@ -18,8 +18,8 @@ from ...model.parts.contacts import TellsFilmContact
 from ...model.parts.lubrication import LubricantProperties
 from ...model.run.steady import steady
 from ...model.units import to_si
+from ...scenarios.document import read_toml, sources_of
 from ...scenarios.scenario import Scenario
-from ...scenarios.tables import read_toml, sources_of
 from ...scenarios.values import oil_values
 from ..solve.losses import values_of
 from ..solve.sampling import Axis, axes, read

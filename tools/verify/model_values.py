@@ -22,11 +22,11 @@ from ...model.run.design import design
 from ...model.run.steady import steady
 from ...model.sources import LawInfo
 from ...model.units import to_si
+from ...scenarios.document import paths
 from ...scenarios.measured.readings import measured_rows, table_columns
 from ...scenarios.measured.study import read_study
 from ...scenarios.published import Row
 from ...scenarios.scenario import Scenario, parse_assignments
-from ...scenarios.tables import paths
 from ..solve.losses import at_readings, contacts_at_operating_point, hold
 from ..solve.settings import adjust, choice_paths, flat_of, parameter_of
 from .verdicts import Value, number_of
