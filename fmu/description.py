@@ -16,10 +16,9 @@ import numpy as np
 from ..model.core.flat import FlatModel
 from ..model.errors import FmuError
 from . import units
-from .choices import Choice
 from .equations import Equations
 from .fixed import tables, xml
-from .variables import Table, Variable
+from .variables import Choice, Table, Variable
 
 #: Relative tolerance when the importer gives none: an error of one step is at most this times the nominal.
 TOLERANCE = 1e-5

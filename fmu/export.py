@@ -33,19 +33,17 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from ..model.core.flat import FlatModel
-from .choices import Choice, drop_idle, start_choice
 from .compiling import Platform, Progress, binary, compile_all, platforms, store
 from .described import remember
 from .description import Owner, build_description, dependencies, description, identifier, terminals
 from .documentation import About, PartText, documentation
-from .effective import effective
-from .equations import equations
+from .equations import effective, equations
 from .fixed import icon
 from .leading import Directions, Uncertain, leading
 from .parameter_set import metadata, parameter_set
 from .related import Related, relate
 from .source import GUID_MARK, OF_LIBRARY, headers_of_3, source
-from .variables import Table, table
+from .variables import Choice, Table, drop_idle, start_choice, table
 
 #: A check that was made and its result.
 Check = tuple[str, str]

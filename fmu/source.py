@@ -13,14 +13,13 @@ from ..model.core.flat import FlatModel
 from ..model.run import newton
 from ..model.run.algebra import GUESSES
 from . import emit
-from .choices import ROOM, START, STEADY
 from .description import TOLERANCE, identifier
 from .equations import Equations
 from .fixed import tables, wrapper
 from .leading import Directions, Sensitivities, locate_deviations
 from .rosenbrock import RODAS3
 from .units import fmi_unit
-from .variables import Table
+from .variables import ROOM, START, STEADY, Table
 
 _HEADERS = ("fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h")
 _NOTICE = "Copyright (c) 2026, the gearheat developers. SPDX-License-Identifier: BSD-3-Clause"

@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from ...fmu.choices import Choice, Item, drop_idle, start_choice
 from ...fmu.compiling import platforms
 from ...fmu.description import Owner
-from ...fmu.effective import effective
+from ...fmu.equations import effective
 from ...fmu.export import export
 from ...fmu.related import Related
+from ...fmu.variables import Choice, Item, drop_idle, start_choice
 from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError, SolveError
 from ...model.machines.spec import assemble
