@@ -21,10 +21,23 @@ import numpy as np
 
 from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import ScenarioError, suggestion
-from ..model.run.audit import SLACK
+from ..model.run.result import SLACK
 from ..model.run.schedule import Schedule
-from .batch_library import BESIDE, Duty, address, broken_relations, driver, instructions, rows_from, share_rows, widen
-from .batch_source import EXTRA, relations_source, steady_source, warmup_source
+from .batch_library import (
+    BESIDE,
+    EXTRA,
+    Duty,
+    address,
+    broken_relations,
+    driver,
+    instructions,
+    relations_source,
+    rows_from,
+    share_rows,
+    steady_source,
+    warmup_source,
+    widen,
+)
 from .grid import Grid, grid
 
 #: Of the local error of a warm-up, in nominals of the states.

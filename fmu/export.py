@@ -33,21 +33,17 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 
 from ..model.core.flat import FlatModel
-from . import fmi3_source
-from .choices import Choice, drop_idle, start_choice
 from .compiling import Platform, Progress, binary, compile_all, platforms, store
-from .description import Owner, build_description, dependencies, description, identifier
+from .described import remember
+from .description import Owner, build_description, dependencies, description, identifier, terminals
 from .documentation import About, PartText, documentation
-from .effective import effective
-from .equations import equations
+from .equations import effective, equations
 from .fixed import icon
 from .leading import Directions, Uncertain, leading
 from .parameter_set import metadata, parameter_set
 from .related import Related, relate
-from .source import GUID_MARK, source
-from .terminals import terminals
-from .unpacking import remember
-from .variables import Table, table
+from .source import GUID_MARK, OF_LIBRARY, headers_of_3, source
+from .variables import Choice, Table, drop_idle, start_choice, table
 
 #: A check that was made and its result.
 Check = tuple[str, str]
@@ -123,7 +119,7 @@ def _idle(flat: FlatModel, kept: FlatModel) -> tuple[str, ...]:
 
 
 def _binaries(name: str, code: str, chosen: Sequence[Platform], fmi: int, progress: Progress) -> dict[str, bytes]:
-    headers, built = (fmi3_source.headers(), fmi3_source.OF_LIBRARY + code) if fmi == 3 else ({}, code)
+    headers, built = (headers_of_3(), OF_LIBRARY + code) if fmi == 3 else ({}, code)
     made = compile_all(lambda platform: binary(built, platform, headers=headers), chosen, progress)
     return {f"binaries/{p.name}/{identifier(name)}{p.suffix}": made[p.name] for p in chosen}
 
@@ -170,7 +166,8 @@ def _code(
     without_guid = description(
         flat, model, variables, GUID_MARK, dependent, owner=owner, with_sources=with_sources, fmi=fmi
     )
-    guid = _guid(code.encode() + without_guid)
+    digest = hashlib.sha256(code.encode() + without_guid).digest()
+    guid = f"{{{uuid.UUID(bytes=digest[:16])}}}"
     return code.replace(GUID_MARK, guid), without_guid.replace(GUID_MARK.encode(), guid.encode()), directions
 
 
@@ -180,10 +177,6 @@ def _extra(flat: FlatModel, variables: Table, about: About, others: Related) -> 
     doc, sources, sd = f"start values of {flat.name}", about.sources, about.uncertainties
     values = parameter_set(flat.name, parameters, doc=doc, sources=sources, uncertainties=sd)
     return relate(values, metadata(flat, values, "parameters.ssv", sources, sd), others)
-
-
-def _guid(content: bytes) -> str:
-    return "{" + str(uuid.UUID(bytes=hashlib.sha256(content).digest()[:16])) + "}"
 
 
 def archive(content: Mapping[str, bytes]) -> bytes:

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 import numpy as np
 
@@ -34,45 +34,21 @@ class Played:
         return self.values[:, self.names.index(name)]
 
 
-def play(
-    path: Path | str,
-    inputs: Inputs,
-    stop: float,
-    step: float,
-    *,
-    begin: float = 0.0,
-    start: Mapping[str, float] | None = None,
-    record: Sequence[str] | None = None,
-    output_times: Sequence[float] | np.ndarray | None = None,
-    tolerance: float | None = None,
-) -> Played:
-    """Load an FMU and run it once; `Player.run` says more of the arguments.
+def play(path: Path | str, inputs: Inputs, stop: float, step: float, **options: Any) -> Played:
+    """Load an FMU and run it once.
 
     Args:
         path: the FMU
         inputs: name -> (times [s], values in SI)
         stop: end of the run [s]
         step: communication step [s]
-        begin: start of the run [s]
-        start: start values of inputs, parameters and states (SI); the numbers of items that are chosen
-        record: variables to record; all outputs and inputs when not given
-        output_times: times of the rows [s]; every communication step when not given
-        tolerance: relative, of the FMU's solver; its own when not given
+        options: of `Player.run`: begin, start, record, output_times, tolerance
 
     Raises:
         FmuError: as `Player` and `Player.run`
     """
     with Player(path) as player:
-        return player.run(
-            inputs,
-            stop,
-            step,
-            begin=begin,
-            start=start,
-            record=record,
-            output_times=output_times,
-            tolerance=tolerance,
-        )
+        return player.run(inputs, stop, step, **options)
 
 
 class Player:

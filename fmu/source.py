@@ -12,16 +12,14 @@ import numpy as np
 from ..model.core.flat import FlatModel
 from ..model.run import newton
 from ..model.run.algebra import GUESSES
-from . import emit, fmi3_source
-from .choices import ROOM, START, STEADY
+from . import emit
 from .description import TOLERANCE, identifier
 from .equations import Equations
 from .fixed import tables, wrapper
-from .leading import Directions, locate_deviations
+from .leading import Directions, Sensitivities, locate_deviations
 from .rosenbrock import RODAS3
-from .sensitivity import Sensitivities
 from .units import fmi_unit
-from .variables import Table
+from .variables import ROOM, START, STEADY, Table
 
 _HEADERS = ("fmi2TypesPlatform.h", "fmi2FunctionTypes.h", "fmi2Functions.h")
 _NOTICE = "Copyright (c) 2026, the gearheat developers. SPDX-License-Identifier: BSD-3-Clause"
@@ -38,6 +36,14 @@ GUID_MARK = "@GUID@"
 
 #: What stands in the place of another file where there are standard deviations.
 _UNCERTAIN = {"certain.c": "uncertain.c"}
+#: Before the source of a shared library, whose functions have the names of the standard.
+OF_LIBRARY = "#define FMI3_OVERRIDE_FUNCTION_PREFIX\n"
+
+#: The standard's headers; an importer that compiles the source brings its own.
+_HEADERS_3 = ("fmi3PlatformTypes.h", "fmi3FunctionTypes.h", "fmi3Functions.h")
+
+_TABLES = tables("wrapper")
+_DEFINITION = re.compile(rf"^(fmi2\w+) ({'|'.join(_TABLES['inner'])})\(", re.MULTILINE)
 
 
 def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, directions: Directions | None = None) -> str:
@@ -50,7 +56,8 @@ def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, direct
         fmi: version of the standard, 2 or 3; with 3 the compiler needs the standard's headers beside the text
         directions: of the standard deviations, where it has some
     """
-    head = f"/* {_comment(flat.name)}: FMI {fmi}.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
+    name = flat.name.replace("*/", "* /").replace("\n", " ")
+    head = f"/* {name}: FMI {fmi}.0 for model exchange and co-simulation in one file.\n   {_NOTICE} */\n"
     functions = model.functions if fmi == 2 else (*model.functions, *model.adjoint_functions)
     if directions is not None:
         functions += Sensitivities(model, directions.count, directions.moving, locate_deviations(table)).functions
@@ -60,8 +67,8 @@ def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, direct
     texts = [wrapper(instead.get(name, name)) for name in tables("wrapper")["files"][f"fmi{fmi}"]]
     if fmi == 2:
         return "\n".join([head, _fmi_headers(), generated, *texts])
-    included = fmi3_source.include_header(identifier(flat.name))
-    return "\n".join([head, included, generated, *map(fmi3_source.in_words_of_3, texts)])
+    included = include_header(identifier(flat.name))
+    return "\n".join([head, included, generated, *map(in_words_of_3, texts)])
 
 
 def _fmi_headers() -> str:
@@ -191,10 +198,40 @@ def _array(kind: str, name: str, values: Iterable[str]) -> str:
     return f"static {kind} {name}[] = {{\n" + "".join(f"    {row},\n" for row in rows) + "};\n"
 
 
-def _comment(text: str) -> str:
-    return text.replace("*/", "* /").replace("\n", " ")
-
-
 def _string(text: str) -> str:
     escaped = text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", " ")
     return f'"{escaped}"'
+
+
+def headers_of_3() -> dict[str, str]:
+    """Name and text of the standard's headers, unmodified."""
+    folder = files("fmpy") / "c-code"
+    return {name: (folder / name).read_text(encoding="utf-8") for name in _HEADERS_3}
+
+
+def include_header(name: str) -> str:
+    """The beginning of the source: the standard's header, with names that no other FMU in a program has.
+
+    Args:
+        name: of the model, as an identifier
+    """
+    prefix = f"#ifndef FMI3_FUNCTION_PREFIX\n#define FMI3_FUNCTION_PREFIX {name}_\n#endif\n"
+    return f'{prefix}#include "fmi3Functions.h"\n'
+
+
+def in_words_of_3(text: str) -> str:
+    """A file of the wrapper in the words of FMI 3.0.
+
+    Args:
+        text: of the file; one that is of FMI 3.0 stays as it is
+    """
+    text = _DEFINITION.sub(lambda found: f"static {found[1]} {_TABLES['inner'][found[2]]}(", text)
+    for said, instead in _TABLES["said"].items():
+        text = text.replace(said, instead)
+    return re.sub(r"\bfmi2\w+", _word, text)
+
+
+def _word(found: re.Match[str]) -> str:
+    word = found[0]
+    other = f"fmi3{word[4:]}".replace("FMUstate", "FMUState").replace("DeSerialize", "Deserialize")
+    return str(_TABLES["words"].get(word, other))

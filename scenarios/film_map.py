@@ -145,14 +145,11 @@ def _find_solved(table: Table, problems: list[str]) -> list[int]:
     for i, status in enumerate(table.columns["status"]):
         if status != OK:
             continue
-        bad = [c for c in ("h_c [m]", "h_min [m]") if not _positive(table.columns[c][i])]
+        films = {c: table.columns[c][i] for c in ("h_c [m]", "h_min [m]")}
+        bad = [c for c, film in films.items() if not (film is None or film > 0)]  # of None was told already
         problems += [f'{table.place(i)}: {c} has no film, but status is "{OK}".' for c in bad]
         rows += [] if bad else [i]
     return rows
-
-
-def _positive(value: Any) -> bool:
-    return value is None or bool(value > 0)  # None was told of already
 
 
 def _degrees(levels: Sequence[int], highest: int) -> tuple[tuple[int, int, int], ...]:

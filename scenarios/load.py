@@ -17,7 +17,7 @@
     sources = { V = "assumed: one litre" }
 
 Every table and key stands in `tables`: those of the file in `RigTable`, those that each part has in `PartTable`.
-A part's values are those of its type; one of your own is "my_module:MyClass", see `own_parts`. A name "x_{a,b}" stands
+A part's values are those of its type; one of your own is "my_module:MyClass", see `load_type`. A name "x_{a,b}" stands
 for two parts, see `repeats`; what use = NAME stands for, in `repeats` and `assemblies`.
 A source is a citation ("Dias2014, table 5.7") or one of "assumed: ...", "inferred: ...", "calibrated: ...".
 """
@@ -26,7 +26,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from functools import partial
+from functools import cache
+from importlib import import_module
+from importlib.metadata import entry_points
 from pathlib import Path
 from typing import Any
 
@@ -43,7 +45,6 @@ from .assemblies import expand_assemblies
 from .csv_table import split_unit
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
-from .own_parts import load_installed_types, load_type
 from .repeats import expand
 from .scenario import Erratum, Instrument, Protocol, Scenario
 from .shipped import RIGS, list_rigs
@@ -58,6 +59,9 @@ from .values import (
     settable,
     standard_deviation,
 )
+
+#: Entry points under which installed packages offer part types, "Cooler = my_package.parts:Cooler".
+GROUP = "gearheat.parts"
 
 
 def load(name_or_path: str | Path, types: Mapping[str, type[Component]] | None = None) -> Scenario:
@@ -176,7 +180,6 @@ class _Loader:
             uncertainties={f"{name}.{key}": u for name, part in parts.items() for key, u in part.uncertainties.items()},
             joint_uncertainties=joint,
             units={f"{name}.{key}": unit for name, part in parts.items() for key, unit in part.units.items()},
-            overrides=tuple(o for part in parts.values() for o in part.overrides),
             entries={name: part.entries for name, part in parts.items() if part.entries},
             errata=tuple(Erratum(**e.model_dump()) for e in self.table.errata),
             protocol=protocol,
@@ -204,7 +207,7 @@ class _Loader:
         self.problems += problems
         self.value_sources |= sources
         written = dict(paths({k: v for k, v in self.table.operating_point.items() if k not in ABOUT}))
-        point = self._taken(where, "input", written, lambda raw, q: in_range(f"{where}: ", raw, q))
+        point = self._taken(where, "input", written, in_range)
         given = [f"{end}.{quantity}" for end, quantities in self.table.drive.items() for quantity in quantities]
         self.problems += [
             f"{where}: {path} is missing, which [drive] says is given. Give its usual value."
@@ -214,7 +217,7 @@ class _Loader:
         return point
 
     def _taken(
-        self, where: str, what: str, table: Mapping[str, Any], read: Callable[[Any, Quantity], float]
+        self, where: str, what: str, table: Mapping[str, Any], read: Callable[[str, Any, Quantity], float]
     ) -> dict[str, float]:
         """Values of a table by path, as they are read for a quantity that may be set."""
         found: dict[str, float] = {}
@@ -223,7 +226,7 @@ class _Loader:
                 self.problems.append(f'{where}: there is no {what} "{path}".{suggestion(path, self.settable)}')
                 continue
             with self.problems:
-                found[path] = read(raw, self.settable[path])
+                found[path] = read(f"{where}: ", raw, self.settable[path])
         return found
 
     def _drive(self) -> dict[str, tuple[str, ...]]:
@@ -301,7 +304,7 @@ class _Loader:
         found = {}
         for name, table in self.table.uncertainties.items():
             where = f"{self.file} [uncertainties.{name}]"
-            found[name] = self._taken(where, "value", table, partial(_changed, where))
+            found[name] = self._taken(where, "value", table, lambda at, raw, q: deviation(f"{at}{q.name}", raw, q.unit))
         return found
 
     def _protocol(self) -> Protocol | None:
@@ -330,6 +333,58 @@ class _Loader:
         return path
 
 
-def _changed(where: str, raw: object, quantity: Quantity) -> float:
-    """What a value changes by."""
-    return deviation(f"{where}: {quantity.name}", raw, quantity.unit)
+@cache
+def load_installed_types() -> dict[str, type[Component]]:
+    """Part types of installed packages, by name.
+
+    Raises:
+        ScenarioError: all that cannot be loaded, is no part or has another name than its class
+    """
+    found: dict[str, type[Component]] = {}
+    problems = Problems()
+    for entry in sorted(entry_points(group=GROUP), key=lambda e: e.name):
+        try:
+            found[entry.name] = load_type(entry.value, {})
+        except ScenarioError as error:
+            problems += [f"package {entry.name}: {problem}" for problem in error.problems]
+    problems += [
+        f'package {n}: its class is "{c.__name__}". Give both one name.' for n, c in found.items() if n != c.__name__
+    ]
+    problems.check()
+    return found
+
+
+def load_type(kind: str, known: Mapping[str, type[Component]]) -> type[Component]:
+    """The class of one's own that "module:Class" names, of an importable module.
+
+    Modules are looked for where Python looks, among what is installed and on PYTHONPATH, never beside the rig file: a
+    rig file of somebody else brings no code of its own.
+
+    Args:
+        kind: as the rig file has it
+        known: the classes of the project, by name
+
+    Raises:
+        ScenarioError: there is no such module or class, it fails, it is no part, or a part type has its name
+    """
+    module_name, _, name = kind.partition(":")
+    if not all(word.isidentifier() for word in module_name.split(".")):
+        raise ScenarioError(f'type "{kind}": names no module. Give module:Class.')
+    try:
+        module = import_module(module_name)
+    except ImportError as error:
+        raise ScenarioError(
+            f'type "{kind}": {error}. Install the package that has it, or put its folder on PYTHONPATH.'
+        ) from None
+    except Exception as error:  # a user's module may fail in any way
+        raise ScenarioError(f'type "{kind}": {module_name} fails: {type(error).__name__}: {error}.') from error
+    cls = getattr(module, name, None)
+    if not (isinstance(cls, type) and issubclass(cls, Component)):
+        parts = [n for n, c in vars(module).items() if isinstance(c, type) and issubclass(c, Component)]
+        close = suggestion(name, parts) or f" Its parts: {', '.join(parts) or 'none'}."
+        raise ScenarioError(f'type "{kind}": {module_name} has no part "{name}".{close}')
+    if known.get(cls.__name__, cls) is not cls:
+        raise ScenarioError(
+            f'type "{kind}": there is a part type "{cls.__name__}" already. Give the class another name.'
+        )
+    return cls

@@ -83,10 +83,6 @@ def _oil_outside(roles: Roles) -> Mapping[str, float]:
     return {p: 1.0 for p in roles.scaled(*roles.oil_side) if p not in _oil_inside(roles)}
 
 
-def _emissivity(roles: Roles) -> dict[str, float]:
-    return {f"{name}.emissivity": 1.0 for name in roles.surfaces}
-
-
 def _convection(roles: Roles) -> Mapping[str, float]:
     """More area that radiates no more for it; a housing that tells its area has a factor of its own."""
     paths: dict[str, float] = {}
@@ -103,7 +99,7 @@ GROUPS: tuple[Group, ...] = (
     Group("bearing loss", "brg", 0.4, lambda r: _alike(r.scaled(*r.parts("bearing")))),
     Group("seal loss", "seal", 0.5, lambda r: _alike(r.scaled(*r.parts("seal")))),
     Group("churning", "seal", 0.5, lambda r: _alike(r.scaled(*r.having("churning"))), refilled=True),
-    Group("radiation", "rad", 0.6, _emissivity),
+    Group("radiation", "rad", 0.6, lambda r: {f"{name}.emissivity": 1.0 for name in r.surfaces}),
     Group("oil to what turns", "gow", 0.6, _oil_inside, refilled=True),
     Group("oil to other bodies", "gow", 0.6, _oil_outside, refilled=True),
     Group("between bodies", "gwh", 0.6, lambda r: _alike(r.scaled(*r.contacts, *r.walls))),

@@ -15,7 +15,7 @@ from ..model.machines.spec import Spec
 from .entries import Entry, catalogue, unchecked_entry
 from .shipped import FILES
 from .tables import DrivenTable
-from .values import Override, entry_values, in_range, quantities, readable, settable
+from .values import entry_values, in_range, quantities, readable, settable
 
 
 @dataclass(frozen=True)
@@ -89,7 +89,6 @@ class Scenario:
         uncertainties: path -> standard uncertainty of its value in SI, where the rig states one
         joint_uncertainties: reason -> path -> what its value changes by at one standard deviation of the reason, SI
         units: path -> unit in which its value is written
-        overrides: values that stand in the place of their catalogue's
         entries: part -> kind of catalogue -> name of the entry it was filled from
         protocol: how measured tables of this rig are taken
         data: the measured table that it comes with
@@ -109,7 +108,6 @@ class Scenario:
     uncertainties: Mapping[str, float] = field(default_factory=dict)
     joint_uncertainties: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
-    overrides: tuple[Override, ...] = ()
     entries: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
     errata: tuple[Erratum, ...] = ()
     protocol: Protocol | None = None

@@ -22,17 +22,6 @@ from .shipped import FILES
 #: Key of the table of standard uncertainties of a part.
 UNCERTAINTIES = "uncertainties"
 
-
-@dataclass(frozen=True)
-class Override:
-    """A value of the rig that stands in the place of its catalogue's."""
-
-    path: str
-    value: float
-    catalogue_value: float
-    entry: str
-
-
 #: Sizes of everything in a gearbox, by SI unit; what lies outside is a slip of a unit or an exponent. Zero is none, and
 #: what may be negative is no size.
 SENSIBLE: Mapping[str, tuple[float, float]] = {
@@ -75,7 +64,6 @@ class PartValues:
     uncertainties: dict[str, float] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
     entries: dict[str, str] = field(default_factory=dict)
-    overrides: list[Override] = field(default_factory=list)
     problems: Problems = field(default_factory=Problems)
 
 
@@ -266,9 +254,6 @@ class _PartReader:
             return False
         with self.result.problems:
             value = in_range(f"{self.where}: ", raw, self.declarations[key].quantity(key))
-            if key in values:
-                entries = ", ".join(self.result.entries.values())
-                self.result.overrides.append(Override(f"{self.name}.{key}", value, values[key], entries))
             values[key] = value
             if unit := unit_of(raw):
                 self.result.units[key] = unit

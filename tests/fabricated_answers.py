@@ -24,7 +24,7 @@ def run_of_one_point() -> None:
     columns = {"point": 1, "test": 1, "oil": "ISO VG 220 mineral", "n_input_rpm": 1450.0, "T_output_Nm": -592.5}
     row = columns | {"T_oil_C": 40.27, "T_wall_C": 38.3, "P_mesh_W": 98.23, "efficiency": 0.975, "time_s": 28800.0}
     found = {"rig": "mine", "unchecked": [], "energy_residual_max": 1.4e-16}
-    measured.print_run(CampaignRun(None, (), found | {"rows": [row]}))
+    measured.print_run(CampaignRun(found | {"rows": [row]}, None, ()))
 
 
 def calibration() -> None:
@@ -37,7 +37,7 @@ def calibration() -> None:
     correlation = {a: {b: 1.0 if a == b else -0.95 for b in free} for a in free}
     made = {"rig": "planetary", "readings": 72, "grid": None, "free": free, "correlation": correlation}
     made |= {"rmse_before_K": 4.25, "rmse_after_K": 0.875}
-    measured.print_calibration(Calibration(None, made))  # type: ignore[arg-type]
+    measured.print_calibration(Calibration(made, None))  # type: ignore[arg-type]
 
 
 def replayed() -> None:

@@ -2,13 +2,11 @@
 
 from __future__ import annotations
 
-from .case import Contact, Lubricant
+from .case import Contact, Hertz, Lubricant, Texture, gaussian_texture, hertz
 from .film import Film
-from .hertz import Hertz, hertz
 from .line import solve_line
 from .line_cycle import solve_line_cycle
 from .point import solve
-from .rough import Texture, gaussian_texture
 from .transient import solve_transient
 
 __all__ = [

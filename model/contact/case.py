@@ -1,12 +1,16 @@
-"""What a contact is: two surfaces, their speeds and load, and the oil between them. SI throughout."""
+"""What a contact is: two surfaces, their speeds and load, the oil between them, its size when dry. SI throughout."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from math import inf, log
+from functools import cached_property
+from math import inf, log, pi, sqrt
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.ndimage import map_coordinates, spline_filter
+from scipy.optimize import brentq
+from scipy.special import ellipe, ellipkm1
 
 from ..errors import ScenarioError
 
@@ -105,3 +109,104 @@ class Contact:
     def u_m(self) -> float:
         """Mean entrainment speed [m/s]."""
         return (self.u_1 + self.u_2) / 2
+
+
+@dataclass(frozen=True)
+class Hertz:
+    """Dry elastic contact of smooth bodies, the scale of every film (Johnson, Contact Mechanics, 4.2 and appendix 3).
+
+    Half axes [m] along x and y, peak pressure [Pa] and approach [m]; of a line, `b` and `approach` are infinite.
+    """
+
+    a: float
+    b: float
+    p_max: float
+    approach: float
+
+
+def hertz(contact: Contact) -> Hertz:
+    """The dry contact; of a line or a roller with rounded ends, that of the line with the same load per length."""
+    if contact.R_y == inf or contact.edge_radius > 0:
+        load = contact.F / contact.length
+        a = sqrt(8 * load * contact.R_x / (pi * contact.E_eff))
+        return Hertz(a, inf, 2 * load / (pi * a), inf)
+    long, short = max(contact.R_x, contact.R_y), min(contact.R_x, contact.R_y)
+    m = _modulus(long / short)  # squared ratio of the short to the long half axis
+    first, second = float(ellipkm1(m)), float(ellipe(1 - m))
+    e_star, curvature = contact.E_eff / 2, (1 / long + 1 / short) / 2
+    small = (3 * contact.F * second * sqrt(m) / (2 * pi * e_star * curvature)) ** (1 / 3)
+    large = small / sqrt(m)
+    p_max = 3 * contact.F / (2 * pi * small * large)
+    a, b = (small, large) if contact.R_y >= contact.R_x else (large, small)
+    return Hertz(a, b, p_max, p_max * small * first / e_star)
+
+
+def _modulus(ratio: float) -> float:
+    """Square of the ratio of the half axes, short over long, for a ratio of the radii, long over short."""
+    if ratio < 1 + 1e-6:
+        return 1.0
+
+    def defect(m: float) -> float:
+        first, second = float(ellipkm1(m)), float(ellipe(1 - m))
+        return (second / m - first) / (first - second) - ratio
+
+    return float(brentq(defect, 0.1 / ratio**2, 1 - 1e-9, xtol=1e-15))
+
+
+@dataclass(frozen=True)
+class Texture:
+    """A surface from heights on a grid, repeated in both directions; a cubic spline between them.
+
+    Args:
+        heights: height at the points (along x, along y), positive out of the body [m]
+        spacing: distance of the points along x and along y [m]
+    """
+
+    heights: Array
+    spacing: tuple[float, float]
+
+    @cached_property
+    def _spline(self) -> Array:
+        """Coefficients of the spline."""
+        return np.asarray(spline_filter(self.heights, order=3, mode="grid-wrap"))
+
+    def __call__(self, x: Array, y: Array) -> Array:
+        """Height [m] at places.
+
+        Args:
+            x: along the direction of rolling [m]
+            y: across it [m]
+        """
+        at = np.stack([x / self.spacing[0], y / self.spacing[1]])
+        return np.asarray(map_coordinates(self._spline, at, order=3, mode="grid-wrap", prefilter=False))
+
+
+def gaussian_texture(
+    sigma: float, length_x: float, length_y: float, *, n: int = 128, spacing: float, seed: int = 0
+) -> Texture:
+    """A random surface with a Gaussian distribution of heights and a Gaussian autocorrelation.
+
+    White noise is filtered in the plane of wave numbers (Hu and Tonder, Int. J. Mach. Tools Manuf. 32, 1992).
+
+    Args:
+        sigma: root mean square height [m]
+        length_x: along which the autocorrelation along x falls to 1/e [m]
+        length_y: the same across [m]
+        n: points along a side [1]
+        spacing: distance of the points [m]
+        seed: of the random numbers
+
+    Raises:
+        ScenarioError: the points do not resolve the surface
+    """
+    if min(length_x, length_y) < spacing:
+        raise ScenarioError(
+            f"texture: correlation lengths {length_x:g} and {length_y:g} m are below the spacing {spacing:g} m. "
+            "Give a smaller spacing."
+        )
+    k = 2 * np.pi * np.fft.fftfreq(n, spacing)
+    spectrum = np.exp(-((k[:, None] * length_x) ** 2 + (k[None, :] * length_y) ** 2) / 8)
+    noise = np.fft.fft2(np.random.default_rng(seed).standard_normal((n, n)))
+    heights = np.fft.ifft2(noise * spectrum).real
+    heights -= heights.mean()
+    return Texture(heights * (sigma / heights.std()), (spacing, spacing))

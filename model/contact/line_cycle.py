@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
 from ..errors import ScenarioError, SolveError
 from .case import Array, Contact
 from .film import Film
-from .line import film_of
-from .line_grid import LineGrid, grade_grid
-from .line_start import settle
-from .line_system import LineState, Moment, newton
+from .line import film_of, settle
+from .line_system import LineState, Moment, grade_grid, newton
 from .line_unit import find_flooded_ends, line_unit
 
 #: How often a time step may be halved before the cycle is given up.
@@ -89,12 +88,10 @@ class _March:
         first, last = min(s[0] for s in spans), max(s[1] for s in spans)
         self.span = float(first), float(last)
         self.t, self.contact, self.moved = times[0], contacts[0], np.zeros(2)
-        self.moment, self.state = settle(self.unit, self._grid, n, lambda x: self._heights(x, self.moved), tolerance)
+        even = partial(grade_grid, *self.span, layer=0.0)
+        self.moment, self.state = settle(self.unit, even, n, lambda x: self._heights(x, self.moved), tolerance)
         self.grid = self.moment.grid
         self.past = Past(self._mass(self.moment, self.state))
-
-    def _grid(self, n: int) -> LineGrid:
-        return grade_grid(*self.span, n, 0.0)
 
     def _heights(self, x: Array, moved: Array) -> Array:
         """Sum of the heights of both surfaces at the nodes [m]."""

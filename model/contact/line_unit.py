@@ -6,10 +6,8 @@ from dataclasses import dataclass
 from math import inf, isinf, pi, sqrt
 
 from ..errors import ScenarioError
-from .case import Array, Contact
-from .hertz import Hertz, hertz
-from .line_grid import LineGrid
-from .line_system import Moment
+from .case import Array, Contact, Hertz, hertz
+from .line_system import LineGrid, Moment
 
 #: Film below which there is none: the size of an atom [m].
 ATOM = 1e-10

@@ -8,9 +8,8 @@ from math import atan, exp, inf, log, pi, sqrt
 import numpy as np
 
 from ..errors import ScenarioError
-from .case import Array, Contact
+from .case import Array, Contact, hertz
 from .grid import COARSEST, Grid
-from .hertz import hertz
 from .reynolds import Reynolds
 
 #: Speed below which a contact rests: its film would be thinner than an atom.

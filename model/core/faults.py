@@ -11,9 +11,8 @@ import casadi as ca
 from ..errors import StructureError
 from .component import Equation
 from .connect import Assembly, floating, nets
-from .constraint import Constraint, Known
 from .declare import Given, Port
-from .reduce import tie
+from .reduce import Constraint, Known, tie
 from .solve import Matching, Unknown, columns_of, incidence
 
 #: Names shown of a set.
@@ -124,7 +123,7 @@ class Faults:
         elif relation is None:  # a long way through losses: what is given at its ends says more than all of it
             said = [r for r in said if self._inputs_of([r])] or said
         said.sort(key=lambda r: not self._inputs_of([r]))
-        parts = {_part(r) for r in said}
+        parts = {r.name.partition(": ")[0] for r in said}
         ports = [] if given else [port for net in twice for port in _list_ports(net, parts)]
         ports = ports or self._ends(unknowns, parts)
         where = f" (at {some([p.name for p in ports])})" if ports else ""
@@ -260,10 +259,6 @@ def _owner(port: Port) -> str:
 def _list_ports(net: Sequence[Port], parts: set[str]) -> list[Port]:
     """The ports of a net that belong to some parts."""
     return [port for port in net if _owner(port) in parts]
-
-
-def _part(row: Equation) -> str:
-    return row.name.partition(": ")[0]
 
 
 def some(names: Sequence[str]) -> str:

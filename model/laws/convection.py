@@ -17,6 +17,8 @@ GRAVITY = 9.80665
 DT_WIDTH = 1e-2
 #: Rounding of an air speed [m/s].
 V_WIDTH = 1e-3
+#: Temperature difference over which a hot horizontal plate's law turns into a cold one's [K].
+SIGN_WIDTH = 0.05
 #: Pressure of the air at sea level [Pa].
 SEA_LEVEL = 101325.0
 #: Gas constant of dry air [J/(kg.K)].
@@ -215,7 +217,7 @@ def mixed(h_natural: Num, h_forced: Num, *, width: float = 1e-3) -> Num:
     return smooth_power(h_natural**3 + h_forced**3, 1 / 3, width**3)
 
 
-def rayleigh(T_s: Num, T_f: Num, L: Num, *, p: Num = SEA_LEVEL, dT_width: float = DT_WIDTH) -> tuple[Num, Num, Num]:
+def rayleigh(T_s: Num, T_f: Num, L: Num, *, p: Num = SEA_LEVEL) -> tuple[Num, Num, Num]:
     """Rayleigh number [1] of a surface in air, and Prandtl number [1] and conductivity [W/(m.K)] at film temperature.
 
     Args:
@@ -223,13 +225,12 @@ def rayleigh(T_s: Num, T_f: Num, L: Num, *, p: Num = SEA_LEVEL, dT_width: float 
         T_f: temperature of the air [K]
         L: characteristic length [m]
         p: pressure of the air [Pa]
-        dT_width: rounding at equal temperatures [K]
     """
     k, nu, Pr, beta = air_properties((T_s + T_f) / 2, p=p)
-    return GRAVITY * beta * smooth_abs(T_s - T_f, dT_width) * L**3 * Pr / nu**2, Pr, k
+    return GRAVITY * beta * smooth_abs(T_s - T_f, DT_WIDTH) * L**3 * Pr / nu**2, Pr, k
 
 
-def natural_vertical_plate(T_s: Num, T_f: Num, height: Num, *, p: Num = SEA_LEVEL, dT_width: float = DT_WIDTH) -> Num:
+def natural_vertical_plate(T_s: Num, T_f: Num, height: Num, *, p: Num = SEA_LEVEL) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a vertical plate in still air.
 
     Args:
@@ -237,13 +238,12 @@ def natural_vertical_plate(T_s: Num, T_f: Num, height: Num, *, p: Num = SEA_LEVE
         T_f: temperature of the air [K]
         height: height of the plate [m]
         p: pressure of the air [Pa]
-        dT_width: rounding at equal temperatures [K]
     """
-    Ra, Pr, k = rayleigh(T_s, T_f, height, p=p, dT_width=dT_width)
+    Ra, Pr, k = rayleigh(T_s, T_f, height, p=p)
     return nusselt_vertical_plate(Ra, Pr) * k / height
 
 
-def natural_horizontal_cylinder(T_s: Num, T_f: Num, D: Num, *, p: Num = SEA_LEVEL, dT_width: float = DT_WIDTH) -> Num:
+def natural_horizontal_cylinder(T_s: Num, T_f: Num, D: Num, *, p: Num = SEA_LEVEL) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a horizontal cylinder in still air.
 
     Args:
@@ -251,15 +251,12 @@ def natural_horizontal_cylinder(T_s: Num, T_f: Num, D: Num, *, p: Num = SEA_LEVE
         T_f: temperature of the air [K]
         D: diameter [m]
         p: pressure of the air [Pa]
-        dT_width: rounding at equal temperatures [K]
     """
-    Ra, Pr, k = rayleigh(T_s, T_f, D, p=p, dT_width=dT_width)
+    Ra, Pr, k = rayleigh(T_s, T_f, D, p=p)
     return nusselt_horizontal_cylinder(Ra, Pr) * k / D
 
 
-def natural_horizontal_up(
-    T_s: Num, T_f: Num, L: Num, *, p: Num = SEA_LEVEL, dT_width: float = DT_WIDTH, sign_width: float = 0.05
-) -> Num:
+def natural_horizontal_up(T_s: Num, T_f: Num, L: Num, *, p: Num = SEA_LEVEL) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a horizontal plate that faces upwards in still air, hot or cold.
 
     Args:
@@ -267,17 +264,13 @@ def natural_horizontal_up(
         T_f: temperature of the air [K]
         L: area of the plate over its perimeter [m]
         p: pressure of the air [Pa]
-        dT_width: rounding of the Rayleigh number at equal temperatures [K]
-        sign_width: temperature difference over which a hot plate's law turns into a cold one's [K]
     """
-    Ra, _, k = rayleigh(T_s, T_f, L, p=p, dT_width=dT_width)
-    hot = 0.5 * (1 + smooth_sign(T_s - T_f, sign_width))
+    Ra, _, k = rayleigh(T_s, T_f, L, p=p)
+    hot = 0.5 * (1 + smooth_sign(T_s - T_f, SIGN_WIDTH))
     return (hot * nusselt_plate_unstable(Ra) + (1 - hot) * nusselt_plate_stable(Ra)) * k / L
 
 
-def natural_horizontal_down(
-    T_s: Num, T_f: Num, L: Num, *, p: Num = SEA_LEVEL, dT_width: float = DT_WIDTH, sign_width: float = 0.05
-) -> Num:
+def natural_horizontal_down(T_s: Num, T_f: Num, L: Num, *, p: Num = SEA_LEVEL) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a horizontal plate that faces downwards in still air, hot or cold.
 
     Args:
@@ -285,11 +278,9 @@ def natural_horizontal_down(
         T_f: temperature of the air [K]
         L: area of the plate over its perimeter [m]
         p: pressure of the air [Pa]
-        dT_width: rounding of the Rayleigh number at equal temperatures [K]
-        sign_width: temperature difference over which a cold plate's law turns into a hot one's [K]
     """
-    Ra, _, k = rayleigh(T_s, T_f, L, p=p, dT_width=dT_width)
-    cold = 0.5 * (1 - smooth_sign(T_s - T_f, sign_width))
+    Ra, _, k = rayleigh(T_s, T_f, L, p=p)
+    cold = 0.5 * (1 - smooth_sign(T_s - T_f, SIGN_WIDTH))
     return (cold * nusselt_plate_unstable(Ra) + (1 - cold) * nusselt_plate_stable(Ra)) * k / L
 
 

@@ -16,24 +16,23 @@ P_WIDTH = 100.0
 
 
 @law(source="Franke2009", where="balance of a stream in the direction of its flow", verified=False)
-def carried_enthalpy(m_flow: Num, h_a: Num, h_b: Num, *, m_width: float = M_WIDTH) -> Num:
+def carried_enthalpy(m_flow: Num, h_a: Num, h_b: Num) -> Num:
     r"""Enthalpy flow rate from a to b [W]: the oil brings the enthalpy of where it comes from.
 
     .. math:: \dot H = \max(\dot m, 0) h_a + \min(\dot m, 0) h_b
 
-    Rounded in `m_width`, so that oil at rest still mixes a little; what leaves one side enters the other.
+    Rounded in `M_WIDTH`, so that oil at rest still mixes a little; what leaves one side enters the other.
 
     Args:
         m_flow: mass flow rate from a to b [kg/s]
         h_a: specific enthalpy at a [J/kg]
         h_b: specific enthalpy at b [J/kg]
-        m_width: mass flow rate over which the corner is rounded [kg/s]
     """
-    return (m_flow * (h_a + h_b) + smooth_abs(m_flow, m_width) * (h_a - h_b)) / 2
+    return (m_flow * (h_a + h_b) + smooth_abs(m_flow, M_WIDTH) * (h_a - h_b)) / 2
 
 
 @law(source="Incropera2007", where="effectiveness, all exchangers with a capacity ratio of zero", verified=False)
-def stream_conductance(m_flow: Num, c_p: Num, G: Num, *, m_width: float = M_WIDTH) -> Num:
+def stream_conductance(m_flow: Num, c_p: Num, G: Num) -> Num:
     r"""Heat that a stream takes from a wall, over the difference of wall and inlet temperature [W/K].
 
     .. math:: \dot m c_p (1 - \exp(-G / (\dot m c_p)))
@@ -42,9 +41,8 @@ def stream_conductance(m_flow: Num, c_p: Num, G: Num, *, m_width: float = M_WIDT
         m_flow: mass flow rate, either direction [kg/s]
         c_p: specific heat of the oil [J/(kg.K)]
         G: conductance between stream and wall, heat transfer coefficient times area [W/K]
-        m_width: mass flow rate over which the corner of its magnitude is rounded [kg/s]
     """
-    C = smooth_abs(m_flow, m_width) * c_p
+    C = smooth_abs(m_flow, M_WIDTH) * c_p
     return C * (1 - ca.exp(-G / C))
 
 
@@ -54,7 +52,7 @@ def stream_conductance(m_flow: Num, c_p: Num, G: Num, *, m_width: float = M_WIDT
     valid="sharp edge; short, so that viscosity does not count",
     verified=False,
 )
-def orifice_flow(dp: Num, rho: Num, d: Num, C_d: Num, *, p_width: float = P_WIDTH) -> Num:
+def orifice_flow(dp: Num, rho: Num, d: Num, C_d: Num) -> Num:
     r"""Mass flow rate through an orifice [kg/s], in the direction in which the pressure falls.
 
     .. math:: \dot m = C_d \frac{\pi}{4} d^2 \sqrt{2 \rho \Delta p}
@@ -64,9 +62,8 @@ def orifice_flow(dp: Num, rho: Num, d: Num, C_d: Num, *, p_width: float = P_WIDT
         rho: density [kg/m3]
         d: diameter [m]
         C_d: discharge coefficient [1]
-        p_width: pressure difference below which the flow is proportional to it [Pa]
     """
-    return C_d * math.pi / 4 * d**2 * ca.sqrt(2 * rho) * dp / (dp**2 + p_width**2) ** 0.25
+    return C_d * math.pi / 4 * d**2 * ca.sqrt(2 * rho) * dp / (dp**2 + P_WIDTH**2) ** 0.25
 
 
 @law(source="Merritt1967", where="laminar flow through a passage, linear in flow rate and viscosity", verified=False)
@@ -91,7 +88,7 @@ def laminar_pressure(m_flow: Num, nu: Num, R: Num, p_bypass: Num, *, sharpness: 
     where="torque of a positive-displacement pump, ideal and by its mechanical efficiency",
     verified=False,
 )
-def pump_loss_torque(dp: Num, D: Num, eta_m: Num, *, p_width: float = P_WIDTH) -> Num:
+def pump_loss_torque(dp: Num, D: Num, eta_m: Num) -> Num:
     r"""Friction torque of a positive-displacement pump [N.m], never negative; the ideal one is D dp.
 
     .. math:: \tau = \left(\frac{1}{\eta_m} - 1\right) D |\Delta p|
@@ -100,6 +97,5 @@ def pump_loss_torque(dp: Num, D: Num, eta_m: Num, *, p_width: float = P_WIDTH) -
         dp: pressure that the pump adds [Pa]
         D: displacement per radian [m3]
         eta_m: mechanical efficiency [1]
-        p_width: pressure over which the corner of its magnitude is rounded [Pa]
     """
-    return (1 / eta_m - 1) * D * smooth_abs(dp, p_width)
+    return (1 / eta_m - 1) * D * smooth_abs(dp, P_WIDTH)

@@ -76,9 +76,7 @@ def forced_disc_in_oil(w: Num, nu: Num, Pr: Num, k: Num, r: Num, *, w_width: flo
     return nusselt_rotating_disc(smooth_abs(w, w_width) * r**2 / nu, Pr) * k / r
 
 
-def natural_wall_in_oil(
-    T_s: Num, T_f: Num, nu: Num, Pr: Num, k: Num, expansion: Num, L: Num, *, dT_width: float = DT_WIDTH
-) -> Num:
+def natural_wall_in_oil(T_s: Num, T_f: Num, nu: Num, Pr: Num, k: Num, expansion: Num, L: Num) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a vertical wall in oil at rest.
 
     Args:
@@ -89,7 +87,6 @@ def natural_wall_in_oil(
         k: conductivity of the oil [W/(m.K)]
         expansion: thermal expansion of the oil [1/K]
         L: height of the wall [m]
-        dT_width: rounding at equal temperatures [K]
     """
-    Ra = GRAVITY * expansion * smooth_abs(T_s - T_f, dT_width) * L**3 * Pr / nu**2
+    Ra = GRAVITY * expansion * smooth_abs(T_s - T_f, DT_WIDTH) * L**3 * Pr / nu**2
     return nusselt_vertical_plate(Ra, Pr) * k / L

@@ -11,7 +11,7 @@ from ..core.component import SOUND, Component, Faults
 from ..core.declare import Parameter, Port, list_declared
 from ..errors import ScenarioError
 from ..parts.ports import Flange, HeatPort, Lubricant, ShaftReading
-from .spec import PartSpec, Spec
+from .spec import Spec
 
 #: Causes by which parts of a role may fail, where their class says no more. What a conductor is, what it joins tells.
 FAULTS: Mapping[str, Faults] = {
@@ -300,13 +300,8 @@ class _Nets:
             raise ScenarioError(
                 f"{self.spec.name}: there is no shaft end, so nothing says how it turns. Add a ShaftEnd."
             )
-        return min(readers, key=self._reader_rank).name
-
-    def _reader_rank(self, part: PartSpec) -> int:
-        given = part.values.get("given", ())
-        if self.classes[part.name].role == "clutch":
-            return 0
-        return 1 if given else 2
+        clutches = {p.name for p in readers if self.classes[p.name].role == "clutch"}
+        return min(readers, key=lambda p: 0 if p.name in clutches else 1 if p.values.get("given") else 2).name
 
     def body_of(self, net: int) -> str:
         """The body or oil whose heat meets in a net."""

@@ -11,7 +11,7 @@ from typing import Any
 
 from ..core.component import Component
 from ..core.connect import Assembly
-from ..errors import GearheatError, ScenarioError, suggestion
+from ..errors import Problems, ScenarioError, suggestion
 from ..parts import PARTS
 
 #: Kinds of machines, a file in `layouts` each. The parts of the last are named by the rig file alone.
@@ -126,15 +126,12 @@ def assemble(spec: Spec) -> Assembly:
         ScenarioError: all unknown types and all wrong, missing and unknown values of all parts at once
     """
     parts: list[Component] = []
-    problems: list[str] = []
+    problems = Problems()
     for part in spec.parts:
         if part.type not in spec.types:
             problems.append(f'{part.name}: there is no part type "{part.type}".{suggestion(part.type, spec.types)}')
             continue
-        try:
+        with problems:
             parts.append(spec.types[part.type](part.name, **part.values))
-        except GearheatError as error:
-            problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return Assembly(spec.name, spec.doc, tuple(parts), spec.connections)

@@ -1,4 +1,4 @@
-"""Whatever brakes a shaft: its power becomes heat in the two bodies it rubs between."""
+"""Whatever brakes a shaft: its power becomes heat in the two bodies it rubs between. Seals and plain bearings."""
 
 from __future__ import annotations
 
@@ -7,8 +7,12 @@ from typing import ClassVar
 
 from ..core.component import Component, Equation, equation
 from ..core.declare import Output, Parameter
-from ..laws.smooth import Num, friction_sign
-from .ports import Flange, HeatPort
+from ..laws.convection import R_AIR, SEA_LEVEL, air_properties
+from ..laws.gap_seal import gap_torque
+from ..laws.journal import film_torque, petrov_torque, solid_share
+from ..laws.sealing import lip_seal_torque, oil_seal_torque
+from ..laws.smooth import Num, friction_sign, smooth_magnitude
+from .ports import BearingLoad, Flange, HeatPort, Lubricant
 
 
 class Friction(Component):
@@ -38,3 +42,91 @@ class Friction(Component):
         yield equation("friction power", self.P_loss, self.shaft.tau * w)
         yield equation("heat to the inner body", self.inner.Q_flow, -self.inner_share * self.P_loss)
         yield equation("heat to the outer body", self.outer.Q_flow, -(1 - self.inner_share) * self.P_loss)
+
+
+class LipSeal(Friction):
+    """Radial lip seal: a torque that depends on the shaft's diameter alone."""
+
+    role: ClassVar[str] = "seal"
+
+    d_sh = Parameter("m", "diameter of the shaft under the lip", nominal=0.1, above=0.0)
+    c_sh = Parameter("N/m", "friction torque per square of the diameter", nominal=50.0, at_least=0.0)
+
+    def torque(self) -> Num:
+        """Friction torque of one seal [N.m]."""
+        return lip_seal_torque(self.d_sh, self.c_sh)
+
+
+class OilLipSeal(Friction):
+    """Radial lip seal whose torque falls as its oil warms, and is higher in thicker oil."""
+
+    role: ClassVar[str] = "seal"
+
+    lubricant = Lubricant()
+
+    d_sh = Parameter("m", "diameter of the shaft under the lip", nominal=0.1, above=0.0)
+    nu_40 = Parameter("m2/s", "kinematic viscosity of the oil at 40 degC", nominal=1e-4, above=1e-6)
+
+    def torque(self) -> Num:
+        """Friction torque of one seal [N.m]."""
+        return oil_seal_torque(self.lubricant.T, self.nu_40, self.d_sh)
+
+
+class LabyrinthSeal(Friction):
+    """Seal that does not touch its shaft: air shears in its gaps, and oil where they stand full.
+
+    Nothing leaks and no air flows through: neither oil nor heat leaves by the gaps.
+    """
+
+    role: ClassVar[str] = "seal"
+
+    lubricant = Lubricant()
+
+    d = Parameter("m", "diameter of the shaft in the gaps", nominal=0.1, above=0.0)
+    gap = Parameter("m", "radial clearance of the gaps", nominal=3e-4, above=0.0)
+    L = Parameter("m", "length of all gaps along the shaft", nominal=0.03, above=0.0)
+    oil_share = Parameter("1", "share of this length that stands full of oil", default=0.0, at_least=0.0, at_most=1.0)
+
+    def torque(self) -> Num:
+        """Drag of the gaps of one seal [N.m]; the air is as warm as the outer body."""
+        w, oil, r, gap = self.shaft.w, self.lubricant, self.d / 2, self.gap
+        T = self.outer.T
+        _, nu_air, _, _ = air_properties(T)
+        air = gap_torque(w, SEA_LEVEL / (R_AIR * T), nu_air, r, gap, (1 - self.oil_share) * self.L)
+        return air + gap_torque(w, oil.rho, oil.nu, r, gap, self.oil_share * self.L)
+
+
+class PlainBearing(Friction):
+    """Plain journal bearing full of oil: a film under load, mixed friction below its transition speed.
+
+    The film has the temperature of the lubricant: in a fast bearing it is warmer, and its friction less.
+    """
+
+    role: ClassVar[str] = "bearing"
+
+    load = BearingLoad()
+    lubricant = Lubricant()
+
+    r = Parameter("m", "radius of the journal", nominal=0.03, above=0.0)
+    b = Parameter("m", "width of the bearing", nominal=0.05, above=0.0)
+    psi = Parameter(
+        "1", "relative clearance: of the diameters, over that of the journal", nominal=1e-3, above=0.0, below=0.1
+    )
+    F_r_0 = Parameter("N", "radial load of its own, e.g. a coupling", nominal=1000.0, at_least=0.0)
+    mu_bl = Parameter("1", "friction of the solids in contact", nominal=0.1, at_least=0.0, at_most=1.0)
+    C_trans = Parameter("1", "transition constant: 1 for a good surface, more for a better one", above=0.0)
+    solid = Output("1", "share of the load that solids carry", nominal=0.1)
+
+    def torque(self) -> Num:
+        """Friction of film and solids of one bearing [N.m]."""
+        w, F_r = self.shaft.w, self.F_r_0 + self.load.F_r
+        eta_oil = self.lubricant.nu * self.lubricant.rho
+        film = film_torque(petrov_torque(w, eta_oil, self.r, self.b, self.psi), F_r, w, eta_oil, self.r, self.b)
+        return film + self.solid * self.mu_bl * smooth_magnitude(F_r, 1.0) * self.r
+
+    def equations(self) -> Iterator[Equation]:
+        """The share of solids, then what every friction does."""
+        oil, F_r = self.lubricant, self.F_r_0 + self.load.F_r
+        share = solid_share(self.shaft.w, F_r, oil.nu * oil.rho, self.r, self.b, self.C_trans)
+        yield equation("solids in contact", self.solid, share)
+        yield from super().equations()

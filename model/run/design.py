@@ -15,7 +15,7 @@ from ..units import text
 from .point import point, problem_of
 from .result import Result
 from .search import Range, Search, Tried
-from .steady import Equilibrium, steady, table
+from .steady import Equilibrium, table
 
 #: Points of a scan over one freed name.
 SCAN = 25
@@ -56,16 +56,6 @@ class Design:
     residuals: Mapping[str, float]
     condition: float
     notes: tuple[str, ...] = ()
-
-
-@dataclass(frozen=True)
-class Candidate:
-    """One of several to choose from: how far from the targets it ends, and its steady state or why there is none."""
-
-    name: str
-    distance: float
-    result: Result | None
-    problem: str = ""
 
 
 def design(
@@ -119,44 +109,6 @@ def _sides(search: Search, bounds: Mapping[str, tuple[float, float]]) -> dict[st
     named = zip(search.free, search.f, search.ranges, strict=True)
     free = [(name, float(f), r) for name, f, r in named if name not in bounds and r.low < 0 < r.high and f != 0]
     return {name: (NEAR_ZERO * f, r.high) if f > 0 else (r.low, NEAR_ZERO * f) for name, f, r in free}
-
-
-def choose(
-    flat: FlatModel,
-    candidates: Mapping[str, Mapping[str, float]],
-    targets: Mapping[str, float],
-    values: Mapping[str, float],
-    *,
-    guess: Mapping[str, float] | None = None,
-) -> tuple[Candidate, ...]:
-    """Rank candidates (a name and its parameter values each) by how near their steady states come to the targets.
-
-    The distance is the root mean square of the deviations, each relative to the target's size or its nominal. Those
-    without a steady state come last.
-
-    Args:
-        flat: the model
-        candidates: name -> path of a parameter -> value in SI
-        targets: path of an output or state -> value in SI
-        values: path of a parameter or input -> value in SI, the same for all candidates
-        guess: path of a state -> value in SI to begin with
-
-    Raises:
-        ScenarioError: unknown names, names of the wrong kind, values out of range
-    """
-    if problems := [p for name in targets if (p := problem_of(flat, name, ("output", "state"), "choose"))]:
-        raise ScenarioError(problems)
-    sizes = {name: max(abs(value), flat.quantity(name).nominal) for name, value in targets.items()}
-    found = []
-    for name, own in candidates.items():
-        try:
-            result = steady(flat, {**values, **own}, guess=guess)
-        except SolveError as error:
-            found.append(Candidate(name, float("inf"), None, str(error)))
-            continue
-        parts = [(float(result[t][0]) - value) / sizes[t] for t, value in targets.items()]
-        found.append(Candidate(name, float(np.sqrt(np.mean(np.square(parts)))) if parts else 0.0, result))
-    return tuple(sorted(found, key=lambda c: c.distance))
 
 
 def _problems(

@@ -10,8 +10,7 @@ from ..core.flat import FlatModel
 from ..errors import SolveError
 from ..sources import LawInfo
 from .algebra import algebra
-from .audit import SLACK, imbalance, list_unsolved, out_of_range, words
-from .result import Audit, Outside, Result
+from .result import SLACK, Audit, Outside, Result, imbalance, list_unsolved, out_of_range, words
 
 
 def evaluate(

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 import casadi as ca
 import numpy as np
 
 from ..core.flat import FlatModel, Quantity
-from ..errors import SolveError
+from ..errors import ScenarioError, SolveError
 from .fast import Fast, once
 from .newton import FIRST_STRIDE, LEAST_STRIDE, STRIDE, Box, System, newton, reduce_jacobian, stable
-from .point import Point
+from .point import Point, point, problem_of
 from .steady import Equilibrium, equilibrium, rates, unknowns_box
 
 #: How well a target is met, relative to its size or its nominal.
@@ -288,3 +289,37 @@ def _reverse_digits(k: int, base: int) -> float:
         place /= base
         value += digit * place
     return value
+
+
+def sensitivities(
+    flat: FlatModel,
+    outputs: Sequence[str],
+    names: Sequence[str],
+    values: Mapping[str, float],
+    *,
+    guess: Mapping[str, float] | None = None,
+) -> np.ndarray:
+    """d(output)/d(name) at a steady state, by the implicit function theorem.
+
+    Args:
+        flat: the model
+        outputs: outputs and states, one row each
+        names: parameters and inputs, one column each
+        values: parameters and inputs by path (SI)
+        guess: states to start from
+
+    Raises:
+        ScenarioError: unknown names, names of the wrong kind, values out of range
+        SolveError: no steady state
+    """
+    problems = [problem_of(flat, name, ("output", "state"), "sensitivities") for name in outputs]
+    problems += [problem_of(flat, name, ("parameter", "input"), "sensitivities") for name in names]
+    if wrong := [problem for problem in problems if problem]:
+        raise ScenarioError(wrong)
+    here = point(flat, values, guess, who="sensitivities")
+    at = equilibrium(flat, here, None, tuple(values), "sensitivities")
+    n, m = len(at.w), len(outputs)
+    _, slopes = compiled(flat, tuple(names), tuple(outputs))(at.x, at.z, here.u, here.p)
+    jacobian = slopes.reshape(n + m, n + len(names))
+    answer = np.linalg.solve(jacobian[:n, :n], -jacobian[:n, n:])
+    return cast(np.ndarray, jacobian[n:, n:] + jacobian[n:, :n] @ answer)

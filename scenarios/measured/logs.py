@@ -19,6 +19,7 @@ from ...model.files import reading
 from ..csv_table import in_si, raise_all, split_unit
 from ..scenario import Scenario
 from .card import Card
+from .checks import COLDEST, HOTTEST
 from .read import place_sensor
 from .sensors import SI, sensors_of
 from .table import Sensed, Sensor
@@ -33,10 +34,6 @@ SPIKE_SD = 12.0
 SPIKE_K = 8.0
 #: Times what one sample in a thousand exceeds.
 SPIKE_TAIL = 2.5
-#: Temperatures below this are none of a machine that runs [K].
-COLDEST = 213.15
-#: Temperatures above this are none of a machine that runs [K].
-HOTTEST = 473.15
 
 
 @dataclass(frozen=True)

@@ -18,10 +18,9 @@ from ..csv_table import Column, Table, in_si, parse, raise_all, read_cells, spli
 from ..scenario import Scenario
 from .card import Card
 from .checks import check
-from .context import CONTEXT, DIRECTIONS, Cells, contradictions, floats, order_warnings
 from .lubrication import oil_problems, oil_values, oil_warnings
 from .nominal import Nominal
-from .sensors import SI, drive_by, sensors_of
+from .sensors import CONTEXT, DIRECTIONS, SI, Cells, contradictions, drive_by, floats, order_warnings, sensors_of
 from .table import Campaign, Sensor
 
 #: Share of the tests that must have run alike, for one that lacks a row to be taken to have run like them.

@@ -1,9 +1,15 @@
-"""The sensors of a campaign: what the rig file and the card declare, completed by rule from what each reads."""
+"""The sensors of a campaign: what the rig file and the card declare, completed by rule from what each reads.
+
+Beside them a table may have columns of context: which test a reading belongs to, when and how it was taken.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
-from dataclasses import replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Literal
+
+import numpy as np
 
 from ...model.core.declare import State, list_declared
 from ...model.core.flat import Quantity
@@ -12,14 +18,31 @@ from ...model.parts.lubrication import OilBath
 from ...model.parts.shaft import ShaftEnd
 from ...model.parts.thermal import Room
 from ...model.units import spell_unit, text, to_si
-from ..csv_table import split_unit
+from ..csv_table import Table, split_unit
 from ..scenario import Instrument, Scenario
 from ..values import deviation
 from .card import Card
-from .context import CONTEXT
 from .nominal import Nominal
 from .table import Sensor
 
+#: Columns that a table may have beside its sensors: name -> what it says, as a cell is read, and its SI unit.
+CONTEXT: Mapping[str, tuple[str, Literal["number", "count", "text"], str]] = {
+    "point": ("number of the reading", "count", ""),
+    "test": ("test that the reading belongs to", "text", ""),
+    "order": ("running order of the test in the campaign", "number", ""),
+    "direction": ("direction of the power (1, or 2 and -1 for the reverse)", "count", ""),
+    "dwell_min": ("time the point was held", "number", "s"),
+    "stop_min": ("stop before this reading's dwell", "number", "s"),
+    "oil": ("name of the oil", "text", ""),
+    "mounting": ("name of the mounting or filling", "text", ""),
+    "grid": ("name of the test grid", "text", ""),
+    "date": ("day of the test", "text", ""),
+    "humidity_pct": ("relative humidity of the room", "number", "1"),
+    "T_start_C": ("temperature of the gearbox at the start of the test", "number", "K"),
+    "T_amb_start_C": ("room temperature at the start of the test", "number", "K"),
+}
+#: Directions as tables write them.
+DIRECTIONS = (1, 2, -1, 0)
 #: Scatter from reading to reading and fixed tolerance: in K, or relative to the value at the operating point.
 ACCURACY: Mapping[str, tuple[float, float]] = {
     "oil_temp": (0.35, 0.3),
@@ -42,6 +65,65 @@ SI: Mapping[str, str] = {
 KINDS: Mapping[str, str] = {"N.m": "torque", "rad/s": "speed", "W": "power"}
 #: Beginning of a sensor's name, and the unit of its column, by the last word of the path it reads.
 NAMES: Mapping[str, tuple[str, str]] = {"w": ("n", "rpm"), "tau": ("T", "Nm"), "T": ("T", "C"), "P": ("P", "W")}
+
+
+@dataclass(frozen=True)
+class Cells:
+    """A table, and the column of the file for each column of the context that it has."""
+
+    table: Table
+    context: Mapping[str, str]
+
+    @property
+    def n(self) -> int:
+        """Number of rows."""
+        return len(self.table.lines)
+
+    def texts(self, name: str) -> list[str]:
+        """A context column of text, "" where there is none."""
+        column = self.context.get(name)
+        return [""] * self.n if column is None else [str(cell) for cell in self.table.columns[column]]
+
+    def numbers(self, name: str) -> np.ndarray:
+        """A context column of numbers (n,) in its own unit, NaN where there is none."""
+        column = self.context.get(name)
+        return np.full(self.n, np.nan) if column is None else floats(self.table.columns[column])
+
+
+def floats(cells: Sequence[Any]) -> np.ndarray:
+    """Cells as numbers (n,), NaN where one is wrong or empty."""
+    return np.array([np.nan if cell is None else cell for cell in cells], dtype=float)
+
+
+def contradictions(cells: Cells) -> list[str]:
+    """Rows of one test that contradict each other: another oil, or an earlier order."""
+    problems: list[str] = []
+    before: dict[str, tuple[int, str, float]] = {}
+    if "test" not in cells.context:
+        return problems
+    rows = zip(cells.texts("test"), cells.texts("oil"), cells.numbers("order"), strict=True)
+    for row, (test, oil, order) in enumerate(rows):
+        first, oil_before, order_before = before.setdefault(test, (row, oil, order))
+        place, line = cells.table.place(row), cells.table.lines[first]
+        if oil != oil_before:
+            problems.append(f"{place}: test {test} has oil {oil_before} in line {line}, here {oil}. Mend one of them.")
+        if order < order_before:
+            problems.append(
+                f"{place}: order goes back within test {test} ({order:g} after {order_before:g}). Sort its rows."
+            )
+        before[test] = (first, oil_before, order)
+    return problems
+
+
+def order_warnings(cells: Cells) -> list[str]:
+    """The first row that does not stand in running order."""
+    order = cells.numbers("order")
+    return [
+        f"{cells.table.place(row)}: order goes back ({order[row]:g} after {order[row - 1]:g})."
+        " Tests are taken in this order."
+        for row in range(1, cells.n)
+        if order[row] < order[row - 1]
+    ][:1]
 
 
 def sensors_of(scenario: Scenario, card: Card) -> tuple[Sensor, ...]:

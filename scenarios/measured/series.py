@@ -17,10 +17,9 @@ from ...model.units import spell_unit
 from ..csv_table import Column, Table, in_si, parse, raise_all, read_cells, split_unit
 from ..scenario import Scenario
 from .card import Card
-from .context import DIRECTIONS, floats
 from .logs import TIMES
 from .read import place_sensor
-from .sensors import SI, sensors_of
+from .sensors import DIRECTIONS, SI, floats, sensors_of
 from .table import PLACES, Campaign, Course, Series
 
 #: Shares of the logged time where the pieces of a curve meet, which are cubic.

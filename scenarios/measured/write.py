@@ -13,9 +13,8 @@ from ...model.units import text
 from ..scenario import Scenario
 from ..tables import Strict
 from .card import Card, CardSensor, Channel, Protocol
-from .context import CONTEXT
 from .lubrication import lubricants
-from .sensors import SI, sensors_of
+from .sensors import CONTEXT, SI, sensors_of
 from .table import Sensor
 
 #: First lines of a card.

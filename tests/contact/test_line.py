@@ -7,9 +7,8 @@ from math import pi, sin, sqrt
 import numpy as np
 import pytest
 from gearheat.model.contact import solve
-from gearheat.model.contact.case import Contact, Lubricant
+from gearheat.model.contact.case import Contact, Lubricant, hertz
 from gearheat.model.contact.film import Film
-from gearheat.model.contact.hertz import hertz
 from gearheat.model.contact.line import solve_line
 from gearheat.model.contact.line_cycle import solve_line_cycle
 from gearheat.model.errors import ScenarioError

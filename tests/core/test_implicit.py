@@ -12,7 +12,7 @@ from gearheat.model.core.flat import FlatModel
 from gearheat.model.errors import SolveError
 from gearheat.model.run.algebra import algebra
 from gearheat.model.run.rows import evaluate_at
-from gearheat.model.run.sensitivity import sensitivities
+from gearheat.model.run.search import sensitivities
 from gearheat.model.run.steady import steady
 from scipy.optimize import brentq
 from small_parts import SIGMA, Ambient, Body, Conductor, Radiation, gear, model

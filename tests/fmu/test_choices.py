@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 from fmpy.fmi2 import FMU2Model
 from fmpy.validation import validate_fmu
-from gearheat.fmu.choices import Choice, Item, start_choice
 from gearheat.fmu.export import export
 from gearheat.fmu.play import Player, play
+from gearheat.fmu.variables import Choice, Item, start_choice
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.errors import FmuError
 from gearheat.model.run.steady import steady

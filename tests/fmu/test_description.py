@@ -13,12 +13,11 @@ import pytest
 from fmpy.validation import validate_fmu
 from fmu_in_c import planetary
 from gearheat.fmu import units
-from gearheat.fmu.choices import drop_idle
 from gearheat.fmu.description import description, identifier, identity, values
 from gearheat.fmu.equations import equations
 from gearheat.fmu.export import export
 from gearheat.fmu.source import source
-from gearheat.fmu.variables import per_second, table
+from gearheat.fmu.variables import drop_idle, per_second, table
 from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import FmuError
 from gearheat.model.machines.spec import assemble

@@ -17,7 +17,7 @@ import gearheat.fmu.export
 import numpy as np
 import pytest
 from fmpy.validation import validate_fmu
-from gearheat.fmu.effective import effective
+from gearheat.fmu.equations import effective
 from gearheat.fmu.export import export
 from gearheat.fmu.parameter_set import PROVENANCE, PROVENANCE_SPACE, SRMD, SSC, SSV, STC, parameter_set
 from gearheat.fmu.play import play

@@ -21,10 +21,10 @@ from fmpy.fmi3 import FMU3Model, FMU3ScheduledExecution, FMU3Slave
 from fmpy.validation import validate_fmu
 from fmu_in_c import gcc, planetary
 from gearheat.fmu.compiling import platforms
+from gearheat.fmu.description import terminals
 from gearheat.fmu.equations import equations
-from gearheat.fmu.fmi3_source import headers
 from gearheat.fmu.play import play
-from gearheat.fmu.terminals import terminals
+from gearheat.fmu.source import headers_of_3
 from gearheat.fmu.variables import table
 from gearheat.model.errors import FmuError
 from lxml import etree
@@ -123,7 +123,9 @@ def test_value_references_are_unique_over_all_types(heat_fmu_3: Path) -> None:
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads a binary of Linux")
 def test_every_declared_function_is_exported_and_nothing_else(heat_fmu_3: Path) -> None:
-    declared = set(re.findall(r"^FMI3_Export fmi3\w+TYPE\s+(fmi3\w+);", headers()["fmi3Functions.h"], re.MULTILINE))
+    declared = set(
+        re.findall(r"^FMI3_Export fmi3\w+TYPE\s+(fmi3\w+);", headers_of_3()["fmi3Functions.h"], re.MULTILINE)
+    )
     assert len(declared) > 70
     (library,) = [data for name, data in held(heat_fmu_3).items() if name.startswith("binaries/x86_64-linux/")]
     assert elf(library).exported == declared
@@ -326,7 +328,7 @@ def test_platforms_have_the_names_of_fmi_3() -> None:
 def test_the_source_compiles_without_a_warning(heat_fmu_3: Path, tmp_path: Path) -> None:
     if not (compiler := gcc()):
         pytest.skip("there is no gcc")
-    for name, text in headers().items():
+    for name, text in headers_of_3().items():
         (tmp_path / name).write_text(text)
     (tmp_path / "all.c").write_bytes(held(heat_fmu_3)["sources/all.c"])
     options = ("-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", "-fsyntax-only")

@@ -23,7 +23,7 @@ from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import SolveError
 from gearheat.model.machines.spec import Spec, assemble
 from gearheat.model.parts import PARTS
-from gearheat.model.run.audit import LEFT, out_of_range
+from gearheat.model.run.result import LEFT, out_of_range
 from gearheat.model.run.rows import evaluate
 from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.steady import steady

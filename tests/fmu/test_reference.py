@@ -7,7 +7,7 @@ import fmpy
 import numpy as np
 import pytest
 from fmpy.util import read_csv
-from gearheat.fmu.reference import write_reference
+from gearheat.fmu.related import write_reference
 
 
 def test_fmpy_reproduces_the_reference_from_the_written_inputs(rc_fmu: Path, tmp_path: Path) -> None:

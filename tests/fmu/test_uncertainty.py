@@ -16,9 +16,8 @@ from fmu_in_c import gcc
 from gearheat.fmu.batch import Batch
 from gearheat.fmu.equations import equations
 from gearheat.fmu.export import export
-from gearheat.fmu.leading import SHORTFALL, Uncertain, Uncertainty, leading, locate_deviations
+from gearheat.fmu.leading import SHORTFALL, Sensitivities, Uncertain, Uncertainty, leading, locate_deviations
 from gearheat.fmu.play import Player, play
-from gearheat.fmu.sensitivity import Sensitivities
 from gearheat.fmu.variables import table
 from gearheat.model.errors import FmuError
 from gearheat.model.run.schedule import Schedule

@@ -7,7 +7,7 @@ import pytest
 from gearheat.model.core.component import Component, Equation, equation
 from gearheat.model.core.declare import Input, Output
 from gearheat.model.errors import SolveError
-from gearheat.model.run.audit import list_unsolved
+from gearheat.model.run.result import list_unsolved
 from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady

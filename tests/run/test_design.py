@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 from gearheat.model.errors import ScenarioError, SolveError
-from gearheat.model.run.design import choose, design
+from gearheat.model.run.design import design
 from gearheat.model.run.least import Target, change, least_change
 from gearheat.model.run.schedule import join_phases
-from gearheat.model.run.sensitivity import sensitivities
+from gearheat.model.run.search import sensitivities
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
 from hypothesis import given, settings, strategies as st
@@ -147,25 +147,6 @@ def test_sensitivities_against_central_differences(flat) -> None:
 
 def test_what_does_not_matter_has_no_sensitivity() -> None:
     assert np.abs(sensitivities(brake(), ["oil.T"], ["oil.C", "wall.C"], WARM)).max() < 1e-12
-
-
-def test_choosing_among_named_values() -> None:
-    grades = {"thin": {"bearing.d_40": 0.05}, "middle": {"bearing.d_40": 0.1}, "thick": {"bearing.d_40": 0.2}}
-    aim = float(steady(brake(), {**WARM, "bearing.d_40": 0.11})["oil.T"][0])
-    ranked = choose(brake(), grades, {"oil.T": aim}, WARM)
-    assert ranked[0].name == "middle"
-    assert [c.distance for c in ranked] == sorted(c.distance for c in ranked)
-    for candidate in ranked:
-        expected = abs(float(steady(brake(), {**WARM, **grades[candidate.name]})["oil.T"][0]) - aim) / aim
-        assert candidate.distance == pytest.approx(expected, rel=1e-9)
-
-
-def test_a_candidate_without_steady_state_comes_last() -> None:
-    kinds = {"runs away": {"bearing.thinning": -0.02}, "stays": {"bearing.thinning": 0.02}}
-    ranked = choose(brake(), kinds, {"oil.T": 350.0}, WARM)
-    assert [c.name for c in ranked] == ["stays", "runs away"]
-    assert ranked[1].result is None
-    assert "no solution" in ranked[1].problem
 
 
 def test_all_wrong_names_at_once() -> None:

@@ -10,7 +10,7 @@ from gearheat.model.core.flatten import flatten
 from gearheat.model.errors import ScenarioError
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.steady import steady
-from gearheat.scenarios import own_parts
+from gearheat.scenarios import load as loading
 from gearheat.scenarios.load import RIGS, load
 
 WHOLE = (RIGS / "helical_two_stage" / "rig.toml").read_text(encoding="utf-8")
@@ -95,14 +95,14 @@ def test_parts_of_installed_packages_are_known_by_name(monkeypatch, tmp_path):
         encoding="utf-8",
     )
     monkeypatch.syspath_prepend(str(tmp_path))
-    offered = [EntryPoint("Stone", "shop_parts:Stone", own_parts.GROUP)]
-    monkeypatch.setattr(own_parts, "entry_points", lambda group: offered)
-    own_parts.load_installed_types.cache_clear()
+    offered = [EntryPoint("Stone", "shop_parts:Stone", loading.GROUP)]
+    monkeypatch.setattr(loading, "entry_points", lambda group: offered)
+    loading.load_installed_types.cache_clear()
     try:
-        assert own_parts.load_installed_types()["Stone"].__name__ == "Stone"
-        own_parts.load_installed_types.cache_clear()
-        offered.append(EntryPoint("Rock", "shop_parts:Rock", own_parts.GROUP))
+        assert loading.load_installed_types()["Stone"].__name__ == "Stone"
+        loading.load_installed_types.cache_clear()
+        offered.append(EntryPoint("Rock", "shop_parts:Rock", loading.GROUP))
         with pytest.raises(ScenarioError, match=r'package Rock: .*has no part "Rock"'):
             load("planetary")
     finally:
-        own_parts.load_installed_types.cache_clear()
+        loading.load_installed_types.cache_clear()

@@ -15,7 +15,7 @@ from gearheat.model.laws.gears import profile_shift_sum, transverse_pressure_ang
 from gearheat.model.machines.spec import Spec, assemble
 from gearheat.model.parts import PARTS
 from gearheat.model.run.design import design
-from gearheat.model.run.sensitivity import sensitivities
+from gearheat.model.run.search import sensitivities
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import list_rigs, load
 

@@ -120,7 +120,6 @@ class TestPlanetary:
         assert oil["nu_40"] == pytest.approx(324.38e-6)
         assert planetary.value_sources["oil.nu_40"].startswith("Dias2014")
         assert planetary.entries["oil"] == {"oil": "PAOR"}
-        assert planetary.overrides == ()
 
     def test_errata_say_what_and_why(self, planetary: Scenario) -> None:
         assert len(planetary.errata) == 33
@@ -179,9 +178,8 @@ class TestChanges:
         text = (load("planetary").path).read_text(encoding="utf-8").replace('data = "measured.csv"\n', "")
         (path := tmp_path / "rig.toml").write_text(text.replace('V = "1 l"', 'V = "1 l"\nrho_15 = "0.9 kg/l"'))
         scenario = load(path)
-        (override,) = scenario.overrides
-        assert (override.path, override.entry) == ("oil.rho_15", "PAOR")
-        assert (override.value, override.catalogue_value) == pytest.approx((900, 859))
+        assert scenario.entries["oil"] == {"oil": "PAOR"}
+        assert scenario.spec.part("oil").values["rho_15"] == pytest.approx(900)
         assert scenario.value_sources["oil.rho_15"] == "Dias2014, chapter 4"
         assert scenario.data is None
         assert scenario.protocol is not None

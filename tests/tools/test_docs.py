@@ -8,7 +8,7 @@ import pytest
 from gearheat.model.laws import rolling
 from gearheat.model.parts import PARTS
 from gearheat.scenarios.shipped import RIGS
-from gearheat.tools.docs import markdown, reference
+from gearheat.tools.docs import reference
 from gearheat.tools.docs.blocks import PAGES
 
 
@@ -29,9 +29,9 @@ def test_the_site_builds_and_has_a_page_for_every_part(gearheat, tmp_path: Path)
 
 def test_a_docstring_becomes_a_formula_and_a_list() -> None:
     law = rolling.shear_heating
-    assert "```{math}\n\\phi_{ish} = \\frac" in markdown.docstring(law)
-    assert "- `d_m`: mean diameter, (d + D)/2 \\[m\\]\n" in markdown.arguments(law)
-    assert markdown.words("a|b <c> `d|e`") == "a\\|b \\<c> `d\\|e`"
+    assert "```{math}\n\\phi_{ish} = \\frac" in reference.docstring(law)
+    assert "- `d_m`: mean diameter, (d + D)/2 \\[m\\]\n" in reference.arguments(law)
+    assert reference.words("a|b <c> `d|e`") == "a\\|b \\<c> `d\\|e`"
 
 
 def test_every_law_stands_once_among_the_equations() -> None:

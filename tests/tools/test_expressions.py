@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from gearheat.tools.verify.expressions import evaluate
+from gearheat.tools.verify.model_values import evaluate
 
 VALUES = {"oil.T": 353.15, "room.T": 293.15, "x": np.array([1.0, 2.0, 4.0]), "y": np.array([3.0, 5.0, 9.0])}
 

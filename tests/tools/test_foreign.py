@@ -12,7 +12,7 @@ from pathlib import Path
 
 import fmpy
 import pytest
-from gearheat.fmu import compiling, unpacking
+from gearheat.fmu import compiling, described
 from gearheat.fmu.export import archive
 from gearheat.fmu.play import Player
 from gearheat.model.errors import FmuError
@@ -158,7 +158,7 @@ def _linked(file):
     ],
 )
 def test_archives_that_are_no_fmu_of_an_honest_tool(gearheat, tank, duty, tmp_path, monkeypatch, add, told):
-    monkeypatch.setattr(unpacking, "MOST_BYTES", 4 << 20)
+    monkeypatch.setattr(described, "MOST_BYTES", 4 << 20)
     path = tank()
     with zipfile.ZipFile(path, "a", zipfile.ZIP_DEFLATED, compresslevel=1) as file:
         add(file)

@@ -9,9 +9,9 @@ from for_each import for_each
 from gearheat.model.core.declare import Parameter, Port, list_declared
 from gearheat.model.parts import PARTS
 from gearheat.scenarios.shipped import RIGS
-from gearheat.tools.describe import parts, schema
+from gearheat.tools.describe import parts
 
-SCHEMA = schema.schema()
+SCHEMA = parts.schema()
 
 
 def test_all_types_are_listed(gearheat):

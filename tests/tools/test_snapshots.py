@@ -122,7 +122,7 @@ def test_schema_says_what_to_do_with_it(at_both, tmp_path, monkeypatch):
 
 
 def test_a_comparison_prints_what_it_did(at_both, rows):
-    errors = Errors(compare(rows), rivals(rows, ["n_carrier_rpm", "T_carrier_Nm"]), {})
+    errors = Errors({}, compare(rows), rivals(rows, ["n_carrier_rpm", "T_carrier_Nm"]))
     at_both("compare", lambda: print_errors(errors))
 
 

@@ -15,7 +15,7 @@ import pytest
 from gearheat.model.errors import DataError, ScenarioError
 from gearheat.tools.solve import sampling, sweep, sweep_plan, sweep_rows
 from gearheat.tools.solve.sampling import Axis
-from gearheat.tools.solve.sweep_file import Store
+from gearheat.tools.solve.sweep_rows import Store
 
 VARY = ("--vary", "carrier.tau=500..2700 N.m", "--vary", "room.T=10..35 degC")
 KEPT = ("--output", "oil.T,efficiency.eta")

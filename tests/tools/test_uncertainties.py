@@ -12,8 +12,8 @@ from gearheat.fmu.play import play
 from gearheat.model.core.flat import FlatModel
 from gearheat.scenarios.load import load
 from gearheat.scenarios.scenario import Scenario
+from gearheat.tools.solve.sampling import draw_values, reasons
 from gearheat.tools.solve.settings import flat_of
-from gearheat.tools.solve.uncertainties import draw_values, reasons
 
 #: A shipped rig whose code is short.
 SMALL = "cycloidal_areas"

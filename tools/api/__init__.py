@@ -23,9 +23,8 @@ if TYPE_CHECKING:
     from .tools.compare.results import Errors as Errors, compare as compare
     from .tools.compare.run import CampaignRun as CampaignRun, run as run
     from .tools.describe.description import Description as Description, show as show
-    from .tools.describe.parts import PartTypes as PartTypes, parts as parts
+    from .tools.describe.parts import PartTypes as PartTypes, parts as parts, schema as schema
     from .tools.describe.rig import Rig as Rig, assemble as assemble, load as load, rigs as rigs
-    from .tools.describe.schema import schema as schema
     from .tools.describe.shipped import Shipped as Shipped, shipped as shipped
     from .tools.diagnose.api import CardText as CardText, card as card, diagnose as diagnose, plan as plan
     from .tools.diagnose.asking import Diagnosis as Diagnosis, Outputs as Outputs, PlanAnswer as PlanAnswer
@@ -57,9 +56,8 @@ MODULES: dict[str, tuple[str, ...]] = {
     "tools.compare.results": ("compare", "Errors"),
     "tools.compare.run": ("CampaignRun", "run"),
     "tools.describe.description": ("Description", "show"),
-    "tools.describe.parts": ("parts", "PartTypes"),
+    "tools.describe.parts": ("parts", "PartTypes", "schema"),
     "tools.describe.rig": ("assemble", "load", "Rig", "rigs"),
-    "tools.describe.schema": ("schema",),
     "tools.describe.shipped": ("Shipped", "shipped"),
     "tools.diagnose.api": ("card", "CardText", "diagnose", "plan"),
     "tools.diagnose.asking": ("Diagnosis", "Outputs", "PlanAnswer"),

@@ -26,7 +26,7 @@ from ...scenarios.measured.study import read_study
 from ..compare import campaign
 from ..show.console import answer, note, say, table
 from ..solve.settings import flat_of
-from . import fmu as bench_fmu, throughput, uncertainty as bench_uncertainty
+from . import contact, fmu as bench_fmu, throughput, uncertainty as bench_uncertainty
 from .costs import rhs_s
 from .harness import timed
 
@@ -62,7 +62,7 @@ def command(rig: str, tests: str | None, json: str | None, what: str = "job", dr
         "fmu": (lambda: _fmu(rig), _print_fmu),
         "batch": (lambda: _batch(rig), _print_batch),
         "uncertainty": (lambda: bench_uncertainty.measure(rig, draws), _print_uncertainty),
-        "contact": (_contact, _print_contact),
+        "contact": (contact.measure, _print_contact),
     }
     measure, show = measures[what]
     found = {"schema": "gearheat.bench/1", **measure()}
@@ -91,12 +91,6 @@ def _fmu(rig: str) -> dict[str, Any]:
 
 def _batch(rig: str) -> dict[str, Any]:
     return {"rhs_s": rhs_s(flat_of(load(rig))), "batch": throughput.measure(rig, threads=(1,), swept=0)}
-
-
-def _contact() -> dict[str, Any]:
-    from . import contact as peer
-
-    return peer.measure()
 
 
 def _gearheat(*arguments: str) -> None:
@@ -273,9 +267,7 @@ def _batch_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _print_contact(found: dict[str, Any]) -> None:
-    from . import contact as peer
-
-    table("The contact solver and slippy, processor times of one core", ("what", "value"), peer.rows(found))
+    table("The contact solver and slippy, processor times of one core", ("what", "value"), contact.rows(found))
 
 
 def _print_uncertainty(found: dict[str, Any]) -> None:

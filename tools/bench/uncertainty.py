@@ -21,10 +21,9 @@ from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError
 from ...model.run.schedule import Schedule
 from ...scenarios.load import load
-from ..solve.sampling import draw_sample as drawn
+from ..solve.sampling import collect_uncertain, draw_sample as drawn, draw_values, shares
 from ..solve.settings import adjust, flat_of
 from ..solve.simulate import first_temperatures
-from ..solve.uncertainties import collect_uncertain, draw_values, shares
 from .costs import run_in_rhs
 
 #: The warm-up.

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 from ...model.errors import ScenarioError
 from ...model.laws.worm import worm_friction
@@ -67,6 +68,11 @@ class Stage:
     n: float
     x: float
 
+    #: Wheels on the pinion.
+    count: ClassVar[int] = 1
+    #: Sense of rotation of what is driven, 1 for that of the pinion.
+    turn: ClassVar[int] = -1
+
     @property
     def u(self) -> float:
         """Ratio."""
@@ -91,16 +97,6 @@ class Stage:
     def along(self) -> float:
         """Length of the box that it takes."""
         return self.a
-
-    @property
-    def count(self) -> int:
-        """Wheels on the pinion."""
-        return 1
-
-    @property
-    def turn(self) -> int:
-        """Sense of rotation of what is driven, 1 for that of the pinion."""
-        return -1
 
     @property
     def reach(self) -> float:
@@ -217,6 +213,9 @@ class PlanetaryStage(Stage):
 
     z_3: int
 
+    count: ClassVar[int] = PLANETS
+    turn: ClassVar[int] = 1  # the carrier turns with the sun
+
     @property
     def u(self) -> float:
         """Ratio of sun to carrier."""
@@ -226,16 +225,6 @@ class PlanetaryStage(Stage):
     def r_2(self) -> float:
         """Radius of a planet."""
         return self.m_n * self.z_2 / 2
-
-    @property
-    def count(self) -> int:
-        """Planets."""
-        return PLANETS
-
-    @property
-    def turn(self) -> int:
-        """The carrier turns with the sun."""
-        return 1
 
     @property
     def reach(self) -> float:

@@ -135,7 +135,7 @@ def _print_overview(about: gh.Description) -> None:
     console.say(f"{', '.join(counts)} with --all")
 
 
-def _print_everything(found: dict[str, Any]) -> None:
+def _print_everything(found: Mapping[str, Any]) -> None:
     valued = ("name", "value", "unit", "doc")
     print_stacked("Parts", ("name", "type", "doc"), _rows(found["parts"], ("name", "type", "doc")), 1)
     known = ("name", "value", "kind", "uncertainty", "unit", "doc", "source")

@@ -51,11 +51,9 @@ class Calibration(Answer):
 
     Attributes:
         fit: values in SI with standard errors and correlations
-        found: the JSON object
     """
 
     fit: Fit
-    found: Mapping[str, Any]
 
     @property
     def title(self) -> str:
@@ -128,7 +126,7 @@ def calibrate(
         "rmse_before_K": fit.rmse_before,
         "rmse_after_K": fit.rmse_after,
     }
-    return Calibration(fit, found)
+    return Calibration(found, fit)
 
 
 def _check_free(flat: FlatModel, free: Sequence[str]) -> list[Quantity]:

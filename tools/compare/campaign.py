@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from ...fmu.effective import effective
+from ...fmu.equations import effective
 from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError
 from ...model.run.point import point

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
@@ -23,12 +23,10 @@ class Errors(Answer):
     Attributes:
         comparison: errors by channel and group, None where nothing was measured
         scores: of the rivals
-        found: the JSON object
     """
 
     comparison: Comparison | None
     scores: Sequence[Score]
-    found: Mapping[str, Any]
 
     @property
     def title(self) -> str:
@@ -71,7 +69,7 @@ def compare(result: str | Path, data: str | Path, rig: RigLike, *, card: str | P
         raise DataError(f"{Path(result).name} and {study.campaign.name} have no reading in common.")
     comparison, scores = compare_rows(rows), rivals(rows, [column_of(s) for s in drives(study)])
     found = {"schema": "gearheat.compare/1", "result": Path(result).name, "data": study.campaign.name, "rows": rows}
-    return Errors(comparison, scores, {**found, **summarise(comparison, scores)})
+    return Errors({**found, **summarise(comparison, scores)}, comparison, scores)
 
 
 def summarise(comparison: Comparison, scores: Sequence[Score]) -> dict[str, Any]:

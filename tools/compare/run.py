@@ -5,7 +5,6 @@ from __future__ import annotations
 import hashlib
 import time
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, cast
 
@@ -32,7 +31,6 @@ from .results import Errors, summarise
 ROW = ("point", "test", "direction", "oil", "T_oil_C", "T_wall_C", "T_amb_C", "loss_Nm", "P_loss_W", "efficiency")
 
 
-@dataclass(frozen=True, eq=False, repr=False)
 class CampaignRun(Errors):
     """Measured tests that were played through the FMU, beside their readings."""
 
@@ -119,7 +117,7 @@ def run(
     write(out / "result.json", as_json(result))
     write(out / "report.html", render(scenario, flat, result, comparison, scores, curves=curves, outside=outside))
     note(f"{out / 'report.html'} after {time.perf_counter() - began:.1f} s")
-    return CampaignRun(comparison, scores, result)
+    return CampaignRun(result, comparison, scores)
 
 
 def _curves(scenario: Scenario, study: Measured | None) -> dict[str, str]:

@@ -13,7 +13,7 @@ from ...model.core.flat import FlatModel, Quantity
 from ...model.errors import SolveError
 from ...model.parts.ports import Flange, HeatPort
 from ...model.run.result import Result
-from ...model.run.sensitivity import sensitivities
+from ...model.run.search import sensitivities
 from ...model.run.steady import steady
 from ...model.sources import LawInfo
 from ...model.units import from_si, in_unit, show_unit, text
@@ -43,13 +43,11 @@ class Description(Answer):
         scenario: the rig
         flat: its model
         rest: its steady state at the operating point, where there is one
-        found: the JSON object
     """
 
     scenario: Scenario
     flat: FlatModel
     rest: Result | None
-    found: dict[str, Any]
 
     @property
     def title(self) -> str:
@@ -105,15 +103,19 @@ def show(rig: RigLike) -> Description:
         "choices": choices(scenario),
         "inputs": [{**_line(q), "source": source_of(scenario, q.name)} for q in flat.inputs],
         "states": [_line(q) for q in flat.states],
-        "outputs": [_output(q) for q in flat.outputs if q.name not in flat.derived],
+        "outputs": [
+            {"name": q.name, "unit": show_unit(q.unit), "doc": q.doc}
+            for q in flat.outputs
+            if q.name not in flat.derived
+        ],
         "sensors": dict(scenario.sensors),
         "laws": laws(flat),
         "outside": outside_of(rest) if rest is not None else [],
         "no_steady_state": no_steady_state,
         "unchecked": find_unchecked(scenario, flat),
-        "errata": errata_of(scenario),
+        "errata": [asdict(e) for e in scenario.errata],
     }
-    return Description(scenario, flat, rest, found)
+    return Description(found, scenario, flat, rest)
 
 
 def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> tuple[Result | None, list[str]]:
@@ -167,17 +169,8 @@ def laws(flat: FlatModel) -> list[dict[str, Any]]:
     return [{**law_line(law), "verified": law.verified} for law in cite_laws(flat)]
 
 
-def errata_of(scenario: Scenario) -> list[dict[str, str]]:
-    """The places where the rig's sources are wrong."""
-    return [asdict(e) for e in scenario.errata]
-
-
 def _line(q: Quantity) -> dict[str, Any]:
     return {"name": q.name, "value": from_si(q.start, q.unit), "unit": show_unit(q.unit), "doc": q.doc}
-
-
-def _output(q: Quantity) -> dict[str, Any]:
-    return {"name": q.name, "unit": show_unit(q.unit), "doc": q.doc}
 
 
 def _kind(scenario: Scenario, flat: FlatModel, path: str) -> str:

@@ -1,4 +1,4 @@
-"""What rigs are built of: all about a part type."""
+"""What rigs are built of: all about a part type, and the schema of rig files that editors read."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ import inspect
 import math
 import tomllib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache
 from importlib.resources import files
 from typing import Any
@@ -17,24 +16,21 @@ from ...model.core.flat import Quantity
 from ...model.errors import ScenarioError, suggestion
 from ...model.parts import PARTS
 from ...model.sources import LawInfo, recording, sources
-from ...model.units import from_si, show_unit, text, to_si
+from ...model.units import example, from_si, show_unit, text, to_si
 from ...scenarios.entries import DESCRIPTIVE, Entry, catalogue
 from ...scenarios.load import load
 from ...scenarios.scenario import Scenario
 from ...scenarios.shipped import FILES, list_rigs
+from ...scenarios.tables import PartTable, RigTable
 from ...scenarios.values import settable
 from ..show.display import Answer
 
+#: Parameters that a catalogue entry of a kind brings.
+ENTRIES: Mapping[str, str] = {kind: f"name of an entry, see `gearheat list`: values of {kind}s" for kind in FILES}
 
-@dataclass(frozen=True, eq=False, repr=False)
+
 class PartTypes(Answer):
-    """All part types, or everything about one of them.
-
-    Attributes:
-        found: the JSON object
-    """
-
-    found: Mapping[str, Any]
+    """All part types, or everything about one of them."""
 
     @property
     def title(self) -> str:
@@ -214,3 +210,36 @@ def _format_value(value: Any) -> str:
 def first_line(cls: type) -> str:
     """What a class is, in a line."""
     return inspect.cleandoc(cls.__doc__ or "").splitlines()[0]
+
+
+def schema() -> dict[str, Any]:
+    """JSON schema of a rig file, in which editors check and complete what is typed."""
+    found = RigTable.model_json_schema()
+    common = PartTable.model_json_schema()["properties"]
+    found["$defs"] |= {f"part_{kind}": _part_schema(kind, common) for kind in PARTS}
+    own = [{"$ref": f"#/$defs/part_{kind}"} for kind in PARTS]
+    named = {"type": "object", "not": {"required": ["type"]}, "description": "a part of the machine named by `kind`"}
+    tables = found["properties"]
+    tables["part"]["additionalProperties"] = {"anyOf": [*own, named]}
+    tables["sensors"]["additionalProperties"] = {
+        "anyOf": [{"type": "string"}, tables["sensors"]["additionalProperties"]]
+    }
+    return {"$schema": "https://json-schema.org/draft/2020-12/schema", "title": "gearheat rig file", **found}
+
+
+def _part_schema(kind: str, common: Mapping[str, Any]) -> dict[str, Any]:
+    """Schema of a part of a type; `common` are the keys that all parts have."""
+    cls = PARTS[kind]
+    properties: dict[str, Any] = {"type": {"const": kind, "description": first_line(cls)}, "use": common["use"]}
+    for key, d in settable(cls).items():
+        about = ", ".join(filter(None, (d.doc, range_of(d.quantity(key)), show_unit(d.unit) if d.unit != "1" else "")))
+        taken = ["number", "string"] if d.unit == "1" else ["string"]
+        properties[key] = {"type": taken, "description": about, "examples": [example(d.unit)]}
+    for key, c in list_declared(cls, Choice).items():
+        plain = [o for o in c.options if isinstance(o, str | bool | int | float)]
+        options = {"enum": plain} if plain and len(plain) == len(c.options) and c.also is None else {}
+        properties[key] = {"description": c.doc, **options}
+    for entry, about in ENTRIES.items():
+        properties[entry] = {"type": "string", "description": about, "examples": list(catalogue(entry))[:3]}
+    properties |= {key: common[key] for key in ("source", "sources", "uncertainties")}
+    return {"type": "object", "properties": properties, "required": ["type"], "additionalProperties": False}

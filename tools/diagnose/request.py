@@ -10,8 +10,7 @@ from typing import TypeVar
 from ...model.errors import DataError, GearheatError, suggestion
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import Card, read_card
-from ...scenarios.measured.checks import outlying, same_as_reference, too_small
-from ...scenarios.measured.invisible import invisible
+from ...scenarios.measured.checks import invisible, outlying, same_as_reference, too_small
 from ...scenarios.measured.read import read_campaign
 from ...scenarios.measured.series import read_samples, series_of
 from ...scenarios.measured.table import Campaign

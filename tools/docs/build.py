@@ -24,8 +24,7 @@ from ...model.errors import GearheatError
 from ..show.console import folder, note
 from . import reference
 from .blocks import FENCE, MARKS, PAGES, call, run_pages
-from .markdown import TABLES, code, page
-from .reference import fill_blocks
+from .reference import TABLES, code, fill_blocks, page
 
 DUTY = "time [min],input.w [rpm],output.tau [N.m],room.T [degC]\n0,1450,-500,20\n10,1450,-500,20\n"
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from ...fmu.described import Described, describe, settable
 from ...fmu.description import Owner
-from ...model.errors import FmuError, GearheatError, ScenarioError, suggestion
+from ...model.errors import FmuError, Problems, ScenarioError, suggestion
 from ...model.units import to_si
 from ...scenarios.duty import read_duty
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
@@ -101,8 +101,8 @@ def play(fmu: str | Path, duty: Duty, *, step: str = "60 s", set: Settings = (),
         >>> import gearheat as gh
         >>> gh.play("planetary.fmu", "duty.csv").plot("oil.T")  # doctest: +SKIP
     """
+    from ...fmu.described import is_trusted
     from ...fmu.play import Player
-    from ...fmu.unpacking import is_trusted
 
     fmu = Path(fmu)
     dt = to_si(step, "s", name="--step")
@@ -147,10 +147,10 @@ def _start(about: Described, assignments: Sequence[str]) -> dict[str, float]:
     """Start values from texts NAME=VALUE, in SI. Raises ScenarioError with all problems at once."""
     known, shown, wholes = about.quantities("start"), about.quantities("output"), about.wholes()
     values: dict[str, float] = {}
-    problems: list[str] = []
+    problems = Problems()
     for text in assignments:
         name, _, written = (part.strip() for part in text.partition("="))
-        try:
+        with problems:
             if name in wholes:
                 values[name] = _parse_whole(name, written, wholes[name])
             elif name in known:
@@ -159,10 +159,7 @@ def _start(about: Described, assignments: Sequence[str]) -> dict[str, float]:
                 every = [*known, *wholes]
                 why = f" It is calculated: {shown[name].doc}." if name in shown else suggestion(name, every)
                 problems.append(f'{about.path.name}: "{name}" cannot be set.{why}')
-        except GearheatError as error:
-            problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return values
 
 

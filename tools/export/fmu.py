@@ -10,12 +10,12 @@ from typing import Any
 
 import numpy as np
 
-from ...fmu.choices import Choice, Item, drop_idle, start_choice
 from ...fmu.compiling import platforms
 from ...fmu.description import Owner
-from ...fmu.effective import effective
+from ...fmu.equations import effective
 from ...fmu.export import export
 from ...fmu.related import Related
+from ...fmu.variables import Choice, Item, drop_idle, start_choice
 from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError, SolveError
 from ...model.machines.spec import assemble
@@ -28,11 +28,19 @@ from ...scenarios.scenario import Scenario
 from ..show.console import folder, lasting, progress_bar, writable
 from ..show.display import Answer
 from ..show.network import network_svg
+from ..solve.sampling import collect_uncertain
 from ..solve.settings import Drive, adjust, drive_at, find_unchecked, flat_of
 from ..solve.simulate import first_temperatures
-from ..solve.uncertainties import collect_uncertain
-from .extras import check_fmu, experiment, reference_duty, reference_run, sets_of_oils, write_extras
-from .page import figures_of, text_of
+from .extras import (
+    check_fmu,
+    experiment,
+    figures_of,
+    reference_duty,
+    reference_run,
+    sets_of_oils,
+    text_of,
+    write_extras,
+)
 
 #: Shares of the operating point's torques at which a machine on torques alone is looked for that holds its speed.
 _SHARES = (1.0, 0.75, 0.5, 0.25, 0.1, 0.0)
@@ -78,15 +86,8 @@ class Asked:
         return told | alike | {"platform": self.platform}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
 class Exported(Answer):
-    """What was written.
-
-    Attributes:
-        found: the JSON object: file, checksum, inputs, outputs, parameters, or FMUs and connections of a system
-    """
-
-    found: Mapping[str, Any]
+    """What was written: file, checksum, inputs, outputs, parameters, or FMUs and connections of a system."""
 
     @property
     def path(self) -> Path:

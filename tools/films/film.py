@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Sequence
+from dataclasses import replace
 from math import isfinite
 from pathlib import Path
 from typing import Any
@@ -24,7 +24,7 @@ from ..show.console import counting, note, writable, write
 from ..show.display import Answer
 from ..show.picture import Picture
 from ..solve.settings import adjust
-from ..solve.sweep_file import Store, work_file
+from ..solve.sweep_rows import Store, work_file
 from .case import AXES, MapCase, from_file, from_rig
 
 #: Points along load, speed and temperature.
@@ -49,15 +49,8 @@ FINER = 65
 WRONG = {LOST: (FAILED, "no film found"), COARSE: ("coarse", "the grid is too coarse; give more --nodes")}
 
 
-@dataclass(frozen=True, eq=False, repr=False)
 class FilmTable(Answer):
-    """Films of a contact over load, speed and temperature, and the law fitted to them.
-
-    Attributes:
-        found: the JSON object
-    """
-
-    found: Mapping[str, Any]
+    """Films of a contact over load, speed and temperature, and the law fitted to them."""
 
     @property
     def title(self) -> str:

@@ -20,7 +20,7 @@ from ...model.laws.mesh import friction_schlenk, load_per_face_width, mesh_loss,
 from ...model.laws.radiation import radiation_coefficient
 from ...model.laws.rolling import needle_torque_load, needle_torque_viscous
 from ...model.laws.sealing import lip_seal_torque
-from .machine import Machine, Mesh, Turning
+from .gather import Machine, Mesh, Turning
 
 Values = Mapping[str, float]
 

@@ -17,8 +17,7 @@ from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.values import in_range
 from ..show.display import Answer
 from ..solve.settings import adjust
-from .gather import machine_of
-from .machine import Machine
+from .gather import Machine, machine_of
 from .methods import FACTORS, METHODS, Method
 
 #: Largest multiple of the load that a rating looks for.
@@ -35,11 +34,9 @@ class MethodRating(Answer):
 
     Attributes:
         method: the method in words
-        found: the JSON object
     """
 
     method: str
-    found: Mapping[str, Any]
 
     @property
     def title(self) -> str:
@@ -91,10 +88,8 @@ def rate_by_method(
     k_given = None if k is None else in_range("", k, K)
     scenario = adjust(scenario_of(rig), set)
     machine = machine_of(scenario, tuple(FACTORS), _depths(dip))
-    found = compare(machine, known, T_limit, k_given)
-    return MethodRating(
-        known.title, {"schema": "gearheat.reference/1", "rig": scenario.name, "method": method, **found}
-    )
+    found = {"schema": "gearheat.reference/1", "rig": scenario.name, "method": method}
+    return MethodRating(found | compare(machine, known, T_limit, k_given), known.title)
 
 
 def compare(machine: Machine, method: Method, T_limit: float, k: float | None) -> dict[str, Any]:

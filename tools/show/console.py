@@ -23,7 +23,6 @@ from typing import Any, ParamSpec
 from ...fmu.compiling import Progress
 from ...model.errors import DataError, GearheatError, ScenarioError
 from ...model.files import flows, keep_inputs, place, replacing
-from ...model.screen import fitting
 
 P = ParamSpec("P")
 
@@ -305,6 +304,32 @@ def table(
         screen.print(drawn)
     if left := [name for i, name in enumerate(columns) if not any(i in group for group in (kept, *others))]:
         say(f"left out for want of room: {', '.join(left)}; widen the screen, or take --json\n")
+
+
+def fitting(widths: Sequence[int], whole: Sequence[bool], room: int, *, repeated: bool) -> list[list[int]]:
+    """Columns that fit beside each other: those of words go first, from the last on; numbers go on in further tables.
+
+    Args:
+        widths: of the columns at least
+        whole: which of them are numbers or names
+        room: of the screen
+        repeated: whether further tables begin with the first column
+    """
+
+    def size(kept: Sequence[int]) -> int:
+        return sum(widths[k] + 3 for k in kept) + 1  # what is drawn around a column
+
+    kept = list(range(len(widths)))
+    for i in (i for i in reversed(range(1, len(widths))) if not whole[i]):
+        if size(kept) <= room:
+            break
+        kept.remove(i)
+    groups: list[list[int]] = [[]]
+    for i in kept:
+        if groups[-1] and size([*groups[-1], i]) > room:
+            groups.append([0] if repeated else [])
+        groups[-1].append(i)
+    return groups
 
 
 def is_number(text: str) -> bool:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -82,8 +83,12 @@ class Display:
         head, rows = self.table()
         return optional("pandas").DataFrame([list(row) for row in rows], columns=list(head))
 
+    def file_text(self) -> str:
+        """What `save` writes: the JSON object."""
+        return as_json(self.as_dict())
+
     def save(self, path: str | Path) -> Path:
-        """Write the JSON object to a file.
+        """Write the result to a file: its JSON object, or all rows as CSV where it is columns of numbers.
 
         Args:
             path: file to write
@@ -91,7 +96,7 @@ class Display:
         Raises:
             DataError: it cannot be written
         """
-        write(Path(path), as_json(self.as_dict()))
+        write(Path(path), self.file_text())
         return Path(path)
 
     def save_picture(self, path: str | Path) -> Path | None:
@@ -111,6 +116,7 @@ class Display:
         return Path(path)
 
 
+@dataclass(frozen=True, eq=False, repr=False)
 class Answer(Display):
     """Base of results that are their JSON object.
 
@@ -132,19 +138,11 @@ class Columns(Display):
         """Columns of all rows in the units shown to a person, by their titles."""
         raise NotImplementedError
 
-    def save(self, path: str | Path) -> Path:
-        """Write all rows as CSV, units in the header.
-
-        Args:
-            path: file to write
-
-        Raises:
-            DataError: it cannot be written
-        """
+    def file_text(self) -> str:
+        """All rows as CSV, units in the header."""
         from .columns import table_text
 
-        write(Path(path), table_text(self.titled()))
-        return Path(path)
+        return table_text(self.titled())
 
 
 class Quantities(Display):

@@ -53,13 +53,11 @@ class DesignAnswer(Quantities, Answer):
     Attributes:
         setting: the rig as set
         flat: its model
-        found: the JSON object
         state: values of free names and of the steady state there in SI; empty where alternatives were asked for
     """
 
     setting: Scenario
     flat: FlatModel
-    found: Mapping[str, Any]
     state: Mapping[str, float] = field(default_factory=dict)
 
     def __getitem__(self, name: str) -> float:
@@ -129,7 +127,7 @@ def design(
     if part is None:
         solution = least_change(case.flat, case.free, case.targets, case.values)
         state = {name: float(column[0]) for name, column in solution.result.columns.items()} | dict(solution.values)
-        return DesignAnswer(case.setting, case.flat, found | _solution(case, solution), state)
+        return DesignAnswer(found | _solution(case, solution), case.setting, case.flat, state)
     solved: list[tuple[tuple[float, ...], dict[str, Any]]] = []
     unsolved: list[dict[str, Any]] = []
     for name in names:
@@ -145,7 +143,7 @@ def design(
     if not solved:
         raise SolveError([f"{part} = {a[part]}: {p}" for a in unsolved for p in a["problems"]])
     best_first = [answer for _, answer in sorted(solved, key=lambda pair: pair[0])]
-    return DesignAnswer(case.setting, case.flat, found | {"among": part, "alternatives": [*best_first, *unsolved]})
+    return DesignAnswer(found | {"among": part, "alternatives": [*best_first, *unsolved]}, case.setting, case.flat)
 
 
 def _format_target(name: str, value: Any, quantity: Quantity | None) -> str:

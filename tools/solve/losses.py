@@ -34,11 +34,9 @@ class LossTable(Answer):
     """Losses at all readings of a rig, or at the operating point of a rig without measured data.
 
     Attributes:
-        found: the JSON object
         contacts: the contacts at the operating point, where they were asked for
     """
 
-    found: Mapping[str, Any]
     contacts: ContactTable | None = None
 
     @property

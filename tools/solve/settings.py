@@ -7,7 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ...fmu.effective import effective
+from ...fmu.equations import effective
 from ...model.core.declare import Choice, Parameter, list_declared
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten

@@ -22,9 +22,8 @@ from ..show.display import Display, optional
 from ..show.picture import Picture
 from . import sampling
 from .simulate import Duty, duty_file
-from .sweep_file import Column, Store, words, work_file, write_table
 from .sweep_plan import MOST_DRAWN, Plan, Request, plan_sweep
-from .sweep_rows import TELLING, Block, local, run_on_cluster
+from .sweep_rows import TELLING, Block, Column, Store, local, run_on_cluster, words, work_file, write_table
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -181,16 +180,11 @@ def sweep(
             scheduler,
             draw,
         )
-        return run_sweep(request, Path(folder))
+        return _run(request, Path(folder))
 
 
-def run_sweep(request: Request, folder: Path) -> Sweep:
-    """Plan, solve what an earlier run has not finished, write the table.
-
-    Args:
-        request: what is asked
-        folder: for the work file where nothing is written
-    """
+def _run(request: Request, folder: Path) -> Sweep:
+    """Plan, solve what an earlier run has not finished, write the table; a sweep without one works in the folder."""
     plan = plan_sweep(request)
     out, blocks = request.out, plan.blocks
     with Store(work_file(out or folder / "rows.csv"), plan.key, len(plan.job.outputs) + len(TELLING)) as store:

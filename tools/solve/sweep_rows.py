@@ -1,20 +1,39 @@
 """The rows of a sweep: what a worker does with a block of them, on this machine or in a Dask cluster.
 
+A work file keeps finished blocks beyond an interruption; what is left in the end is a table.
+
 Imports neither CasADi nor the rig files: a worker compiles C and calls it.
 """
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping
+import os
+import struct
+import tempfile
+import zlib
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any
+from pathlib import Path
+from types import TracebackType
+from typing import Any, BinaryIO
 
 import numpy as np
 
-from ...fmu.batch import Batch
+from ...fmu.batch import Batch, Status
 from ...model.errors import DataError
+from ...model.files import flows, replacing
 from ...model.run.schedule import Schedule
+from ...model.units import from_si, show_unit
+from ..show.console import note
+
+#: First bytes of a work file.
+MARK = b"gearheat sweep work file 1 "
+
+#: Number of the block, its rows, and the checksum of its bytes.
+_HEAD = struct.Struct("<qqI")
+
+SUFFIXES = (".csv", ".parquet")
 
 SCHEMA = "gearheat.sweep.rows/1"
 
@@ -25,6 +44,173 @@ TELLING = ("status", "iterations", "energy_residual", "outside")
 PATIENCE = 20.0
 
 Block = tuple[int, np.ndarray]
+
+
+def work_file(out: Path) -> Path:
+    """Where the finished blocks of a sweep are kept until its table is written."""
+    folder = Path(tempfile.gettempdir()) if flows(out) else out.parent
+    return folder / f"{out.name}.part"
+
+
+class Store:
+    """Finished blocks of rows in a file; a block is there whole or not at all.
+
+    Args:
+        path: the file, made if it is not there
+        key: what the rows depend on; blocks kept under another key are dropped
+        width: numbers of a row
+
+    Raises:
+        DataError: the file is something else, is in use, or cannot be written
+    """
+
+    def __init__(self, path: Path, key: str, width: int) -> None:
+        self.path, self.width = path, width
+        self.places: dict[int, tuple[int, int]] = {}
+        head = MARK + f"{key} {width}\n".encode()
+        try:
+            self._file: BinaryIO = path.open("r+b" if path.exists() else "w+b")
+        except OSError as error:
+            raise DataError(f"{path}: cannot be written ({error.strerror}). Choose another place with -o.") from None
+        try:
+            self._lock()
+            found = self._file.read(len(head))
+            if found and not found.startswith(MARK[: len(found)]):
+                raise DataError(f"{path}: is no work file of a sweep. Move it away, or choose another place with -o.")
+            if found == head:
+                self._read()
+            elif found:
+                note(f"{path}: the rows kept there belong to another sweep and are dropped")
+        except BaseException:
+            self._file.close()
+            raise
+        if not self.places:
+            self._file.seek(0)
+            self._file.truncate()
+            self._file.write(head)
+            self._file.flush()
+
+    def _lock(self) -> None:
+        """Keep other processes out, where the system can."""
+        try:
+            import fcntl
+        except ImportError:
+            return
+        try:
+            fcntl.flock(self._file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            raise DataError(
+                f"{self.path}: another sweep is writing there. Wait for it, or choose another -o."
+            ) from None
+
+    def _read(self) -> None:
+        """Find the blocks; what an interruption left half-written is cut off."""
+        end, whole = self._file.tell(), os.fstat(self._file.fileno()).st_size
+        while len(head := self._file.read(_HEAD.size)) == _HEAD.size:
+            number, rows, checksum = _HEAD.unpack(head)
+            size = 8 * rows * self.width
+            if not 0 <= size <= whole - end - _HEAD.size or zlib.crc32(self._file.read(size)) != checksum:
+                break
+            self.places[number] = (end + _HEAD.size, rows)
+            end += _HEAD.size + size
+        self._file.truncate(end)
+
+    def put(self, number: int, block: np.ndarray) -> None:
+        """Keep a finished block (rows, width)."""
+        data = np.ascontiguousarray(block, dtype="<f8").tobytes()
+        place = self._file.seek(0, os.SEEK_END)
+        try:
+            self._file.write(_HEAD.pack(number, len(block), zlib.crc32(data)) + data)
+            self._file.flush()
+        except OSError as error:
+            raise DataError(f"{self.path}: cannot be written ({error.strerror}). The finished rows are kept.") from None
+        self.places[number] = (place + _HEAD.size, len(block))
+
+    def get(self, number: int) -> np.ndarray:
+        """A finished block."""
+        place, rows = self.places[number]
+        self._file.seek(place)
+        data = self._file.read(8 * rows * self.width)
+        return np.frombuffer(data, dtype="<f8").reshape(rows, self.width)
+
+    def remove(self) -> None:
+        """Delete the file, which is not needed any more."""
+        self._file.close()
+        self.path.unlink(missing_ok=True)
+
+    def __enter__(self) -> Store:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, value: BaseException | None, _: TracebackType | None) -> None:
+        self._file.close()
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of the table: its name and SI unit; without a unit it holds whole numbers, "status" its words."""
+
+    name: str
+    unit: str | None = None
+
+    @property
+    def title(self) -> str:
+        """The name with the unit shown to a person."""
+        return self.name if self.unit is None else f"{self.name} [{show_unit(self.unit)}]"
+
+    def values(self, numbers: np.ndarray) -> np.ndarray:
+        """Numbers in SI as the table shows them."""
+        return numbers if self.unit is None else from_si(numbers, self.unit)
+
+
+def words(status: np.ndarray) -> list[str]:
+    """The name of each status."""
+    names = {int(s): s.name.lower() for s in Status}
+    return [names[int(s)] for s in status]
+
+
+def write_table(out: Path, columns: Sequence[Column], blocks: Iterator[Sequence[np.ndarray]]) -> None:
+    """Write the table block by block beside its place, and move it there.
+
+    Args:
+        out: the file; its ending says what it is
+        columns: the columns
+        blocks: for each block an array per column, SI
+
+    Raises:
+        DataError: it cannot be written
+    """
+    try:
+        with replacing(out) as path:
+            (_write_parquet if out.suffix == ".parquet" else _write_csv)(path, columns, blocks)
+    except OSError as error:
+        raise DataError(f"{out}: cannot be written ({error.strerror}). The finished rows are kept.") from None
+
+
+def _write_csv(path: Path, columns: Sequence[Column], blocks: Iterator[Sequence[np.ndarray]]) -> None:
+    formats = ["%s" if c.name == "status" else "%d" if c.unit is None else "%.9g" for c in columns]
+    with path.open("w", encoding="utf-8", newline="\n") as file:
+        file.write(",".join(c.title for c in columns) + "\n")
+        line = ",".join(formats) + "\n"
+        for block in blocks:
+            cells = [_cells(c, numbers) for c, numbers in zip(columns, block, strict=True)]
+            file.write("".join([line % row for row in zip(*cells, strict=True)]).replace("nan", ""))
+
+
+def _cells(column: Column, numbers: np.ndarray) -> list[Any]:
+    return words(numbers) if column.name == "status" else list(column.values(numbers).tolist())
+
+
+def _write_parquet(path: Path, columns: Sequence[Column], blocks: Iterator[Sequence[np.ndarray]]) -> None:
+    import pyarrow as pa
+    from pyarrow import parquet
+
+    kinds: Mapping[bool, Any] = {True: pa.int64(), False: pa.float64()}
+    fields = [pa.field(c.title, pa.string() if c.name == "status" else kinds[c.unit is None]) for c in columns]
+    schema = pa.schema(fields)
+    with parquet.ParquetWriter(path, schema) as writer:
+        for block in blocks:
+            cells = [pa.array(_cells(c, n), f.type) for c, n, f in zip(columns, block, fields, strict=True)]
+            writer.write_table(pa.Table.from_arrays(cells, schema=schema))
 
 
 @dataclass(frozen=True)

@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
 from typing import Any, TypeVar
 
-from ...model.errors import GearheatError, ScenarioError
+from ...model.errors import GearheatError, Problems, ScenarioError
 from ...model.sources import LawInfo, sources
 from ...model.units import si_of
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.published import Row, golden_rows, read_published
 from ...scenarios.scenario import Scenario
 from ...scenarios.shipped import list_rigs
-from ..describe.description import errata_of
 from ..show.console import counting, write
 from ..show.display import Display
 from ..show.pages import page
@@ -135,14 +134,11 @@ def verify(rig: RigLike | None = None) -> Verification:
 def _each(work: Callable[[A], B], items: Sequence[A]) -> list[B]:
     """Work done on each item, or the problems of all of them."""
     found: list[B] = []
-    problems: list[str] = []
+    problems = Problems()
     for item in items:
-        try:
+        with problems:
             found.append(work(item))
-        except ScenarioError as error:
-            problems += error.problems
-    if problems:
-        raise ScenarioError(problems)
+    problems.check()
     return found
 
 
@@ -171,7 +167,7 @@ def _list_citations(places: Iterable[str]) -> dict[str, str]:
 def _machine(values: RigValues, rows: Sequence[Row], advance: Callable[[int], None]) -> Machine:
     scenario = values.scenario
     verdicts = judge_rows(rows, values, advance)
-    return Machine(scenario.name, scenario.doc, scenario.reproduces, verdicts, tuple(errata_of(scenario)))
+    return Machine(scenario.name, scenario.doc, scenario.reproduces, verdicts, tuple(map(asdict, scenario.errata)))
 
 
 def judge_rows(

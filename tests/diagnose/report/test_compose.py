@@ -20,8 +20,8 @@ from gearheat.tools.diagnose.infer.problem import Acting
 from gearheat.tools.diagnose.report import extension
 from gearheat.tools.diagnose.request import Inputs, Request, read
 from gearheat.tools.diagnose.setting import Setting, setting
+from gearheat.tools.solve.sampling import reasons
 from gearheat.tools.solve.settings import flat_of
-from gearheat.tools.solve.uncertainties import reasons
 
 CASE = Path(__file__).parents[2] / "challenge" / "practice_cases" / "foreign_006"
 CAUSE = "losses.churning"

@@ -7,8 +7,8 @@ import tomllib
 
 import pytest
 from gearheat.scenarios.measured.card import Card, Oil, Protocol, read_card
-from gearheat.scenarios.measured.context import CONTEXT
 from gearheat.scenarios.measured.read import read_campaign
+from gearheat.scenarios.measured.sensors import CONTEXT
 from gearheat.scenarios.tables import SensorTable
 from gearheat.tools.docs.blocks import PAGES
 

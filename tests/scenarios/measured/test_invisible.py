@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 from gearheat.scenarios.measured.card import Card
-from gearheat.scenarios.measured.invisible import invisible
+from gearheat.scenarios.measured.checks import invisible
 from gearheat.scenarios.measured.read import read_campaign
 from gearheat.scenarios.shipped import RIGS
 

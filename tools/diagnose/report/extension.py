@@ -138,7 +138,7 @@ def extended(
     causes = " and ".join(f"{name_of(a.cause.id)} ({a.cause.id})" for a in applied) or "calibrated, no cause added"
     doc = f"{rig.doc.rstrip('.')}; as diagnosed from {data}: {causes}."
     head = [f"Written by `gearheat diagnose` from {data}: {causes}.", *notes]
-    clean = replace(rig, doc=doc, spec=replace(rig.spec, doc=doc), overrides=(), entries={})
+    clean = replace(rig, doc=doc, spec=replace(rig.spec, doc=doc), entries={})
     return Extended(clean, tuple(head))
 
 

@@ -9,7 +9,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table as Drawn
 
-from ....model.screen import fitting
+from ...show.console import fitting
 from ..answer.findings import Findings
 from . import phrases
 from .tables import Table, tables

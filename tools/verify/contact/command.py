@@ -9,7 +9,7 @@ from typing import Any
 
 from ...show.console import folder, write
 from ...show.display import Display
-from . import cycle as cycles, figures, lines, moving, pages, steady, studies
+from . import cycle as cycles, figures, lines, pages, steady, studies
 from .rows import Found, Job, run
 
 #: File of each figure.
@@ -80,7 +80,7 @@ def jobs(quick: bool) -> list[Job]:
     Args:
         quick: a subset on coarse grids
     """
-    parts = (*steady.jobs(quick), *lines.jobs(quick), *studies.jobs(quick), *moving.jobs(quick))
+    parts = (*steady.jobs(quick), *lines.jobs(quick), *studies.jobs(quick), *studies.dent_jobs(quick))
     items = list(dict.fromkeys(job.item for job in parts))
     wanted = [job for job in parts if job.quick or not quick]
     return sorted(wanted, key=lambda job: items.index(job.item))

@@ -24,7 +24,8 @@ def films(table: Sequence[Row]) -> str:
     figure, panels = empty(4.2 * max(len(items), 1), 4.2, 1, max(len(items), 1))
     for panel, item in zip(panels, items, strict=False):
         mine = [row for row in _of(table, item) if row["tolerance"]]
-        low, high = _range([v for row in mine for v in (row["reference"], row["ours"])])
+        values = [v for row in mine for v in (row["reference"], row["ours"])]
+        low, high = 0.9 * min(values), 1.1 * max(values)
         ends, rel = np.array([low, high]), float(mine[0]["tolerance"])
         panel.fill_between(ends, ends * (1 - rel), ends * (1 + rel), color="#eeeeee", label=f"{100 * rel:g} %")
         panel.plot(ends, ends, color="#888888", linewidth=1)
@@ -42,10 +43,6 @@ def films(table: Sequence[Row]) -> str:
 
 def _of(table: Sequence[Row], item: str) -> list[Row]:
     return [row for row in table if row["item"] == item]
-
-
-def _range(values: Sequence[float]) -> tuple[float, float]:
-    return 0.9 * min(values), 1.1 * max(values)
 
 
 def _logarithmic(panel: Axes, **words: str) -> None:
