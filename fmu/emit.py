@@ -45,6 +45,17 @@ def number(value: float) -> str:
     return f"({text})" if text.startswith("-") else text
 
 
+class _Instruction(NamedTuple):
+    """One operation of a function: its code, the work variables it reads and those it sets.
+
+    Of an argument the former, of a result the latter are the number of its array and the place in it.
+    """
+
+    code: int
+    inputs: list[int]
+    outputs: list[int]
+
+
 class _Line(NamedTuple):
     """One statement: its text, the local variable it sets, and what it reads (variables and arguments)."""
 
@@ -71,8 +82,9 @@ def function(f: Any, prefix: str = "model_", kind: str = "double", whole: int = 
     takes = [f"const {kind} *{f.name_in(i)}" for i in range(f.n_in())]
     gives = [f"{kind} *{f.name_out(i)}" for i in range(f.n_out())]
     arguments = [f.name_in(i) for i in range(f.n_in())] + [f.name_out(i) for i in range(f.n_out())]
-    shared, powers = _share_divisors(f), _neighbouring_powers(f)
-    lines = [line for k in range(f.n_instructions()) for line in _instruction(f, k, shared, powers, kind)]
+    program = _read(f)
+    shared, powers = _share_divisors(program), _neighbouring_powers(f, program)
+    lines = list(_write(f, program, shared, powers, kind))
     name, signature = f"{prefix}{f.name()}", ", ".join(takes + gives)
     if len(lines) > whole:
         return _in_pieces(name, signature, arguments, lines, kind, piece)
@@ -143,27 +155,33 @@ def _crossing(pieces: Sequence[Sequence[_Line]], arguments: set[str]) -> tuple[l
     return taken, handed[::-1]
 
 
-def _share_divisors(f: Any) -> dict[int, tuple[str, bool]]:
+def _read(f: Any) -> list[_Instruction]:
+    """The instructions of a function; each is asked for once, as asking takes most of the time of emitting."""
+    numbers = range(f.n_instructions())
+    return [_Instruction(f.instruction_id(k), f.instruction_input(k), f.instruction_output(k)) for k in numbers]
+
+
+def _share_divisors(program: Sequence[_Instruction]) -> dict[int, tuple[str, bool]]:
     """Division -> name of the reciprocal it multiplies by, and whether it is the first to use it.
 
     Only where several divide by the same value: derivatives repeat their function's divisors, and a division costs as
     much as several products.
     """
     users: dict[int, list[int]] = {}
-    for k, (_, divisor) in _operands(f, ca.OP_DIV):
+    for k, (_, divisor) in _operands(program, ca.OP_DIV):
         users.setdefault(divisor, []).append(k)
     groups = [group for group in users.values() if len(group) > 1]
     return {k: (f"r{i}", k == group[0]) for i, group in enumerate(groups) for k in group}
 
 
-def _neighbouring_powers(f: Any) -> dict[int, tuple[str, bool]]:
+def _neighbouring_powers(f: Any, program: Sequence[_Instruction]) -> dict[int, tuple[str, bool]]:
     """Power -> name of one of the same value with an exponent larger by 1, and whether it is that one.
 
     The derivative of a power of less than 1 is a quotient of it, which costs a tenth of another power.
     """
     known: dict[int, list[tuple[float, int]]] = {}
     found: dict[int, tuple[str, bool]] = {}
-    for k, (base, at) in _operands(f, ca.OP_CONSTPOW):
+    for k, (base, at) in _operands(program, ca.OP_CONSTPOW):
         exponent, own = f.instruction_constant(at), known.setdefault(base, [])
         above = next((j for e, j in own if exponent < 0 and abs(e - exponent - 1) < 1e-12 and j not in found), None)
         if above is not None:
@@ -172,42 +190,54 @@ def _neighbouring_powers(f: Any) -> dict[int, tuple[str, bool]]:
     return found
 
 
-def _operands(f: Any, kind: int) -> Iterator[tuple[int, list[int]]]:
+def _operands(program: Sequence[_Instruction], kind: int) -> Iterator[tuple[int, list[int]]]:
     """Instructions of a kind, each with those that made its operands: a work variable holds one value after another."""
     made: dict[int, int] = {}
-    for k in range(f.n_instructions()):
-        code = f.instruction_id(k)
+    for k, (code, inputs, outputs) in enumerate(program):
         if code == kind:
-            yield k, [made[v] for v in f.instruction_input(k)]
+            yield k, [made[v] for v in inputs]
         if code != ca.OP_OUTPUT:
-            made[f.instruction_output(k)[0]] = k
+            made[outputs[0]] = k
 
 
-def _instruction(
-    f: Any, k: int, shared: Mapping[int, tuple[str, bool]], powers: Mapping[int, tuple[str, bool]], kind: str
-) -> list[_Line]:
+def _write(
+    f: Any,
+    program: Sequence[_Instruction],
+    shared: Mapping[int, tuple[str, bool]],
+    powers: Mapping[int, tuple[str, bool]],
+    kind: str,
+) -> Iterator[_Line]:
+    """The statements of all instructions."""
     constant, texts = _texts(kind)
-    code, inputs, outputs = f.instruction_id(k), f.instruction_input(k), f.instruction_output(k)
-    if code == ca.OP_OUTPUT:
-        array, value = f.name_out(outputs[0]), f"a{inputs[0]}"
-        return [_Line(f"  {array}[{outputs[1]}]={value};", "", (array, value))]
-    target = f"a{outputs[0]}"
-    if code == ca.OP_CONST:
-        return [_Line(f"  {target}={constant.format(number(f.instruction_constant(k)))};", target, ())]
-    if code == ca.OP_INPUT:
-        array = f.name_in(inputs[0])
-        return [_Line(f"  {target}={array}[{inputs[1]}];", target, (array,))]
-    if code not in texts:
-        raise FmuError(f"{f.name()}: CasADi operation {code} has no counterpart in C.")
-    read = tuple(f"a{i}" for i in inputs)
-    if k in shared:
-        name, first = shared[k]
-        reciprocal = [_Line(f"  {name}=1/{read[1]};", name, read[1:])] if first else []
-        return [*reciprocal, _Line(f"  {target}={read[0]}*{name};", target, (read[0], name))]
-    text = texts[code].format(*read)
-    if k in powers:
-        name, first = powers[k]
-        if first:
-            return [_Line(f"  {name}={text};", name, read), _Line(f"  {target}={name};", target, (name,))]
-        text, read = f"{name}/{read[0]}", (name, read[0])
-    return [_Line(f"  {target}={text};", target, read)]
+    takes, gives = f.name_in(), f.name_out()
+    for k, (code, inputs, outputs) in enumerate(program):
+        if code == ca.OP_OUTPUT:
+            array, value = gives[outputs[0]], f"a{inputs[0]}"
+            yield _Line(f"  {array}[{outputs[1]}]={value};", "", (array, value))
+            continue
+        target = f"a{outputs[0]}"
+        if code == ca.OP_CONST:
+            yield _Line(f"  {target}={constant.format(number(f.instruction_constant(k)))};", target, ())
+            continue
+        if code == ca.OP_INPUT:
+            array = takes[inputs[0]]
+            yield _Line(f"  {target}={array}[{inputs[1]}];", target, (array,))
+            continue
+        if code not in texts:
+            raise FmuError(f"{f.name()}: CasADi operation {code} has no counterpart in C.")
+        read = tuple([f"a{i}" for i in inputs])
+        if k in shared:
+            name, first = shared[k]
+            if first:
+                yield _Line(f"  {name}=1/{read[1]};", name, read[1:])
+            yield _Line(f"  {target}={read[0]}*{name};", target, (read[0], name))
+            continue
+        text = texts[code].format(*read)
+        if k in powers:
+            name, first = powers[k]
+            if first:
+                yield _Line(f"  {name}={text};", name, read)
+                yield _Line(f"  {target}={name};", target, (name,))
+                continue
+            text, read = f"{name}/{read[0]}", (name, read[0])
+        yield _Line(f"  {target}={text};", target, read)

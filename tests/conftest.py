@@ -1,5 +1,6 @@
 """What holds for all tests."""
 
+import gc
 from pathlib import Path
 
 import pytest
@@ -7,21 +8,33 @@ import pytest
 #: Files that take more than 10 s, the longest first. A parallel run hands out whole files in this order, then the rest:
 #: what a file's tests share is made once, and no processor waits at the end for a long file that began late.
 LONGEST = (
-    "tools/test_every_rig.py",
-    "static/test_readme.py",
     "challenge/test_hidden.py",
+    "static/test_readme.py",
+    "tools/test_every_rig.py",
     "diagnose/infer/test_logs.py",
-    "fmu/test_every_parameter.py",
-    "tools/test_docs.py",
-    "diagnose/test_readings_and_logs.py",
-    "fmu/test_duties.py",
+    "tools/test_export.py",
+    "challenge/test_new_rig.py",
     "diagnose/test_pages.py",
+    "tools/test_new.py",
+    "fmu/test_every_parameter.py",
+    "diagnose/test_readings_and_logs.py",
+    "tools/test_docs.py",
     "fmu/test_operating_points.py",
-    "diagnose/library/test_causes.py",
-    "fmu/test_cold_start.py",
+    "tools/test_any_rig.py",
+    "tools/test_run.py",
+    "diagnose/answer/test_answer.py",
+    "fmu/test_duties.py",
+    "tools/test_bench_fmu.py",
+    "tools/test_unchecked.py",
+    "tools/test_cli.py",
     "diagnose/infer/test_looks.py",
-    "static/test_package.py",
+    "tools/test_transients.py",
+    "tools/test_sweep.py",
+    "challenge/test_bench.py",
 )
+#: New objects after which the collector of cycles looks through them, 700 by default: texts of C and expressions are
+#: millions of objects, few of them in cycles.
+LOOK_AFTER = 50_000
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -29,6 +42,13 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     here = Path(__file__).parent
     ranks = {here / name: rank for rank, name in enumerate(LONGEST)}
     items.sort(key=lambda item: ranks.get(item.path, len(ranks)))
+
+
+def pytest_collection_finish() -> None:
+    """What is loaded lives to the end: the collector does not look through it again."""
+    gc.collect()
+    gc.freeze()
+    gc.set_threshold(LOOK_AFTER)
 
 
 @pytest.fixture(autouse=True)

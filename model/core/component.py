@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from math import inf, nextafter
 from typing import Any, ClassVar
 
 import casadi as ca
+import numpy as np
 
 from ..errors import ScenarioError, suggestion
 from ..sources import LawUse, recording
@@ -131,24 +132,33 @@ class Component:
                 self.parameters[key] = self.derived.pop(key)
                 continue
             self.symbols[key] = expression
-            if (value := self._number(expression)) is not None:
-                self.values[key] = value
+        numbers = self._numbers([self.symbols[key] for key in self.derived])
+        self.values |= {key: value for key, value in zip(self.derived, numbers, strict=True) if value is not None}
         return [
             LawUse(u.law, {k: ca.substitute([ca.SX(x)], own, found)[0] for k, x in u.arguments.items()}) for u in uses
         ]
 
-    def _number(self, expression: Any) -> float | None:
-        """Value of an expression of the parameters, None where the value of one of them is missing."""
-        symbols = ca.symvar(expression)
-        keys = [symbol.name().removeprefix(f"{self.name}.") for symbol in symbols]
-        if any(key not in self.values for key in keys):
-            return None
-        return float(ca.Function("number", symbols, [expression])(*(float(self.values[key]) for key in keys)))
+    def _numbers(self, expressions: Sequence[Any]) -> list[float | None]:
+        """Values of expressions of the parameters, None where the value of a parameter is missing.
+
+        One function has them all: to make a function takes longer than to call it.
+        """
+        if not expressions:
+            return []
+        keys = {symbol.name().removeprefix(f"{self.name}."): symbol for symbol in ca.symvar(ca.vertcat(*expressions))}
+        missing = ca.vertcat(*(symbol for key, symbol in keys.items() if key not in self.values))
+        known = [k for k, e in enumerate(expressions) if not (missing.numel() and ca.depends_on(e, missing))]
+        given = [symbol for key, symbol in keys.items() if key in self.values]
+        numbers = ca.Function("numbers", given, [ca.densify(ca.vertcat(*(expressions[k] for k in known)))])
+        (found,) = numbers.call([float(self.values[key]) for key in keys if key in self.values])
+        values = dict(zip(known, np.array(found).ravel().tolist(), strict=True))
+        return [values.get(k) for k in range(len(expressions))]
 
     def _contradictions(self) -> Iterator[str]:
         """The relations that do not hold between the values given."""
-        found = [(relation, self._number(value)) for relation, value in self.all_relations()]
-        known = [(relation, value) for relation, value in found if value is not None]
+        related = list(self.all_relations())
+        numbers = self._numbers([value for _, value in related])
+        known = [(relation, n) for (relation, _), n in zip(related, numbers, strict=True) if n is not None]
         for relation, value in find_broken([r for r, _ in known], [v for _, v in known]):
             keys = [path.removeprefix(f"{self.name}.") for path in relation.parameters]
             given = ", ".join(f"{key} = {text(self.values[key], self.parameters[key].unit, 6)}" for key in keys)
