@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..sources import law
-from .smooth import Num, smooth_abs, smooth_cap, smooth_magnitude, smooth_power, to_rpm
+from .smooth import SPEED_WIDTH, Num, smooth_abs, smooth_cap, smooth_magnitude, smooth_power, to_rpm
 
 #: How sharply the smaller of two variables counts: 3 % less than it where they are equal.
 SHARPNESS = 24.0
@@ -172,3 +172,36 @@ def thrust_roller_sliding_variable(F_a: Num, d_m: Num, S_1: Num, *, F_width: flo
     """
     d_mm = 1e3 * d_m
     return S_1 * d_mm**0.62 * smooth_magnitude(F_a, F_width)
+
+
+@law(
+    source="SKF2018",
+    where="deep groove and angular contact ball bearings, requisite minimum load",
+    valid="written down from memory of the catalogue, not compared with it",
+    verified=False,
+)
+def minimum_ball_load(w: Num, nu: Num, d_m: Num, k_r: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+    r"""Radial load below which the maker lets no ball bearing run, as its balls would slide [N].
+
+    .. math:: F_{rm} = k_r \left(\frac{\nu n}{1000}\right)^{2/3} \left(\frac{d_m}{100}\right)^2\;[\mathrm{kN}]
+
+    Args:
+        w: speed of one ring against the other, either direction [rad/s]
+        nu: kinematic viscosity at the lubricant's temperature [m2/s]
+        d_m: mean diameter, (d + D)/2 [m]
+        k_r: minimum load factor of the catalogue, 0.02 to 0.03 [1]
+        w_width: rounding at standstill [rad/s]
+    """
+    n, nu_cSt, d_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d_m
+    return 1e3 * k_r * (nu_cSt * n / 1000) ** (2 / 3) * (d_mm / 100) ** 2
+
+
+def at_least(value: Num, least: Num, *, sharpness: float = 8.0) -> Num:
+    r""":math:`(x^s + y^s)^{1/s}`, in the unit of both: the larger one, 9 % above it where they are equal.
+
+    Args:
+        value: a magnitude, not negative
+        least: what it does not fall below, above 0
+        sharpness: exponent s
+    """
+    return least * (1 + (value / least) ** sharpness) ** (1 / sharpness)

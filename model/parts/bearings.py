@@ -12,6 +12,8 @@ from ..laws.gear_churning import immersion
 from ..laws.load_variables import (
     acb_rolling_variable,
     acb_sliding_variable,
+    at_least,
+    minimum_ball_load,
     srb_rolling_variable,
     srb_sliding_variable,
     thrust_ball_rolling_variable,
@@ -37,7 +39,7 @@ from ..laws.rolling import (
     trb_rolling_variable,
     trb_sliding_variable,
 )
-from ..laws.smooth import Num
+from ..laws.smooth import Num, smooth_abs
 from .friction import Friction
 from .ports import BearingLoad, Lubricant, Sump
 
@@ -84,6 +86,12 @@ class SkfBearing(RollingBearing):
     )
     mixed_friction = Choice((True, False), "whether thin films raise the sliding friction", default=True)
     oil_bath = Choice((True, False), "whether the bearing stands in oil, and so drags", default=True)
+    idle = Choice(
+        ("load", "M_0"),
+        "what moves a bearing under little load: the load alone, or at least Palmgren's moment M_0",
+        default="load",
+    )
+    f_0 = Parameter("1", "factor of the moment M_0", above=0.0)
     tau_rr = Output("N.m", "rolling moment of one bearing")
     tau_sl = Output("N.m", "sliding moment of one bearing")
     mu_sl = Output("1", "sliding friction coefficient", nominal=0.1)
@@ -96,6 +104,7 @@ class SkfBearing(RollingBearing):
         """The oil level counts in an oil bath, H or that of the housing; boundary friction where films may be thin."""
         own, of_housing = self.oil_bath and not self.dips(), self.oil_bath and self.dips()
         counts = {"H": own, "V_M": own, "height": of_housing, "sump": of_housing, "mu_bl": self.mixed_friction}
+        counts |= {"f_0": self.idle == "M_0"}
         return bool(counts.get(name, True))
 
     def dips(self) -> bool:
@@ -135,7 +144,10 @@ class SkfBearing(RollingBearing):
         mu_sl = self.mu_EHL
         if self.mixed_friction:
             mu_sl = sliding_friction(boundary_share(w, nu, self.d_m), self.mu_bl, self.mu_EHL)
-        yield equation("rolling moment", self.tau_rr, rolling_torque(G_rr, w, nu, phi_ish * phi_rs))
+        rolling = rolling_torque(G_rr, w, nu, phi_ish * phi_rs)
+        if self.idle == "M_0":
+            rolling = at_least(rolling, needle_torque_viscous(w, nu, self.d_m, self.f_0))
+        yield equation("rolling moment", self.tau_rr, rolling)
         yield equation("sliding friction", self.mu_sl, mu_sl)
         yield equation("sliding moment", self.tau_sl, sliding_torque(G_sl, self.mu_sl))
         yield from super().equations()
@@ -214,7 +226,30 @@ class BallBearing(SkfBearing):
         return drag_torque_ball(self.shaft.w, self.lubricant.nu, self.d, self.D, H, V_M, self.K_Z, self.rows())
 
 
-class DeepGrooveBallBearing(BallBearing):
+class RadialBallBearing(BallBearing):
+    """Base of the ball bearings that carry a radial load: the least that their maker asks for."""
+
+    idle = Choice(
+        ("load", "minimum load", "M_0"),
+        "what brakes a bearing under little load: that load, at least its minimum load, or at least Palmgren's M_0",
+        default="load",
+    )
+    k_r = Parameter("1", "minimum load factor of the catalogue", nominal=0.02, above=0.0, below=1.0)
+
+    def has(self, name: str) -> bool:
+        """The factor counts where the minimum load does."""
+        return super().has(name) and (name != "k_r" or self.idle == "minimum load")
+
+    def loads(self) -> tuple[Num, Num]:
+        """Radial and axial load [N]."""
+        F_r, F_a = super().loads()
+        if self.idle == "minimum load":
+            least = minimum_ball_load(self.shaft.w, self.lubricant.nu, self.d_m, self.k_r)
+            F_r = at_least(smooth_abs(F_r, 1e-3), least)
+        return F_r, F_a
+
+
+class DeepGrooveBallBearing(RadialBallBearing):
     """Deep groove ball bearing, single row."""
 
     C_0 = Parameter("N", "basic static load rating", nominal=1e4, above=0.0)
@@ -226,7 +261,7 @@ class DeepGrooveBallBearing(BallBearing):
         return rolling, dgb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.C_0)
 
 
-class AngularContactBallBearing(BallBearing):
+class AngularContactBallBearing(RadialBallBearing):
     """Angular contact ball bearing, single or double row: fast balls press on its outer ring."""
 
     R_3 = Parameter("1", "third rolling constant of the catalogue", nominal=1e-12, at_least=0.0)

@@ -121,7 +121,8 @@ class PlainBearing(Friction):
         """Friction of film and solids of one bearing [N.m]."""
         w, F_r = self.shaft.w, self.F_r_0 + self.load.F_r
         eta_oil = self.lubricant.nu * self.lubricant.rho
-        film = film_torque(petrov_torque(w, eta_oil, self.r, self.b, self.psi), F_r, w, eta_oil, self.r, self.b)
+        size = self.r, self.b, self.psi
+        film = film_torque(petrov_torque(w, eta_oil, *size), F_r, w, eta_oil, *size)
         return film + self.solid * self.mu_bl * smooth_magnitude(F_r, 1.0) * self.r
 
     def equations(self) -> Iterator[Equation]:

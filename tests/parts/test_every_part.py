@@ -35,6 +35,11 @@ CASES += [("PreloadedPair", {"arrangement": "back-to-back", "contact": "balls"})
 CASES += [("OilSump", {"runs_over": True}), ("OilExchanger", {"thermostat": True})]
 CASES += [("OilBath", {"level": 0.05}), ("Room", {"dT_radiant": -15.0, "altitude": 800.0})]
 CASES += [(kind, {"oil_bath": False}) for kind in ("TaperedRollerBearing", "CylindricalRollerBearing")]
+CASES += [
+    ("DeepGrooveBallBearing", {"idle": "minimum load", "k_r": 0.025}),
+    ("HelicalGearPair", {"load_sharing": "lines"}),
+]
+CASES += [(k, {"idle": "M_0", "f_0": 2.0}) for k in ("AngularContactBallBearing", "CylindricalRollerBearing")]
 _flat: dict = {}
 
 
