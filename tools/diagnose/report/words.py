@@ -102,8 +102,8 @@ def _claim(findings: Findings) -> str:
         listed = [a for k, a in enumerate(answers) if k < MOST and (k < 2 or a.probability >= LISTED)]
         rest = answers[len(listed) :]
         chance = phrases.percent(sum(a.probability for a in rest))
-        more = f"; or one of {len(rest)} less probable ones ({chance} together)" if rest else ""
-        return f"Something is wrong, and the data leave open what: {'; '.join(map(_probable, listed))}{more}."
+        unlikely = f"; or one of {len(rest)} less probable ones ({chance} together)" if rest else ""
+        return f"Something is wrong, and the data leave open what: {'; '.join(map(_probable, listed))}{unlikely}."
     first = answers[0]
     if limits := _at_bound(findings, first):
         return (
