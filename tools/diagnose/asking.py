@@ -151,10 +151,10 @@ def ask(request: Request, outputs: Outputs | None = None) -> Diagnosis:
     if outputs is not None and outputs.predictions is not None and request.predict is None:
         problems.append("--predictions needs the points to predict. Give --predict FILE, too.")
     inputs = read(request, written, problems)
-    from .diagnosis import diagnosed  # what it needs loads slowly
+    from .diagnosis import diagnose  # what it needs loads slowly
 
     with progress_bar() as progress:
-        return Diagnosis.model_construct(**dict(diagnosed(inputs, progress)))
+        return Diagnosis.model_construct(**dict(diagnose(inputs, progress)))
 
 
 def ask_plan(request: PlanRequest, *, json: str | None = None, out: Path | None = None) -> PlanAnswer:
@@ -175,7 +175,7 @@ def ask_plan(request: PlanRequest, *, json: str | None = None, out: Path | None 
         problems.append("--out draws the distances of causes. Name them with --separate CAUSE,CAUSE.")
     given = {"--json": file_of(json), "--out": out}
     inputs = read_plan(request, {name: path for name, path in given.items() if path is not None}, problems)
-    from .planning import planned  # what it needs loads slowly
+    from .planning import plan  # what it needs loads slowly
 
     with progress_bar() as progress:
-        return PlanAnswer.model_construct(**dict(planned(inputs, progress)))
+        return PlanAnswer.model_construct(**dict(plan(inputs, progress)))

@@ -7,12 +7,12 @@ from collections.abc import Callable, Sequence
 from .answer import compose, pictures
 from .answer.channels import channel
 from .answer.decide import Decision, decide, temper
-from .answer.design import Effects, isolability
-from .answer.estimate import impacts, played
+from .answer.design import Effects, judge_design
+from .answer.estimate import impacts, replay
 from .answer.findings import About, Alarm, Findings, Gain, Invisible
-from .answer.gain import gains
-from .answer.predict import predictions
-from .answer.quality import data_quality
+from .answer.gain import measure_gains
+from .answer.predict import predict
+from .answer.quality import check_data
 from .answer.residuals import average_residuals
 from .infer.found import Found
 from .infer.weigh import weigh
@@ -29,7 +29,7 @@ Progress = Callable[[str, float], None]
 ALONE = 0.1
 
 
-def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
+def diagnose(inputs: Inputs, progress: Progress) -> Findings:
     """What the data of a request say.
 
     Args:
@@ -70,7 +70,7 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
     wrong = decision.verdict != "consistent"
     held: Sequence[Gain] = ()
     if wrong and not request.quick:
-        held = gains(found, request.seed, lambda done: then("readings left out", 0.82 + 0.13 * done))
+        held = measure_gains(found, request.seed, lambda done: then("readings left out", 0.82 + 0.13 * done))
     then("what was found", 0.95)
     findings = _composed(inputs, made, found, decision, held)
     progress("done", 1.0)
@@ -120,23 +120,23 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         answers=compose.answers(decision),
         causes=compose.causes(made, found, decision),
         remainder=compose.remainder(found, decision),
-        data_quality=data_quality(made, found, leader),
+        data_quality=check_data(made, found, leader),
         impact=impacts(found.problem, leader, made.nominal.ratios),
         gain=held[0] if held else None,
         gain_grouped=tuple(held[1:]),
         channels=tuple(channel(s) for s in data.sensors),
-        played=played(found.problem, found.null, leader) if wrong else {},
+        played=replay(found.problem, found.null, leader) if wrong else {},
         confusable=tuple(s.causes for s in sets),
         sets=sets,
         next_experiment=compose.next_experiments(made, found, decision) if wrong and not request.quick else (),
-        isolability=isolability(Effects(found.first.candidates, found.first.white)),
+        isolability=judge_design(Effects(found.first.candidates, found.first.white)),
         residuals=average_residuals(found),
         rows=rows,
         views=pictures.views(found),
         pictures=pictures.pictures(found, leader, rows.quantities),
         calibrated=calibrated(made, found, leader),
         extended_rig=rig_file(made, found, leader),
-        predictions=predictions(made, found, inputs.points) if inputs.points else (),
+        predictions=predict(made, found, inputs.points) if inputs.points else (),
         invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in inputs.invisible.items()),
         warnings=inputs.warnings,
     )

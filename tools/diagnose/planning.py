@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from ...model.errors import DataError
-from .answer.design import Effects, design, isolability
-from .answer.experiments import experiments
+from .answer.design import Effects, judge_design, simulate_design
+from .answer.experiments import list_experiments
 from .answer.grid import planned_campaign
 from .answer.plan import Plan, rank_experiments
 from .infer.screen import changes, samples
@@ -17,7 +17,7 @@ from .request import PlanInputs, unknown_causes
 from .setting import setting
 
 
-def planned(inputs: PlanInputs, progress: Callable[[str, float], None]) -> Plan:
+def plan(inputs: PlanInputs, progress: Callable[[str, float], None]) -> Plan:
     """What a campaign will tell, by exact first-order effects at the rig as in its file.
 
     Args:
@@ -48,7 +48,7 @@ def planned(inputs: PlanInputs, progress: Callable[[str, float], None]) -> Plan:
         "campaign": campaign.name,
         "readings": campaign.n,
         "reference": request.reference,
-        "isolability": isolability(whole),
+        "isolability": judge_design(whole),
         "warnings": (*inputs.card.warnings, *campaign.warnings),
     }
     if not request.causes:
@@ -58,5 +58,7 @@ def planned(inputs: PlanInputs, progress: Callable[[str, float], None]) -> Plan:
         raise DataError(f"--separate: {', '.join(scatter)} is a scatter, which a plan does not judge. Leave it out.")
     places = [k for k, c in enumerate(candidates) if c.id in request.causes]
     some = [candidates[k] for k in places]
-    found = design(made, problem, look, noise, some, effects[:, places], experiments(campaign, made.nominal.value))
+    found = simulate_design(
+        made, problem, look, noise, some, effects[:, places], list_experiments(campaign, made.nominal.value)
+    )
     return rank_experiments(found, request.causes, {c.id: c for c in made.causes}, common, whole)

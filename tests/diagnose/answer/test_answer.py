@@ -10,10 +10,10 @@ import numpy as np
 import pytest
 from gearheat.tools.diagnose.answer import estimate, gain
 from gearheat.tools.diagnose.answer.decide import POWER, decide, invisible, temper
-from gearheat.tools.diagnose.answer.design import Effects, alike, of_search, ranked
-from gearheat.tools.diagnose.answer.experiments import added, experiments
+from gearheat.tools.diagnose.answer.design import Effects, extend_design, find_alike, rank
+from gearheat.tools.diagnose.answer.experiments import build_tests, list_experiments
 from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
-from gearheat.tools.diagnose.answer.predict import simulated
+from gearheat.tools.diagnose.answer.predict import simulate
 from gearheat.tools.diagnose.answer.quality import adequacy, scatters
 from gearheat.tools.diagnose.answer.residuals import average_residuals
 from gearheat.tools.diagnose.answer.rivals import constant_cooling
@@ -127,7 +127,7 @@ def test_the_alarm_is_an_alarm_if_and_only_if_nothing_has_less_than_half(
 def test_size_and_impact(wrong: tuple[Setting, Found]) -> None:
     found = wrong[1]
     decision = decide(found)
-    size = estimate.estimates(found, TRUE, decision.members[TRUE])[0]
+    size = estimate.estimate_cause(found, TRUE, decision.members[TRUE])[0]
     assert size.ci95[0] < OFFSET < size.ci95[1]
     assert abs(size.value - OFFSET) < 1.0
     changed = estimate.impacts(found.problem, decision.leader, wrong[0].nominal.ratios)
@@ -157,7 +157,7 @@ def test_the_loss_follows_the_torque_at_the_other_end(wrong: tuple[Setting, Foun
 
 
 def test_a_size_that_was_found_is_detectable(wrong: tuple[Setting, Found]) -> None:
-    smallest = estimate.detectable(wrong[1])
+    smallest = estimate.find_detectable(wrong[1])
     assert 0.0 < smallest[TRUE] < OFFSET
 
 
@@ -170,7 +170,7 @@ def test_scatter_and_adequacy(clean: tuple[Setting, Found]) -> None:
 
 
 def test_gain_is_the_cause_s(wrong: tuple[Setting, Found]) -> None:
-    told = gain.gains(wrong[1], seed=1)
+    told = gain.measure_gains(wrong[1], seed=1)
     oil = next(s.name for s in wrong[1].problem.data.read if s.kind == "oil_temp")
     one = next(g for g in told if g.channel == oil)
     assert one.n == wrong[1].problem.data.campaign.n
@@ -183,7 +183,7 @@ def test_gain_is_the_cause_s(wrong: tuple[Setting, Found]) -> None:
 def test_predictions_of_the_data_are_nearer_with_the_cause(wrong: tuple[Setting, Found]) -> None:
     setting, found = wrong
     campaign = found.problem.data.campaign
-    nominal, extended = simulated(setting, found, campaign)
+    nominal, extended = simulate(setting, found, campaign)
     i = next(i for i, s in enumerate(found.problem.data.read) if s.kind == "oil_temp")
     measured = campaign.values[found.problem.data.read[i].name]
     left = [float(np.sqrt(np.mean((table[i] - measured) ** 2))) for table in (nominal, extended)]
@@ -193,14 +193,14 @@ def test_predictions_of_the_data_are_nearer_with_the_cause(wrong: tuple[Setting,
 
 def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> None:
     setting, found = wrong
-    tried = experiments(found.problem.data.campaign, setting.nominal.value)
-    made = of_search(setting, found, CAUSES, tried)
+    tried = list_experiments(found.problem.data.campaign, setting.nominal.value)
+    made = extend_design(setting, found, CAUSES, tried)
     now = made.distances()
     assert {e.id for e in made.experiments} >= {"repeat", "bath", "cold_room"}
     for e in made.experiments:
         after = made.distances(e.id)
         assert all(after[p] >= now[p] - 1e-6 for p in now), e.id
-    best = ranked(made, dict.fromkeys(CAUSES, 0.25))
+    best = rank(made, dict.fromkeys(CAUSES, 0.25))
     pair = next(p for p in now if set(p) == {TRUE, "cooling.air"})
     assert made.distances("bath")[pair] > now[pair] + 0.1, "a bath tells an offset of a thermometer"
     assert all(r.separation_after > r.separation_before for r in best)
@@ -208,13 +208,13 @@ def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> 
 
 def test_added_tests_are_run_as_the_first_one(wrong: tuple[Setting, Found]) -> None:
     setting, campaign = wrong[0], wrong[1].problem.data.campaign
-    tried = experiments(campaign, setting.nominal.value)
+    tried = list_experiments(campaign, setting.nominal.value)
     cold = next(e for e in tried if e.id == "cold_room")
-    more = added(campaign, cold)
+    more = build_tests(campaign, cold)
     room = next(s.name for s in campaign.given if s.kind == "ambient")
     assert more.n_tests == len(cold.tests) == 4
     assert more.values[room].max() < campaign.values[room].min() - 10.0
-    logged = added(campaign, next(e for e in tried if e.logged))
+    logged = build_tests(campaign, next(e for e in tried if e.logged))
     assert np.isfinite(logged.dwell).all()
 
 
@@ -226,7 +226,7 @@ def test_experiments_stay_within_the_rig_and_a_hall(wrong: tuple[Setting, Found]
 
     def values(kind: str, scale: float, shift: float, usual: float) -> list[float]:
         changed = {speed.name: scale * campaign.values[speed.name], room.name: campaign.values[room.name] + shift}
-        tried = experiments(replace(campaign, values=campaign.values | changed), lambda path: usual)
+        tried = list_experiments(replace(campaign, values=campaign.values | changed), lambda path: usual)
         return [test[kind] for e in tried for test in e.tests if kind in test]
 
     assert max(values("speed", 1.0, 0.0, fastest)) == pytest.approx(fastest)
@@ -234,9 +234,9 @@ def test_experiments_stay_within_the_rig_and_a_hall(wrong: tuple[Setting, Found]
     assert max(values("speed", 0.8, 0.0, fastest)) == pytest.approx(fastest)
     assert min(values("ambient", 1.0, 0.0, fastest)) >= 278.15
     assert not values("ambient", 1.0, 278.15 - campaign.values[room.name].min(), fastest)
-    made = of_search(setting, wrong[1], CAUSES, experiments(campaign, setting.nominal.value))
+    made = extend_design(setting, wrong[1], CAUSES, list_experiments(campaign, setting.nominal.value))
     weights = dict.fromkeys(CAUSES, 0.25)
-    assert all(r.separation_after >= r.separation_before + 0.1 for r in ranked(made, weights))
+    assert all(r.separation_after >= r.separation_before + 0.1 for r in rank(made, weights))
 
 
 def test_residuals_stand_out_where_a_mounting_errs(clean: tuple[Setting, Found]) -> None:
@@ -285,7 +285,7 @@ def test_a_cause_is_like_itself_alone(wrong: tuple[Setting, Found]) -> None:
     distances = seen.distances(TRUE)
     assert TRUE not in distances
     assert all(d <= seen.visible(TRUE) + 1e-9 for d in distances.values()), "a rival of size zero is none"
-    group = alike(seen, TRUE, 1e-3, like)
+    group = find_alike(seen, TRUE, 1e-3, like)
     assert group is not None, "what cannot be seen is like everything"
     assert group.causes[0] == TRUE
     assert UNEXPLAINED not in group.causes

@@ -11,7 +11,7 @@ import pytest
 from gearheat.scenarios.load import load
 from gearheat.tools.diagnose.answer import pictures
 from gearheat.tools.diagnose.answer.estimate import posterior
-from gearheat.tools.diagnose.answer.quality import repeated
+from gearheat.tools.diagnose.answer.quality import list_repeats
 from gearheat.tools.diagnose.infer import screen
 from gearheat.tools.diagnose.infer.fit import fitted
 from gearheat.tools.diagnose.infer.found import Found, Hypothesis
@@ -113,7 +113,7 @@ def test_repeated_points_are_told_in_running_order(made: Made) -> None:
         mounting=("",) * 3, T_start=data.T_start[:3], room_start=data.room_start[:3], humidity=data.humidity[:3],
         date=("",) * 3, lines=data.lines[first], points=data.points[first],
     )  # fmt: skip
-    told = {p.channel: p for p in repeated(short)}
+    told = {p.channel: p for p in list_repeats(short)}
     assert [r.test for r in told[oil].repeats] == [1, 3]
     assert [r.sum for r in told[oil].repeats] == pytest.approx([-0.25, 0.25])
     assert [r.difference for r in told[oil].repeats] == pytest.approx([-0.25, 0.25])

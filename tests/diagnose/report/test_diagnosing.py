@@ -37,7 +37,7 @@ def infer(inputs: Inputs, progress: Progress) -> Findings:
 def diagnose_command(request: Request, outputs: Outputs, infer) -> None:
     """What the command does with an inference."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(diagnosis, "diagnosed", infer)
+        patch.setattr(diagnosis, "diagnose", infer)
         (found := ask(request, outputs)).write(outputs)
     print(as_json(found.as_dict()) if outputs.json == "-" else found.text(), end="")
 
@@ -106,7 +106,7 @@ def test_an_interrupted_run_writes_nothing(tmp_path: Path) -> None:
 
 
 def test_the_command_line(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(diagnosis, "diagnosed", infer)
+    monkeypatch.setattr(diagnosis, "diagnose", infer)
     done = CliRunner().invoke(cli.app, ["diagnose", str(DATA), "--rig", RIG, "--all", "--seed", "3"])
     assert done.exit_code == 0, done.output
     assert "Smallest size found in 80 of 100 such campaigns" in done.output

@@ -101,7 +101,7 @@ def find(inputs: PlanInputs, progress: Progress) -> Plan:
 
 
 def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(planning, "planned", find)
+    monkeypatch.setattr(planning, "plan", find)
     out, file = tmp_path / "plan.svg", tmp_path / "plan.json"
     arguments = ["plan", "helical_two_stage", "--separate", ",".join(PAIR), "--out", str(out), "--json", str(file)]
     done = CliRunner().invoke(cli.app, arguments)

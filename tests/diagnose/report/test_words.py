@@ -117,6 +117,20 @@ def test_what_the_calibrated_rig_leaves_comes_first() -> None:
     assert text(explained()).startswith("verdict")
 
 
+def test_what_all_answers_of_several_causes_share_is_said_first() -> None:
+    groups = ((CHURNING, "losses.windage"), (AIR,), (OFFSET,))
+    answers = (
+        Answer(causes=groups, probability=0.7),
+        Answer(causes=(*groups[:1], groups[2], ("cooling.emissivity",)), probability=0.2),
+    )
+    causes = (cause(OFFSET, 0.97), cause(CHURNING, 0.8), cause("losses.windage", 0.1), cause(AIR, 0.7))
+    made = ambiguous(answers=answers, causes=(*causes, cause("cooling.emissivity", 0.2)), sets=())
+    assert made.says.verdict == (
+        "Several causes act together. In all likely answers: zero error of the torque transducer (97 %), churning of"
+        " the oil or windage (90 %). Besides: cooling by the air (70 %), cooling by radiation (20 %)."
+    )
+
+
 def test_unlikely_causes_are_counted_not_listed() -> None:
     ids = ("a", "b", "c", "d")
     causes = (cause(CHURNING, 0.86), *(cause(OFFSET, 0.02).model_copy(update={"id": f"mine.{i}"}) for i in ids))

@@ -13,8 +13,8 @@ from ..library.cause import Cause
 from ..setting import Setting
 from . import channels, estimate, findings
 from .decide import Chance, Decision
-from .design import Effects, alike, of_search, ranked
-from .experiments import experiments
+from .design import Effects, extend_design, find_alike, rank
+from .experiments import list_experiments
 
 #: Hypotheses that are listed.
 MOST = 12
@@ -41,7 +41,7 @@ def answers(decision: Decision) -> tuple[findings.Answer, ...]:
 
 def causes(made: Setting, found: Found, decision: Decision) -> tuple[findings.Cause, ...]:
     """All causes, most probable first."""
-    smallest = estimate.detectable(found)
+    smallest = estimate.find_detectable(found)
     told = []
     for cause in (*made.causes, None):
         id = cause.id if cause else findings.UNEXPLAINED
@@ -50,7 +50,7 @@ def causes(made: Setting, found: Found, decision: Decision) -> tuple[findings.Ca
         if cause is not None:
             known = {"doc": cause.doc, "exposes": cause.exposes, "like": cause.like}
             sizes = [size for size in (smallest.get(id), cause.size.sd) if size is not None]
-            unit, (*smallest_of, usual) = estimate.shown(cause.size, sizes)
+            unit, (*smallest_of, usual) = estimate.convert(cause.size, sizes)
             known |= {
                 "usual": usual,
                 "unit": unit,
@@ -67,7 +67,7 @@ def _sized(made: Setting, cause: str, found: Found, decision: Decision) -> dict[
     members = decision.members[cause]
     shares = estimate.form_shares(cause, members)
     own: dict[str, Any] = {
-        "parameters": estimate.estimates(found, cause, members),
+        "parameters": estimate.estimate_cause(found, cause, members),
         "forms": [findings.FormShare(name=name, share=share) for name, share in shares.items() if share > LISTED],
     }
     acting = next(((h, a) for h, _ in members for a in h.fit.look.acting if a.id == cause), None)
@@ -113,7 +113,7 @@ def sets(library: Sequence[Cause], found: Found, decision: Decision) -> tuple[fi
     for cause in leading(decision)[:JUDGED]:
         members = decision.members.get(cause, ())
         sizes = [abs(a.t[0]) for h, _ in members[:1] for a in h.fit.look.acting if a.id == cause]
-        told.append(alike(effects, cause, max([1.0, *sizes]), like))
+        told.append(find_alike(effects, cause, max([1.0, *sizes]), like))
     return tuple(s for s in told if s is not None)
 
 
@@ -124,5 +124,5 @@ def next_experiments(setting: Setting, found: Found, decision: Decision) -> tupl
     if len(causes) < 2:
         return ()
     weights = {c: max(decision.marginal[c].probability if c in decision.marginal else 0.0, LEAST) for c in causes}
-    made = of_search(setting, found, causes, experiments(found.problem.data.campaign, setting.nominal.value))
-    return tuple(ranked(made, weights)[:TRIED])
+    made = extend_design(setting, found, causes, list_experiments(found.problem.data.campaign, setting.nominal.value))
+    return tuple(rank(made, weights)[:TRIED])

@@ -18,7 +18,7 @@ from ..model.noise import terms
 from ..model.observe import Observed, Seen
 from ..setting import Setting
 from . import findings
-from .experiments import Check, Experiment, added
+from .experiments import Check, Experiment, build_tests
 
 Pair = tuple[str, str]
 #: Distances below this are none [standard deviations].
@@ -79,7 +79,7 @@ class Effects:
         return {o: float(np.sqrt(max(value, 0.0))) for o, value in found.items()}
 
 
-def alike(effects: Effects, cause: str, size: float, like: Mapping[str, str]) -> findings.CauseSet | None:
+def find_alike(effects: Effects, cause: str, size: float, like: Mapping[str, str]) -> findings.CauseSet | None:
     """The set that a design cannot tell from a cause, declared classes included; None where it stands alone.
 
     Args:
@@ -99,7 +99,7 @@ def alike(effects: Effects, cause: str, size: float, like: Mapping[str, str]) ->
     return findings.CauseSet(causes=(cause, *near), distance=distances[near[0]], reason=reason)
 
 
-def isolability(effects: Effects) -> tuple[findings.Isolability, ...]:
+def judge_design(effects: Effects) -> tuple[findings.Isolability, ...]:
     """What the design says of every cause of usual size."""
     told = []
     for cause in effects.places:
@@ -138,7 +138,7 @@ class Design:
         return {(a, b): min(one[a][b], one[b][a]) for a, b in combinations(seen.places, 2)}
 
 
-def design(
+def simulate_design(
     setting: Setting,
     problem: Problem,
     look: Look,
@@ -203,7 +203,7 @@ def _run(
 ) -> tuple[Observed, Seen, np.ndarray] | None:
     """The tests of an experiment simulated, with the effects of the causes (m, k); None where the machine cannot."""
     data, z, point = problem.data, np.append(look.z, 0.0), setting.scenario.operating_point
-    campaign = added(data.campaign, experiment)
+    campaign = build_tests(data.campaign, experiment)
     o = Observed(setting.plant, campaign, data.nuisances, setting.oils, point)
     shown = o.at(z, []).shown
     if not np.isfinite(shown).all():
@@ -239,17 +239,17 @@ def _of_check(o: Observed, check: Check, candidates: Sequence[Acting]) -> np.nda
     return found
 
 
-def of_search(setting: Setting, found: Found, causes: Collection[str], experiments: Sequence[Experiment]) -> Design:
+def extend_design(setting: Setting, found: Found, causes: Collection[str], experiments: Sequence[Experiment]) -> Design:
     """The design of a search's data for some causes, with experiments behind it."""
     places = [k for k, c in enumerate(found.first.candidates) if c.id in causes]
     candidates = [found.first.candidates[k] for k in places]
     null = found.null
-    return design(
+    return simulate_design(
         setting, found.problem, null.look, null.noise, candidates, found.first.effects[:, places], experiments
     )
 
 
-def ranked(made: Design, weights: Mapping[str, float]) -> list[findings.Experiment]:
+def rank(made: Design, weights: Mapping[str, float]) -> list[findings.Experiment]:
     """Experiments by what they add to the distances between causes, weighted by how probable both are.
 
     Args:

@@ -57,7 +57,7 @@ def places(problem: Problem, h: Hypothesis) -> list[int]:
     return [problem.nz + sum(lengths[:k]) for k in range(len(lengths))]
 
 
-def estimates(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estimate, ...]:
+def estimate_cause(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estimate, ...]:
     """Size, averaged over the hypotheses that hold a cause, and shapes of the most probable one."""
     total = sum(p for _, p in members)
     acting = [(h, p) for h, p in members if cause in h.fit.causes and p >= COUNTS * total]
@@ -83,7 +83,7 @@ def _size(cause: Cause, centre: float, spread: float) -> Estimate:
     """A size by its mean and standard deviation, in half widths of its prior."""
     s = cause.size
     ends = [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)]
-    bound, (unit, (low, value, high)) = at_bound(ends[1], s.low, s.high), shown(s, ends)
+    bound, (unit, (low, value, high)) = at_bound(ends[1], s.low, s.high), convert(s, ends)
     return Estimate(name=s.name, value=value, ci95=(low, high), unit=unit, doc=s.doc, at_bound=bound)
 
 
@@ -100,14 +100,14 @@ def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
             t[k] = np.clip(x[begin + k] + step, -3.0, 3.0)
             values.append(one.formula.theta(t)[shape.name])
         low, value, high = values
-        unit, (low, value, high) = shown(shape, [low, value, high])
+        unit, (low, value, high) = convert(shape, [low, value, high])
         bound = at_bound(values[1], shape.low, shape.high)
         told = Estimate(name=shape.name, value=value, ci95=(low, high), unit=unit, doc=shape.doc, at_bound=bound)
         found.append(told)
     return found
 
 
-def shown(shape: Shape | Size, values: Sequence[float]) -> tuple[str, list[float]]:
+def convert(shape: Shape | Size, values: Sequence[float]) -> tuple[str, list[float]]:
     """Values of a shape in the unit people read: degC and rpm."""
     if shape.unit == "K" and shape.low > 150.0:
         return "degC", [v - 273.15 for v in values]
@@ -138,7 +138,7 @@ def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estima
     share = np.cumsum(np.exp(np.array(logs) - logsumexp(logs)))
     low, value, high = (float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975))
     size_of = next(f.cause.size for f in found.formulas if f.cause.id == cause)
-    unit, (low, value, high) = shown(size_of, [size_of.sd * v for v in (low, value, high)])
+    unit, (low, value, high) = convert(size_of, [size_of.sd * v for v in (low, value, high)])
     doc = size_of.doc if "standard deviation" in size_of.doc else f"standard deviation of: {size_of.doc}"
     return (Estimate(name=size_of.name, value=value, ci95=(low, high), unit=unit, doc=doc),)
 
@@ -175,7 +175,7 @@ def regime(form: Form, theta: Mapping[str, float]) -> dict[str, tuple[float | No
     if shape is None:
         return {}
     quantity, _, side = form.regime["quantity"].rpartition(" ")
-    unit, (value,) = shown(shape, [theta[shape.name]])
+    unit, (value,) = convert(shape, [theta[shape.name]])
     return {f"{quantity} [{unit}]": (value, None) if side == "above" else (None, value)}
 
 
@@ -243,7 +243,7 @@ def _end(sensor: Sensor) -> str:
     return sensor.reads.partition(".")[0]
 
 
-def detectable(found: Found) -> dict[str, float]:
+def find_detectable(found: Found) -> dict[str, float]:
     """Smallest size of each cause, in its unit, that would be an alarm in 80 of 100 such campaigns; none: never."""
     share = found.prior.share
     first: dict[str, int] = {}
@@ -269,7 +269,7 @@ def detectable(found: Found) -> dict[str, float]:
     return {c.id: float(a * c.formula.cause.size.sd) for c, a, k in zip(candidates, above, known, strict=True) if k}
 
 
-def played(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, findings.Played]:
+def replay(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, findings.Played]:
     """Root mean square that the rig leaves when it is played over the data, by sensor.
 
     The extended rig holds what is a matter of the machine; nothing where nothing is. Sensors that a hypothesis calls

@@ -77,7 +77,7 @@ class Experiment:
     checks: tuple[Check, ...] = ()
 
 
-def experiments(campaign: Campaign, usual: Callable[[str], float]) -> tuple[Experiment, ...]:
+def list_experiments(campaign: Campaign, usual: Callable[[str], float]) -> tuple[Experiment, ...]:
     """The experiments that add something to a campaign, and that its rig and a hall can do.
 
     Args:
@@ -151,7 +151,7 @@ def _checks(campaign: Campaign) -> Iterator[Experiment]:
             yield Experiment("stroboscope", "the speed by a stroboscope", checks=(check,))
 
 
-def added(campaign: Campaign, experiment: Experiment) -> Campaign:
+def build_tests(campaign: Campaign, experiment: Experiment) -> Campaign:
     """The tests of an experiment as a campaign of their own, run as the first test of a campaign.
 
     Readings of compared sensors stand at their means, and only say what is read.

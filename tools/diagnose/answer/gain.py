@@ -31,7 +31,7 @@ class _Fold:
     seen: Foreseen
 
 
-def gains(found: Found, seed: int, progress: Callable[[float], None] = lambda share: None) -> list[Gain]:
+def measure_gains(found: Found, seed: int, progress: Callable[[float], None] = lambda share: None) -> list[Gain]:
     """All schemes that the data allow, all compared sensors, thermometers of the oil first.
 
     Args:

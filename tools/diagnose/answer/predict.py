@@ -21,7 +21,7 @@ from .findings import Prediction
 COUNTS = 0.03
 
 
-def predictions(setting: Setting, found: Found, points: Campaign) -> tuple[Prediction, ...]:
+def predict(setting: Setting, found: Found, points: Campaign) -> tuple[Prediction, ...]:
     """What the instruments will show at points, where the machine can be run.
 
     Args:
@@ -32,7 +32,7 @@ def predictions(setting: Setting, found: Found, points: Campaign) -> tuple[Predi
     read, told = found.problem.data.read, []
     tables = [
         [channels.in_unit(s, row) for s, row in zip(read, table, strict=True)]
-        for table in simulated(setting, found, points)
+        for table in simulate(setting, found, points)
     ]
     for row in range(points.n):
         both = [{s.name: float(line[row]) for s, line in zip(read, t, strict=True)} for t in tables]
@@ -42,7 +42,7 @@ def predictions(setting: Setting, found: Found, points: Campaign) -> tuple[Predi
     return tuple(told)
 
 
-def simulated(setting: Setting, found: Found, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
+def simulate(setting: Setting, found: Found, points: Campaign) -> tuple[np.ndarray, np.ndarray]:
     """Readings (read, n) at points, calibrated without a cause and extended, NaN where the machine cannot be run.
 
     Args:

@@ -18,13 +18,13 @@ from .evidence import DataQuality, GrossReading, NuisanceOff, Repeat, RepeatedPo
 OFF = 2.0
 
 
-def data_quality(setting: Setting, found: Found, h: Hypothesis) -> DataQuality:
+def check_data(setting: Setting, found: Found, h: Hypothesis) -> DataQuality:
     """Gross readings, values far off, scatter against the card, by a hypothesis."""
     return DataQuality(
         gross=gross_readings(found, h),
         nuisances=values_off(setting, found, h),
         variance=scatters(setting, found, h),
-        repeated=repeated(found.problem.data.campaign),
+        repeated=list_repeats(found.problem.data.campaign),
         adequacy=adequacy(found, h),
     )
 
@@ -123,7 +123,7 @@ def adequacy(found: Found, h: Hypothesis) -> dict[str, float]:
     return {name: p_adequacy(found, h, entries) for name, entries in own.items() if len(entries)}
 
 
-def repeated(campaign: Campaign) -> tuple[RepeatedPoint, ...]:
+def list_repeats(campaign: Campaign) -> tuple[RepeatedPoint, ...]:
     """Points that were measured in several tests, each sensor in running order, as deviations from the point's mean."""
     groups = repeats.repeats(campaign)
     stated = {s.sensor: s.stated for s in repeats.scatters(campaign, groups)}

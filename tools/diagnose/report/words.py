@@ -5,6 +5,8 @@ The verdict itself is decided elsewhere; here it is put in words, and every sent
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from ..answer.design import APART
 from ..answer.findings import UNEXPLAINED, Answer, Cause, Findings, Said
 from . import phrases
@@ -24,6 +26,8 @@ LISTED = 0.05
 MOST = 6
 #: The same of lists of little weight.
 FEW = 3
+#: An answer of more causes than these is told cause by cause.
+TOGETHER = 2
 #: Numbers of causes in words.
 COUNTS = {2: "Two", 3: "Three", 4: "Four"}
 
@@ -90,12 +94,16 @@ def _claim(findings: Findings) -> str:
         best = next((a for a in answers if a.causes != ((UNEXPLAINED,),)), None)
         closest = f" The closest known cause is {_probable(best)}." if best else ""
         return f"Something is wrong that no cause of the library explains{sure}{seen}.{closest}"
+    more = left is not None and left.probability >= 0.5
+    beside = f" Something that the library lacks acts beside {{}}{seen}." if more else ""
+    if any(len(a.causes) > TOGETHER for a in answers):
+        return _together(findings) + beside.format("them")
     if findings.verdict == "ambiguous":
         listed = [a for k, a in enumerate(answers) if k < MOST and (k < 2 or a.probability >= LISTED)]
         rest = answers[len(listed) :]
         chance = phrases.percent(sum(a.probability for a in rest))
-        more = f"; or one of {len(rest)} less probable ones ({chance} together)" if rest else ""
-        return f"Something is wrong, and the data leave open what: {'; '.join(map(_probable, listed))}{more}."
+        unlikely = f"; or one of {len(rest)} less probable ones ({chance} together)" if rest else ""
+        return f"Something is wrong, and the data leave open what: {'; '.join(map(_probable, listed))}{unlikely}."
     first = answers[0]
     if limits := _at_bound(findings, first):
         return (
@@ -104,9 +112,29 @@ def _claim(findings: Findings) -> str:
         )
     n = len(first.causes)
     subject = f"{COUNTS.get(n, n)} causes together explain" if n > 1 else "One cause explains"
-    more = left is not None and left.probability >= 0.5
-    beside = f" Something that the library lacks acts beside it{seen}." if more else ""
-    return f"{subject} the data: {_probable(first)}.{beside}"
+    return f"{subject} the data: {_probable(first)}.{beside.format('it')}"
+
+
+def _together(findings: Findings) -> str:
+    """What acts together: the causes that all answers share first, then the others by how probable they are."""
+    answers = [a for a in findings.answers if a.causes != ((UNEXPLAINED,),)]
+    classes = {group[0]: set(group) for a in reversed(answers) for group in reversed(a.causes)}
+    chances = {c: sum(one.probability for m in own if (one := findings.cause(m))) for c, own in classes.items()}
+
+    def names(causes: Iterable[str]) -> str:
+        ranked = sorted((c for c in causes if chances[c] >= LISTED), key=lambda c: -chances[c])
+        return ", ".join(
+            f"{names_of(sorted(classes[c], key=c.__ne__), 'or')} ({phrases.percent(chances[c])})" for c in ranked
+        )
+
+    shared = [c for c, own in classes.items() if all(any(own & set(group) for group in a.causes) for a in answers)]
+    others = names(c for c in classes if c not in shared)
+    text = f"Several causes act together. In all likely answers: {names(shared)}." if shared else ""
+    if others:
+        text += (
+            f" {'Besides' if shared else 'Several causes act together, and none is in all likely answers'}: {others}."
+        )
+    return text.strip()
 
 
 def _probable(answer: Answer) -> str:
@@ -156,8 +184,8 @@ def _do(findings: Findings) -> str:
 def _exposing(findings: Findings) -> str:
     """The experiment that would show the causes of the first answer."""
     members = [c for group in findings.answers[0].causes for c in group] if findings.answers else []
-    texts = [c.exposes for m in members if (c := findings.cause(m)) is not None and c.exposes]
-    return "; ".join(f"{t.rstrip('.')}" for t in dict.fromkeys(texts)) + "." if texts else ""
+    texts = [text for m in members if (c := findings.cause(m)) for text in c.exposes.rstrip(".").split("; ") if text]
+    return "; ".join(dict.fromkeys(texts)) + "." if texts else ""
 
 
 def _size(findings: Findings) -> str:
@@ -165,8 +193,10 @@ def _size(findings: Findings) -> str:
     if findings.verdict == "consistent":
         return ""
     said = []
-    if findings.impact:
-        which = f"if it is {phrases.answer(findings.answers[0])}: " if findings.verdict == "ambiguous" else ""
+    if findings.impact and findings.answers:
+        first = findings.answers[0]
+        which = f"if it is {phrases.answer(first)}: " if findings.verdict == "ambiguous" else ""
+        which = "the likeliest of these answers: " if len(first.causes) > TOGETHER else which
         effects = "; ".join(phrases.impact(i) for i in findings.impact.values())
         said.append(f"{sentence(which + effects)}, on average.")
     for answer in findings.answers[: 1 if findings.verdict != "ambiguous" else 2]:
