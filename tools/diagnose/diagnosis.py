@@ -59,11 +59,11 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
         request.seed,
         request.causes,
         lambda stage, done: then(stage, 0.05 + 0.75 * done),
-        logs.whole.causes if logs else (),
+        logs.causes if logs else (),
     )
     found = calmed(found)
     if logs:
-        found = found.beside(logs.whole.log_bayes_factor)
+        found = found.beside(logs.found.log_bayes_factor)
     decision = decided(found)
     wrong = decision.verdict != "consistent"
     held: Sequence[Gain] = ()
@@ -84,8 +84,8 @@ def _with_logs(findings: Findings, logs: LogDiagnosis, causes: Sequence[Cause]) 
         causes: that the readings were asked about
     """
     of, said, known = logs.findings.about, list(logs.findings.warnings), {cause.id for cause in causes}
-    lacking = [c for c in logs.whole.causes if c not in known and logs.whole.of(c) > ALONE]
-    said += [f"the logs speak for {c} ({logs.whole.of(c):.0%}), which no reading of the table shows" for c in lacking]
+    lacking = [c for c in logs.causes if c not in known and logs.of(c) > ALONE]
+    said += [f"the logs speak for {c} ({logs.of(c):.0%}), which no reading of the table shows" for c in lacking]
     about = findings.about.model_copy(update={"logs": of.logs, "log_rows": of.log_rows, "segments": of.segments})
     return findings.model_copy(update={"about": about, "warnings": (*findings.warnings, *said)})
 

@@ -79,7 +79,7 @@ SCHEMES = {
     "leave-one-speed": "each speed left out in turn",
     "leave-one-load": "each torque left out in turn",
     "leave-one-oil": "each oil left out in turn",
-    "leave-one-segment": "each stretch of the logs left out in turn",
+    "leave-out-spans": "spans of the logs left out in turn",
 }
 #: How the name of a parameter begins that is a logarithm.
 LOGARITHM = "ln_"
