@@ -83,7 +83,8 @@ def _with_logs(findings: Findings, logs: LogDiagnosis, causes: Sequence[Cause]) 
         logs: what they say
         causes: that the readings were asked about
     """
-    of, said, known = logs.findings.about, list(logs.findings.warnings), {cause.id for cause in causes}
+    of, known = logs.findings.about, {cause.id for cause in causes}
+    said = [f"the logs alone: {logs.findings.says.verdict}", *logs.findings.warnings]
     lacking = [c for c in logs.causes if c not in known and logs.of(c) > ALONE]
     said += [f"the logs speak for {c} ({logs.of(c):.0%}), which no reading of the table shows" for c in lacking]
     about = findings.about.model_copy(update={"logs": of.logs, "log_rows": of.log_rows, "segments": of.segments})

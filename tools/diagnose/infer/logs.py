@@ -257,7 +257,8 @@ class LogProblem(Problem):
 
     def __init__(self, data: Logged, season: np.ndarray, levels: Levels) -> None:
         super().__init__([data], 0.0)
-        self.spans, self.ends, self.alike = data, np.zeros(data.m, dtype=bool), np.ones((data.m, data.m))
+        self.spans, self.ends = data, np.zeros(data.m, dtype=bool)
+        self.alike, self.same = np.ones((data.m, data.m)), np.eye(data.m)  # each entry is a channel of its own
         root = data.by @ np.linalg.cholesky(levels.season)
         own = (season[:, None] == np.unique(season))[data.row]
         self.seasons = (root[:, :, None] * own[:, None, :]).reshape(data.m, -1)
