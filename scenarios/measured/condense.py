@@ -14,7 +14,9 @@ LARGE = 900
 #: Compared readings that are left, about.
 LEFT = 240
 #: Running order from first to last test, beside conditions in units of their spread.
-ORDER = 2.0
+ORDER = 1.0
+#: Room temperature likewise: readings follow it in proportion, so that little is lost by joining different ones.
+ROOM = 0.3
 #: Standard deviation of a median over that of a mean.
 MEDIAN = 1.25
 
@@ -79,9 +81,9 @@ def _groups(c: Campaign, most: int) -> list[np.ndarray]:
         kinds.setdefault((stated, c.oil[k], c.mounting[k], bool(np.isnan(c.T_start[k]))), []).append(k)
     columns = [np.nan_to_num(c.values[s.name], nan=float(np.nanmean(c.values[s.name]))) for s in c.given]
     at = np.array([[column[begin], column[begin + height - 1]] for column in columns]).reshape(-1, c.n_tests)
-    features = np.column_stack(
-        [(at.T - at.mean(axis=1)) / np.maximum(at.std(axis=1), 1e-12), ORDER * c.progress[begin]]
-    )
+    weights = np.repeat([ROOM if s.kind == "ambient" else 1.0 for s in c.given], 2)
+    scaled = weights[:, None] * (at - at.mean(axis=1, keepdims=True)) / np.maximum(at.std(axis=1, keepdims=True), 1e-12)
+    features = np.vstack([scaled, ORDER * c.progress[begin]]).T
     groups = [np.array(own) for own in kinds.values()]
     splits = [_split(features[g]) for g in groups]
     while len(groups) < most and max(gain for gain, _ in splits) > 0:
