@@ -95,10 +95,9 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
     """The findings without their words."""
     request, data, leader = inputs.request, found.problem.data.campaign, decision.leader
     reference, wrong = inputs.reference, decision.verdict != "consistent"
-    sets = compose.sets(made.causes, found, decision) if wrong else ()
     rows = pictures.rows(found, leader)
     return Findings(
-        verdict=decision.verdict,
+        **compose.common(made, found, decision),
         about=About(
             data=data.name,
             rig=made.scenario.name,
@@ -115,18 +114,12 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
             p_adequacy=decision.p_adequacy,
             draws=len(found.drawn),
         ),
-        hypotheses=compose.hypotheses(decision),
-        answers=compose.answers(decision),
-        causes=compose.causes(made, found, decision),
-        remainder=compose.remainder(found, decision),
         data_quality=data_quality(made, found, leader),
         impact=compose.impacts(made, found, leader),
         gain=held[0] if held else None,
         gain_grouped=tuple(held[1:]),
         channels=tuple(channel(s) for s in data.sensors),
         played=played(found.problem, found.null, leader) if wrong else {},
-        confusable=tuple(s.causes for s in sets),
-        sets=sets,
         next_experiment=compose.next_experiments(made, found, decision) if wrong and not request.quick else (),
         isolability=isolability(Effects(found.first.candidates, found.first.white)),
         rows=rows,

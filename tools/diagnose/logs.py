@@ -147,10 +147,9 @@ def _findings(
     siblings: Sequence[Log],
 ) -> f.Findings:
     """The findings without pictures and words."""
-    sets = compose.sets(made.causes, found, decision) if decision.verdict != "consistent" else ()
     segments = sum(int(log.stretch.max()) + 1 for log in logs)
     return f.Findings(
-        verdict=decision.verdict,
+        **compose.common(made, found, decision),
         about=f.About(
             data=", ".join(log.name for log in logs),
             rig=made.scenario.name,
@@ -168,14 +167,8 @@ def _findings(
             p_adequacy=min(decision.p_adequacy, QUIET),
             draws=len(found.drawn),
         ),
-        hypotheses=compose.hypotheses(decision),
-        answers=compose.answers(decision),
-        causes=compose.causes(made, found, decision),
-        remainder=compose.remainder(found, decision),
         data_quality=DataQuality(gross=tuple(_gross(logs))),
         channels=tuple(channels.channel(s) for s in logs[0].sensors),
-        confusable=tuple(s.causes for s in sets),
-        sets=sets,
         warnings=tuple(filter(None, [_lacking(reference, siblings)])),
     )
 

@@ -124,6 +124,8 @@ def read(request: Request) -> Inputs:
         reader.problems += too_small(data)
         reader.problems += [] if reference is None else same_as_reference(data, reference)
     scenario, card = reader.checked()
+    if reference is not None:
+        reference, _ = condensed(reference, card)
     if data is not None:
         data, card = condensed(data, card)
     return Inputs(request, scenario, card, data, reference, points)

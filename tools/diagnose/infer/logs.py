@@ -102,13 +102,6 @@ def _parameters(scenario: Scenario) -> set[str]:
     return {f"{part.name}.{key}" for part in scenario.spec.parts for key in part.values}
 
 
-def year_of(time: np.ndarray, dated: bool) -> np.ndarray:
-    """Year of each time (n,): the calendar's, or numbers from 0 where there is none."""
-    if not dated:
-        return np.asarray(np.floor((time - time.min()) / YEAR), dtype=int)
-    return np.array([datetime.fromtimestamp(t, UTC).year for t in time])
-
-
 def season_of(time: np.ndarray, dated: bool) -> np.ndarray:
     """Number of the quarter of a year of each time (n,): the calendar's, or from 0 where there is none."""
     if not dated:
