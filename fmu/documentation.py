@@ -20,8 +20,7 @@ from .description import TOLERANCE, tool
 from .leading import Directions
 from .parameter_set import kind_of
 from .related import PARAMETERS
-from .units import Display, fmi_unit, is_difference
-from .units import unit as unit_of
+from .units import Display, fmi_unit, is_difference, unit as unit_of
 from .variables import Table, Variable
 
 

@@ -42,8 +42,7 @@ from .effective import effective
 from .equations import equations
 from .fixed import icon
 from .leading import Directions, Uncertain, leading
-from .metadata import metadata
-from .parameter_set import parameter_set
+from .parameter_set import metadata, parameter_set
 from .related import Related, relate
 from .source import GUID_MARK, source
 from .terminals import terminals

@@ -23,8 +23,7 @@ from ..model.core.flat import FlatModel, Quantity
 from ..model.errors import DataError, GearheatError, ScenarioError, suggestion
 from ..model.run.schedule import Schedule
 from ..model.units import show_unit, to_si
-from .columns import split_unit
-from .csv_table import number, raise_all, read_cells
+from .csv_table import number, raise_all, read_cells, split_unit
 
 TIME = Quantity("time", "s", "time")
 

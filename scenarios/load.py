@@ -40,7 +40,7 @@ from ..model.parts import PARTS
 from ..model.parts.free_form import EXTRA_PARTS
 from ..model.units import to_si
 from .assemblies import expand_assemblies
-from .columns import split_unit
+from .csv_table import split_unit
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
 from .own_parts import load_installed_types, load_type

@@ -30,6 +30,7 @@ each number in the CSV file; see `SheetTable`. A table `[set]` holds what every 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from importlib.resources import files
 from pathlib import Path
 from typing import Any, Literal
 
@@ -63,6 +64,8 @@ _ALLOWED: Mapping[str, tuple[str, ...]] = {
 }
 
 Run = Literal["steady", "held", "design", "losses", "contacts", "law", "rows", "print"]
+
+GOLDEN = Path(str(files("gearheat.model").joinpath("golden")))
 
 
 class Row(Strict):
@@ -222,3 +225,33 @@ def _wrong(row: Row) -> Iterator[str]:
             yield f'{key} is missing for run = "{row.run}" ({Row.model_fields[key].description}).'
         elif given and key not in allowed:
             yield f'{key} means nothing with run = "{row.run}". Leave it out.'
+
+
+def golden_rows() -> tuple[Row, ...]:
+    """The golden rows of all laws: a number from print for each.
+
+    A row of `model/golden/*.toml` has `law` ("module.function"), `args` (numbers in SI, or text with a unit), `expect`
+    with `unit`, and `tol` in that unit or `rel`. `kind` says what the number is: "published" as the source prints it,
+    "corrected" by an erratum (`published` and `why` then say what stands in print and why it cannot), "reproduced" a
+    recomputation that no one printed, "misprint" what a misprint of the source leads to. `item` picks from a law with
+    several results.
+
+    Raises:
+        ScenarioError: everything wrong with the files at once
+    """
+    found: list[Row] = []
+    problems = Problems()
+    for path in sorted(GOLDEN.glob("*.toml")):
+        raw = [_published(row) for row in read_toml(path).get("row", []) if "law" in row]
+        with problems:
+            found += PublishedTable.read(path.name, {"row": raw}).row
+    problems.check()
+    return tuple(found)
+
+
+def _published(row: Mapping[str, Any]) -> dict[str, Any]:
+    """A golden row in the form of all published numbers."""
+    kind = row["kind"] if row["kind"] in ("published", "corrected") else "recomputed"
+    names = {"source": "where", "expect": kind}
+    kept = {names.get(key, key): value for key, value in row.items() if key not in ("kind", "unit")}
+    return kept | {"run": "law", "unit": row.get("unit", "").removesuffix("1")}

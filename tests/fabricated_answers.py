@@ -13,8 +13,7 @@ from challenge.printing import show as show_challenge
 from challenge.scoring import Outcome, report
 from gearheat import Calibration, CampaignRun, FilmTable, Replays
 from gearheat.tools.bench import bench
-from gearheat.tools.cli import fmu as exporting
-from gearheat.tools.cli import measured, verify
+from gearheat.tools.cli import developers, fmu as exporting, measured
 from gearheat.tools.cli.solve import print_end
 from gearheat.tools.diagnose.infer.replay import HOURS, Replayed
 
@@ -55,7 +54,7 @@ def film_of_a_part() -> None:
     found = {"contacts": 144, "shape": "ellipse", "varied": varied, "terms": 10, "out": "map.csv"}
     found["failed"] = ["F = 2000 N, u_m = 0.5 m/s, T = 100 degC: the film is thinner than the solver can tell"]
     found["fit"] = {"h_c": {"largest": 0.021, "rms": 0.008}, "h_min": {"largest": 0.043, "rms": 0.017}}
-    verify.print_films(FilmTable({"case": "planetary", "part": "gear_set", **found}))
+    developers.print_films(FilmTable({"case": "planetary", "part": "gear_set", **found}))
 
 
 def exported() -> None:

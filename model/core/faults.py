@@ -10,13 +10,11 @@ import casadi as ca
 
 from ..errors import StructureError
 from .component import Equation
-from .connect import Assembly, nets
+from .connect import Assembly, floating, nets
 from .constraint import Constraint, Known
 from .declare import Given, Port
-from .matching import Matching, columns_of
-from .ports_check import floating
 from .reduce import tie
-from .solve import Unknown, incidence
+from .solve import Matching, Unknown, columns_of, incidence
 
 #: Names shown of a set.
 SHOWN = 4

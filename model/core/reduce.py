@@ -17,8 +17,7 @@ from ..errors import StructureError
 from .component import Component, Equation
 from .connect import Assembly
 from .constraint import Constraint, Known, constraint
-from .matching import Matching, columns_of
-from .solve import Unknown, incidence
+from .solve import Matching, Unknown, columns_of, incidence
 
 #: How well the start values of states that follow each other agree, relative to their size.
 AGREE = 1e-9

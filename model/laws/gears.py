@@ -150,6 +150,20 @@ def reduced_radius(rho_1: Num, rho_2: Num, beta_b: Num) -> Num:
     return rho_1 * rho_2 / (rho_1 + rho_2) / ca.cos(beta_b)
 
 
+@law(source="ISO21771", where="overlap ratio", verified=False)
+def overlap_ratio(b: Num, m_n: Num, beta: Num) -> Num:
+    r"""Overlap ratio [1], 0 for spur gears.
+
+    .. math:: \varepsilon_\beta = \frac{b \sin\beta}{\pi m_n}
+
+    Args:
+        b: face width [m]
+        m_n: normal module [m]
+        beta: helix angle at the reference diameter [rad]
+    """
+    return b * ca.sin(beta) / (math.pi * m_n)
+
+
 @law(source="Dias2014", where="length of the contact lines")
 def contact_length(b: Num, eps_alpha: Num, beta_b: Num) -> Num:
     r"""Mean length of all contact lines of a helical mesh [m].

@@ -7,7 +7,7 @@ import math
 import casadi as ca
 
 from ..sources import law
-from .smooth import Num, smooth_abs, smooth_cap
+from .smooth import Num, smooth_abs, smooth_cap, smooth_max
 
 #: Viscosity [mPa.s] beyond which thicker oil lowers the friction of the teeth no more: they are on a full film then.
 FULL_FILM_VISCOSITY = 1000.0
@@ -111,6 +111,50 @@ def tooth_loss_factor(z_1: Num, u: Num, beta_b: Num, eps_1: Num, eps_2: Num, *, 
         a_2 += 2 * (l - m) / (n - 1)
     polynomial = a_0 + a_1 * eps_1 + a_2 * eps_2 + a_3 * eps_1**2 + a_4 * eps_2**2
     return math.pi * (u + 1) / (z_1 * u * ca.cos(beta_b)) * polynomial
+
+
+@law(
+    source="Wimmer2006",
+    where="local tooth loss factor, for the same load on every length of the contact lines",
+    valid="overlap ratio of 1 or more, unmodified flanks without deflection",
+    ranges={"eps_1": (1e-9, 5.0), "eps_2": (1e-9, 5.0)},
+    verified=False,
+)
+def line_loss_factor(z_1: Num, u: Num, beta_b: Num, eps_1: Num, eps_2: Num) -> Num:
+    r"""Tooth loss factor of helical gears [1], whose load is spread evenly along their lines of contact.
+
+    .. math:: H_V = \frac{\pi (u + 1)}{z_1 u \cos\beta_b} \frac{\varepsilon_1^2 + \varepsilon_2^2}{\varepsilon_\alpha}
+
+    The source has an integral of load and sliding over the field of contact; from an overlap ratio of 1 on the lines
+    are all but as long in every position, and it is this. Equal pairs (`tooth_loss_factor`) carry their load
+    nearer to the pitch point, and are 11 to 17 % below it at usual contact ratios.
+
+    Args:
+        z_1: number of teeth of the first gear [1]
+        u: teeth ratio z_2/z_1, negative for an internal second gear [1]
+        beta_b: helix angle at the base cylinder [rad]
+        eps_1: addendum contact ratio of the first gear [1]
+        eps_2: addendum contact ratio of the second gear [1]
+    """
+    return math.pi * (u + 1) / (z_1 * u * ca.cos(beta_b)) * (eps_1**2 + eps_2**2) / (eps_1 + eps_2)
+
+
+@law(
+    source="Wimmer2006",
+    where="a fit of this project to the integral of the local tooth loss factor, within 0.04",
+    valid="compared at overlap ratios of 0.3 to 1 and transverse contact ratios of 1.5",
+    verified=False,
+)
+def line_sharing(eps_beta: Num, *, width: float = 1e-3) -> Num:
+    r"""How far teeth share their load along lines of contact and not by pairs [1]: 0 for spur gears, 1 from 1 on.
+
+    .. math:: s = 1 - \max(1 - \varepsilon_\beta, 0)^{3/2}
+
+    Args:
+        eps_beta: overlap ratio [1]
+        width: rounding where the overlap ratio is 1 [1]
+    """
+    return 1 - smooth_max(1 - eps_beta, 0.0, width) ** 1.5
 
 
 @law(source="Ohlendorf1958", where="mesh loss power")

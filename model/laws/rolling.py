@@ -266,7 +266,7 @@ def drag_loss_factor(level: Num, *, roller: bool = False) -> Num:
     return s * level**3 / (level**2 + x_0**2)
 
 
-def _splash(n: Num, nu_cSt: Num, d_mm: Num, D_mm: Num, H_mm: Num, K_Z: Num, rounding: float) -> Num:
+def _splash(n: Num, nu_cSt: Num, d_mm: Num, D_mm: Num, H_mm: Num, K_Z: Num, rounding: float = 1e-3) -> Num:
     """Part of the drag moment [N.mm] that depends on the viscosity, common to ball and roller bearings."""
     d_m = 0.5 * (d_mm + D_mm)
     cosine = smooth_min(smooth_max(1 - H_mm / (0.6 * d_m), -1.0, rounding), 1.0, rounding)  # of half the wetted angle
@@ -285,13 +285,13 @@ def _splash(n: Num, nu_cSt: Num, d_mm: Num, D_mm: Num, H_mm: Num, K_Z: Num, roun
     verified=False,
 )
 def drag_torque_ball(
-    w: Num, nu: Num, d: Num, D: Num, H: Num, V_M: Num, K_Z: Num, *, w_width: float = SPEED_WIDTH, rounding: float = 1e-3
+    w: Num, nu: Num, d: Num, D: Num, H: Num, V_M: Num, K_Z: Num, i_rw: Num = 1.0, *, w_width: float = SPEED_WIDTH
 ) -> Num:
     r"""Drag torque of a ball bearing in an oil bath [N.m].
 
     .. math:: M_{drag} = 0.4 V_M K_{ball} d_m^5 n^2
         + 1.093 \cdot 10^{-7} n^2 d_m^3 \left(\frac{n d_m^2 f_t}{\nu}\right)^{-1.379} R_s,\quad
-        K_{ball} = 10^{-12} K_Z \frac{d + D}{D - d}
+        K_{ball} = 10^{-12} i_{rw} K_Z \frac{d + D}{D - d}
 
     Args:
         w: speed of the inner ring, either direction [rad/s]
@@ -301,14 +301,14 @@ def drag_torque_ball(
         H: oil level above the lowest point of the outer raceway [m]
         V_M: drag loss factor of that level, see `drag_loss_factor` [1]
         K_Z: geometry constant of the bearing type [1]
+        i_rw: number of rows of balls, which what they displace grows with [1]
         w_width: rounding at standstill [rad/s]
-        rounding: rounding of the level where the bearing is dry, half and fully submerged [1]
     """
     n, nu_cSt, d_mm, D_mm, H_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d, 1e3 * D, 1e3 * H
     d_m = 0.5 * (d_mm + D_mm)
-    K_ball = 1e-12 * K_Z * (d_mm + D_mm) / (D_mm - d_mm)
+    K_ball = 1e-12 * i_rw * K_Z * (d_mm + D_mm) / (D_mm - d_mm)
     displaced = 0.4 * V_M * K_ball * d_m**5 * n**2
-    return 1e-3 * (displaced + _splash(n, nu_cSt, d_mm, D_mm, H_mm, K_Z, rounding))
+    return 1e-3 * (displaced + _splash(n, nu_cSt, d_mm, D_mm, H_mm, K_Z))
 
 
 @law(

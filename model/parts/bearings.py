@@ -203,11 +203,15 @@ class BallBearing(SkfBearing):
         derived=lambda p: drag_loss_factor(p.H / p.d_m),
     )
 
+    def rows(self) -> Num:
+        """Number of rows of balls [1]."""
+        return 1.0
+
     def drag(self) -> Num:
         """Drag of balls."""
         H = self.level()
         V_M = drag_loss_factor(H / self.d_m) if self.dips() else self.V_M
-        return drag_torque_ball(self.shaft.w, self.lubricant.nu, self.d, self.D, H, V_M, self.K_Z)
+        return drag_torque_ball(self.shaft.w, self.lubricant.nu, self.d, self.D, H, V_M, self.K_Z, self.rows())
 
 
 class DeepGrooveBallBearing(BallBearing):
@@ -227,6 +231,15 @@ class AngularContactBallBearing(BallBearing):
 
     R_3 = Parameter("1", "third rolling constant of the catalogue", nominal=1e-12, at_least=0.0)
     S_3 = Parameter("1", "third sliding constant of the catalogue", nominal=1e-12, at_least=0.0)
+    i_rw = Parameter("1", "number of rows of balls", default=1.0, at_least=1.0, at_most=2.0, whole=True)
+
+    def has(self, name: str) -> bool:
+        """The rows count in an oil bath only: the constants of the moments know them."""
+        return super().has(name) and (self.oil_bath or name != "i_rw")
+
+    def rows(self) -> Num:
+        """One or two."""
+        return self.i_rw
 
     def geometric_variables(self) -> tuple[Num, Num]:
         """Angular contact ball bearing."""

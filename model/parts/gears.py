@@ -14,13 +14,13 @@ from ..laws.gears import (
     addendum_contact_ratio,
     base_diameter,
     base_helix_angle,
+    overlap_ratio,
     tip_diameter,
     tip_thickness,
     transverse_base_pitch,
-    transverse_pressure_angle,
     undercut_shift,
 )
-from ..laws.mesh import mesh_loss, tooth_loss_factor
+from ..laws.mesh import line_loss_factor, line_sharing, mesh_loss, tooth_loss_factor
 from ..laws.smooth import Num, friction_sign, smooth_abs
 from .contacts import FilmContact, fits_map
 from .ports import Flange, ToothForce
@@ -46,6 +46,11 @@ class GearPair(ToothedPart):
     wheel = Flange()
 
     film = Choice(("grubin",), 'film: Grubin\'s formula, or a map, "map:FILE"', default="grubin", also=FilmMap)
+    load_sharing = Choice(
+        ("pairs", "lines"),
+        "load of the tooth loss factor: the same on every pair in contact, or along the lines of contact",
+        default="pairs",
+    )
     x_1 = Parameter("1", "profile shift of the pinion")
     x_2 = Parameter("1", "profile shift of the wheel")
     eps_alpha = Parameter("1", "transverse contact ratio", above=0.0, derived=lambda p: sum(p.addendum_ratios()))
@@ -138,7 +143,13 @@ class GearPair(ToothedPart):
         """Tooth loss factor from the geometry [1]."""
         beta_b = base_helix_angle(self.alpha_n, self.beta)
         z_a, z_b = self.teeth()
-        return tooth_loss_factor(z_a, z_b / z_a, beta_b, *self.addendum_ratios())
+        teeth = z_a, z_b / z_a, beta_b, *self.addendum_ratios()
+        by_pairs = tooth_loss_factor(*teeth)
+        if self.load_sharing == "pairs":
+            return by_pairs
+        return by_pairs + line_sharing(overlap_ratio(self.b, self.m_n, self.beta)) * (
+            line_loss_factor(*teeth) - by_pairs
+        )
 
     def film_contact(self, values: Mapping[str, float]) -> FilmContact:
         """The contact at the pitch point.
@@ -176,11 +187,12 @@ class HelicalGearPair(GearPair):
     force = ToothForce()
 
     def equations(self) -> Iterator[Equation]:
-        """One force between the two, for the shafts of both."""
+        """One force between the two along the line of action, for the shafts of both, at their working circles."""
         yield from super().equations()
-        alpha_t = transverse_pressure_angle(self.alpha_n, self.beta)
-        yield equation("tangential force told", self.force.F_t, self.F_t)
-        yield equation("radial force", self.force.F_r, self.F_t * ca.tan(alpha_t))
+        alpha_t, alpha_wt = self.working_angle()
+        F_bt = self.F_t / ca.cos(alpha_t)
+        yield equation("tangential force told", self.force.F_t, F_bt * ca.cos(alpha_wt))
+        yield equation("radial force", self.force.F_r, F_bt * ca.sin(alpha_wt))
         yield equation("axial force", self.force.F_a, self.F_t * ca.tan(self.beta))
 
 

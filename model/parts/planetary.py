@@ -149,8 +149,8 @@ class PlanetarySet(ToothedPart):
         )
 
     def _loads(self) -> Iterator[Equation]:
-        """What the bearings carry."""
-        F_t, r = (self.F_t_sp + self.F_t_pr) / 2, self.radius(self.z_1)
+        """What the bearings carry; the axial forces of sun and ring tilt a planet at its own radius."""
+        F_t, r = (self.F_t_sp + self.F_t_pr) / 2, self.radius(self.z_2)
         tilt = 2 * F_t * ca.tan(self.beta) * r / self.s_planet
         yield equation("carrier radially", self.carrier_load.F_r, 0)
         yield equation("carrier axially", self.carrier_load.F_a, self.n_axial_carrier * F_t * ca.tan(self.beta))

@@ -14,8 +14,7 @@ from ..laws.cycloid_pin import greatest_curvature, width_coefficient
 from ..laws.film_map import FilmMap
 from ..laws.smooth import Num, friction_sign, smooth_abs
 from .contacts import ContactCase, ContactTable, fits_map
-from .pin_mesh import Film, PinContact, PinMesh
-from .pin_table import pin_case, pin_table
+from .pin_mesh import Film, PinContact, PinMesh, pin_case, pin_table
 from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading
 
 #: Discs of a stage; they stand opposite each other, so that the radial forces of both cancel.
@@ -187,7 +186,7 @@ class CycloidPinStage(Component):
         return self._mesh(values), Film(*(values[key] for key in ("T_disc", "w_crank", "eta_oil", "alpha_p")))
 
     def contact_table(self, values: Mapping[str, float]) -> ContactTable:
-        """The contact of a pin at every degree of the loaded half; see `pin_table.COLUMNS`.
+        """The contact of a pin at every degree of the loaded half; see `pin_mesh.COLUMNS`.
 
         Args:
             values: parameters and outputs of the stage at an operating point, by key, in SI

@@ -16,8 +16,7 @@ import numpy as np
 
 from ...model.errors import DataError, Problems
 from ...model.files import reading
-from ..columns import in_si, split_unit
-from ..csv_table import raise_all
+from ..csv_table import in_si, raise_all, split_unit
 from ..scenario import Scenario
 from .card import Card
 from .read import place_sensor

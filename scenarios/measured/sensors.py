@@ -12,7 +12,7 @@ from ...model.parts.lubrication import OilBath
 from ...model.parts.shaft import ShaftEnd
 from ...model.parts.thermal import Room
 from ...model.units import spell_unit, text, to_si
-from ..columns import split_unit
+from ..csv_table import split_unit
 from ..scenario import Instrument, Scenario
 from ..values import deviation
 from .card import Card

@@ -10,7 +10,7 @@ from gearheat.model.laws import film_point
 from gearheat.model.sources import sources
 from gearheat.tools.bench import contact as peer
 from gearheat.tools.cli.app import app
-from gearheat.tools.verify.contact import cases, command, pages, steady, store
+from gearheat.tools.verify.contact import cases, command, pages, rows, steady
 from gearheat.tools.verify.contact.rows import Job, bound, row
 from pages import problems_of
 from typer.testing import CliRunner
@@ -52,12 +52,12 @@ def test_what_is_kept_is_not_computed_again_and_gives_the_same_bytes(
 def test_a_kept_result_of_another_solver_is_void(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     calls = []
     job = Job("item", "name", lambda: calls.append(1) or {"rows": []})
-    monkeypatch.setattr(store, "fingerprint", lambda job: "one")
-    store.run([job], tmp_path)
-    store.run([job], tmp_path)
+    monkeypatch.setattr(rows, "fingerprint", lambda job: "one")
+    rows.run([job], tmp_path)
+    rows.run([job], tmp_path)
     assert len(calls) == 1
-    monkeypatch.setattr(store, "fingerprint", lambda job: "two")
-    store.run([job], tmp_path)
+    monkeypatch.setattr(rows, "fingerprint", lambda job: "two")
+    rows.run([job], tmp_path)
     assert len(calls) == 2
 
 
@@ -65,8 +65,8 @@ def test_a_contact_without_solution_is_a_row_outside(tmp_path: Path, monkeypatch
     def work() -> dict:
         raise SolveError("contact: no film found")
 
-    monkeypatch.setattr(store, "fingerprint", lambda job: "one")
-    (found,) = store.run([Job("item", "stiff", work)], tmp_path)
+    monkeypatch.setattr(rows, "fingerprint", lambda job: "one")
+    (found,) = rows.run([Job("item", "stiff", work)], tmp_path)
     (line,) = found[1]["rows"]
     assert (line["case"], line["verdict"]) == ("stiff", "outside")
 

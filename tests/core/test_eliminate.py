@@ -8,8 +8,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from gearheat.model.core.eliminate import Factors, Singular, typical_sizes
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 
 def solved(values: np.ndarray, right: np.ndarray, *, pivoting: bool) -> np.ndarray:

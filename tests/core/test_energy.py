@@ -8,8 +8,7 @@ import pytest
 from gearheat.model.core.component import Equation, equation
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.run.algebra import algebra
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from small_parts import Body, Friction, Speed, brake, gear, model, motor, rc, rl
 
 MODELS = {"rc": rc(), "rl": rl(), "motor": motor(), "brake": brake(), "gear": gear()}

@@ -9,8 +9,7 @@ from gearheat.model.core.connect import Assembly
 from gearheat.model.core.flat import FlatModel
 from gearheat.model.core.flatten import flatten
 from gearheat.model.run.rows import evaluate_at
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from small_parts import Ambient, Conductor, Heater, Thermometer
 
 

@@ -19,8 +19,7 @@ import pytest
 from fmpy.validation import validate_fmu
 from gearheat.fmu.effective import effective
 from gearheat.fmu.export import export
-from gearheat.fmu.metadata import SRMD, STC
-from gearheat.fmu.parameter_set import PROVENANCE, PROVENANCE_SPACE, SSC, SSV, parameter_set
+from gearheat.fmu.parameter_set import PROVENANCE, PROVENANCE_SPACE, SRMD, SSC, SSV, STC, parameter_set
 from gearheat.fmu.play import play
 from gearheat.fmu.related import FOLDER, MANIFEST, PARAMETERS, Experiment, Related
 from gearheat.model.core.component import Component, equation

@@ -5,8 +5,7 @@ import math
 import casadi as ca
 import pytest
 from gearheat.model.laws import film, film_line, film_point
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 OIL = {"eta_0": 0.08, "alpha_p": 20e-9, "E_eff": 226e9}
 LINES = (film_line.line_film_central, film_line.line_film_minimum)

@@ -6,8 +6,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from gearheat.model.laws import pad
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 from scipy.sparse import diags_array, eye_array, kron
 from scipy.sparse.linalg import spsolve
 

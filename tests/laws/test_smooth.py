@@ -13,8 +13,7 @@ from gearheat.model.laws.smooth import (
     smooth_sign,
     to_rpm,
 )
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 number = st.floats(-1e3, 1e3)
 width = st.floats(1e-6, 1.0)

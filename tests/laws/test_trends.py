@@ -4,8 +4,7 @@ import math
 
 import pytest
 from gearheat.model.laws import churning, conduction, convection, film, mesh, oil, radiation, rolling
-from hypothesis import given
-from hypothesis import strategies as st
+from hypothesis import given, strategies as st
 
 SLACK = 1 + 1e-9
 speed = st.floats(0.0, 500.0)

@@ -9,8 +9,7 @@ from gearheat.model.errors import StructureError
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.rows import evaluate_at
 from gearheat.scenarios.load import load
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 SPEC = load("planetary").spec
 DRIVES = {

@@ -13,8 +13,7 @@ from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.parts.ports import Flange, HeatPort
 from gearheat.model.parts.teeth import ToothedPart
 from gearheat.model.run.rows import evaluate_at
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from one_part import EXAMPLES, PARTS, between_sources, oil_at
 
 #: Outputs that are the mechanical power a part turns into heat.

@@ -110,3 +110,40 @@ def test_a_good_bevel_pair_loses_half_a_percent_or_so(angle, spiral):
 def test_what_does_not_fit_is_refused_by_name(kind, values, words):
     with pytest.raises(ScenarioError, match=words):
         PARTS[kind]("pair", **values)
+
+
+def test_axial_forces_tilt_a_planet_at_its_own_radius():
+    """Sun and ring push a planet of 36 teeth in opposite directions at its reference circle.
+
+    By hand: r = 2 x 36 / (2 cos 10 deg) = 36.555 mm, 1 kN tan 10 deg = 176.33 N at each side, so that the two bearings,
+    21 mm apart, carry 2 x 176.33 x 36.555 / 21 = 613.88 N each, at right angles to the 1 kN of the tangential forces.
+    """
+    values = STEEL | dict(m_n=2e-3, beta=math.radians(10), b=0.042, z_2=36.0, N=3.0, a_w=0.0548, s_planet=0.021)
+    values |= dict(eps_alpha_sp=1.6, eps_alpha_pr=1.8, H_v_sp=0.2, H_v_pr=0.1, n_axial_carrier=0.0, n_axial_sun=0.0)
+    part = PARTS["PlanetarySet"]("set", **values | dict(z_1=18.0, z_3=90.0))
+    carried = next(e for e in part.equations() if e.name == "planet radially").rhs
+    found = part.number_at(carried, part.values | {"F_t_sp": 1000.0, "F_t_pr": 1000.0})
+    assert found == pytest.approx(math.hypot(1000.0, 613.88), abs=0.01)
+
+
+def test_the_force_of_a_pair_lies_on_its_line_of_action():
+    """FZG gears type C: 1 kN at the reference circle, by hand.
+
+    alpha_wt = acos(90 cos 20 deg / 91.5) = 22.438 deg, the base force 1000 / cos 20 deg = 1064.18 N; its components at
+    the working circle are 983.61 N and 406.18 N, where the pressure angle of the reference circle has 363.97 N.
+    """
+    part = PARTS["HelicalGearPair"]("pair", **SPUR)
+    named = {e.name: e.rhs for e in part.equations() if e.name in ("tangential force told", "radial force")}
+    told = {name: part.number_at(rhs, part.values | {"F_t": 1000.0}) for name, rhs in named.items()}
+    assert told["tangential force told"] == pytest.approx(983.61, abs=0.01)
+    assert told["radial force"] == pytest.approx(406.18, abs=0.02)
+
+
+def test_helical_teeth_share_their_load_along_their_lines_of_contact():
+    """Gears H501 and H951 of GEARpie, which integrates 0.188168 and 0.118446; spur gears have pairs alone."""
+    h501 = dict(m_n=3.5e-3, beta=math.radians(15), b=23e-3, z_1=20.0, z_2=30.0, x_1=0.1809, x_2=0.0891, a_w=91.5e-3)
+    lines, pairs = (PARTS["HelicalGearPair"]("pair", **STEEL | h501, load_sharing=x) for x in ("lines", "pairs"))
+    assert lines.values["H_v"] == pytest.approx(0.188168, rel=0.003)
+    assert pairs.values["H_v"] == pytest.approx(0.165353, rel=0.001)
+    spur, printed = (PARTS["HelicalGearPair"]("pair", **SPUR, load_sharing=x) for x in ("lines", "pairs"))
+    assert spur.values["H_v"] == pytest.approx(printed.values["H_v"], rel=1e-6)

@@ -9,8 +9,7 @@ from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.sensitivity import sensitivities
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from small_parts import brake, gear, motor, rc
 
 WARM = {"drive.w": 100.0}

@@ -9,8 +9,7 @@ from gearheat.model.errors import SolveError
 from gearheat.model.run.schedule import Schedule, join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from small_parts import Ambient, Body, Conductor, Flywheel, Friction, LossyGear, Radiation, Speed, Torque, model
 
 

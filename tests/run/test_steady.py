@@ -11,8 +11,7 @@ from gearheat.model.errors import ScenarioError, SolveError
 from gearheat.model.run.schedule import join_phases
 from gearheat.model.run.simulate import simulate
 from gearheat.model.run.steady import steady, steady_table
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 from scipy.optimize import brentq
 from small_parts import (
     SIGMA,

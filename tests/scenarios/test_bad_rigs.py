@@ -7,8 +7,7 @@ from pathlib import Path
 import pytest
 from gearheat.model.errors import GearheatError, ScenarioError, StructureError
 from gearheat.scenarios.load import RIGS, load
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 Problems = Callable[..., tuple[str, ...]]
 

@@ -14,8 +14,7 @@ from gearheat.model.machines.spec import assemble
 from gearheat.model.run.design import design
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 RIGS = ("drum_motor", "drum_motor_planetary")
 RPM = math.pi / 30

@@ -18,7 +18,7 @@ from gearheat.model.run.result import Result
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 from gearheat.scenarios.scenario import Scenario
-from gearheat.tools.solve.contacts import contacts_at, values_of
+from gearheat.tools.solve.losses import contacts_at, values_of
 
 K, ZP, RP, R_RP, B, E_EFF = 0.8125, 40, 0.064, 0.003, 8.86e-3, 230.6e9
 W_CRANK = 39 * 15 * math.pi / 30

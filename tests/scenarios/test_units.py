@@ -5,7 +5,7 @@ from math import pi
 import pytest
 from gearheat.model.errors import ScenarioError
 from gearheat.model.units import to_si
-from gearheat.scenarios.columns import scale, split_unit
+from gearheat.scenarios.csv_table import scale, split_unit
 
 
 @pytest.mark.parametrize(

@@ -4,8 +4,7 @@ import math
 
 import pytest
 from gearheat.model.errors import DataError
-from gearheat.tools.compare.errors import compare, noise_floor, repeats
-from gearheat.tools.compare.rivals import rivals
+from gearheat.tools.compare.errors import compare, noise_floor, repeats, rivals
 
 DRIVES = ("n_carrier_rpm", "T_carrier_Nm")
 

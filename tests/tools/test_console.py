@@ -15,8 +15,7 @@ import numpy as np
 import pytest
 from gearheat.model.errors import DataError, SolveError
 from gearheat.model.files import reading
-from gearheat.tools.cli import __main__ as entry
-from gearheat.tools.cli import app as cli
+from gearheat.tools.cli import __main__ as entry, app as cli
 from gearheat.tools.show import console
 from gearheat.tools.show.console import EVERY, as_json, cell, counting, folder, guard, table, writable, write
 

@@ -8,7 +8,7 @@ import pytest
 from gearheat.model.laws import rolling
 from gearheat.model.parts import PARTS
 from gearheat.scenarios.shipped import RIGS
-from gearheat.tools.docs import laws, markdown
+from gearheat.tools.docs import markdown, reference
 from gearheat.tools.docs.blocks import PAGES
 
 
@@ -35,15 +35,17 @@ def test_a_docstring_becomes_a_formula_and_a_list() -> None:
 
 
 def test_every_law_stands_once_among_the_equations() -> None:
-    text = laws.fill_blocks((PAGES / "theory" / "laws.md").read_text(encoding="utf-8"))
+    text = reference.fill_blocks((PAGES / "theory" / "laws.md").read_text(encoding="utf-8"))
     named = re.findall(r"^\*\*\[(\w+)\]\(\.\./generated/laws/(\w+)\.md#", text, re.MULTILINE)
-    assert sorted(named) == sorted((law.__name__, name) for name in laws.law_modules() for law in laws.laws_of(name))
+    assert sorted(named) == sorted(
+        (law.__name__, name) for name in reference.law_modules() for law in reference.laws_of(name)
+    )
     assert text.count("```{math}") >= len(named)
     assert "{laws}" not in text
 
 
 def test_the_limits_tell_ranges_evidence_and_the_readings_there_are() -> None:
-    page = laws.fill_blocks((PAGES / "trust" / "limits.md").read_text(encoding="utf-8"))
+    page = reference.fill_blocks((PAGES / "trust" / "limits.md").read_text(encoding="utf-8"))
     assert "| [friction_schlenk](" in page
     assert re.search(r"^\| \[Friction of contact seals\]\(\S+\) \| 2 \| 1 \| \d+ \| \d+ \|$", page, re.MULTILINE)
     with (RIGS / "planetary" / "measured.csv").open(encoding="utf-8") as file:

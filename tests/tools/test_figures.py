@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from fabricated_findings import AIR, CHURNING, EMISSIVITY, KINDS, OFFSET, WINDAGE, explained
 from gearheat.scenarios.shipped import RIGS
-from gearheat.tools.compare import plots
+from gearheat.tools.compare import report
 from gearheat.tools.compare.errors import channels_of
 from gearheat.tools.diagnose.answer.evidence import Rows, View
 from gearheat.tools.diagnose.answer.plan import Outlook, Plan, Planned, PlannedCause, PlannedPair
@@ -25,7 +25,7 @@ from pages import words_that_collide
 def drawn(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Figure]]:
     """The figures that are drawn; at the end their words are looked at."""
     found: list[Figure] = []
-    for module in (figures, plan, plots):
+    for module in (figures, plan, report):
         monkeypatch.setattr(module, "svg", lambda figure: found.append(figure) or "<svg></svg>")
     yield found
     assert [word for figure in found for word in words_that_collide(figure)] == []
@@ -92,7 +92,7 @@ def test_of_a_run(drawn: list[Figure]) -> None:
         for key in ("T_oil_C", "T_wall_C", "T_amb_C"):
             row |= {f"{key}_meas": float(reading[key]), key: float(reading[key]) + np.sin(k)}
         rows.append(row | {"oil": reading["oil"], "time_s": 14400.0, "P_loss_W": 500.0 + k, "P_loss_W_meas": 510.0})
-    losses = tuple(plots.LOSSES)
+    losses = tuple(report.LOSSES)
     for row in rows:
         row |= {name: 10.0 + 3 * k for k, name in enumerate(losses)}
     time = np.linspace(0.0, 335 * 60.0, 20)
@@ -100,9 +100,9 @@ def test_of_a_run(drawn: list[Figure]) -> None:
         t: {"time": time, **{n: 20 + time / 1e3 for n in ("T_oil_C", "T_wall_C", "T_amb_C")}} for t in (1, 16, 22, 36)
     }
     channels = channels_of(rows)
-    plots.parity(rows, channels)
-    plots.residuals(rows, channels, {"T_oil_K": 0.3})
-    plots.warm_up(curves, rows)
-    plots.breakdown(rows, losses)
-    plots.shares(rows[0], losses)
+    report.parity(rows, channels)
+    report.residuals(rows, channels, {"T_oil_K": 0.3})
+    report.warm_up(curves, rows)
+    report.breakdown(rows, losses)
+    report.shares(rows[0], losses)
     assert len(drawn) == 5

@@ -221,3 +221,12 @@ def test_a_name_that_no_file_can_have(gearheat, tmp_path, monkeypatch):
     answer = gearheat("new", "x" * 300, "--stages", "spur", "--ratio", "3", "--power", "2 kW", "--speed", "1450 rpm")
     assert answer.code == 2
     assert "x.toml: cannot be written (File name too long)" in answer.err
+
+
+@pytest.mark.parametrize("name", ["two", "planetary", "bevel"])
+def test_tooth_friction_is_as_its_formula_is_printed(made, name):
+    """F_bt/b of Schlenk1994, with which ISO/TR 14179-2 prints the same friction."""
+    path, _ = made(name)
+    toothed = [part.values for part in load(path).spec.parts if "k_mu" in part.values]
+    assert toothed
+    assert {(values["line_load"], values["k_mu"]) for values in toothed} == {("F_bt/b", 1.0)}

@@ -11,10 +11,9 @@ from gearheat.model.core.flatten import flatten
 from gearheat.model.machines.spec import assemble
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
-from gearheat.tools.show.courses import courses
-from gearheat.tools.show.fields import Field, fields
+from gearheat.tools.show.drawing import write_picture
+from gearheat.tools.show.fields import Field, courses, fields
 from gearheat.tools.show.heat_paths import heat_flows, heat_paths
-from gearheat.tools.show.plotting import write_picture
 from gearheat.tools.show.sankey import heat_picture, place_columns
 from gearheat.tools.solve.steady import conditions
 from pages import problems_of, words_that_collide

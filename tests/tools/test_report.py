@@ -4,10 +4,9 @@ import re
 
 import numpy as np
 import pytest
-from gearheat.tools.compare.errors import channels_of, compare
-from gearheat.tools.compare.plots import breakdown, parity, residuals, warm_up
+from gearheat.tools.compare.errors import channels_of, compare, rivals
+from gearheat.tools.compare.report import breakdown, parity, residuals, warm_up
 from gearheat.tools.compare.results import error_lines
-from gearheat.tools.compare.rivals import rivals
 
 TEMPERATURES = ("T_oil_C", "T_wall_C", "T_amb_C")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from gearheat.tools.show.stacked import print_stacked
+from gearheat.tools.show.notes import print_stacked
 
 MINE = ("--stages", "bevel,helical", "--ratio", "20", "--power", "5.5 kW", "--speed", "1450 rpm")
 

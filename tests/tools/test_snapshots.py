@@ -19,8 +19,7 @@ from fabricated_answers import ANSWERS
 from gearheat import Errors
 from gearheat.tools.cli.measured import print_errors
 from gearheat.tools.cli.rigs import schema as gearheat_schema
-from gearheat.tools.compare.errors import compare
-from gearheat.tools.compare.rivals import rivals
+from gearheat.tools.compare.errors import compare, rivals
 from gearheat.tools.diagnose.report.screen import text
 from gearheat.tools.show import console
 from gearheat.tools.show.console import cell, table

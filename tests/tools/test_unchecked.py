@@ -7,8 +7,7 @@ from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.study import read_study
 from gearheat.scenarios.write import rig_text
 from gearheat.tools.solve.losses import oils_of
-from gearheat.tools.solve.settings import adjust, flat_of
-from gearheat.tools.solve.unchecked import find_unchecked
+from gearheat.tools.solve.settings import adjust, find_unchecked, flat_of
 
 OIL = {
     "catalogue": "oil",

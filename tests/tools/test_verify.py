@@ -7,9 +7,8 @@ from pathlib import Path
 
 import pytest
 from gearheat.model.errors import ScenarioError
-from gearheat.scenarios.golden import golden_rows
 from gearheat.scenarios.load import RIGS, list_rigs
-from gearheat.scenarios.published import Row, read_published
+from gearheat.scenarios.published import Row, golden_rows, read_published
 from gearheat.tools.docs.blocks import PAGES
 from gearheat.tools.verify.verdicts import CONTRADICTED, NOT_REPRODUCED, REPRODUCED, VERDICTS, Value, judge
 from gearheat.tools.verify.verify import law_of

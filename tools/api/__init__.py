@@ -29,9 +29,8 @@ if TYPE_CHECKING:
     from .tools.describe.shipped import Shipped as Shipped, shipped as shipped
     from .tools.diagnose.api import CardText as CardText, card as card, diagnose as diagnose, plan as plan
     from .tools.diagnose.asking import Diagnosis as Diagnosis, Outputs as Outputs, PlanAnswer as PlanAnswer
-    from .tools.export.export import export as export
+    from .tools.export.export import export as export, play as play
     from .tools.export.fmu import Exported as Exported
-    from .tools.export.play import play as play
     from .tools.films.film import FilmTable as FilmTable, film as film
     from .tools.rating.rate import MethodRating as MethodRating, rate_by_method as rate_by_method
     from .tools.solve.design import DesignAnswer as DesignAnswer, design as design
@@ -64,9 +63,8 @@ MODULES: dict[str, tuple[str, ...]] = {
     "tools.describe.shipped": ("Shipped", "shipped"),
     "tools.diagnose.api": ("card", "CardText", "diagnose", "plan"),
     "tools.diagnose.asking": ("Diagnosis", "Outputs", "PlanAnswer"),
-    "tools.export.export": ("export",),
+    "tools.export.export": ("export", "play"),
     "tools.export.fmu": ("Exported",),
-    "tools.export.play": ("play",),
     "tools.films.film": ("film", "FilmTable"),
     "tools.rating.rate": ("MethodRating", "rate_by_method"),
     "tools.solve.design": ("design", "DesignAnswer"),

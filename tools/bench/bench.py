@@ -26,9 +26,7 @@ from ...scenarios.measured.study import read_study
 from ..compare import campaign
 from ..show.console import answer, note, say, table
 from ..solve.settings import flat_of
-from . import fmu as bench_fmu
-from . import throughput
-from . import uncertainty as bench_uncertainty
+from . import fmu as bench_fmu, throughput, uncertainty as bench_uncertainty
 from .costs import rhs_s
 from .harness import timed
 

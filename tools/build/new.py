@@ -22,7 +22,7 @@ from ..describe.rig import Rig
 from ..show.console import writable, write
 from ..solve.settings import flat_of
 from ..solve.steady import conditions
-from . import sizing, sump
+from . import sizing
 from .sizing import APART, GAP, LIGHT, OVERHANG, SIDE, Unit, unit
 from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, BevelStage, PlanetaryStage, WormStage
 
@@ -163,10 +163,10 @@ def text(made: Unit, doc: str, speed: str, oil: str) -> str:
         "load": -made.turn * made.stages[0].T * made.ratio * efficiency,
         "oil": oil,
         "of_oil": catalogue("oil")[oil].values,
-        "bath": sump.bath(made),
-        "splash": sump.splash(made),
-        "below": sump.BELOW,
-        "reached": 100 * sump.REACHED,
+        "bath": sizing.bath(made),
+        "splash": sizing.splash(made),
+        "below": sizing.BELOW,
+        "reached": 100 * sizing.REACHED,
         "side": SIDE,
         "gap": GAP,
         "overhang": OVERHANG,
@@ -218,7 +218,7 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
     return (
         found
         | shape
-        | {"r": s.reach, "m": s.m_n, "height": sump.height_of_axes(made), "A_wet": sump.compute_wetted_area(s)}
+        | {"r": s.reach, "m": s.m_n, "height": sizing.height_of_axes(made), "A_wet": sizing.compute_wetted_area(s)}
     )
 
 
@@ -230,7 +230,7 @@ def _shaft(made: Unit, names: Sequence[str], k: int) -> dict[str, Any]:
             "name": f"{names[k]}_bearing_{end}",
             "bearing": bearing,
             "life": _num(life),
-            "dips": sump.stands_in_oil(made, bearing),
+            "dips": sizing.stands_in_oil(made, bearing),
         }
         for end, bearing, life in zip("ab", s.bearings, s.lives, strict=True)
     ]

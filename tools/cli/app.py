@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..show.console import guard
-from . import developers, diagnosis, fmu, measured, rigs, solve, verify
+from . import developers, diagnosis, fmu, measured, rigs, solve
 
 app = typer.Typer(
     name="gearheat",
@@ -50,7 +50,7 @@ PANELS = {
         diagnosis.card,
         measured.replay,
     ),
-    "Films, and proof": (verify.film, verify.verify, verify.verify_contact),
+    "Films, and proof": (developers.film, developers.verify, developers.verify_contact),
     "For developers": (developers.bench, developers.docs),
 }
 for _panel, _commands in PANELS.items():

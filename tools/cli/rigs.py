@@ -11,8 +11,7 @@ import gearheat as gh
 import typer
 
 from ..show import console
-from ..show.notes import print_outside, print_unchecked
-from ..show.stacked import print_stacked
+from ..show.notes import print_outside, print_stacked, print_unchecked
 from .options import Everything, Json, Rig
 
 

@@ -13,8 +13,7 @@ from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import read_card
 from ...scenarios.measured.logs import Log, read_log
 from ..diagnose.infer.logs import filter_of, season_of
-from ..diagnose.infer.replay import HOURS, Replayed, Rivals
-from ..diagnose.infer.replay import replay as replay_log
+from ..diagnose.infer.replay import HOURS, Replayed, Rivals, replay as replay_log
 from ..show.console import note
 from ..show.display import Display
 from ..show.picture import Picture

@@ -13,9 +13,7 @@ from ...scenarios.measured.readings import column_of, drives, join_readings, rea
 from ...scenarios.measured.study import load_rig, read_study
 from ..show.console import note
 from ..show.display import Answer
-from .errors import GROUPINGS, Comparison
-from .errors import compare as compare_rows
-from .rivals import Score, rivals
+from .errors import GROUPINGS, Comparison, Score, compare as compare_rows, rivals
 
 
 @dataclass(frozen=True, eq=False, repr=False)

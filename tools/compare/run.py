@@ -21,14 +21,12 @@ from ..export.fmu import write_fmu
 from ..show.columns import rows_text
 from ..show.console import as_json, folder, note, write
 from ..solve.losses import oils_of
-from ..solve.settings import adjust, flat_of
-from ..solve.unchecked import find_unchecked
+from ..solve.settings import adjust, find_unchecked, flat_of
 from . import campaign
-from .errors import Rows, compare, present
+from .errors import Rows, compare, present, rivals
 from .playing import Job
 from .report import render
 from .results import Errors, summarise
-from .rivals import rivals
 
 #: First columns of a row, the rest follow in the order they arise.
 ROW = ("point", "test", "direction", "oil", "T_oil_C", "T_wall_C", "T_amb_C", "loss_Nm", "P_loss_W", "efficiency")

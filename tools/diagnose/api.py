@@ -13,8 +13,7 @@ from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import Card
 from ...scenarios.measured.write import as_json, as_toml, default_card
 from ...scenarios.nuisances import usual_priors
-from ..show.console import as_json as json_text
-from ..show.console import write
+from ..show.console import as_json as json_text, write
 from ..show.display import Display, lines_of
 from .asking import Diagnosis, Outputs, PlanAnswer, ask, ask_plan
 from .request import MOST, PlanRequest, Request

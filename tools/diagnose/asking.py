@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, Literal, TypeVar
+from typing import Any, Literal
 
-from ...model.errors import DataError, GearheatError
-from ..show.console import as_json, file_of, progress_bar, writable, write
+from ..show.console import as_json, file_of, progress_bar, write
 from ..show.display import Display
 from .answer.findings import Findings
 from .answer.numbers import as_object
@@ -21,7 +20,6 @@ from .request import PlanRequest, Request, read, read_plan
 
 #: Kinds of pictures by the ending of their file's name.
 PICTURES: Mapping[str, Literal["png", "svg"]] = {".png": "png", ".svg": "svg"}
-T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -152,7 +150,7 @@ def ask(request: Request, outputs: Outputs | None = None) -> Diagnosis:
         problems.append("--predict needs a place for the result. Give --predictions FILE, too.")
     if outputs is not None and outputs.predictions is not None and request.predict is None:
         problems.append("--predictions needs the points to predict. Give --predict FILE, too.")
-    inputs = _checked(problems, request.files(), written, lambda: read(request))
+    inputs = read(request, written, problems)
     from .diagnosis import diagnosed  # what it needs loads slowly
 
     with progress_bar() as progress:
@@ -176,42 +174,8 @@ def ask_plan(request: PlanRequest, *, json: str | None = None, out: Path | None 
     if out is not None and not request.causes:
         problems.append("--out draws the distances of causes. Name them with --separate CAUSE,CAUSE.")
     given = {"--json": file_of(json), "--out": out}
-    files = {name: path for name, path in given.items() if path is not None}
-    inputs = _checked(problems, request.files(), files, lambda: read_plan(request))
+    inputs = read_plan(request, {name: path for name, path in given.items() if path is not None}, problems)
     from .planning import planned  # what it needs loads slowly
 
     with progress_bar() as progress:
         return PlanAnswer.model_construct(**dict(planned(inputs, progress)))
-
-
-def _checked(
-    problems: list[str], files: Iterable[tuple[str, Path]], written: Mapping[str, Path], step: Callable[[], T]
-) -> T:
-    """What is read, or all problems of files and options."""
-    problems = problems + shared(files, written)
-    found = None
-    try:
-        found = step()
-    except GearheatError as error:
-        problems += error.problems
-    try:
-        writable(*written.values())
-    except GearheatError as error:
-        problems += error.problems
-    if problems or found is None:
-        raise DataError(problems)
-    return found
-
-
-def shared(read: Iterable[tuple[str, Path]], written: Mapping[str, Path]) -> list[str]:
-    """Problems of files that are written over others.
-
-    Args:
-        read: option and file, of each that is read
-        written: option -> file that is written
-    """
-    taken, problems = {path.resolve(): name for name, path in read}, []
-    for name, path in written.items():
-        if (other := taken.setdefault(path.resolve(), name)) != name:
-            problems.append(f"{name} {path}: is the file of {other}, too. Give each its own.")
-    return problems

@@ -6,13 +6,14 @@ from collections.abc import Callable, Sequence
 
 from .answer import compose, pictures
 from .answer.channels import channel
-from .answer.decide import Decision, calmed, decided
+from .answer.decide import Decision, decide, temper
 from .answer.design import Effects, isolability
-from .answer.estimate import played
+from .answer.estimate import impacts, played
 from .answer.findings import About, Alarm, Findings, Gain, Invisible
 from .answer.gain import gains
 from .answer.predict import predictions
 from .answer.quality import data_quality
+from .answer.residuals import average_residuals
 from .infer.found import Found
 from .infer.weigh import weigh
 from .library.cause import Cause
@@ -52,19 +53,20 @@ def diagnosed(inputs: Inputs, progress: Progress) -> Findings:
     then("compiling the rig", 0.01)
     others = [inputs.points] if inputs.points is not None else []
     made = setting(inputs.scenario, inputs.card, data, inputs.reference, request.libraries, others)
-    found = weigh(
-        made.problem,
-        made.formulas,
-        request.alpha,
-        request.seed,
-        request.causes,
-        lambda stage, done: then(stage, 0.05 + 0.75 * done),
-        logs.causes if logs else (),
+    found = temper(
+        weigh(
+            made.problem,
+            made.formulas,
+            request.alpha,
+            request.seed,
+            request.causes,
+            lambda stage, done: then(stage, 0.05 + 0.75 * done),
+            logs.causes if logs else (),
+        )
     )
-    found = calmed(found)
     if logs:
         found = found.beside(logs.found.log_bayes_factor)
-    decision = decided(found)
+    decision = decide(found)
     wrong = decision.verdict != "consistent"
     held: Sequence[Gain] = ()
     if wrong and not request.quick:
@@ -115,13 +117,14 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
             draws=len(found.drawn),
         ),
         data_quality=data_quality(made, found, leader),
-        impact=compose.impacts(made, found, leader),
+        impact=impacts(found.problem, leader, made.nominal.ratios),
         gain=held[0] if held else None,
         gain_grouped=tuple(held[1:]),
         channels=tuple(channel(s) for s in data.sensors),
         played=played(found.problem, found.null, leader) if wrong else {},
         next_experiment=compose.next_experiments(made, found, decision) if wrong and not request.quick else (),
         isolability=isolability(Effects(found.first.candidates, found.first.white)),
+        residuals=average_residuals(found),
         rows=rows,
         views=pictures.views(found),
         pictures=pictures.pictures(found, leader, rows.quantities),

@@ -10,19 +10,16 @@ from pathlib import Path
 import numpy as np
 
 from ...model.errors import DataError
-from ...model.machines.roles import Roles
 from ...scenarios.measured.logs import Log, read_log
 from ...scenarios.measured.table import Sensor
-from .answer import channels, compose
-from .answer import findings as f
-from .answer.decide import Decision, calmed, decided
+from .answer import channels, compose, findings as f
+from .answer.decide import Decision, decide, temper
 from .answer.evidence import DataQuality, GrossReading, Picture, Rows
 from .answer.numbers import array
 from .infer.found import Found, Hypothesis
 from .infer.logs import Fleet, Progress, Question, fleet, problem_of, question
 from .infer.problem import Aside
 from .infer.weigh import weigh
-from .library.cause import Ranges
 from .library.knobs import moves
 from .model.formula import Formula
 from .model.logged import Logged
@@ -111,23 +108,12 @@ def composed(
     data, causes = problem.data, moves(known.knobs)
     names, read = [s.name for s in data.campaign.sensors], [s.name for s in data.read]
     formulas = tuple(Formula(cause, form, names, read) for cause in causes for form in cause.forms)
-    made = Setting(
-        inputs.scenario,
-        inputs.scenario.spec,
-        inputs.card,
-        Roles.of(inputs.scenario.spec),
-        Ranges({}, {}, {}, 0.0, 0.0),
-        causes,
-        (),
-        formulas,
-        data.plant,
-        problem,
-        {},
-    )
-    found = calmed(
+    scenario = inputs.scenario
+    made = Setting(scenario, scenario.spec, inputs.card, causes, formulas, data.plant, problem, {})
+    found = temper(
         weigh(problem, formulas, request.alpha, request.seed, request.causes, lambda t, p: progress(t, 0.62 + 0.2 * p))
     )
-    decision = decided(found)
+    decision = decide(found)
     told = _findings(made, found, decision, inputs, logs, reference, siblings)
     if decision.verdict != "consistent" and not request.quick:
         held = _gain(known, asked, found, problem.spans, lambda done: progress("spans left out", 0.82 + 0.16 * done))

@@ -11,7 +11,7 @@ from ...model.errors import DataError
 from .answer.design import Effects, design, isolability
 from .answer.experiments import experiments
 from .answer.grid import planned_campaign
-from .answer.plan import Plan, Planner
+from .answer.plan import Plan, rank_experiments
 from .infer.screen import changes, samples
 from .request import PlanInputs, unknown_causes
 from .setting import setting
@@ -58,5 +58,5 @@ def planned(inputs: PlanInputs, progress: Callable[[str, float], None]) -> Plan:
         raise DataError(f"--separate: {', '.join(scatter)} is a scatter, which a plan does not judge. Leave it out.")
     places = [k for k, c in enumerate(candidates) if c.id in request.causes]
     some = [candidates[k] for k in places]
-    found = design(made, problem, look, noise, some, effects[:, places], experiments(campaign))
-    return Planner(found, request.causes, {c.id: c for c in made.causes}).plan(common, whole.visible)
+    found = design(made, problem, look, noise, some, effects[:, places], experiments(campaign, made.nominal.value))
+    return rank_experiments(found, request.causes, {c.id: c for c in made.causes}, common, whole)

@@ -14,10 +14,10 @@ from ...scenarios.measured.checks import outlying, same_as_reference, too_small
 from ...scenarios.measured.condense import condensed
 from ...scenarios.measured.invisible import invisible
 from ...scenarios.measured.read import read_campaign
-from ...scenarios.measured.samples import read_samples
-from ...scenarios.measured.series import series_of
+from ...scenarios.measured.series import read_samples, series_of
 from ...scenarios.measured.table import Campaign
 from ...scenarios.scenario import Scenario
+from ..show.console import writable
 
 T = TypeVar("T")
 
@@ -107,16 +107,18 @@ class Inputs:
         return {} if self.data is None else invisible(self.data, logged=bool(self.request.logs or self.data.series))
 
 
-def read(request: Request) -> Inputs:
+def read(request: Request, written: Mapping[str, Path] | None = None, problems: Iterable[str] = ()) -> Inputs:
     """Read and check all files but logs and libraries.
 
     Args:
         request: files and options
+        written: option -> file that will be written
+        problems: that are known already
 
     Raises:
         DataError: all problems of files and options at once
     """
-    reader = _Reader(request.rig, request.card, request.problems())
+    reader = _Reader(request, written or {}, problems)
     data = reader.logged(reader.table(request.data), request.series)
     reference = reader.logged(reader.table(request.reference), request.reference_series)
     points = reader.table(request.predict, points=True)
@@ -172,16 +174,11 @@ class PlanInputs:
     points: Campaign | None
 
 
-def read_plan(request: PlanRequest) -> PlanInputs:
-    """Read and check all files of a plan but libraries.
-
-    Args:
-        request: files and options
-
-    Raises:
-        DataError: all problems of files and options at once
-    """
-    reader = _Reader(request.rig, request.card, request.problems())
+def read_plan(
+    request: PlanRequest, written: Mapping[str, Path] | None = None, problems: Iterable[str] = ()
+) -> PlanInputs:
+    """Read and check all files of a plan but libraries, as `read` does."""
+    reader = _Reader(request, written or {}, problems)
     points = reader.table(request.points, points=True)
     return PlanInputs(request, *reader.checked(), points)
 
@@ -201,6 +198,15 @@ def unknown_causes(names: Iterable[str], known: Collection[str]) -> list[str]:
     return problems
 
 
+def _shared(read: Iterable[tuple[str, Path]], written: Mapping[str, Path]) -> list[str]:
+    """Problems of files that are written over others, each by the name of its option."""
+    taken, problems = {path.resolve(): name for name, path in read}, []
+    for name, path in written.items():
+        if (other := taken.setdefault(path.resolve(), name)) != name:
+            problems.append(f"{name} {path}: is the file of {other}, too. Give each its own.")
+    return problems
+
+
 def _lost(files: Iterable[tuple[str, Path]]) -> list[str]:
     return [f"{name} {path}: there is no such file." for name, path in files if not path.is_file()]
 
@@ -208,10 +214,12 @@ def _lost(files: Iterable[tuple[str, Path]]) -> list[str]:
 class _Reader:
     """Reads rig, card and tables, collecting problems; nothing of it outlives the reading."""
 
-    def __init__(self, rig: RigLike, card: Path | None, problems: list[str]) -> None:
-        self.problems = problems
-        self.card = self._tried(lambda: read_card(card)) if card is None or card.is_file() else None
-        self.scenario = self._tried(lambda: scenario_of(rig))
+    def __init__(self, request: Request | PlanRequest, written: Mapping[str, Path], problems: Iterable[str]) -> None:
+        self.problems = [*problems, *request.problems(), *_shared(request.files(), written)]
+        card = request.card
+        self.card = self._try(lambda: read_card(card)) if card is None or card.is_file() else None
+        self.scenario = self._try(lambda: scenario_of(request.rig))
+        self._try(lambda: writable(*written.values()))
 
     def table(self, path: Path | None, *, points: bool = False) -> Campaign | None:
         """A table; None where there is none, or something is wrong with it."""
@@ -219,17 +227,17 @@ class _Reader:
         if path is None or scenario is None or not path.is_file():
             return None
         card = self.card or Card()  # a table can be read where the card is wrong, to tell the problems of both
-        return self._tried(lambda: read_campaign(path, scenario, card, points=points))
+        return self._try(lambda: read_campaign(path, scenario, card, points=points))
 
     def logged(self, campaign: Campaign | None, path: Path | None) -> Campaign | None:
         """A table with the logged courses of its tests, where there are any."""
         scenario, card = self.scenario, self.card or Card()
         if path is None or scenario is None or not path.is_file():
             return campaign
-        samples = self._tried(lambda: read_samples(path, scenario, card))
+        samples = self._try(lambda: read_samples(path, scenario, card))
         if campaign is None or samples is None:
             return campaign
-        return replace(campaign, series=self._tried(lambda: series_of(samples, campaign)))
+        return replace(campaign, series=self._try(lambda: series_of(samples, campaign)))
 
     def checked(self) -> tuple[Scenario, Card]:
         """Rig and card, or all problems."""
@@ -237,7 +245,7 @@ class _Reader:
             raise DataError(self.problems)
         return self.scenario, self.card
 
-    def _tried(self, step: Callable[[], T]) -> T | None:
+    def _try(self, step: Callable[[], T]) -> T | None:
         try:
             return step()
         except GearheatError as error:

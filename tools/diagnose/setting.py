@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
@@ -17,7 +17,7 @@ from ...scenarios.measured.table import Campaign
 from ...scenarios.nuisances import Nuisance, nuisances
 from ...scenarios.scenario import Scenario
 from .infer.problem import Problem
-from .library.cause import Cause, Ranges
+from .library.cause import Cause
 from .library.forms import Context
 from .library.registry import library
 from .library.thin_films import thin_film_friction
@@ -41,19 +41,16 @@ class Setting:
     scenario: Scenario
     spec: Spec
     card: Card
-    roles: Roles
-    ranges: Ranges
     causes: tuple[Cause, ...]
-    nuisances: tuple[Nuisance, ...]
     formulas: tuple[Formula, ...]
     plant: Plant
     problem: Problem
     oils: dict[str, dict[str, float]]
 
     @cached_property
-    def ratios(self) -> Mapping[str, float]:
-        """Speed of each shaft end over that of the first that turns."""
-        return Nominal(drive_by(self.scenario, self.problem.data.campaign.sensors)).ratios
+    def nominal(self) -> Nominal:
+        """Steady states of the rig as its file has it."""
+        return Nominal(drive_by(self.scenario, self.problem.data.campaign.sensors))
 
 
 def setting(
@@ -100,4 +97,4 @@ def setting(
     plant = Plant.of(spec, [*forms, *known], tuple(knobs), [s.reads for s in data.given], shown, tried)
     observed = [Observed(plant, c, (*known, day), oils, point) for c in (data, reference) if c is not None]
     problem = Problem(observed, card.day_cooling_sd)
-    return Setting(scenario, spec, card, roles, ranges, causes, known, formulas, plant, problem, oils)
+    return Setting(scenario, spec, card, causes, formulas, plant, problem, oils)

@@ -1,12 +1,19 @@
-"""The web site: pages and generated reference, put into one folder and built by Sphinx."""
+"""The web site: pages and generated reference, put into one folder and built by Sphinx.
+
+The program's own pages are written here: its commands with their options, the keys of their JSON, the modules.
+"""
 
 from __future__ import annotations
 
+import contextlib
+import json
 import re
+import shlex
 import shutil
 import tempfile
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from importlib.metadata import version
+from importlib.resources import files
 from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
@@ -15,10 +22,12 @@ from typer.core import TyperGroup
 
 from ...model.errors import GearheatError
 from ..show.console import folder, note
-from . import commands, reference
-from .blocks import FENCE, MARKS, PAGES, run_pages
-from .laws import fill_blocks
-from .markdown import TABLES
+from . import reference
+from .blocks import FENCE, MARKS, PAGES, call, run_pages
+from .markdown import TABLES, code, page
+from .reference import fill_blocks
+
+DUTY = "time [min],input.w [rpm],output.tau [N.m],room.T [degC]\n0,1450,-500,20\n10,1450,-500,20\n"
 
 
 def docs_command(program: TyperGroup, public: Mapping[str, Any], out: Path, run: str) -> None:
@@ -75,12 +84,12 @@ def gather(program: TyperGroup, public: Mapping[str, Any], source: Path) -> Path
     """
     shutil.copytree(PAGES, source)
     place = source / "generated"
-    for name, text in (*reference.pages(), *commands.pages(program, public)):
+    for name, text in (*reference.pages(), *list_program_pages(program, public)):
         (place / name).parent.mkdir(parents=True, exist_ok=True)
         (place / name).write_text(text, encoding="utf-8")
     reference.copy_pictures(place)
-    for page in source.rglob("*.md"):
-        page.write_text(fill_blocks(add_captions(page.read_text(encoding="utf-8"))), encoding="utf-8")
+    for path in source.rglob("*.md"):
+        path.write_text(fill_blocks(add_captions(path.read_text(encoding="utf-8"))), encoding="utf-8")
     return source
 
 
@@ -95,3 +104,66 @@ def add_captions(text: str) -> str:
         return f"```{{code-block}} {language}\n:caption: {file}\n\n{body}```"
 
     return FENCE.sub(block, text)
+
+
+def list_program_pages(program: TyperGroup, public: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Path below the folder of generated pages, and text, of every page.
+
+    Args:
+        program: the command line
+        public: functions and classes of `gearheat` by name
+    """
+    commands = sorted(program.commands.items())
+    yield "commands.md", page("commands", commands=commands, named=_named, default=_default)
+    schema = json.loads(files("gearheat.tools.diagnose.report").joinpath("diagnosis.schema.json").read_text("utf-8"))
+    with tempfile.TemporaryDirectory() as folder, contextlib.chdir(folder):
+        Path("duty.csv").write_text(DUTY, encoding="utf-8")
+        answers = {command: _keys_of(program, command) for command in TABLES["asked"]}
+    yield "json.md", page("json", answers=answers, schema=schema)
+    yield "api/index.md", page("api", modules=TABLES["modules"])
+    yield "api/gearheat.md", page("public", members=list(_public(public)))
+    for module in TABLES["modules"]:
+        yield f"api/{module}.md", page("module", name=module)
+
+
+def _named(param: Any) -> str:
+    """An argument or an option as it is written."""
+    if param.opts[0].startswith("-"):
+        return ", ".join(code(name) for name in (*param.opts, *param.secondary_opts))
+    return code((param.metavar or param.name).upper())
+
+
+def _default(param: Any) -> str:
+    known = param.default is not None and not param.required and not callable(param.default)
+    return code(param.default) if known else ""
+
+
+def _keys_of(program: TyperGroup, command: str) -> dict[str, str]:
+    """Every key of the JSON of a command, with its type."""
+    ended, out, said = call(program, [*shlex.split(command), "--json", "-"])
+    if ended:
+        raise GearheatError(f"docs: gearheat {command} ends with {ended}: {said}")
+    return dict(_keys(json.loads(out)))
+
+
+def _keys(value: Any, path: str = "") -> Iterator[tuple[str, str]]:
+    """Every path into a value with its type; names that are data, such as parts or columns, are one path."""
+    if isinstance(value, Mapping) and value:
+        named = path in TABLES["named"] or (path and not all(key.isidentifier() for key in value))
+        for key, entry in value.items():
+            yield from _keys(entry, f"{path}.*" if named else f"{path}.{key}".strip("."))
+    elif isinstance(value, list) and value:
+        for entry in reversed(value):  # of several types that of the first
+            yield from _keys(entry, f"{path}[]")
+    else:
+        kinds = {"str": "text", "NoneType": "null", "bool": "true or false", "int": "number", "float": "number"}
+        yield path, kinds.get(type(value).__name__, f"empty {type(value).__name__}")
+
+
+def _public(public: Mapping[str, Any]) -> Iterator[tuple[str, str, str]]:
+    """Public names with their places and kinds, functions first, but for those whose module has a page."""
+    pages = {f"gearheat.{module}" for module in TABLES["modules"]}
+    members = {name: member for name, member in public.items() if member.__module__ not in pages}
+    for name, member in sorted(members.items(), key=lambda item: (isinstance(item[1], type), item[0])):
+        kind = "class" if isinstance(member, type) else "function"
+        yield name, f"{member.__module__}.{member.__qualname__}", kind

@@ -1,12 +1,18 @@
-"""The export of a rig, as an FMU or as a system of FMUs."""
+"""The export of a rig, as an FMU or as a system of FMUs, and FMUs played over a duty."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+from ...fmu.described import Described, describe, settable
 from ...fmu.description import Owner
+from ...model.errors import FmuError, GearheatError, ScenarioError, suggestion
+from ...model.units import to_si
+from ...scenarios.duty import read_duty
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of
+from ..show.console import note
+from ..solve.simulate import Duty, TimeSeries, duty_file
 from .fmu import Asked, Exported, export_rig
 from .systems import export_system
 
@@ -76,3 +82,97 @@ def export(
         uncertainty=uncertainty,
     )
     return export_system(ssp, asked) if ssp else export_rig(asked)
+
+
+def play(fmu: str | Path, duty: Duty, *, step: str = "60 s", set: Settings = (), trust: bool = False) -> TimeSeries:
+    """Play an FMU over a duty; one that was not made here only if it is trusted.
+
+    Args:
+        fmu: its file
+        duty: CSV file with time and inputs, units in the header, or a DataFrame with the same column names
+        step: communication step
+        set: start values of parameters and states by name
+        trust: run native code of an FMU that was not made here
+
+    Raises:
+        GearheatError: all that is wrong with FMU, duty or what is set; the run fails
+
+    Example:
+        >>> import gearheat as gh
+        >>> gh.play("planetary.fmu", "duty.csv").plot("oil.T")  # doctest: +SKIP
+    """
+    from ...fmu.play import Player
+    from ...fmu.unpacking import is_trusted
+
+    fmu = Path(fmu)
+    dt = to_si(step, "s", name="--step")
+    about = describe(fmu)
+    made_by = about.description.generationTool or "an unknown tool"
+    if not is_trusted(fmu):
+        if not trust:
+            raise FmuError(
+                f"{fmu}: was not made by gearheat on this machine (but by {made_by}), and playing it runs native code"
+                " of it with your rights. Add --trust if you trust its maker."
+            )
+        note(f"{fmu}: running native code of {made_by}")
+    with Player(about) as player, duty_file(duty) as path:
+        schedule = read_duty(path, about.quantities("input"))
+        start = _start(about, assignments_of(set, lambda: about.quantities("start")))
+        first = start | {name: float(values[0]) for name, values in schedule.values.items()}
+        start = _at_room(about, first) | start
+        inputs = {name: (schedule.time, values) for name, values in schedule.values.items()}
+        played = player.run(inputs, schedule.stop, dt, begin=schedule.start, start=start)
+    units = {name: q.unit for name, q in about.quantities("input", "output").items()}
+    columns = {name: played.values[:, k] for k, name in enumerate(played.names)}
+    before = {"schema": "gearheat.play/1", "fmu": str(fmu), "out": None, "plot": None}
+    return TimeSeries(f"{fmu.stem}, {path.stem}", played.time, columns, units, (before, {}))
+
+
+def _at_room(about: Described, first: Mapping[str, float]) -> dict[str, float]:
+    """Start temperatures of an FMU of gearheat that are its room's, where the run gives the room another one.
+
+    Args:
+        about: description of the FMU
+        first: what the run sets, and the first value of what it gives
+    """
+    if not (about.description.generationTool or "").startswith("gearheat"):
+        return {}
+    warm = [v for v in about.variables.values() if v.unit == "K" and v.start and settable(v)]
+    rooms = {float(v.start): first[v.name] for v in warm if v.causality == "input" and v.name in first}
+    states = [v for v in warm if v.causality in ("output", "local") and float(v.start) in rooms]
+    return {v.name: rooms[float(v.start)] for v in states}
+
+
+def _start(about: Described, assignments: Sequence[str]) -> dict[str, float]:
+    """Start values from texts NAME=VALUE, in SI. Raises ScenarioError with all problems at once."""
+    known, shown, wholes = about.quantities("start"), about.quantities("output"), about.wholes()
+    values: dict[str, float] = {}
+    problems: list[str] = []
+    for text in assignments:
+        name, _, written = (part.strip() for part in text.partition("="))
+        try:
+            if name in wholes:
+                values[name] = _parse_whole(name, written, wholes[name])
+            elif name in known:
+                values[name] = to_si(written, known[name].unit, name=name)
+            else:
+                every = [*known, *wholes]
+                why = f" It is calculated: {shown[name].doc}." if name in shown else suggestion(name, every)
+                problems.append(f'{about.path.name}: "{name}" cannot be set.{why}')
+        except GearheatError as error:
+            problems += error.problems
+    if problems:
+        raise ScenarioError(problems)
+    return values
+
+
+def _parse_whole(name: str, written: str, items: Mapping[str, int]) -> int:
+    """A whole number, or that of an item by its name."""
+    if written in items:
+        return items[written]
+    if items:
+        raise ScenarioError(f'{name} = "{written}" is not known. Choose one of: {", ".join(items)}.')
+    try:
+        return int(written)
+    except ValueError:
+        raise ScenarioError(f'{name} = "{written}" is no whole number.') from None

@@ -28,10 +28,9 @@ from ...scenarios.scenario import Scenario
 from ..show.console import folder, lasting, progress_bar, writable
 from ..show.display import Answer
 from ..show.network import network_svg
-from ..solve.settings import Drive, adjust, drive_at, flat_of
+from ..solve.settings import Drive, adjust, drive_at, find_unchecked, flat_of
 from ..solve.simulate import first_temperatures
 from ..solve.uncertainties import collect_uncertain
-from ..solve.unchecked import find_unchecked
 from .extras import check_fmu, experiment, reference_duty, reference_run, sets_of_oils, write_extras
 from .page import figures_of, text_of
 

@@ -21,7 +21,7 @@ from ...model.units import to_si
 from ...scenarios.document import read_toml, sources_of
 from ...scenarios.scenario import Scenario
 from ...scenarios.values import oil_values
-from ..solve.contacts import values_of
+from ..solve.losses import values_of
 from ..solve.sampling import Axis, axes, read
 from ..solve.settings import flat_of
 from ..solve.steady import conditions

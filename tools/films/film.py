@@ -124,7 +124,7 @@ def film(
     failed = [f"{_name_point(case, point)}: {WRONG[status][1]}" for point, status in wrong]
     fitted = read_film_map(out)
     if drawn is not None:
-        from ..show.plotting import write_picture
+        from ..show.drawing import write_picture
 
         write_picture(drawn, _picture(case, points, kept))
     law, units = fitted.law, {name: quantity.unit for name, quantity in AXES.items()}

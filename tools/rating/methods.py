@@ -15,8 +15,7 @@ from typing import Any
 from scipy.optimize import brentq
 
 from ...model.core.component import Component
-from ...model.laws import iso14179_1 as part_1
-from ...model.laws import iso14179_2 as part_2
+from ...model.laws import iso14179_1 as part_1, iso14179_2 as part_2
 from ...model.laws.mesh import friction_schlenk, load_per_face_width, mesh_loss, tooth_loss_factor
 from ...model.laws.radiation import radiation_coefficient
 from ...model.laws.rolling import needle_torque_load, needle_torque_viscous

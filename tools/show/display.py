@@ -103,7 +103,7 @@ class Display:
         Raises:
             DataError: it cannot be written
         """
-        from .plotting import write_picture
+        from .drawing import write_picture
 
         if (picture := self.drawing()) is None:
             return None

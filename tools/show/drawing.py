@@ -1,14 +1,20 @@
-"""What all static pictures share: style, colours, SVG text. Same values, same bytes."""
+"""What all static pictures share: style, colours, files (SVG, PNG, or a page that zooms). Same values, same bytes."""
 
 from __future__ import annotations
 
 import io
 import re
+from pathlib import Path
 from typing import Any
 
 import matplotlib as mpl
+from markupsafe import Markup
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
+
+from .console import write
+from .pages import OWN, as_data, html_table, load_plot_library, page
+from .picture import Picture
 
 #: Colours that stay apart for colour-blind readers (Okabe and Ito 2008).
 COLOURS = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#000000")
@@ -24,6 +30,8 @@ STYLE: Any = {
     "axes.spines.right": False,
     "legend.frameon": False,
 }
+#: Width and height of a figure that is made for a result [inch].
+SIZE = (8.0, 4.5)
 
 
 def svg(figure: Figure) -> str:
@@ -57,3 +65,34 @@ def legend(figure: Figure, panel: Axes) -> None:
     columns = max(1, min(4 if len(labels) > 5 else 5, fit))
     with mpl.rc_context(STYLE):
         figure.legend(handles, labels, loc="outside lower center", ncols=columns, fontsize=9)
+
+
+def write_picture(path: Path, picture: Picture) -> None:
+    """Write a picture to a file whose ending says its kind, see `console.plottable`."""
+    kind = path.suffix.lower()
+    if kind == ".png":
+        write(path, png(picture.figure))
+        return
+    drawn = svg(picture.figure)
+    write(path, drawn if kind == ".svg" else _page(picture, drawn))
+
+
+def _page(picture: Picture, drawn: str) -> str:
+    return page(
+        OWN,
+        "plot.html",
+        picture=picture,
+        figure=Markup(drawn),
+        table=html_table(picture.columns, picture.rows) if picture.rows else "",
+        data=as_data(picture.courses) if picture.courses else "",
+        **load_plot_library(),
+    )
+
+
+def axes_or_new(axes: Axes | None) -> Axes:
+    """Axes to draw on: those given, else those of a new figure."""
+    if axes is not None:
+        return axes
+    from matplotlib import pyplot
+
+    return pyplot.figure(figsize=SIZE, layout="constrained").add_subplot()

@@ -15,9 +15,8 @@ from ...model.units import from_si, show_unit
 from ...scenarios.given import RigLike, Settings, assignments_of, scenario_of, spell
 from ...scenarios.scenario import Scenario, parse_assignments
 from ..show.display import HEAD, Answer, Quantities
-from .settings import adjust, flat_of
+from .settings import adjust, find_unchecked, flat_of
 from .steady import conditions, first_of, point_of
-from .unchecked import find_unchecked
 
 #: Name of all entries of a catalogue that fit.
 ALL = "all"

@@ -11,9 +11,11 @@ import numpy as np
 
 from ...model.core.flat import FlatModel
 from ...model.errors import DataError, ScenarioError
-from ...model.parts.contacts import ContactTable
+from ...model.machines.spec import assemble
+from ...model.parts.contacts import ContactTable, TellsContacts, TellsFilmContact
 from ...model.parts.shaft import Efficiency
 from ...model.run.point import point
+from ...model.run.result import Result
 from ...model.run.rows import evaluate
 from ...model.run.steady import steady, steady_table
 from ...scenarios.entries import catalogue
@@ -23,10 +25,8 @@ from ...scenarios.measured.readings import about
 from ...scenarios.measured.study import Measured, read_study
 from ...scenarios.scenario import Scenario
 from ..show.display import Answer
-from .contacts import contacts_at, part_with_contacts
-from .settings import adjust, choice_paths, flat_of
+from .settings import adjust, choice_paths, find_unchecked, flat_of
 from .steady import conditions, outside_of
-from .unchecked import find_unchecked
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -183,3 +183,52 @@ def contacts_at_operating_point(scenario: Scenario) -> ContactTable:
 
 def _flow_paths(scenario: Scenario) -> list[str]:
     return [path for path in choice_paths(scenario.spec) if path.endswith(".power_flow")]
+
+
+def part_with_contacts(scenario: Scenario) -> TellsContacts:
+    """The part of a rig that tells its contacts.
+
+    Args:
+        scenario: the rig, with its values
+
+    Raises:
+        ScenarioError: no part does, or several do
+    """
+    parts = [part for part in assemble(scenario.spec).parts if isinstance(part, TellsContacts)]
+    if not parts:
+        kinds = ", ".join(sorted(kind for kind, cls in scenario.spec.types.items() if hasattr(cls, "contact_table")))
+        raise ScenarioError(
+            f"{scenario.name}: no part has a table of contacts. Leave out --contacts, or take a rig with: {kinds}."
+        )
+    if len(parts) > 1:
+        names = ", ".join(part.name for part in parts)
+        raise ScenarioError(f"{scenario.name}: several parts have contacts: {names}. Take a rig with one of them.")
+    return parts[0]
+
+
+def values_of(part: TellsContacts | TellsFilmContact, flat: FlatModel, result: Result) -> dict[str, float]:
+    """Parameters and outputs of a part at a steady state, by key, in SI.
+
+    Args:
+        part: the part
+        flat: the model that was run
+        result: one steady point of it
+    """
+    start = f"{part.name}."
+    found = {q.name: q.start for q in flat.parameters} | {name: float(c[0]) for name, c in result.columns.items()}
+    return {name.removeprefix(start): value for name, value in found.items() if name.startswith(start)}
+
+
+def contacts_at(scenario: Scenario, flat: FlatModel, result: Result) -> ContactTable:
+    """The contacts of a rig at a steady state.
+
+    Args:
+        scenario: the rig, with its values
+        flat: its model
+        result: one steady point of it
+
+    Raises:
+        ScenarioError: no part tells its contacts, or several do
+    """
+    part = part_with_contacts(scenario)
+    return part.contact_table(values_of(part, flat, result))

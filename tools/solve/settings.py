@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ...fmu.effective import effective
 from ...model.core.declare import Choice, Parameter, list_declared
 from ...model.core.flat import FlatModel
 from ...model.core.flatten import flatten
@@ -148,3 +149,16 @@ def _list_filled_sources(scenario: Scenario, assignments: Sequence[str]) -> dict
 
 def _name(assignment: str) -> str:
     return assignment.partition("=")[0].strip()
+
+
+def find_unchecked(scenario: Scenario, flat: FlatModel, filled: Iterable[tuple[str, str]] = ()) -> list[dict[str, Any]]:
+    """Catalogue entries in use with values that were never checked against a print; values without effect left out.
+
+    Args:
+        scenario: the rig as set
+        flat: its model
+        filled: part and name of further entries that a run fills parts with, such as the oils of a campaign
+    """
+    acting = {q.name for q in effective(flat).parameters}
+    found = {entry: [p for p in paths if p in acting] for entry, paths in scenario.unchecked(filled).items()}
+    return [{"catalogue": kind, "entry": name, "values": paths} for (kind, name), paths in found.items() if paths]

@@ -22,9 +22,8 @@ from ...scenarios.scenario import Scenario
 from ..show.columns import titled
 from ..show.display import Columns, optional
 from ..show.picture import Picture
-from .settings import adjust, flat_of
+from .settings import adjust, find_unchecked, flat_of
 from .steady import outside_of
-from .unchecked import find_unchecked
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -124,8 +123,7 @@ class TimeSeries(Columns):
         Raises:
             DataError: it cannot be read
         """
-        from ...scenarios.columns import in_si, split_unit
-        from ...scenarios.csv_table import read_cells
+        from ...scenarios.csv_table import in_si, read_cells, split_unit
 
         header, rows = read_cells(Path(path))
         numbers = np.array([[float(text) for text in cells] for _, cells in rows])
@@ -137,7 +135,7 @@ class TimeSeries(Columns):
 
     def drawing(self) -> Picture:
         """The temperatures as a picture that a page can zoom."""
-        from ..show.courses import courses
+        from ..show.fields import courses
 
         return courses(self.name, self.time, self.columns, self.units)
 
@@ -148,7 +146,7 @@ class TimeSeries(Columns):
             names: of the columns; all temperatures if none is given
             axes: where to draw; new ones if None
         """
-        from ..show.plotting import axes_or_new
+        from ..show.drawing import axes_or_new
 
         panel = axes_or_new(axes)
         drawn = names or [name for name in self.columns if self.units[name] == "K"]

@@ -18,8 +18,7 @@ from ...scenarios.scenario import Scenario
 from ..show.display import HEAD, Quantities
 from ..show.heat_paths import heat_flows, heat_paths
 from ..show.picture import Picture
-from .settings import adjust, flat_of
-from .unchecked import find_unchecked
+from .settings import adjust, find_unchecked, flat_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -94,7 +93,7 @@ class SteadyState(Quantities):
         Args:
             axes: where to draw; new ones if None
         """
-        from ..show.plotting import axes_or_new
+        from ..show.drawing import axes_or_new
 
         panel, losses = axes_or_new(axes), self.losses()
         panel.barh(list(losses), list(losses.values()))

@@ -24,13 +24,12 @@ from ...scenarios.duty import duty_names, read_duty
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.scenario import Scenario
 from . import sampling
-from .settings import adjust, flat_of
+from .settings import adjust, find_unchecked, flat_of
 from .simulate import first_temperatures
 from .steady import leading_outputs, outside_of
 from .sweep_file import SUFFIXES, Column
 from .sweep_rows import TELLING, Job
 from .uncertainties import UNCERTAINTY, draw_values, reasons, shares
-from .unchecked import find_unchecked
 
 #: Rows of a block: what an interruption may cost, and what a worker of a cluster gets at a time.
 BLOCKS = {"steady": 8192, "warmup": 256}

@@ -14,8 +14,7 @@ from ...model.errors import GearheatError, ScenarioError
 from ...model.sources import LawInfo, sources
 from ...model.units import si_of
 from ...scenarios.given import RigLike, scenario_of
-from ...scenarios.golden import golden_rows
-from ...scenarios.published import Row, read_published
+from ...scenarios.published import Row, golden_rows, read_published
 from ...scenarios.scenario import Scenario
 from ...scenarios.shipped import list_rigs
 from ..describe.description import errata_of

@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ..plan import Plan
-from . import misreadings as i
-from . import physical as p
+from . import misreadings as i, physical as p
 from .rig import Around, Family, Fault, Now, Stage
 
 CAUSES: Mapping[str, Family] = {

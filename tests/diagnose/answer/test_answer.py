@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from copy import copy
 from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 from gearheat.tools.diagnose.answer import estimate, gain
-from gearheat.tools.diagnose.answer.decide import calmed, decided
+from gearheat.tools.diagnose.answer.decide import POWER, decide, invisible, temper
 from gearheat.tools.diagnose.answer.design import Effects, alike, of_search, ranked
 from gearheat.tools.diagnose.answer.experiments import added, experiments
 from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
 from gearheat.tools.diagnose.answer.predict import simulated
 from gearheat.tools.diagnose.answer.quality import adequacy, scatters
+from gearheat.tools.diagnose.answer.residuals import average_residuals
+from gearheat.tools.diagnose.answer.rivals import constant_cooling
 from gearheat.tools.diagnose.infer import gross
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Aside, Problem
@@ -27,29 +30,43 @@ CAUSES = (TRUE, "cooling.air", "losses.churning", "sensor.oil_temp.drift")
 OFFSET = 3.0
 
 
-def test_calm_probabilities_keep_their_order_and_that_of_nothing(wrong: tuple[Setting, Found]) -> None:
+def test_tempered_probabilities_keep_their_order_and_that_of_nothing(wrong: tuple[Setting, Found]) -> None:
     found = wrong[1]
-    calm = calmed(found)
-    before, after = decided(found), decided(calm)
+    tempered = temper(found)
+    before, after = decide(found), decide(tempered)
     assert [j.causes for j in before.joints if j.causes] == [j.causes for j in after.joints if j.causes]
-    assert calm.probabilities.sum() == pytest.approx(1.0)
+    assert tempered.probabilities.sum() == pytest.approx(1.0)
     assert after.joints[0].chance.probability < before.joints[0].chance.probability
     nothing = [not h.causes and not h.extras for h in found.hypotheses]
-    assert calm.probabilities[nothing] == pytest.approx(found.probabilities[nothing])
+    assert tempered.probabilities[nothing] == pytest.approx(found.probabilities[nothing])
 
 
-def test_what_predicts_the_same_is_as_likely_as_its_prior(wrong: tuple[Setting, Found]) -> None:
+def test_a_cause_that_the_design_cannot_show_leads_no_answer(wrong: tuple[Setting, Found]) -> None:
     found = wrong[1]
-    top = found.hypotheses[0]
-    same = [replace(top, causes=c, log_joint=top.log_joint - 20.0) for c in (("cooling.air",), (TRUE, "cooling.air"))]
-    others = [h for h in found.hypotheses if len(h.causes) == 1]
-    far = max(others, key=lambda h: np.linalg.norm(h.fit.look.shown - top.fit.look.shown))
-    hypotheses = (top, *same, replace(far, causes=("losses.churning",), log_joint=top.log_joint - 20.0))
-    logs = np.array([h.log_joint for h in hypotheses]) - top.log_joint
-    few = replace(found, hypotheses=hypotheses, probabilities=np.exp(logs) / np.exp(logs).sum())
-    alike, more, apart = calmed(few).probabilities[1:] / calmed(few).probabilities[0]
-    assert alike == pytest.approx(np.exp(found.prior(["cooling.air"]) - found.prior([TRUE])))
-    assert max(more, apart) < 1e-4
+    assert invisible(found) == set()
+    own = np.array([c.id == TRUE for c in found.first.candidates])
+    faint = replace(found.first, white=np.where(own, 1e-3, 1.0) * found.first.white)
+    hidden = replace(found, first=faint)
+    assert invisible(hidden) == {TRUE}
+    assert any(TRUE in h.causes for h in found.hypotheses)
+    decision = decide(temper(hidden))
+    assert TRUE not in decision.members
+    assert sum(j.chance.probability for j in decision.joints) == pytest.approx(1.0)
+
+
+def test_a_power_of_the_likelihood_ratio_keeps_the_prior(wrong: tuple[Setting, Found]) -> None:
+    """Answers as likely as their priors stay so; a ratio of evidence counts to the power."""
+    found = wrong[1]
+    nothing = next(h for h in found.hypotheses if not h.causes and not h.extras)
+    (one, other), prior = [next(h for h in found.hypotheses if h.causes == (c,)) for c in CAUSES[:2]], found.prior
+    for ratio in (0.0, 5.0):
+        hypotheses = tuple(
+            replace(h, log_joint=prior(h.causes) + value) for h, value in ((one, ratio), (other, 0.0), (nothing, -9.0))
+        )
+        p = temper(replace(found, hypotheses=hypotheses)).probabilities
+        expected = prior(one.causes) - prior(other.causes) + POWER * ratio
+        assert np.log(p[0] / p[1]) == pytest.approx(expected)
+        assert p.sum() == pytest.approx(1.0)
 
 
 def test_other_data_change_the_odds_by_what_they_say(wrong: tuple[Setting, Found]) -> None:
@@ -73,13 +90,13 @@ def test_one_gross_reading_is_found_and_sound_ones_beside_it_stay(clean: tuple[S
     bad = Aside(int(np.flatnonzero((problem.data.row == row) & (problem.data.kind == 0))[0]))
     found = weigh(problem, clean[1].formulas)
     assert found.problem.aside == {bad}
-    assert decided(found).verdict == "consistent"
+    assert decide(found).verdict == "consistent"
     (far,) = gross.distances(found.problem, found.null)
     assert far.size_sd == pytest.approx(20, rel=0.3)
 
 
 def test_the_cause_is_named_and_all_agrees(wrong: tuple[Setting, Found]) -> None:
-    decision = decided(wrong[1])
+    decision = decide(wrong[1])
     assert decision.verdict in ("explained", "ambiguous")
     assert decision.answers[0].causes == (TRUE,)
     assert decision.p_any < 0.05
@@ -89,7 +106,7 @@ def test_the_cause_is_named_and_all_agrees(wrong: tuple[Setting, Found]) -> None
 
 
 def test_clean_data_are_consistent(clean: tuple[Setting, Found]) -> None:
-    decision = decided(clean[1])
+    decision = decide(clean[1])
     assert decision.verdict == "consistent"
     assert not decision.answers
     assert decision.p_any > 0.05
@@ -102,21 +119,20 @@ def test_the_alarm_is_an_alarm_if_and_only_if_nothing_has_less_than_half(
     name: str, request: pytest.FixtureRequest
 ) -> None:
     found: Found = request.getfixturevalue(name)[1]
-    decision = decided(found)
+    decision = decide(found)
     nothing = next(j.chance.probability for j in decision.joints if not j.causes)
     assert (nothing < 0.5) == (decision.p_any < 0.05) == (decision.verdict != "consistent")
 
 
 def test_size_and_impact(wrong: tuple[Setting, Found]) -> None:
     found = wrong[1]
-    decision = decided(found)
+    decision = decide(found)
     size = estimate.estimates(found, TRUE, decision.members[TRUE])[0]
     assert size.ci95[0] < OFFSET < size.ci95[1]
     assert abs(size.value - OFFSET) < 1.0
-    means = estimate.sensor_means(found.problem.data)
-    changed = estimate.impact(found.problem, decision.leader, means)
+    changed = estimate.impacts(found.problem, decision.leader, wrong[0].nominal.ratios)
     oil = next(s.name for s in found.problem.data.read if s.kind == "oil_temp")
-    assert changed[oil].value == pytest.approx(size.value, rel=0.2)
+    assert changed[f"{oil}_K"].value == pytest.approx(size.value, rel=0.2)
 
 
 def test_the_loss_follows_the_torque_at_the_other_end(wrong: tuple[Setting, Found]) -> None:
@@ -147,7 +163,7 @@ def test_a_size_that_was_found_is_detectable(wrong: tuple[Setting, Found]) -> No
 
 def test_scatter_and_adequacy(clean: tuple[Setting, Found]) -> None:
     setting, found = clean
-    leader = decided(found).leader
+    leader = decide(found).leader
     for term in scatters(setting, found, leader):
         assert term.ci95[0] < term.card < term.ci95[1], term
     assert all(0.001 < p < 0.9999 for p in adequacy(found, leader).values())
@@ -177,7 +193,7 @@ def test_predictions_of_the_data_are_nearer_with_the_cause(wrong: tuple[Setting,
 
 def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> None:
     setting, found = wrong
-    tried = experiments(found.problem.data.campaign)
+    tried = experiments(found.problem.data.campaign, setting.nominal.value)
     made = of_search(setting, found, CAUSES, tried)
     now = made.distances()
     assert {e.id for e in made.experiments} >= {"repeat", "bath", "cold_room"}
@@ -191,14 +207,75 @@ def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> 
 
 
 def test_added_tests_are_run_as_the_first_one(wrong: tuple[Setting, Found]) -> None:
-    campaign = wrong[1].problem.data.campaign
-    cold = next(e for e in experiments(campaign) if e.id == "cold_room")
+    setting, campaign = wrong[0], wrong[1].problem.data.campaign
+    tried = experiments(campaign, setting.nominal.value)
+    cold = next(e for e in tried if e.id == "cold_room")
     more = added(campaign, cold)
     room = next(s.name for s in campaign.given if s.kind == "ambient")
     assert more.n_tests == len(cold.tests) == 4
     assert more.values[room].max() < campaign.values[room].min() - 10.0
-    logged = added(campaign, next(e for e in experiments(campaign) if e.logged))
+    logged = added(campaign, next(e for e in tried if e.logged))
     assert np.isfinite(logged.dwell).all()
+
+
+def test_experiments_stay_within_the_rig_and_a_hall(wrong: tuple[Setting, Found]) -> None:
+    """At most the speed of the operating point, and no room below 5 degC, nor one that is hardly colder."""
+    setting, campaign = wrong[0], wrong[1].problem.data.campaign
+    speed, room = (next(s for s in campaign.given if s.kind == kind) for kind in ("speed", "ambient"))
+    fastest = np.abs(campaign.values[speed.name]).max()
+
+    def values(kind: str, scale: float, shift: float, usual: float) -> list[float]:
+        changed = {speed.name: scale * campaign.values[speed.name], room.name: campaign.values[room.name] + shift}
+        tried = experiments(replace(campaign, values=campaign.values | changed), lambda path: usual)
+        return [test[kind] for e in tried for test in e.tests if kind in test]
+
+    assert max(values("speed", 1.0, 0.0, fastest)) == pytest.approx(fastest)
+    assert max(values("speed", 0.5, 0.0, fastest)) == pytest.approx(0.8 * fastest)
+    assert max(values("speed", 0.8, 0.0, fastest)) == pytest.approx(fastest)
+    assert min(values("ambient", 1.0, 0.0, fastest)) >= 278.15
+    assert not values("ambient", 1.0, 278.15 - campaign.values[room.name].min(), fastest)
+    made = of_search(setting, wrong[1], CAUSES, experiments(campaign, setting.nominal.value))
+    weights = dict.fromkeys(CAUSES, 0.25)
+    assert all(r.separation_after >= r.separation_before + 0.1 for r in ranked(made, weights))
+
+
+def test_residuals_stand_out_where_a_mounting_errs(clean: tuple[Setting, Found]) -> None:
+    found = clean[1]
+    problem = copy(found.problem)
+    o, n = problem.data, problem.data.campaign.n_tests
+    mounting = tuple("AB"[k % 2] for k in range(n))
+    o = copy(o)
+    o.campaign = replace(o.campaign, mounting=mounting)
+    problem.data, problem.campaigns = o, [o]
+    assert not any(r.stands_out for r in average_residuals(replace(found, problem=problem)))
+    oil = next(i for i, s in enumerate(o.read) if s.kind == "oil_temp")
+    errs = (o.kind == oil) & (np.array(mounting)[o.campaign.test[o.row]] == "B")
+    problem.measured = problem.measured + 3.0 * errs
+    told = average_residuals(replace(found, problem=problem))
+    apart = [r for r in told if r.stands_out]
+    assert apart
+    assert {r.channel for r in apart} == {o.read[oil].name}
+    assert all(r.cell[0] == "B" for r in apart if r.by[0] == "mounting")
+    one = next(r for r in told if r.by == ("mounting", "speed") and r.cell[0] == "B" and r.channel == o.read[oil].name)
+    assert one.mean == pytest.approx(3.0, abs=1.0)
+    assert {r.by for r in told} == {("mounting", "speed"), ("load", "speed"), ("running order",)}
+
+
+def test_a_rival_that_says_nothing_of_a_reading_is_left_out(wrong: tuple[Setting, Found]) -> None:
+    o = wrong[1].problem.data
+    rows, kept = np.arange(o.campaign.n), np.arange(o.campaign.n) % 4 > 0
+    for i, s in enumerate(o.read):
+        said = constant_cooling(o, i, rows, kept)
+        assert (said is None) == (not s.kind.endswith("_temp"))
+
+
+def test_a_place_in_the_running_order_is_a_test_with_its_date(clean: tuple[Setting, Found]) -> None:
+    campaign = clean[1].problem.data.campaign
+    dated = replace(campaign, date=tuple(f"2024-03-{k + 1:02d}" for k in range(campaign.n_tests)))
+    assert campaign.n_tests == 16
+    assert estimate.first_test(dated, 0.868) == "test 15 (2024-03-15)"
+    assert estimate.first_test(campaign, 0.0) == "test 1"
+    assert estimate.first_test(campaign, 1.0) == "test 16"
 
 
 def test_a_cause_is_like_itself_alone(wrong: tuple[Setting, Found]) -> None:

@@ -16,8 +16,7 @@ from gearheat.tools.diagnose.answer.findings import Isolability
 from gearheat.tools.diagnose.answer.numbers import as_object
 from gearheat.tools.diagnose.answer.plan import Outlook, Plan, Planned, PlannedCause, PlannedPair
 from gearheat.tools.diagnose.asking import ask_plan
-from gearheat.tools.diagnose.report.plan import picture, sentence
-from gearheat.tools.diagnose.report.plan import text as printed
+from gearheat.tools.diagnose.report.plan import picture, sentence, text as printed
 from gearheat.tools.diagnose.request import PlanInputs, PlanRequest, unknown_causes
 from typer.testing import CliRunner
 

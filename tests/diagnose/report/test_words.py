@@ -3,10 +3,11 @@
 import re
 
 import pytest
-from fabricated_findings import AIR, CHURNING, KINDS, ambiguous, cause, clean, explained, spoiled, unexplained
-from gearheat.tools.diagnose.answer.evidence import Estimate
+from fabricated_findings import AIR, CHURNING, KINDS, OFFSET, ambiguous, cause, clean, explained, spoiled, unexplained
+from gearheat.tools.diagnose.answer.evidence import DataQuality, Estimate, NuisanceOff, ResidualMean
 from gearheat.tools.diagnose.answer.findings import Alarm, Answer, CauseSet, Played, Remainder, RemainderChannel
 from gearheat.tools.diagnose.report import phrases
+from gearheat.tools.diagnose.report.page import render
 from gearheat.tools.diagnose.report.phrases import name_of, names_of
 from gearheat.tools.diagnose.report.screen import text
 from gearheat.tools.diagnose.report.words import contradictions, with_words
@@ -74,9 +75,63 @@ def test_the_data_come_before_the_cause() -> None:
     said = spoiled().says
     assert said.do.startswith("Check the reading in row 17 (T_oil)")
     assert said.data[0].startswith("Row 17 (line 18, point 17): T_oil shows 84.2 °C, the other readings say 71.3 °C")
-    assert said.data[1].startswith("The rig differs from its file: heat capacity of the gears (0.17 times")
-    assert "A reading of T_amb scatters by 1 K; the card says 0.4 K (2.5 times)." in said.data[2]
-    assert "smaller than its stated scatter (p = 0.998)" in said.data[3]
+    assert "A reading of T_amb scatters by 1 K; the card says 0.4 K (2.5 times)." in said.data[1]
+    assert "smaller than its stated scatter (p = 0.998)" in said.data[2]
+    assert said.verdict.endswith(
+        "Beside it the rig differs from its file: heat capacity of the gears (0.17 times that of the file,"
+        " 4.2 prior standard deviations down)."
+    )
+
+
+def test_a_value_far_from_its_file_is_in_the_verdict_of_clean_data() -> None:
+    off = NuisanceOff(name="bearing loss", z=2.4, factor=1.36, paths=("bearing_a.k", "bearing_a.f"))
+    said = clean(data_quality=DataQuality(nuisances=(off,))).says
+    assert said.verdict == (
+        "No cause is needed, but the rig differs from its file: bearing loss of bearing_a (1.36 times that of the"
+        " file, 2.4 prior standard deviations up)."
+    )
+    assert "Nothing" not in said.do
+    assert said.do.startswith("Check these values of the rig")
+
+
+def test_nothing_and_something_never_both_have_more_than_half() -> None:
+    assert "nothing and something both have more than half" in contradictions(
+        clean().model_copy(update={"causes": (cause(AIR, 0.6),)})
+    )
+
+
+def test_what_the_calibrated_rig_leaves_comes_first() -> None:
+    means = [
+        ResidualMean(
+            channel="T_oil", unit="K", by=("mounting", "speed"), cell=(m, n), n=6, mean=v, sd=0.2, stands_out=v > 1
+        )
+        for m, n, v in (("A", "100 rpm", 0.1), ("A", "200 rpm", 0.2), ("B", "100 rpm", 0.1), ("B", "200 rpm", 2.1))
+    ]
+    found = explained(residuals=tuple(means))
+    said = text(found, everything=True)
+    assert said.startswith("stands out Against the calibrated rig, before any cause: T_oil lies 2.1 K above it at")
+    assert "mounting B, speed 200 rpm (6 readings" in found.says.stands_out
+    rows = [line.split() for line in said.splitlines() if "2.1 !" in line]
+    assert rows == [["B", "+0.1", "(6)", "+2.1", "!", "(6)"]]
+    assert render(found).index("2.1 !") < render(found).index("One cause explains")
+    assert text(explained()).startswith("verdict")
+
+
+def test_unlikely_causes_are_counted_not_listed() -> None:
+    ids = ("a", "b", "c", "d")
+    causes = (cause(CHURNING, 0.86), *(cause(OFFSET, 0.02).model_copy(update={"id": f"mine.{i}"}) for i in ids))
+    found = explained(causes=causes, answers=(Answer(causes=((CHURNING,),), probability=0.96),))
+    assert "each of 4 further causes at most" in render(found)
+    assert "mine.a" not in render(found)[: render(found).index("further causes at most")]
+    answers = (0.5, 0.3, 0.04, 0.03, 0.03)
+    left_open = ambiguous(answers=tuple(Answer(causes=((AIR,),), probability=p) for p in answers)).says.verdict
+    assert left_open.endswith("; or one of 3 less probable ones (10 % together).")
+
+
+def test_look_alikes_that_the_data_settle_are_in_no_table() -> None:
+    assert "Cannot be told apart" in text(explained(), everything=True), "windage has 1 %"
+    settled = explained(causes=(cause(CHURNING, 0.999),), answers=(Answer(causes=((CHURNING,),), probability=0.999),))
+    assert "Cannot be told apart" not in text(settled, everything=True)
 
 
 def test_a_size_at_its_bound_is_no_headline() -> None:
@@ -94,9 +149,18 @@ def test_a_remainder_beside_a_named_cause_is_said() -> None:
 
 
 def test_an_extension_that_is_worse_is_told_first() -> None:
-    said = explained(played={"T_oil": Played(rms_calibrated=2.7, rms_extended=2.9, unit="K")}).says
+    played = {"T_oil": Played(rms_calibrated=2.7, rms_extended=2.9, unit="K")}
+    said = explained(played=played, gain=None).says
     assert said.do.startswith("Played over these data the extended rig is worse")
     assert "Do not use the extended rig" in said.do
+
+
+def test_readings_left_out_say_whether_the_extended_rig_is_used() -> None:
+    played = {"T_oil": Played(rms_calibrated=2.7, rms_extended=2.9, unit="K")}
+    gain = explained().gain
+    assert gain is not None
+    assert "Do not use" not in explained(played=played).says.do, "0.6 K instead of 2.3 K on readings left out"
+    assert "Do not use" in explained(gain=gain.model_copy(update={"rmse_after": 2.4})).says.do
 
 
 def test_plain_statistics_that_are_better_are_told() -> None:
@@ -106,7 +170,8 @@ def test_plain_statistics_that_are_better_are_told() -> None:
     assert (
         "plain statistics (linear in speed and load) predict better: 1.1 against 1.4 K" in explained(gain=worse).says.do
     )
-    assert phrases.gains_nothing(explained()) == ""
+    assert "Do not use" not in explained(gain=worse).says.do
+    assert phrases.doubt(explained()) == ""
 
 
 def test_left_overs_that_are_no_noise_or_too_small_are_told() -> None:
@@ -151,6 +216,8 @@ def test_logarithms_are_told_as_factors() -> None:
     found = Estimate(name="ln_factor", value=-0.4, ci95=(-0.5, -0.3), unit="1", doc="logarithm of the coefficient")
     assert phrases.estimate(found) == "0.67 times (0.607 to 0.741)"
     assert phrases.meaning(found) == "coefficient"
+    change = Estimate(name="change", value=0.155, ci95=(0.1, 0.2), unit="1", doc="logarithm of the factor")
+    assert phrases.estimate(change).startswith("1.17 times")
 
 
 def test_a_regime_names_its_sides() -> None:
@@ -158,6 +225,8 @@ def test_a_regime_names_its_sides() -> None:
         update={"regime": {"n_carrier [rpm]": (120.0, None), "film [mm²/s²]": (None, 3.0)}}
     )
     assert phrases.regime(both) == "only at n_carrier above 120 rpm, film below 3 mm²/s²"
+    later = both.model_copy(update={"regime": {"order [1]": (0.868, None)}, "since": "test 31 (2024-03-05)"})
+    assert phrases.where(later) == "from test 31 (2024-03-05) on"
 
 
 def test_names() -> None:

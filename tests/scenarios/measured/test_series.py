@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 from gearheat.model.errors import DataError
 from gearheat.scenarios.measured.card import Card
-from gearheat.scenarios.measured.samples import read_samples
-from gearheat.scenarios.measured.series import series_of
+from gearheat.scenarios.measured.series import read_samples, series_of
 from gearheat.scenarios.measured.table import PLACES, Campaign, Series
 from made_tables import written
 

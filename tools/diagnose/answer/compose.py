@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ..infer.found import Found, Hypothesis
+from ..infer.found import Found
 from ..library.cause import Cause
 from ..setting import Setting
 from . import channels, estimate, findings
@@ -20,8 +20,6 @@ from .experiments import experiments
 MOST = 12
 #: The least probability of one.
 LISTED = 0.005
-#: Changes of the loss by name, with their units.
-LOSS = {"loss_Nm": "N.m", "heat_W": "W"}
 #: Causes between which experiments are judged.
 JUDGED = 4
 #: The least weight of one.
@@ -64,8 +62,15 @@ def causes(made: Setting, found: Found, decision: Decision) -> tuple[findings.Ca
         chance = decision.marginal.get(id, Chance(0.0, 0.0))
         known: dict[str, Any] = {}
         if cause is not None:
-            known = {"doc": cause.doc, "exposes": cause.exposes, "like": cause.like, "detectable": smallest.get(id)}
-            known |= {"usual": cause.size.sd, "unit": cause.size.unit, "meaning": cause.size.doc}
+            known = {"doc": cause.doc, "exposes": cause.exposes, "like": cause.like}
+            sizes = [size for size in (smallest.get(id), cause.size.sd) if size is not None]
+            unit, (*smallest_of, usual) = estimate.shown(cause.size, sizes)
+            known |= {
+                "usual": usual,
+                "unit": unit,
+                "meaning": cause.size.doc,
+                "detectable": next(iter(smallest_of), None),
+            }
             known |= _sized(made, id, found, decision) if chance.probability > LISTED else {}
         told.append(findings.Cause(id=id, **asdict(chance), **known))
     return tuple(sorted(told, key=lambda c: (-c.probability, c.id)))
@@ -82,27 +87,12 @@ def _sized(made: Setting, cause: str, found: Found, decision: Decision) -> dict[
     acting = next(((h, a) for h, _ in members for a in h.fit.look.acting if a.id == cause), None)
     if acting is not None:
         h, one = acting
-        own["regime"] = estimate.regime(one.formula.form, one.formula.theta(one.t))
-        own["impact"] = impacts(made, found, h, cause)
+        form, theta = one.formula.form, one.formula.theta(one.t)
+        own["regime"] = estimate.regime(form, theta)
+        if form.regime.get("quantity") == "order above":
+            own["since"] = estimate.first_test(found.problem.data.campaign, theta[form.regime["shape"]])
+        own["impact"] = estimate.impacts(found.problem, h, made.nominal.ratios, cause)
     return own
-
-
-def impacts(made: Setting, found: Found, h: Hypothesis, only: str | None = None) -> dict[str, findings.Impact]:
-    """Mean change of each compared sensor, and of the loss, by a hypothesis or by one of its causes."""
-    o = found.problem.data
-    means, sensors = estimate.sensor_means(o), {s.name: s for s in o.read}
-    if loss := estimate.loss_means(o, made.ratios):
-        means |= {key: weights for key, weights in zip(LOSS, loss, strict=True) if len(weights)}
-    told = {}
-    for name, change in estimate.impact(found.problem, h, means, only).items():
-        if name in LOSS:
-            told[name] = findings.Impact(value=change.value, ci95=change.ci95, unit=LOSS[name], what="loss")
-            continue
-        s = sensors[name]
-        value, low, high = (channels.difference(s, v) for v in (change.value, *change.ci95))
-        unit, what = channels.unit_of_difference(s), channels.words(s)
-        told[channels.change_name(s)] = findings.Impact(value=value, ci95=(low, high), unit=unit, what=what)
-    return told
 
 
 def remainder(found: Found, decision: Decision) -> findings.Remainder | None:
@@ -148,5 +138,5 @@ def next_experiments(setting: Setting, found: Found, decision: Decision) -> tupl
     if len(causes) < 2:
         return ()
     weights = {c: max(decision.marginal[c].probability if c in decision.marginal else 0.0, LEAST) for c in causes}
-    made = of_search(setting, found, causes, experiments(found.problem.data.campaign))
+    made = of_search(setting, found, causes, experiments(found.problem.data.campaign, setting.nominal.value))
     return tuple(ranked(made, weights)[:TRIED])

@@ -12,22 +12,25 @@ from scipy.stats import chi2
 from ..infer.evidence import White
 from ..infer.found import Found, Hypothesis
 from ..infer.prior import OUTSIDE
+from ..infer.screen import limits
 from .findings import UNEXPLAINED, Verdict
 
 #: Probability from which one answer explains the data, and that several together reach.
 SURE = 0.9
-#: Bayes factor above which a further cause counts.
-ASKED = 3.0
 #: Probability of a member of a class that is named, as a share of its class.
 MEMBER = 0.02
-#: Exponent of the evidence of answers against each other. Evidence of models that are only nearly true is too sure
-#: (Miller and Dunson, 2019); with this one 90 % sets hold the cause in nine of ten campaigns of known cause.
-CALM = 0.6
-#: A hypothesis and its probability; with the causes of it that count.
-Member = tuple[Hypothesis, float]
-_Seen = tuple[Hypothesis, tuple[str, ...], float]
+#: Exponent of the likelihood ratio of answers against each other: a power posterior. Evidence of models that are only
+#: nearly true is too sure (Miller and Dunson, 2019).
+POWER = 0.6
+#: Standard deviations below which a cause shows nothing, at the largest size that it can have.
+INVISIBLE = 1.0
 #: A nuisance or tolerance whose prior is wider than this many standard deviations of the readings counts as fitted.
 FREE = 0.5
+
+#: A hypothesis and its probability.
+Member = tuple[Hypothesis, float]
+#: The classes of causes that act together, in order; none: nothing is wrong.
+Key = tuple[str, ...]
 
 
 @dataclass(frozen=True)
@@ -80,24 +83,22 @@ class Decision:
     p_adequacy: float
 
 
-def decided(found: Found) -> Decision:
+def decide(found: Found) -> Decision:
     """The decision that a search leads to."""
     chances = _Chances(found)
-    asked = _asked(found)
-    joints = _joints(found, asked, chances)
+    joints = _join(found, chances)
     wrong = [j for j in joints if j.causes]
     verdict: Verdict = "consistent"
     answers: list[Joint] = []
     if chances.nothing < 0.5 and wrong:
         sure = wrong[0].chance.probability > SURE
-        verdict, answers = (
-            ("explained", wrong[:1]) if sure else ("ambiguous", _needed(wrong, SURE * (1 - chances.nothing)))
-        )
-        verdict = "unexplained" if wrong[0].causes == (UNEXPLAINED,) else verdict
+        verdict = "unexplained" if wrong[0].causes == (UNEXPLAINED,) else "explained" if sure else "ambiguous"
+        total = np.cumsum([j.chance.probability for j in wrong])
+        answers = wrong[: 1 if sure else 1 + int(np.searchsorted(total, SURE * (1 - chances.nothing)))]
     leader = answers[0].best if answers else next(h for h in found.hypotheses if not h.causes and not h.extras)
     members: dict[str, list[Member]] = {}
-    for h, p, causes in zip(found.hypotheses, found.probabilities, asked, strict=True):
-        for cause in (*causes, UNEXPLAINED) if beyond(h) else causes:
+    for h, p in zip(found.hypotheses, found.probabilities, strict=True):
+        for cause in (*h.causes, UNEXPLAINED) if beyond(h) else h.causes:
             members.setdefault(cause, []).append((h, float(p)))
     holds = {c: np.array([any(h is m for m, _ in own) for h in found.hypotheses]) for c, own in members.items()}
     marginal = {c: chances.of(mine) for c, mine in holds.items()}
@@ -106,60 +107,45 @@ def decided(found: Found) -> Decision:
     return Decision(verdict, tuple(joints), tuple(answers), marginal, whole, leader, chances.p_any, adequacy)
 
 
-def calmed(found: Found) -> Found:
-    """The search with the evidence of different answers drawn together; their priors and nothing's probability stay."""
-    logs = np.array([h.log_joint for h in found.hypotheses])
-    keys, levelled = _keys(found, _asked(found)), np.exp(logs - logsumexp(logs) + _lifts(found))
-    whole: dict[tuple[str, ...], float] = {}
-    for key, p in zip(keys, levelled, strict=True):
-        whole[key] = whole.get(key, 0.0) + float(p)
-    nothing, priors = whole.pop((), 0.0), _priors(found, keys)
-    drawn = {key: priors[key] * (p / priors[key]) ** CALM for key, p in whole.items()}
-    total = sum(drawn.values())
-    share = {key: (1 - nothing) * drawn[key] / (total * p) for key, p in whole.items() if p > 0} | {(): 1.0}
-    return replace(found, probabilities=np.array([share.get(k, 0.0) * p for k, p in zip(keys, levelled, strict=True)]))
+def temper(found: Found) -> Found:
+    """The search with the likelihood ratios of its answers to the power `POWER`.
 
-
-def _priors(found: Found, keys: Sequence[tuple[str, ...]]) -> dict[tuple[str, ...], float]:
-    """Prior odds of answers: of all sets of causes that each stands for."""
-    sets: dict[tuple[str, ...], dict[tuple[str, ...], None]] = {}
-    for key, h in zip(keys, found.hypotheses, strict=True):
-        sets.setdefault(key, {})[tuple(sorted(h.causes))] = None
-    odds = {}
-    for key, own in sets.items():
-        fewest = min(map(len, own))
-        odds[key] = sum(float(np.exp(found.prior(causes))) for causes in own if len(causes) == fewest)
-        odds[key] *= OUTSIDE if UNEXPLAINED in key else 1.0
-    return odds
-
-
-def _lifts(found: Found) -> np.ndarray:
-    """What raises the log evidence of hypotheses that predict nearly what the likeliest does (n,).
-
-    Where predictions are d standard deviations apart, readings speak for the true one by d**2 / 2 with a standard
-    deviation of d. Evidence beyond that is due to widths of priors, which nobody knows so well.
+    What the prior says of answers, the probability that nothing is wrong, and the odds of hypotheses within one answer
+    stay. Causes that these data cannot show whatever their size take no part.
     """
-    top, lifts = found.hypotheses[0], np.zeros(len(found.hypotheses))
-    if not top.causes or top.extras:
-        return lifts
-    white, evidence = White.of(top.fit.noise.covariance), top.log_joint - found.prior(top.causes)
-    for k, h in enumerate(found.hypotheses):
-        if not h.extras and len(h.causes) == len(top.causes):
-            apart = float(np.linalg.norm(white(h.fit.look.shown - top.fit.look.shown)))
-            behind = evidence - (h.log_joint - found.prior(h.causes))
-            lifts[k] = max(behind - 0.5 * apart**2 - apart, 0.0)
-    return lifts
+    hidden = invisible(found)
+    found = replace(found, hypotheses=tuple(h for h in found.hypotheses if not hidden.intersection(h.causes)))
+    logs = np.array([h.log_joint for h in found.hypotheses])
+    logs -= logsumexp(logs)
+    keys, tempered = answer_keys(found), logs.copy()
+    for key in filter(None, dict.fromkeys(keys)):
+        own = [k for k, other in enumerate(keys) if other == key]
+        priors = {frozenset(h.causes): found.prior(h.causes) for h in (found.hypotheses[k] for k in own)}
+        prior = logsumexp(list(priors.values())) + (np.log(OUTSIDE) if UNEXPLAINED in key else 0.0)
+        tempered[own] += (1 - POWER) * (prior - logsumexp(logs[own]))
+    wrong = np.array([bool(key) for key in keys])
+    if wrong.any():
+        tempered[wrong] += logsumexp(logs[wrong]) - logsumexp(tempered[wrong])
+    return replace(found, probabilities=np.exp(tempered))
 
 
-def _keys(found: Found, asked: Sequence[tuple[str, ...]]) -> list[tuple[str, ...]]:
-    """The answer that each hypothesis is part of: the classes of its causes that count."""
+def invisible(found: Found) -> set[str]:
+    """Causes of which no form shows in these data at the largest size that it can have."""
+    candidates = found.first.candidates
+    low, high = limits(candidates)
+    far = np.maximum(-low, high) * np.linalg.norm(found.first.white, axis=0) >= INVISIBLE
+    return {c.id for c in candidates} - {c.id for c, shows in zip(candidates, far, strict=True) if shows}
+
+
+def answer_keys(found: Found) -> list[Key]:
+    """The answer that each hypothesis is part of."""
     family = {f.cause.id: f.cause.family for f in found.formulas} | {UNEXPLAINED: UNEXPLAINED}
-    return [tuple(sorted(family[c] for c in _shown(h, own))) for h, own in zip(found.hypotheses, asked, strict=True)]
+    return [tuple(sorted(family[c] for c in _named(h))) for h in found.hypotheses]
 
 
-def _shown(h: Hypothesis, asked: tuple[str, ...]) -> tuple[str, ...]:
-    """The causes that a hypothesis is shown with."""
-    return asked or ((UNEXPLAINED,) if beyond(h) else ())
+def _named(h: Hypothesis) -> tuple[str, ...]:
+    """The causes that a hypothesis is named by; a remainder alone has the name of what the library lacks."""
+    return h.causes or ((UNEXPLAINED,) if beyond(h) else ())
 
 
 def beyond(h: Hypothesis) -> bool:
@@ -176,8 +162,7 @@ class _Chances:
 
     def __init__(self, found: Found) -> None:
         self.p = np.asarray(found.probabilities)
-        self.pure = np.array([not h.causes and not beyond(h) for h in found.hypotheses])
-        self.nothing = float(self.p[self.pure].sum())
+        self.nothing = float(self.p[[not _named(h) for h in found.hypotheses]].sum())
         odds = np.log(max(1 - self.nothing, 1e-300)) - np.log(max(self.nothing, 1e-300)) + found.critical
         n = len(found.drawn)
         self.p_any = float((1 + (found.drawn >= odds).sum()) / (1 + n))
@@ -198,64 +183,29 @@ class _Chances:
         return Chance(min(value, 1.0), float(error))
 
 
-def _asked(found: Found) -> list[tuple[str, ...]]:
-    """The causes of each hypothesis without those whose Bayes factor beside the others is below `ASKED`."""
-    prior = found.prior
-    logs: dict[frozenset[str], list[float]] = {}
-    for h in found.hypotheses:
-        logs.setdefault(frozenset(h.causes), []).append(h.log_joint - prior(h.causes))
-    value = {key: float(logsumexp(own)) for key, own in logs.items()}
-
-    def asked(causes: tuple[str, ...]) -> tuple[str, ...]:
-        fewer = [left for c in causes if (left := tuple(o for o in causes if o != c)) and frozenset(left) in value]
-        if not fewer:
-            return causes
-        best = max(fewer, key=lambda left: value[frozenset(left)])
-        gained = value[frozenset(causes)] - value[frozenset(best)]
-        return causes if gained > np.log(ASKED) else asked(best)
-
-    return [asked(h.causes) for h in found.hypotheses]
-
-
-def _joints(found: Found, asked: Sequence[tuple[str, ...]], chances: _Chances) -> list[Joint]:
+def _join(found: Found, chances: _Chances) -> list[Joint]:
     """Hypotheses added up, most probable first."""
-    family = {f.cause.id: f.cause.family for f in found.formulas} | {UNEXPLAINED: UNEXPLAINED}
-    shown = [_shown(h, causes) for h, causes in zip(found.hypotheses, asked, strict=True)]
-    keys = _keys(found, asked)
-    joints = []
+    keys, joints = answer_keys(found), []
     for key in dict.fromkeys(keys):
         mine = np.array([k == key for k in keys])
-        members: list[_Seen] = [
-            (found.hypotheses[i], shown[i], float(found.probabilities[i])) for i in np.flatnonzero(mine)
-        ]
-        whole = [m for m in members if set(m[0].causes) == set(m[1]) - {UNEXPLAINED}]
-        best, causes, _ = max(whole or members, key=lambda m: m[2])
-        classes = tuple(_class(c, members, family) for c in causes)
-        joints.append(Joint(causes, classes, chances.of(mine), best))
+        members = [(found.hypotheses[i], float(found.probabilities[i])) for i in np.flatnonzero(mine)]
+        best = max(members, key=lambda m: m[1])[0]
+        classes = tuple(_class(c, members, found) for c in _named(best))
+        joints.append(Joint(_named(best), classes, chances.of(mine), best))
     return sorted(joints, key=lambda j: -j.chance.probability)
 
 
-def _class(cause: str, members: Sequence[_Seen], family: Mapping[str, str]) -> tuple[str, ...]:
+def _class(cause: str, members: Sequence[Member], found: Found) -> tuple[str, ...]:
     """The members of a cause's class among some hypotheses, the cause first."""
+    family = {f.cause.id: f.cause.family for f in found.formulas}
     shares: dict[str, float] = {}
-    for _, causes, p in members:
-        for c in causes:
-            if family[c] == family[cause]:
+    for h, p in members:
+        for c in h.causes:
+            if family[c] == family.get(cause):
                 shares[c] = shares.get(c, 0.0) + p
     least = MEMBER * sum(shares.values())
     others = sorted((c for c in shares if c != cause and shares[c] > least), key=lambda c: -shares[c])
     return (cause, *others)
-
-
-def _needed(joints: Sequence[Joint], wanted: float) -> list[Joint]:
-    """The most probable ones that together reach a probability."""
-    found, total = [], 0.0
-    for joint in joints:
-        found.append(joint)
-        total += joint.chance.probability
-        if total >= wanted:
-            break
-    return found
 
 
 def p_adequacy(found: Found, h: Hypothesis, entries: np.ndarray | None = None) -> float:

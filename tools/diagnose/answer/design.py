@@ -25,6 +25,8 @@ Pair = tuple[str, str]
 APART = 3.0
 #: A distance beyond this tells two causes apart as well as any.
 ENOUGH = 6.0
+#: What an experiment has to add to a distance [standard deviations].
+WORTH = 0.1
 
 
 @dataclass(frozen=True)
@@ -259,7 +261,7 @@ def ranked(made: Design, weights: Mapping[str, float]) -> list[findings.Experime
         after = made.distances(experiment.id)
         value = {p: weights[p[0]] * weights[p[1]] * gain(before[p], after[p]) for p in before}
         best = max(value, key=lambda p: value[p], default=None)
-        if best is not None and value[best] > 0:
+        if best is not None and value[best] > 0 and gain(before[best], after[best]) >= WORTH:
             one = findings.Experiment(
                 id=experiment.id,
                 what=experiment.what,

@@ -3,26 +3,27 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Literal
 
 import numpy as np
 from scipy.special import logsumexp
 from scipy.stats import norm
 
-from ....scenarios.measured.table import Sensor
+from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.evidence import WIDTHS, White, log_bayes_factors
 from ..infer.fit import Fit
 from ..infer.found import Found, Hypothesis
 from ..infer.problem import Acting, Problem
 from ..infer.screen import limits
-from ..library.cause import Cause, Form, Shape
+from ..library.cause import Cause, Form, Shape, Size
 from ..model.observe import Observed
-from . import channels
+from . import channels, findings
 from .decide import Member
 from .evidence import Estimate
-from .findings import Played
 
+#: Changes of the loss by name, with their units.
+LOSS = {"loss_Nm": "N.m", "heat_W": "W"}
 Bound = Literal["", "low", "high"]
 #: Half width of a 95 % interval in standard deviations.
 WIDE = 1.96
@@ -34,14 +35,6 @@ NEAR = 0.02
 COUNTS = 0.01
 #: Standard deviations of a spread that are weighed, in half widths of the prior.
 SPREADS = np.geomspace(0.1, 8.0, 25)
-
-
-@dataclass(frozen=True)
-class Impact:
-    """A mean change over the rows of the data, with 95 % interval [SI]."""
-
-    value: float
-    ci95: tuple[float, float]
 
 
 def posterior(problem: Problem, h: Hypothesis) -> tuple[np.ndarray, np.ndarray]:
@@ -89,9 +82,9 @@ def estimates(found: Found, cause: str, members: Sequence[Member]) -> tuple[Esti
 def _size(cause: Cause, centre: float, spread: float) -> Estimate:
     """A size by its mean and standard deviation, in half widths of its prior."""
     s = cause.size
-    low, value, high = (float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE))
-    bound = at_bound(value, s.low, s.high)
-    return Estimate(name=s.name, value=value, ci95=(low, high), unit=s.unit, doc=s.doc, at_bound=bound)
+    ends = [float(np.clip(s.sd * (centre + k * spread), s.low, s.high)) for k in (-WIDE, 0.0, WIDE)]
+    bound, (unit, (low, value, high)) = at_bound(ends[1], s.low, s.high), shown(s, ends)
+    return Estimate(name=s.name, value=value, ci95=(low, high), unit=unit, doc=s.doc, at_bound=bound)
 
 
 def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
@@ -114,7 +107,7 @@ def _shapes(problem: Problem, h: Hypothesis, one: Acting) -> list[Estimate]:
     return found
 
 
-def shown(shape: Shape, values: Sequence[float]) -> tuple[str, list[float]]:
+def shown(shape: Shape | Size, values: Sequence[float]) -> tuple[str, list[float]]:
     """Values of a shape in the unit people read: degC and rpm."""
     if shape.unit == "K" and shape.low > 150.0:
         return "degC", [v - 273.15 for v in values]
@@ -145,9 +138,9 @@ def _spread(found: Found, cause: str, members: Sequence[Member]) -> tuple[Estima
     share = np.cumsum(np.exp(np.array(logs) - logsumexp(logs)))
     low, value, high = (float(np.interp(s, share, SPREADS)) for s in (0.025, 0.5, 0.975))
     size_of = next(f.cause.size for f in found.formulas if f.cause.id == cause)
-    sd = size_of.sd
+    unit, (low, value, high) = shown(size_of, [size_of.sd * v for v in (low, value, high)])
     doc = size_of.doc if "standard deviation" in size_of.doc else f"standard deviation of: {size_of.doc}"
-    return (Estimate(name=size_of.name, value=sd * value, ci95=(sd * low, sd * high), unit=size_of.unit, doc=doc),)
+    return (Estimate(name=size_of.name, value=value, ci95=(low, high), unit=unit, doc=doc),)
 
 
 def form_shares(cause: str, members: Sequence[Member]) -> dict[str, float]:
@@ -168,6 +161,14 @@ def form_shares(cause: str, members: Sequence[Member]) -> dict[str, float]:
     return dict(sorted(((n, v / whole) for n, v in total.items()), key=lambda item: (-item[1], item[0])))
 
 
+def first_test(campaign: Campaign, place: float) -> str:
+    """The first test behind a place in the running order, which goes from 0 to 1, with its date where it has one."""
+    later = np.flatnonzero(campaign.progress >= place)
+    row = int(later[np.argmin(campaign.progress[later])]) if len(later) else int(np.argmax(campaign.progress))
+    test = int(campaign.test[row])
+    return f"test {test + 1}{f' ({date})' if (date := campaign.date[test]) else ''}"
+
+
 def regime(form: Form, theta: Mapping[str, float]) -> dict[str, tuple[float | None, float | None]]:
     """Where a form acts: quantity with unit -> above, below; empty where it acts everywhere."""
     shape = next((s for s in form.shapes if s.name == form.regime.get("shape")), None)
@@ -178,18 +179,18 @@ def regime(form: Form, theta: Mapping[str, float]) -> dict[str, tuple[float | No
     return {f"{quantity} [{unit}]": (value, None) if side == "above" else (None, value)}
 
 
-def impact(
-    problem: Problem, h: Hypothesis, means: Mapping[str, np.ndarray], only: str | None = None
-) -> dict[str, Impact]:
-    """Mean changes by the causes of a hypothesis, or by one of them.
+def impacts(
+    problem: Problem, h: Hypothesis, ratios: Mapping[str, float], only: str | None = None
+) -> dict[str, findings.Impact]:
+    """Mean change of each compared sensor, and of the loss, by the causes of a hypothesis, or by one of them.
 
     Args:
         problem: data and model
         h: the hypothesis
-        means: name -> weights of the data's readings (m,) in a mean
+        ratios: as `loss_means` takes them
         only: id of the one cause
     """
-    fit = h.fit
+    fit, o = h.fit, problem.data
     moved = [a for a in fit.look.acting if only is None or a.id == only]
     if not moved:
         return {}
@@ -197,22 +198,24 @@ def impact(
     change = (fit.look.shown - problem.shown(fit.look.z, without))[problem.own]
     spans = zip(places(problem, h), fit.look.acting, strict=True)
     own = np.concatenate([np.arange(begin, begin + a.formula.size) for begin, a in spans if a in moved])
-    covariance = posterior(problem, h)[1][np.ix_(own, own)]
-    found = {}
-    run = np.isfinite(change)  # without the cause the machine may run away at some points
-    for name, weights in means.items():
-        if not (share := np.abs(weights[run]).sum() / np.abs(weights).sum()):
-            continue
-        slope = weights @ fit.look.jacobian[problem.own][:, own]
-        value, sd = float(weights[run] @ change[run] / share), float(np.sqrt(slope @ covariance @ slope))
-        found[name] = Impact(value, (value - WIDE * sd, value + WIDE * sd))
-    return found
+    covariance, jacobian = posterior(problem, h)[1][np.ix_(own, own)], fit.look.jacobian[problem.own][:, own]
+    run, told = np.isfinite(change), dict[str, findings.Impact]()  # without the cause the machine may run away
 
+    def add(name: str, weights: np.ndarray, unit: str, what: str) -> None:
+        if share := np.abs(weights[run]).sum() / (np.abs(weights).sum() or 1.0):
+            slope = weights @ jacobian
+            value, sd = float(weights[run] @ change[run] / share), float(np.sqrt(slope @ covariance @ slope))
+            ends = (value - WIDE * sd, value + WIDE * sd)
+            told[name] = findings.Impact(value=value, ci95=ends, unit=unit, what=what)
 
-def sensor_means(o: Observed) -> dict[str, np.ndarray]:
-    """Compared sensor -> weights of its readings (m,) in their mean."""
-    found = {s.name: np.where(o.kind == i, 1.0, 0.0) for i, s in enumerate(o.read)}
-    return {name: weights / weights.sum() for name, weights in found.items() if weights.any()}
+    for i, s in enumerate(o.read):
+        if (mine := o.kind == i).any():
+            weights = channels.difference(s, 1.0) * mine / mine.sum()
+            add(channels.change_name(s), weights, channels.unit_of_difference(s), channels.words(s))
+    for (name, unit), weights in zip(LOSS.items(), loss_means(o, ratios) or (), strict=False):
+        if len(weights):
+            add(name, weights, unit, "loss")
+    return told
 
 
 def loss_means(o: Observed, ratios: Mapping[str, float]) -> tuple[np.ndarray, np.ndarray] | None:
@@ -266,7 +269,7 @@ def detectable(found: Found) -> dict[str, float]:
     return {c.id: float(a * c.formula.cause.size.sd) for c, a, k in zip(candidates, above, known, strict=True) if k}
 
 
-def played(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, Played]:
+def played(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, findings.Played]:
     """Root mean square that the rig leaves when it is played over the data, by sensor.
 
     The extended rig holds what is a matter of the machine; nothing where nothing is. Sensors that a hypothesis calls
@@ -287,5 +290,5 @@ def played(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, Played]:
         if len(rows) and s.name not in wrong and np.isfinite(left[1]).all():
             before, after = (channels.difference(s, float(np.sqrt(np.mean(e**2)))) for e in left)
             unit = channels.unit_of_difference(s)
-            found[s.name] = Played(rms_calibrated=before, rms_extended=after, unit=unit)
+            found[s.name] = findings.Played(rms_calibrated=before, rms_extended=after, unit=unit)
     return found

@@ -35,7 +35,7 @@ class GrossReading(Model):
 
 
 class NuisanceOff(Model):
-    """An uncertain value of the rig, or a tolerance, further off than 2.5 prior standard deviations."""
+    """An uncertain value of the rig, or a tolerance, further off than two prior standard deviations."""
 
     name: str
     z: Number = Field(description="prior standard deviations off")
@@ -91,6 +91,19 @@ class DataQuality(Model):
     adequacy: dict[str, P] = Field(
         default={}, description="channel -> p of what is left in it; near 1 is too good to be true"
     )
+
+
+class ResidualMean(Model):
+    """Mean of measured less calibrated readings of a channel in one cell of a table, before any cause."""
+
+    channel: str
+    unit: str
+    by: tuple[str, ...] = Field(description="what the table is over: mounting, speed, load, direction, oil, order")
+    cell: tuple[str, ...] = Field(description="the group of each of them")
+    n: int
+    mean: Number
+    sd: Number = Field(description="standard deviation of such a mean by the stated accuracies, or as found if larger")
+    stands_out: bool = Field(description="further from zero than four of its standard deviations")
 
 
 class View(Model):

@@ -2,23 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ....scenarios.measured.table import Campaign, Sensor
 
-#: A cold room [K].
-COLD = 278.15
-#: How much colder than in the campaign it is at least.
+#: The coldest that a hall can be kept [K].
+COLDEST = 278.15
+#: How much colder than in the campaign a cold room is [K].
 COLDER = 15.0
-#: Speeds and loads outside of the campaign's.
+#: A room that is not this much colder is none [K].
+LEAST_COLDER = 5.0
+#: A low speed over the least of the campaign.
 SLOWER = 0.4
-#: As shares of its least or largest.
+#: A high speed over the largest of the campaign, where the rig is made for it.
 FASTER = 1.6
-#: Loads of each.
+#: What a high speed has to be at least over the largest of the campaign.
+LEAST_FASTER = 1.1
+#: A low load over the least of the campaign.
 LIGHTER = 0.2
+#: Loads at a high speed and at a low one, over the largest of the campaign.
 FAST_LOADS = (0.25, 0.45, 0.6, 0.75)
 SLOW_LOADS = (0.6, 0.75, 0.9, 1.0)
 #: Samples of a logged dwell.
@@ -72,9 +77,16 @@ class Experiment:
     checks: tuple[Check, ...] = ()
 
 
-def experiments(campaign: Campaign) -> tuple[Experiment, ...]:
-    """The experiments that add something to a campaign."""
-    return (*_tests(campaign), *_checks(campaign))
+def experiments(campaign: Campaign, usual: Callable[[str], float]) -> tuple[Experiment, ...]:
+    """The experiments that add something to a campaign, and that its rig and a hall can do.
+
+    Args:
+        campaign: the data
+        usual: value of a path at the operating point of the rig; no speed beyond this and the campaign's is proposed
+    """
+    speed = _first(campaign, "speed")
+    fastest = abs(usual(speed.reads)) if speed else 0.0
+    return (*_tests(campaign, fastest), *_checks(campaign))
 
 
 def range_of(campaign: Campaign, kind: str) -> tuple[float, float] | None:
@@ -90,13 +102,12 @@ def _first(campaign: Campaign, kind: str) -> Sensor | None:
     return next((s for s in campaign.given if s.kind == kind), None)
 
 
-def _tests(campaign: Campaign) -> Iterator[Experiment]:
+def _tests(campaign: Campaign, fastest: float) -> Iterator[Experiment]:
     speed, load, room = (range_of(campaign, kind) for kind in ("speed", "torque", "ambient"))
     speeds = [{"speed": n} for n in dict.fromkeys(speed)] if speed else [{}]
     loads = [{"torque": tau} for tau in dict.fromkeys(load)] if load else [{}]
     corners = tuple(n | tau for n in speeds for tau in loads)
-    if room is not None:
-        cold = min(COLD, room[0] - COLDER)
+    if room is not None and (cold := max(COLDEST, room[0] - COLDER)) < room[0] - LEAST_COLDER:
         text = f"the corners of the campaign in a room of {cold - 273.15:.0f} degC"
         yield Experiment("cold_room", text, tuple(test | {"ambient": cold} for test in corners))
     if load is not None:
@@ -105,10 +116,10 @@ def _tests(campaign: Campaign) -> Iterator[Experiment]:
         text = f"{len(middle)} points at {least:.3g} N.m"
         yield Experiment("low_load", text, tuple(n | {"torque": least} for n in middle))
     if speed is not None:
-        for name, n, shares in (
-            ("high_speed", FASTER * speed[1], FAST_LOADS),
-            ("low_speed", SLOWER * speed[0], SLOW_LOADS),
-        ):
+        tried = [("low_speed", SLOWER * speed[0], SLOW_LOADS)]
+        if fastest > LEAST_FASTER * speed[1]:
+            tried.insert(0, ("high_speed", min(FASTER * speed[1], fastest), FAST_LOADS))
+        for name, n, shares in tried:
             own = [{"torque": share * load[1]} for share in shares] if load else [{}]
             text = f"{len(own)} points at {n * 30 / np.pi:.0f} rpm"
             yield Experiment(name, text, tuple({"speed": n} | tau for tau in own))

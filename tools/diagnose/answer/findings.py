@@ -10,7 +10,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from .evidence import DataQuality, Estimate, Picture, Rows, View
+from .evidence import DataQuality, Estimate, Picture, ResidualMean, Rows, View
 from .numbers import Interval, Model, Number, P, Probability
 
 #: The name of whatever the library lacks.
@@ -94,6 +94,7 @@ class Cause(Model):
     regime: dict[str, tuple[Number | None, Number | None]] = Field(
         default={}, description="where it acts: column or quantity with unit -> above, below; absent = everywhere"
     )
+    since: str = Field(default="", description="the test from which on it acts, with its date; empty = from the first")
     forms: tuple[FormShare, ...] = Field(
         default=(), description="most probable first; the name is empty for the general form"
     )
@@ -230,6 +231,7 @@ class Prediction(Model):
 class Said(Model):
     """The first screen, in sentences."""
 
+    stands_out: str = Field(default="", description="what the calibrated rig leaves, before any cause is named")
     verdict: str = ""
     do: str = ""
     size: str = ""
@@ -258,6 +260,7 @@ class Findings(Model):
     causes: tuple[Cause, ...] = Field(description="marginal, most probable first")
     remainder: Remainder | None = None
     data_quality: DataQuality = DataQuality()
+    residuals: tuple[ResidualMean, ...] = ()
     confusable: tuple[tuple[str, ...], ...] = Field(default=(), description="the causes of `sets`")
     sets: tuple[CauseSet, ...] = ()
     impact: dict[str, Impact] = Field(

@@ -16,6 +16,7 @@ from ..infer.found import Extra, Found
 from ..infer.problem import Aside, Problem
 from ..infer.weigh import weigh
 from . import channels
+from .decide import temper
 from .findings import Gain
 from .folds import schemes
 from .rivals import RIVALS
@@ -42,7 +43,7 @@ def gains(found: Found, seed: int, progress: Callable[[float], None] = lambda sh
     Args:
         found: the answer of all data; only its settings and its gross readings are used
         seed: of all draws
-        progress: told the share done
+        progress: called with the share done
     """
     plans = schemes(found.problem.data.campaign)
     total, done, told = sum(len(folds) for folds in plans.values()), 0, []
@@ -66,7 +67,7 @@ def _fold(found: Found, rows: np.ndarray, seed: int) -> _Fold:
     gross = {a.number for a in found.problem.aside if not a.sensor}
     held = np.array([i for i in np.flatnonzero(np.isin(found.problem.data.row, rows)) if i not in gross])
     problem = found.problem.without(frozenset(Aside(int(i)) for i in held))
-    own = weigh(problem, found.formulas, seed=seed, critical=found.critical)
+    own = temper(weigh(problem, found.formulas, seed=seed, critical=found.critical))
     p = np.where(own.probabilities > COUNTS, own.probabilities, 0.0)
     each = [_errors(own.problem, h.fit, h.extras, held) for h, share in zip(own.hypotheses, p, strict=True) if share]
     after = np.einsum("h,hdk->dk", p[p > 0] / p.sum(), each)
@@ -102,7 +103,9 @@ def _gain(
     rows = o.row[entries]
     for name, rival in RIVALS.items():
         left = [rival(o, sensor, rows, ~np.isin(rows, fold)) for fold in folds if np.isin(rows, fold).any()]
-        rivals[name] = channels.difference(s, rms(np.concatenate(left)))
+        known = [e for e in left if e is not None]
+        if len(known) == len(left) and np.isfinite(error := rms(np.concatenate(known))):
+            rivals[name] = channels.difference(s, error)
     test = o.campaign.test[o.row[held[mine]]]
     left_out = [[channels.difference(s, rms(line[mine])) for line in side] for side in (before, after)]
     sides = [Gain.Both.model_validate({"without": one, "with": other}) for one, other in left_out]

@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from itertools import combinations
 from typing import Any, Literal
 
 from pydantic import Field
 
 from ..library.cause import Cause
-from .design import APART, Design, Pair, gain
+from .design import APART, WORTH, Design, Effects, Pair, gain
 from .findings import Isolability
 from .numbers import Model, Number
 
 #: Experiments that are done together, at most.
 TOGETHER = 3
-#: What another one has to add to the smallest distance or to all.
-WORTH = 0.1
 #: The campaign tells the causes apart, one experiment does, several together do, none does; or they are one answer.
 Verdict = Literal["apart", "one", "several", "none", "same"]
 
@@ -96,87 +94,92 @@ class Plan(Model):
         return [c.id for c in self.causes]
 
 
-class Planner:
-    """Ranks the experiments of a design.
+def rank_experiments(
+    design: Design, names: Sequence[str], library: Mapping[str, Cause], common: Mapping[str, Any], visible: Effects
+) -> Plan:
+    """The plan with the experiments of a design, the best first.
 
     Args:
         design: of the campaign and all experiments
         names: causes to tell apart
         library: all causes by their ids; those of a class are one answer
+        common: what a plan says without experiments
+        visible: all causes in the campaign as it is
     """
-
-    def __init__(self, design: Design, names: Sequence[str], library: Mapping[str, Cause]) -> None:
-        self.design, self.before, self.library = design, design.distances(), library
-        self.pairs = [p if p in self.before else p[::-1] for p in combinations(names, 2)]
-        like = {name: library[name].like for name in names}
-        self.same = {p: like[p[0]] for p in self.pairs if like[p[0]] and like[p[0]] == like[p[1]]}
-        self.open = [p for p in self.pairs if p not in self.same]
-
-    def plan(self, common: Mapping[str, Any], visible: Callable[[str], float]) -> Plan:
-        """The plan with experiments.
-
-        Args:
-            common: what a plan says without them
-            visible: distance of a cause from none
-        """
-        now = self._outlook() if self.open else None  # else all causes are one answer
-        single = self._ranked([self._outlook(e.id) for e in self.design.experiments]) if self.open else []
-        together = self._together(single)
-        return Plan(
-            **common,
-            verdict=verdict(now, single, together),
-            causes=tuple(self._cause(self.library[name], visible(name)) for name in self.design.seen().places),
-            pairs=tuple(self._pair(p) for p in self.pairs),
-            now=now,
-            catalogue=tuple(
-                Planned(id=e.id, what=e.what, checks=tuple(dict.fromkeys(c.sensor for c in e.checks)))
-                for e in self.design.experiments
-            ),
-            outlooks=tuple(single),
-            together=tuple(together),
-        )
-
-    def _cause(self, cause: Cause, visible: float) -> PlannedCause:
-        size = cause.size
-        return PlannedCause(
-            id=cause.id, size=size.name, usual=size.sd, unit=size.unit, visible=visible, exposes=cause.exposes
-        )
-
-    def _pair(self, p: Pair) -> PlannedPair:
-        if p not in self.same:
-            return PlannedPair(causes=p, distance=self.before[p])
-        return PlannedPair(causes=p, distance=0.0, one_answer=self.same[p].partition(":")[2].strip() or self.same[p])
-
-    def _together(self, single: Sequence[Outlook]) -> list[Outlook]:
-        """The best experiment, with another one as long as that is needed and helps."""
-        found = list(single[:1])
-        while found and not found[-1].separates and len(found) < TOGETHER:
-            done = found[-1].experiments
-            others = [e.id for e in self.design.experiments if e.id not in done]
-            best = self._ranked([self._outlook(*done, other) for other in others])[0]
-            if best.smallest < found[-1].smallest + WORTH and best.gain < found[-1].gain + WORTH:
-                break
-            found.append(best)
-        return found
-
-    def _outlook(self, *done: str) -> Outlook:
-        after = self.design.distances(*done) if done else self.before
-        nearest = min(self.open, key=lambda p: after[p])
-        return Outlook(
-            experiments=done,
-            smallest=after[nearest],
-            nearest=nearest,
-            gain=sum(gain(self.before[p], after[p]) for p in self.open),
-            separates=after[nearest] >= APART,
-            pairs=tuple(Outlook.Pair(causes=p, before=self.before[p], after=after[p]) for p in self.open),
-        )
-
-    def _ranked(self, outlooks: Sequence[Outlook]) -> list[Outlook]:
-        """The best first: by the smallest distance, to a tenth; by the gain; as they are listed."""
-        return sorted(outlooks, key=lambda o: (-round(o.smallest, 1), -round(o.gain, 3)))
+    before = design.distances()
+    pairs = [p if p in before else p[::-1] for p in combinations(names, 2)]
+    same = {(a, b): library[a].like for a, b in pairs if library[a].like and library[a].like == library[b].like}
+    apart = {p: before[p] for p in pairs if p not in same}  # else causes are one answer
+    now = _look_ahead(design, apart) if apart else None
+    single = _sort([_look_ahead(design, apart, e.id) for e in design.experiments]) if apart else []
+    together = list(single[:1])
+    while together and not together[-1].separates and len(together) < TOGETHER:
+        last = together[-1]
+        others = [e.id for e in design.experiments if e.id not in last.experiments]
+        best = _sort([_look_ahead(design, apart, *last.experiments, other) for other in others])[0]
+        if best.smallest < last.smallest + WORTH and best.gain < last.gain + WORTH:
+            break
+        together.append(best)
+    sizes = {name: library[name].size for name in design.seen().places}
+    return Plan(
+        **common,
+        verdict=decide(now, single, together),
+        causes=tuple(
+            PlannedCause(
+                id=name,
+                size=size.name,
+                usual=size.sd,
+                unit=size.unit,
+                visible=visible.visible(name),
+                exposes=library[name].exposes,
+            )
+            for name, size in sizes.items()
+        ),
+        pairs=tuple(
+            PlannedPair(causes=p, distance=apart.get(p, 0.0), one_answer=_reason(same[p]) if p in same else None)
+            for p in pairs
+        ),
+        now=now,
+        catalogue=tuple(
+            Planned(id=e.id, what=e.what, checks=tuple(dict.fromkeys(c.sensor for c in e.checks)))
+            for e in design.experiments
+        ),
+        outlooks=tuple(single),
+        together=tuple(together),
+    )
 
 
-def verdict(now: Outlook | None, single: Sequence[Outlook], together: Sequence[Outlook]) -> Verdict:
+def _reason(like: str) -> str:
+    """Why the causes of a class are one answer; its name where no reason is given."""
+    return like.partition(":")[2].strip() or like
+
+
+def _look_ahead(design: Design, apart: Mapping[Pair, float], *done: str) -> Outlook:
+    """The distances behind some experiments.
+
+    Args:
+        design: of the campaign and all experiments
+        apart: pair -> its distance now
+        done: ids of the experiments
+    """
+    after = design.distances(*done) if done else apart
+    nearest = min(apart, key=lambda p: after[p])
+    return Outlook(
+        experiments=done,
+        smallest=after[nearest],
+        nearest=nearest,
+        gain=sum(gain(distance, after[p]) for p, distance in apart.items()),
+        separates=after[nearest] >= APART,
+        pairs=tuple(Outlook.Pair(causes=p, before=distance, after=after[p]) for p, distance in apart.items()),
+    )
+
+
+def _sort(outlooks: Sequence[Outlook]) -> list[Outlook]:
+    """The best first: by the smallest distance, to a tenth; by the gain; as they are listed."""
+    return sorted(outlooks, key=lambda o: (-round(o.smallest, 1), -round(o.gain, 3)))
+
+
+def decide(now: Outlook | None, single: Sequence[Outlook], together: Sequence[Outlook]) -> Verdict:
     """One word: apart, one, several, none, or same for causes that are one answer."""
     if now is None:
         return "same"

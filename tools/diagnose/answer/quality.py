@@ -15,7 +15,7 @@ from .estimate import posterior
 from .evidence import DataQuality, GrossReading, NuisanceOff, Repeat, RepeatedPoint, VarianceComponent
 
 #: Prior standard deviations beyond which a value of the rig is told.
-OFF = 2.5
+OFF = 2.0
 
 
 def data_quality(setting: Setting, found: Found, h: Hypothesis) -> DataQuality:

@@ -12,12 +12,15 @@ from ..model.observe import Observed
 RIDGES = np.geomspace(1e-4, 1.0, 9)
 
 
-def constant_cooling(o: Observed, sensor: int, rows: np.ndarray, kept: np.ndarray) -> np.ndarray:
-    """One number: a temperature's rise over the room, or another reading, in proportion to the power that passes."""
-    power = np.ones(o.campaign.n)
-    for s in o.given:
-        if s.kind in ("speed", "torque", "power"):
-            power = power * np.abs(o.sensors[s.name])
+def constant_cooling(o: Observed, sensor: int, rows: np.ndarray, kept: np.ndarray) -> np.ndarray | None:
+    """One number: a temperature's rise over the room in proportion to the power that passes.
+
+    None for other readings, which nothing cools, and where no power is given.
+    """
+    passing = [s for s in o.given if s.kind in ("speed", "torque", "power")]
+    if not o.read[sensor].kind.endswith("_temp") or not passing:
+        return None
+    power = np.prod([np.abs(o.sensors[s.name]) for s in passing], axis=0)
     return fitted(power[rows, None] / max(float(np.abs(power).max()), 1e-300), target(o, sensor, rows), kept, 0.0)
 
 
@@ -61,8 +64,8 @@ def _gcv(X: np.ndarray, y: np.ndarray, ridge: float) -> float:
     return float(left @ left / max(len(y) - 1 - shrink.sum(), 1e-9) ** 2)
 
 
-#: What is assumed -> errors of a sensor's readings in some rows that are not kept.
-RIVALS: Mapping[str, Callable[[Observed, int, np.ndarray, np.ndarray], np.ndarray]] = {
+#: What is assumed -> errors of a sensor's readings in some rows that are not kept, None where it says nothing of them.
+RIVALS: Mapping[str, Callable[[Observed, int, np.ndarray, np.ndarray], np.ndarray | None]] = {
     "constant cooling": constant_cooling,
     "linear in the given sensors": linear,
 }

@@ -239,6 +239,11 @@ def _spans(time: np.ndarray, season: np.ndarray) -> np.ndarray:
     return span
 
 
+def _date(time: float) -> str:
+    """The day of a time since 1970."""
+    return datetime.fromtimestamp(time, UTC).strftime("%Y-%m-%d")
+
+
 class LogProblem(Problem):
     """Logs in question as readings: what the filter says of the knobs in each span.
 
@@ -296,7 +301,7 @@ def problem_of(found: Fleet, asked: Question, logs: Sequence[Log]) -> LogProblem
         T_start=none,
         room_start=none,
         humidity=none,
-        date=empty,
+        date=tuple(_date(t) if all(log.dated for log in logs) else "" for t in time),
         lines=np.arange(2, n + 2),
         points=np.arange(1, n + 1),
         names=empty,

@@ -8,8 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..model.formula import Formula
-from ..model.noise import Term as NoiseTerm
-from ..model.noise import per_group, walk
+from ..model.noise import Term as NoiseTerm, per_group, walk
 from .evidence import WIDTHS
 from .fit import Fit
 from .prior import GROSS, OUTSIDE, Prior

@@ -10,8 +10,7 @@ from pathlib import Path
 from ....model.errors import DataError, suggestion
 from ....model.machines.roles import Roles
 from ....scenarios.measured.table import Sensor
-from . import cooling, heat, losses, procedure, thermal
-from . import sensors as instruments
+from . import cooling, heat, losses, procedure, sensors as instruments, thermal
 from .cause import Cause, Ranges
 from .check import problems
 from .forms import Context

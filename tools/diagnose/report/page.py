@@ -13,6 +13,8 @@ from ..answer.findings import Findings
 from . import figures, phrases, tables
 from .phrases import name_of
 
+#: Least probability of a bar.
+LITTLE = 0.01
 #: Readings of the interactive plot, at most.
 MOST = 5000
 
@@ -30,7 +32,7 @@ def render(findings: Findings) -> str:
         overview=Markup(figures.overview(findings)),
         views=Markup(figures.views(findings.views)),
         gain=f"{phrases.gain(findings.gain)}." if findings.gain else "",
-        doubt=phrases.gains_nothing(findings),
+        doubt=phrases.doubt(findings),
         **{name: _sections(made(findings)) for name, made in tables.SECTIONS.items()},
         plot=_data(findings),
         **pages.load_plot_library(),
@@ -44,14 +46,18 @@ def _sections(found: Sequence[tables.Table]) -> list[dict[str, Any]]:
 def _bars(findings: Findings) -> list[dict[str, str]]:
     """Probabilities of the causes, and what else may be."""
     rest = max(0.0, 1.0 - sum(h.probability for h in findings.hypotheses))
-    rows = [(name_of(c.id), c.id, c.probability, c.mc_error) for c in findings.causes if c.probability >= tables.LEAST]
+    listed = tables.list_causes(findings)
+    rows = [(name_of(c.id), c.id, c.probability, c.mc_error) for c in listed]
+    if further := [c for c in findings.causes if c not in listed and c.probability >= LITTLE]:
+        most = max(c.probability for c in further)
+        rows.append((f"each of {len(further)} further causes at most", "", most, 0.0))
     if findings.remainder is not None:
         rows.append(("something outside the library", "", findings.remainder.probability, findings.remainder.mc_error))
     rows += [("nothing wrong", "", findings.nothing, 0.0), ("less probable than those listed", "", rest, 0.0)]
     return [
         {"name": name, "id": id, "percent": phrases.percent(p, error), "width": f"{100 * min(p, 1.0):.1f}"}
         for name, id, p, error in rows
-        if p >= tables.LEAST
+        if p >= LITTLE
     ]
 
 

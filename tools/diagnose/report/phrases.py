@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterable
 
 from ....model.core.faults import name_all
-from ..answer.evidence import Estimate, GrossReading, NuisanceOff, VarianceComponent
+from ..answer.evidence import Estimate, GrossReading, NuisanceOff, ResidualMean, VarianceComponent
 from ..answer.findings import Answer, Cause, Findings, Gain, Impact
 from ..answer.numbers import LEAST_P
 
@@ -40,7 +40,7 @@ NAMES = {
     "thermal.mass": "heat capacities",
     "thermal.split": "place where the heat appears",
     "procedure.not_stationary": "readings taken before they were steady",
-    "procedure.order": "cooling that changes over the running order",
+    "procedure.order": "cooling or losses that change over the running order",
     "procedure.day_scatter": "scatter from day to day",
     "model.unexplained": "something outside the library",
 }
@@ -71,8 +71,14 @@ FAULTS = {
     "since": "error of the {} from a test on",
     "mounting": "error of the {} that changes with each mounting",
 }
+#: Parts of a value are named where they are not more than these.
+FEW_PARTS = 3
+#: Share by which one error must exceed another to be worse.
+NOTICEABLE = 0.005
 #: Units as they are shown.
 SHOWN = {"degC": "°C", "1": ""}
+#: How the part of a form's name begins that says where it acts, as the regime says with its numbers.
+LIMITED = ("above a", "below a", "from one test on", "from a test on")
 SCHEMES = {
     "leave-one-operating-point": "each test left out in turn",
     "leave-out-tests": "some of the tests left out in turn",
@@ -81,8 +87,8 @@ SCHEMES = {
     "leave-one-oil": "each oil left out in turn",
     "leave-out-spans": "spans of the logs left out in turn",
 }
-#: How the name of a parameter begins that is a logarithm.
-LOGARITHM = "ln_"
+#: How the meaning of a parameter begins that is a logarithm, and the name of one without a meaning.
+LOGARITHM = ("logarithm of ", "ln_")
 
 
 def name_of(cause: str) -> str:
@@ -159,7 +165,7 @@ def estimate(found: Estimate) -> str:
     """A parameter with unit and interval, and the bound it sits on; logarithms as factors."""
     value, (low, high) = found.value, found.ci95
     said = with_unit(value, found.unit)
-    if found.name.startswith(LOGARITHM):
+    if (found.doc or found.name).startswith(LOGARITHM):
         value, low, high = (math.exp(v) for v in (value, low, high))
         said = f"{number(value)} times"
     inside = f"{number(low)} to {number(high)}" if low < high else ""
@@ -190,6 +196,8 @@ def impact(found: Impact) -> str:
 
 def regime(found: Cause) -> str:
     """Where a cause acts; empty where it acts everywhere."""
+    if found.since:
+        return f"from {found.since} on"
     parts = []
     for quantity, (low, high) in found.regime.items():
         name, _, unit = quantity.removesuffix("]").partition(" [")
@@ -203,7 +211,7 @@ def where(found: Cause) -> str:
     """In which parts and where a cause acts; empty where it acts in all of them everywhere."""
     limits = regime(found)
     name = found.forms[0].name if found.forms else ""
-    parts = [part for part in name.split(", ") if not (limits and part.startswith(("above a", "below a")))]
+    parts = [part for part in name.split(", ") if not (limits and part.startswith(LIMITED))]
     return ", ".join(filter(None, (*parts, limits)))
 
 
@@ -241,7 +249,34 @@ def nuisance(found: NuisanceOff) -> str:
         values = f"{with_unit(found.found, found.unit)} instead of {with_unit(found.file, found.unit)}, "
     elif found.factor is not None:
         values = f"{number(found.factor)} times that of the file, "
-    return f"{found.name} ({values}{off})"
+    parts = [p for p in dict.fromkeys(path.partition(".")[0] for path in found.paths) if p not in found.name]
+    place = f" of {name_all(parts)}" if 0 < len(parts) <= FEW_PARTS else ""
+    return f"{found.name}{place} ({values}{off})"
+
+
+def residual(found: ResidualMean) -> str:
+    """A mean that stands out, as part of a sentence."""
+    where = ", ".join(f"{quantity} {group}" for quantity, group in zip(found.by, found.cell, strict=True))
+    side = "above" if found.mean > 0 else "below"
+    value, error = with_unit(abs(found.mean), found.unit, 2), number(found.sd, 2)
+    return f"{found.channel} lies {value} {side} it at {where} ({found.n} readings, standard error {error})"
+
+
+def list_residuals(found: Iterable[ResidualMean], most: int) -> str:
+    """What the calibrated rig leaves, the most unlikely mean of each channel and table first; empty where none does."""
+    ranked = sorted((r for r in found if r.stands_out), key=lambda r: -abs(r.mean) / (r.sd or 1.0))
+    first: dict[str, ResidualMean] = {}
+    for r in ranked:
+        first.setdefault(r.channel, r)
+    texts = [residual(r) for r in list(first.values())[:most]]
+    return f"Against the calibrated rig, before any cause: {'; '.join(texts)}." if texts else ""
+
+
+def calibration(found: Findings, most: int) -> str:
+    """Values of the rig far from those of its file, as the end of a sentence; empty where there are none."""
+    off = found.data_quality.nuisances
+    more = [f"{len(off) - most} more"] if len(off) > most else []
+    return "; ".join([*map(nuisance, off[:most]), *more])
 
 
 def gain(found: Gain) -> str:
@@ -261,20 +296,22 @@ def gain(found: Gain) -> str:
     return "; ".join(said)
 
 
-def gains_nothing(findings: Findings) -> str:
-    """Why the extended rig must not be trusted, as a sentence; empty where it is better everywhere."""
-    worse = [
-        f"{channel} {number(p.rms_calibrated)} calibrated, {with_unit(p.rms_extended, p.unit)} extended"
-        for channel, p in findings.played.items()
-        if p.rms_extended > 1.005 * p.rms_calibrated
-    ]
-    if worse:
-        return f"Played over these data the extended rig is worse than the calibrated one ({'; '.join(worse)})."
-    found = findings.gain
+def doubt(findings: Findings) -> str:
+    """Why the extended rig must not be trusted, or what is as good; empty where it is better.
+
+    Readings left out decide. Where none were, the rig played over the data does.
+    """
+    found, useless = findings.gain, "Do not use the extended rig for predictions yet."
     if found is None:
-        return ""
+        worse = [
+            f"{channel} {number(p.rms_calibrated)} calibrated, {with_unit(p.rms_extended, p.unit)} extended"
+            for channel, p in findings.played.items()
+            if p.rms_extended > (1 + NOTICEABLE) * p.rms_calibrated
+        ]
+        text = f"Played over these data the extended rig is worse than the calibrated one ({'; '.join(worse)})."
+        return f"{text} {useless}" if worse else ""
     if found.rmse_after >= found.rmse_before:
-        return f"On readings left out the causes predict no better ({gain(found)})."
+        return f"On readings left out the causes predict no better ({gain(found)}). {useless}"
     best = min(found.rivals, key=lambda name: found.rivals[name], default="")
     if best and found.rivals[best] < found.rmse_after:
         rival, after = number(found.rivals[best]), with_unit(found.rmse_after, found.unit)

@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Literal
 
 from ....model.core.faults import name_all
 from ...show.drawing import COLOURS, empty, legend, png, svg
-from ..answer.design import APART
-from ..answer.findings import Isolability
 from ..answer.plan import Outlook, Plan
 from . import phrases
 from .phrases import name_of, names_of
 from .screen import drawn, paragraph
-from .tables import Table
+from .tables import Table, tell_design
 
 #: Experiments on the screen and in the picture.
 SHOWN = 10
@@ -75,25 +72,9 @@ def text(plan: Plan, *, everything: bool = False, width: int | None = None) -> s
         line = f"{name_of(c.id)} of usual size ({c.size} {size}) would show at only {seen} standard deviations."
         found.append(paragraph("faint", line, width))
     if plan.isolability and (everything or plan.verdict is None):
-        found.append(drawn(_isolability(plan.isolability), width))
+        found.append(drawn(tell_design(plan.isolability), width))
     found += [paragraph("warning", w, width) for w in plan.warnings]
     return "\n".join(found) + "\n"
-
-
-def _isolability(found: Iterable[Isolability]) -> Table:
-    """What a design tells of each cause."""
-    rows = []
-    for i in found:
-        seen, told = (_word(d is not None and min(d, i.visible) >= APART) for d in (i.visible, i.distance))
-        near = name_of(i.nearest), phrases.sigma(i.distance)
-        rows.append((i.cause, phrases.sigma(i.visible), seen, *near, told))
-    head = ("cause", "from none", "seen", "nearest cause", "from it", "told apart")
-    note = f"Distances in standard deviations at the usual size of each cause; seen and told apart from {APART:g} on."
-    return Table("What this design can tell", head, rows, note)
-
-
-def _word(right: bool) -> str:
-    return "yes" if right else "no"
 
 
 def _experiments(plan: Plan, everything: bool) -> Table:
@@ -102,7 +83,7 @@ def _experiments(plan: Plan, everything: bool) -> Table:
     rows = []
     for name, what, o in _listed(plan, everything):
         nearest = [" / ".join(o.nearest)] if several else []
-        rows.append((name, f"{o.smallest:.2f}", _word(o.separates), *nearest, what))
+        rows.append((name, f"{o.smallest:.2f}", "yes" if o.separates else "no", *nearest, what))
     return Table("", head, rows, "Smallest distance of two causes, in standard deviations.")
 
 

@@ -33,7 +33,13 @@ def text(findings: Findings, *, everything: bool = False, width: int | None = No
         width: columns of the screen, None where there is none
     """
     said = findings.says
-    lines = [("verdict", said.verdict), ("do now", said.do), ("size", said.size), ("how sure", said.sure)]
+    lines = [
+        ("stands out", said.stands_out),
+        ("verdict", said.verdict),
+        ("do now", said.do),
+        ("size", said.size),
+        ("how sure", said.sure),
+    ]
     lines += [("cannot be", said.cannot_be), *(("data", line) for line in said.data)]
     if findings.gain is not None:
         lines.append(("gain", f"{phrases.gain(findings.gain)}."))

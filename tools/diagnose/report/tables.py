@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 from ..answer.channels import ENDINGS
-from ..answer.findings import Findings
+from ..answer.design import APART
+from ..answer.evidence import ResidualMean
+from ..answer.findings import Cause, Findings, Isolability
 from .phrases import (
     SCHEMES,
     estimate,
@@ -23,9 +25,14 @@ from .phrases import (
     where,
     with_unit,
 )
+from .words import RULED_OUT
 
-#: Causes and hypotheses in a table have at least this probability.
-LEAST = 0.01
+#: Causes and hypotheses in a table have at least this probability, the first of them any.
+LEAST = 0.05
+#: What the tables of residuals hold.
+MEANS = (
+    "Mean of measured less calibrated readings, before any cause, and how many; ! more than four standard errors off."
+)
 #: Experiments and rows at most this many.
 MOST = 10
 #: Causes that a channel names on its own, at most.
@@ -45,6 +52,26 @@ class Table:
 def tables(findings: Findings) -> list[Table]:
     """All tables that have rows, in the order of the page."""
     return [t for group in SECTIONS.values() for t in group(findings) if t.rows]
+
+
+def residuals(findings: Findings) -> list[Table]:
+    """Means of what the calibrated rig leaves, in the tables and channels in which some stand out."""
+    grouped: dict[tuple[str, tuple[str, ...]], list[ResidualMean]] = {}
+    for r in findings.residuals:
+        grouped.setdefault((r.channel, r.by), []).append(r)
+    found = []
+    for (channel, by), means in grouped.items():
+        if not any(r.stands_out for r in means):
+            continue
+        cells = {r.cell: f"{r.mean:+.2g}{' !' if r.stands_out else ''} ({r.n})" for r in means}
+        columns = tuple(dict.fromkeys(cell[1:] for cell in cells))
+        rows = [
+            (first, *(cells.get((first, *rest), "") for rest in columns))
+            for first in dict.fromkeys(cell[0] for cell in cells)
+        ]
+        head = (by[0], *(f"{by[1]} {rest[0]}" if rest else "mean" for rest in columns))
+        found.append(Table(f"{channel} [{means[0].unit}] over {' and '.join(by)}", head, rows, MEANS))
+    return found
 
 
 def quality(findings: Findings) -> list[Table]:
@@ -82,13 +109,19 @@ def quality(findings: Findings) -> list[Table]:
 
 def causes(findings: Findings) -> list[Table]:
     """Causes with their sizes, hypotheses, and what each channel says on its own."""
-    listed = [c for c in findings.causes if c.probability >= LEAST]
+    listed = list_causes(findings)
     ranked = [
         (percent(c.probability, c.mc_error), name_of(c.id), size(c), where(c), p_value(c.q, "q"), c.id) for c in listed
     ]
     sizes = [(name_of(c.id), p.name, estimate(p), meaning(p)) for c in listed for p in c.parameters]
-    joint = sorted(findings.hypotheses, key=lambda h: -h.probability)[:MOST]
-    together = [(percent(h.probability, h.mc_error), names_of(h.causes) or "nothing wrong") for h in joint]
+    joint = sorted(findings.hypotheses, key=lambda h: -h.probability)
+    together = [
+        (percent(h.probability, h.mc_error), names_of(h.causes) or "nothing wrong")
+        for k, h in enumerate(joint)
+        if k == 0 or h.probability >= LEAST
+    ]
+    if further := sum(h.probability for h in joint[len(together) :]):
+        together.append((percent(further), f"{len(joint) - len(together)} further ones together"))
     by_channel = []
     for v in findings.views:
         leading = ", ".join(f"{name_of(s.id)} {percent(s.probability, s.mc_error)}" for s in v.causes[:NAMED])
@@ -99,6 +132,11 @@ def causes(findings: Findings) -> list[Table]:
         Table("Hypotheses", ("probability", "causes"), together),
         Table("What each channel says on its own", ("channel", "asks", "p", "nothing wrong", "causes"), by_channel),
     ]
+
+
+def list_causes(findings: Findings) -> list[Cause]:
+    """The causes that a page lists one by one."""
+    return [c for c in findings.causes if c.probability >= LEAST or c.id in findings.named]
 
 
 def gain(findings: Findings) -> list[Table]:
@@ -127,13 +165,24 @@ def gain(findings: Findings) -> list[Table]:
     ]
 
 
+def tell_design(found: Iterable[Isolability]) -> Table:
+    """What a design tells of each cause."""
+    rows = []
+    for i in found:
+        seen, apart = ("yes" if d is not None and min(d, i.visible) >= APART else "no" for d in (i.visible, i.distance))
+        rows.append((i.cause, sigma(i.visible), seen, name_of(i.nearest), sigma(i.distance), apart))
+    head = ("cause", "from none", "seen", "nearest cause", "from it", "told apart")
+    note = f"Distances in standard deviations at the usual size of each cause; seen and told apart from {APART:g} on."
+    return Table("What this design can tell", head, rows, note)
+
+
 def experiments(findings: Findings) -> list[Table]:
     """What to measure next, and what would show each probable cause."""
     rows = [
         (e.what or e.id, names_of(e.separates), sigma(e.separation_before), sigma(e.separation_after))
         for e in findings.next_experiment[:MOST]
     ]
-    exposing = [(name_of(c.id), c.exposes) for c in findings.causes if c.probability >= LEAST and c.exposes]
+    exposing = [(name_of(c.id), c.exposes) for c in list_causes(findings) if c.exposes]
     note = "Distances in standard deviations; below 3 two causes look alike."
     return [
         Table("What to measure next", ("experiment", "separates", "now", "then"), rows, note),
@@ -143,8 +192,10 @@ def experiments(findings: Findings) -> list[Table]:
 
 def sets(findings: Findings) -> list[Table]:
     """Look-alikes, what these data show of each cause, and what they cannot show."""
-    alike = [(names_of(s.causes), sigma(s.distance), s.reason) for s in findings.sets]
-    seen = [(name_of(i.cause), sigma(i.visible), name_of(i.nearest), sigma(i.distance)) for i in findings.isolability]
+    # a rival that the data rule out can be told apart, whatever the design says of usual sizes
+    unsettled = {c.id for c in findings.causes if c.probability >= RULED_OUT} | findings.named
+    kept = [(s, [c for c in s.causes if c in unsettled]) for s in findings.sets]
+    alike = [(names_of(causes), sigma(s.distance), s.reason) for s, causes in kept if len(causes) > 1]
     smallest = [
         (name_of(c.id), *(with_unit(v, c.unit) or "not visible" for v in (c.detectable, c.usual)), c.meaning)
         for c in findings.causes
@@ -153,13 +204,13 @@ def sets(findings: Findings) -> list[Table]:
     blind = [(name_of(i.cause), i.reason) for i in findings.invisible]
     values = [(v.path, *(with_unit(x, v.unit) for x in (v.file, v.nominal, v.extended))) for v in findings.calibrated]
     return [
-        Table("Cannot be told apart", ("causes", "distance", "why"), alike, "Distance in standard deviations."),
         Table(
-            "What this design can tell",
-            ("cause", "from none", "nearest cause", "from it"),
-            seen,
-            "Distances in standard deviations at the usual size of each cause; below 3 it is not seen, or not told.",
+            "Cannot be told apart by these data",
+            ("causes", "distance", "why"),
+            alike,
+            "Distance in standard deviations.",
         ),
+        tell_design(findings.isolability),
         Table("Smallest size found in 80 of 100 such campaigns", ("cause", "smallest", "usual", "meaning"), smallest),
         Table("Causes that these data cannot show", ("cause", "why"), blind),
         Table("Calibrated values", ("value", "file", "calibrated", "with the causes"), values),
@@ -167,7 +218,14 @@ def sets(findings: Findings) -> list[Table]:
 
 
 #: Name in the template of the page -> its tables, in the order of the page.
-SECTIONS = {"quality": quality, "causes": causes, "gains": gain, "experiments": experiments, "sets": sets}
+SECTIONS = {
+    "residuals": residuals,
+    "quality": quality,
+    "causes": causes,
+    "gains": gain,
+    "experiments": experiments,
+    "sets": sets,
+}
 
 
 def predictions_text(findings: Findings) -> str:

@@ -5,6 +5,7 @@ The verdict itself is decided elsewhere; here it is put in words, and every sent
 
 from __future__ import annotations
 
+from ..answer.design import APART
 from ..answer.findings import UNEXPLAINED, Answer, Cause, Findings, Said
 from . import phrases
 from .phrases import name_of, names_of, sentence
@@ -17,8 +18,8 @@ ADEQUATE = 0.01
 TOO_GOOD = 0.99
 #: A scatter is told where it is so many times the card's, or as much less.
 SCATTER = 1.5
-#: Distances below this are none [standard deviations].
-APART = 3.0
+#: Answers beside the first two are listed from this probability on.
+LISTED = 0.05
 #: Longest list on the first screen.
 MOST = 6
 #: The same of lists of little weight.
@@ -30,6 +31,7 @@ COUNTS = {2: "Two", 3: "Three", 4: "Four"}
 def with_words(findings: Findings) -> Findings:
     """The findings with the sentences of the first screen, and with a warning for each contradiction in them."""
     said = Said(
+        stands_out=phrases.list_residuals(findings.residuals, FEW),
         verdict=_verdict(findings),
         do=_do(findings),
         size=_size(findings),
@@ -44,30 +46,42 @@ def with_words(findings: Findings) -> Findings:
 
 def contradictions(findings: Findings) -> list[str]:
     """Where verdict, alarm and probabilities do not agree; none of a sound decision."""
-    total, calm = sum(h.probability for h in findings.hypotheses), findings.verdict == "consistent"
+    total, quiet = sum(h.probability for h in findings.hypotheses), findings.verdict == "consistent"
     best = findings.answers[0].probability if findings.answers else 0.0
     known = {c.id for c in findings.causes}
     named = findings.named - {UNEXPLAINED}
     alarm = findings.test.p_any < findings.test.alpha
     checks = {
         f"the probabilities add up to {total:.3f}": total > 1 + 1e-6,
-        f"nothing is wrong, yet {phrases.p_value(findings.test.p_any)} is an alarm": calm and alarm,
-        f"something is wrong, yet {phrases.p_value(findings.test.p_any)} is none": not calm and not alarm,
-        f"nothing is wrong, with {phrases.percent(findings.nothing)}": calm and findings.nothing < 0.5,
-        f"something is wrong, yet nothing has {phrases.percent(findings.nothing)}": not calm and findings.nothing > 0.5,
+        f"nothing is wrong, yet {phrases.p_value(findings.test.p_any)} is an alarm": quiet and alarm,
+        f"something is wrong, yet {phrases.p_value(findings.test.p_any)} is none": not quiet and not alarm,
+        f"nothing is wrong, with {phrases.percent(findings.nothing)}": quiet and findings.nothing < 0.5,
+        f"something is wrong, yet nothing has {phrases.percent(findings.nothing)}": not quiet
+        and findings.nothing > 0.5,
         "one answer explains it, and there are none or several": findings.verdict == "explained"
         and len(findings.answers) != 1,
         f"one answer explains it with {phrases.percent(best)}": findings.verdict == "explained" and best < 0.9,
-        "nothing is wrong, and there is an answer": calm and bool(findings.answers),
+        "nothing is wrong, and there is an answer": quiet and bool(findings.answers),
+        "nothing and something both have more than half": findings.nothing > 0.5
+        and max([best, *(c.probability for c in findings.causes)]) > 0.5,
         f"{', '.join(sorted(named - known))} is named and not listed": bool(named - known),
     }
     return [text for text, wrong in checks.items() if wrong]
 
 
 def _verdict(findings: Findings) -> str:
+    """The verdict, and the values of the rig that calibration put far from those of its file."""
+    off = phrases.calibration(findings, FEW)
+    if findings.verdict != "consistent":
+        return _claim(findings) + (f" Beside it the rig differs from its file: {off}." if off else "")
+    if off:
+        return f"No cause is needed, but the rig differs from its file: {off}."
+    return "The data agree with the model within the stated accuracies."
+
+
+def _claim(findings: Findings) -> str:
+    """What is wrong."""
     answers, left = findings.answers, findings.remainder
-    if findings.verdict == "consistent":
-        return "The data agree with the model within the stated accuracies."
     shown = left.channels[:2] if left else ()
     where = " and ".join(f"{c.channel} ({phrases.with_unit(c.rms, c.unit, 2)})" for c in shown)
     seen = f", seen in {where}" if where else ""
@@ -77,9 +91,11 @@ def _verdict(findings: Findings) -> str:
         closest = f" The closest known cause is {_probable(best)}." if best else ""
         return f"Something is wrong that no cause of the library explains{sure}{seen}.{closest}"
     if findings.verdict == "ambiguous":
-        parts = [_probable(a) for a in answers]
-        rest = f"; or {len(parts) - MOST} less probable ones" if len(parts) > MOST else ""
-        return f"Something is wrong, and the data leave open what: {'; '.join(parts[:MOST])}{rest}."
+        listed = [a for k, a in enumerate(answers) if k < MOST and (k < 2 or a.probability >= LISTED)]
+        rest = answers[len(listed) :]
+        chance = phrases.percent(sum(a.probability for a in rest))
+        more = f"; or one of {len(rest)} less probable ones ({chance} together)" if rest else ""
+        return f"Something is wrong, and the data leave open what: {'; '.join(map(_probable, listed))}{more}."
     first = answers[0]
     if limits := _at_bound(findings, first):
         return (
@@ -110,10 +126,16 @@ def _do(findings: Findings) -> str:
         rows = ", ".join(f"row {g.row} ({g.channel})" for g in gross[:MOST])
         steps.append(f"Check the reading{'s' if len(gross) > 1 else ''} in {rows} in your records.")
     if findings.verdict == "consistent":
-        steps.append("Nothing else needs doing." if steps else "Nothing needs doing.")
+        if findings.data_quality.nuisances:
+            steps.append(
+                "Check these values of the rig on the machine before its file is changed: the data alone do not"
+                " tell a wrong value from a fault of the same part."
+            )
+        else:
+            steps.append("Nothing else needs doing." if steps else "Nothing needs doing.")
         return " ".join(steps)
-    if warning := phrases.gains_nothing(findings):
-        steps.append(f"{warning} Do not use the extended rig for predictions yet.")
+    if warning := phrases.doubt(findings):
+        steps.append(warning)
     exposing = _exposing(findings)
     if findings.verdict == "explained" and exposing:
         steps.append(f"To confirm it: {exposing}")
@@ -208,8 +230,6 @@ def _data(findings: Findings) -> tuple[str, ...]:
     """What is to be known of data and rig before any cause."""
     quality = findings.data_quality
     said = [phrases.gross(g) for g in quality.gross]
-    if quality.nuisances:
-        said.append(f"The rig differs from its file: {'; '.join(map(phrases.nuisance, quality.nuisances))}.")
     for v in quality.variance:
         if v.ratio > SCATTER or v.ratio < 1 / SCATTER:
             said.append(phrases.scatter(v))

@@ -9,9 +9,8 @@ from typing import Any
 
 from ...show.console import folder, write
 from ...show.display import Display
-from . import cycle as cycles
-from . import figures, lines, moving, pages, steady, store, studies
-from .rows import Found, Job
+from . import cycle as cycles, figures, lines, moving, pages, steady, studies
+from .rows import Found, Job, run
 
 #: File of each figure.
 FILES = {
@@ -64,7 +63,7 @@ def verify_contact(out: str | Path, *, quick: bool = False, cycle: str | None = 
         >>> gh.verify_contact("contact", quick=True)  # doctest: +SKIP
     """
     place = folder(Path(out))
-    found = store.run([*jobs(quick), *(cycles.jobs(cycle) if cycle else [])], place)
+    found = run([*jobs(quick), *(cycles.jobs(cycle) if cycle else [])], place)
     rows = pages.rows(found)
     drawn = draw(found, rows)
     for title, text in drawn.items():

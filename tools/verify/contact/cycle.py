@@ -15,7 +15,7 @@ from ....model.errors import ScenarioError
 from ....model.laws.film import asperity_share
 from ....model.run.steady import steady
 from ....scenarios.load import load
-from ...solve.contacts import contacts_at, part_with_contacts, values_of
+from ...solve.losses import contacts_at, part_with_contacts, values_of
 from ...solve.settings import flat_of
 from ...solve.steady import conditions
 from .rows import Found, Job, row
