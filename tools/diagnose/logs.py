@@ -253,7 +253,7 @@ def _pictures(
         read: the sensors that are compared
     """
     own, level = known.filter, known.levels.mean[0]
-    past, now = known.past.some(known.machine_of[known.season] == 0), asked.windows
+    past, now = known.past, asked.windows
     by_time = np.argsort(np.r_[past.time, now.time], kind="stable")
 
     def left(data: Windows, moves: np.ndarray) -> np.ndarray:

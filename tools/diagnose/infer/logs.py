@@ -23,10 +23,8 @@ from ..model.windows import Windows, windows
 from .levels import Levels, Quadratics, estimate, first_levels
 from .problem import Look, Problem
 
-#: Passes over the healthy logs, and over those in question.
+#: Passes over the healthy logs, and over those in question; each begins where the last one ended.
 PASSES = 4
-#: Each begins where the last one ended.
-TARGET_PASSES = 4
 #: State noise [K] of one sample of bodies that no sensor reads.
 QUIET = 0.05
 #: Of states that are no body's.
@@ -54,9 +52,7 @@ class Fleet:
     Args:
         filter: the rig, compiled
         knobs: what may differ
-        past: windows of all healthy logs
-        season: number of the season of a machine that each window belongs to
-        machine_of: machine of each season
+        past: windows of the machine's own healthy logs
         levels: what the healthy logs say
         share: of their samples that counts, 0 without any
     """
@@ -64,8 +60,6 @@ class Fleet:
     filter: Filter
     knobs: tuple[Knob, ...]
     past: Windows
-    season: np.ndarray
-    machine_of: np.ndarray
     levels: Levels
     share: float
 
@@ -80,8 +74,8 @@ def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
     roles = Roles.of(scenario.spec)
     relays = {f"{name}.relay": True for name in roles.having("switch")}
     spec = scenario.spec.with_values(relays)
-    found = knobs(roles, log.sensors)
-    found = tuple(k for k in found if all(p in _parameters(scenario) for p in k.paths))
+    known = {f"{part.name}.{key}" for part in scenario.spec.parts for key in part.values}
+    found = tuple(k for k in knobs(roles, log.sensors) if known.issuperset(k.paths))
     paths = list(dict.fromkeys(path for k in found for path in k.paths))
     plant = Plant(flatten(assemble(spec)), paths, [s.reads for s in log.given], [s.reads for s in log.read])
     own = Filter(plant, found, [s.name for s in log.given], [s.name for s in log.read], np.zeros(plant.nx))
@@ -96,10 +90,6 @@ def filter_of(scenario: Scenario, log: Log) -> tuple[Filter, tuple[Knob, ...]]:
 def _within(progress: Progress, stage: str, begin: float, width: float) -> Callable[[float], None]:
     """Progress of one pass among several."""
     return lambda share: progress(stage, begin + width * share)
-
-
-def _parameters(scenario: Scenario) -> set[str]:
-    return {f"{part.name}.{key}" for part in scenario.spec.parts for key in part.values}
 
 
 def season_of(time: np.ndarray, dated: bool) -> np.ndarray:
@@ -134,14 +124,12 @@ def fleet(
     begun = first_levels(sd, machines)
     if not logs:
         empty = windows([all_sensors], own.given, own.read).some(np.zeros(0, dtype=int))
-        return Fleet(own, found, empty, np.zeros(0, dtype=int), np.zeros(0, dtype=int), begun, 0.0)
+        return Fleet(own, found, empty, begun, 0.0)
     past = windows(logs, own.given, own.read)
-    seasons = season_of(past.time, all(log.dated for log in logs))
     machine = np.array(machine_of_log)[past.machine]
-    keys = sorted(set(zip(machine.tolist(), seasons.tolist(), strict=True)))
-    number = {key: i for i, key in enumerate(keys)}
-    season = np.array([number[key] for key in zip(machine.tolist(), seasons.tolist(), strict=True)])
-    machine_of = np.array([m for m, _ in keys])
+    each = np.column_stack([machine, season_of(past.time, all(log.dated for log in logs))])
+    keys, season = np.unique(each, axis=0, return_inverse=True)
+    machine_of = keys[:, 0]
     z = np.zeros((machines, len(sd)))
     for n in range(PASSES):
         at = z[machine]
@@ -154,7 +142,7 @@ def fleet(
             z = z + np.clip(levels.mean - z, -sd, sd)
     share = independent(passed)
     levels = estimate(said.times(share), season, machine_of, begun)
-    return Fleet(own, found, past, season, machine_of, levels, share)
+    return Fleet(own, found, past.some(machine == 0), levels, share)
 
 
 def _quadratics(passed: Passed, at: np.ndarray) -> Quadratics:
@@ -213,11 +201,11 @@ def question(found: Fleet, logs: Sequence[Log], progress: Progress = lambda stag
     season = season * min(SEASONS, len(there)) // len(there)
     at, sd = np.tile(levels.mean[0], (len(season), 1)), np.array([k.sd for k in found.knobs])
     wide = np.linalg.inv(levels.covariance[0] + levels.season + np.diag(sd**2))
-    for n in range(TARGET_PASSES):
-        stage = f"logs in question, pass {n + 1} of {TARGET_PASSES}"
-        passed = own.run(data, at, progress=_within(progress, stage, n / TARGET_PASSES, 1 / TARGET_PASSES))
+    for n in range(PASSES):
+        stage = f"logs in question, pass {n + 1} of {PASSES}"
+        passed = own.run(data, at, progress=_within(progress, stage, n / PASSES, 1 / PASSES))
         told = _quadratics(passed, at)
-        if n + 1 < TARGET_PASSES:
+        if n + 1 < PASSES:
             by_season = told.spread(levels.window).summed(season, int(season.max()) + 1)
             C = np.linalg.inv(by_season.H + wide)
             moved = (C @ (by_season.eta + wide @ levels.mean[0])[:, :, None])[:, :, 0]
