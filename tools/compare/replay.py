@@ -12,7 +12,7 @@ from ...model.units import from_si
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import read_card
 from ...scenarios.measured.logs import Log, read_log
-from ..diagnose.infer.logs import filter_of, year_of
+from ..diagnose.infer.logs import filter_of, season_of
 from ..diagnose.infer.replay import HOURS, Replayed, Rivals, replay as replay_log
 from ..show.console import note
 from ..show.display import Display
@@ -110,7 +110,7 @@ def _split_log(log: Log, until: int | None) -> list[Log]:
     """The log before and from a year on."""
     if until is None:
         return [log]
-    years = year_of(log.time, log.dated)
+    years = season_of(log.time, log.dated) // 4
     if not (years < until).any():
         raise DataError([f"{log.name}: has no samples before {until}. Give a later year as --until."])
     parts = [(years < until, f"{log.name} before {until}"), (years >= until, f"{log.name} from {until}")]

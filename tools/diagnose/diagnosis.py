@@ -61,11 +61,11 @@ def diagnose(inputs: Inputs, progress: Progress) -> Findings:
             request.seed,
             request.causes,
             lambda stage, done: then(stage, 0.05 + 0.75 * done),
-            logs.whole.causes if logs else (),
+            logs.causes if logs else (),
         )
     )
     if logs:
-        found = found.beside(logs.whole.log_bayes_factor)
+        found = found.beside(logs.found.log_bayes_factor)
     decision = decide(found)
     wrong = decision.verdict != "consistent"
     held: Sequence[Gain] = ()
@@ -85,9 +85,10 @@ def _with_logs(findings: Findings, logs: LogDiagnosis, causes: Sequence[Cause]) 
         logs: what they say
         causes: that the readings were asked about
     """
-    of, said, known = logs.findings.about, list(logs.findings.warnings), {cause.id for cause in causes}
-    lacking = [c for c in logs.whole.causes if c not in known and logs.whole.of(c) > ALONE]
-    said += [f"the logs speak for {c} ({logs.whole.of(c):.0%}), which no reading of the table shows" for c in lacking]
+    of, known = logs.findings.about, {cause.id for cause in causes}
+    said = [f"the logs alone: {logs.findings.says.verdict}", *logs.findings.warnings]
+    lacking = [c for c in logs.causes if c not in known and logs.of(c) > ALONE]
+    said += [f"the logs speak for {c} ({logs.of(c):.0%}), which no reading of the table shows" for c in lacking]
     about = findings.about.model_copy(update={"logs": of.logs, "log_rows": of.log_rows, "segments": of.segments})
     return findings.model_copy(update={"about": about, "warnings": (*findings.warnings, *said)})
 
@@ -96,10 +97,9 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
     """The findings without their words."""
     request, data, leader = inputs.request, found.problem.data.campaign, decision.leader
     reference, wrong = inputs.reference, decision.verdict != "consistent"
-    sets = compose.sets(made.causes, found, decision) if wrong else ()
     rows = pictures.rows(found, leader)
     return Findings(
-        verdict=decision.verdict,
+        **compose.common(made, found, decision),
         about=About(
             data=data.name,
             rig=made.scenario.name,
@@ -116,18 +116,12 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
             p_adequacy=decision.p_adequacy,
             draws=len(found.drawn),
         ),
-        hypotheses=compose.hypotheses(decision),
-        answers=compose.answers(decision),
-        causes=compose.causes(made, found, decision),
-        remainder=compose.remainder(found, decision),
         data_quality=check_data(made, found, leader),
         impact=impacts(found.problem, leader, made.nominal.ratios),
         gain=held[0] if held else None,
         gain_grouped=tuple(held[1:]),
         channels=tuple(channel(s) for s in data.sensors),
         played=replay(found.problem, found.null, leader) if wrong else {},
-        confusable=tuple(s.causes for s in sets),
-        sets=sets,
         next_experiment=compose.next_experiments(made, found, decision) if wrong and not request.quick else (),
         isolability=judge_design(Effects(found.first.candidates, found.first.white)),
         residuals=average_residuals(found),

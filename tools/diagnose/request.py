@@ -11,6 +11,7 @@ from ...model.errors import DataError, GearheatError, suggestion
 from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import Card, read_card
 from ...scenarios.measured.checks import invisible, outlying, same_as_reference, too_small
+from ...scenarios.measured.condense import condensed
 from ...scenarios.measured.read import read_campaign
 from ...scenarios.measured.series import read_samples, series_of
 from ...scenarios.measured.table import Campaign
@@ -123,7 +124,12 @@ def read(request: Request, written: Mapping[str, Path] | None = None, problems: 
     if data is not None:
         reader.problems += too_small(data)
         reader.problems += [] if reference is None else same_as_reference(data, reference)
-    return Inputs(request, *reader.checked(), data, reference, points)
+    scenario, card = reader.checked()
+    if reference is not None:
+        reference, _ = condensed(reference, card)
+    if data is not None:
+        data, card = condensed(data, card)
+    return Inputs(request, scenario, card, data, reference, points)
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,20 @@ LEAST = 0.02
 TRIED = 6
 
 
+def common(made: Setting, found: Found, decision: Decision) -> dict[str, Any]:
+    """What the findings on readings and on logs have alike: the verdict, and what it follows from."""
+    told = sets(made.causes, found, decision) if decision.verdict != "consistent" else ()
+    return {
+        "verdict": decision.verdict,
+        "hypotheses": hypotheses(decision),
+        "answers": answers(decision),
+        "causes": causes(made, found, decision),
+        "remainder": remainder(found, decision),
+        "sets": told,
+        "confusable": tuple(s.causes for s in told),
+    }
+
+
 def hypotheses(decision: Decision) -> tuple[findings.Hypothesis, ...]:
     """The most probable ones, nothing always among them."""
     listed = [j for k, j in enumerate(decision.joints) if not j.causes or (k < MOST and j.chance.probability > LISTED)]

@@ -97,3 +97,16 @@ class Found:
         with np.errstate(divide="ignore"):
             logs = np.log(self.probabilities) + by
         return replace(self, hypotheses=hypotheses, probabilities=np.exp(logs - logsumexp(logs)))
+
+    def log_bayes_factor(self, causes: Iterable[str]) -> float:
+        """Of causes against none, free of their prior; nothing of causes that the search did not ask about.
+
+        Of several that were not fitted together, the one that explains most counts.
+        """
+        values: dict[frozenset[str], float] = {}
+        for h in self.hypotheses:
+            key, log = frozenset(h.causes), h.log_joint - (self.prior(h.causes) if h.causes else self.critical)
+            values[key] = float(np.logaddexp(values.get(key, -np.inf), log))
+        own = frozenset(c for c in causes if c in self.prior.causes)
+        tried = [own] if own in values else [key for c in own if (key := frozenset([c])) in values]
+        return max((values[key] for key in tried), default=values[frozenset()]) - values[frozenset()]

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from copy import copy
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Self
 
 import numpy as np
 
@@ -137,13 +139,19 @@ class Problem:
         """Number of readings."""
         return len(self.measured)
 
-    def without(self, aside: frozenset[Aside]) -> Problem:
+    def without(self, aside: frozenset[Aside]) -> Self:
         """The same with some readings set aside."""
-        return Problem(self.campaigns, self.day_sd, aside, self.more)
+        return self._with(aside=aside)
 
-    def beside(self, more: tuple[Term, ...]) -> Problem:
+    def beside(self, more: tuple[Term, ...]) -> Self:
         """The same with further scatter."""
-        return Problem(self.campaigns, self.day_sd, self.aside, more)
+        return self._with(more=more)
+
+    def _with(self, **changes: object) -> Self:
+        """The same but for some attributes."""
+        found = copy(self)
+        vars(found).update(changes)
+        return found
 
     def look(self, z: np.ndarray, acting: Sequence[Acting] = ()) -> Look:
         """Readings and Jacobian.
@@ -175,10 +183,14 @@ class Problem:
 
     def noise(self, look: Look, scales: np.ndarray | None = None) -> Noise:
         """The scatter at a look."""
-        found = terms(self.campaigns, look.seen, self.day_sd, self.nz)
+        found = self.scatters(look)
         found += [*(self.far(aside, look) for aside in sorted(self.aside)), *self.more]
         n = sum(t.loose > 0 for t in found)
         return Noise(tuple(found), np.zeros(n) if scales is None else scales)
+
+    def scatters(self, look: Look) -> list[Term]:
+        """What scatters at a look, all readings in it."""
+        return terms(self.campaigns, look.seen, self.day_sd, self.nz)
 
     def far(self, aside: Aside, look: Look) -> Term:
         """The term that makes a reading count for nothing."""

@@ -1,4 +1,4 @@
-"""Causes for logs: what may differ between machines of one type, from year to year, and since a date.
+"""Causes for logs: what may differ between machines of one type, from season to season, and since a date.
 
 Each knob changes one parameter or one instrument by a number z. Over logs a cause is a knob that has moved: in all of
 the log, from a date on, or as a drift.
@@ -6,12 +6,17 @@ the log, from a date on, or as a drift.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ....model.machines.roles import Roles
 from ....model.parts.grey import GreyLoss
 from ....scenarios.measured.table import Sensor
+from .cause import Cause, Form, Num, Row, Shape, Size, Theta, Values
+from .forms import FROM_THEN, PLACE, since
+
+#: Bounds of a move, as multiples of what is usual.
+FARTHEST = 10.0
 
 
 @dataclass(frozen=True)
@@ -64,6 +69,52 @@ FLOWS = {
     "cooling.fan": "A fan moves less or more air.",
     "cooling.oil_flow": "Less or more oil circulates: a pump, a filter or a nozzle.",
 }
+
+
+@dataclass(frozen=True)
+class When:
+    """How a knob moves over the logs: words, share of the prior, shapes, and how far it is in a row, 0 to 1."""
+
+    words: str
+    share: float
+    shapes: tuple[Shape, ...]
+    at: Callable[[Theta, Row], Num]
+
+
+WHENS = (
+    When("", 0.5, (), lambda theta, row: 1.0),
+    When("from one date on", 0.4, (PLACE,), since),
+    When("drifting", 0.1, (), lambda theta, row: row.order),
+)
+
+
+def moves(found: Sequence[Knob]) -> tuple[Cause, ...]:
+    """Knobs that have moved, as causes: a form for each knob of a cause, and for each course of its move.
+
+    Args:
+        found: the knobs
+    """
+    groups: dict[str, list[Knob]] = {}
+    for knob in found:
+        groups.setdefault(knob.cause, []).append(knob)
+    return tuple(_cause(own) for own in groups.values())
+
+
+def _cause(own: Sequence[Knob]) -> Cause:
+    first = own[0]
+    name, doc = ("ln_factor", "logarithm of the factor") if first.unit == "1" else ("shift", "change")
+    most = FARTHEST * first.usual
+    forms = [_moved(knob, when, name, when.share / len(own)) for knob in own for when in WHENS]
+    size = Size(name, first.unit, doc, first.usual, -most, most)
+    return Cause(first.cause, first.doc, size, tuple(forms), acts_on="time")
+
+
+def _moved(knob: Knob, when: When, size: str, weight: float) -> Form:
+    def values(theta: Theta, row: Row) -> Values:
+        return {knob.name: theta[size] * when.at(theta, row)}
+
+    name = ", ".join(filter(None, (knob.name, when.words)))
+    return Form(name, weight, when.shapes, values=values, regime=FROM_THEN if when.shapes else {})
 
 
 def knobs(roles: Roles, sensors: Sequence[Sensor]) -> tuple[Knob, ...]:

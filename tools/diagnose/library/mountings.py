@@ -8,10 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
-from typing import TypeVar
 
 from ....model.laws.smooth import smooth_abs
-from .cause import Cause, Form, Num, Row, Theta
+from .cause import Cause, Form, Num, Row, Theta, Values
 from .forms import Context
 
 #: Share of a cause's prior of the forms whose size is drawn anew with each mounting.
@@ -20,8 +19,6 @@ ANEW = 0.2
 FAMILIES = ("losses", "cooling", "heat")
 #: Share of a middle speed or load below which a deviation from it no longer follows.
 LOW = 0.1
-
-T = TypeVar("T")
 
 
 def with_mountings(causes: Iterable[Cause], at: Context) -> Iterator[Cause]:
@@ -78,15 +75,15 @@ def _over(sensor: str, at: Context) -> Callable[[Row], Num]:
 def _drawn(form: Form, size: str, name: str, by: Callable[[Row], Num]) -> Form:
     """A form whose size is drawn anew with each mounting and follows the point."""
 
-    def followed(law: Callable[..., T] | None) -> Callable[..., T] | None:
+    def followed(law: Callable[..., Values] | None) -> Callable[..., Values] | None:
         if law is None:
             return None
 
-        def own(theta: Theta, row: Row, *more: Num) -> T:
+        def own(theta: Theta, row: Row, *more: Num) -> Values:
             return law({**theta, size: theta[size] * by(row)}, row, *more)
 
         return own
 
     words = ", ".join(filter(None, (form.name, name, "anew with each mounting")))
-    laws = {key: followed(getattr(form, key)) for key in ("values", "truth", "shown")}
-    return replace(form, name=words, spread="mounting", **laws)
+    values, truth, shown = (followed(law) for law in (form.values, form.truth, form.shown))
+    return replace(form, name=words, spread="mounting", values=values, truth=truth, shown=shown)

@@ -85,7 +85,7 @@ SCHEMES = {
     "leave-one-speed": "each speed left out in turn",
     "leave-one-load": "each torque left out in turn",
     "leave-one-oil": "each oil left out in turn",
-    "leave-one-segment": "each stretch of the logs left out in turn",
+    "leave-out-spans": "spans of the logs left out in turn",
 }
 #: How the meaning of a parameter begins that is a logarithm, and the name of one without a meaning.
 LOGARITHM = ("logarithm of ", "ln_")

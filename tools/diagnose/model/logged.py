@@ -1,0 +1,97 @@
+"""Logs as a campaign: a row for each span of time, with what the filter says of the knobs in it.
+
+To the filter the knobs are a quadratic about where each season has moved, so a campaign of logs needs no further run.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ....scenarios.measured.table import Campaign
+from ....scenarios.nuisances import Nuisance
+from ..library.knobs import Knob
+from .entries import Entries
+from .formula import Formula
+from .observe import Observed, Seen
+from .plant import Plant
+
+#: Information of a direction of the knobs, over that of its prior, below which it is left out.
+FAINT = 0.02
+
+
+class Logged(Observed):
+    """A campaign of spans of logs: entries are independent sums that tell how far the knobs have moved in a span.
+
+    Args:
+        plant: the rig
+        campaign: a row for each span, a test each
+        knobs: what may differ
+        eta, H: log likelihood of the moves z of a span's knobs, eta z - z H z / 2 (n, k), (n, k, k)
+        root: columns by which the machine's knobs differ from its values, for independent normal numbers (k, k)
+    """
+
+    def __init__(
+        self,
+        plant: Plant,
+        campaign: Campaign,
+        knobs: Sequence[Knob],
+        eta: np.ndarray,
+        H: np.ndarray,
+        root: np.ndarray,
+    ) -> None:
+        names = [*(knob.name for knob in knobs), "day"]
+        super().__init__(plant, campaign, [Nuisance(name, {}, 1.0, 1.0) for name in names], {}, {})
+        self.place, self.root = {name: k for k, name in enumerate(names)}, root
+        told = [_told(*said, np.array([k.sd for k in knobs])) for said in zip(eta, H, strict=True)]
+        #: Slopes of the entries by the knobs in their spans (m, k).
+        self.by = np.concatenate([B for _, B in told])
+        self.row = np.repeat(np.arange(campaign.n), [len(y) for y, _ in told])
+        self.kind, self.measured = np.full(len(self.row), -1), np.concatenate([y for y, _ in told])
+        none, ones = np.zeros(len(self.row), dtype=int), np.ones(len(self.row))
+        self.entries = Entries(self.kind, none, self.row, self.row, self.measured, ones, self.row, none, ones)
+
+    def moves(self, parts: Sequence[tuple[Formula, np.ndarray]]) -> np.ndarray:
+        """How far causes move the knobs in each span (n, k)."""
+        found = np.zeros((self.campaign.n, len(self.root)))
+        for formula, t in parts:
+            value, _, _ = formula.physics(t, {}, self.sensors, self.features)
+            for name, moved in zip(formula.paths, value, strict=False):
+                found[:, self.place[name]] += moved
+        return found
+
+    def at(self, z: np.ndarray, parts: Sequence[tuple[Formula, np.ndarray]]) -> Seen:
+        """The entries and their derivatives; as for any campaign."""
+        by = [self.by @ self.root, np.zeros((self.m, 1))]
+        for formula, t in parts:
+            _, by_t, _ = formula.physics(t, {}, self.sensors, self.features)
+            ways = [
+                self.by[:, [self.place[name]]] * way[self.row] for name, way in zip(formula.paths, by_t, strict=False)
+            ]
+            by.append(np.sum(ways, axis=0))
+        shown = (self.by * (self.root @ z[:-1] + self.moves(parts))[self.row]).sum(axis=1)
+        return Seen(shown, np.concatenate(by, axis=1), np.zeros((self.m, len(self.given), self.height)))
+
+    def tangents(
+        self,
+        z: np.ndarray,
+        parts: Sequence[tuple[Formula, np.ndarray]],
+        candidates: Sequence[tuple[Formula, np.ndarray]],
+    ) -> np.ndarray:
+        """First-order effects (m, k) of the sizes of candidates."""
+        begin = len(z)
+        effects = [self.at(z, [(formula, np.r_[0.0, t[1:]])]).by[:, begin] for formula, t in candidates]
+        return np.array(effects).reshape(len(effects), self.m).T
+
+    def shown_by(self, z: np.ndarray, parts: Sequence[tuple[Formula, np.ndarray]]) -> np.ndarray:
+        """What the spans show (m,)."""
+        return self.at(z, parts).shown
+
+
+def _told(eta: np.ndarray, H: np.ndarray, sd: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Independent sums (r,) with unit variance that say the same of the knobs, and their slopes by them (r, k)."""
+    information, turn = np.linalg.eigh(sd[:, None] * H * sd)
+    kept = information > FAINT
+    root, turn = np.sqrt(information[kept]), turn[:, kept].T
+    return (turn * sd) @ eta / root, root[:, None] * turn / sd
