@@ -156,3 +156,20 @@ def test_every_kind_of_instrument_has_the_same_errors(planetary):
         since = "step" if kind == "torque" else "since"
         for key in (offset, since, "gain", "drift", "by_direction", "mounting", "random_walk"):
             assert f"sensor.{kind}.{key}" in ids
+
+
+def test_what_is_drawn_anew_with_each_mounting_may_follow_direction_or_speed(planetary):
+    c = planetary
+    probe = c.cause("sensor.oil_temp.mounting")
+    form = form_of(probe, "T_oil", "by direction", "anew with each mounting")
+    assert form.spread == "mounting" and shown(c, probe, form, 2.0)["T_oil"] == pytest.approx(2.0 * DIRECTION)
+    churning = c.cause("losses.churning")
+    form, low, mid, high = (
+        form_of(churning, "by speed"),
+        *(by["n_carrier"] for by in (c.ranges.low, c.ranges.mid, c.ranges.high)),
+    )
+    assert form.spread == "mounting" and sum(f.weight for f in churning.forms) == pytest.approx(1.0)
+    theta = {s.name: s.mean or (s.low + s.high) / 2 for s in form.shapes} | {churning.size.name: 3.0}
+    here = row(c, n_carrier=np.array([low, mid, high] * 2))
+    powers = [as_array(v, 6) for path, v in form.values(theta, here).items() if path.endswith("P_ref")]
+    assert sum(powers) == pytest.approx(3.0 * np.array([low - mid, 0.0, high - mid] * 2) / ((high - low) / 2), abs=0.1)
