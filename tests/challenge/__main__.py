@@ -21,7 +21,7 @@ from .bench import run, tasks
 from .hide import KINDS
 from .printing import show
 from .scoring import Outcome, report
-from .sheets import POOLED, SHEETS
+from .sheets import POOLED
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -30,11 +30,12 @@ app = typer.Typer(add_completion=False, rich_markup_mode=None)
 @console.guard
 def challenge(
     sheet: Annotated[
-        Literal["own", "foreign", "textbook", "rigs", "practice", "all"],
+        Literal["own", "foreign", "textbook", "machines", "rigs", "practice", "all"],
         typer.Option(
             help="own: the planetary rig as the model has it; foreign: another simulator, with a healthy reference; "
-            "textbook: a frozen third one with rough readings; rigs: steady points of other shipped rigs; practice: "
-            "the campaigns of --practice; all: all of these but rigs, pooled."
+            "textbook: a frozen third one with rough readings; machines: units of `gearheat new` by random name "
+            "plates; rigs: steady points of other shipped rigs; practice: the campaigns of --practice; all: all of "
+            "these but rigs, pooled."
         ),
     ],
     n: Annotated[int, typer.Option("--n", help="Number of cases of each sheet.")] = 150,
@@ -52,7 +53,7 @@ def challenge(
 ) -> None:
     """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
     problems = []
-    if only is not None and only not in KINDS:
+    if only is not None and only not in (*KINDS, "several"):
         problems.append(f'challenge: unknown kind "{only}".{suggestion(only, KINDS)} Kinds: {", ".join(KINDS)}.')
     if n < 1:
         problems.append(f"challenge: --n {n}: ask for at least one case.")
@@ -64,7 +65,7 @@ def challenge(
     with _folder(out) as place:
         todo = []
         for name in POOLED if sheet == "all" else (sheet,):
-            if name in SHEETS:
+            if name != "practice":
                 todo += tasks(name, n, seed, place / f"{name}-{seed}", kind=only)
         if practice is not None and sheet in ("all", "practice"):
             todo += tasks("practice", n, seed, place / "practice", given=practice)

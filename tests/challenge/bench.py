@@ -14,7 +14,7 @@ from typing import Any
 
 from gearheat.model.errors import DataError
 
-from . import practice
+from . import machines, practice
 from .answers import Answer, Diagnoser, ask_command, read_answer
 from .cases import make_case
 from .scoring import Outcome, score
@@ -126,9 +126,12 @@ def _make(task: Task) -> dict[str, Any]:
     stamp = task.folder / "STAMP"
     if not stamp.exists() or stamp.read_text(encoding="utf-8") != task.stamps[0]:
         stamp.unlink(missing_ok=True)
-        number, draw = list(SHEETS).index(task.sheet), SHEETS[task.sheet]
         with _MAKING:
-            make_case(draw, number, task.seed, task.k, task.folder, kind=task.kind)
+            if task.sheet == "machines":
+                machines.make(len(SHEETS), task.seed, task.k, task.folder, task.kind)
+            else:
+                number, draw = list(SHEETS).index(task.sheet), SHEETS[task.sheet]
+                make_case(draw, number, task.seed, task.k, task.folder, kind=task.kind)
         stamp.write_text(task.stamps[0], encoding="utf-8")
     return _read(task.folder / "TRUTH.json")
 

@@ -23,7 +23,7 @@ from .hide import APART
 SURE = 0.9
 
 #: Kinds of cases whose causes have names.
-NAMED = ("single", "regime", "pair", "alike")
+NAMED = ("single", "regime", "pair", "alike", "several")
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,8 @@ class Outcome:
         answered: whether there was an answer
         alarm: whether it said that something is wrong
         exact: whether the likeliest hypothesis is the truth, or one as fair
-        shared: how many of the true names the likeliest hypothesis holds
+        shared: how many of the true names the likeliest hypothesis holds; hidden: how many there are
+        claimed: how many names the likeliest hypothesis holds where something is wrong
         covered: whether the truth is among the hypotheses that make 0.9 together; size: how many those are
         sure_wrong: whether it names a cause with more than 0.9 that is not the truth
         impact_error: error of the stated change of the readings over that change; None where there is hardly any
@@ -60,6 +61,8 @@ class Outcome:
     alarm: bool
     exact: bool
     shared: int
+    hidden: int
+    claimed: int
     covered: bool
     size: int
     sure_wrong: bool
@@ -72,7 +75,12 @@ class Outcome:
     @property
     def by_name(self) -> bool:
         """Whether a single cause must be named."""
-        return self.kind in ("single", "regime") and (self.distance is None or self.distance >= APART)
+        return self.kind in ("single", "regime") and self.apart
+
+    @property
+    def apart(self) -> bool:
+        """Whether what is hidden lies far enough from every rival."""
+        return self.distance is None or self.distance >= APART
 
     @property
     def by_set(self) -> bool:
@@ -102,6 +110,8 @@ def score(truth: Mapping[str, Any], answer: Answer | None, seconds: float, probl
         alarm=given.alarm,
         exact=given.alarm and top.names in right,
         shared=len(top.names & names) if given.alarm else 0,
+        hidden=len(names),
+        claimed=len(top.names) if given.alarm and top.claims else 0,
         covered=any(h.names in right for h in credible),
         size=len(credible),
         sure_wrong=top.claims and given.alarm and top.probability > SURE and top.names not in right,
@@ -133,7 +143,7 @@ def _gain(truth: Mapping[str, Any], given: Answer) -> float | None:
     Points at which the rig runs away count for nothing.
     """
     points = [p for p in truth["points"] if math.isfinite(p["T_oil_C"])]
-    if _rms([p["T_oil_C"] - p["T_oil_without_C"] for p in points]) < truth["repeat_sd"]["T_oil_K"]:
+    if not points or _rms([p["T_oil_C"] - p["T_oil_without_C"] for p in points]) < truth["repeat_sd"]["T_oil_K"]:
         return None
     if any(p["point"] not in given.nominal or p["point"] not in given.extended for p in points):
         return 1.0
@@ -194,6 +204,19 @@ BARS: tuple[Bar, ...] = (
     Bar("size of the 90 % set, mean", lambda o: _if(o.by_name and o.answered, o.size), (2.5, 2.0, 1.6), "mean", True),
     Bar("two causes: both", lambda o: _if(o.kind == "pair", o.exact), (0.60, 0.75, 0.85)),
     Bar("two causes: at least one", lambda o: _if(o.kind == "pair", o.shared > 0), (0.90, 0.95, 0.97)),
+    Bar(
+        "several causes: share that is named",
+        lambda o: _if(o.kind == "several" and o.apart, o.shared / max(o.hidden, 1)),
+        (0.50, 0.60, 0.70),
+        "mean",
+    ),
+    Bar(
+        "several causes: wrong ones named, mean",
+        lambda o: _if(o.kind == "several" and o.apart, o.claimed - o.shared),
+        (0.30, 0.20, 0.10),
+        "mean",
+        True,
+    ),
     Bar("regime-limited cause first", lambda o: _if(o.by_name and o.kind == "regime", o.exact), (0.80, 0.90, 0.94)),
     Bar(
         "outside: not claimed > .9",

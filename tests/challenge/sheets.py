@@ -16,4 +16,4 @@ SHEETS: Mapping[str, Sheet] = {
     "rigs": model_rig.draw_steady,
 }
 #: Sheets whose scores are pooled by `--sheet all`.
-POOLED = ("own", "foreign", "textbook")
+POOLED = ("own", "foreign", "textbook", "machines")
