@@ -6,8 +6,9 @@ import numpy as np
 
 from ....scenarios.measured import repeats
 from ....scenarios.measured.table import Campaign
+from ..infer.fit import Fit
 from ..infer.found import Found, Hypothesis
-from ..infer.gross import distances
+from ..infer.problem import Aside, Problem
 from ..setting import Setting
 from . import channels
 from .decide import p_adequacy
@@ -34,8 +35,8 @@ def gross_readings(found: Found, h: Hypothesis) -> tuple[GrossReading, ...]:
     problem, told = found.problem, []
     rows = np.cumsum([0, *(o.campaign.n for o in problem.campaigns)])
     entries = np.cumsum([0, *(o.m for o in problem.campaigns)])
-    for suspect in sorted(distances(problem, h.fit), key=lambda s: -abs(s.size_sd)):
-        number, name, expected = suspect.aside.number, suspect.aside.sensor, None
+    for aside, size_sd in sorted(distances(problem, h.fit), key=lambda far: -abs(far[1])):
+        number, name, expected = aside.number, aside.sensor, None
         begins = rows if name else entries
         k = int(np.searchsorted(begins, number, side="right")) - 1
         o, row = problem.campaigns[k], int(number - begins[k])
@@ -50,13 +51,35 @@ def gross_readings(found: Found, h: Hypothesis) -> tuple[GrossReading, ...]:
                 line=line,
                 point=f"{int(campaign.points[row])}{f' of {campaign.name}' if k else ''}",
                 channel=name,
-                size_sd=suspect.size_sd,
+                size_sd=size_sd,
                 shown=float(channels.in_unit(s, campaign.values[name][row])),
                 expected=expected,
                 unit=channels.unit(s),
             )
         )
     return tuple(told)
+
+
+def distances(problem: Problem, fit: Fit) -> list[tuple[Aside, float]]:
+    """How far each reading that is set aside lies from what the others say, in standard deviations of that."""
+    white, e = fit.linear(problem)
+    V, r = white.L @ white.L.T, white.L @ e
+    inverse = white.inverse
+    a = inverse @ r
+    found = []
+    for aside in sorted(problem.aside):
+        term = problem.far(aside, fit.look)
+        if term.variance is not None:
+            i = aside.number
+            spread = 1 / inverse[i, i] - term.variance[i]
+            own = a[i] / inverse[i, i] / np.sqrt(max(spread, 1e-12 * V[i, i]))
+        else:
+            assert term.columns is not None
+            c = term.columns[:, 0] / problem.FAR
+            length = c @ inverse @ c
+            own = (c @ a) / np.sqrt(length) / np.sqrt(max(1 - (problem.FAR**2 - 1) * length, 1e-9))
+        found.append((aside, float(own)))
+    return found
 
 
 def values_off(setting: Setting, found: Found, h: Hypothesis) -> tuple[NuisanceOff, ...]:

@@ -11,7 +11,7 @@ from ....scenarios.measured.table import Campaign, Sensor
 from ..infer.found import Found
 from . import channels
 from .evidence import ResidualMean
-from .folds import levels
+from .gain import levels
 
 #: What residuals are averaged over: one quantity, or two against each other.
 TABLES = (("mounting", "speed"), ("mounting", "direction"), ("load", "speed"), ("oil",), ("running order",))

@@ -10,7 +10,7 @@ from pathlib import Path
 from ....model.errors import DataError, suggestion
 from ....model.machines.roles import Roles
 from ....scenarios.measured.table import Sensor
-from . import cooling, heat, losses, procedure, sensors as instruments, thermal
+from . import cooling, losses, procedure, sensors as instruments, thermal
 from .cause import Cause, Ranges
 from .check import problems
 from .forms import Context
@@ -21,7 +21,7 @@ Family = Callable[[Roles, Ranges, Sequence[Sensor]], Iterable[Cause]]
 #: Our own, in the order of the taxonomy.
 FAMILIES: tuple[Callable[[Context], Iterable[Cause]], ...] = (
     losses.causes,
-    heat.causes,
+    thermal.heat_causes,
     cooling.causes,
     thermal.causes,
     instruments.causes,
