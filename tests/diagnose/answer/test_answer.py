@@ -14,8 +14,7 @@ from gearheat.tools.diagnose.answer.design import Effects, extend_design, find_a
 from gearheat.tools.diagnose.answer.experiments import build_tests, list_experiments
 from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
 from gearheat.tools.diagnose.answer.predict import simulate
-from gearheat.tools.diagnose.answer.quality import adequacy, distances, scatters
-from gearheat.tools.diagnose.answer.residuals import average_residuals
+from gearheat.tools.diagnose.answer.quality import adequacy, average_residuals, distances, scatters
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Aside, Problem
 from gearheat.tools.diagnose.infer.weigh import weigh
