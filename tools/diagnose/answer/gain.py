@@ -8,7 +8,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -38,14 +37,6 @@ LEAST = 6
 RIDGES = np.geomspace(1e-4, 1.0, 9)
 
 
-@dataclass(frozen=True)
-class _Fold:
-    """Entries that are left out (k,), and what is foreseen of them."""
-
-    held: np.ndarray
-    seen: Foreseen
-
-
 def measure_gains(found: Found, seed: int, progress: Callable[[float], None] = lambda share: None) -> list[Gain]:
     """All schemes that the data allow, all compared sensors, thermometers of the oil first.
 
@@ -71,21 +62,21 @@ def measure_gains(found: Found, seed: int, progress: Callable[[float], None] = l
     return sorted(told, key=lambda g: g.channel not in oil)
 
 
-def _fold(found: Found, rows: np.ndarray, seed: int) -> _Fold:
+def _fold(found: Found, rows: np.ndarray, seed: int) -> Foreseen:
     """Everything anew without the readings of some rows, and what it says of them."""
     gross = {a.number for a in found.problem.aside if not a.sensor}
     held = np.array([i for i in np.flatnonzero(np.isin(found.problem.data.row, rows)) if i not in gross])
-    return _Fold(held, foresee(found.problem, found.formulas, held, found.critical, seed, MOST))
+    return foresee(found.problem, found.formulas, held, found.critical, seed, MOST)
 
 
 def _gain(
-    found: Found, scheme: str, folds: Sequence[np.ndarray], errors: Sequence[_Fold], sensor: int, seed: int
+    found: Found, scheme: str, folds: Sequence[np.ndarray], errors: Sequence[Foreseen], sensor: int, seed: int
 ) -> Gain | None:
     """One sensor's errors over all folds of a scheme."""
     o = found.problem.data
     held = np.concatenate([e.held for e in errors])
     sides = ("before", "after", "leading")
-    errors_by = {side: np.concatenate([getattr(e.seen, side) for e in errors], axis=1) for side in sides}
+    errors_by = {side: np.concatenate([getattr(e, side) for e in errors], axis=1) for side in sides}
     mine = o.kind[held] == sensor
     if not mine.any():
         return None
@@ -117,7 +108,7 @@ def _gain(
         ratio_ci90=_bootstrap(errors_by["before"][0, mine], errors_by["after"][0, mine], test, seed),
         noise_floor=channels.difference(s, noise_floor(found, sensor)),
         rivals=rivals,
-        chosen=dict(Counter(c for e in errors for c in e.seen.causes).most_common()),
+        chosen=dict(Counter(c for e in errors for c in e.causes).most_common()),
         folds=len(folds),
     )
 
@@ -161,7 +152,11 @@ def schemes(c: Campaign) -> dict[str, list[np.ndarray]]:
     oils = np.array(c.oil)[c.test]
     if not small:
         found["leave-one-oil"] = [np.flatnonzero(oils == oil) for oil in dict.fromkeys(c.oil)]
-    return {name: folds for name, folds in found.items() if len(folds) > 1 and _sound(folds, c.n)}
+    return {
+        name: folds
+        for name, folds in found.items()
+        if len(folds) > 1 and all(c.n - len(rows) >= LEAST for rows in folds)
+    }
 
 
 def levels(values: np.ndarray) -> list[np.ndarray]:
@@ -169,10 +164,6 @@ def levels(values: np.ndarray) -> list[np.ndarray]:
     order = np.argsort(values, kind="stable")
     gaps = np.diff(values[order]) > GAP * max(float(np.ptp(values)), 1e-12)
     return [np.sort(rows) for rows in np.split(order, np.flatnonzero(gaps) + 1)]
-
-
-def _sound(folds: Sequence[np.ndarray], n: int) -> bool:
-    return all(n - len(rows) >= LEAST for rows in folds)
 
 
 def constant_cooling(o: Observed, sensor: int, rows: np.ndarray, kept: np.ndarray) -> np.ndarray | None:
