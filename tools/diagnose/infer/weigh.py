@@ -257,7 +257,7 @@ class Weighing:
         J = near.look.jacobian[:, : self.whole.nz]
         z, t = np.clip(J.T @ a, -6.0, 6.0), v * (G.T @ a)
         begun = zip(s.members, t, strict=True)
-        acting = [started(a, size) for k, size in begun if (a := terms[k].acting) is not None]
+        acting = [started(one, size) for k, size in begun if (one := terms[k].acting) is not None]
         extra = tuple(term.scatter(width) for term, width in scatters)
         problem = self.whole.without(own.key[2]).beside(extra)
         fit = fitted(problem, acting, z, np.array(s.scatter.scales))
