@@ -15,7 +15,7 @@ from gearheat import Calibration, CampaignRun, FilmTable, Replays
 from gearheat.tools.bench import bench
 from gearheat.tools.cli import developers, fmu as exporting, measured
 from gearheat.tools.cli.solve import print_end
-from gearheat.tools.diagnose.infer.replay import HOURS, Replayed
+from gearheat.tools.compare.replay import HOURS, Replayed
 
 SENSORS = ("T_oil", "T_bearing_high_speed_rotor_side", "T_bearing_high_speed_generator_side")
 

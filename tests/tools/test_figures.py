@@ -15,7 +15,7 @@ from gearheat.tools.compare import report
 from gearheat.tools.compare.errors import channels_of
 from gearheat.tools.diagnose.answer.evidence import Rows, View
 from gearheat.tools.diagnose.answer.plan import Outlook, Plan, Planned, PlannedCause, PlannedPair
-from gearheat.tools.diagnose.report import figures, plan
+from gearheat.tools.diagnose.report import page, plan
 from gearheat.tools.diagnose.report.page import render
 from matplotlib.figure import Figure
 from pages import words_that_collide
@@ -25,7 +25,7 @@ from pages import words_that_collide
 def drawn(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[Figure]]:
     """The figures that are drawn; at the end their words are looked at."""
     found: list[Figure] = []
-    for module in (figures, plan, report):
+    for module in (page, plan, report):
         monkeypatch.setattr(module, "svg", lambda figure: found.append(figure) or "<svg></svg>")
     yield found
     assert [word for figure in found for word in words_that_collide(figure)] == []

@@ -26,8 +26,15 @@ if TYPE_CHECKING:
     from .tools.describe.parts import PartTypes as PartTypes, parts as parts, schema as schema
     from .tools.describe.rig import Rig as Rig, assemble as assemble, load as load, rigs as rigs
     from .tools.describe.shipped import Shipped as Shipped, shipped as shipped
-    from .tools.diagnose.api import CardText as CardText, card as card, diagnose as diagnose, plan as plan
-    from .tools.diagnose.asking import Diagnosis as Diagnosis, Outputs as Outputs, PlanAnswer as PlanAnswer
+    from .tools.diagnose.api import (
+        CardText as CardText,
+        Diagnosis as Diagnosis,
+        Outputs as Outputs,
+        PlanAnswer as PlanAnswer,
+        card as card,
+        diagnose as diagnose,
+        plan as plan,
+    )
     from .tools.export.export import export as export, play as play
     from .tools.export.fmu import Exported as Exported
     from .tools.films.film import FilmTable as FilmTable, film as film
@@ -59,8 +66,7 @@ MODULES: dict[str, tuple[str, ...]] = {
     "tools.describe.parts": ("parts", "PartTypes", "schema"),
     "tools.describe.rig": ("assemble", "load", "Rig", "rigs"),
     "tools.describe.shipped": ("Shipped", "shipped"),
-    "tools.diagnose.api": ("card", "CardText", "diagnose", "plan"),
-    "tools.diagnose.asking": ("Diagnosis", "Outputs", "PlanAnswer"),
+    "tools.diagnose.api": ("card", "CardText", "diagnose", "Diagnosis", "Outputs", "plan", "PlanAnswer"),
     "tools.export.export": ("export", "play"),
     "tools.export.fmu": ("Exported",),
     "tools.films.film": ("film", "FilmTable"),

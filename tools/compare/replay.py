@@ -1,11 +1,15 @@
-"""How well a rig predicts logs without correction, beside plain rivals fitted on one of them."""
+"""How well a rig predicts logs without correction, beside plain rivals fitted on one: free-running, by hours ahead."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
+from scipy.optimize import least_squares
+from scipy.signal import lfilter
 
 from ...model.errors import DataError
 from ...model.units import from_si
@@ -13,7 +17,8 @@ from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import read_card
 from ...scenarios.measured.logs import Log, read_log
 from ..diagnose.infer.logs import filter_of, season_of
-from ..diagnose.infer.replay import HOURS, Replayed, Rivals, replay as replay_log
+from ..diagnose.model.logs import Filter
+from ..diagnose.model.windows import Windows, windows
 from ..show.console import note
 from ..show.display import Display
 from ..show.picture import Picture
@@ -22,6 +27,32 @@ from ..show.picture import Picture
 SIZE = (9.0, 4.5)
 #: Longest stretch of the picture [samples].
 LONGEST = 1000
+#: Hours ahead at which errors are told, and lags of the regression [samples].
+HOURS = (1.0, 3.0, 6.0, 12.0, 24.0)
+LAGS = (0, 1, 2, 4, 8, 16, 32, 64, 128)
+#: Samples in which the filter settles before a prediction.
+BEFORE = 100
+
+
+@dataclass(frozen=True)
+class Replayed:
+    """Errors of one log: root mean squares by method and sensor, [K].
+
+    Args:
+        name: of the log
+        rows: number of samples
+        free: method -> sensor -> error without any correction from the first sample of each stretch
+        ahead: method -> sensor -> error at each of `HOURS`
+        shown: free run of the rig and readings of the longest stretch, sensor -> (2, n)
+        time: of that stretch [s] (n,)
+    """
+
+    name: str
+    rows: int
+    free: Mapping[str, Mapping[str, float]]
+    ahead: Mapping[str, Mapping[str, tuple[float, ...]]]
+    shown: Mapping[str, np.ndarray]
+    time: np.ndarray
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -115,3 +146,120 @@ def _split_log(log: Log, until: int | None) -> list[Log]:
         raise DataError([f"{log.name}: has no samples before {until}. Give a later year as --until."])
     parts = [(years < until, f"{log.name} before {until}"), (years >= until, f"{log.name} from {until}")]
     return [log.rows(keep, name) for keep, name in parts if keep.any()]
+
+
+class Rivals:
+    """A one-node model and a linear regression on present and past inputs, for each sensor.
+
+    Args:
+        fitted: log on which they are fitted
+        given, read: names of the sensors
+    """
+
+    def __init__(self, fitted: Log, given: Sequence[str], read: Sequence[str]) -> None:
+        data = windows([fitted], given, read, 0)
+        self.scale = np.maximum(np.abs(data.given[data.there]).max(axis=0), 1e-9)
+        self.node = [self._node(data, j) for j in range(len(read))]
+        X = np.concatenate([_lagged(u[:n] / self.scale) for u, n in zip(data.given, _lengths(data), strict=True)])
+        Y = np.concatenate([y[:n] for y, n in zip(data.read, _lengths(data), strict=True)])
+        self.regression = []
+        for y in Y.T:
+            known = np.isfinite(y)
+            A = X[known].T @ X[known]
+            ridge = 1e-6 * np.trace(A) / len(A) * np.eye(len(A))
+            self.regression.append(np.linalg.solve(A + ridge, X[known].T @ y[known]))
+
+    def _node(self, data: Windows, j: int) -> np.ndarray:
+        """Decay [logit] and gains of a first-order model of sensor j, by least squares of its free run."""
+
+        def left(x: np.ndarray) -> np.ndarray:
+            errors = [
+                (y[:n, j] - self.one_node(x, u[:n], y[0, j]))[::3]
+                for u, y, n in zip(data.given, data.read, _lengths(data), strict=True)
+            ]
+            return np.asarray(np.nan_to_num(np.concatenate(errors)))
+
+        start = np.array([3.5, *np.zeros(data.given.shape[2]), 0.0])
+        start[-1] = 0.03 * np.nanmean(data.read[:, :, j])
+        return np.asarray(least_squares(left, start, x_scale="jac", max_nfev=60).x)
+
+    def one_node(self, x: np.ndarray, u: np.ndarray, start: float) -> np.ndarray:
+        """Free run (n,) from a start."""
+        decay = 1 / (1 + np.exp(-x[0]))
+        drive = u / self.scale @ x[1:-1] + x[-1]
+        found, _ = lfilter([1.0], [1.0, -decay], drive, zi=[decay * start])
+        return np.asarray(found)
+
+    def regressed(self, j: int, u: np.ndarray) -> np.ndarray:
+        """Prediction (n,) of sensor j."""
+        return np.asarray(_lagged(u / self.scale) @ self.regression[j])
+
+
+def _lengths(data: Windows) -> np.ndarray:
+    return np.asarray(data.there.sum(axis=1))
+
+
+def _lagged(u: np.ndarray) -> np.ndarray:
+    """Inputs now and before, those before the first sample as the first; squares; one."""
+    n = len(u)
+    past = [u[np.maximum(np.arange(n) - lag, 0)] for lag in LAGS]
+    return np.column_stack([*past, u**2, np.ones(n)])
+
+
+def replay_log(own: Filter, log: Log, rivals: Rivals) -> Replayed:
+    """Errors on one log.
+
+    Args:
+        own: the rig
+        log: samples
+        rivals: fitted elsewhere
+    """
+    whole = windows([log], own.given, own.read, 0)
+    lengths = _lengths(whole)
+    passed = own.run(whole, np.zeros((len(lengths), len(own.knobs))), free=True, slopes=False)
+    node, regression = np.full_like(whole.read, np.nan), np.full_like(whole.read, np.nan)
+    for i, n in enumerate(lengths):
+        for j in range(len(own.read)):
+            node[i, :n, j] = rivals.one_node(rivals.node[j], whole.given[i, :n], whole.read[i, 0, j])
+            regression[i, :n, j] = rivals.regressed(j, whole.given[i, :n])
+    free = {
+        "rig": _rms(own.read, whole.read - passed.shown),
+        "one node": _rms(own.read, whole.read - node),
+        "regression with lags": _rms(own.read, whole.read - regression),
+    }
+    longest = int(lengths.argmax())
+    n = lengths[longest]
+    shown = {s: np.array([passed.shown[longest, :n, j], whole.read[longest, :n, j]]) for j, s in enumerate(own.read)}
+    return Replayed(log.name, log.n, free, _ahead(own, log, rivals), shown, log.time[whole.rows[longest, :n]])
+
+
+def _rms(names: Sequence[str], error: np.ndarray) -> dict[str, float]:
+    return {name: float(np.sqrt(np.nanmean(error[..., j] ** 2))) for j, name in enumerate(names)}
+
+
+def _ahead(own: Filter, log: Log, rivals: Rivals) -> dict[str, dict[str, tuple[float, ...]]]:
+    """Errors some hours after the last correction."""
+    steps = [round(h * 3600 / log.step) for h in HOURS]
+    data = windows([log], own.given, own.read, steps[-1], BEFORE)
+    data = data.some(data.counts.sum(axis=1) >= steps[-1])
+    begin = data.counts.argmax(axis=1)
+    passed = own.run(data, np.zeros((len(begin), len(own.knobs))), free=True, slopes=False)
+    found: dict[str, dict[str, tuple[float, ...]]] = {
+        m: {} for m in ("rig", "one node", "regression with lags", "last reading")
+    }
+    for j, name in enumerate(own.read):
+        errors: dict[str, list[np.ndarray]] = {method: [] for method in found}
+        for i, b in enumerate(begin):
+            at = b + np.array(steps) - 1
+            y, last, u = data.read[i, :, j], data.read[i, b - 1, j], data.given[i]
+            predicted = {
+                "rig": passed.shown[i, at, j],
+                "one node": rivals.one_node(rivals.node[j], u[b:], last)[at - b],
+                "regression with lags": rivals.regressed(j, u)[at],
+                "last reading": np.full(len(at), last),
+            }
+            for method, value in predicted.items():
+                errors[method].append(y[at] - value)
+        for method, e in errors.items():
+            found[method][name] = tuple(float(v) for v in np.sqrt(np.nanmean(np.array(e) ** 2, axis=0)))
+    return found

@@ -1,11 +1,14 @@
-"""What the model gets wrong in measured data, which experiments would tell, and the card of a campaign."""
+"""What the model gets wrong in measured data, which experiments would tell, and the card of a campaign.
+
+All problems of files and options are named before any work.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Literal
 
 from ...model.errors import ScenarioError
 from ...model.files import flows
@@ -13,13 +16,134 @@ from ...scenarios.given import RigLike, scenario_of
 from ...scenarios.measured.card import Card
 from ...scenarios.measured.write import as_json, as_toml, default_card
 from ...scenarios.nuisances import usual_priors
-from ..show.console import as_json as json_text, write
+from ..show.console import as_json as json_text, file_of, progress_bar, write
 from ..show.display import Display, lines_of
-from .asking import Diagnosis, Outputs, PlanAnswer, ask, ask_plan
-from .request import MOST, PlanRequest, Request
+from .answer.findings import Findings
+from .answer.numbers import as_object
+from .answer.plan import Plan
+from .report import plan as plans
+from .report.page import render
+from .report.screen import text
+from .report.tables import predictions_text
+from .request import MOST, PlanRequest, Request, read, read_plan
 
 File = str | Path
 Files = File | Sequence[File] | None
+#: Kinds of pictures by the ending of their file's name.
+PICTURES: Mapping[str, Literal["png", "svg"]] = {".png": "png", ".svg": "svg"}
+
+
+@dataclass(frozen=True)
+class Outputs:
+    """Where results go; None writes nothing, "-" as `json` is stdout."""
+
+    predictions: Path | None = None
+    json: str | None = None
+    report: Path | None = None
+    extended: Path | None = None
+
+    def files(self) -> dict[str, Path]:
+        """The files that are written, by the name of their option."""
+        given = {"--predictions": self.predictions, "--json": file_of(self.json), "--report": self.report}
+        given |= {"--extended": self.extended}
+        return {name: path for name, path in given.items() if path is not None}
+
+
+class Diagnosis(Display, Findings):
+    """Findings that show themselves and are written."""
+
+    @property
+    def title(self) -> str:
+        """The verdict in a sentence."""
+        return f"{self.about.rig}: {self.verdict}"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Answers with their probabilities."""
+        named = [(" + ".join(" or ".join(names) for names in a.causes), a.probability) for a in self.answers]
+        rows = [(names or "nothing wrong", probability) for names, probability in named]
+        return ("answer", "probability"), rows
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object, without what is not known."""
+        return as_object(self)
+
+    def text(self, *, everything: bool = False, width: int | None = None) -> str:
+        """The findings as text.
+
+        Args:
+            everything: with all tables
+            width: of the screen
+        """
+        return text(self, everything=everything, width=width)
+
+    def report(self, path: str | Path) -> Path:
+        """Write the HTML page.
+
+        Args:
+            path: file to write
+
+        Raises:
+            DataError: it cannot be written
+        """
+        write(Path(path), render(self))
+        return Path(path)
+
+    def write(self, outputs: Outputs) -> None:
+        """Write files when all of them are made: an interrupted run leaves none.
+
+        Args:
+            outputs: the files
+
+        Raises:
+            DataError: one cannot be written
+        """
+        made: dict[Path | None, str] = {
+            outputs.predictions: predictions_text(self),
+            outputs.extended: self.extended_rig,
+            outputs.report: render(self) if outputs.report is not None else "",
+            file_of(outputs.json): json_text(as_object(self)),
+        }
+        for path, content in made.items():
+            if path is not None:
+                write(path, content)
+
+
+class PlanAnswer(Display, Plan):
+    """A plan that shows itself and is drawn."""
+
+    @property
+    def title(self) -> str:
+        """The answer in a sentence."""
+        return plans.sentence(self) or f"{self.rig}: which causes a campaign can tell apart"
+
+    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+        """Experiments in the order of what they tell."""
+        return ("experiment",), [(self.what(one.id),) for one in self.catalogue]
+
+    def as_dict(self) -> dict[str, Any]:
+        """The JSON object, without what is not known."""
+        return as_object(self)
+
+    def text(self, *, everything: bool = False, width: int | None = None) -> str:
+        """The plan as text.
+
+        Args:
+            everything: with all experiments and causes
+            width: of the screen
+        """
+        return plans.text(self, everything=everything, width=width)
+
+    def save_picture(self, path: str | Path) -> Path:
+        """Write the distances of the causes as a picture.
+
+        Args:
+            path: .png or .svg
+
+        Raises:
+            DataError: it cannot be written
+        """
+        write(Path(path), plans.picture(self, PICTURES[Path(path).suffix.lower()]))
+        return Path(path)
 
 
 def diagnose(
@@ -84,7 +208,16 @@ def diagnose(
         series=_path(series),
         reference_series=_path(reference_series),
     )
-    return ask(request, outputs)
+    problems, written = [], {} if outputs is None else outputs.files()
+    if outputs is not None and predict is not None and outputs.predictions is None:
+        problems.append("--predict needs a place for the result. Give --predictions FILE, too.")
+    if outputs is not None and outputs.predictions is not None and predict is None:
+        problems.append("--predictions needs the points to predict. Give --predict FILE, too.")
+    inputs = read(request, written, problems)
+    from . import diagnosis  # what it needs loads slowly
+
+    with progress_bar() as progress:
+        return Diagnosis.model_construct(**dict(diagnosis.diagnose(inputs, progress)))
 
 
 def plan(
@@ -117,8 +250,18 @@ def plan(
         >>> import gearheat as gh
         >>> gh.plan("planetary", separate=["losses.churning", "losses.seals"])  # doctest: +SKIP
     """
-    request = PlanRequest(rig, ",".join(separate), _path(card), _path(points), _paths(library), reference)
-    return ask_plan(request, json=json, out=_path(out))
+    request = PlanRequest(rig, tuple(separate), _path(card), _path(points), _paths(library), reference)
+    problems, picture = [], _path(out)
+    if picture is not None and picture.suffix.lower() not in PICTURES:
+        problems.append(f"--out {out}: is no picture that can be drawn. Give a name that ends in .png or .svg.")
+    if picture is not None and not separate:
+        problems.append("--out draws the distances of causes. Name them with --separate CAUSE,CAUSE.")
+    given = {"--json": file_of(json), "--out": picture}
+    inputs = read_plan(request, {name: path for name, path in given.items() if path is not None}, problems)
+    from . import diagnosis  # what it needs loads slowly
+
+    with progress_bar() as progress:
+        return PlanAnswer.model_construct(**dict(diagnosis.plan(inputs, progress)))
 
 
 @dataclass(frozen=True, eq=False, repr=False)

@@ -1,26 +1,32 @@
-"""The whole diagnosis: search, decide, and everything that the report shows."""
+"""The whole diagnosis: search, decide, and everything that the report shows; the whole plan: what a design tells."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from typing import Any
 
+import numpy as np
+
+from ...model.errors import DataError
 from .answer import compose, pictures
 from .answer.channels import channel
 from .answer.decide import Decision, decide, temper
-from .answer.design import Effects, judge_design
+from .answer.design import Effects, judge_design, simulate_design
 from .answer.estimate import impacts, replay
+from .answer.experiments import list_experiments, planned_campaign
 from .answer.findings import About, Alarm, Findings, Gain, Invisible
 from .answer.gain import measure_gains
+from .answer.plan import Plan, rank_experiments
 from .answer.predict import predict
-from .answer.quality import check_data
-from .answer.residuals import average_residuals
+from .answer.quality import average_residuals, check_data
 from .infer.found import Found
+from .infer.screen import changes, samples
 from .infer.weigh import weigh
 from .library.cause import Cause
 from .logs import LogDiagnosis, logged
 from .report.extension import calibrated, rig_file
 from .report.words import with_words
-from .request import Inputs
+from .request import Inputs, PlanInputs, unknown_causes
 from .setting import Setting, setting
 
 Progress = Callable[[str, float], None]
@@ -134,3 +140,50 @@ def _composed(inputs: Inputs, made: Setting, found: Found, decision: Decision, h
         invisible=tuple(Invisible(cause=cause, reason=why) for cause, why in inputs.invisible.items()),
         warnings=inputs.warnings,
     )
+
+
+def plan(inputs: PlanInputs, progress: Progress) -> Plan:
+    """What a campaign will tell, by exact first-order effects at the rig as in its file.
+
+    Args:
+        inputs: what the files of a request hold
+        progress: called with (stage, fraction done)
+
+    Raises:
+        GearheatError: rig, card and points do not go together
+    """
+    request = inputs.request
+    progress("compiling the rig", 0.05)
+    campaign = planned_campaign(inputs.scenario, inputs.card, inputs.points)
+    reference = campaign if request.reference else None
+    made = setting(inputs.scenario, inputs.card, campaign, reference, request.libraries)
+    if problems := unknown_causes(request.causes, [c.id for c in made.causes]):
+        raise DataError(problems)
+    progress("effects of all causes", 0.3)
+    problem = made.problem
+    look = problem.look(np.zeros(problem.nz))
+    noise = problem.noise(look)
+    candidates, _ = samples([f for f in made.formulas if not f.form.spread], changes(problem))
+    effects = problem.tangents(look.z, (), candidates)
+    effects[:, ~np.isfinite(effects).all(axis=0)] = 0.0
+    V = noise.covariance + look.jacobian @ look.jacobian.T
+    whole = Effects.of(candidates, effects, V)
+    common: dict[str, Any] = {
+        "rig": made.scenario.name,
+        "campaign": campaign.name,
+        "readings": campaign.n,
+        "reference": request.reference,
+        "isolability": judge_design(whole),
+        "warnings": (*inputs.card.warnings, *campaign.warnings),
+    }
+    if not request.causes:
+        return Plan(**common)
+    progress("experiments", 0.6)
+    if scatter := [c for c in request.causes if c not in whole.places]:  # they have no size to first order
+        raise DataError(f"--separate: {', '.join(scatter)} is a scatter, which a plan does not judge. Leave it out.")
+    places = [k for k, c in enumerate(candidates) if c.id in request.causes]
+    some = [candidates[k] for k in places]
+    found = simulate_design(
+        made, problem, look, noise, some, effects[:, places], list_experiments(campaign, made.nominal.value)
+    )
+    return rank_experiments(found, request.causes, {c.id: c for c in made.causes}, common, whole)

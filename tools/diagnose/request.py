@@ -134,19 +134,14 @@ def read(request: Request, written: Mapping[str, Path] | None = None, problems: 
 
 @dataclass(frozen=True)
 class PlanRequest:
-    """Files and options of a plan, as `gearheat.plan` describes them; the causes to separate with commas between."""
+    """Files and options of a plan, as `gearheat.plan` describes them."""
 
     rig: RigLike
-    separate: str = ""
+    causes: tuple[str, ...] = ()
     card: Path | None = None
     points: Path | None = None
     libraries: tuple[Path, ...] = ()
     reference: bool = False
-
-    @property
-    def causes(self) -> tuple[str, ...]:
-        """The causes to tell apart."""
-        return tuple(name for part in self.separate.split(",") if (name := part.strip()))
 
     def files(self) -> list[tuple[str, Path]]:
         """The files that are read, each with the name of its option."""

@@ -37,7 +37,7 @@ from ...scenarios.tables import CampaignTable, ErratumTable, RigTable, SensorTab
 from ..describe.parts import describe_part
 from ..diagnose.library.cause import Cause
 from ..diagnose.library.registry import library
-from ..diagnose.model.ranges import ranges_of
+from ..diagnose.setting import ranges_of
 
 #: What the pages tell of, and settings of the web site.
 TABLES: dict[str, Any] = tomllib.loads(files("gearheat.tools.docs").joinpath("docs.toml").read_text(encoding="utf-8"))

@@ -11,7 +11,7 @@ from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.table import Campaign
-from gearheat.tools.diagnose.answer.grid import planned_campaign
+from gearheat.tools.diagnose.answer.experiments import planned_campaign
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.weigh import weigh
 from gearheat.tools.diagnose.setting import Setting, setting

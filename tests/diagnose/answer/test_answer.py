@@ -14,10 +14,7 @@ from gearheat.tools.diagnose.answer.design import Effects, extend_design, find_a
 from gearheat.tools.diagnose.answer.experiments import build_tests, list_experiments
 from gearheat.tools.diagnose.answer.findings import UNEXPLAINED
 from gearheat.tools.diagnose.answer.predict import simulate
-from gearheat.tools.diagnose.answer.quality import adequacy, scatters
-from gearheat.tools.diagnose.answer.residuals import average_residuals
-from gearheat.tools.diagnose.answer.rivals import constant_cooling
-from gearheat.tools.diagnose.infer import gross
+from gearheat.tools.diagnose.answer.quality import adequacy, average_residuals, distances, scatters
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Aside, Problem
 from gearheat.tools.diagnose.infer.weigh import weigh
@@ -91,8 +88,8 @@ def test_one_gross_reading_is_found_and_sound_ones_beside_it_stay(clean: tuple[S
     found = weigh(problem, clean[1].formulas)
     assert found.problem.aside == {bad}
     assert decide(found).verdict == "consistent"
-    (far,) = gross.distances(found.problem, found.null)
-    assert far.size_sd == pytest.approx(20, rel=0.3)
+    ((_, size_sd),) = distances(found.problem, found.null)
+    assert size_sd == pytest.approx(20, rel=0.3)
 
 
 def test_the_cause_is_named_and_all_agrees(wrong: tuple[Setting, Found]) -> None:
@@ -265,7 +262,7 @@ def test_a_rival_that_says_nothing_of_a_reading_is_left_out(wrong: tuple[Setting
     o = wrong[1].problem.data
     rows, kept = np.arange(o.campaign.n), np.arange(o.campaign.n) % 4 > 0
     for i, s in enumerate(o.read):
-        said = constant_cooling(o, i, rows, kept)
+        said = gain.constant_cooling(o, i, rows, kept)
         assert (said is None) == (not s.kind.endswith("_temp"))
 
 

@@ -7,9 +7,9 @@ from dataclasses import replace
 import numpy as np
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
-from gearheat.tools.diagnose.answer import rivals
-from gearheat.tools.diagnose.answer.folds import levels, schemes
-from gearheat.tools.diagnose.answer.grid import planned_campaign
+from gearheat.tools.diagnose.answer import gain
+from gearheat.tools.diagnose.answer.experiments import planned_campaign
+from gearheat.tools.diagnose.answer.gain import levels, schemes
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.setting import Setting
 
@@ -47,5 +47,5 @@ def test_a_large_campaign_is_grouped_by_its_own_levels() -> None:
 def test_rivals_are_exact_where_they_hold() -> None:
     kept = np.arange(20) % 4 > 0
     X = np.random.default_rng(1).normal(size=(20, 3))
-    left = rivals.fitted(np.column_stack([np.ones(20), X]), 2.0 + X @ [1.0, -2.0, 0.5], kept, 1e-9)
+    left = gain.fitted(np.column_stack([np.ones(20), X]), 2.0 + X @ [1.0, -2.0, 0.5], kept, 1e-9)
     assert np.abs(left).max() < 1e-6

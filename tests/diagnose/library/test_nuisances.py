@@ -11,8 +11,8 @@ from gearheat.model.run.rows import evaluate_at
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import list_rigs
 from gearheat.scenarios.nuisances import nuisances
+from gearheat.tools.diagnose.library.extras import thin_film_friction
 from gearheat.tools.diagnose.library.forms import Context
-from gearheat.tools.diagnose.library.thin_films import thin_film_friction
 
 RIGS = tuple(list_rigs())
 

@@ -12,9 +12,9 @@ from gearheat.fmu.compiling import Progress
 from gearheat.model.errors import DataError
 from gearheat.scenarios.shipped import RIGS
 from gearheat.tools.cli import app as cli
-from gearheat.tools.diagnose import diagnosis
+from gearheat.tools.diagnose import api, diagnosis
 from gearheat.tools.diagnose.answer.findings import Findings, Prediction
-from gearheat.tools.diagnose.asking import Outputs, ask
+from gearheat.tools.diagnose.api import Outputs
 from gearheat.tools.diagnose.request import Inputs, Request
 from gearheat.tools.show.console import as_json
 from jsonschema import validate
@@ -34,17 +34,17 @@ def infer(inputs: Inputs, progress: Progress) -> Findings:
     return said.model_copy(update={"about": said.about.model_copy(update={"readings": inputs.data.n})})  # type: ignore[union-attr]
 
 
-def diagnose_command(request: Request, outputs: Outputs, infer) -> None:
+def diagnose_command(data: Path | None, outputs: Outputs, infer, rig: str = RIG, **options) -> None:
     """What the command does with an inference."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(diagnosis, "diagnose", infer)
-        (found := ask(request, outputs)).write(outputs)
+        (found := api.diagnose(data, rig, outputs=outputs, **options)).write(outputs)
     print(as_json(found.as_dict()) if outputs.json == "-" else found.text(), end="")
 
 
 def test_everything_is_written_whole(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     outputs = Outputs(tmp_path / "p.csv", str(tmp_path / "o.json"), tmp_path / "o.html", tmp_path / "o.toml")
-    diagnose_command(Request(RIG, DATA, predict=DATA), outputs, infer)
+    diagnose_command(DATA, outputs, infer, predict=DATA)
     assert (tmp_path / "p.csv").read_text() == "point,T_oil_nominal_C,T_oil_extended_C\n1,60.000,61.500\n"
     found = json.loads((tmp_path / "o.json").read_text())
     schema = files("gearheat.tools.diagnose.report").joinpath("diagnosis.schema.json")
@@ -59,17 +59,17 @@ def test_everything_is_written_whole(tmp_path: Path, capsys: pytest.CaptureFixtu
 
 
 def test_json_alone_goes_to_stdout(capsys: pytest.CaptureFixture[str]) -> None:
-    diagnose_command(Request(RIG, DATA), Outputs(json="-"), infer)
+    diagnose_command(DATA, Outputs(json="-"), infer)
     assert json.loads(capsys.readouterr().out)["verdict"] == "explained"
 
 
 def test_all_problems_at_once(tmp_path: Path) -> None:
     (card := tmp_path / "card.toml").write_text("day_cooling_sd = -1.0\n")
-    request = Request(RIG, DATA, card=card, reference=tmp_path / "none.csv", causes=0, alpha=1.5, seed=-1)
     page = tmp_path / "page"
     outputs = Outputs(page, str(tmp_path / "nowhere" / "o.json"), page, card)
     with pytest.raises(DataError) as caught:
-        diagnose_command(request, outputs, infer)
+        options = {"reference": tmp_path / "none.csv", "causes": 0, "alpha": 1.5, "seed": -1}
+        diagnose_command(DATA, outputs, infer, card=card, **options)
     told = "\n".join(caught.value.problems)
     words = ("--alpha 1.5", "--causes 0", "--seed -1", "--reference", "there is no such file", "day_cooling_sd")
     words += ("--predictions needs the points", "nowhere", "is the file of --card", "is the file of --predictions")
@@ -87,7 +87,7 @@ def test_a_series_needs_the_readings_of_its_tests() -> None:
 
 def test_no_data_and_no_rig_are_told_together() -> None:
     with pytest.raises(DataError) as caught:
-        diagnose_command(Request("planetry"), Outputs(), infer)
+        diagnose_command(None, Outputs(), infer, "planetry")
     told = "\n".join(caught.value.problems)
     assert "no data are given" in told
     assert "planetary" in told
@@ -100,7 +100,7 @@ def test_an_interrupted_run_writes_nothing(tmp_path: Path) -> None:
     before = tmp_path / "o.json"
     before.write_text("earlier")
     with pytest.raises(KeyboardInterrupt):
-        diagnose_command(Request(RIG, DATA), Outputs(None, str(before), tmp_path / "o.html"), interrupted)
+        diagnose_command(DATA, Outputs(None, str(before), tmp_path / "o.html"), interrupted)
     assert before.read_text() == "earlier"
     assert list(tmp_path.iterdir()) == [before]
 

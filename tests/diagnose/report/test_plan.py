@@ -11,13 +11,12 @@ from fabricated_findings import AIR, CHURNING, EMISSIVITY, OFFSET, WINDAGE
 from gearheat.fmu.compiling import Progress
 from gearheat.model.errors import DataError
 from gearheat.tools.cli import app as cli
-from gearheat.tools.diagnose import planning
+from gearheat.tools.diagnose import api, diagnosis
 from gearheat.tools.diagnose.answer.findings import Isolability
 from gearheat.tools.diagnose.answer.numbers import as_object
 from gearheat.tools.diagnose.answer.plan import Outlook, Plan, Planned, PlannedCause, PlannedPair
-from gearheat.tools.diagnose.asking import ask_plan
 from gearheat.tools.diagnose.report.plan import picture, sentence, text as printed
-from gearheat.tools.diagnose.request import PlanInputs, PlanRequest, unknown_causes
+from gearheat.tools.diagnose.request import PlanInputs, unknown_causes
 from typer.testing import CliRunner
 
 PAIR = (AIR, EMISSIVITY)
@@ -101,7 +100,7 @@ def find(inputs: PlanInputs, progress: Progress) -> Plan:
 
 
 def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(planning, "plan", find)
+    monkeypatch.setattr(diagnosis, "plan", find)
     out, file = tmp_path / "plan.svg", tmp_path / "plan.json"
     arguments = ["plan", "helical_two_stage", "--separate", ",".join(PAIR), "--out", str(out), "--json", str(file)]
     done = CliRunner().invoke(cli.app, arguments)
@@ -112,9 +111,9 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def test_all_problems_at_once(tmp_path: Path) -> None:
-    request = PlanRequest("nowhere", f"{AIR},{AIR}", card=tmp_path / "no.toml")
+    files = {"card": tmp_path / "no.toml", "json": str(tmp_path / "no" / "o.json"), "out": tmp_path / "picture.gif"}
     with pytest.raises(DataError) as caught:
-        ask_plan(request, json=str(tmp_path / "no" / "o.json"), out=tmp_path / "picture.gif")
+        api.plan("nowhere", separate=(AIR, AIR), **files)
     told = "\n".join(caught.value.problems)
     for word in ("picture.gif", "there twice", "nothing to tell it from", "no.toml", "nowhere", "o.json"):
         assert word in told

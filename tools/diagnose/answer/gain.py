@@ -1,34 +1,40 @@
-"""What the causes gain on readings that were left out: in each fold the whole inference runs without them."""
+"""What the causes gain on readings that were left out: in each fold the whole inference runs without them.
+
+Readings are left out together by tests, speeds, loads and oils. A physical model has to beat plain statistics on them.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass
 
 import numpy as np
 
 from ....model.errors import SolveError
+from ....scenarios.measured.table import Campaign
 from ..infer.foresee import Foreseen, foresee
 from ..infer.found import Found
+from ..model.observe import Observed
 from . import channels
 from .findings import Gain
-from .folds import schemes
-from .rivals import RIVALS
 
 #: Draws of the bootstrap.
 DRAWS = 2000
 #: Causes that may act together in a fold.
 MOST = 8
-
-
-@dataclass(frozen=True)
-class _Fold:
-    """Entries that are left out (k,), and what is foreseen of them."""
-
-    held: np.ndarray
-    seen: Foreseen
+#: Levels further apart than this share of their range are different ones.
+GAP = 0.06
+#: Rows of a small campaign, of which tests are left out only.
+SMALL = 48
+#: Folds of its one scheme.
+FEW = 4
+#: Of the tests of others.
+FOLDS = 3
+#: Fewer rows than these cannot be kept.
+LEAST = 6
+#: Weights of the ridge that are tried, as shares of the number of readings.
+RIDGES = np.geomspace(1e-4, 1.0, 9)
 
 
 def measure_gains(found: Found, seed: int, progress: Callable[[float], None] = lambda share: None) -> list[Gain]:
@@ -56,21 +62,21 @@ def measure_gains(found: Found, seed: int, progress: Callable[[float], None] = l
     return sorted(told, key=lambda g: g.channel not in oil)
 
 
-def _fold(found: Found, rows: np.ndarray, seed: int) -> _Fold:
+def _fold(found: Found, rows: np.ndarray, seed: int) -> Foreseen:
     """Everything anew without the readings of some rows, and what it says of them."""
     gross = {a.number for a in found.problem.aside if not a.sensor}
     held = np.array([i for i in np.flatnonzero(np.isin(found.problem.data.row, rows)) if i not in gross])
-    return _Fold(held, foresee(found.problem, found.formulas, held, found.critical, seed, MOST))
+    return foresee(found.problem, found.formulas, held, found.critical, seed, MOST)
 
 
 def _gain(
-    found: Found, scheme: str, folds: Sequence[np.ndarray], errors: Sequence[_Fold], sensor: int, seed: int
+    found: Found, scheme: str, folds: Sequence[np.ndarray], errors: Sequence[Foreseen], sensor: int, seed: int
 ) -> Gain | None:
     """One sensor's errors over all folds of a scheme."""
     o = found.problem.data
     held = np.concatenate([e.held for e in errors])
     sides = ("before", "after", "leading")
-    errors_by = {side: np.concatenate([getattr(e.seen, side) for e in errors], axis=1) for side in sides}
+    errors_by = {side: np.concatenate([getattr(e, side) for e in errors], axis=1) for side in sides}
     mine = o.kind[held] == sensor
     if not mine.any():
         return None
@@ -102,7 +108,7 @@ def _gain(
         ratio_ci90=_bootstrap(errors_by["before"][0, mine], errors_by["after"][0, mine], test, seed),
         noise_floor=channels.difference(s, noise_floor(found, sensor)),
         rivals=rivals,
-        chosen=dict(Counter(c for e in errors for c in e.seen.causes).most_common()),
+        chosen=dict(Counter(c for e in errors for c in e.causes).most_common()),
         folds=len(folds),
     )
 
@@ -128,3 +134,92 @@ def _bootstrap(before: np.ndarray, after: np.ndarray, test: np.ndarray, seed: in
     ratios = np.sqrt(b[draws].sum(axis=1) / np.maximum(a[draws].sum(axis=1), 1e-300))
     low, high = np.quantile(ratios, [0.05, 0.95])
     return float(low), float(high)
+
+
+def schemes(c: Campaign) -> dict[str, list[np.ndarray]]:
+    """Scheme -> the rows of each fold; only schemes with two folds or more."""
+    small = c.n < SMALL
+    most = FEW if small else FOLDS
+    single = c.n_tests <= most
+    tests = [np.flatnonzero(c.test == k) for k in range(c.n_tests)]
+    # tests next to each other go to different folds, so that each fold has the whole of the campaign's time
+    mixed = [np.concatenate(tests[k::most]) for k in range(min(most, c.n_tests))]
+    found = {"leave-one-operating-point" if single else "leave-out-tests": tests if single else mixed}
+    for scheme, kind in () if small else (("leave-one-speed", "speed"), ("leave-one-load", "torque")):
+        given = [s for s in c.given if s.kind == kind]
+        if given:
+            found[scheme] = levels(np.abs(c.values[given[0].name]))
+    oils = np.array(c.oil)[c.test]
+    if not small:
+        found["leave-one-oil"] = [np.flatnonzero(oils == oil) for oil in dict.fromkeys(c.oil)]
+    return {
+        name: folds
+        for name, folds in found.items()
+        if len(folds) > 1 and all(c.n - len(rows) >= LEAST for rows in folds)
+    }
+
+
+def levels(values: np.ndarray) -> list[np.ndarray]:
+    """Rows (k,) of each level, lowest first: values with no gap between them."""
+    order = np.argsort(values, kind="stable")
+    gaps = np.diff(values[order]) > GAP * max(float(np.ptp(values)), 1e-12)
+    return [np.sort(rows) for rows in np.split(order, np.flatnonzero(gaps) + 1)]
+
+
+def constant_cooling(o: Observed, sensor: int, rows: np.ndarray, kept: np.ndarray) -> np.ndarray | None:
+    """One number: a temperature's rise over the room in proportion to the power that passes.
+
+    None for other readings, which nothing cools, and where no power is given.
+    """
+    passing = [s for s in o.given if s.kind in ("speed", "torque", "power")]
+    if not o.read[sensor].kind.endswith("_temp") or not passing:
+        return None
+    power = np.prod([np.abs(o.sensors[s.name]) for s in passing], axis=0)
+    return fitted(power[rows, None] / max(float(np.abs(power).max()), 1e-300), target(o, sensor, rows), kept, 0.0)
+
+
+def linear(o: Observed, sensor: int, rows: np.ndarray, kept: np.ndarray) -> np.ndarray:
+    """A rise over the room, or another reading, linear in the given sensors, direction and oil, by ridge regression.
+
+    The weight of the ridge is chosen by generalised cross-validation on the kept readings.
+    """
+    c = o.campaign
+    columns = [np.abs(o.sensors[s.name]) for s in o.given]
+    columns += [c.direction, *((np.array(c.oil) == oil)[c.test] for oil in sorted(set(c.oil))[1:])]
+    X = np.array(columns, dtype=float).T[rows]
+    X = X[:, np.ptp(X[kept], axis=0) > 1e-9]
+    X = (X - X[kept].mean(axis=0)) / X[kept].std(axis=0)
+    y = target(o, sensor, rows)
+    best = min(RIDGES, key=lambda share: _gcv(X[kept], y[kept], share * int(kept.sum())))
+    return fitted(np.column_stack([np.ones(len(y)), X]), y, kept, best * int(kept.sum()))
+
+
+def target(o: Observed, sensor: int, rows: np.ndarray) -> np.ndarray:
+    """What is regressed: a temperature over the room, another reading as it is."""
+    s = o.read[sensor]
+    values = o.campaign.values[s.name][rows]
+    room = next((r.name for r in o.given if r.kind == "ambient"), None)
+    return np.asarray(values - o.sensors[room][rows] if s.kind.endswith("_temp") and room else values)
+
+
+def fitted(X: np.ndarray, y: np.ndarray, kept: np.ndarray, ridge: float) -> np.ndarray:
+    """Errors on the readings that are not kept; the first coefficient is not held back."""
+    A = X[kept].T @ X[kept] + ridge * np.diag(np.arange(X.shape[1]) > 0)
+    beta = np.linalg.lstsq(A, X[kept].T @ y[kept], rcond=None)[0]
+    return np.asarray(y[~kept] - X[~kept] @ beta)
+
+
+def _gcv(X: np.ndarray, y: np.ndarray, ridge: float) -> float:
+    """Generalised cross-validation score of a ridge with a free mean."""
+    U, d, _ = np.linalg.svd(X, full_matrices=False)
+    shrink = d**2 / (d**2 + ridge)
+    centred = y - y.mean()
+    left = centred - U @ (shrink * (U.T @ centred))
+    return float(left @ left / max(len(y) - 1 - shrink.sum(), 1e-9) ** 2)
+
+
+#: What is assumed -> errors of a sensor's readings in some rows that are not kept, None where it says nothing of them.
+RIVALS: Mapping[str, Callable[[Observed, int, np.ndarray, np.ndarray], np.ndarray | None]] = {
+    "constant cooling": constant_cooling,
+    "linear in the given sensors": linear,
+}

@@ -109,6 +109,7 @@ def rank_experiments(
     before = design.distances()
     pairs = [p if p in before else p[::-1] for p in combinations(names, 2)]
     same = {(a, b): library[a].like for a, b in pairs if library[a].like and library[a].like == library[b].like}
+    reasons = {p: like.partition(":")[2].strip() or like for p, like in same.items()}
     apart = {p: before[p] for p in pairs if p not in same}  # else causes are one answer
     now = _look_ahead(design, apart) if apart else None
     single = _sort([_look_ahead(design, apart, e.id) for e in design.experiments]) if apart else []
@@ -135,10 +136,7 @@ def rank_experiments(
             )
             for name, size in sizes.items()
         ),
-        pairs=tuple(
-            PlannedPair(causes=p, distance=apart.get(p, 0.0), one_answer=_reason(same[p]) if p in same else None)
-            for p in pairs
-        ),
+        pairs=tuple(PlannedPair(causes=p, distance=apart.get(p, 0.0), one_answer=reasons.get(p)) for p in pairs),
         now=now,
         catalogue=tuple(
             Planned(id=e.id, what=e.what, checks=tuple(dict.fromkeys(c.sensor for c in e.checks)))
@@ -147,11 +145,6 @@ def rank_experiments(
         outlooks=tuple(single),
         together=tuple(together),
     )
-
-
-def _reason(like: str) -> str:
-    """Why the causes of a class are one answer; its name where no reason is given."""
-    return like.partition(":")[2].strip() or like
 
 
 def _look_ahead(design: Design, apart: Mapping[Pair, float], *done: str) -> Outlook:

@@ -1,21 +1,37 @@
-"""What is to be known of data and rig before any cause: gross readings, values far off, scatter against the card."""
+"""What is to be known of data and rig before any cause is named.
+
+Gross readings, values far off, scatter against the card, and tables of means of what the calibrated rig leaves.
+"""
 
 from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from ....scenarios.measured import repeats
-from ....scenarios.measured.table import Campaign
+from ....scenarios.measured.table import Campaign, Sensor
+from ..infer.fit import Fit
 from ..infer.found import Found, Hypothesis
-from ..infer.gross import distances
+from ..infer.problem import Aside, Problem
 from ..setting import Setting
 from . import channels
 from .decide import p_adequacy
 from .estimate import posterior
-from .evidence import DataQuality, GrossReading, NuisanceOff, Repeat, RepeatedPoint, VarianceComponent
+from .evidence import DataQuality, GrossReading, NuisanceOff, Repeat, RepeatedPoint, ResidualMean, VarianceComponent
+from .gain import levels
 
 #: Prior standard deviations beyond which a value of the rig is told.
 OFF = 2.0
+#: What residuals are averaged over: one quantity, or two against each other.
+TABLES = (("mounting", "speed"), ("mounting", "direction"), ("load", "speed"), ("oil",), ("running order",))
+#: A quantity has at most this many groups in a table; neighbouring levels are joined beyond.
+MOST = 6
+#: Parts of the campaign in running order.
+QUARTERS = 4
+#: Standard errors from which a mean stands out: among 200 means of noise one in a hundred campaigns has such a one.
+FAR = 4.0
 
 
 def check_data(setting: Setting, found: Found, h: Hypothesis) -> DataQuality:
@@ -34,8 +50,8 @@ def gross_readings(found: Found, h: Hypothesis) -> tuple[GrossReading, ...]:
     problem, told = found.problem, []
     rows = np.cumsum([0, *(o.campaign.n for o in problem.campaigns)])
     entries = np.cumsum([0, *(o.m for o in problem.campaigns)])
-    for suspect in sorted(distances(problem, h.fit), key=lambda s: -abs(s.size_sd)):
-        number, name, expected = suspect.aside.number, suspect.aside.sensor, None
+    for aside, size_sd in sorted(distances(problem, h.fit), key=lambda far: -abs(far[1])):
+        number, name, expected = aside.number, aside.sensor, None
         begins = rows if name else entries
         k = int(np.searchsorted(begins, number, side="right")) - 1
         o, row = problem.campaigns[k], int(number - begins[k])
@@ -50,13 +66,35 @@ def gross_readings(found: Found, h: Hypothesis) -> tuple[GrossReading, ...]:
                 line=line,
                 point=f"{int(campaign.points[row])}{f' of {campaign.name}' if k else ''}",
                 channel=name,
-                size_sd=suspect.size_sd,
+                size_sd=size_sd,
                 shown=float(channels.in_unit(s, campaign.values[name][row])),
                 expected=expected,
                 unit=channels.unit(s),
             )
         )
     return tuple(told)
+
+
+def distances(problem: Problem, fit: Fit) -> list[tuple[Aside, float]]:
+    """How far each reading that is set aside lies from what the others say, in standard deviations of that."""
+    white, e = fit.linear(problem)
+    V, r = white.L @ white.L.T, white.L @ e
+    inverse = white.inverse
+    a = inverse @ r
+    found = []
+    for aside in sorted(problem.aside):
+        term = problem.far(aside, fit.look)
+        if term.variance is not None:
+            i = aside.number
+            spread = 1 / inverse[i, i] - term.variance[i]
+            own = a[i] / inverse[i, i] / np.sqrt(max(spread, 1e-12 * V[i, i]))
+        else:
+            assert term.columns is not None
+            c = term.columns[:, 0] / problem.FAR
+            length = c @ inverse @ c
+            own = (c @ a) / np.sqrt(length) / np.sqrt(max(1 - (problem.FAR**2 - 1) * length, 1e-9))
+        found.append((aside, float(own)))
+    return found
 
 
 def values_off(setting: Setting, found: Found, h: Hypothesis) -> tuple[NuisanceOff, ...]:
@@ -162,3 +200,75 @@ def condition(campaign: Campaign, point: repeats.Repeat) -> str:
         sensor = campaign.sensor(name)
         said.append(f"{float(channels.in_unit(sensor, np.array(value))):.0f} {channels.unit(sensor)}")
     return ", ".join(said)
+
+
+def average_residuals(found: Found) -> tuple[ResidualMean, ...]:
+    """Means of measured less calibrated readings for each channel and table, those of single readings left out."""
+    problem, o = found.problem, found.problem.data
+    left = (problem.measured - found.null.look.shown)[problem.own]
+    noise = found.null.noise  # a scatter that calibration shrinks makes nothing stand out
+    V = replace(noise, scales=np.maximum(noise.scales, 0.0)).covariance[problem.own, problem.own]
+    sound = ~np.isin(np.arange(o.m), [a.number for a in problem.aside if not a.sensor])
+    groups, means = group_rows(o.campaign), []
+    for names in TABLES:
+        for cell, rows in _cells(groups, names):
+            for i, s in enumerate(o.read):
+                mine = np.flatnonzero(sound & (o.kind == i) & np.isin(o.row, rows))
+                if not len(mine):
+                    continue
+                mean, sd = float(left[mine].mean()), float(np.sqrt(V[np.ix_(mine, mine)].mean()))
+                means.append(
+                    ResidualMean(
+                        channel=s.name,
+                        unit=channels.unit_of_difference(s),
+                        by=names,
+                        cell=cell,
+                        n=len(mine),
+                        mean=channels.difference(s, mean),
+                        sd=channels.difference(s, sd),
+                        stands_out=abs(mean) > FAR * sd,
+                    )
+                )
+    return tuple(means)
+
+
+def group_rows(campaign: Campaign) -> dict[str, dict[str, np.ndarray]]:
+    """Quantity -> name of a group -> its rows; quantities that do not vary are left out."""
+    named = {"mounting": np.array(campaign.mounting)[campaign.test], "oil": np.array(campaign.oil)[campaign.test]}
+    named["direction"] = np.array([f"{d:+.0f}" for d in campaign.direction])
+    groups = {q: {str(v): np.flatnonzero(names == v) for v in dict.fromkeys(names)} for q, names in named.items()}
+    for quantity, kind in (("speed", "speed"), ("load", "torque")):
+        sensor = next((s for s in (*campaign.given, *campaign.read) if s.kind == kind), None)
+        groups[quantity] = {} if sensor is None else _along(campaign, sensor)
+    tests = np.array_split(np.argsort(campaign.order, kind="stable"), min(QUARTERS, campaign.n_tests))
+    orders = [(campaign.order[part].min(), campaign.order[part].max(), part) for part in tests]
+    groups["running order"] = {f"{a:g} to {b:g}": np.flatnonzero(np.isin(campaign.test, part)) for a, b, part in orders}
+    return {quantity: found for quantity, found in groups.items() if len(found) > 1}
+
+
+def _along(campaign: Campaign, sensor: Sensor) -> dict[str, np.ndarray]:
+    """Rows by the levels of a given sensor, neighbours joined where there are many."""
+    values = np.abs(campaign.values[sensor.name])
+    each = levels(values)
+    joined = [np.concatenate(part) for part in _split(each, MOST)]
+    unit = channels.unit(sensor)
+    return {f"{channels.difference(sensor, float(values[rows].mean())):.4g} {unit}": rows for rows in joined}
+
+
+def _split(groups: Sequence[np.ndarray], most: int) -> Iterator[Sequence[np.ndarray]]:
+    for part in np.array_split(np.arange(len(groups)), min(most, len(groups))):
+        yield [groups[k] for k in part]
+
+
+def _cells(
+    groups: Mapping[str, Mapping[str, np.ndarray]], names: Sequence[str]
+) -> Iterator[tuple[tuple[str, ...], np.ndarray]]:
+    """Groups of one quantity, or of two against each other, with their rows; none where one does not vary."""
+    if any(name not in groups for name in names):
+        return
+    first, *second = (groups[name] for name in names)
+    for a, rows in first.items():
+        if not second:
+            yield (a,), rows
+        for b, others in second[0].items() if second else ():
+            yield (a, b), np.intersect1d(rows, others)

@@ -8,7 +8,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.special import logsumexp
 from scipy.stats import genpareto, norm, qmc
 
 from .evidence import White
@@ -94,14 +93,3 @@ def smoothed(logs: np.ndarray) -> Correction:
         weights[tail] = np.minimum(cut + genpareto.ppf(ranks, min(shape, 0.9), scale=scale), 1.0)
     mean = float(weights.mean())
     return Correction(top + float(np.log(mean)), float(weights.std(ddof=1) / mean / n**0.5))
-
-
-def errors(log_joints: np.ndarray, log_errors: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """Probabilities of hypotheses, and how they change (n, n) with the log joint of each times its error.
-
-    Args:
-        log_joints: log joint probabilities (n,)
-        log_errors: their standard errors (n,)
-    """
-    p = np.exp(log_joints - logsumexp(log_joints))
-    return p, (np.diag(p) - np.outer(p, p)) * log_errors

@@ -157,6 +157,13 @@ def bounds(acting: Acting) -> tuple[np.ndarray, np.ndarray]:
     return np.r_[low, np.full(n, -FAR)], np.r_[high, np.full(n, FAR)]
 
 
+def started(acting: Acting, size: float) -> Acting:
+    """A cause where its fit begins: not too near to zero, inside its bounds."""
+    low, high = bounds(acting)
+    size, least = float(np.clip(size, low[0], high[0])), 0.1 if high[0] > 0.1 else -0.1
+    return replace(acting, t=np.r_[size if abs(size) > 0.1 else least, acting.t[1:]])
+
+
 class _Vector:
     """The vector of a problem and some causes: priors, bounds and longest steps."""
 

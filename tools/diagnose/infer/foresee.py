@@ -31,12 +31,14 @@ class Foreseen:
     """Errors of what is foreseen (2, k): without, with what only interpolates between tests, mountings, conditions.
 
     Args:
+        held: entries that are left out (k,)
         before: as calibrated, without a cause
         after: all sets averaged
         leading: the likeliest set, fitted exactly
         causes: of that set
     """
 
+    held: np.ndarray
     before: np.ndarray
     after: np.ndarray
     leading: np.ndarray
@@ -83,7 +85,7 @@ def foresee(
     before, leading = (
         left(own.problem, fit, extras, held) for fit, extras in ((own.null, ()), (leader.fit, leader.extras))
     )
-    return Foreseen(before, np.asarray(after), leading, leader.causes)
+    return Foreseen(held, before, np.asarray(after), leading, leader.causes)
 
 
 def _kept(problem: Problem) -> np.ndarray:

@@ -227,11 +227,6 @@ def _spans(time: np.ndarray, season: np.ndarray) -> np.ndarray:
     return span
 
 
-def _date(time: float) -> str:
-    """The day of a time since 1970."""
-    return datetime.fromtimestamp(time, UTC).strftime("%Y-%m-%d")
-
-
 class LogProblem(Problem):
     """Logs in question as readings: what the filter says of the knobs in each span.
 
@@ -274,7 +269,7 @@ def problem_of(found: Fleet, asked: Question, logs: Sequence[Log]) -> LogProblem
     told = asked.told.spread(found.levels.window).summed(asked.span, n)
     time = np.array([data.time[asked.span == k].mean() for k in range(n)])
     none, flat = np.full(n, np.nan), np.zeros(n)
-    empty = ("",) * n
+    empty, dated = ("",) * n, all(log.dated for log in logs)
     campaign = Campaign(
         name=", ".join(log.name for log in logs),
         sensors=logs[0].sensors,
@@ -289,7 +284,7 @@ def problem_of(found: Fleet, asked: Question, logs: Sequence[Log]) -> LogProblem
         T_start=none,
         room_start=none,
         humidity=none,
-        date=tuple(_date(t) if all(log.dated for log in logs) else "" for t in time),
+        date=tuple(f"{datetime.fromtimestamp(t, UTC):%Y-%m-%d}" if dated else "" for t in time),
         lines=np.arange(2, n + 2),
         points=np.arange(1, n + 1),
         names=empty,

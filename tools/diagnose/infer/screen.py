@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import product
 
 import numpy as np
@@ -12,7 +12,7 @@ from scipy.special import logsumexp, ndtri
 from ..library.cause import Mostly
 from ..model.formula import Formula
 from .evidence import log_bayes_factors
-from .fit import Fit, Start, View, bounds
+from .fit import Fit, Start, View, started
 from .problem import Acting, Problem
 
 #: Start points of a form for its first shape, beside the one in the middle.
@@ -74,15 +74,8 @@ class Look:
         """Where a fit of a formula begins: at the best of its candidates."""
         own = np.flatnonzero(self.owner == formula)
         k = int(own[np.argmax(self.log_bf[own])])
-        return self.begun(k, self.sizes[k])
-
-    def begun(self, k: int, size: float) -> Start:
-        """A candidate at a size, not too near to zero."""
-        candidate = self.candidates[k]
-        low, high = bounds(candidate)
-        size, least = float(np.clip(size, low[0], high[0])), 0.1 if high[0] > 0.1 else -0.1
-        size = size if abs(size) > 0.1 else least
-        return Start(replace(candidate, t=np.r_[size, candidate.t[1:]]), size * self.effects[:, k])
+        acting = started(self.candidates[k], self.sizes[k])
+        return Start(acting, acting.t[0] * self.effects[:, k])
 
 
 def samples(formulas: Sequence[Formula], orders: np.ndarray) -> tuple[tuple[Acting, ...], np.ndarray]:

@@ -19,7 +19,7 @@ from ..model.formula import Formula
 from . import screen, sets
 from .draws import correction
 from .evidence import WIDTHS, White
-from .fit import Fit, bounds, fitted
+from .fit import Fit, bounds, fitted, started
 from .found import Extra, Found, Hypothesis
 from .prior import GROSS, Prior
 from .problem import Acting, Aside, Problem
@@ -256,7 +256,8 @@ class Weighing:
         a = White.of(V + self.linear.scattered(s.scatter) + G * v @ G.T).back(self.linear.residual)
         J = near.look.jacobian[:, : self.whole.nz]
         z, t = np.clip(J.T @ a, -6.0, 6.0), v * (G.T @ a)
-        acting = [_started(terms[k], x) for k, x in zip(s.members, t, strict=True) if terms[k].formula is not None]
+        begun = zip(s.members, t, strict=True)
+        acting = [started(one, size) for k, size in begun if (one := terms[k].acting) is not None]
         extra = tuple(term.scatter(width) for term, width in scatters)
         problem = self.whole.without(own.key[2]).beside(extra)
         fit = fitted(problem, acting, z, np.array(s.scatter.scales))
@@ -343,11 +344,3 @@ def _as_fitted(acting: Acting, column: np.ndarray, prior: Prior) -> Term:
     log = prior.share[cause.id] + float(np.log(form.weight))
     low, high = (float(b[0]) for b in bounds(acting))
     return Term(cause.id, cause.family, log, column, WIDTHS, low, high, acting, acting.formula)
-
-
-def _started(term: Term, size: float) -> Acting:
-    """A cause where its fit begins: not too near to zero, inside its bounds."""
-    assert term.acting is not None
-    low, high = bounds(term.acting)
-    size, least = float(np.clip(size, low[0], high[0])), 0.1 if high[0] > 0.1 else -0.1
-    return replace(term.acting, t=np.r_[size if abs(size) > 0.1 else least, term.acting.t[1:]])

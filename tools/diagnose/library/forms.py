@@ -45,11 +45,11 @@ def since(theta: Theta, row: Row) -> Num:
 
 @dataclass(frozen=True)
 class Course:
-    """A way of a change over the running order: words, share of the prior, its shape, and how far it is, 0 to 1."""
+    """A way of a change over the running order: words, share of the prior, its shapes, and how far it is, 0 to 1."""
 
     words: str
     share: float
-    shape: Shape
+    shapes: tuple[Shape, ...]
     at: Callable[[Theta, Row], Num]
 
 
@@ -57,13 +57,13 @@ COURSES = (
     Course(
         "",
         0.65,
-        Shape("power", "1", "exponent of the running order", 0.3, 2.0, 0.9, 0.35),
+        (Shape("power", "1", "exponent of the running order", 0.3, 2.0, 0.9, 0.35),),
         lambda theta, row: (row.order + 1e-9) ** theta["power"],
     ),
     Course(
         "settling",
         0.35,
-        Shape("decay", "1", "share of the campaign in which it settles: running in", 0.05, 0.6),
+        (Shape("decay", "1", "share of the campaign in which it settles: running in", 0.05, 0.6),),
         lambda theta, row: (1 - ca.exp(-row.order / theta["decay"])) / (1 - ca.exp(-1 / theta["decay"])),
     ),
 )

@@ -6,14 +6,14 @@ the log, from a date on, or as a drift.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from ....model.machines.roles import Roles
 from ....model.parts.grey import GreyLoss
 from ....scenarios.measured.table import Sensor
-from .cause import Cause, Form, Num, Row, Shape, Size, Theta, Values
-from .forms import FROM_THEN, PLACE, since
+from .cause import Cause, Form, Row, Size, Theta, Values
+from .forms import FROM_THEN, PLACE, Course, since
 
 #: Bounds of a move, as multiples of what is usual.
 FARTHEST = 10.0
@@ -71,20 +71,11 @@ FLOWS = {
 }
 
 
-@dataclass(frozen=True)
-class When:
-    """How a knob moves over the logs: words, share of the prior, shapes, and how far it is in a row, 0 to 1."""
-
-    words: str
-    share: float
-    shapes: tuple[Shape, ...]
-    at: Callable[[Theta, Row], Num]
-
-
+#: How a knob moves over the logs.
 WHENS = (
-    When("", 0.5, (), lambda theta, row: 1.0),
-    When("from one date on", 0.4, (PLACE,), since),
-    When("drifting", 0.1, (), lambda theta, row: row.order),
+    Course("", 0.5, (), lambda theta, row: 1.0),
+    Course("from one date on", 0.4, (PLACE,), since),
+    Course("drifting", 0.1, (), lambda theta, row: row.order),
 )
 
 
@@ -109,7 +100,7 @@ def _cause(own: Sequence[Knob]) -> Cause:
     return Cause(first.cause, first.doc, size, tuple(forms), acts_on="time")
 
 
-def _moved(knob: Knob, when: When, size: str, weight: float) -> Form:
+def _moved(knob: Knob, when: Course, size: str, weight: float) -> Form:
     def values(theta: Theta, row: Row) -> Values:
         return {knob.name: theta[size] * when.at(theta, row)}
 

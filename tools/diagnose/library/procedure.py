@@ -93,7 +93,7 @@ def order(roles: Roles) -> Cause:
             Form(
                 ", ".join(filter(None, (target, course.words))),
                 weight * course.share / total,
-                (course.shape, zero),
+                (*course.shapes, zero),
                 values=changing(paths, course.at),
             )
             for target, (paths, weight) in kept.items()

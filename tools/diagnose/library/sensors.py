@@ -299,7 +299,7 @@ ADJUSTED = Mostly("zero", "1", "where the reading is right: 0 at the first test,
 
 def _drifting(course: Course) -> Mode:
     """An error that follows a course over the running order."""
-    shapes = (course.shape, ADJUSTED)
+    shapes = (*course.shapes, ADJUSTED)
     return Mode(course.words, course.share, lambda t, row, value: course.at(t, row) - t["zero"], shapes, turns=True)
 
 

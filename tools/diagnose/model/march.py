@@ -14,8 +14,7 @@ from typing import Any
 import numpy as np
 
 from ....fmu.batch_library import share_rows
-from .many import library, record
-from .plant import Plant
+from .plant import Plant, library, record
 
 
 @dataclass(frozen=True)

@@ -1,22 +1,41 @@
-"""One self-contained HTML page about a diagnosis: what is wrong, what to do, how big, how sure, then the evidence."""
+"""One self-contained HTML page about a diagnosis: what is wrong, what to do, how big, how sure, then the evidence.
+
+Its static pictures are SVG text.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from typing import Any
 
+import numpy as np
 from markupsafe import Markup
+from matplotlib.axes import Axes
 
 from ...show import pages
-from ..answer.evidence import Picture
+from ...show.drawing import COLOURS, empty, legend, svg
+from ..answer.evidence import Picture, Rows, View
 from ..answer.findings import Findings
-from . import figures, phrases, tables
+from . import phrases, tables
 from .phrases import name_of
 
 #: Least probability of a bar.
 LITTLE = 0.01
 #: Readings of the interactive plot, at most.
 MOST = 5000
+#: Colour of residuals of the nominal rig.
+BEFORE = COLOURS[1]
+#: Colour of residuals of the extended rig.
+AFTER = COLOURS[0]
+#: Direction -> its mark.
+MARKS = {1: "o", -1: "^", 0: "s"}
+DIRECTIONS = {1: "direction +1", -1: "direction -1", 0: ""}
+#: Readings that are drawn in a static picture, at most.
+DRAWN = 600
+#: More than these groups of readings have no line through their means.
+GROUPS = 8
+#: Values of a quantity that each have a tick.
+FEW = 3
 
 
 def render(findings: Findings) -> str:
@@ -29,8 +48,8 @@ def render(findings: Findings) -> str:
         about=findings.about,
         bars=_bars(findings),
         pictures=[_picture(findings, p) for p in findings.pictures],
-        overview=Markup(figures.overview(findings)),
-        views=Markup(figures.views(findings.views)),
+        overview=Markup(overview(findings)),
+        views=Markup(views(findings.views)),
         gain=f"{phrases.gain(findings.gain)}." if findings.gain else "",
         doubt=phrases.doubt(findings),
         **{name: _sections(made(findings)) for name, made in tables.SECTIONS.items()},
@@ -63,7 +82,7 @@ def _bars(findings: Findings) -> list[dict[str, str]]:
 
 def _picture(findings: Findings, found: Picture) -> dict[str, Any]:
     """A picture of a cause and the sentences beside it."""
-    told: dict[str, Any] = {"name": name_of(found.cause), "svg": Markup(figures.picture(findings, found))}
+    told: dict[str, Any] = {"name": name_of(found.cause), "svg": Markup(picture(findings, found))}
     if cause := findings.cause(found.cause):
         size = ", ".join(filter(None, (phrases.size(cause), phrases.where(cause))))
         told |= {"size": size, "doc": cause.doc, "percent": phrases.percent(cause.probability, cause.mc_error)}
@@ -79,7 +98,7 @@ def _data(findings: Findings) -> Markup:
     channels = {}
     for name, values in rows.channels.items():
         known = findings.channel(name)
-        models = {word: _left(values.measured, model)[every] for model, _, word in figures.sides(values)}
+        models = {word: _left(values.measured, model)[every] for model, _, word in sides(values)}
         channels[name] = {"unit": known.difference if known else "", "sd": values.sd, "left": models}
     quantities = {
         key: {"label": q.label, "unit": phrases.SHOWN.get(q.unit, q.unit), "values": q.values[every]}
@@ -92,3 +111,114 @@ def _data(findings: Findings) -> Markup:
 def _left(measured: Sequence[float | None], model: Sequence[float | None]) -> list[float | None]:
     pairs = zip(measured, model, strict=True)
     return [None if m is None or s is None else float(f"{m - s:.4g}") for m, s in pairs]
+
+
+def picture(findings: Findings, found: Picture) -> str:
+    """What is left in a channel against the quantity that a cause acts on, without and with the cause."""
+    quantity = findings.rows.quantities[found.quantity]
+    x, direction = _numbers(quantity.values), np.array(findings.rows.direction or [0] * len(found.before))
+    sd = rows.sd if (rows := findings.rows.channels.get(found.channel)) else None
+    figure, panels = empty(10.0, 3.4, 1, 2, sharex=True, sharey=True)
+    sides = (("without this cause", found.before, BEFORE), ("with this cause", found.after, AFTER))
+    for panel, (title, values, colour) in zip(panels, sides, strict=True):
+        _residuals(panel, x, _numbers(values), direction, colour, sd)
+        panel.set_title(title)
+        _along(panel, quantity)
+    panels[0].set_ylabel(_ordinate(findings, found.channel))
+    if len(set(direction)) > 1:
+        panels[0].legend(fontsize=8)
+    return svg(figure)
+
+
+def overview(findings: Findings) -> str:
+    """What is left in every channel against every quantity, before and after; empty without readings."""
+    rows = findings.rows
+    axes = [q for q in rows.quantities.values() if len(set(q.values) - {None}) > 1]
+    if not rows.channels or not axes:
+        return ""
+    direction = np.array(rows.direction or [0] * len(axes[0].values))
+    size = max(3.0 * len(axes), 5.0), 2.4 * len(rows.channels) + 0.4
+    figure, panels = empty(*size, len(rows.channels), len(axes), sharex="col", sharey="row")
+    for i, (name, values) in enumerate(rows.channels.items()):
+        line = panels[i * len(axes) : (i + 1) * len(axes)]
+        for panel, axis in zip(line, axes, strict=True):
+            for model, colour, word in sides(values):
+                left = _numbers(values.measured) - _numbers(model)
+                _residuals(panel, _numbers(axis.values), left, direction, colour, values.sd, word)
+            _along(panel, axis)
+            panel.label_outer()
+        line[0].set_ylabel(_ordinate(findings, name))
+    legend(figure, panels[0])
+    return svg(figure)
+
+
+def sides(values: Rows.Values) -> list[tuple[Sequence[float | None], str, str]]:
+    """The models that readings are compared with: values, colour, word."""
+    found: list[tuple[Sequence[float | None], str, str]] = [(values.nominal, BEFORE, "calibrated model")]
+    return [*found, (values.extended, AFTER, "with the causes")] if values.extended else found
+
+
+def views(found: Sequence[View]) -> str:
+    """Deviation of each channel from what the others imply, in running order; empty where none has any."""
+    drawn = [v for v in found if v.deviation]
+    if not drawn:
+        return ""
+    figure, panels = empty(10.0, 2.2 * len(drawn) + 0.4, len(drawn), 1, sharex=True)
+    for panel, view in zip(panels, drawn, strict=True):
+        direction = _numbers(view.direction) if view.direction else np.zeros(len(view.deviation))
+        _residuals(panel, _numbers(view.order), _numbers(view.deviation), direction, COLOURS[0], None)
+        panel.set_ylabel(f"{view.channel} [{phrases.SHOWN.get(view.unit, view.unit)}]")
+        panel.set_title(view.asks)
+    panels[-1].set_xlabel("running order")
+    if len(set(drawn[0].direction)) > 1:
+        panels[0].legend(fontsize=8)
+    return svg(figure)
+
+
+def _residuals(
+    panel: Axes, x: np.ndarray, y: np.ndarray, direction: np.ndarray, colour: str, sd: float | None, word: str = ""
+) -> None:
+    """Points by direction, a line through the means of groups, and a band of two standard deviations."""
+    if sd is not None:
+        panel.axhspan(-2 * sd, 2 * sd, color="#eeeeee", zorder=0)
+    panel.axhline(0, color="#888888", linewidth=1)
+    thin = slice(None, None, -(-len(x) // DRAWN))
+    for way, mark in MARKS.items():
+        mine = (direction[thin] == way) & np.isfinite(x[thin]) & np.isfinite(y[thin])
+        if mine.any():
+            label = ", ".join(filter(None, (word, DIRECTIONS[way])))
+            face = colour if way >= 0 else "none"
+            panel.plot(
+                x[thin][mine], y[thin][mine], mark, color=colour, markerfacecolor=face, markersize=4, label=label
+            )
+    _trend(panel, x, y, colour)
+
+
+def _trend(panel: Axes, x: np.ndarray, y: np.ndarray, colour: str) -> None:
+    """A line through the means of readings that stand close together, where there are a few such groups."""
+    good = np.isfinite(x) & np.isfinite(y)
+    x, y = x[good], y[good]
+    order = np.argsort(x, kind="stable")
+    gaps = np.diff(x[order]) > 0.05 * np.ptp(x) if len(x) else np.zeros(0, dtype=bool)
+    groups = np.split(order, np.flatnonzero(gaps) + 1)
+    if 1 < len(groups) <= GROUPS:
+        panel.plot([x[g].mean() for g in groups], [y[g].mean() for g in groups], color=colour, linewidth=1.5)
+
+
+def _along(panel: Axes, quantity: Rows.Quantity) -> None:
+    """Label of the axis; a tick for each value where there are but a few."""
+    unit = phrases.SHOWN.get(quantity.unit, quantity.unit)
+    panel.set_xlabel(f"{quantity.label} [{unit}]" if unit else quantity.label)
+    places = sorted({v for v in quantity.values if v is not None})
+    if len(places) <= FEW:
+        panel.set_xticks(places)
+        panel.margins(x=0.25)
+
+
+def _ordinate(findings: Findings, name: str) -> str:
+    channel = findings.channel(name)
+    return f"{name}\nmeasured - simulated{f' [{channel.difference}]' if channel else ''}"
+
+
+def _numbers(values: Sequence[float | None]) -> np.ndarray:
+    return np.array(values, dtype=float)  # None becomes NaN
