@@ -68,7 +68,8 @@ def challenged() -> None:
     plain = Outcome(
         sheet="own", case="case-001", kind="single", snr=8.5, distance=4.25, truth="churning of the oil",
         top="churning of the oil", p_truth=0.96, p_top=0.96, answered=True, alarm=True, exact=True, shared=1,
-        hidden=1, claimed=1, covered=True, size=1, sure_wrong=False, impact_error=0.125, gain=0.25, gross=None, seconds=12.5,
+        hidden=1, claimed=1, covered=True, size=1, sure_wrong=False, impact_error=0.125, gain=0.25, gross=None,
+        seconds=12.5,
     )  # fmt: skip
     other = "friction of the bearings + zero of the torque transducer at the output"
     wrong = replace(plain, case="case-002", top=other, p_truth=0.02, p_top=0.94, exact=False, sure_wrong=True)
