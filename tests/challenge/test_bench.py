@@ -340,7 +340,16 @@ def test_a_run_goes_on_where_it_stopped(tmp_path: Path) -> None:
 
 def outcome(k: int, kind: str, truth: str, top: str, distance: float | None = 5.0) -> Outcome:
     got = {"p_truth": 0.5, "p_top": 0.5, "answered": True, "alarm": True, "exact": truth == top, "shared": 1}
-    rest = {"covered": True, "size": 1, "sure_wrong": False, "impact_error": None, "gain": None, "gross": None}
+    rest = {
+        "hidden": 1,
+        "claimed": 1,
+        "covered": True,
+        "size": 1,
+        "sure_wrong": False,
+        "impact_error": None,
+        "gain": None,
+        "gross": None,
+    }
     return Outcome("own", str(k), kind, 9.0, distance, truth, top, **got, **rest, seconds=2.0 + k)
 
 
