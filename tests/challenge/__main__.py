@@ -21,7 +21,7 @@ from .bench import run, tasks
 from .hide import KINDS
 from .printing import show
 from .scoring import Outcome, report
-from .sheets import POOLED
+from .sheets import MAKERS, POOLED
 
 app = typer.Typer(add_completion=False, rich_markup_mode=None)
 
@@ -65,7 +65,7 @@ def challenge(
     with _folder(out) as place:
         todo = []
         for name in POOLED if sheet == "all" else (sheet,):
-            if name != "practice":
+            if name in MAKERS:
                 todo += tasks(name, n, seed, place / f"{name}-{seed}", kind=only)
         if practice is not None and sheet in ("all", "practice"):
             todo += tasks("practice", n, seed, place / "practice", given=practice)

@@ -14,11 +14,10 @@ from typing import Any
 
 from gearheat.model.errors import DataError
 
-from . import machines, practice
+from . import practice
 from .answers import Answer, Diagnoser, ask_command, read_answer
-from .cases import make_case
 from .scoring import Outcome, score
-from .sheets import SHEETS
+from .sheets import MAKERS
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -127,11 +126,7 @@ def _make(task: Task) -> dict[str, Any]:
     if not stamp.exists() or stamp.read_text(encoding="utf-8") != task.stamps[0]:
         stamp.unlink(missing_ok=True)
         with _MAKING:
-            if task.sheet == "machines":
-                machines.make(len(SHEETS), task.seed, task.k, task.folder, task.kind)
-            else:
-                number, draw = list(SHEETS).index(task.sheet), SHEETS[task.sheet]
-                make_case(draw, number, task.seed, task.k, task.folder, kind=task.kind)
+            MAKERS[task.sheet](task.seed, task.k, task.folder, kind=task.kind)
         stamp.write_text(task.stamps[0], encoding="utf-8")
     return _read(task.folder / "TRUTH.json")
 

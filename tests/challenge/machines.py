@@ -19,7 +19,6 @@ import gearheat
 import numpy as np
 from gearheat.model.errors import ScenarioError
 from gearheat.model.machines.roles import Roles
-from gearheat.model.units import from_si
 from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.nominal import Nominal
@@ -27,7 +26,7 @@ from gearheat.scenarios.measured.sensors import sensors_of
 from gearheat.scenarios.measured.table import Sensor
 
 from .classes import classes_of
-from .new_rig import CHANGES
+from .new_rig import CHANGES, as_shown
 
 #: Stages of a unit, and lowest and highest ratio of each of them.
 STAGES: Mapping[str, tuple[float, float]] = {
@@ -60,8 +59,6 @@ WARM = 15.0
 #: Size at which rivals are compared: logarithm of a factor, or one of the errors [K, share of the loss or reading].
 SMALL = 0.3
 
-#: SI units of kinds of sensors that are no thermometers.
-UNITS = {"torque": "N.m", "speed": "rad/s"}
 #: Values by path, or errors by sensor.
 Change = Mapping[str, float]
 
@@ -122,8 +119,9 @@ class Machine:
         self.points = [points[k] for k in kept]
         self.loss = self._loss()
         by = {s.name: k for k, s in enumerate(self.sensors)}
-        shown = self.read({}, {})
-        if (shown[:, by["T_oil"]] - shown[:, by["T_amb"]]).max() < WARM:
+        #: Readings of the sound machine without noise (points, sensors).
+        self.sound = self.read({}, {})
+        if (self.sound[:, by["T_oil"]] - self.sound[:, by["T_amb"]]).max() < WARM:
             raise ArithmeticError("too cold")
 
     def _loss(self) -> float:
@@ -161,14 +159,14 @@ class Machine:
             hidden: values and errors of each fault
             classes: of the faults, none of which is a rival
         """
-        healthy, sd = self.read({}, {}), np.array([s.repeat_sd for s in self.sensors])
+        sd = np.array([s.repeat_sd for s in self.sensors])
 
         def effect(changed: Change, errors: Change) -> np.ndarray:
-            return np.asarray((self.read(changed, errors) - healthy) / sd).ravel()
+            return np.asarray((self.read(changed, errors) - self.sound) / sd).ravel()
 
         known = [UNEQUAL / SMALL * effect({n: np.exp(SMALL) * self.healthy[n]}, {}) for n in self.unequal]
         offsets = np.array([s.offset_sd for s in self.sensors]) / sd
-        known += [np.tile(offsets * (np.arange(len(sd)) == k), len(healthy)) for k in range(len(sd))]
+        known += [np.tile(offsets * (np.arange(len(sd)) == k), len(self.sound)) for k in range(len(sd))]
         whole = np.array(known).T
         root = np.linalg.cholesky(np.eye(len(whole)) + whole @ whole.T)
         rivals = {}
@@ -253,7 +251,6 @@ def make(number: int, seed: int, k: int, folder: Path, kind: str | None = None) 
             machine = Machine(case / "machine.toml", rng)
             sd = np.array([s.repeat_sd for s in machine.sensors])
             number_of = 0 if kind == "clean" else 1 if kind == "single" else int(rng.integers(2, 5))
-            healthy = machine.read({}, {})
             faults, hidden, shown, effects = _hide(machine, number_of, sd, rng)
             near = machine.distance(hidden, classes_of(f.cause for f in faults)) if faults else None
         except ArithmeticError:
@@ -273,7 +270,7 @@ def make(number: int, seed: int, k: int, folder: Path, kind: str | None = None) 
         "answer": sorted(classes_of(f.cause for f in faults)),
         "effects": [{"cause": f.cause, "snr": round(e, 2)} for f, e in zip(faults, effects, strict=True)],
         "rival": {"distance": round(near[0], 2), "cause": near[1]} if near else None,
-        "impact": dict(zip(change, (shown - healthy)[:, thermal].mean(axis=0).tolist(), strict=True)),
+        "impact": dict(zip(change, (shown - machine.sound)[:, thermal].mean(axis=0).tolist(), strict=True)),
         "repeat_sd": dict(zip(change, sd[thermal].tolist(), strict=True)),
         "points": [],
         "rig": {"name": str(case / "machine.toml"), "plate": plate},
@@ -288,7 +285,7 @@ def _hide(
     """Faults of different classes, what they change, the readings, and by how many deviations each moves these."""
     changed, errors, faults, effects = dict[str, float](), dict[str, float](), list[Fault](), list[float]()
     hidden = list[tuple[Change, Change]]()
-    shown = machine.read(changed, errors)
+    shown = machine.sound
     for k in rng.permutation(len(FAULTS)):
         if len(faults) == n:
             break
@@ -310,9 +307,7 @@ def _hide(
 
 def _write(path: Path, sensors: Sequence[Sensor], table: np.ndarray) -> None:
     """Readings as a table with the columns of the rig file."""
-    units, lines = [UNITS.get(s.kind, "K") for s in sensors], [",".join(s.column for s in sensors)]
+    lines = [",".join(s.column for s in sensors)]
     for row in table:
-        values = [v * float(s.sign(np.array(1.0))) for v, s in zip(row, sensors, strict=True)]
-        cells = [from_si(v, unit) for v, unit in zip(values, units, strict=True)]
-        lines.append(",".join(f"{cell:.4f}" for cell in cells))
+        lines.append(",".join(f"{as_shown(s, v):.4f}" for s, v in zip(sensors, row, strict=True)))
     path.write_text("\n".join(lines) + "\n", "utf-8")

@@ -18,6 +18,7 @@ from gearheat.scenarios.load import load
 from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.nominal import Nominal
 from gearheat.scenarios.measured.sensors import sensors_of
+from gearheat.scenarios.measured.table import Sensor
 
 
 @dataclass(frozen=True)
@@ -111,9 +112,14 @@ def write_campaign(folder: Path, rig: Path, fault: str, seed: int) -> Path:
         assert state is not None
         for s in sensors:
             value = state[s.reads] + offsets[s.name] + s.repeat_sd * rng.standard_normal()
-            unit = {"torque": "N.m", "speed": "rad/s"}.get(s.kind, "K")
-            columns[s.column].append(round(from_si(value * float(s.sign(np.array(1.0))), unit), 3))
+            columns[s.column].append(round(as_shown(s, value), 3))
     lines = [",".join(columns), *(",".join(map(str, row)) for row in zip(*columns.values(), strict=True))]
     path = folder / f"{fault.split(maxsplit=1)[0]}.csv"
     path.write_text("\n".join(lines) + "\n", "utf-8")
     return path
+
+
+def as_shown(sensor: Sensor, value: float) -> float:
+    """A reading [SI] as the sensor's column shows it."""
+    unit = {"torque": "N.m", "speed": "rad/s"}.get(sensor.kind, "K")
+    return float(from_si(value * float(sensor.sign(np.array(1.0))), unit))

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
 
-from . import foreign, model_rig
-from .cases import Sheet
+from . import foreign, machines, model_rig
+from .cases import Sheet, make_case
 from .textbook import campaign as textbook
 
 #: Their order is part of the draws of a case.
@@ -14,6 +16,12 @@ SHEETS: Mapping[str, Sheet] = {
     "foreign": foreign.draw,
     "textbook": textbook.draw,
     "rigs": model_rig.draw_steady,
+}
+#: Writes a case of a sheet by seed, number, folder and kind, and returns its truth. The number of the sheet is part of
+#: the draws.
+MAKERS: Mapping[str, Callable[..., dict[str, Any]]] = {
+    **{name: partial(make_case, draw, number) for number, (name, draw) in enumerate(SHEETS.items())},
+    "machines": partial(machines.make, len(SHEETS)),
 }
 #: Sheets whose scores are pooled by `--sheet all`.
 POOLED = ("own", "foreign", "textbook", "machines")

@@ -218,7 +218,7 @@ def p_adequacy(found: Found, h: Hypothesis, entries: np.ndarray | None = None) -
     """
     problem, fit = found.problem, h.fit
     kept = np.ones(problem.m, dtype=bool)
-    kept[[a.number for a in problem.aside if not a.sensor]] = False
+    kept[problem.entries_aside] = False
     if entries is not None:
         kept &= np.isin(np.arange(problem.m), entries)
     fixed = [t for t in fit.noise.terms if t.loose == 0 and t.columns is not None]

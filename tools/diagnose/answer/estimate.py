@@ -282,10 +282,9 @@ def replay(problem: Problem, null: Fit, h: Hypothesis) -> dict[str, findings.Pla
     if not machine:
         return {}
     extended = problem.shown(h.fit.look.z, machine)[own]
-    gross = [a.number for a in problem.aside if not a.sensor]
     found = {}
     for i, s in enumerate(o.read):
-        rows = np.setdiff1d(np.flatnonzero(o.kind == i), gross)
+        rows = np.setdiff1d(np.flatnonzero(o.kind == i), problem.entries_aside)
         left = [o.measured[rows] - shown[rows] for shown in (null.look.shown[own], extended)]
         if len(rows) and s.name not in wrong and np.isfinite(left[1]).all():
             before, after = (channels.difference(s, float(np.sqrt(np.mean(e**2)))) for e in left)

@@ -64,9 +64,9 @@ def measure_gains(found: Found, seed: int, progress: Callable[[float], None] = l
 
 def _fold(found: Found, rows: np.ndarray, seed: int) -> Foreseen:
     """Everything anew without the readings of some rows, and what it says of them."""
-    gross = {a.number for a in found.problem.aside if not a.sensor}
-    held = np.array([i for i in np.flatnonzero(np.isin(found.problem.data.row, rows)) if i not in gross])
-    return foresee(found.problem, found.formulas, held, found.critical, seed, MOST)
+    problem = found.problem
+    held = np.setdiff1d(np.flatnonzero(np.isin(problem.data.row, rows)), problem.entries_aside)
+    return foresee(problem, found.formulas, held, found.critical, seed, MOST)
 
 
 def _gain(
@@ -80,8 +80,8 @@ def _gain(
     mine = o.kind[held] == sensor
     if not mine.any():
         return None
-    gross = [a.number for a in found.problem.aside if not a.sensor]
-    entries, rivals, s = np.setdiff1d(np.flatnonzero(o.kind == sensor), gross), {}, o.read[sensor]
+    entries = np.setdiff1d(np.flatnonzero(o.kind == sensor), found.problem.entries_aside)
+    rivals, s = {}, o.read[sensor]
     rows = o.row[entries]
     for name, rival in RIVALS.items():
         left = [rival(o, sensor, rows, ~np.isin(rows, fold)) for fold in folds if np.isin(rows, fold).any()]

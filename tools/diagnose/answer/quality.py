@@ -208,7 +208,7 @@ def average_residuals(found: Found) -> tuple[ResidualMean, ...]:
     left = (problem.measured - found.null.look.shown)[problem.own]
     noise = found.null.noise  # a scatter that calibration shrinks makes nothing stand out
     V = replace(noise, scales=np.maximum(noise.scales, 0.0)).covariance[problem.own, problem.own]
-    sound = ~np.isin(np.arange(o.m), [a.number for a in problem.aside if not a.sensor])
+    sound = ~np.isin(np.arange(o.m), problem.entries_aside)
     groups, means = group_rows(o.campaign), []
     for names in TABLES:
         for cell, rows in _cells(groups, names):

@@ -106,6 +106,22 @@ def log_bayes_factor(g: np.ndarray, e: np.ndarray, low: np.ndarray, high: np.nda
     return float(np.logaddexp.reduce(logs) - np.log(len(logs)))
 
 
+def split_error(
+    covariance: np.ndarray, beside: np.ndarray, residual: np.ndarray, kept: np.ndarray, held: np.ndarray
+) -> np.ndarray:
+    """What kept entries leave of held ones: without a part of what ties them, and with all of it (2, k).
+
+    Args:
+        covariance: of all entries (M, M)
+        beside: the part of it that only interpolates (M, M)
+        residual: (M,)
+        kept, held: numbers of entries
+    """
+    known = White.of(covariance[np.ix_(kept, kept)]).back(residual[kept])
+    left = residual[held] - covariance[np.ix_(held, kept)] @ known
+    return np.array([left + beside[np.ix_(held, kept)] @ known, left])
+
+
 def mass_inside(
     mean: np.ndarray | float, sd: np.ndarray | float, low: np.ndarray | float, high: np.ndarray | float
 ) -> np.ndarray:

@@ -14,14 +14,14 @@ import numpy as np
 from ....model.errors import SolveError
 from ..model.formula import Formula
 from . import screen
-from .evidence import White
+from .evidence import split_error
 from .fit import Fit, prior_precision
 from .found import Extra
 from .problem import Aside, Problem
 from .weigh import Weighing
 
-#: Linearisations: as calibrated, and at the leading set.
-LOOKS = 2
+#: What is looked for, for a progress that nobody is told.
+STAGE = "sets of causes"
 #: Probability from which a set counts.
 COUNTS = 0.003
 
@@ -61,45 +61,33 @@ def foresee(
     Raises:
         SolveError: the model cannot be run without a cause
     """
-    out = problem.without(problem.aside | {Aside(int(i)) for i in held})
-    own = Weighing(out, formulas, seed, most)
-    own.ask_alarm(0.05, critical)
+    own = Weighing(problem.without(problem.aside | {Aside(int(i)) for i in held}), formulas, seed, most)
+    own.critical = critical
     own.keep_null()
-    near, look = own.null, own.first
-    for k in range(LOOKS):
+    found, linear = own.search(own.null, own.first, STAGE, 0.0), own.linear
+    own.fit_sets(found, own.null, 0.0, 1)
+    if (near := own.leader().fit) is not own.null:
         with suppress(SolveError):
-            if k:
-                look = screen.look(own.problem, near, own.formulas)
-            found = own.search(near, look, critical, "sets of causes", 0.0)
-            linear, nearest = own.linear, near
+            found = own.search(near, screen.look(own.problem, near, own.formulas), STAGE, 0.0)
+            linear = own.linear
             own.fit_sets(found, near, 0.0, 1)
-        near = own.leader().fit
-        if near is nearest:
-            break
     logs = np.array([s.log for s in found])
     p = np.exp(logs - logs.max())
     p = np.where(p > COUNTS * p.sum(), p, 0.0)
-    kept = _kept(own.problem)
+    kept = np.setdiff1d(np.arange(own.problem.m), own.problem.entries_aside)
     after = sum(share * linear.left(s, kept, held) for s, share in zip(found, p / p.sum(), strict=True) if share)
     leader = own.leader()
     before, leading = (
-        left(own.problem, fit, extras, held) for fit, extras in ((own.null, ()), (leader.fit, leader.extras))
+        left(own.problem, fit, extras, kept, held) for fit, extras in ((own.null, ()), (leader.fit, leader.extras))
     )
     return Foreseen(held, before, np.asarray(after), leading, leader.causes)
 
 
-def _kept(problem: Problem) -> np.ndarray:
-    """Entries that are not set aside."""
-    return np.setdiff1d(np.arange(problem.m), [a.number for a in problem.aside if not a.sensor])
-
-
-def left(problem: Problem, fit: Fit, extras: Sequence[Extra], held: np.ndarray) -> np.ndarray:
+def left(problem: Problem, fit: Fit, extras: Sequence[Extra], kept: np.ndarray, held: np.ndarray) -> np.ndarray:
     """What a fit leaves of held entries: by its sizes alone, and with what scatters beside them (2, k)."""
-    look, kept = fit.look, _kept(problem)
+    look = fit.look
     prior = 1 / prior_precision(problem, look.acting)
     S = fit.noise.covariance + look.jacobian * prior @ look.jacobian.T
     r = problem.measured - look.shown + look.jacobian @ look.x
-    known = White.of(S[np.ix_(kept, kept)]).back(r[kept])
     C = np.concatenate([np.zeros((problem.m, 0)), *(e.size * e.columns for e in extras)], axis=1)
-    whole = r[held] - S[np.ix_(held, kept)] @ known
-    return np.array([whole + C[held] @ (C[kept].T @ known), whole])
+    return split_error(S, C @ C.T, r, kept, held)

@@ -139,6 +139,11 @@ class Problem:
         """Number of readings."""
         return len(self.measured)
 
+    @property
+    def entries_aside(self) -> list[int]:
+        """Numbers of the compared readings that are set aside."""
+        return [a.number for a in self.aside if not a.sensor]
+
     def without(self, aside: frozenset[Aside]) -> Self:
         """The same with some readings set aside."""
         return self._with(aside=aside)

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.special import logsumexp
 
-from .evidence import White, log_bayes_factors, mass_inside
+from .evidence import White, log_bayes_factors, mass_inside, split_error
 from .prior import SAME, Prior, kind
 from .terms import Term
 
@@ -106,9 +106,7 @@ class Linear:
         beside, columns = self.scattered(own.scatter), [self.terms[k].columns for k in own.members]
         G = np.concatenate([np.zeros((len(self.residual), 0)), *columns], axis=1) * np.array(own.widths)
         whole = self.covariance(own.scatter.scales)[0] + beside + G @ G.T
-        known = White.of(whole[np.ix_(kept, kept)]).back(self.residual[kept])
-        left = self.residual[held] - whole[np.ix_(held, kept)] @ known
-        return np.array([left + beside[np.ix_(held, kept)] @ known, left])
+        return split_error(whole, beside, self.residual, kept, held)
 
 
 class Table:

@@ -105,7 +105,8 @@ class Weighing:
         null = fitted(problem, (), np.zeros(problem.nz))
         progress("effects of all causes", 0.1)
         first = screen.look(problem, null, self.formulas)
-        leader = self.search(null, first, FIRST, "gross readings", 0.2, QUICK)[0]
+        self.critical = FIRST
+        leader = self.search(null, first, "gross readings", 0.2, QUICK)[0]
         self.problem = problem.without(problem.aside | _aside(self.linear.terms, leader))
         self.null, self.first = null, first
         if self.problem.aside != problem.aside:
@@ -134,7 +135,7 @@ class Weighing:
                 look = self.first if near is self.null else screen.look(self.problem, near, self.formulas)
                 if k == 1:
                     self._fit_alone(near, look)
-                found = self.search(near, look, self.critical, "sets of causes", 0.3 + 0.15 * k)
+                found = self.search(near, look, "sets of causes", 0.3 + 0.15 * k)
                 self.fit_sets(found, near, 0.4 + 0.15 * k)
             if k > 1 and self.leader().fit is best:
                 break
@@ -161,7 +162,7 @@ class Weighing:
         return replace(self.null, look=look, noise=self.problem.noise(look))
 
     def search(
-        self, near: Fit, look: screen.Look, critical: float, stage: str, begun: float, scatters: int = sets.SCATTERS
+        self, near: Fit, look: screen.Look, stage: str, begun: float, scatters: int = sets.SCATTERS
     ) -> list[sets.TermSet]:
         """The likeliest sets of terms at a linearisation."""
         problem, J = self.whole, near.look.jacobian
@@ -187,7 +188,7 @@ class Weighing:
             return [float(s) for s in own.scales]
 
         residual = problem.measured - near.look.shown + J[:, : problem.nz] @ near.look.z + effects
-        self.linear = sets.Linear(terms, residual, covariance, scaled, self.prior, critical, self.most)
+        self.linear = sets.Linear(terms, residual, covariance, scaled, self.prior, self.critical, self.most)
         starts = [[0.0] * len(noise.loose), near.noise.scales.tolist()]
         return sets.search(self.linear, starts, lambda share: self.progress(stage, begun + 0.1 * share), scatters)
 

@@ -57,7 +57,8 @@ def library(
         DataError: files and packages without causes, and causes that are none, all at once
     """
     at = Context(roles, ranges, sensors)
-    found = {cause.id: cause for family in FAMILIES for cause in with_mountings(family(at), at)}
+    own = [cause for family in FAMILIES for cause in family(at)]
+    found = {cause.id: cause for cause in (with_mountings(own, at) if "mounting" in ranges.known else own)}
     wrong: list[str] = []
     for name, family in _others(extra_files, wrong):
         try:
@@ -125,9 +126,7 @@ def with_mountings(causes: Iterable[Cause], at: Context) -> Iterator[Cause]:
     """
     for cause in causes:
         family, general = cause.id.partition(".")[0], cause.forms[0]
-        if "mounting" not in at.ranges.known:
-            yield cause
-        elif family in REMOUNTED and not general.spread and not general.regime:
+        if family in REMOUNTED and not general.spread and not general.regime:
             anew = [_drawn(general, cause.size.name, name, by) for name, by in _deviations(at, always=True)]
             yield _joined(cause, anew)
         elif cause.id.endswith(".mounting"):
