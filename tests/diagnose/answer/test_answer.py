@@ -18,6 +18,7 @@ from gearheat.tools.diagnose.answer.quality import adequacy, average_residuals, 
 from gearheat.tools.diagnose.infer.found import Found
 from gearheat.tools.diagnose.infer.problem import Aside, Problem
 from gearheat.tools.diagnose.infer.weigh import weigh
+from gearheat.tools.diagnose.model.noise import terms
 from gearheat.tools.diagnose.model.observe import Observed
 from gearheat.tools.diagnose.setting import Setting
 
@@ -188,6 +189,20 @@ def test_predictions_of_the_data_are_nearer_with_the_cause(wrong: tuple[Setting,
     assert left[1] < 3 * found.problem.data.read[i].repeat_sd
 
 
+def test_points_that_are_foreseen_change_no_scatter_of_the_data(clean: tuple[Setting, Found]) -> None:
+    problem, look = clean[1].problem, clean[1].null.look
+    alone = {t.name: t.matrix for t in terms(problem.campaigns, look.seen, problem.day_sd, problem.nz)}
+    campaign = problem.data.campaign
+    speed = next(s.name for s in campaign.given if s.kind == "speed")
+    fast = replace(campaign, values={**campaign.values, speed: 1.2 * campaign.values[speed]})
+    points = Observed(clean[0].plant, fast, problem.data.nuisances, clean[0].oils, clean[0].scenario.operating_point)
+    seen = points.at(np.append(look.z, 0.0), [])
+    joint = terms([*problem.campaigns, points], [*look.seen, seen], problem.day_sd, problem.nz, points=1)
+    assert [t.name for t in joint] == list(alone)
+    for term in joint:
+        np.testing.assert_allclose(term.matrix[: problem.m, : problem.m], alone[term.name], atol=1e-12)
+
+
 def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> None:
     setting, found = wrong
     tried = list_experiments(found.problem.data.campaign, setting.nominal.value)
@@ -199,7 +214,9 @@ def test_experiments_never_bring_causes_nearer(wrong: tuple[Setting, Found]) -> 
         assert all(after[p] >= now[p] - 1e-6 for p in now), e.id
     best = rank(made, dict.fromkeys(CAUSES, 0.25))
     pair = next(p for p in now if set(p) == {TRUE, "cooling.air"})
-    assert made.distances("bath")[pair] > now[pair] + 0.1, "a bath tells an offset of a thermometer"
+    told = made.distances("bath")[pair]
+    assert told > now[pair], "a bath tells an offset of a thermometer"
+    assert told == pytest.approx(made.seen("bath").visible("cooling.air"), rel=0.02), "the air shows, or nothing does"
     assert all(r.separation_after > r.separation_before for r in best)
 
 

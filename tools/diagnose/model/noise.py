@@ -171,14 +171,15 @@ def conditions(o: Observed) -> np.ndarray:
     return np.array(own).reshape(len(own), o.campaign.n).T
 
 
-def smooth_features(campaigns: Sequence[Observed]) -> list[tuple[np.ndarray, np.ndarray]]:
+def smooth_features(campaigns: Sequence[Observed], points: int) -> list[tuple[np.ndarray, np.ndarray]]:
     """Features of a smooth remainder, the same in all campaigns: constant and linear ones (n, c); all, with products
-    and squares (n, k)."""
+    and squares (n, k). The last `points` campaigns do not count in where they are zero and one.
+    """
     raw = []
     for o in campaigns:
         given = [o.sensors[s.name] for s in o.given]
         raw.append(np.array([*given, o.campaign.direction]))
-    whole = np.concatenate(raw, axis=1)
+    whole = np.concatenate(raw[: len(raw) - points], axis=1)
     centre, spread = whole.mean(axis=1, keepdims=True), whole.std(axis=1, keepdims=True)
     kept = (spread > 1e-9 * np.maximum(abs(whole).max(axis=1, keepdims=True), 1e-12))[:, 0]
     room = [s.kind == "ambient" for s in campaigns[0].given] + [False]
@@ -195,10 +196,10 @@ def smooth_features(campaigns: Sequence[Observed]) -> list[tuple[np.ndarray, np.
     return found
 
 
-def remainder(campaigns: Sequence[Observed]) -> np.ndarray:
+def remainder(campaigns: Sequence[Observed], points: int) -> np.ndarray:
     """Effects (M, k) of what no parameter removes of a rig that is not the model, the same in all its campaigns."""
     blocks = []
-    features = smooth_features(campaigns)
+    features = smooth_features(campaigns, points)
     sensors = [s.name for s in campaigns[0].read]
     for o, (linear, own) in zip(campaigns, features, strict=True):
         fades = fading(o, linear) if any(c.campaign.series for c in campaigns) else np.zeros((o.m, 0))
@@ -246,7 +247,7 @@ def tied(parts: Sequence[tuple[str, int, np.ndarray]], sizes: Sequence[int]) -> 
     return found
 
 
-def terms(campaigns: Sequence[Observed], seen: Sequence[Seen], day_sd: float, day: int) -> list[Term]:
+def terms(campaigns: Sequence[Observed], seen: Sequence[Seen], day_sd: float, day: int, points: int = 0) -> list[Term]:
     """All terms of some campaigns of one rig with the same instruments, at a linearisation.
 
     Args:
@@ -254,6 +255,7 @@ def terms(campaigns: Sequence[Observed], seen: Sequence[Seen], day_sd: float, da
         seen: what each shows there
         day_sd: standard deviation of the cooling from day to day
         day: number of the direction that is the cooling of a day
+        points: how many campaigns, the last ones, are not measured but foreseen
     """
     sizes = [o.m for o in campaigns]
     scatter = [(name, k, v) for k, o in enumerate(campaigns) for name, v in reading_scatter(o)]
@@ -272,12 +274,13 @@ def terms(campaigns: Sequence[Observed], seen: Sequence[Seen], day_sd: float, da
     fillings = [(k, c) for k, (o, s) in pairs for c in _fillings(o, s)]
     if fillings:
         found.append(Term("fillings", stacked(fillings, sizes)))
-    if len(campaigns) == 1:
-        found.append(Term("laws", laws(campaigns[0], seen[0])))
+    measured = len(campaigns) - points
+    if measured == 1:
+        found.append(Term("laws", laws(campaigns, seen, points)))
     if any(o.campaign.series for o in campaigns):
         found += _logged(campaigns)
-    if len(campaigns) > 1:
-        found.append(Term("remainder", remainder(campaigns)))
+    if measured > 1:
+        found.append(Term("remainder", remainder(campaigns, points)))
     return found
 
 
@@ -290,15 +293,16 @@ def _logged(campaigns: Sequence[Observed]) -> Iterator[Term]:
     yield Term("dwells as logged", variance=np.concatenate([dwells(o) for o in campaigns]))
 
 
-def laws(o: Observed, seen: Seen) -> np.ndarray:
-    """Effects (m, k) of losses and heat paths that follow the point a little otherwise than their laws say.
+def laws(campaigns: Sequence[Observed], seen: Sequence[Seen], points: int) -> np.ndarray:
+    """Effects (M, k) of losses and heat paths that follow the point a little otherwise than their laws say.
 
     With a healthy campaign of the same rig the remainder says it.
     """
-    ((linear, _),) = smooth_features([o])
-    slopes = linear[o.row, 1:]
-    columns = [LAW * seen.by[:, [k]] * slopes for k in range(len(o.nuisances) - 1)]
-    return np.concatenate([np.zeros((o.m, 0)), *columns], axis=1)
+    blocks = []
+    for o, s, (linear, _) in zip(campaigns, seen, smooth_features(campaigns, points), strict=True):
+        slopes = LAW * linear[o.row, 1:]
+        blocks.append((s.by[:, : len(o.nuisances) - 1, None] * slopes[:, None, :]).reshape(o.m, -1))
+    return np.concatenate(blocks)
 
 
 def _fillings(o: Observed, seen: Seen) -> Iterator[np.ndarray]:
