@@ -3,7 +3,8 @@
 Nothing of the diagnosis is used. Stages, power, speed, oil, a fan, hall and points are drawn. Losses and heat paths of
 the true machine differ from those of the rig file by a factor of each and a smooth random function of speed, load and
 room. What is hidden is a factor on parameters of a type of part, heat from outside, or an error of an
-instrument; it moves the readings by `LEAST` standard deviations or more, each fault beside the others.
+instrument; it moves the readings by `LEAST` standard deviations of all that is uncertain or more, each fault beside the
+others.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import json
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -24,6 +26,7 @@ from gearheat.scenarios.measured.card import Card
 from gearheat.scenarios.measured.nominal import Nominal
 from gearheat.scenarios.measured.sensors import sensors_of
 from gearheat.scenarios.measured.table import Sensor
+from scipy.linalg import block_diag
 
 from .classes import classes_of
 from .new_rig import CHANGES, as_shown
@@ -42,13 +45,14 @@ POWERS = (0.75, 45.0)
 #: Speeds of four- and six-pole motors [rpm].
 SPEEDS = (960.0, 1450.0)
 OILS = ("ISO VG 150 mineral", "ISO VG 220 mineral", "ISO VG 320 mineral")
-#: Standard deviation of a factor of the true machine over the rig file, and of its course over its range [1].
-UNEQUAL = 0.06
+#: Standard deviation of a factor of the true machine over the rig file, whose values follow from a name plate, and of
+#: its course over its range [1].
+UNEQUAL = 0.1
 CURVED = 0.03
 #: Parameters of losses and heat paths that differ so.
 TRUE = ("*.k_loss", "*.k_mu", "cooling.A", "foot.G", "oil_wall.A", "oil_gears_*.A")
 #: Standard deviations by which what is hidden moves the readings, at least and at most.
-LEAST, MOST = 6.0, 60.0
+LEAST, MOST = 5.0, 60.0
 #: Share of the cases without a fault, and with one; others have two to four.
 CLEAN, SINGLE = 0.28, 0.4
 #: Where heat from outside goes, as a share of the loss at a point.
@@ -58,6 +62,8 @@ HOT = 120.0
 WARM = 15.0
 #: Size at which rivals are compared: logarithm of a factor, or one of the errors [K, share of the loss or reading].
 SMALL = 0.3
+#: Standard deviation of the hall's temperature before it is read [K].
+ANY = 20.0
 
 #: Values by path, or errors by sensor.
 Change = Mapping[str, float]
@@ -133,9 +139,9 @@ class Machine:
         """Everything at a point; raises `ArithmeticError` where the machine cannot be run."""
         n, load_, room = point
         given = {"input.w": n * self.nominal.value("input.w"), "output.tau": load_ * self.nominal.value("output.tau")}
-        course = np.array([2 * n - 1.35, 2 * load_ - 1.2, (room - 16.0) / 10.0])
+        course = _course(point)
         true = {
-            name: changed.get(name, self.healthy[name]) * float(np.exp(level + slopes @ np.sin(1.5 * course)))
+            name: changed.get(name, self.healthy[name]) * float(np.exp(level + slopes @ course))
             for name, (level, slopes) in self.unequal.items()
         }
         state = self.nominal.at(given | dict(changed) | true | {"room.T": room + 273.15})
@@ -145,41 +151,63 @@ class Machine:
 
     def read(self, changed: Change, errors: Change) -> np.ndarray:
         """Readings without noise (points, sensors)."""
-        states = [self._state(point, changed) for point in self.points]
-        table = np.array([[state[s.reads] for s in self.sensors] for state in states])
-        scale = np.where([s.kind == "torque" for s in self.sensors], table, 1.0)
-        return np.asarray(table + scale * np.array([errors.get(s.name, 0.0) for s in self.sensors]))
+        return np.array([self._shown(changed, point, errors) for point in self.points])
+
+    def _shown(self, changed: Change, point: tuple[float, float, float], errors: Change) -> np.ndarray:
+        """Readings at a point without noise (sensors,)."""
+        state = self._state(point, changed)
+        true = np.array([state[s.reads] for s in self.sensors])
+        scale = np.where([s.kind == "torque" for s in self.sensors], true, 1.0)
+        return np.asarray(true + scale * np.array([errors.get(s.name, 0.0) for s in self.sensors]))
+
+    @cached_property
+    def root(self) -> np.ndarray:
+        """Lower root of the covariance of all readings, in repeatabilities, to first order.
+
+        The hall at each point is known by its thermometer alone; tolerances and what the rig file does not know are
+        uncertain.
+        """
+        sd = np.array([s.repeat_sd for s in self.sensors])
+        factors = [self._effect({n: np.exp(SMALL) * self.healthy[n]}, {}) / SMALL for n in self.unequal]
+        courses = np.repeat([_course(point) for point in self.points], len(sd), axis=0).T
+        known = [UNEQUAL * factor for factor in factors]
+        known += [CURVED * course * factor for factor in factors for course in courses]
+        offsets = np.array([s.offset_sd for s in self.sensors]) / sd
+        known += [np.tile(offsets * (np.arange(len(sd)) == k), len(self.sound)) for k in range(len(sd))]
+        other = np.array([self._shown({}, (n, load_, room + SMALL), {}) for n, load_, room in self.points])
+        known += [ANY / SMALL * column for column in block_diag(*(other - self.sound) / sd)]
+        whole = np.array(known).T
+        return np.asarray(np.linalg.cholesky(np.eye(len(whole)) + whole @ whole.T))
+
+    def _effect(self, changed: Change, errors: Change) -> np.ndarray:
+        return self.in_repeatabilities(self.read(changed, errors) - self.sound)
+
+    def in_repeatabilities(self, change: np.ndarray) -> np.ndarray:
+        """A change of all readings (points, sensors) as a vector."""
+        return np.asarray((change / [s.repeat_sd for s in self.sensors]).ravel())
+
+    def size(self, change: np.ndarray) -> float:
+        """How far a change of all readings (points, sensors) is from nothing [sigma]."""
+        return float(np.linalg.norm(np.linalg.solve(self.root, self.in_repeatabilities(change))))
 
     def distance(self, hidden: Sequence[tuple[Change, Change]], classes: Collection[str]) -> tuple[float, str]:
-        """How far what is hidden is from a rival in the place of one of its faults [sigma], and the nearest rival.
-
-        Sizes are free, tolerances and what the rig file does not know are uncertain, everything to first order.
+        """How far what is hidden is from a rival of any size in the place of one of its faults [sigma], and which.
 
         Args:
             hidden: values and errors of each fault
             classes: of the faults, none of which is a rival
         """
-        sd = np.array([s.repeat_sd for s in self.sensors])
-
-        def effect(changed: Change, errors: Change) -> np.ndarray:
-            return np.asarray((self.read(changed, errors) - self.sound) / sd).ravel()
-
-        known = [UNEQUAL / SMALL * effect({n: np.exp(SMALL) * self.healthy[n]}, {}) for n in self.unequal]
-        offsets = np.array([s.offset_sd for s in self.sensors]) / sd
-        known += [np.tile(offsets * (np.arange(len(sd)) == k), len(self.sound)) for k in range(len(sd))]
-        whole = np.array(known).T
-        root = np.linalg.cholesky(np.eye(len(whole)) + whole @ whole.T)
         rivals = {}
         for fault in FAULTS:
             for k, (changed, errors) in enumerate(self.units(fault)):
-                rivals[f"{fault.cause} {k}"] = effect(changed, errors), classes_of([fault.cause])
-        own = np.linalg.solve(root, np.array([effect(*h) for h in hidden]).T)
+                rivals[f"{fault.cause} {k}"] = self._effect(changed, errors), classes_of([fault.cause])
+        own = np.linalg.solve(self.root, np.array([self._effect(*h) for h in hidden]).T)
         nearest = np.inf, ""
         for k in range(len(hidden)):
             rest = np.delete(own, k, axis=1)
             for name, (column, kind) in rivals.items():
                 if not kind & set(classes):
-                    A = np.column_stack([rest, np.linalg.solve(root, column)])
+                    A = np.column_stack([rest, np.linalg.solve(self.root, column)])
                     left = own[:, k] - A @ np.linalg.lstsq(A, own[:, k], rcond=None)[0]
                     nearest = min(nearest, (float(np.linalg.norm(left)), name))
         return nearest
@@ -209,6 +237,12 @@ class Machine:
         if fault.pattern == HEAT:
             return {names[0]: size * self.loss}, {}
         return {n: size * self.healthy[n] for n in names}, {}
+
+
+def _course(point: tuple[float, float, float]) -> np.ndarray:
+    """Along speed, load and room: what the factors of the true machine follow."""
+    n, load_, room = point
+    return np.sin(1.5 * np.array([2 * n - 1.35, 2 * load_ - 1.2, (room - 16.0) / 10.0]))
 
 
 def _write_rig(path: Path, rng: np.random.Generator) -> str:
@@ -249,13 +283,14 @@ def make(number: int, seed: int, k: int, folder: Path, kind: str | None = None) 
         try:
             plate = _write_rig(case / "machine.toml", rng)
             machine = Machine(case / "machine.toml", rng)
-            sd = np.array([s.repeat_sd for s in machine.sensors])
             number_of = 0 if kind == "clean" else 1 if kind == "single" else int(rng.integers(2, 5))
-            faults, hidden, shown, effects = _hide(machine, number_of, sd, rng)
+            faults, hidden, shown, effects = _hide(machine, number_of, rng)
             near = machine.distance(hidden, classes_of(f.cause for f in faults)) if faults else None
         except ArithmeticError:
             continue
         break
+    sd = np.array([s.repeat_sd for s in machine.sensors])
+    sd = np.array([s.repeat_sd for s in machine.sensors])
     offsets = np.array([s.offset_sd for s in machine.sensors]) * rng.standard_normal(len(sd))
     noisy = shown + offsets + sd * rng.standard_normal(shown.shape)
     _write(case / "DATA.csv", machine.sensors, noisy)
@@ -280,7 +315,7 @@ def make(number: int, seed: int, k: int, folder: Path, kind: str | None = None) 
 
 
 def _hide(
-    machine: Machine, n: int, sd: np.ndarray, rng: np.random.Generator
+    machine: Machine, n: int, rng: np.random.Generator
 ) -> tuple[list[Fault], list[tuple[Change, Change]], np.ndarray, list[float]]:
     """Faults of different classes, what they change, the readings, and by how many deviations each moves these."""
     changed, errors, faults, effects = dict[str, float](), dict[str, float](), list[Fault](), list[float]()
@@ -293,7 +328,7 @@ def _hide(
         if drawn is None or classes_of([FAULTS[k].cause]) & classes_of(f.cause for f in faults):
             continue
         moved = machine.read({**changed, **drawn[0]}, {**errors, **drawn[1]})
-        effect = float(np.linalg.norm((moved - shown) / sd))
+        effect = machine.size(moved - shown)
         if not LEAST <= effect <= MOST:
             continue
         changed, errors, shown = {**changed, **drawn[0]}, {**errors, **drawn[1]}, moved
