@@ -95,14 +95,13 @@ def log_bayes_factor(g: np.ndarray, e: np.ndarray, low: np.ndarray, high: np.nda
         low, high: bounds of the sizes (k,)
     """
     A, b = g.T @ g, g.T @ e
-    logs = []
-    for widths in product(WIDTHS, repeat=g.shape[1]):
-        D = np.array(widths) ** 2
-        C = np.linalg.inv(A + np.diag(1 / D))
-        mean, sd = C @ b, np.sqrt(np.diag(C))
-        log = 0.5 * b @ mean - 0.5 * np.linalg.slogdet(np.eye(len(D)) + A * D)[1]
-        inside, prior = mass_inside(mean, sd, low, high), mass_inside(np.zeros_like(D), np.sqrt(D), low, high)
-        logs.append(log + np.log(np.maximum(inside, 1e-300) / np.maximum(prior, 1e-300)).sum())
+    each = np.array(list(product(WIDTHS, repeat=len(b))))
+    D, eye = each[:, None, :] ** 2, np.eye(len(b))
+    C = np.linalg.inv(A + eye / D)
+    mean, sd = C @ b, np.sqrt(np.diagonal(C, axis1=1, axis2=2))
+    logs = 0.5 * mean @ b - 0.5 * np.linalg.slogdet(eye + A * D)[1]
+    inside, prior = mass_inside(mean, sd, low, high), mass_inside(np.zeros_like(each), each, low, high)
+    logs += np.log(np.maximum(inside, 1e-300) / np.maximum(prior, 1e-300)).sum(axis=1)
     return float(np.logaddexp.reduce(logs) - np.log(len(logs)))
 
 
