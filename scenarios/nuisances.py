@@ -32,6 +32,7 @@ class Nuisance:
         sd: prior standard deviation of the logarithm
         wide: the same where a healthy reference campaign of the same rig tells the parameters
         refilled: whether another filling or mounting changes it, by half of its sd
+        by_oil: whether it is another one with each oil
         parts, connections: what is added to the machine for it, neutral
     """
 
@@ -40,6 +41,7 @@ class Nuisance:
     sd: float
     wide: float
     refilled: bool = False
+    by_oil: bool = False
     parts: tuple[PartSpec, ...] = ()
     connections: tuple[tuple[str, ...], ...] = ()
 
@@ -55,6 +57,7 @@ class Group:
         paths: roles of a machine -> parameter with its exponent
         share: of the key's standard deviation
         refilled: whether another filling or mounting changes them
+        by_oil: whether they are others with each oil
     """
 
     name: str
@@ -63,6 +66,7 @@ class Group:
     paths: Callable[[Roles], Mapping[str, float]]
     share: float = 1.0
     refilled: bool = False
+    by_oil: bool = False
 
 
 def _alike(paths: Sequence[str]) -> dict[str, float]:
@@ -95,10 +99,10 @@ def _convection(roles: Roles) -> Mapping[str, float]:
 
 #: All groups. Of the foundation a card says nothing, so it has half of what convection has.
 GROUPS: tuple[Group, ...] = (
-    Group("mesh friction", "mu", 0.4, lambda r: _alike(r.scaled(*r.parts("teeth")))),
-    Group("bearing loss", "brg", 0.4, lambda r: _alike(r.scaled(*r.parts("bearing")))),
-    Group("seal loss", "seal", 0.5, lambda r: _alike(r.scaled(*r.parts("seal")))),
-    Group("churning", "seal", 0.5, lambda r: _alike(r.scaled(*r.having("churning"))), refilled=True),
+    Group("mesh friction", "mu", 0.4, lambda r: _alike(r.scaled(*r.parts("teeth"))), by_oil=True),
+    Group("bearing loss", "brg", 0.4, lambda r: _alike(r.scaled(*r.parts("bearing"))), by_oil=True),
+    Group("seal loss", "seal", 0.5, lambda r: _alike(r.scaled(*r.parts("seal"))), by_oil=True),
+    Group("churning", "seal", 0.5, lambda r: _alike(r.scaled(*r.having("churning"))), refilled=True, by_oil=True),
     Group("radiation", "rad", 0.6, lambda r: {f"{name}.emissivity": 1.0 for name in r.surfaces}),
     Group("oil to what turns", "gow", 0.6, _oil_inside, refilled=True),
     Group("oil to other bodies", "gow", 0.6, _oil_outside, refilled=True),
@@ -141,7 +145,7 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
         if signs:
             most = max(sds.values())
             exponents = {path: sign * (sds[path] / most if most else 1.0) for path, sign in signs.items()}
-            found.append(Nuisance(group.name, exponents, most, group.wide, group.refilled))
+            found.append(Nuisance(group.name, exponents, most, group.wide, group.refilled, group.by_oil))
     return tuple(found)
 
 
