@@ -35,10 +35,14 @@ LOSS_FACTOR = 10.0
 RISE_FACTOR = 5.0
 #: A rise over the room below this [K] says nothing about a unit.
 SMALL_RISE = 2.0
+#: Nor does one that is nearer to the model's than this [K]: probes err so much.
+PROBE_ERROR = 5.0
 #: Efficiencies below this in most rows cannot be [1].
 POOREST = 0.2
-#: Efficiencies above this in most rows cannot be [1].
+#: Efficiencies above this in most rows cannot be [1]: an instrument that errs raises them in one direction alone.
 BEST = 1.0
+#: The same where the machine runs in one direction only.
+BEST_OF_ONE = 1.1
 #: Accuracies further than this factor from the usual ones are a slip.
 ODD = 300.0
 #: Rows that are held against the nominal model.
@@ -275,7 +279,11 @@ def _rise(campaign: Campaign, sensor: Sensor, pairs: dict[int, tuple[float, floa
         return
     room = campaign.values[rooms[0].name]
     rises = [(row, read - room[row], model - room[row]) for row, (read, model) in pairs.items()]
-    ratios = [read / model for _, read, model in rises if model > SMALL_RISE or read > RISE_FACTOR * SMALL_RISE]
+    ratios = [
+        (read + np.clip(model - read, -PROBE_ERROR, PROBE_ERROR)) / model
+        for _, read, model in rises
+        if model > SMALL_RISE or read > RISE_FACTOR * SMALL_RISE
+    ]
     middle = float(np.median(ratios)) if ratios else 1.0
     short = not campaign.steady  # a reading may be far below the steady state
     if middle <= RISE_FACTOR and (short or middle >= 1 / RISE_FACTOR):
@@ -294,13 +302,14 @@ def _balance(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
     if powers is None or len(powers) < 2:
         return
     eta = efficiency(powers)
-    odd = (eta > BEST) | (eta < POOREST)
+    best = BEST if len(np.unique(campaign.direction)) > 1 else BEST_OF_ONE
+    odd = (eta > best) | (eta < POOREST)
     if odd.sum() * 2 <= np.isfinite(eta).sum():
         return
     row = int(np.flatnonzero(odd)[0])
     torques = ", ".join(s.column for s in campaign.sensors if s.kind == "torque")
     yield (
-        f"{_place(campaign, row)}: the torques give an efficiency of {eta[row]:.3g}, and of more than {BEST:g} or less"
+        f"{_place(campaign, row)}: the torques give an efficiency of {eta[row]:.3g}, and of more than {best:g} or less"
         f" than {POOREST:g} in {odd.sum()} of {campaign.n} rows. Check units and signs of {torques}."
     )
 

@@ -48,6 +48,11 @@ def test_a_torque_of_the_other_sign(read, helical, planetary):
     assert "efficiency of 1.0" in problems(read, "planetary", turned)
 
 
+def test_instruments_that_err_are_no_other_unit(read, helical):
+    assert read("helical_two_stage", times(helical, "T_output_Nm", 1.05)).read
+    assert read("helical_two_stage", {**helical, "T_amb_C": [v + 5.0 for v in helical["T_amb_C"]]}).read
+
+
 def test_all_temperatures_equal(read, planetary):
     columns = {**planetary, **{c: [50.0] * 12 for c in ("T_oil_C", "T_wall_C")}}
     found = problems(read, "planetary", columns)
