@@ -49,8 +49,8 @@ def test_a_torque_of_the_other_sign(read, helical, planetary):
 
 
 def test_instruments_that_err_are_no_other_unit(read, helical):
-    assert read("helical_two_stage", times(helical, "T_output_Nm", 1.05)).read
-    assert read("helical_two_stage", {**helical, "T_amb_C": [v + 5.0 for v in helical["T_amb_C"]]}).read
+    torques = {**helical, "T_input_Nm": [-v / 13 for v in helical["T_output_Nm"]]}
+    assert read("helical_two_stage", torques, '[sensors.T_input_Nm]\nreads = "input.tau"\n').n == 6, "efficiency 1.03"
 
 
 def test_all_temperatures_equal(read, planetary):
