@@ -26,6 +26,7 @@ from ..laws.convection import (
 from ..laws.radiation import radiated, radiation_coefficient
 from ..laws.smooth import Num, smooth_abs
 from .ports import AirPort, HeatPort, WallSize
+from .relations import require
 
 
 class RoundHousing(Component):
@@ -65,8 +66,7 @@ class RoundHousing(Component):
 
     def relations(self) -> Iterator[Related]:
         """A thick wall leaves a hollow cylinder."""
-        remedy = "Give a thinner wall or a larger R_o."
-        yield self.relation("d leaves room inside", "d / R_o", self.d / self.R_o, high=0.95, remedy=remedy)
+        yield require(self, "d leaves room inside", self.d / self.R_o, high=0.95)
 
     def conductances(self) -> tuple[Num, Num]:
         """Of the flat walls and of the cylinder [W/K]."""

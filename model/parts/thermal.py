@@ -22,6 +22,7 @@ from ..laws.convection import (
 from ..laws.radiation import absorbed_sun, radiated
 from ..laws.smooth import Num
 from .ports import COLDEST, HOTTEST, AirPort, HeatPort
+from .relations import require
 
 
 class HeatCapacity(Component):
@@ -123,8 +124,7 @@ class CylinderWall(Conductor):
 
     def relations(self) -> Iterator[Related]:
         """The wall has a thickness."""
-        remedy = "Give the outer radius as r_o, the inner as r_i."
-        yield self.relation("r_o is larger than r_i", "r_o / r_i", self.r_o / self.r_i, 1 + 1e-6, remedy=remedy)
+        yield require(self, "r_o is larger than r_i", self.r_o / self.r_i, 1 + 1e-6)
 
     def conductance(self) -> Num:
         """Of a cylindrical wall."""
@@ -299,8 +299,7 @@ class BoxCooling(SurfaceCooling):
 
     def relations(self) -> Iterator[Related]:
         """Faces have no more than the whole area; the rest is vertical."""
-        both, remedy = self.share_top + self.share_bottom, "Give smaller shares; the vertical faces have what is left."
-        yield self.relation("the shares fit into one area", "share_top + share_bottom", both, 0.0, 1.0, remedy=remedy)
+        yield require(self, "the shares fit into one area", self.share_top + self.share_bottom, 0.0, 1.0)
 
     def natural(self) -> Num:
         """Mean of vertical, upward and downward faces by area."""
