@@ -46,7 +46,7 @@ from .csv_table import split_unit
 from .document import ABOUT, paths, read_toml, sources_of
 from .film_map import film_maps, names_map
 from .repeats import expand
-from .scenario import Erratum, Instrument, Protocol, Scenario
+from .scenario import Instrument, Protocol, Scenario
 from .shipped import RIGS, list_rigs
 from .tables import RigTable, validate
 from .values import (
@@ -181,7 +181,7 @@ class _Loader:
             joint_uncertainties=joint,
             units={f"{name}.{key}": unit for name, part in parts.items() for key, unit in part.units.items()},
             entries={name: part.entries for name, part in parts.items() if part.entries},
-            errata=tuple(Erratum(**e.model_dump()) for e in self.table.errata),
+            errata=tuple(self.table.errata),
             protocol=protocol,
             data=data,
             reproduces=self.table.reproduces,

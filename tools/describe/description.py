@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -49,17 +49,6 @@ class Description(Answer):
     flat: FlatModel
     rest: Result | None
 
-    @property
-    def title(self) -> str:
-        """Name and description."""
-        return f"{self.scenario.name}: {self.scenario.doc}"
-
-    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """Parameters in the units of the file."""
-        head = ("name", "value", "unit", "doc", "source")
-        lines = [{**p, **(p["written"] or {})} for p in self.found["parameters"]]
-        return head, [[line[key] for key in head] for line in lines]
-
     def effects(self) -> tuple[str, Sequence[str], list[list[Any]]] | None:
         """Title, head and rows of the parameters that matter most; None without a steady state or an effect."""
         if self.rest is None:
@@ -92,7 +81,7 @@ def show(rig: RigLike) -> Description:
     scenario = scenario_of(rig)
     flat, types = flat_of(scenario), scenario.spec.types
     rest, no_steady_state = _at_the_operating_point(scenario, flat)
-    found = {
+    found: dict[str, Any] = {
         "schema": "gearheat.show/1",
         "rig": scenario.name,
         "doc": scenario.doc,
@@ -113,9 +102,12 @@ def show(rig: RigLike) -> Description:
         "outside": outside_of(rest) if rest is not None else [],
         "no_steady_state": no_steady_state,
         "unchecked": find_unchecked(scenario, flat),
-        "errata": [asdict(e) for e in scenario.errata],
+        "errata": [e.model_dump() for e in scenario.errata],
     }
-    return Description(found, scenario, flat, rest)
+    head = ("name", "value", "unit", "doc", "source")
+    lines = [{**p, **(p["written"] or {})} for p in found["parameters"]]
+    shown = head, [[line[key] for key in head] for line in lines]
+    return Description(found, scenario, flat, rest, heading=f"{scenario.name}: {scenario.doc}", shown=shown)
 
 
 def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> tuple[Result | None, list[str]]:

@@ -50,19 +50,7 @@ WRONG = {LOST: (FAILED, "no film found"), COARSE: ("coarse", "the grid is too co
 
 
 class FilmTable(Answer):
-    """Films of a contact over load, speed and temperature, and the law fitted to them."""
-
-    @property
-    def title(self) -> str:
-        """The contact and the number of points."""
-        found = self.found
-        of = f"{found['case']}: {found['part']}" if found["part"] else found["case"]
-        return f"{of}: {found['contacts']} {found['shape']} contacts"
-
-    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """What is varied."""
-        rows = [(k, v["low"], v["high"], v["unit"]) for k, v in self.found["varied"].items()]
-        return ("varied", "low", "high", "unit"), rows
+    """Films of a contact over load, speed and temperature, and the law fitted to them; the table is what is varied."""
 
 
 def film(
@@ -121,7 +109,7 @@ def film(
 
         write_picture(drawn, _picture(case, points, kept))
     law, units = fitted.law, {name: quantity.unit for name, quantity in AXES.items()}
-    found = {
+    found: dict[str, Any] = {
         "schema": "gearheat.film/1",
         "case": case.name,
         "part": case.part,
@@ -143,7 +131,10 @@ def film(
         },
         "plot": None if drawn is None else str(drawn),
     }
-    return FilmTable(found)
+    of = f"{case.name}: {case.part}" if case.part else case.name
+    heading = f"{of}: {found['contacts']} {law.shape} contacts"
+    varied = [(name, *ends.values()) for name, ends in found["varied"].items()]
+    return FilmTable(found, heading=heading, shown=(("varied", "low", "high", "unit"), varied))
 
 
 def case_of(

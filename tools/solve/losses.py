@@ -39,16 +39,6 @@ class LossTable(Answer):
 
     contacts: ContactTable | None = None
 
-    @property
-    def title(self) -> str:
-        """The rig and what is shown."""
-        return f"{self.found['rig']}: losses"
-
-    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """A row per reading."""
-        rows = self.found["rows"]
-        return list(rows[0]), [list(row.values()) for row in rows]
-
 
 def losses(
     rig: RigLike,
@@ -110,7 +100,8 @@ def losses(
     if cycle is not None:
         found |= {"contacts": cycle.rows, "columns": cycle.columns, **cycle.totals}
         found["cycle"] = [asdict(moment) for moment in cycle.cycle]
-    return LossTable(found, cycle)
+    shown = list(rows[0]), [list(row.values()) for row in rows]
+    return LossTable(found, cycle, heading=f"{scenario.name}: losses", shown=shown)
 
 
 def oils_of(study: Measured | None) -> list[tuple[str, str]]:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
@@ -166,8 +166,8 @@ def _list_citations(places: Iterable[str]) -> dict[str, str]:
 
 def _machine(values: RigValues, rows: Sequence[Row], advance: Callable[[int], None]) -> Machine:
     scenario = values.scenario
-    verdicts = judge_rows(rows, values, advance)
-    return Machine(scenario.name, scenario.doc, scenario.reproduces, verdicts, tuple(map(asdict, scenario.errata)))
+    errata = tuple(e.model_dump() for e in scenario.errata)
+    return Machine(scenario.name, scenario.doc, scenario.reproduces, judge_rows(rows, values, advance), errata)
 
 
 def judge_rows(
