@@ -2,16 +2,13 @@
 
 from __future__ import annotations
 
-import tomllib
-from importlib.resources import files
 from math import inf
 
 from ..core.component import Component, Related
+from ..files import tables
 from ..laws.smooth import Num
 
-_TOLD: dict[str, dict[str, str]] = tomllib.loads(
-    files("gearheat.model.parts").joinpath("relations.toml").read_text(encoding="utf-8")
-)
+_TOLD: dict[str, dict[str, str]] = tables("model.parts", "relations.toml")
 
 
 def require(part: Component, name: str, number: Num, low: float = -inf, high: float = inf, **words: str) -> Related:

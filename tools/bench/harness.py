@@ -5,21 +5,20 @@ from __future__ import annotations
 import subprocess
 import sys
 import time
-import tomllib
 from collections.abc import Callable, Mapping, Sequence
-from importlib.resources import files
 from pathlib import Path
 from typing import Any, TypeVar
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from ...model.errors import DataError
+from ...model.files import tables
 from ..show.console import cell
 
 T = TypeVar("T")
 
 #: Goals and peers.
-TABLES: dict[str, Any] = tomllib.loads(files("gearheat.tools.bench").joinpath("bench.toml").read_text(encoding="utf-8"))
+TABLES: dict[str, Any] = tables("tools.bench", "bench.toml")
 
 _TEMPLATES = Environment(
     loader=PackageLoader("gearheat.tools.bench"), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True

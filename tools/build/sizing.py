@@ -8,13 +8,12 @@ stands, what dips into it and what it wets.
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from typing import Any
 
 from ...model.errors import ScenarioError
+from ...model.files import tables
 from ...model.units import si_of
 from ...scenarios.entries import catalogue
 from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, PlanetaryStage, Stage, WormStage
@@ -36,9 +35,7 @@ OVERHANG = 2.5
 #: Distance of the bearings of a worm over its wheel's diameter [1].
 APART = 0.9
 #: Basic dynamic load ratings of the bearings to choose from [N].
-RATINGS: dict[str, float] = tomllib.loads(
-    files("gearheat.tools.build").joinpath("ratings.toml").read_text(encoding="utf-8")
-)
+RATINGS: dict[str, float] = tables("tools.build", "ratings.toml")
 #: How deep the smallest wheel dips, in modules.
 DIP = 3.0
 #: Share of what is below the level that is oil [1].

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import inspect
 import math
-import tomllib
 from collections.abc import Mapping
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from ...model.core.component import Component
 from ...model.core.declare import Choice, Declaration, Input, Output, Parameter, Port, State, list_declared
 from ...model.core.flat import Quantity
 from ...model.errors import ScenarioError, suggestion
+from ...model.files import tables
 from ...model.parts import PARTS
 from ...model.sources import LawInfo, recording, sources
 from ...model.units import example, from_si, show_unit, text, to_si
@@ -149,8 +148,7 @@ def _example(kind: str) -> tuple[str, dict[str, Any], Mapping[str, str]]:
 @cache
 def _typical() -> dict[str, dict[str, Any]]:
     """Sizes of part types that no shipped rig has, by type, in SI."""
-    written = files("gearheat.tools.describe").joinpath("templates", "parts.toml").read_text(encoding="utf-8")
-    found: dict[str, dict[str, Any]] = tomllib.loads(written)
+    found: dict[str, dict[str, Any]] = tables("tools.describe", "templates", "parts.toml")
     for kind, sizes in found.items():
         known = settable(PARTS[kind])
         sizes |= {key: to_si(sizes[key], known[key].unit, name=key) for key in sizes.keys() & known.keys()}

@@ -7,7 +7,6 @@ import inspect
 import pkgutil
 import re
 import shutil
-import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
@@ -19,6 +18,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from ...model import laws
+from ...model.files import tables
 from ...model.machines.roles import Roles
 from ...model.parts import PARTS
 from ...model.sources import LawInfo, sources
@@ -40,7 +40,7 @@ from ..diagnose.library.registry import library
 from ..diagnose.setting import ranges_of
 
 #: What the pages tell of, and settings of the web site.
-TABLES: dict[str, Any] = tomllib.loads(files("gearheat.tools.docs").joinpath("docs.toml").read_text(encoding="utf-8"))
+TABLES: dict[str, Any] = tables("tools.docs", "docs.toml")
 MATH = re.compile(r"^\.\. math::[ \n]*((?:.+\n?)+?)(?:\n|\Z)", re.MULTILINE)
 #: Where the pages of the contact solver and of the reference methods stand.
 CONTACT = Path(str(files("gearheat.model.contact")))
