@@ -173,11 +173,7 @@ def description(
 
 
 def build_description(name: str) -> bytes:
-    """buildDescription.xml of FMI 3.0: how the source becomes a library.
-
-    Args:
-        name: of the model
-    """
+    """buildDescription.xml of FMI 3.0: how the source of a model of this name becomes a library."""
     return xml("build.xml", identifier=identifier(name))
 
 
@@ -314,11 +310,7 @@ class _Terminal:
 
 
 def terminals(table: Table) -> bytes:
-    """terminalsAndIcons.xml of an FMU for FMI 3.0: the variables that belong together where two FMUs are joined.
-
-    Args:
-        table: the variables of the FMU
-    """
+    """terminalsAndIcons.xml of an FMU for FMI 3.0: which of its variables belong together where two FMUs are joined."""
     return xml("terminals.xml", terminals=list(_list_terminals(table)))
 
 

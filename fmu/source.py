@@ -210,21 +210,13 @@ def headers_of_3() -> dict[str, str]:
 
 
 def include_header(name: str) -> str:
-    """The beginning of the source: the standard's header, with names that no other FMU in a program has.
-
-    Args:
-        name: of the model, as an identifier
-    """
+    """The beginning of the source of a model: the standard's header, with names that no other FMU in a program has."""
     prefix = f"#ifndef FMI3_FUNCTION_PREFIX\n#define FMI3_FUNCTION_PREFIX {name}_\n#endif\n"
     return f'{prefix}#include "fmi3Functions.h"\n'
 
 
 def in_words_of_3(text: str) -> str:
-    """A file of the wrapper in the words of FMI 3.0.
-
-    Args:
-        text: of the file; one that is of FMI 3.0 stays as it is
-    """
+    """The text of a file of the wrapper in the words of FMI 3.0; one that is of FMI 3.0 stays as it is."""
     text = _DEFINITION.sub(lambda found: f"static {found[1]} {_TABLES['inner'][found[2]]}(", text)
     for said, instead in _TABLES["said"].items():
         text = text.replace(said, instead)

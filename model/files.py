@@ -73,11 +73,7 @@ def place(path: Path) -> Path:
 
 
 def flows(path: Path) -> bool:
-    """Whether what is written there goes through: a pipe, a device, a stream of this process wherever it leads.
-
-    Args:
-        path: as `place` gives it
-    """
+    """Whether what is written there goes through: a pipe, a device, a stream of this process wherever it leads."""
     return _descriptor(path) is not None or (path.exists() and not path.is_file())
 
 

@@ -127,11 +127,7 @@ def in_range(where: str, raw: object, quantity: Quantity) -> float:
 
 
 def unit_of(raw: object) -> str:
-    """The unit in which a value is written, "" without one.
-
-    Args:
-        raw: a number, or text with a unit ("62 mm")
-    """
+    """The unit in which a number or a text ("62 mm") is written, "" without one."""
     return spell_unit(split_quantity(raw)[1]) if isinstance(raw, str) else ""
 
 

@@ -183,11 +183,7 @@ class Roles:
 
 
 def faults_of(kind: type[Component]) -> Faults:
-    """Causes by which a part of a type may fail; none where neither its class nor its role declares any.
-
-    Args:
-        kind: class of the part
-    """
+    """Causes by which a part of a type may fail; none where neither its class nor its role declares any."""
     return FAULTS.get(kind.role, SOUND) if kind.faults is None else kind.faults
 
 

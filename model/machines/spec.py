@@ -19,11 +19,7 @@ LAYOUTS = ("planetary", "harmonic", "cycloidal", "cycloidal_printed", "rv_stage"
 
 @cache
 def layout(kind: str) -> tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]:
-    """The fixed parts of a kind of machine, name -> type in the order to show them, and the groups of ports that meet.
-
-    Args:
-        kind: one of `LAYOUTS`
-    """
+    """The fixed parts of one of `LAYOUTS`, name -> type in the order to show them, and the ports that meet."""
     found = tables("model.machines", "layouts", f"{kind}.toml")
     return found["parts"], tuple(map(tuple, found["connections"]))
 

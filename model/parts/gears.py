@@ -131,11 +131,7 @@ class GearPair(ToothedPart):
         )
 
     def film_contact(self, values: Mapping[str, float]) -> FilmContact:
-        """The contact at the pitch point.
-
-        Args:
-            values: parameters and outputs at an operating point, by key, in SI
-        """
+        """The contact at the pitch point, by values at an operating point in SI."""
         c = self.contact(self.eps_alpha, *self.teeth())
         R, length, normal = (self.number_at(x, values) for x in (c.R, c.l, c.normal))
         E_eff, sigma = values["E"] / (1 - values["poisson"] ** 2), 2**0.5 * values["Ra"]

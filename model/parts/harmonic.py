@@ -227,11 +227,7 @@ class HarmonicMesh(FlankFilm):
         yield require(self, "the pairs are teeth", self.pairs / self.z_1, 0.0, 1.0)
 
     def film_contact(self, values: Mapping[str, float]) -> FilmContact:
-        """The contact of a pair of teeth, one flank at rest.
-
-        Args:
-            values: parameters and outputs at an operating point, by key, in SI
-        """
+        """The contact of a pair of teeth, one flank at rest, by values at an operating point in SI."""
         sigma = RQ_OVER_RZ * float(np.hypot(values["Rz_1"], values["Rz_2"]))
         R = self.number_at(self.R, values)
         speed = abs(values["speed_factor"] * values["v_slide"])

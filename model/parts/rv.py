@@ -173,11 +173,7 @@ class CycloidPinStage(Component):
         return self._mesh(values), Film(*(values[key] for key in ("T_disc", "w_crank", "eta_oil", "alpha_p")))
 
     def contact_table(self, values: Mapping[str, float]) -> ContactTable:
-        """The contact of a pin at every degree of the loaded half; see `pin_mesh.COLUMNS`.
-
-        Args:
-            values: parameters and outputs of the stage at an operating point, by key, in SI
-        """
+        """The contact of a pin at every degree of the loaded half, see `pin_mesh.COLUMNS`, by values in SI."""
         return replace(pin_table(*self._in_numbers(values)), cycle=self.mesh_cycle(values))
 
     def contact_case(self, values: Mapping[str, float], theta: float) -> ContactCase:
@@ -190,17 +186,9 @@ class CycloidPinStage(Component):
         return pin_case(*self._in_numbers(values), theta)
 
     def film_contact(self, values: Mapping[str, float]) -> ContactCase:
-        """The contact of the pin across the crank's line.
-
-        Args:
-            values: parameters and outputs of the stage at an operating point, by key, in SI
-        """
+        """The contact of the pin across the crank's line, by values in SI."""
         return self.contact_case(values, float(ca.pi) / 2)
 
     def mesh_cycle(self, values: Mapping[str, float]) -> list[ContactCase]:
-        """The way of a pin through the loaded half, in the middles of equal steps: it carries at every moment.
-
-        Args:
-            values: parameters and outputs of the stage at an operating point, by key, in SI
-        """
+        """The way of a pin through the loaded half, at middles of equal steps where it carries, by values in SI."""
         return [self.contact_case(values, float(ca.pi) * (k + 0.5) / MOMENTS) for k in range(MOMENTS)]

@@ -205,20 +205,12 @@ def wheels_dip(made: Unit) -> bool:
 
 
 def height_of_axes(made: Unit) -> float:
-    """Height of the axes of wheels that stand in one plane, above the bottom of the housing [m].
-
-    Args:
-        made: the unit
-    """
+    """Height of the axes of wheels that stand in one plane, above the bottom of a unit's housing [m]."""
     return BELOW + max(max(s.r_1, s.r_2) + s.m_n for s in made.stages)
 
 
 def bath(made: Unit) -> dict[str, Any]:
-    """Volume [l] and, where wheels dip, level [m] of the oil; and their rule.
-
-    Args:
-        made: the unit
-    """
+    """Volume [l] and, where wheels dip, level [m] of the oil of a unit; and their rule."""
     if not wheels_dip(made):
         volume = SHARE * made.length * made.width * made.height
         return {"volume": 1000 * volume, "level": None, "rule": f"{100 * SHARE:.0f} % of the housing's volume"}
@@ -242,20 +234,12 @@ def stands_in_oil(made: Unit, bearing: str) -> bool:
 
 
 def compute_wetted_area(stage: Stage) -> float:
-    """Half of the sides of a stage's wheels and their rims [m2].
-
-    Args:
-        stage: of the unit
-    """
+    """Half of the sides of a stage's wheels and their rims [m2]."""
     return stage.count * (math.pi * stage.r_2**2 + 2 * math.pi * stage.r_2 * stage.b)
 
 
 def splash(made: Unit) -> dict[str, float]:
-    """What the walls have from the gear that throws most: the first that dips, and the shaft it is on.
-
-    Args:
-        made: the unit
-    """
+    """What a unit's walls have from the gear that throws most: the first that dips, and the shaft it is on."""
     first, worm = made.stages[0], isinstance(made.stages[0], WormStage)
     return {
         "A": REACHED * made.area,

@@ -60,11 +60,7 @@ def parts(kind: str | None = None) -> PartTypes:
 
 
 def describe_part(kind: str) -> dict[str, Any]:
-    """Ports, parameters, choices, inputs, states, outputs, equations, sources and an example of a part type.
-
-    Args:
-        kind: name in `PARTS`
-    """
+    """Ports, parameters, choices, inputs, states, outputs, equations, laws and an example of a type in `PARTS`."""
     cls = PARTS[kind]
     where, values, entries = _example(kind)
     equations, laws = _inside(cls, values)

@@ -217,11 +217,7 @@ def law_modules() -> list[str]:
 
 
 def laws_of(module: str) -> Iterator[Law]:
-    """The laws of a module in the order of its file.
-
-    Args:
-        module: its name in `model.laws`
-    """
+    """The laws of a module of `model.laws` in the order of its file."""
     found = importlib.import_module(f"{laws.__name__}.{module}")
     yield from (f for f in vars(found).values() if hasattr(f, "law") and f.__module__ == found.__name__)
 

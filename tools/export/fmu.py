@@ -96,11 +96,7 @@ class Exported(Answer):
 
 
 def export_rig(asked: Asked) -> Exported:
-    """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set.
-
-    Args:
-        asked: the options
-    """
+    """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
     if asked.uncertainty and not asked.with_origins:
         raise ScenarioError(
             "--uncertainty tells how uncertain values are, which --no-parameters-source keeps back. Take one away."

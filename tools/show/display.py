@@ -186,11 +186,7 @@ class Quantities(Display):
         return in_unit(float(self[name]), unit)
 
     def rows(self, names: Sequence[str]) -> list[tuple[str, float, str, str]]:
-        """Rows of a table under `HEAD`.
-
-        Args:
-            names: of the values in it
-        """
+        """Rows of a table under `HEAD`, of the named values."""
         known = [self.flat.quantity(name) for name in names]
         return [(q.name, from_si(float(self[q.name]), q.unit), show_unit(q.unit), q.doc) for q in known]
 

@@ -238,11 +238,7 @@ def _law_value(row: Row) -> Value:
 
 
 def law_of(row: Row) -> LawInfo | None:
-    """What the law of a row declares.
-
-    Args:
-        row: with run = "law"
-    """
+    """What the law of a row declares."""
     return getattr(_function(row.law), "law", None)
 
 

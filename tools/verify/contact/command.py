@@ -57,11 +57,7 @@ def verify_contact(out: str | Path, *, quick: bool = False, cycle: str | None = 
 
 
 def jobs(quick: bool) -> list[Job]:
-    """All pieces of work, or the quick ones.
-
-    Args:
-        quick: a subset on coarse grids
-    """
+    """All pieces of work, or of the quick subset on coarse grids."""
     parts = (*steady.jobs(quick), *lines.jobs(quick), *studies.jobs(quick), *studies.dent_jobs(quick))
     items = list(dict.fromkeys(job.item for job in parts))
     wanted = [job for job in parts if job.quick or not quick]

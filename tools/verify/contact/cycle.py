@@ -64,11 +64,7 @@ class Cycle:
 
 
 def jobs(rig: str) -> list[Job]:
-    """The piece of work.
-
-    Args:
-        rig: name or path of a rig with a mesh of pins
-    """
+    """The piece of work of a rig with a mesh of pins, by its name or path."""
     return [Job("Mesh cycle", rig, lambda: _work(rig))]
 
 

@@ -28,11 +28,7 @@ MOMENT_DOMAIN = (-4.5, 1.5, 3.0)
 
 
 def jobs(quick: bool) -> list[Job]:
-    """The pieces of work, in the order of the table.
-
-    Args:
-        quick: on a coarse grid
-    """
+    """The pieces of work in the order of the table, the quick ones on a coarse grid."""
     n = QUICK if quick else NODES
     return [*_hamrock_dowson(n), *_nijenbanning(n), *_dry(n), *_rolling(n), *_ball_on_disc(n)]
 
