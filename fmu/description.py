@@ -172,11 +172,6 @@ def description(
     )
 
 
-def build_description(name: str) -> bytes:
-    """buildDescription.xml of FMI 3.0: how the source of a model of this name becomes a library."""
-    return xml("build.xml", identifier=identifier(name))
-
-
 def origin(flat: FlatModel) -> dict[str, str]:
     """The attributes that say what the model is and where its description is from."""
     told = {"description": "; ".join(filter(None, (flat.doc, *flat.joined))), "generationTool": tool()}

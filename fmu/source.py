@@ -67,7 +67,8 @@ def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, direct
     texts = [wrapper(instead.get(name, name)) for name in tables("wrapper")["files"][f"fmi{fmi}"]]
     if fmi == 2:
         return "\n".join([head, _fmi_headers(), generated, *texts])
-    included = include_header(identifier(flat.name))
+    prefix = f"#ifndef FMI3_FUNCTION_PREFIX\n#define FMI3_FUNCTION_PREFIX {identifier(flat.name)}_\n#endif\n"
+    included = f'{prefix}#include "fmi3Functions.h"\n'  # names that no other FMU in a program has
     return "\n".join([head, included, generated, *map(in_words_of_3, texts)])
 
 
@@ -207,12 +208,6 @@ def headers_of_3() -> dict[str, str]:
     """Name and text of the standard's headers, unmodified."""
     folder = files("fmpy") / "c-code"
     return {name: (folder / name).read_text(encoding="utf-8") for name in _HEADERS_3}
-
-
-def include_header(name: str) -> str:
-    """The beginning of the source of a model: the standard's header, with names that no other FMU in a program has."""
-    prefix = f"#ifndef FMI3_FUNCTION_PREFIX\n#define FMI3_FUNCTION_PREFIX {name}_\n#endif\n"
-    return f'{prefix}#include "fmi3Functions.h"\n'
 
 
 def in_words_of_3(text: str) -> str:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -161,16 +160,3 @@ def find_map(text: str, folder: Path) -> FilmMap:
 def names_map(value: object) -> bool:
     """Whether a value of a rig file names a film map."""
     return isinstance(value, str) and value.startswith(PREFIX)
-
-
-def film_maps(values: Mapping[str, Any], folder: Path) -> dict[str, FilmMap]:
-    """The laws among the values of a part that a rig file names.
-
-    Args:
-        values: of a part, as written, by key
-        folder: of the rig file
-
-    Raises:
-        DataError: all that is wrong with the files
-    """
-    return {key: find_map(raw, folder) for key, raw in values.items() if names_map(raw)}

@@ -85,13 +85,8 @@ class Method:
     assumptions: tuple[str, ...]
 
 
-def losses_1(machine: Machine, T: float) -> Losses:
-    """Losses after ISO/TR 14179-1.
-
-    Args:
-        machine: the machine
-        T: temperature of the sump [K]
-    """
+def _losses_1(machine: Machine, T: float) -> Losses:
+    """Losses after ISO/TR 14179-1 at a temperature of the sump [K]."""
     nu = machine.nu(T)
     return {
         "mesh": {m.name: _mesh_1(m, nu) for m in machine.meshes},
@@ -120,13 +115,8 @@ def _churning_1(m: Mesh, nu: float) -> float:
     return total
 
 
-def losses_2(machine: Machine, T: float) -> Losses:
-    """Losses after ISO/TR 14179-2.
-
-    Args:
-        machine: the machine
-        T: temperature of the sump [K]
-    """
+def _losses_2(machine: Machine, T: float) -> Losses:
+    """Losses after ISO/TR 14179-2 at a temperature of the sump [K]."""
     nu, eta = machine.nu(T), machine.eta(T)
     return {
         "mesh": {m.name: _mesh_2(m, eta, machine.oil["X_L"]) for m in machine.meshes},
@@ -164,27 +154,8 @@ def _churning_2(m: Mesh, surfaces: tuple[Component, ...]) -> float:
     return float(part_2.hydraulic_torque(m.v, sum(m.dips), m.pair.b, C_Sp)) * abs(m.w[deeper])
 
 
-def conductance_1(machine: Machine, T: float) -> float:
-    """From the sump to still air after ISO/TR 14179-1: one coefficient over the area without fins [W/K].
-
-    Args:
-        machine: the machine
-        T: temperature of the sump [K], without effect
-    """
-    return part_1.STILL_AIR * sum(s.values["A"] for s in machine.surfaces)
-
-
-def conductance_2(machine: Machine, T: float) -> float:
-    """From the sump to still air after ISO/TR 14179-2: oil to wall, free convection and radiation, fins as area [W/K].
-
-    Args:
-        machine: the machine
-        T: temperature of the sump [K]
-    """
-    return sum(_surface_2(s, T, machine.T_room) for s in machine.surfaces)
-
-
 def _surface_2(surface: Component, T: float, T_room: float) -> float:
+    """From the sump to still air: oil to wall, free convection and radiation, fins as area [W/K]."""
     v = surface.values
     wet, dry = float(v["A"]), float(v["A"] + v.get("A_fins", 0.0))
 
@@ -204,8 +175,8 @@ BEARINGS = "bearings: Palmgren's formula with factors for an oil bath from the m
 METHODS: Mapping[str, Method] = {
     "iso14179-1": Method(
         "ISO/TR 14179-1",
-        losses_1,
-        conductance_1,
+        _losses_1,
+        lambda machine, _: part_1.STILL_AIR * sum(s.values["A"] for s in machine.surfaces),
         (
             NOT_COMPARED,
             BEARINGS,
@@ -216,8 +187,8 @@ METHODS: Mapping[str, Method] = {
     ),
     "iso14179-2": Method(
         "ISO/TR 14179-2",
-        losses_2,
-        conductance_2,
+        _losses_2,
+        lambda machine, T: sum(_surface_2(s, T, machine.T_room) for s in machine.surfaces),
         (
             NOT_COMPARED,
             BEARINGS,

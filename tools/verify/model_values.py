@@ -27,7 +27,7 @@ from ...scenarios.measured.readings import measured_rows, table_columns
 from ...scenarios.measured.study import read_study
 from ...scenarios.published import Row
 from ...scenarios.scenario import Scenario, parse_assignments
-from ..solve.losses import at_readings, contacts_at_operating_point, hold
+from ..solve.losses import at_readings, contacts_part, hold
 from ..solve.settings import adjust, choice_paths, flat_of, parameter_of
 from .verdicts import Value, number_of
 
@@ -130,7 +130,8 @@ class RigValues:
     def _cycle(self, assignments: tuple[str, ...]) -> ContactTable:
         """The contacts at the operating point with values set."""
         if assignments not in self._cycles:
-            self._cycles[assignments] = contacts_at_operating_point(adjust(self.scenario, assignments))
+            part, values = contacts_part(adjust(self.scenario, assignments))
+            self._cycles[assignments] = part.contact_table(values)
         return self._cycles[assignments]
 
     def _at_readings(self, row: Row) -> Value:
