@@ -168,7 +168,7 @@ def description(
         with_sources=with_sources,
         variables=[(v.type, identity(v), values(v, first)) for v in table],
         structure={name: [unknown(v, on) for v, on in group] for name, group in structure.items()},
-        **circumstances(flat, table, fmi),
+        **_circumstances(flat, table, fmi),
     )
 
 
@@ -178,15 +178,10 @@ def origin(flat: FlatModel) -> dict[str, str]:
     return told | {"variableNamingConvention": "structured"}
 
 
-def circumstances(flat: FlatModel, table: Table, fmi: int) -> dict[str, Any]:
+def _circumstances(flat: FlatModel, table: Table, fmi: int) -> dict[str, Any]:
     """What every description tells beside its variables: interfaces, units, types, log categories, an experiment.
 
     With standard deviations there is no model exchange: their sensitivities move with the solver inside.
-
-    Args:
-        flat: the model, for its name
-        table: its variables
-        fmi: version of the standard, 2 or 3
     """
     own = tables("description")[f"fmi{fmi}"]
     kinds = {} if table.of("deviation") else {"ModelExchange": own["model_exchange"]}

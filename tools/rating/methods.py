@@ -49,13 +49,8 @@ FACTORS: Mapping[str, Factors] = {
 }
 
 
-def bearing_loss(bearing: Turning, nu: float) -> float:
-    """Friction power of all pieces [W].
-
-    Args:
-        bearing: the bearing at work
-        nu: kinematic viscosity of the oil [m2/s]
-    """
+def _bearing_loss(bearing: Turning, nu: float) -> float:
+    """Friction power of all pieces [W] in an oil of a kinematic viscosity [m2/s]."""
     factors, v = FACTORS[type(bearing.part).__name__], bearing.part.values
     F_r, F_a = bearing.F_r + v["F_r_0"], bearing.F_a + v["F_a_0"]
     viscous = needle_torque_viscous(bearing.w, nu, v["d_m"], v.get("f_0", factors.f_0))
@@ -91,7 +86,7 @@ def _losses_1(machine: Machine, T: float) -> Losses:
     return {
         "mesh": {m.name: _mesh_1(m, nu) for m in machine.meshes},
         "churning": {m.name: _churning_1(m, nu) for m in machine.meshes},
-        "bearings": {b.part.name: bearing_loss(b, nu) for b in machine.bearings},
+        "bearings": {b.part.name: _bearing_loss(b, nu) for b in machine.bearings},
         "seals": _seals(machine, part_1.seal_torque),
     }
 
@@ -121,7 +116,7 @@ def _losses_2(machine: Machine, T: float) -> Losses:
     return {
         "mesh": {m.name: _mesh_2(m, eta, machine.oil["X_L"]) for m in machine.meshes},
         "churning": {m.name: _churning_2(m, machine.surfaces) for m in machine.meshes},
-        "bearings": {b.part.name: bearing_loss(b, nu) for b in machine.bearings},
+        "bearings": {b.part.name: _bearing_loss(b, nu) for b in machine.bearings},
         "seals": _seals(machine, lip_seal_torque),
     }
 

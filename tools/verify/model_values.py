@@ -135,7 +135,7 @@ class RigValues:
         return self._cycles[assignments]
 
     def _at_readings(self, row: Row) -> Value:
-        readings = select_rows(self._readings(_assignments(row)), row.select)
+        readings = _select_rows(self._readings(_assignments(row)), row.select)
         if not readings:
             raise ScenarioError(f"no reading of {self.scenario.name} has {row.select}.")
 
@@ -178,13 +178,8 @@ class RigValues:
         )
 
 
-def select_rows(rows: Iterable[Mapping[str, Any]], select: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """The rows whose columns have the values asked for, in the order of the first column that lists several.
-
-    Args:
-        rows: of a table
-        select: column -> value, or list of values
-    """
+def _select_rows(rows: Iterable[Mapping[str, Any]], select: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """The rows whose columns have the values asked for, in the order of the first column that lists several."""
     wanted = {column: value if isinstance(value, list) else [value] for column, value in select.items()}
     found = [row for row in rows if all(row.get(column) in values for column, values in wanted.items())]
     for column, values in wanted.items():

@@ -65,15 +65,8 @@ def jobs(rig: str) -> list[Job]:
     return [Job("Mesh cycle", rig, lambda: _work(rig))]
 
 
-def cycle_of(rig: str) -> Cycle:
-    """The mesh cycle of a rig at its operating point.
-
-    Args:
-        rig: name or path
-
-    Raises:
-        ScenarioError: its part with contacts does not tell its oil and material
-    """
+def _cycle_of(rig: str) -> Cycle:
+    """The mesh cycle of a rig at its operating point."""
     scenario = load(rig)
     part, values = contacts_part(scenario)
     missing = [key for key in KEYS if key not in values]
@@ -104,7 +97,7 @@ def _columns(rows: Sequence[Mapping[str, float]], key: str) -> tuple[list[float]
 
 def _work(rig: str) -> Found:
     """The transient, the steady contacts at the same angles, and the article's trends solved."""
-    cycle = cycle_of(rig)
+    cycle = _cycle_of(rig)
     moving = solve_line_cycle(cycle.contacts, cycle.times, n=NODES, steps=STEPS, domain=DOMAIN)
     still = [solve_line(c, n=NODES) for c in cycle.contacts]
     h = [1e9 * f.h_c for f in moving]
