@@ -14,7 +14,6 @@ from ..core.component import SOUND, Component, Equation, Faults, Related, equati
 from ..core.declare import Output, Parameter
 from ..laws.conduction import cylinder_wall, plane_wall
 from ..laws.convection import (
-    V_WIDTH,
     flat_wall_coefficient,
     forced_cylinder,
     forced_plate,
@@ -24,7 +23,7 @@ from ..laws.convection import (
     nusselt_hilpert,
 )
 from ..laws.radiation import radiated, radiation_coefficient
-from ..laws.smooth import Num, smooth_abs
+from ..laws.smooth import V_WIDTH, Num, smooth_abs
 from .ports import AirPort, HeatPort, WallSize
 from .relations import require
 

@@ -14,9 +14,8 @@ from ..laws.convection import (
     forced_cylinder,
     forced_plate,
     mixed,
+    natural_horizontal,
     natural_horizontal_cylinder,
-    natural_horizontal_down,
-    natural_horizontal_up,
     natural_vertical_plate,
 )
 from ..laws.radiation import absorbed_sun, radiated
@@ -305,8 +304,8 @@ class BoxCooling(SurfaceCooling):
         """Mean of vertical, upward and downward faces by area."""
         T, T_air = self.surface.T, self.air.T
         L = self.length * self.width / (2 * (self.length + self.width))  # area over perimeter
-        upward = self.share_top * natural_horizontal_up(T, T_air, L, p=self.air.p)
-        downward = self.share_bottom * natural_horizontal_down(T, T_air, L, p=self.air.p)
+        upward = self.share_top * natural_horizontal(T, T_air, L, up=True, p=self.air.p)
+        downward = self.share_bottom * natural_horizontal(T, T_air, L, up=False, p=self.air.p)
         vertical = natural_vertical_plate(T, T_air, self.height, p=self.air.p)
         return (1 - self.share_top - self.share_bottom) * vertical + upward + downward
 
