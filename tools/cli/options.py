@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+import tomllib
 from collections.abc import Callable, Mapping
+from importlib.resources import files
 from typing import Annotated, Any, TypeVar, get_type_hints
 
 import typer
 
-from ...model.files import tables
-
 C = TypeVar("C", bound=Callable[..., None])
 
-TEXTS: dict[str, dict[str, Any]] = tables("tools.cli", "options.toml")
+TEXTS: dict[str, dict[str, Any]] = tomllib.loads(
+    files("gearheat.tools.cli").joinpath("options.toml").read_text("utf-8")
+)
 
 
 def describe(name: str, command: C) -> C:
