@@ -59,21 +59,13 @@ def _wrong(entry: zipfile.ZipInfo) -> str:
 
 
 def remember(content: bytes) -> None:
-    """Note that an FMU of this content was made here.
-
-    Args:
-        content: of the file
-    """
+    """Note that an FMU of this content was made here."""
     with suppress(FmuError):  # without a cache it is asked for `--trust`
         store(_note(hashlib.sha256(content).hexdigest()), b"")
 
 
 def is_trusted(path: Path) -> bool:
-    """Whether an FMU was made by gearheat on this machine.
-
-    Args:
-        path: of the FMU
-    """
+    """Whether an FMU was made by gearheat on this machine."""
     with path.open("rb") as file:
         return _note(hashlib.file_digest(file, "sha256").hexdigest()).is_file()
 

@@ -168,17 +168,8 @@ def description(
         with_sources=with_sources,
         variables=[(v.type, identity(v), values(v, first)) for v in table],
         structure={name: [unknown(v, on) for v, on in group] for name, group in structure.items()},
-        **circumstances(flat, table, fmi),
+        **_circumstances(flat, table, fmi),
     )
-
-
-def build_description(name: str) -> bytes:
-    """buildDescription.xml of FMI 3.0: how the source becomes a library.
-
-    Args:
-        name: of the model
-    """
-    return xml("build.xml", identifier=identifier(name))
 
 
 def origin(flat: FlatModel) -> dict[str, str]:
@@ -187,15 +178,10 @@ def origin(flat: FlatModel) -> dict[str, str]:
     return told | {"variableNamingConvention": "structured"}
 
 
-def circumstances(flat: FlatModel, table: Table, fmi: int) -> dict[str, Any]:
+def _circumstances(flat: FlatModel, table: Table, fmi: int) -> dict[str, Any]:
     """What every description tells beside its variables: interfaces, units, types, log categories, an experiment.
 
     With standard deviations there is no model exchange: their sensitivities move with the solver inside.
-
-    Args:
-        flat: the model, for its name
-        table: its variables
-        fmi: version of the standard, 2 or 3
     """
     own = tables("description")[f"fmi{fmi}"]
     kinds = {} if table.of("deviation") else {"ModelExchange": own["model_exchange"]}
@@ -314,11 +300,7 @@ class _Terminal:
 
 
 def terminals(table: Table) -> bytes:
-    """terminalsAndIcons.xml of an FMU for FMI 3.0: the variables that belong together where two FMUs are joined.
-
-    Args:
-        table: the variables of the FMU
-    """
+    """terminalsAndIcons.xml of an FMU for FMI 3.0: which of its variables belong together where two FMUs are joined."""
     return xml("terminals.xml", terminals=list(_list_terminals(table)))
 
 

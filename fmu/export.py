@@ -35,10 +35,10 @@ from pathlib import Path
 from ..model.core.flat import FlatModel
 from .compiling import Platform, Progress, binary, compile_all, platforms, store
 from .described import remember
-from .description import Owner, build_description, dependencies, description, identifier, terminals
+from .description import Owner, dependencies, description, identifier, terminals
 from .documentation import About, PartText, documentation
 from .equations import effective, equations
-from .fixed import icon
+from .fixed import icon, xml
 from .leading import Directions, Uncertain, leading
 from .parameter_set import metadata, parameter_set
 from .related import Related, relate
@@ -126,7 +126,7 @@ def _binaries(name: str, code: str, chosen: Sequence[Platform], fmi: int, progre
 
 def _of_fmi_3(name: str, variables: Table, with_sources: bool) -> dict[str, bytes]:
     """The files that FMI 3.0 has besides, or in another place."""
-    built = {"sources/buildDescription.xml": build_description(name)} if with_sources else {}
+    built = {"sources/buildDescription.xml": xml("build.xml", identifier=identifier(name))} if with_sources else {}
     return {
         "terminalsAndIcons/terminalsAndIcons.xml": terminals(variables),
         "terminalsAndIcons/icon.png": icon(),

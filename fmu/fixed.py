@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from functools import cache
 from importlib.resources import files
@@ -10,6 +9,8 @@ from typing import Any
 from xml.sax.saxutils import escape
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
+
+from ..model.files import tables as read_tables
 
 #: What must not stand in the value of an attribute as it is, beside the brackets.
 _IN_ATTRIBUTES = {'"': "&quot;", "\r": "&#13;", "\n": "&#10;", "\t": "&#09;"}
@@ -23,7 +24,7 @@ def wrapper(name: str) -> str:
 @cache
 def tables(name: str) -> dict[str, Any]:
     """The tables of a file."""
-    return tomllib.loads((files("gearheat.fmu") / "tables" / f"{name}.toml").read_text(encoding="utf-8"))
+    return read_tables("fmu", "tables", f"{name}.toml")
 
 
 def icon() -> bytes:

@@ -174,11 +174,7 @@ class Directions:
 
 
 def locate_deviations(table: Table) -> tuple[int, ...]:
-    """Positions, among the states and behind them the outputs, of what has a standard deviation.
-
-    Args:
-        table: the variables
-    """
+    """Positions, among the states of a table and behind them the outputs, of what has a standard deviation."""
     states, inputs = len(table.of("state")), len(table.of("input"))
     places = [v.of for v in table.of("deviation") if v.of is not None]
     return tuple(place if place < states else place - inputs for place in places)

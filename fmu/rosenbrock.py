@@ -12,6 +12,7 @@ from typing import Any
 import casadi as ca
 
 from ..model.core.eliminate import Factors
+from .fixed import tables
 
 
 @dataclass(frozen=True)
@@ -30,7 +31,6 @@ class Tableau:
         m, e: weights of the result and of the error
     """
 
-    name: str
     order: int
     gamma: float
     a: tuple[tuple[float, ...], ...]
@@ -41,47 +41,19 @@ class Tableau:
     e: tuple[float, ...]
 
 
-#: Four stages, three evaluations, order 3(2), stiffly accurate (Sandu et al. 1997).
-RODAS3 = Tableau(
-    name="RODAS3",
-    order=3,
-    gamma=1 / 2,
-    a=((), (0,), (2, 0), (2, 0, 1)),
-    c=((), (4,), (1, -1), (1, -1, -8 / 3)),
-    alpha=(0, 0, 1, 1),
-    d=(1 / 2, 3 / 2, 0, 0),
-    m=(2, 0, 1, 1),
-    e=(0, 0, 0, 1),
-)
+def _read(name: str) -> Tableau:
+    """The coefficients of a method in `rosenbrock.toml`."""
 
-_A5 = (1.221224509226641, 6.019134481288629, 12.53708332932087, -0.6878860361058950)
+    def fixed(value: Any) -> Any:
+        return tuple(map(fixed, value)) if isinstance(value, list) else value
 
-#: Six stages, order 4(3), stiffly accurate (Hairer and Wanner 1996, section IV.7, RODAS).
-RODAS4 = Tableau(
-    name="RODAS4",
-    order=4,
-    gamma=1 / 4,
-    a=(
-        (),
-        (1.544,),
-        (0.9466785280815826, 0.2557011698983284),
-        (3.314825187068521, 2.896124015972201, 0.9986419139977817),
-        _A5,
-        (*_A5, 1.0),
-    ),
-    c=(
-        (),
-        (-5.6688,),
-        (-2.430093356833875, -0.2063599157091915),
-        (-0.1073529058151375, -9.594562251023355, -20.47028614809616),
-        (7.496443313967647, -10.24680431464352, -33.99990352819905, 11.70890893206160),
-        (8.083246795921522, -7.981132988064893, -31.52159432874371, 16.31930543123136, -6.058818238834054),
-    ),
-    alpha=(0.0, 0.386, 0.21, 0.63, 1.0, 1.0),
-    d=(0.25, -0.1043, 0.1035, -0.0362, 0.0, 0.0),
-    m=(*_A5, 1.0, 1.0),
-    e=(0.0, 0.0, 0.0, 0.0, 0.0, 1.0),
-)
+    return Tableau(**{key: fixed(value) for key, value in tables("rosenbrock")[name].items()})
+
+
+#: Four stages, order 3(2), for the short steps of an FMU.
+RODAS3 = _read("RODAS3")
+#: Six stages, order 4(3).
+RODAS4 = _read("RODAS4")
 
 
 def _combine(weights: tuple[float, ...], stages: list[Any]) -> Any:

@@ -67,7 +67,8 @@ def source(flat: FlatModel, model: Equations, table: Table, fmi: int = 2, direct
     texts = [wrapper(instead.get(name, name)) for name in tables("wrapper")["files"][f"fmi{fmi}"]]
     if fmi == 2:
         return "\n".join([head, _fmi_headers(), generated, *texts])
-    included = include_header(identifier(flat.name))
+    prefix = f"#ifndef FMI3_FUNCTION_PREFIX\n#define FMI3_FUNCTION_PREFIX {identifier(flat.name)}_\n#endif\n"
+    included = f'{prefix}#include "fmi3Functions.h"\n'  # names that no other FMU in a program has
     return "\n".join([head, included, generated, *map(in_words_of_3, texts)])
 
 
@@ -209,22 +210,8 @@ def headers_of_3() -> dict[str, str]:
     return {name: (folder / name).read_text(encoding="utf-8") for name in _HEADERS_3}
 
 
-def include_header(name: str) -> str:
-    """The beginning of the source: the standard's header, with names that no other FMU in a program has.
-
-    Args:
-        name: of the model, as an identifier
-    """
-    prefix = f"#ifndef FMI3_FUNCTION_PREFIX\n#define FMI3_FUNCTION_PREFIX {name}_\n#endif\n"
-    return f'{prefix}#include "fmi3Functions.h"\n'
-
-
 def in_words_of_3(text: str) -> str:
-    """A file of the wrapper in the words of FMI 3.0.
-
-    Args:
-        text: of the file; one that is of FMI 3.0 stays as it is
-    """
+    """The text of a file of the wrapper in the words of FMI 3.0; one that is of FMI 3.0 stays as it is."""
     text = _DEFINITION.sub(lambda found: f"static {found[1]} {_TABLES['inner'][found[2]]}(", text)
     for said, instead in _TABLES["said"].items():
         text = text.replace(said, instead)

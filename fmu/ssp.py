@@ -49,21 +49,13 @@ class System:
 
 
 def ssp(system: System) -> bytes:
-    """The .ssp file of a system. The same system gives the same bytes.
-
-    Args:
-        system: the FMUs and their connections
-    """
+    """The .ssp file of FMUs and their connections. The same system gives the same bytes."""
     fmus = {_source(element): element.fmu for element in system.elements}
     return archive({"SystemStructure.ssd": structure(system), **fmus})
 
 
 def structure(system: System) -> bytes:
-    """SystemStructure.ssd.
-
-    Args:
-        system: the FMUs and their connections
-    """
+    """SystemStructure.ssd of FMUs and their connections."""
     spaces = {"xmlns:ssd": SSD, "xmlns:ssc": SSC, "version": "1.0", "name": system.name, "generationTool": tool()}
     keys = ("startElement", "startConnector", "endElement", "endConnector")
     return xml(

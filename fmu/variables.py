@@ -83,11 +83,7 @@ class Choice:
 
 
 def start_choice(room: str | None = None) -> Choice:
-    """How a run begins.
-
-    Args:
-        room: the input or parameter with the temperature of the room; None where there is none
-    """
+    """How a run begins; `room` is the input or parameter with the temperature of the room, None where there is none."""
     given = Item(GIVEN, "the start values of the states")
     at_room = Item(ROOM, f"all temperatures as {room}, their start values do not count")
     steady = Item(STEADY, "the steady state at the initial inputs, looked for from the given states")
@@ -277,11 +273,7 @@ def _collect_starts(flat: FlatModel, start: dict[str, float]) -> tuple[Group, Gr
 
 
 def tidy(value: float) -> float:
-    """A value without the round-off of the conversion from its unit where that shows, as in 234.14999999999998.
-
-    Args:
-        value: a start value, SI
-    """
+    """A start value (SI) without the round-off of the conversion from its unit where that shows: 234.14999999999998."""
     rounded = float(f"{value:.15g}")
     return rounded if len(repr(rounded)) < len(repr(value)) - 2 else value
 

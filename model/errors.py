@@ -49,11 +49,7 @@ class Problems(list[str]):
         return isinstance(error, GearheatError)
 
     def check(self, kind: type[GearheatError] = ScenarioError) -> None:
-        """Raise an error that carries all problems, if there are any.
-
-        Args:
-            kind: class of the error
-        """
+        """Raise an error of a class that carries all problems, if there are any."""
         if self:
             raise kind(self)
 

@@ -1,4 +1,4 @@
-"""Files that are whole or not there at all, and never written over what a command reads."""
+"""Files that are whole or not there at all, and never written over what a command reads; tables that packages ship."""
 
 from __future__ import annotations
 
@@ -8,10 +8,13 @@ import re
 import shutil
 import sys
 import tempfile
+import tomllib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
+from importlib.resources import files
 from pathlib import Path
+from typing import Any
 
 #: Names that systems give the streams of a process.
 _STREAMS = {"/dev/stdout": 1, "/dev/stderr": 2}
@@ -19,6 +22,16 @@ _DESCRIPTOR = re.compile(r"/(?:dev|proc/self)/fd/(\d+)")
 
 #: Whether the command has read a file, by device and number, or made it; none outside a command.
 _KNOWN: ContextVar[dict[tuple[int, int], bool] | None] = ContextVar("_KNOWN", default=None)
+
+
+def tables(package: str, *path: str) -> dict[str, Any]:
+    """The tables of a TOML file that a package ships.
+
+    Args:
+        package: below `gearheat`
+        path: of the file in it
+    """
+    return tomllib.loads(files(f"gearheat.{package}").joinpath(*path).read_text(encoding="utf-8"))
 
 
 @contextmanager
@@ -60,11 +73,7 @@ def place(path: Path) -> Path:
 
 
 def flows(path: Path) -> bool:
-    """Whether what is written there goes through: a pipe, a device, a stream of this process wherever it leads.
-
-    Args:
-        path: as `place` gives it
-    """
+    """Whether what is written there goes through: a pipe, a device, a stream of this process wherever it leads."""
     return _descriptor(path) is not None or (path.exists() and not path.is_file())
 
 

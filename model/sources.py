@@ -11,13 +11,13 @@ import functools
 import inspect
 import operator
 import re
-import tomllib
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
 from dataclasses import dataclass, field
-from importlib.resources import files
 from typing import Any, ParamSpec, TypeVar
+
+from .files import tables
 
 P = ParamSpec("P")
 R = TypeVar("R")
@@ -148,5 +148,4 @@ def _pick(name: str, bound: Mapping[str, Any]) -> Any:
 @functools.cache
 def sources() -> Mapping[str, Source]:
     """All sources by key."""
-    table = tomllib.loads(files("gearheat.model").joinpath("sources.toml").read_text(encoding="utf-8"))
-    return {key: Source(key=key, **entry) for key, entry in table.items()}
+    return {key: Source(key=key, **entry) for key, entry in tables("model", "sources.toml").items()}

@@ -80,26 +80,18 @@ def expand_assemblies(file: str, raw: Mapping[str, Any]) -> tuple[dict[str, Any]
         tables = Assemblies.read(file, {"assembly": raw["assembly"]}).assembly
     except ScenarioError as error:
         return rest, list(error.problems)
-    found = unfold(file, parts, connect, tables)
+    found = _unfold(file, parts, connect, tables)
     return rest | {"part": found.parts, "connect": found.connect}, found.problems
 
 
-def unfold(
+def _unfold(
     file: str,
     parts: Mapping[str, Any],
     connect: Mapping[str, Any],
     assemblies: Mapping[str, AssemblyTable],
     above: Sequence[str] = (),
 ) -> Unfolded:
-    """Parts and nets with every assembly in its place.
-
-    Args:
-        file: its name, for messages
-        parts: tables of parts, by their names as written
-        connect: nets, by their names as written
-        assemblies: by name
-        above: the assemblies that hold these parts
-    """
+    """Parts and nets, by their names as written, with every assembly in its place; `above` are those that hold them."""
     found = Unfolded()
     for written, table in parts.items():
         use = table.get("use") if isinstance(table, Mapping) else None
@@ -126,7 +118,7 @@ def _place(
 ) -> None:
     """One use of an assembly, its parts and nets under the name of the use."""
     assembly = assemblies[above[-1]]
-    inner = unfold(file, dict(_expand(file, name, table, assembly, found)), assembly.connect, assemblies, above)
+    inner = _unfold(file, dict(_expand(file, name, table, assembly, found)), assembly.connect, assemblies, above)
     found.problems += inner.problems
     found.parts |= {f"{name}_{part}": own for part, own in inner.parts.items()}
     found.connect |= {f"{name}_{net}": [f"{name}_{p}" for p in flat(ports)] for net, ports in inner.connect.items()}

@@ -17,6 +17,7 @@ from typing import Any, Literal
 import numpy as np
 
 from ..model.errors import DataError, Problems, ScenarioError, suggestion
+from ..model.files import tables
 from ..model.units import spell_unit, to_si
 from .document import read_text
 
@@ -29,22 +30,7 @@ SHOWN = 30
 _COMMA = re.compile(r"([+-]?\d*),(\d+(?:[eE][+-]?\d+)?)")
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?")
 #: What the ending of a column's name says about its unit.
-ENDINGS: Mapping[str, str] = {
-    "_rpm": "rpm",
-    "_rad_s": "rad/s",
-    "_kNm": "kN.m",
-    "_Nm": "N.m",
-    "_degC": "degC",
-    "_C": "degC",
-    "_K": "K",
-    "_MW": "MW",
-    "_kW": "kW",
-    "_W": "W",
-    "_min": "min",
-    "_h": "h",
-    "_s": "s",
-    "_pct": "percent",
-}
+ENDINGS: Mapping[str, str] = tables("scenarios", "units.toml")["endings"]
 
 _BRACKET = re.compile(r"(.*\S)\s*[\[(]\s*([^\])]+?)\s*[\])]")
 

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import product
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from ..model.errors import DataError
+from ..model.files import tables
 from ..model.laws.film_map import FilmMap, Fit, products
 from .csv_table import Column, Table, parse, raise_all
 
@@ -23,29 +23,7 @@ DEGREE = 4
 FEWEST = 4
 
 #: The columns of a map. Values of the contact itself are the same in all rows.
-COLUMNS = (
-    Column("F [N]", "normal force", above=0.0),
-    Column("u_m [m/s]", "mean speed of the surfaces", above=0.0),
-    Column("T [degC]", "temperature of the oil", required=False),
-    Column("eta_0 [Pa.s]", "dynamic viscosity", above=0.0),
-    Column("alpha_p [1/Pa]", "pressure-viscosity coefficient", at_least=0.0),
-    Column("h_c [m]", "central film", required=False, at_least=0.0),
-    Column("h_min [m]", "minimum film", required=False, at_least=0.0),
-    Column("h_c_formula [m]", "central film by the formula for such contacts", required=False),
-    Column("mu_fluid [1]", "friction coefficient of the film", required=False, at_least=0.0),
-    Column("Lambda [1]", "central film over composite roughness", required=False),
-    Column("asperity_share [1]", "share of the load that asperities carry", required=False),
-    Column("mu [1]", "friction coefficient of film and asperities", required=False),
-    Column("p_max [Pa]", "largest pressure", required=False),
-    Column("status", "ok, or what is wrong", "text"),
-    Column("R_x [m]", "reduced radius along the direction of rolling", above=0.0),
-    Column("R_y [m]", "reduced radius across it; empty for a line", required=False),
-    Column("length [m]", "length of the contact", above=0.0),
-    Column("E_eff [Pa]", "effective modulus", above=0.0),
-    Column("slide_roll [1]", "sliding speed over mean speed", at_least=0.0),
-    Column("sigma [m]", "composite roughness; empty where it is not known", required=False),
-    Column("mu_boundary [1]", "friction coefficient of touching surfaces", required=False),
-)
+COLUMNS = tuple(Column(name, **about) for name, about in tables("scenarios", "film_map.toml").items())
 #: Columns of what a contact is, which do not change over a map.
 CONSTANT = ("R_x [m]", "R_y [m]", "length [m]", "E_eff [Pa]", "slide_roll [1]")
 #: Status of a row with a film.
@@ -182,16 +160,3 @@ def find_map(text: str, folder: Path) -> FilmMap:
 def names_map(value: object) -> bool:
     """Whether a value of a rig file names a film map."""
     return isinstance(value, str) and value.startswith(PREFIX)
-
-
-def film_maps(values: Mapping[str, Any], folder: Path) -> dict[str, FilmMap]:
-    """The laws among the values of a part that a rig file names.
-
-    Args:
-        values: of a part, as written, by key
-        folder: of the rig file
-
-    Raises:
-        DataError: all that is wrong with the files
-    """
-    return {key: find_map(raw, folder) for key, raw in values.items() if names_map(raw)}

@@ -44,9 +44,9 @@ from ..model.units import to_si
 from .assemblies import expand_assemblies
 from .csv_table import split_unit
 from .document import ABOUT, paths, read_toml, sources_of
-from .film_map import film_maps, names_map
+from .film_map import find_map, names_map
 from .repeats import expand
-from .scenario import Erratum, Instrument, Protocol, Scenario
+from .scenario import Instrument, Protocol, Scenario
 from .shipped import RIGS, list_rigs
 from .tables import RigTable, validate
 from .values import (
@@ -181,7 +181,7 @@ class _Loader:
             joint_uncertainties=joint,
             units={f"{name}.{key}": unit for name, part in parts.items() for key, unit in part.units.items()},
             entries={name: part.entries for name, part in parts.items() if part.entries},
-            errata=tuple(Erratum(**e.model_dump()) for e in self.table.errata),
+            errata=tuple(self.table.errata),
             protocol=protocol,
             data=data,
             reproduces=self.table.reproduces,
@@ -192,7 +192,7 @@ class _Loader:
         for name, cls in self.types.items():
             table = {k: v for k, v in self.table.part.get(name, {}).items() if k != "type"}
             try:
-                table |= film_maps(table, self.path.parent)
+                table |= {key: find_map(raw, self.path.parent) for key, raw in table.items() if names_map(raw)}
             except GearheatError as error:
                 self.problems += [f"{self.file} [part.{name}]: {problem}" for problem in error.problems]
                 table = {k: v for k, v in table.items() if not names_map(v)}

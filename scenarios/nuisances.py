@@ -150,11 +150,7 @@ def nuisances(roles: Roles, prior_sd: Mapping[str, float], uncertainties: Mappin
 
 
 def usual_priors(scenario: Scenario) -> dict[str, float]:
-    """Relative standard deviation by part type and parameter, and of single parts that differ from their type's.
-
-    Args:
-        scenario: the rig, whose stated uncertainties count
-    """
+    """Relative standard deviation by part type and parameter, and of single parts that differ; stated ones count."""
     kinds = {part.name: part.type for part in scenario.spec.parts}
     own: dict[str, float] = {}
     for nuisance in nuisances(Roles.of(scenario.spec), {}, scenario.uncertainties):

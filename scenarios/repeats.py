@@ -42,11 +42,7 @@ def options(text: str) -> list[str]:
 
 
 def spell_out(text: str) -> list[str]:
-    """All that a text stands for: "a_{1,2}" is "a_1" and "a_2".
-
-    Args:
-        text: with any number of braces
-    """
+    """All that a text stands for, with any number of braces: "a_{1,2}" is "a_1" and "a_2"."""
     if not (found := options(text)):
         return [text]
     return [whole for word in found for whole in spell_out(_BRACES.sub(word, text, count=1))]
@@ -117,11 +113,7 @@ def _use_template(where: str, table: Any, templates: Mapping[str, Any], problems
 
 
 def flat(texts: Any) -> Any:
-    """A list of texts with all that each stands for; what is no list stays.
-
-    Args:
-        texts: as TOML has them
-    """
+    """A list of texts as TOML has them with all that each stands for; what is no list stays."""
     if not isinstance(texts, list):
         return texts
     return [name for text in texts for name in (spell_out(text) if isinstance(text, str) else [text])]

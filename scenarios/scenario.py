@@ -14,7 +14,7 @@ from ..model.errors import Problems, ScenarioError, suggestion
 from ..model.machines.spec import Spec
 from .entries import Entry, catalogue, unchecked_entry
 from .shipped import FILES
-from .tables import DrivenTable
+from .tables import DrivenTable, ErratumTable
 from .values import entry_values, in_range, quantities, readable, settable
 
 
@@ -44,16 +44,6 @@ class Instrument:
     signs: tuple[float, float] | None = None
     repeat_sd: float | None = None
     offset_sd: float | None = None
-
-
-@dataclass(frozen=True)
-class Erratum:
-    """One place where the source of a rig is wrong, and how we know."""
-
-    place: str
-    says: str
-    should_be: str
-    evidence: str
 
 
 @dataclass(frozen=True)
@@ -109,7 +99,7 @@ class Scenario:
     joint_uncertainties: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     entries: Mapping[str, Mapping[str, str]] = field(default_factory=dict)
-    errata: tuple[Erratum, ...] = ()
+    errata: tuple[ErratumTable, ...] = ()
     protocol: Protocol | None = None
     data: Path | None = None
     reproduces: str = ""

@@ -35,11 +35,7 @@ CHECKED = "checked"
 
 
 def list_rigs(key: str = "doc") -> dict[str, str]:
-    """The shipped rigs: name -> what they are.
-
-    Args:
-        key: text of the rig file to give: "doc", or "reproduces" for the published results that a rig reproduces
-    """
+    """The shipped rigs by name: what they are, or for "reproduces" the published results that they reproduce."""
     return {name: str(rig.get(key, "")) for name, rig in _rigs().items()}
 
 
@@ -64,11 +60,7 @@ class Listed:
 
 
 def list_entries(kind: str) -> dict[str, Listed]:
-    """The entries of a catalogue by name.
-
-    Args:
-        kind: of the catalogue, a key of `FILES`
-    """
+    """The entries of a catalogue by name; its kind is a key of `FILES`."""
     found = {}
     for name, table in read_toml(FOLDER / FILES[kind]).items():
         values, checked = [key for key in table if key not in (*ABOUT, CHECKED)], table[CHECKED]

@@ -13,6 +13,7 @@ from ..model.core.component import Component
 from ..model.core.declare import Choice, Declaration, Input, Output, Parameter, State, list_declared
 from ..model.core.flat import Quantity
 from ..model.errors import GearheatError, Problems, ScenarioError, suggestion
+from ..model.files import tables
 from ..model.parts import PARTS
 from ..model.units import in_unit, spell_unit, split_quantity, to_si
 from .document import ABOUT, sources_of
@@ -22,31 +23,8 @@ from .shipped import FILES
 #: Key of the table of standard uncertainties of a part.
 UNCERTAINTIES = "uncertainties"
 
-#: Sizes of everything in a gearbox, by SI unit; what lies outside is a slip of a unit or an exponent. Zero is none, and
-#: what may be negative is no size.
-SENSIBLE: Mapping[str, tuple[float, float]] = {
-    "m": (1e-10, 1e3),
-    "m2": (1e-12, 1e5),
-    "m3": (1e-12, 1e4),
-    "m2/s": (1e-9, 1.0),
-    "m/s": (1e-9, 1e3),
-    "rad/s": (1e-9, 1e5),
-    "N.m": (1e-12, 1e9),
-    "N": (1e-9, 1e10),
-    "W": (1e-12, 1e10),
-    "W/K": (1e-9, 1e9),
-    "W/(m.K)": (1e-4, 1e5),
-    "W/(m2.K)": (1e-6, 1e8),
-    "J/K": (1e-6, 1e12),
-    "J/(kg.K)": (1.0, 1e5),
-    "kg.m2": (1e-15, 1e10),
-    "kg/m3": (1e-2, 1e5),
-    "Pa": (1.0, 1e14),
-    "Pa.s": (1e-7, 1e5),
-    "K": (1.0, 5e3),
-    "K (difference)": (1e-9, 5e3),
-    "rad": (1e-9, 1e3),
-}
+#: Least and largest size of everything in a gearbox, by SI unit.
+SENSIBLE: Mapping[str, tuple[float, float]] = tables("scenarios", "units.toml")["sensible"]
 #: The same of all other units.
 OTHERS = (1e-30, 1e30)
 
@@ -149,11 +127,7 @@ def in_range(where: str, raw: object, quantity: Quantity) -> float:
 
 
 def unit_of(raw: object) -> str:
-    """The unit in which a value is written, "" without one.
-
-    Args:
-        raw: a number, or text with a unit ("62 mm")
-    """
+    """The unit in which a number or a text ("62 mm") is written, "" without one."""
     return spell_unit(split_quantity(raw)[1]) if isinstance(raw, str) else ""
 
 

@@ -24,7 +24,7 @@ def run_of_one_point() -> None:
     columns = {"point": 1, "test": 1, "oil": "ISO VG 220 mineral", "n_input_rpm": 1450.0, "T_output_Nm": -592.5}
     row = columns | {"T_oil_C": 40.27, "T_wall_C": 38.3, "P_mesh_W": 98.23, "efficiency": 0.975, "time_s": 28800.0}
     found = {"rig": "mine", "unchecked": [], "energy_residual_max": 1.4e-16}
-    measured.print_run(CampaignRun(found | {"rows": [row]}, None, ()))
+    measured.print_run(CampaignRun(found | {"rows": [row]}, None, (), heading="mine: operating point"))
 
 
 def calibration() -> None:
@@ -37,7 +37,10 @@ def calibration() -> None:
     correlation = {a: {b: 1.0 if a == b else -0.95 for b in free} for a in free}
     made = {"rig": "planetary", "readings": 72, "grid": None, "free": free, "correlation": correlation}
     made |= {"rmse_before_K": 4.25, "rmse_after_K": 0.875}
-    measured.print_calibration(Calibration(made, None))  # type: ignore[arg-type]
+    rows = [(n, f["value"], f["standard_error"], f["unit"], f["start"]) for n, f in free.items()]
+    shown = ("name", "value", "standard error", "unit", "before"), rows
+    heading = "planetary: fitted to 72 oil temperatures of all tests"
+    measured.print_calibration(Calibration(made, None, heading=heading, shown=shown))  # type: ignore[arg-type]
 
 
 def replayed() -> None:
@@ -50,11 +53,11 @@ def replayed() -> None:
 
 def film_of_a_part() -> None:
     ends = {"F": (100.0, 2000.0, "N"), "u_m": (0.5, 8.0, "m/s"), "T": (40.0, 100.0, "degC")}
-    varied = {k: {"low": low, "high": high, "unit": unit} for k, (low, high, unit) in ends.items()}
-    found = {"contacts": 144, "shape": "ellipse", "varied": varied, "terms": 10, "out": "map.csv"}
+    shown = ("varied", "low", "high", "unit"), [(name, *values) for name, values in ends.items()]
+    found: dict[str, Any] = {"terms": 10, "out": "map.csv"}
     found["failed"] = ["F = 2000 N, u_m = 0.5 m/s, T = 100 degC: the film is thinner than the solver can tell"]
     found["fit"] = {"h_c": {"largest": 0.021, "rms": 0.008}, "h_min": {"largest": 0.043, "rms": 0.017}}
-    developers.print_films(FilmTable({"case": "planetary", "part": "gear_set", **found}))
+    developers.print_films(FilmTable(found, heading="planetary: gear_set: 144 ellipse contacts", shown=shown))
 
 
 def exported() -> None:

@@ -90,14 +90,14 @@ def steady(case: Scaled, finest: Grid, roughness: Height | None, tolerance: floa
     grounds = [gap(case, finest, roughness) - case.gap(finest)]
     for _ in grids[1:]:
         grounds.insert(0, restrict(grounds[0]))
-    speed = resolvable(case, grids[0], grounds[0])
-    state = first_guess(case, grids[0], speed)
+    speed = _resolvable(case, grids[0], grounds[0])
+    state = _guess(case, grids[0], speed)
     smallest = floor / case.unit.h
     before: Array | None = None
     for grid, rough in zip(grids, grounds, strict=True):
         last = grid is finest
         ground = case.gap(grid) + rough
-        for faster in descent(speed, 1.0 if last else resolvable(case, grid, rough)):
+        for faster in _descent(speed, 1.0 if last else _resolvable(case, grid, rough)):
             speed = faster
             problem = Problem(grid, case.reynolds(grid, smallest, speed), ground, case.load, smallest)
             enough = tolerance if last and speed == 1.0 else max(tolerance, COARSE)
@@ -135,40 +135,24 @@ def nodes(n: int) -> int:
     return n
 
 
-def resolvable(case: Scaled, grid: Grid, rough: Array) -> float:
+def _resolvable(case: Scaled, grid: Grid, rough: Array) -> float:
     """Factor on the speed, at least 1, at which the film is not below what the grid can resolve.
 
     A coarse grid thins a film by about the square of the distance of its nodes; a film it would close starts no
     solution on the next grid. Neither does one that the highest asperities close before they are resolved.
-
-    Args:
-        case: the contact
-        grid: the grid
-        rough: what roughness takes from the gap (n, n) [1]
     """
     film = max(RESOLVED * grid.hx**2, -float(rough.min()))
     return max(1.0, (film / case.film) ** 1.5) if case.film > 0 else 1.0
 
 
-def descent(start: float, end: float) -> list[float]:
-    """Factors on the speed from that of the last solution down to the next one.
-
-    Args:
-        start: factor of the last solution
-        end: factor wanted
-    """
+def _descent(start: float, end: float) -> list[float]:
+    """Factors on the speed from that of the last solution down to the next one."""
     steps = max(1, ceil(log(start / end) / log(SLOWER)))
     return [end * (start / end) ** (1 - k / steps) for k in range(1, steps + 1)]
 
 
-def first_guess(case: Scaled, grid: Grid, speed: float) -> State:
-    """Hertz pressure, raised to the film of a formula.
-
-    Args:
-        case: the contact
-        grid: the coarsest grid
-        speed: factor on the speed
-    """
+def _guess(case: Scaled, grid: Grid, speed: float) -> State:
+    """Hertz pressure on the coarsest grid, raised to the film of a formula at a factor on the speed."""
     x, y = grid.nodes
     across = y * case.unit.a / case.unit.b
     along = 1 - x**2

@@ -48,7 +48,7 @@ def nets(assembly: Assembly) -> list[list[Port]]:
     if problems:
         raise StructureError(problems)
     found = _merge_nets(assembly, ports)
-    if problems := open_ports(assembly.name, assembly.parts, found):
+    if problems := _open_ports(assembly.name, assembly.parts, found):
         raise StructureError(problems)
     return found
 
@@ -138,16 +138,11 @@ def _owners(connection: Connection) -> set[str]:
     return {path.rpartition(".")[0] for path in connection}
 
 
-def open_ports(model: str, parts: Sequence[Component], nets: Sequence[Sequence[Port]]) -> list[str]:
+def _open_ports(model: str, parts: Sequence[Component], nets: Sequence[Sequence[Port]]) -> list[str]:
     """Parts that are connected to nothing, and ports that have to meet another and do not.
 
     Which those are, the type of the port says (`must_meet`), or the part: a gear's flange may stay open, where no
     torque acts. A part that is the whole model has nothing to meet.
-
-    Args:
-        model: its name, for messages
-        parts: the components
-        nets: groups of ports that meet; a port alone is one as well
     """
     if len(parts) < 2:
         return []

@@ -107,11 +107,7 @@ class Faults:
         self.chosen = {path for path, d, given in inputs if given and isinstance(d, Given)}
 
     def too_much(self, chosen: Sequence[int]) -> Fault:
-        """Equations that are one more than their unknowns.
-
-        Args:
-            chosen: their positions
-        """
+        """Equations at the chosen positions that are one more than their unknowns."""
         inside = sorted({c for r in chosen for c in self.columns[r]})
         rows, unknowns = [self.rows[r] for r in chosen], [self.unknowns[c] for c in inside]
         relation = tie(rows, unknowns, self.known)
@@ -205,11 +201,7 @@ class Faults:
         return ends or ports
 
     def too_little(self, chosen: Sequence[int]) -> Fault:
-        """Unknowns that have fewer equations than they are.
-
-        Args:
-            chosen: their positions
-        """
+        """Unknowns at the chosen positions that have fewer equations than they are."""
         names = {self.unknowns[c].name: None for c in chosen}
         if deaf := self._deaf(names):
             return Fault(tuple(self._describe(net) for net in deaf), True)
@@ -262,11 +254,7 @@ def _list_ports(net: Sequence[Port], parts: set[str]) -> list[Port]:
 
 
 def some(names: Sequence[str]) -> str:
-    """The first few names and how many more there are.
-
-    Args:
-        names: any number
-    """
+    """The first few of any number of names, and how many more there are."""
     more = f" and {len(names) - SHOWN} more" if len(names) > SHOWN else ""
     return ", ".join(names[:SHOWN]) + more
 

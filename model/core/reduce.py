@@ -60,19 +60,11 @@ class Known:
         )
 
     def constant(self, expression: Any) -> bool:
-        """Whether an expression holds nothing but parameters.
-
-        Args:
-            expression: CasADi expression of any shape
-        """
+        """Whether a CasADi expression of any shape holds nothing but parameters."""
         return all(s.element_hash() in self.parameters for s in ca.symvar(expression))
 
     def values(self, expression: Any) -> Any:
-        """An expression at typical values, as a CasADi matrix of numbers.
-
-        Args:
-            expression: CasADi expression of any shape
-        """
+        """A CasADi expression of any shape at typical values, as a matrix of numbers."""
         free = ca.symvar(expression)
         point = [self.typical.get(s.element_hash(), 1.0) for s in free]
         return ca.Function("values", free, [expression])(*point) if free else ca.DM(expression)

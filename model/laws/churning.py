@@ -12,7 +12,7 @@ from .smooth import SPEED_WIDTH, Num, smooth_abs, smooth_power, to_rpm
     valid="c, a and b found by tests of the machine itself",
     verified=False,
 )
-def churning_loss(w: Num, rho: Num, nu: Num, c: Num, a: Num, b: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+def churning_loss(w: Num, rho: Num, nu: Num, c: Num, a: Num, b: Num) -> Num:
     r"""No-load power lost in the oil [W], zero at standstill.
 
     .. math:: P = c \left(\frac{n}{200}\right)^a \frac{\rho}{835} \left(\frac{\nu}{75}\right)^b
@@ -24,9 +24,8 @@ def churning_loss(w: Num, rho: Num, nu: Num, c: Num, a: Num, b: Num, *, w_width:
         c: power at 200 rpm, 835 kg/m3 and 75 cSt [W]
         a: exponent of the speed, from 1 on [1]
         b: exponent of the viscosity [1]
-        w_width: rounding at standstill [rad/s]
     """
-    n, nu_cSt, n_width = to_rpm(w), 1e6 * nu, to_rpm(w_width)
+    n, nu_cSt, n_width = to_rpm(w), 1e6 * nu, to_rpm(SPEED_WIDTH)
     return c * smooth_power(n / 200, a, n_width / 200) * (rho / 835) * (nu_cSt / 75) ** b
 
 
@@ -36,7 +35,7 @@ def churning_loss(w: Num, rho: Num, nu: Num, c: Num, a: Num, b: Num, *, w_width:
     valid="c, a and b found by tests of the machine itself",
     verified=False,
 )
-def churning_torque(w: Num, rho: Num, nu: Num, c: Num, a: Num, b: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+def churning_torque(w: Num, rho: Num, nu: Num, c: Num, a: Num, b: Num) -> Num:
     r"""Torque of the no-load loss [N.m], a magnitude, zero at standstill.
 
     .. math:: \tau = P / |\omega|
@@ -48,6 +47,5 @@ def churning_torque(w: Num, rho: Num, nu: Num, c: Num, a: Num, b: Num, *, w_widt
         c: power at 200 rpm, 835 kg/m3 and 75 cSt [W]
         a: exponent of the speed, from 1 on [1]
         b: exponent of the viscosity [1]
-        w_width: rounding at standstill [rad/s]
     """
-    return churning_loss(w, rho, nu, c, a, b, w_width=w_width) / smooth_abs(w, w_width)
+    return churning_loss(w, rho, nu, c, a, b) / smooth_abs(w)

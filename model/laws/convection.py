@@ -9,14 +9,12 @@ from __future__ import annotations
 import casadi as ca
 
 from ..sources import law
-from .smooth import Num, smooth_abs, smooth_power, smooth_sign
+from .smooth import V_WIDTH, Num, smooth_abs, smooth_power, smooth_sign
 
 #: Acceleration of gravity, standard value [m/s2].
 GRAVITY = 9.80665
 #: Rounding of a temperature difference [K].
 DT_WIDTH = 1e-2
-#: Rounding of an air speed [m/s].
-V_WIDTH = 1e-3
 #: Temperature difference over which a hot horizontal plate's law turns into a cold one's [K].
 SIGN_WIDTH = 0.05
 #: Pressure of the air at sea level [Pa].
@@ -191,16 +189,15 @@ def nusselt_hilpert(Re: Num, Pr: Num, *, sharpness: float = 100.0) -> Num:
 
 
 @law(source="Vasic2022", where="eq 15", valid="flat wall of a housing in moving air", verified=False)
-def flat_wall_coefficient(v: Num, *, v_width: float = V_WIDTH) -> Num:
+def flat_wall_coefficient(v: Num) -> Num:
     r"""Heat transfer coefficient [W/(m2.K)] of the flat walls of a housing.
 
     .. math:: h = 7 + 12 \sqrt{v}
 
     Args:
         v: speed of the air, either direction [m/s]
-        v_width: rounding in still air [m/s]
     """
-    return 7 + 12 * smooth_power(v, 0.5, v_width)
+    return 7 + 12 * smooth_power(v, 0.5, V_WIDTH)
 
 
 @law(source="Incropera2007", where="mixed convection, exponent 3", valid="assisting flow", verified=False)
@@ -256,35 +253,23 @@ def natural_horizontal_cylinder(T_s: Num, T_f: Num, D: Num, *, p: Num = SEA_LEVE
     return nusselt_horizontal_cylinder(Ra, Pr) * k / D
 
 
-def natural_horizontal_up(T_s: Num, T_f: Num, L: Num, *, p: Num = SEA_LEVEL) -> Num:
-    """Heat transfer coefficient [W/(m2.K)] of a horizontal plate that faces upwards in still air, hot or cold.
+def natural_horizontal(T_s: Num, T_f: Num, L: Num, *, up: bool = True, p: Num = SEA_LEVEL) -> Num:
+    """Heat transfer coefficient [W/(m2.K)] of a horizontal plate in still air, hot or cold.
 
     Args:
         T_s: temperature of the plate [K]
         T_f: temperature of the air [K]
         L: area of the plate over its perimeter [m]
+        up: whether it faces upwards, not downwards
         p: pressure of the air [Pa]
     """
     Ra, _, k = rayleigh(T_s, T_f, L, p=p)
-    hot = 0.5 * (1 + smooth_sign(T_s - T_f, SIGN_WIDTH))
-    return (hot * nusselt_plate_unstable(Ra) + (1 - hot) * nusselt_plate_stable(Ra)) * k / L
+    warmer = smooth_sign(T_s - T_f, SIGN_WIDTH)
+    rises = 0.5 * (1 + warmer if up else 1 - warmer)  # share of the warm side under the cold one
+    return (rises * nusselt_plate_unstable(Ra) + (1 - rises) * nusselt_plate_stable(Ra)) * k / L
 
 
-def natural_horizontal_down(T_s: Num, T_f: Num, L: Num, *, p: Num = SEA_LEVEL) -> Num:
-    """Heat transfer coefficient [W/(m2.K)] of a horizontal plate that faces downwards in still air, hot or cold.
-
-    Args:
-        T_s: temperature of the plate [K]
-        T_f: temperature of the air [K]
-        L: area of the plate over its perimeter [m]
-        p: pressure of the air [Pa]
-    """
-    Ra, _, k = rayleigh(T_s, T_f, L, p=p)
-    cold = 0.5 * (1 - smooth_sign(T_s - T_f, SIGN_WIDTH))
-    return (cold * nusselt_plate_unstable(Ra) + (1 - cold) * nusselt_plate_stable(Ra)) * k / L
-
-
-def forced_plate(v: Num, T_film: Num, L: Num, *, p: Num = SEA_LEVEL, v_width: float = V_WIDTH) -> Num:
+def forced_plate(v: Num, T_film: Num, L: Num, *, p: Num = SEA_LEVEL) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a plate in moving air.
 
     Args:
@@ -292,13 +277,12 @@ def forced_plate(v: Num, T_film: Num, L: Num, *, p: Num = SEA_LEVEL, v_width: fl
         T_film: mean temperature of plate and air [K]
         L: length of the plate along the flow [m]
         p: pressure of the air [Pa]
-        v_width: rounding in still air [m/s]
     """
     k, nu, Pr, _ = air_properties(T_film, p=p)
-    return nusselt_forced_plate(smooth_abs(v, v_width) * L / nu, Pr) * k / L
+    return nusselt_forced_plate(smooth_abs(v, V_WIDTH) * L / nu, Pr) * k / L
 
 
-def forced_cylinder(v: Num, T_film: Num, D: Num, *, p: Num = SEA_LEVEL, v_width: float = V_WIDTH) -> Num:
+def forced_cylinder(v: Num, T_film: Num, D: Num, *, p: Num = SEA_LEVEL) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a cylinder in moving air.
 
     Args:
@@ -306,10 +290,9 @@ def forced_cylinder(v: Num, T_film: Num, D: Num, *, p: Num = SEA_LEVEL, v_width:
         T_film: mean temperature of cylinder and air [K]
         D: diameter [m]
         p: pressure of the air [Pa]
-        v_width: rounding in still air [m/s]
     """
     k, nu, Pr, _ = air_properties(T_film, p=p)
-    return nusselt_forced_cylinder(smooth_abs(v, v_width) * D / nu, Pr) * k / D
+    return nusselt_forced_cylinder(smooth_abs(v, V_WIDTH) * D / nu, Pr) * k / D
 
 
 @law(

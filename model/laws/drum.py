@@ -6,10 +6,7 @@ import casadi as ca
 
 from ..sources import law
 from .convection import SEA_LEVEL, air_properties
-from .smooth import SPEED_WIDTH, Num, smooth_abs, smooth_power
-
-#: Speed of a surface [m/s] below which churning is rounded.
-V_WIDTH = 1e-3
+from .smooth import SPEED_WIDTH, V_WIDTH, Num, smooth_abs, smooth_power
 
 
 @law(
@@ -33,7 +30,7 @@ def nusselt_rotating_cylinder(Re_w: Num, Pr: Num) -> Num:
     return 0.133 * Re_w ** (2 / 3) * Pr ** (1 / 3)
 
 
-def forced_rotating_cylinder(w: Num, T_film: Num, D: Num, *, p: Num = SEA_LEVEL, w_width: float = SPEED_WIDTH) -> Num:
+def forced_rotating_cylinder(w: Num, T_film: Num, D: Num, *, p: Num = SEA_LEVEL) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a cylinder that turns in air at rest.
 
     Args:
@@ -41,10 +38,9 @@ def forced_rotating_cylinder(w: Num, T_film: Num, D: Num, *, p: Num = SEA_LEVEL,
         T_film: mean temperature of cylinder and air [K]
         D: diameter [m]
         p: pressure of the air [Pa]
-        w_width: rounding at rest [rad/s]
     """
     k, nu, Pr, _ = air_properties(T_film, p=p)
-    return nusselt_rotating_cylinder(smooth_abs(w, w_width) * D**2 / (2 * nu), Pr) * k / D
+    return nusselt_rotating_cylinder(smooth_abs(w) * D**2 / (2 * nu), Pr) * k / D
 
 
 @law(
@@ -53,7 +49,7 @@ def forced_rotating_cylinder(w: Num, T_film: Num, D: Num, *, p: Num = SEA_LEVEL,
     valid="as printed, with D in metres; 58-72 W/(m2.K), four to five times a bare drum",
     verified=False,
 )
-def source_coefficient(P: Num, D: Num, v: Num, *, v_width: float = V_WIDTH) -> Num:
+def source_coefficient(P: Num, D: Num, v: Num) -> Num:
     r"""Heat transfer coefficient of a drum with its belt as the source computes it [W/(m2.K)].
 
     .. math:: K = 21 - 2 P/D + 36 \sqrt{1 + v}
@@ -62,10 +58,9 @@ def source_coefficient(P: Num, D: Num, v: Num, *, v_width: float = V_WIDTH) -> N
         P: rated shaft power; the number counts kilowatts [W]
         D: diameter of the drum; the source writes mm, its numbers need metres [m]
         v: speed of the belt, either direction [m/s]
-        v_width: rounding at rest [m/s]
     """
     P_kW = 1e-3 * P
-    return 21 - 2 * P_kW / D + 36 * ca.sqrt(1 + smooth_abs(v, v_width))
+    return 21 - 2 * P_kW / D + 36 * ca.sqrt(1 + smooth_abs(v, V_WIDTH))
 
 
 @law(source="DrumMotor", where="cooling area", verified=False)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..sources import law
-from .smooth import Num, smooth_abs, smooth_power, smooth_sign
+from .smooth import LINE_WIDTH, U_WIDTH, Num, smooth_abs, smooth_power, smooth_sign
 
 
 @law(
@@ -20,8 +20,6 @@ def film_thickness(
     E_star_eff: Num,
     *,
     radius_factor: float = 2.0,
-    u_width: float = 1e-4,
-    F_width: float = 10.0,
 ) -> Num:
     r"""Central film thickness of a line contact [m], zero at standstill.
 
@@ -36,14 +34,12 @@ def film_thickness(
         R: reduced radius of curvature, 1/R = 1/r_1 + 1/r_2 [m]
         E_star_eff: E / (2 (1 - nu^2)) of two equal steels [Pa]
         radius_factor: R_x/R; only 2 makes the formula Grubin's [1]
-        u_width: rounding at standstill [m/s]
-        F_width: rounding at zero load [N/m]
     """
     R_x = radius_factor * R
     U = eta_0 / (2 * R_x * E_star_eff)  # per unit of speed
     G = 2 * alpha_p * E_star_eff
-    W = smooth_abs(F_n_l, F_width) / (R_x * E_star_eff)
-    return 0.975 * R_x * (U * G) ** 0.727 * smooth_power(u_sum, 0.727, u_width) * W**-0.091
+    W = smooth_abs(F_n_l, LINE_WIDTH) / (R_x * E_star_eff)
+    return 0.975 * R_x * (U * G) ** 0.727 * smooth_power(u_sum, 0.727, U_WIDTH) * W**-0.091
 
 
 @law(source="Dias2014", where="thermal reduction of the film", valid="line contact of steel", verified=False)
@@ -55,7 +51,6 @@ def thermal_film_reduction(
     slide_roll: Num,
     *,
     coefficient: float = 14.8,
-    u_width: float = 1e-4,
     slide_width: float = 1e-4,
 ) -> Num:
     r"""Reduction of the film thickness by shear heating in the inlet [1].
@@ -69,10 +64,9 @@ def thermal_film_reduction(
         k: thermal conductivity of the oil [W/(m.K)]
         slide_roll: slide-to-roll ratio, either sign [1]
         coefficient: 14.8; the source prints 1.48 [1]
-        u_width: rounding at standstill [m/s]
         slide_width: rounding at pure rolling [1]
     """
-    L_power = (beta_T * eta_0 / k) ** 0.64 * smooth_power(u_sum, 1.28, u_width)
+    L_power = (beta_T * eta_0 / k) ** 0.64 * smooth_power(u_sum, 1.28, U_WIDTH)
     return 1 / (1 + 0.1 * (1 + coefficient * smooth_power(slide_roll, 0.83, slide_width)) * L_power)
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import casadi as ca
 
 from ..sources import law
-from .smooth import Num, smooth_abs
+from .smooth import LINE_WIDTH, U_WIDTH, Num, smooth_abs
 
 #: H M of a rigid cylinder in oil of constant viscosity, from the solution of Reynolds' equation: 4.896/2.
 RIGID = 2.448
@@ -63,15 +63,7 @@ def dowson_higginson_minimum(U: Num, G: Num, W: Num) -> Num:
 
 
 def line_film_central(
-    eta_0: Num,
-    u_sum: Num,
-    alpha_p: Num,
-    F_n_l: Num,
-    R: Num,
-    E_eff: Num,
-    *,
-    u_width: float = 1e-4,
-    F_width: float = 10.0,
+    eta_0: Num, u_sum: Num, alpha_p: Num, F_n_l: Num, R: Num, E_eff: Num, *, u_width: float = U_WIDTH
 ) -> Num:
     """Central film of a line contact after Moes [m]; zero at standstill, to the fourth of a power below it.
 
@@ -83,25 +75,14 @@ def line_film_central(
         R: reduced radius [m]
         E_eff: effective modulus, 2/E_eff = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2 [Pa]
         u_width: rounding at standstill [m/s]
-        F_width: rounding at zero load [N/m]
     """
     speed = smooth_abs(u_sum, u_width)
     root = ca.sqrt(eta_0 * speed / (E_eff * R))
-    M, L = smooth_abs(F_n_l, F_width) / (E_eff * R * root), alpha_p * E_eff * ca.sqrt(root)
+    M, L = smooth_abs(F_n_l, LINE_WIDTH) / (E_eff * R * root), alpha_p * E_eff * ca.sqrt(root)
     return moes_central(M, L) * R * root * (u_sum / speed) ** 2
 
 
-def line_film_minimum(
-    eta_0: Num,
-    u_sum: Num,
-    alpha_p: Num,
-    F_n_l: Num,
-    R: Num,
-    E_eff: Num,
-    *,
-    u_width: float = 1e-4,
-    F_width: float = 10.0,
-) -> Num:
+def line_film_minimum(eta_0: Num, u_sum: Num, alpha_p: Num, F_n_l: Num, R: Num, E_eff: Num) -> Num:
     """Minimum film of a line contact after Dowson and Higginson [m]; zero at standstill.
 
     Args:
@@ -111,10 +92,8 @@ def line_film_minimum(
         F_n_l: normal load per length, either sign [N/m]
         R: reduced radius [m]
         E_eff: effective modulus, 2/E_eff = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2 [Pa]
-        u_width: rounding at standstill [m/s]
-        F_width: rounding at zero load [N/m]
     """
-    speed = smooth_abs(u_sum, u_width)
-    W = smooth_abs(F_n_l, F_width) / (E_eff * R)
+    speed = smooth_abs(u_sum, U_WIDTH)
+    W = smooth_abs(F_n_l, LINE_WIDTH) / (E_eff * R)
     h = R * dowson_higginson_minimum(eta_0 * speed / (2 * E_eff * R), alpha_p * E_eff, W)
     return h * (u_sum / speed) ** 2

@@ -5,8 +5,10 @@ from __future__ import annotations
 import casadi as ca
 
 from ..sources import law
-from .smooth import Num, smooth_abs
+from .smooth import U_WIDTH, Num, smooth_abs
 
+#: Width of the rounding of a force [N]: small contacts carry little.
+POINT_WIDTH = 0.1
 #: Range of the 34 solved contacts behind the formulas of Hamrock and Dowson.
 SOLVED = {"U": (8e-13, 5.1e-11), "G": (2300.0, 6800.0), "W": (1.1e-7, 1.3e-6), "k": (1.0, 8.0)}
 
@@ -117,18 +119,7 @@ def nijenbanning_asymptotes(M: Num, L: Num, D: Num) -> tuple[Num, Num, Num, Num]
     return H_RI, (H_EI**-4 + (1.8 / D) ** -4) ** -0.25, (H_RP**-8 + H_EP**-8) ** -0.125, s
 
 
-def point_film_central(
-    eta_0: Num,
-    u_sum: Num,
-    alpha_p: Num,
-    F_n: Num,
-    R_x: Num,
-    R_y: Num,
-    E_eff: Num,
-    *,
-    u_width: float = 1e-4,
-    F_width: float = 0.1,
-) -> Num:
+def point_film_central(eta_0: Num, u_sum: Num, alpha_p: Num, F_n: Num, R_x: Num, R_y: Num, E_eff: Num) -> Num:
     """Central film of an elliptical contact after Nijenbanning, Venner and Moes [m]; zero at standstill.
 
     Args:
@@ -139,27 +130,14 @@ def point_film_central(
         R_x: reduced radius along the direction of rolling [m]
         R_y: reduced radius across it [m]
         E_eff: effective modulus, 2/E_eff = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2 [Pa]
-        u_width: rounding at standstill [m/s]
-        F_width: rounding at zero load [N]
     """
-    speed = smooth_abs(u_sum, u_width)
+    speed = smooth_abs(u_sum, U_WIDTH)
     U = eta_0 * speed / (E_eff * R_x)
-    M, L = smooth_abs(F_n, F_width) / (E_eff * R_x**2 * U**0.75), alpha_p * E_eff * U**0.25
+    M, L = smooth_abs(F_n, POINT_WIDTH) / (E_eff * R_x**2 * U**0.75), alpha_p * E_eff * U**0.25
     return nijenbanning_central(M, L, R_x / R_y) * R_x * ca.sqrt(U) * (u_sum / speed) ** 2
 
 
-def point_films(
-    eta_0: Num,
-    u_sum: Num,
-    alpha_p: Num,
-    F_n: Num,
-    R_x: Num,
-    R_y: Num,
-    E_eff: Num,
-    *,
-    u_width: float = 1e-4,
-    F_width: float = 0.1,
-) -> tuple[Num, Num]:
+def point_films(eta_0: Num, u_sum: Num, alpha_p: Num, F_n: Num, R_x: Num, R_y: Num, E_eff: Num) -> tuple[Num, Num]:
     """Central and minimum film of an elliptical contact after Hamrock and Dowson [m]; zero at standstill.
 
     Args:
@@ -170,10 +148,8 @@ def point_films(
         R_x: reduced radius along the direction of rolling [m]
         R_y: reduced radius across it [m]
         E_eff: effective modulus, 2/E_eff = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2 [Pa]
-        u_width: rounding at standstill [m/s]
-        F_width: rounding at zero load [N]
     """
-    speed, k = smooth_abs(u_sum, u_width), ellipticity(R_x, R_y)
-    numbers = eta_0 * speed / (2 * E_eff * R_x), alpha_p * E_eff, smooth_abs(F_n, F_width) / (E_eff * R_x**2)
+    speed, k = smooth_abs(u_sum, U_WIDTH), ellipticity(R_x, R_y)
+    numbers = eta_0 * speed / (2 * E_eff * R_x), alpha_p * E_eff, smooth_abs(F_n, POINT_WIDTH) / (E_eff * R_x**2)
     moving = R_x * (u_sum / speed) ** 2
     return moving * hamrock_dowson_central(*numbers, k), moving * hamrock_dowson_minimum(*numbers, k)

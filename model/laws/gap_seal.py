@@ -9,14 +9,14 @@ from __future__ import annotations
 import math
 
 from ..sources import law
-from .smooth import SPEED_WIDTH, Num, smooth_abs, smooth_magnitude, smooth_max
+from .smooth import Num, smooth_abs, smooth_magnitude, smooth_max
 
 #: Taylor number at which vortices form between a turning shaft and a resting ring of little clearance.
 TAYLOR = 41.3
 
 
 @law(source="White2006", where="flow between rotating concentric cylinders", valid="laminar", verified=False)
-def laminar_gap_torque(w: Num, eta_oil: Num, r: Num, gap: Num, L: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+def laminar_gap_torque(w: Num, eta_oil: Num, r: Num, gap: Num, L: Num) -> Num:
     r"""Torque of laminar flow between a turning shaft and a resting ring [N.m], a magnitude.
 
     .. math:: \tau = 4 \pi \eta |\omega| L \frac{r^2 (r + s)^2}{(r + s)^2 - r^2}
@@ -27,9 +27,8 @@ def laminar_gap_torque(w: Num, eta_oil: Num, r: Num, gap: Num, L: Num, *, w_widt
         r: radius of the shaft [m]
         gap: radial clearance s [m]
         L: length of the gap along the shaft [m]
-        w_width: rounding at standstill [rad/s]
     """
-    return 4 * math.pi * eta_oil * smooth_magnitude(w, w_width) * L * r**2 * (r + gap) ** 2 / (gap * (2 * r + gap))
+    return 4 * math.pi * eta_oil * smooth_magnitude(w) * L * r**2 * (r + gap) ** 2 / (gap * (2 * r + gap))
 
 
 @law(
@@ -79,7 +78,7 @@ def turbulent_gap_coefficient(Re: Num, gap_share: Num, *, sharpness: int = 16) -
     ranges={"gap / r": (0.0, 0.07)},
     verified=False,
 )
-def gap_torque(w: Num, rho: Num, nu: Num, r: Num, gap: Num, L: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+def gap_torque(w: Num, rho: Num, nu: Num, r: Num, gap: Num, L: Num) -> Num:
     r"""Torque with which a fluid in the gap brakes the shaft [N.m], a magnitude, zero at standstill.
 
     .. math:: \tau = (1 - x)\, \psi\, \tau_{lam} + x\, \tfrac{\pi}{2} C \rho \omega^2 r^4 L,\quad
@@ -94,10 +93,9 @@ def gap_torque(w: Num, rho: Num, nu: Num, r: Num, gap: Num, L: Num, *, w_width: 
         r: radius of the shaft [m]
         gap: radial clearance s [m]
         L: length of the gap along the shaft [m]
-        w_width: rounding at standstill [rad/s]
     """
-    Re = smooth_abs(w, w_width) * r * gap / nu
-    laminar = vortex_factor(Re * (gap / r) ** 0.5) * laminar_gap_torque(w, rho * nu, r, gap, L, w_width=w_width)
+    Re = smooth_abs(w) * r * gap / nu
+    laminar = vortex_factor(Re * (gap / r) ** 0.5) * laminar_gap_torque(w, rho * nu, r, gap, L)
     turbulent = 0.5 * math.pi * turbulent_gap_coefficient(Re, gap / r) * rho * w * w * r**4 * L
     share = 1 / (1 + (500 / Re) ** 8)
     return (1 - share) * laminar + share * turbulent

@@ -209,9 +209,7 @@ def churning_past_change(slow: Num, fast: Num, thrown: Num) -> Num:
     ranges={"h / r": (0.0, 1.0), "b / r": (0.1, 1.0), "r": (0.04, 0.2)},
     verified=False,
 )
-def gear_churning_torque(
-    w: Num, rho: Num, nu: Num, h: Num, V: Num, r: Num, b: Num, m_n: Num, *, w_width: float = SPEED_WIDTH
-) -> Num:
+def gear_churning_torque(w: Num, rho: Num, nu: Num, h: Num, V: Num, r: Num, b: Num, m_n: Num) -> Num:
     r"""Torque with which oil brakes a gear that dips into it [N.m], a magnitude, zero at standstill.
 
     .. math:: \tau = \tfrac{1}{2} \rho \omega^2 S_m r^3 C_m
@@ -229,9 +227,8 @@ def gear_churning_torque(
         r: pitch radius [m]
         b: face width [m]
         m_n: normal module [m]
-        w_width: rounding at standstill [rad/s]
     """
-    speed, change, D = smooth_abs(w, w_width), changing_speed(r, b, m_n), 2 * r
+    speed, change, D = smooth_abs(w), changing_speed(r, b, m_n), 2 * r
     below = smooth_cap(speed, change, HOLD)
     above = speed * change / below
     Re, area = below * r**2 / nu, submerged_area(h, r, b)
@@ -244,7 +241,7 @@ def gear_churning_torque(
 
 
 @law(source="Maurer1994", where="windage torque of a gear in air", valid="air at sea level", verified=False)
-def windage_torque(w: Num, r: Num, b: Num, m_n: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+def windage_torque(w: Num, r: Num, b: Num, m_n: Num) -> Num:
     r"""Torque with which air brakes a gear that runs free of oil [N.m], a magnitude, zero at standstill.
 
     .. math:: \tau = 1.37 \cdot 10^{-9} v_t^{1.9} d^{1.6} b^{0.52} m_n^{0.69} \;[\mathrm{m/s, mm}]
@@ -254,7 +251,6 @@ def windage_torque(w: Num, r: Num, b: Num, m_n: Num, *, w_width: float = SPEED_W
         r: pitch radius [m]
         b: face width [m]
         m_n: normal module [m]
-        w_width: rounding at standstill [rad/s]
     """
     d_mm, b_mm, m_mm = 2e3 * r, 1e3 * b, 1e3 * m_n
-    return 1.37e-9 * smooth_power(w * r, 1.9, w_width * r) * d_mm**1.6 * b_mm**0.52 * m_mm**0.69
+    return 1.37e-9 * smooth_power(w * r, 1.9, SPEED_WIDTH * r) * d_mm**1.6 * b_mm**0.52 * m_mm**0.69

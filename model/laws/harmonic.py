@@ -7,7 +7,7 @@ import math
 import casadi as ca
 
 from ..sources import law
-from .smooth import Num, smooth_abs, smooth_power
+from .smooth import LINE_WIDTH, SLOW_WIDTH, Num, smooth_abs, smooth_power
 
 
 @law(source="Kalina2021", where="pitch-line speed of the flexspline's teeth", verified=False)
@@ -37,7 +37,7 @@ def conforming_radius(r_convex: Num, r_concave: Num) -> Num:
 
 
 @law(source="Hertz1881", where="half width of a line contact")
-def half_width(F_n_l: Num, R: Num, E_eff: Num, *, F_width: float = 10.0) -> Num:
+def half_width(F_n_l: Num, R: Num, E_eff: Num) -> Num:
     r"""Half of the width that a line contact is flattened over [m]; the source leaves out the pi.
 
     .. math:: b = \sqrt{\frac{8 F' R}{\pi E'}}
@@ -46,23 +46,12 @@ def half_width(F_n_l: Num, R: Num, E_eff: Num, *, F_width: float = 10.0) -> Num:
         F_n_l: normal load per length, either sign [N/m]
         R: reduced radius [m]
         E_eff: effective modulus, 2/E_eff = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2 [Pa]
-        F_width: rounding at zero load [N/m]
     """
-    return ca.sqrt(8 * smooth_abs(F_n_l, F_width) * R / (math.pi * E_eff))
+    return ca.sqrt(8 * smooth_abs(F_n_l, LINE_WIDTH) * R / (math.pi * E_eff))
 
 
 @law(source="Kalina2021", where="minimum film, Dowson and Higginson's formula with dimensions", verified=False)
-def printed_film(
-    alpha_p: Num,
-    eta_0: Num,
-    u_0: Num,
-    E_eff: Num,
-    R: Num,
-    F_n_l: Num,
-    *,
-    u_width: float = 1e-6,
-    F_width: float = 10.0,
-) -> Num:
+def printed_film(alpha_p: Num, eta_0: Num, u_0: Num, E_eff: Num, R: Num, F_n_l: Num) -> Num:
     r"""Minimum film as the source prints it [m], zero at standstill; for an elastohydrodynamic contact.
 
     .. math:: h_{min} = 1.6 \alpha^{0.6} (\eta_0 u_0)^{0.7} E'^{0.03} R^{0.43} (L/F_0)^{0.13}
@@ -74,11 +63,9 @@ def printed_film(
         E_eff: effective modulus [Pa]
         R: reduced radius [m]
         F_n_l: load per face width F_0/L, either sign [N/m]
-        u_width: rounding at standstill [m/s]
-        F_width: rounding at zero load [N/m]
     """
-    load = smooth_abs(F_n_l, F_width) ** -0.13
-    return 1.6 * alpha_p**0.6 * eta_0**0.7 * smooth_power(u_0, 0.7, u_width) * E_eff**0.03 * R**0.43 * load
+    load = smooth_abs(F_n_l, LINE_WIDTH) ** -0.13
+    return 1.6 * alpha_p**0.6 * eta_0**0.7 * smooth_power(u_0, 0.7, SLOW_WIDTH) * E_eff**0.03 * R**0.43 * load
 
 
 @law(source="Hamrock2004", where="friction of a fixed-incline slider of infinite width", verified=False)

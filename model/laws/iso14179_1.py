@@ -98,7 +98,7 @@ def mesh_loss(P_a: Num, mu: Num, H_s: Num, H_t: Num, alpha_wt: Num, beta: Num) -
 
 
 @law(source="ISO14179-1", where="windage and churning of the sides of a disc", verified=False)
-def side_churning(w: Num, nu: Num, D: Num, dip: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+def side_churning(w: Num, nu: Num, D: Num, dip: Num) -> Num:
     r"""Power that the sides of a gear lose in oil and air [W].
 
     .. math:: P = \frac{1.474 f_g \nu n^3 D^{5.7}}{A_g 10^{26}} \;[\mathrm{kW}]
@@ -108,16 +108,13 @@ def side_churning(w: Num, nu: Num, D: Num, dip: Num, *, w_width: float = SPEED_W
         nu: kinematic viscosity at the temperature of the sump [m2/s]
         D: tip diameter [m]
         dip: depth of immersion over the tip diameter, the factor f_g: 0 above the oil, 1 below [1]
-        w_width: rounding at standstill [rad/s]
     """
-    nu_cSt, D_mm, n_width = 1e6 * nu, 1e3 * D, to_rpm(w_width)
+    nu_cSt, D_mm, n_width = 1e6 * nu, 1e3 * D, to_rpm(SPEED_WIDTH)
     return 1e-23 * 1.474 * dip * nu_cSt * smooth_power(to_rpm(w), 3, n_width) * D_mm**5.7 / ARRANGEMENT
 
 
 @law(source="ISO14179-1", where="windage and churning of the teeth", verified=False)
-def tooth_churning(
-    w: Num, nu: Num, D: Num, b: Num, beta: Num, m_t: Num, dip: Num, *, w_width: float = SPEED_WIDTH
-) -> Num:
+def tooth_churning(w: Num, nu: Num, D: Num, b: Num, beta: Num, m_t: Num, dip: Num) -> Num:
     r"""Power that the teeth of a gear lose in oil and air [W].
 
     .. math:: P = \frac{7.37 f_g \nu n^3 D^{4.7} b R_f}{A_g 10^{26} \sqrt{\tan\beta}} \;[\mathrm{kW}],\quad
@@ -133,9 +130,8 @@ def tooth_churning(
         beta: helix angle [rad]
         m_t: transverse module [m]
         dip: depth of immersion over the tip diameter, the factor f_g: 0 above the oil, 1 below [1]
-        w_width: rounding at standstill [rad/s]
     """
-    nu_cSt, D_mm, b_mm, m_mm, n_width = 1e6 * nu, 1e3 * D, 1e3 * b, 1e3 * m_t, to_rpm(w_width)
+    nu_cSt, D_mm, b_mm, m_mm, n_width = 1e6 * nu, 1e3 * D, 1e3 * b, 1e3 * m_t, to_rpm(SPEED_WIDTH)
     R_f, helix = smooth_max(7.93 - 4.648 / m_mm, 1.0, 1e-3), smooth_max(beta, LEAST_HELIX, 1e-4)
     n_3 = smooth_power(to_rpm(w), 3, n_width)
     return 1e-23 * 7.37 * dip * nu_cSt * n_3 * D_mm**4.7 * b_mm * R_f / ca.sqrt(ca.tan(helix)) / ARRANGEMENT

@@ -7,7 +7,7 @@ import math
 import casadi as ca
 
 from ..sources import law
-from .smooth import SPEED_WIDTH, Num, smooth_abs
+from .smooth import F_WIDTH, Num, smooth_abs
 
 
 @law(
@@ -16,7 +16,7 @@ from .smooth import SPEED_WIDTH, Num, smooth_abs
     valid="journal in the middle of its bearing, full of oil",
     verified=False,
 )
-def petrov_torque(w: Num, eta_oil: Num, r: Num, b: Num, psi: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+def petrov_torque(w: Num, eta_oil: Num, r: Num, b: Num, psi: Num) -> Num:
     r"""Friction torque of an unloaded journal bearing [N.m].
 
     .. math:: \tau_0 = \frac{2 \pi \eta \omega r^2 b}{\psi}
@@ -27,9 +27,8 @@ def petrov_torque(w: Num, eta_oil: Num, r: Num, b: Num, psi: Num, *, w_width: fl
         r: radius of the journal [m]
         b: width of the bearing [m]
         psi: relative clearance, bearing less journal diameter over journal diameter [1]
-        w_width: rounding at standstill [rad/s]
     """
-    return 2 * math.pi * eta_oil * smooth_abs(w, w_width) * r**2 * b / psi
+    return 2 * math.pi * eta_oil * smooth_abs(w) * r**2 * b / psi
 
 
 @law(
@@ -39,18 +38,7 @@ def petrov_torque(w: Num, eta_oil: Num, r: Num, b: Num, psi: Num, *, w_width: fl
     ranges={"b / r": (0.5, 2.8)},
     verified=False,
 )
-def film_torque(
-    tau_0: Num,
-    F_r: Num,
-    w: Num,
-    eta_oil: Num,
-    r: Num,
-    b: Num,
-    psi: Num,
-    *,
-    w_width: float = SPEED_WIDTH,
-    F_width: float = 1.0,
-) -> Num:
+def film_torque(tau_0: Num, F_r: Num, w: Num, eta_oil: Num, r: Num, b: Num, psi: Num) -> Num:
     r"""Friction torque of the film of a journal bearing under load [N.m].
 
     .. math:: \tau = \tau_0 \sqrt{1 + \frac{9}{\pi^2} \frac{So^2}{So + 0.96 q^{1.94}}
@@ -68,19 +56,15 @@ def film_torque(
         r: radius of the journal [m]
         b: width of the bearing [m]
         psi: relative clearance, bearing less journal diameter over journal diameter [1]
-        w_width: rounding at standstill [rad/s]
-        F_width: rounding at zero load [N]
     """
     q = b / (2 * r)
-    So = smooth_abs(F_r, F_width) * psi**2 / (2 * r * b * eta_oil * smooth_abs(w, w_width))
+    So = smooth_abs(F_r, F_WIDTH) * psi**2 / (2 * r * b * eta_oil * smooth_abs(w))
     narrow = 3.77 * q**-0.65 / (1 + (So * q**1.815 / 0.016) ** 0.67)
     return tau_0 * ca.sqrt(1 + 9 / math.pi**2 * So**2 / (So + 0.96 * q**1.94) * (1 + narrow))
 
 
 @law(source="Vogelpohl1967", where="transition speed", verified=False)
-def solid_share(
-    w: Num, F_r: Num, eta_oil: Num, r: Num, b: Num, C_trans: Num, *, w_width: float = SPEED_WIDTH, F_width: float = 1.0
-) -> Num:
+def solid_share(w: Num, F_r: Num, eta_oil: Num, r: Num, b: Num, C_trans: Num) -> Num:
     r"""Share of the load that solids carry in mixed friction [1], 1 at rest and 1/e at the transition speed.
 
     .. math:: s = e^{-(n/n_t)^2},\quad n_t = \frac{10^{-7} F}{C \eta V}\;[\mathrm{rpm}],\quad V = \pi r^2 b
@@ -94,8 +78,6 @@ def solid_share(
         r: radius of the journal [m]
         b: width of the bearing [m]
         C_trans: transition constant, about 1 for a good surface [1]
-        w_width: rounding at standstill [rad/s]
-        F_width: rounding at zero load [N]
     """
-    n_t = 1e-7 * smooth_abs(F_r, F_width) / (C_trans * eta_oil * math.pi * r**2 * b)
+    n_t = 1e-7 * smooth_abs(F_r, F_WIDTH) / (C_trans * eta_oil * math.pi * r**2 * b)
     return ca.exp(-((w * 30 / math.pi / n_t) ** 2))

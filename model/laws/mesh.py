@@ -7,7 +7,7 @@ import math
 import casadi as ca
 
 from ..sources import law
-from .smooth import Num, smooth_abs, smooth_cap, smooth_max
+from .smooth import LINE_WIDTH, V_WIDTH, Num, smooth_abs, smooth_cap, smooth_max
 
 #: Viscosity [mPa.s] beyond which thicker oil lowers the friction of the teeth no more: they are on a full film then.
 FULL_FILM_VISCOSITY = 1000.0
@@ -45,17 +45,7 @@ def load_per_contact_length(F_bn: Num, length: Num) -> Num:
     valid="boundary and mixed friction, pitch line up to 50 m/s, oils up to 1 Pa.s, with X_L also others than mineral",
     ranges={"v_sum": (-34.0, 34.0), "eta_oil": (0.0, 1.0)},
 )
-def friction_schlenk(
-    line_load: Num,
-    v_sum: Num,
-    R: Num,
-    eta_oil: Num,
-    Ra: Num,
-    X_L: Num,
-    *,
-    F_width: float = 10.0,
-    v_width: float = 1e-3,
-) -> Num:
+def friction_schlenk(line_load: Num, v_sum: Num, R: Num, eta_oil: Num, Ra: Num, X_L: Num) -> Num:
     r"""Mean friction coefficient of a gear mesh [1].
 
     .. math:: \mu = 0.048 \left(\frac{F/l}{v_\Sigma R}\right)^{0.2} \eta^{-0.05} R_a^{0.25} X_L
@@ -68,10 +58,8 @@ def friction_schlenk(
         eta_oil: dynamic viscosity at the oil's temperature [Pa.s]
         Ra: mean roughness of the two flanks [m]
         X_L: lubricant factor [1]
-        F_width: rounding at zero load [N/m]
-        v_width: rounding at zero speed [m/s]; keeps the coefficient finite, at four times its value at 1 m/s
     """
-    F, v = smooth_abs(line_load, F_width), smooth_abs(v_sum, v_width)
+    F, v = smooth_abs(line_load, LINE_WIDTH), smooth_abs(v_sum, V_WIDTH)
     F_N_mm, R_mm, eta_mPas, Ra_um = 1e-3 * F, 1e3 * R, 1e3 * eta_oil, 1e6 * Ra
     eta_eff = smooth_cap(eta_mPas, FULL_FILM_VISCOSITY)
     return 0.048 * (F_N_mm / (v * R_mm)) ** 0.2 * eta_eff**-0.05 * Ra_um**0.25 * X_L

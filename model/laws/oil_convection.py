@@ -7,8 +7,8 @@ temperature of the oil; all are smooth at rest and at equal temperatures.
 from __future__ import annotations
 
 from ..sources import law
-from .convection import DT_WIDTH, GRAVITY, V_WIDTH, nusselt_vertical_plate
-from .smooth import SPEED_WIDTH, Num, smooth_abs
+from .convection import DT_WIDTH, GRAVITY, nusselt_vertical_plate
+from .smooth import V_WIDTH, Num, smooth_abs
 
 
 @law(
@@ -48,7 +48,7 @@ def nusselt_rotating_disc(Re: Num, Pr: Num) -> Num:
     return 0.62048 * Re**0.5 * Pr ** (1 / 3) / (1 + 0.2980 * Pr ** (-1 / 3) + 0.14514 * Pr ** (-2 / 3))
 
 
-def forced_wall_in_oil(v: Num, nu: Num, Pr: Num, k: Num, L: Num, *, v_width: float = V_WIDTH) -> Num:
+def forced_wall_in_oil(v: Num, nu: Num, Pr: Num, k: Num, L: Num) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a wall along which oil flows.
 
     Args:
@@ -57,12 +57,11 @@ def forced_wall_in_oil(v: Num, nu: Num, Pr: Num, k: Num, L: Num, *, v_width: flo
         Pr: Prandtl number of the oil [1]
         k: conductivity of the oil [W/(m.K)]
         L: length of the wall along the flow [m]
-        v_width: rounding at rest [m/s]
     """
-    return nusselt_laminar_plate(smooth_abs(v, v_width) * L / nu, Pr) * k / L
+    return nusselt_laminar_plate(smooth_abs(v, V_WIDTH) * L / nu, Pr) * k / L
 
 
-def forced_disc_in_oil(w: Num, nu: Num, Pr: Num, k: Num, r: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+def forced_disc_in_oil(w: Num, nu: Num, Pr: Num, k: Num, r: Num) -> Num:
     """Heat transfer coefficient [W/(m2.K)] of a disc that turns in oil.
 
     Args:
@@ -71,9 +70,8 @@ def forced_disc_in_oil(w: Num, nu: Num, Pr: Num, k: Num, r: Num, *, w_width: flo
         Pr: Prandtl number of the oil [1]
         k: conductivity of the oil [W/(m.K)]
         r: radius; for the Reynolds number alone, the coefficient is the same for every radius [m]
-        w_width: rounding at rest [rad/s]
     """
-    return nusselt_rotating_disc(smooth_abs(w, w_width) * r**2 / nu, Pr) * k / r
+    return nusselt_rotating_disc(smooth_abs(w) * r**2 / nu, Pr) * k / r
 
 
 def natural_wall_in_oil(T_s: Num, T_f: Num, nu: Num, Pr: Num, k: Num, expansion: Num, L: Num) -> Num:

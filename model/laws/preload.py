@@ -5,10 +5,7 @@ from __future__ import annotations
 import casadi as ca
 
 from ..sources import law
-from .smooth import Num, smooth_magnitude, smooth_max
-
-#: Force [N] over which corners are rounded.
-F_WIDTH = 1.0
+from .smooth import F_WIDTH, Num, smooth_magnitude, smooth_max
 
 
 @law(
@@ -48,7 +45,7 @@ def thermal_interference(
     ranges={"dx": (-2e-4, 2e-4)},
     verified=False,
 )
-def preload_force(F_set: Num, k: Num, dx: Num, *, F_width: float = F_WIDTH) -> Num:
+def preload_force(F_set: Num, k: Num, dx: Num) -> Num:
     r"""Preload of a pair of bearings [N], none where it has clearance.
 
     .. math:: \max(F_{set} + k\,\Delta x, 0)
@@ -57,13 +54,12 @@ def preload_force(F_set: Num, k: Num, dx: Num, *, F_width: float = F_WIDTH) -> N
         F_set: preload as set; negative: the clearance as set, times k [N]
         k: axial stiffness of the pair with shaft and housing, preload over interference [N/m]
         dx: what the interference has grown by since [m]
-        F_width: force over which the corner is rounded [N]
     """
-    return smooth_max(F_set + k * dx, 0.0, F_width)
+    return smooth_max(F_set + k * dx, 0.0, F_WIDTH)
 
 
 @law(source="SKFLifting", where="lifting force of a preloaded set", valid="equal bearings, rigid shaft and housing")
-def preloaded_axial_load(F_0: Num, F_own: Num, F_other: Num, n: Num, *, F_width: float = F_WIDTH) -> Num:
+def preloaded_axial_load(F_0: Num, F_own: Num, F_other: Num, n: Num) -> Num:
     r"""Axial load of a bearing of a preloaded pair [N].
 
     .. math:: \max(F_0 + (1 - 2^{-n}) K, F_{own})\ \text{for}\ K = F_{own} - F_{other} > 0,\quad
@@ -77,8 +73,7 @@ def preloaded_axial_load(F_0: Num, F_own: Num, F_other: Num, n: Num, *, F_width:
         F_own: axial force on the shaft towards this bearing [N]
         F_other: axial force on the shaft towards the other bearing [N]
         n: exponent of the contacts, 1.5 with balls, 10/9 with rollers [1]
-        F_width: force over which corners are rounded [N]
     """
     K = F_own - F_other
-    shared = F_0 + K / 2 + (0.5 - 2**-n) * smooth_magnitude(K, F_width)
-    return smooth_max(shared, F_own, F_width)
+    shared = F_0 + K / 2 + (0.5 - 2**-n) * smooth_magnitude(K, F_WIDTH)
+    return smooth_max(shared, F_own, F_WIDTH)

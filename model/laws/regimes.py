@@ -8,16 +8,14 @@ import casadi as ca
 
 from ..sources import law
 from .film_line import RIGID
-from .smooth import Num, smooth_abs
+from .smooth import LINE_WIDTH, SLOW_WIDTH, Num, smooth_abs
 
 #: What is said of a contact that is in any but the elastohydrodynamic regime.
 _NOT_HERE = "(g_V = {g_V}, g_E = {g_E}): the elastohydrodynamic formula does not hold"
 
 
 @law(source="Johnson1970", where="viscosity parameter", verified=False)
-def viscosity_parameter(
-    alpha_p: Num, eta_0: Num, u_m: Num, F_n_l: Num, R: Num, *, u_width: float = 1e-6, F_width: float = 10.0
-) -> Num:
+def viscosity_parameter(alpha_p: Num, eta_0: Num, u_m: Num, F_n_l: Num, R: Num) -> Num:
     r"""How much pressure thickens the oil of a line contact [1].
 
     .. math:: g_V = \sqrt{\frac{\alpha_p^2 F'^3}{\eta_0 u_m R^2}}
@@ -28,16 +26,12 @@ def viscosity_parameter(
         u_m: mean speed of the surfaces, either sign [m/s]
         F_n_l: normal load per length, either sign [N/m]
         R: reduced radius [m]
-        u_width: rounding at standstill [m/s]
-        F_width: rounding at zero load [N/m]
     """
-    return alpha_p * smooth_abs(F_n_l, F_width) ** 1.5 / (R * ca.sqrt(eta_0 * smooth_abs(u_m, u_width)))
+    return alpha_p * smooth_abs(F_n_l, LINE_WIDTH) ** 1.5 / (R * ca.sqrt(eta_0 * smooth_abs(u_m, SLOW_WIDTH)))
 
 
 @law(source="Johnson1970", where="elasticity parameter", verified=False)
-def elasticity_parameter(
-    eta_0: Num, u_m: Num, F_n_l: Num, R: Num, E_eff: Num, *, u_width: float = 1e-6, F_width: float = 10.0
-) -> Num:
+def elasticity_parameter(eta_0: Num, u_m: Num, F_n_l: Num, R: Num, E_eff: Num) -> Num:
     r"""How much a line contact deforms [1].
 
     .. math:: g_E = \sqrt{\frac{F'^2}{\eta_0 u_m E' R}}
@@ -48,10 +42,8 @@ def elasticity_parameter(
         F_n_l: normal load per length, either sign [N/m]
         R: reduced radius [m]
         E_eff: effective modulus, 2/E_eff = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2 [Pa]
-        u_width: rounding at standstill [m/s]
-        F_width: rounding at zero load [N/m]
     """
-    return smooth_abs(F_n_l, F_width) / ca.sqrt(eta_0 * smooth_abs(u_m, u_width) * E_eff * R)
+    return smooth_abs(F_n_l, LINE_WIDTH) / ca.sqrt(eta_0 * smooth_abs(u_m, SLOW_WIDTH) * E_eff * R)
 
 
 @law(source="Moes1992", where="asymptotes of the four regimes", verified=False)

@@ -14,21 +14,11 @@ import math
 import casadi as ca
 
 from ..sources import law
-from .smooth import (
-    SPEED_WIDTH,
-    Num,
-    smooth_abs,
-    smooth_cap,
-    smooth_magnitude,
-    smooth_max,
-    smooth_min,
-    smooth_power,
-    to_rpm,
-)
+from .smooth import F_WIDTH, Num, smooth_abs, smooth_cap, smooth_magnitude, smooth_max, smooth_min, smooth_power, to_rpm
 
 
 @law(source="SKF2018", where="friction, inlet shear heating reduction factor")
-def shear_heating(w: Num, nu: Num, d_m: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+def shear_heating(w: Num, nu: Num, d_m: Num) -> Num:
     r"""Reduction of the rolling torque by heating of the oil in the inlet [1].
 
     .. math:: \phi_{ish} = \frac{1}{1 + 1.84 \cdot 10^{-9} (n d_m)^{1.28} \nu^{0.64}}
@@ -37,15 +27,14 @@ def shear_heating(w: Num, nu: Num, d_m: Num, *, w_width: float = SPEED_WIDTH) ->
         w: speed of one ring against the other, either direction [rad/s]
         nu: kinematic viscosity at the lubricant's temperature [m2/s]
         d_m: mean diameter, (d + D)/2 [m]
-        w_width: rounding at standstill [rad/s]
     """
-    n, nu_cSt, d_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d_m
+    n, nu_cSt, d_mm = to_rpm(smooth_abs(w)), 1e6 * nu, 1e3 * d_m
     heating = 1.84e-9 * (n * d_mm) ** 1.28 * nu_cSt**0.64
     return 1 / (1 + smooth_cap(heating, 10.0))  # from 15 on nu^0.6 phi_ish would fall with nu
 
 
 @law(source="SKF2018", where="friction, kinematic replenishment/starvation reduction factor", verified=False)
-def starvation_exponent(w: Num, nu: Num, d: Num, D: Num, K_rs: Num, K_Z: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+def starvation_exponent(w: Num, nu: Num, d: Num, D: Num, K_rs: Num, K_Z: Num) -> Num:
     r"""How fast oil is thrown out of the track, as the exponent of the starvation factor [1].
 
     .. math:: s = K_{rs} \nu n (d + D) \sqrt{\frac{K_Z}{2 (D - d)}}
@@ -57,9 +46,8 @@ def starvation_exponent(w: Num, nu: Num, d: Num, D: Num, K_rs: Num, K_Z: Num, *,
         D: outside diameter [m]
         K_rs: starvation constant: 0 for a bath to the lowest roller or more, 3e-8 for less, 6e-8 for grease [1]
         K_Z: geometry constant of the bearing type [1]
-        w_width: rounding at standstill [rad/s]
     """
-    n, nu_cSt, d_mm, D_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d, 1e3 * D
+    n, nu_cSt, d_mm, D_mm = to_rpm(smooth_abs(w)), 1e6 * nu, 1e3 * d, 1e3 * D
     # Dias2014 prints the exponent without the speed n, which its text lists
     return K_rs * nu_cSt * n * (d_mm + D_mm) * ca.sqrt(K_Z / (2 * (D_mm - d_mm)))
 
@@ -87,7 +75,7 @@ def starvation(s: Num, phi_ish: Num) -> Num:
 
 
 @law(source="SKF2018", where="friction, rolling frictional moment")
-def rolling_torque(G_rr: Num, w: Num, nu: Num, phi: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+def rolling_torque(G_rr: Num, w: Num, nu: Num, phi: Num) -> Num:
     r"""Rolling friction torque [N.m].
 
     .. math:: M_{rr} = \phi G_{rr} (\nu n)^{0.6}
@@ -97,15 +85,14 @@ def rolling_torque(G_rr: Num, w: Num, nu: Num, phi: Num, *, w_width: float = SPE
         w: speed of one ring against the other, either direction [rad/s]
         nu: kinematic viscosity at the lubricant's temperature [m2/s]
         phi: product of the shear heating and the starvation factor [1]
-        w_width: rounding at standstill [rad/s]
     """
-    n, nu_cSt, N_m = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e-3
+    n, nu_cSt, N_m = to_rpm(smooth_abs(w)), 1e6 * nu, 1e-3
     return N_m * phi * G_rr * (nu_cSt * n) ** 0.6
 
 
-def _contact_sine(F_a: Num, C_0: Num, F_width: float) -> Num:
+def _contact_sine(F_a: Num, C_0: Num) -> Num:
     """Sine of the contact angle under axial load, at most 24.6 deg; Dias2014 prints it without that factor."""
-    return ca.sin(math.radians(24.6) * smooth_cap(smooth_abs(F_a, F_width) / C_0, 1.0, 16.0) ** 0.24)
+    return ca.sin(math.radians(24.6) * smooth_cap(smooth_abs(F_a, F_WIDTH) / C_0, 1.0, 16.0) ** 0.24)
 
 
 @law(
@@ -114,7 +101,7 @@ def _contact_sine(F_a: Num, C_0: Num, F_width: float) -> Num:
     valid="F_a up to half of C_0",
     ranges={"F_a / C_0": (-0.5, 0.5)},
 )
-def dgb_rolling_variable(F_r: Num, F_a: Num, d_m: Num, R_1: Num, R_2: Num, C_0: Num, *, F_width: float = 1.0) -> Num:
+def dgb_rolling_variable(F_r: Num, F_a: Num, d_m: Num, R_1: Num, R_2: Num, C_0: Num) -> Num:
     r"""Rolling variable of a deep groove ball bearing, in the catalogue's units.
 
     .. math:: G_{rr} = R_1 d_m^{1.96} \left(F_r + \frac{R_2 F_a}{\sin\alpha_F}\right)^{0.54},\quad
@@ -127,11 +114,10 @@ def dgb_rolling_variable(F_r: Num, F_a: Num, d_m: Num, R_1: Num, R_2: Num, C_0: 
         R_1: first rolling constant of the catalogue [1]
         R_2: second rolling constant of the catalogue [1]
         C_0: basic static load rating [N]
-        F_width: rounding at zero load [N]
     """
     d_mm = 1e3 * d_m
-    axial = R_2 * smooth_magnitude(F_a, F_width) / _contact_sine(F_a, C_0, F_width)
-    return R_1 * d_mm**1.96 * smooth_power(smooth_magnitude(F_r, F_width) + axial, 0.54, F_width)
+    axial = R_2 * smooth_magnitude(F_a, F_WIDTH) / _contact_sine(F_a, C_0)
+    return R_1 * d_mm**1.96 * smooth_power(smooth_magnitude(F_r, F_WIDTH) + axial, 0.54, F_WIDTH)
 
 
 @law(
@@ -140,7 +126,7 @@ def dgb_rolling_variable(F_r: Num, F_a: Num, d_m: Num, R_1: Num, R_2: Num, C_0: 
     valid="F_a up to half of C_0; between the formulas with and without axial load about F_a = 0.22 F_r",
     ranges={"F_a / C_0": (-0.5, 0.5)},
 )
-def dgb_sliding_variable(F_r: Num, F_a: Num, d_m: Num, S_1: Num, S_2: Num, C_0: Num, *, F_width: float = 1.0) -> Num:
+def dgb_sliding_variable(F_r: Num, F_a: Num, d_m: Num, S_1: Num, S_2: Num, C_0: Num) -> Num:
     r"""Sliding variable of a deep groove ball bearing, in the catalogue's units.
 
     .. math:: G_{sl} = S_1 d_m^{-0.26 + 0.115 \chi} \left(F_r^5 + \frac{S_2 d_m^{1.5} F_a^4}{\sin\alpha_F}\right)^{1/3},
@@ -156,16 +142,15 @@ def dgb_sliding_variable(F_r: Num, F_a: Num, d_m: Num, S_1: Num, S_2: Num, C_0: 
         S_1: first sliding constant of the catalogue [1]
         S_2: second sliding constant of the catalogue [1]
         C_0: basic static load rating [N]
-        F_width: rounding at zero load [N]
     """
     d_mm = 1e3 * d_m
-    axial = S_2 * d_mm**1.5 * F_a**4 / _contact_sine(F_a, C_0, F_width)
-    share = F_a**4 / (F_a**4 + (0.22 * F_r) ** 4 + F_width**4)
-    return S_1 * d_mm ** (0.115 * share - 0.26) * smooth_power(smooth_power(F_r, 5, F_width) + axial, 1 / 3, F_width**5)
+    axial = S_2 * d_mm**1.5 * F_a**4 / _contact_sine(F_a, C_0)
+    share = F_a**4 / (F_a**4 + (0.22 * F_r) ** 4 + F_WIDTH**4)
+    return S_1 * d_mm ** (0.115 * share - 0.26) * smooth_power(smooth_power(F_r, 5, F_WIDTH) + axial, 1 / 3, F_WIDTH**5)
 
 
 @law(source="SKF2018", where="friction, Table 1a, tapered roller bearings")
-def trb_rolling_variable(F_r: Num, F_a: Num, d_m: Num, R_1: Num, R_2: Num, Y: Num, *, F_width: float = 1.0) -> Num:
+def trb_rolling_variable(F_r: Num, F_a: Num, d_m: Num, R_1: Num, R_2: Num, Y: Num) -> Num:
     r"""Rolling variable of a tapered roller bearing, in the catalogue's units.
 
     .. math:: G_{rr} = R_1 d_m^{2.38} (F_r + R_2 Y F_a)^{0.31}
@@ -177,15 +162,14 @@ def trb_rolling_variable(F_r: Num, F_a: Num, d_m: Num, R_1: Num, R_2: Num, Y: Nu
         R_1: first rolling constant of the catalogue [1]
         R_2: second rolling constant of the catalogue [1]
         Y: axial load factor of the catalogue [1]
-        F_width: rounding at zero load [N]
     """
     d_mm = 1e3 * d_m
-    load = smooth_magnitude(F_r, F_width) + R_2 * Y * smooth_magnitude(F_a, F_width)
-    return R_1 * d_mm**2.38 * smooth_power(load, 0.31, F_width)
+    load = smooth_magnitude(F_r, F_WIDTH) + R_2 * Y * smooth_magnitude(F_a, F_WIDTH)
+    return R_1 * d_mm**2.38 * smooth_power(load, 0.31, F_WIDTH)
 
 
 @law(source="SKF2018", where="friction, Table 1a, tapered roller bearings")
-def trb_sliding_variable(F_r: Num, F_a: Num, d_m: Num, S_1: Num, S_2: Num, Y: Num, *, F_width: float = 1.0) -> Num:
+def trb_sliding_variable(F_r: Num, F_a: Num, d_m: Num, S_1: Num, S_2: Num, Y: Num) -> Num:
     r"""Sliding variable of a tapered roller bearing, in the catalogue's units.
 
     .. math:: G_{sl} = S_1 d_m^{0.82} (F_r + S_2 Y F_a)
@@ -197,14 +181,13 @@ def trb_sliding_variable(F_r: Num, F_a: Num, d_m: Num, S_1: Num, S_2: Num, Y: Nu
         S_1: first sliding constant of the catalogue [1]
         S_2: second sliding constant of the catalogue [1]
         Y: axial load factor of the catalogue [1]
-        F_width: rounding at zero load [N]
     """
     d_mm = 1e3 * d_m
-    return S_1 * d_mm**0.82 * (smooth_magnitude(F_r, F_width) + S_2 * Y * smooth_magnitude(F_a, F_width))
+    return S_1 * d_mm**0.82 * (smooth_magnitude(F_r, F_WIDTH) + S_2 * Y * smooth_magnitude(F_a, F_WIDTH))
 
 
 @law(source="SKF2018", where="friction, weighting factor for the sliding friction coefficient")
-def boundary_share(w: Num, nu: Num, d_m: Num, *, w_width: float = SPEED_WIDTH) -> Num:
+def boundary_share(w: Num, nu: Num, d_m: Num) -> Num:
     r"""Share of boundary friction in the sliding friction [1].
 
     .. math:: \phi_{bl} = \exp(-2.6 \cdot 10^{-8} (n \nu)^{1.4} d_m)
@@ -213,9 +196,8 @@ def boundary_share(w: Num, nu: Num, d_m: Num, *, w_width: float = SPEED_WIDTH) -
         w: speed of one ring against the other, either direction [rad/s]
         nu: kinematic viscosity at the lubricant's temperature [m2/s]
         d_m: mean diameter, (d + D)/2 [m]
-        w_width: rounding at standstill [rad/s]
     """
-    n, nu_cSt, d_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d_m
+    n, nu_cSt, d_mm = to_rpm(smooth_abs(w)), 1e6 * nu, 1e3 * d_m
     return ca.exp(-2.6e-8 * (n * nu_cSt) ** 1.4 * d_mm)
 
 
@@ -266,9 +248,9 @@ def drag_loss_factor(level: Num, *, roller: bool = False) -> Num:
     return s * level**3 / (level**2 + x_0**2)
 
 
-def _splash(n: Num, nu_cSt: Num, d_mm: Num, D_mm: Num, H_mm: Num, K_Z: Num, rounding: float = 1e-3) -> Num:
+def _splash(n: Num, nu_cSt: Num, d_mm: Num, D_mm: Num, H_mm: Num, K_Z: Num) -> Num:
     """Part of the drag moment [N.mm] that depends on the viscosity, common to ball and roller bearings."""
-    d_m = 0.5 * (d_mm + D_mm)
+    d_m, rounding = 0.5 * (d_mm + D_mm), 1e-3  # rounded where it is dry, half and fully submerged
     cosine = smooth_min(smooth_max(1 - H_mm / (0.6 * d_m), -1.0, rounding), 1.0, rounding)  # of half the wetted angle
     t = 2 * ca.acos(cosine)
     f_t = ca.sqrt(1 - smooth_max(cosine, 0.0, rounding) ** 2)  # sin(t/2) below half, 1 above
@@ -284,9 +266,7 @@ def _splash(n: Num, nu_cSt: Num, d_mm: Num, D_mm: Num, H_mm: Num, K_Z: Num, roun
     ranges={"nu": (0.0, 500e-6)},
     verified=False,
 )
-def drag_torque_ball(
-    w: Num, nu: Num, d: Num, D: Num, H: Num, V_M: Num, K_Z: Num, i_rw: Num = 1.0, *, w_width: float = SPEED_WIDTH
-) -> Num:
+def drag_torque_ball(w: Num, nu: Num, d: Num, D: Num, H: Num, V_M: Num, K_Z: Num, i_rw: Num = 1.0) -> Num:
     r"""Drag torque of a ball bearing in an oil bath [N.m].
 
     .. math:: M_{drag} = 0.4 V_M K_{ball} d_m^5 n^2
@@ -302,9 +282,8 @@ def drag_torque_ball(
         V_M: drag loss factor of that level, see `drag_loss_factor` [1]
         K_Z: geometry constant of the bearing type [1]
         i_rw: number of rows of balls, which what they displace grows with [1]
-        w_width: rounding at standstill [rad/s]
     """
-    n, nu_cSt, d_mm, D_mm, H_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d, 1e3 * D, 1e3 * H
+    n, nu_cSt, d_mm, D_mm, H_mm = to_rpm(smooth_abs(w)), 1e6 * nu, 1e3 * d, 1e3 * D, 1e3 * H
     d_m = 0.5 * (d_mm + D_mm)
     K_ball = 1e-12 * i_rw * K_Z * (d_mm + D_mm) / (D_mm - d_mm)
     displaced = 0.4 * V_M * K_ball * d_m**5 * n**2
@@ -318,20 +297,7 @@ def drag_torque_ball(
     ranges={"nu": (0.0, 500e-6)},
     verified=False,
 )
-def drag_torque_roller(
-    w: Num,
-    nu: Num,
-    d: Num,
-    D: Num,
-    B: Num,
-    H: Num,
-    V_M: Num,
-    K_Z: Num,
-    K_L: Num,
-    *,
-    w_width: float = SPEED_WIDTH,
-    rounding: float = 1e-3,
-) -> Num:
+def drag_torque_roller(w: Num, nu: Num, d: Num, D: Num, B: Num, H: Num, V_M: Num, K_Z: Num, K_L: Num) -> Num:
     r"""Drag torque of a roller bearing in an oil bath [N.m].
 
     .. math:: M_{drag} = 4 V_M K_{roll} C_W B d_m^4 n^2
@@ -351,22 +317,18 @@ def drag_torque_roller(
         V_M: drag loss factor of that level, see `drag_loss_factor` [1]
         K_Z: geometry constant of the bearing type [1]
         K_L: geometry constant of the roller bearing type [1]
-        w_width: rounding at standstill [rad/s]
-        rounding: rounding of the level where the bearing is dry, half and fully submerged [1]
     """
-    n, nu_cSt, d_mm, D_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d, 1e3 * D
+    n, nu_cSt, d_mm, D_mm = to_rpm(smooth_abs(w)), 1e6 * nu, 1e3 * d, 1e3 * D
     B_mm, H_mm, d_m = 1e3 * B, 1e3 * H, 0.5 * (d_mm + D_mm)
     l_D = 5 * K_L * B_mm / d_m
     C_W = 2.789e-10 * l_D**3 - 2.786e-4 * l_D**2 + 0.0195 * l_D + 0.6439
     K_roll = 1e-12 * K_L * K_Z * (d_mm + D_mm) / (D_mm - d_mm)
     displaced = 4 * V_M * K_roll * C_W * B_mm * d_m**4 * n**2
-    return 1e-3 * (displaced + _splash(n, nu_cSt, d_mm, D_mm, H_mm, K_Z, rounding))
+    return 1e-3 * (displaced + _splash(n, nu_cSt, d_mm, D_mm, H_mm, K_Z))
 
 
 @law(source="Palmgren1959", where="load-independent moment", valid="oil bath or grease")
-def needle_torque_viscous(
-    w: Num, nu: Num, d_m: Num, f_0: Num, *, w_width: float = SPEED_WIDTH, width: float = 0.5
-) -> Num:
+def needle_torque_viscous(w: Num, nu: Num, d_m: Num, f_0: Num, *, width: float = 0.5) -> Num:
     r"""Load-independent friction torque of a needle bearing [N.m].
 
     .. math:: T_0 = 10^{-10} f_0 d_m^3 \max\left(160, (\nu n)^{2/3}\right)
@@ -378,15 +340,14 @@ def needle_torque_viscous(
         nu: kinematic viscosity at the lubricant's temperature [m2/s]
         d_m: mean diameter [m]
         f_0: factor of bearing type and lubrication [1]
-        w_width: rounding at standstill [rad/s]
         width: rounding where the two branches meet, of 160 [1]
     """
-    n, nu_cSt, d_mm = to_rpm(smooth_abs(w, w_width)), 1e6 * nu, 1e3 * d_m
+    n, nu_cSt, d_mm = to_rpm(smooth_abs(w)), 1e6 * nu, 1e3 * d_m
     return 1e-10 * f_0 * d_mm**3 * smooth_max(160.0, (nu_cSt * n) ** (2 / 3), width)
 
 
 @law(source="Palmgren1959", where="load-dependent moment")
-def needle_torque_load(P_1: Num, d_m: Num, f_1: Num, *, F_width: float = 1.0) -> Num:
+def needle_torque_load(P_1: Num, d_m: Num, f_1: Num) -> Num:
     r"""Load-dependent friction torque of a needle bearing [N.m].
 
     .. math:: T_1 = f_1 P_1 d_m
@@ -395,6 +356,5 @@ def needle_torque_load(P_1: Num, d_m: Num, f_1: Num, *, F_width: float = 1.0) ->
         P_1: radial load [N]
         d_m: mean diameter [m]
         f_1: factor of bearing type, 0.0002 for needle roller and cage assemblies [1]
-        F_width: rounding at zero load [N]
     """
-    return f_1 * smooth_magnitude(P_1, F_width) * d_m
+    return f_1 * smooth_magnitude(P_1, F_WIDTH) * d_m

@@ -20,6 +20,16 @@ Num = Any
 
 #: Width [rad/s] of every rounding in a magnitude of speed: 0.1 rpm, so 100 rpm is met to 5e-7.
 SPEED_WIDTH = 1e-2
+#: Of a speed along a surface [m/s].
+V_WIDTH = 1e-3
+#: Of the speed at which surfaces draw oil in [m/s].
+U_WIDTH = 1e-4
+#: Of that speed where it sorts a contact into its regime [m/s].
+SLOW_WIDTH = 1e-6
+#: Of a force [N].
+F_WIDTH = 1.0
+#: Of a force per length of contact line [N/m].
+LINE_WIDTH = 10.0
 
 #: Speed [rad/s] at which friction holds against its full torque: what a shaft at rest creeps with at most, 5e-4 rpm.
 #: Not far below the error that a solver tolerates in a speed: much narrower, it oscillates about rest in tiny steps.

@@ -15,7 +15,7 @@ import math
 import casadi as ca
 
 from ..sources import law
-from .smooth import SPEED_WIDTH, Num, smooth_abs, smooth_max
+from .smooth import Num, smooth_abs, smooth_max
 
 #: Least section of a pocket, in squares of the module.
 LEAST = 0.65
@@ -57,19 +57,7 @@ def pocket_closing(b: Num, m_n: Num, backlash: Num) -> Num:
     ranges={"b / m_n": (3.0, 20.0), "fill": (0.0, 1.0)},
     verified=False,
 )
-def squeezing_torque(
-    w: Num,
-    rho: Num,
-    nu: Num,
-    fill: Num,
-    r: Num,
-    r_mate: Num,
-    b: Num,
-    m_n: Num,
-    backlash: Num,
-    *,
-    w_width: float = SPEED_WIDTH,
-) -> Num:
+def squeezing_torque(w: Num, rho: Num, nu: Num, fill: Num, r: Num, r_mate: Num, b: Num, m_n: Num, backlash: Num) -> Num:
     r"""Torque on a gear that the squeezing of oil in its mesh takes [N.m], a magnitude.
 
     .. math:: \tau = \frac{5.8}{8 \pi} \rho v^2 b^3 \frac{r}{r_{red}}
@@ -89,9 +77,8 @@ def squeezing_torque(
         b: face width [m]
         m_n: module [m]
         backlash: normal backlash [m]
-        w_width: rounding at standstill [rad/s]
     """
-    v, r_red = smooth_abs(w, w_width) * r, r * r_mate / (r + r_mate)
+    v, r_red = smooth_abs(w) * r, r * r_mate / (r + r_mate)
     kappa = pocket_closing(b, m_n, backlash)
     k = kappa * squeezing_begins(fill)
     jets = MORE / (4 * math.pi) * rho * v**2 / r_red * (ca.log(1 + k) - k / (1 + k))

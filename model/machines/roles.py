@@ -10,33 +10,12 @@ from typing import Any
 from ..core.component import SOUND, Component, Faults
 from ..core.declare import Parameter, Port, list_declared
 from ..errors import ScenarioError
+from ..files import tables
 from ..parts.ports import Flange, HeatPort, Lubricant, ShaftReading
 from .spec import Spec
 
-#: Causes by which parts of a role may fail, where their class says no more. What a conductor is, what it joins tells.
-FAULTS: Mapping[str, Faults] = {
-    "teeth": {"losses.mesh_friction": {}, "losses.mesh_direction": {}, "losses.film_starvation": {}},
-    "bearing": {"losses.bearing_friction": {"k_loss": 1.0}, "losses.bearing_preload": {}},
-    "seal": {"losses.seal_drag": {}},
-    "churning": {"losses.churning": {}, "losses.windage": {}, "losses.oil_level": {}},
-    "brake": {"losses.clutch_drag": {"k_loss": 1.0}},
-    "bath": {"losses.oil_viscosity": {}, "losses.oil_level": {}},
-    "grease": {"losses.oil_viscosity": {}},
-    "pump": {"cooling.oil_flow": {"V_disp": 1.0}},
-    "jet": {"cooling.oil_wall": {}},
-    "surface": {"cooling.air": {}, "cooling.emissivity": {}},
-    "fan": {"cooling.fan": {"k_v": 1.0}},
-    "cooler": {"cooling.cooler": {"G_open": 1.0}},
-    "conductor": {"cooling.contact": {}, "cooling.oil_wall": {}, "cooling.foundation": {}, "cooling.cooler": {}},
-    "thermostat": {"cooling.thermostat": {}},
-    "switch": {"cooling.thermostat": {}},
-    "body": {"thermal.mass": {}},
-    "heater": {"heat.external_source": {}},
-    "motor": {"heat.external_source": {}},
-    "clutch": SOUND,
-    "shaft_end": SOUND,
-    "room": SOUND,
-}
+#: Causes by which parts of a role may fail, where their class says no more.
+FAULTS: Mapping[str, Faults] = tables("model.machines", "faults.toml")
 
 #: Roles of parts that brake a shaft, as a component class states them.
 BRAKES = ("teeth", "bearing", "seal", "churning")
@@ -204,11 +183,7 @@ class Roles:
 
 
 def faults_of(kind: type[Component]) -> Faults:
-    """Causes by which a part of a type may fail; none where neither its class nor its role declares any.
-
-    Args:
-        kind: class of the part
-    """
+    """Causes by which a part of a type may fail; none where neither its class nor its role declares any."""
     return FAULTS.get(kind.role, SOUND) if kind.faults is None else kind.faults
 
 

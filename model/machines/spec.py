@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from ..core.component import Component
 from ..core.connect import Assembly
 from ..errors import Problems, ScenarioError, suggestion
+from ..files import tables
 from ..parts import PARTS
 
 #: Kinds of machines, a file in `layouts` each. The parts of the last are named by the rig file alone.
@@ -20,13 +19,8 @@ LAYOUTS = ("planetary", "harmonic", "cycloidal", "cycloidal_printed", "rv_stage"
 
 @cache
 def layout(kind: str) -> tuple[Mapping[str, str], tuple[tuple[str, ...], ...]]:
-    """The fixed parts of a kind of machine, name -> type in the order to show them, and the groups of ports that meet.
-
-    Args:
-        kind: one of `LAYOUTS`
-    """
-    text = files("gearheat.model.machines").joinpath("layouts", f"{kind}.toml").read_text(encoding="utf-8")
-    found = tomllib.loads(text)
+    """The fixed parts of one of `LAYOUTS`, name -> type in the order to show them, and the ports that meet."""
+    found = tables("model.machines", "layouts", f"{kind}.toml")
     return found["parts"], tuple(map(tuple, found["connections"]))
 
 

@@ -42,6 +42,7 @@ from ..laws.rolling import (
 from ..laws.smooth import Num, smooth_abs
 from .friction import Friction
 from .ports import BearingLoad, Lubricant, Sump
+from .relations import require
 
 
 class RollingBearing(Friction):
@@ -119,13 +120,11 @@ class SkfBearing(RollingBearing):
 
     def relations(self) -> Iterator[Related]:
         """The rings lie inside each other, the rolling elements between them, and the oil not above the bearing."""
-        remedy = "Give bore, outside and mean diameter of one bearing."
-        yield self.relation("D is larger than d", "D / d", self.D / self.d, 1.02, remedy=remedy)
+        yield require(self, "D is larger than d", self.D / self.d, 1.02)
         middle = (self.d_m - self.d) / (self.D - self.d)
-        yield self.relation("d_m lies between d and D", "(d_m - d) / (D - d)", middle, 0.45, 0.55, remedy=remedy)
+        yield require(self, "d_m lies between d and D", middle, 0.45, 0.55)
         if self.has("H"):
-            remedy = "Give the oil level above the lowest point of the outer raceway."
-            yield self.relation("H is below D", "H / D", self.H / self.D, 0.0, 1.0, remedy=remedy)
+            yield require(self, "H is below D", self.H / self.D, 0.0, 1.0)
 
     def torque(self) -> Num:
         """Sum of the moments of one bearing [N.m]."""

@@ -13,6 +13,7 @@ from ..laws.bevel import bevel_axial_force, bevel_radial_force, mean_diameter, p
 from ..laws.smooth import Num, smooth_sign
 from .gears import GearPair
 from .ports import ToothForce
+from .relations import require
 
 #: Largest pitch angle [rad]: the virtual gear of a flat crown wheel has no end.
 FLAT = 1.53
@@ -72,31 +73,9 @@ class BevelGearPair(GearPair):
         """Two cones with teeth of one size, and a face that is not too wide."""
         yield from super().relations()
         delta_2 = self.cones()[1]
-        yield self.relation(
-            "the wheel is a cone",
-            "pitch angle of the wheel",
-            delta_2,
-            0.0,
-            FLAT,
-            unit="rad",
-            remedy="Give a smaller shaft_angle, or fewer teeth of the wheel.",
-        )
-        yield self.relation(
-            "m_et fits m_n",
-            "normal module at mid face by m_et over m_n",
-            self.mean_module() / self.m_n,
-            0.99,
-            1.01,
-            remedy="Give m_et alone; m_n follows from it.",
-        )
-        yield self.relation(
-            "b fits the cones",
-            "face width over cone distance",
-            2 * self.b * ca.sin(delta_2) / (self.m_et * self.z_2),
-            0.0,
-            WIDEST,
-            remedy="Give a narrower face or larger gears.",
-        )
+        yield require(self, "the wheel is a cone", delta_2, 0.0, FLAT)
+        yield require(self, "m_et fits m_n", self.mean_module() / self.m_n, 0.99, 1.01)
+        yield require(self, "b fits the cones", 2 * self.b * ca.sin(delta_2) / (self.m_et * self.z_2), 0.0, WIDEST)
 
     def equations(self) -> Iterator[Equation]:
         """Each gear has forces of its own; the torque decides which flanks bear, and so where the spiral pushes."""

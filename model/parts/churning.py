@@ -13,6 +13,7 @@ from ..laws.smooth import Num
 from ..laws.squeezing import squeezing_torque
 from .friction import Friction
 from .ports import Lubricant, Sump
+from .relations import require
 
 
 class Churning(Friction):
@@ -87,14 +88,7 @@ class MeshSqueezing(GearInFluid):
 
     def relations(self) -> Iterator[Related]:
         """Two gears mesh: outside each other, or the mate is a larger ring."""
-        yield self.relation(
-            "the mate is a gear or a larger ring",
-            "1 / r + 1 / r_mate, times r",
-            1 + self.r / self.r_mate,
-            1e-3,
-            100.0,
-            remedy="Give r_mate positive, or for a ring negative and larger than r.",
-        )
+        yield require(self, "the mate is a gear or a larger ring", 1 + self.r / self.r_mate, 1e-3, 100.0)
 
     def torque(self) -> Num:
         """Torque of one mesh [N.m]."""

@@ -103,11 +103,7 @@ class TellsFilmContact(Protocol):
     name: str
 
     def film_contact(self, values: Mapping[str, float]) -> FilmContact:
-        """Its contact.
-
-        Args:
-            values: parameters and outputs of the part at an operating point, by key, in SI
-        """
+        """Its contact, by parameters and outputs of the part at an operating point, by key, in SI."""
         ...
 
 
@@ -118,9 +114,5 @@ class TellsContacts(Protocol):
     name: str
 
     def contact_table(self, values: Mapping[str, float]) -> ContactTable:
-        """All contacts over a mesh cycle.
-
-        Args:
-            values: parameters and outputs of the part at an operating point, by key, in SI
-        """
+        """All contacts over a mesh cycle, by parameters and outputs of the part at an operating point in SI."""
         ...

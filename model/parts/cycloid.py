@@ -29,6 +29,7 @@ from ..laws.cycloid_pin import greatest_curvature, pin_load, width_coefficient
 from ..laws.film import film_from_reference, film_of_share, mixed_friction
 from ..laws.smooth import Num, friction_sign, smooth_magnitude, smooth_sign
 from .ports import Flange, HeatPort, Lubricant
+from .relations import require
 
 #: Torque at the output below which the loads of the discs are rounded [N.m]; they vanish with it.
 TORQUE_WIDTH = 1e-4
@@ -79,39 +80,21 @@ class CycloidDrive(Component):
 
     def relations(self) -> Iterator[Related]:
         """The disc can be cut, and everything finds its place."""
-        remedy = "Give one lobe less than pins."
-        yield self.relation("z_2 is z_1 + 1", "z_2 - z_1", self.z_2 - self.z_1, 1.0, 1.0, remedy=remedy)
+        yield require(self, "z_2 is z_1 + 1", self.z_2 - self.z_1, 1.0, 1.0)
         K = width_coefficient(self.e, self.z_2, self.r)
-        remedy = "Give a smaller eccentricity e, fewer pins, or a larger r."
-        yield self.relation("e leaves the disc without cusps", "e z_2 / r", K, high=0.99, remedy=remedy)
+        yield require(self, "e leaves the disc without cusps", K, high=0.99)
         curvature = greatest_curvature(ca.fmin(K, 0.99), self.z_2, self.r)
-        yield self.relation(
-            "the pins do not undercut the disc",
-            "radius of a roller on a pin over the least radius of curvature of its path",
-            self.D_0 / 2 * curvature,
-            high=1.0,
-            remedy="Give a smaller D_0 or eccentricity e, or a larger r.",
-        )
-        gap, remedy = 2 * self.r * ca.sin(ca.pi / ca.fmax(self.z_2, 2)), "Give fewer pins, a smaller D_0 or larger r."
-        yield self.relation(
-            "neighbouring pins do not touch", "D_0 over their pitch", self.D_0 / gap, high=1, remedy=remedy
-        )
+        yield require(self, "the pins do not undercut the disc", self.D_0 / 2 * curvature, high=1.0)
+        gap = 2 * self.r * ca.sin(ca.pi / ca.fmax(self.z_2, 2))
+        yield require(self, "neighbouring pins do not touch", self.D_0 / gap, high=1)
         hole, root = self.D_VK / 2 + self.e, self.r - self.e - self.D_0 / 2
-        remedy = "R_0 is the radius of the circle of output rollers. Check R_0, D_VK, e, r and D_0."
         share = (self.R_0 + hole) / root
-        yield self.relation(
-            "the holes lie within the disc", "reach of the holes over root radius", share, high=1, remedy=remedy
-        )
-        share, remedy = (
-            (self.D_CZ / 2 + hole) / self.R_0,
-            "R_0 is the radius of the circle of output rollers, not its diameter.",
-        )
-        yield self.relation(
-            "the holes lie outside the bearing", "bearing and hole over R_0", share, high=1, remedy=remedy
-        )
+        yield require(self, "the holes lie within the disc", share, high=1)
+        share = (self.D_CZ / 2 + hole) / self.R_0
+        yield require(self, "the holes lie outside the bearing", share, high=1)
         for inner, outer in (("d_0", "D_0"), ("d_VK", "D_VK"), ("d_CZ", "D_CZ")):
-            ratio, remedy = self.symbols[inner] / self.symbols[outer], f"Give the smaller diameter as {inner}."
-            yield self.relation(f"{inner} is below {outer}", f"{inner} / {outer}", ratio, high=1 - 1e-6, remedy=remedy)
+            ratio = self.symbols[inner] / self.symbols[outer]
+            yield require(self, "{inner} is below {outer}", ratio, high=1 - 1e-6, inner=inner, outer=outer)
 
     def load(self) -> Num:
         """Torque of one disc, its magnitude [N.m]."""
@@ -178,14 +161,8 @@ class CycloidalReducer(CycloidDrive):
         """Friction lies between that of a film and that without, and locks nothing."""
         yield from super().relations()
         place = (self.mu_ref - self.mu_fluid) / (self.mu_bl - self.mu_fluid)
-        remedy = "Give mu_fluid below mu_ref and mu_bl above it."
-        yield self.relation(
-            "mu_ref is mixed friction", "(mu_ref - mu_fluid) / (mu_bl - mu_fluid)", place, 0.1, 1.0, remedy=remedy
-        )
-        most, remedy = sum(self.torques(1.0, self.mu_bl)), "Give smaller coefficients of friction or a smaller ratio."
-        yield self.relation(
-            "no self-locking", "friction torque over output torque without a film", most, high=0.95, remedy=remedy
-        )
+        yield require(self, "mu_ref is mixed friction", place, 0.1, 1.0)
+        yield require(self, "no self-locking", sum(self.torques(1.0, self.mu_bl)), high=0.95)
 
     def torques(self, tau: Num, mu_s: Num) -> tuple[Num, Num, Num]:
         """Friction torques of bearings, output rollers and rollers on pins of all discs, on the output shaft [N.m].
@@ -253,8 +230,7 @@ class MalhotraReducer(CycloidDrive):
     def relations(self) -> Iterator[Related]:
         """No more discs are counted than there are."""
         yield from super().relations()
-        share, remedy = self.n_counted / self.n, "Give n_counted as n or below."
-        yield self.relation("n_counted fits n", "n_counted / n", share, high=1.0, remedy=remedy)
+        yield require(self, "n_counted fits n", self.n_counted / self.n, high=1.0)
 
     def torques(self, T_disc: Num) -> tuple[Num, Num, Num]:
         """Loss torques of bearings, output rollers and rollers on pins, referred to the input [N.m]."""

@@ -10,10 +10,10 @@ import casadi as ca
 
 from ..core.component import SOUND, Component, Equation, Faults, equation
 from ..core.declare import Choice, Output, Parameter
-from ..laws.convection import V_WIDTH, mixed
+from ..laws.convection import mixed
 from ..laws.drum import cooling_area, forced_rotating_cylinder, gear_churning_loss, motor_loss, source_coefficient
 from ..laws.pad import fill_arc, fill_volume_share
-from ..laws.smooth import SPEED_WIDTH, Num, smooth_abs
+from ..laws.smooth import SPEED_WIDTH, V_WIDTH, Num, smooth_abs
 from .friction import Friction
 from .lubrication import OilBath
 from .ports import AirPort, BearingLoad, Flange, HeatPort, Lubricant, OilLevel, ShaftReading

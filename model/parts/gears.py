@@ -24,6 +24,7 @@ from ..laws.mesh import line_loss_factor, line_sharing, mesh_loss, tooth_loss_fa
 from ..laws.smooth import Num, friction_sign, smooth_abs
 from .contacts import FilmContact, fits_map
 from .ports import Flange, ToothForce
+from .relations import require
 from .teeth import ToothedPart
 
 #: Profile shift left between what a_w asks for and x_1 + x_2: tolerances and backlash, 5 % of a module.
@@ -83,21 +84,9 @@ class GearPair(ToothedPart):
     def relations(self) -> Iterator[Related]:
         """What makes two gears mesh at their centre distance, and teeth that can be cut."""
         yield from super().relations()
-        yield self.relation(
-            "a_w fits z_1, z_2, m_n, beta, x_1, x_2",
-            "profile shift that a_w asks for beyond x_1 + x_2",
-            self.shift_sum() - self.x_1 - self.x_2,
-            -SHIFT_LEFT,
-            SHIFT_LEFT,
-            remedy="Give the a_w, beta or profile shifts that belong to these teeth.",
-        )
-        yield self.relation(
-            "the teeth overlap",
-            "transverse contact ratio",
-            self.eps_alpha,
-            1.0,
-            remedy="Give more teeth, less profile shift, or a smaller alpha_n.",
-        )
+        shift = self.shift_sum() - self.x_1 - self.x_2
+        yield require(self, "a_w fits z_1, z_2, m_n, beta, x_1, x_2", shift, -SHIFT_LEFT, SHIFT_LEFT)
+        yield require(self, "the teeth overlap", self.eps_alpha, 1.0)
         z_a, z_b = self.teeth()
         yield from self.cut("1", z_a, self.x_1)
         yield from self.cut("2", z_b, self.x_2)
@@ -113,13 +102,8 @@ class GearPair(ToothedPart):
             x: profile shift [1]
         """
         alpha_t, _ = self.working_angle()
-        yield self.relation(
-            f"x_{key} is above undercut",
-            f"x_{key} over the limit of undercut",
-            x - undercut_shift(z, alpha_t, self.beta),
-            -UNDERCUT_LEFT,
-            remedy=f"Give a larger x_{key} or more teeth.",
-        )
+        beyond = x - undercut_shift(z, alpha_t, self.beta)
+        yield require(self, "x_{key} is above undercut", beyond, -UNDERCUT_LEFT, key=key)
         yield self.pointed(key, z, x)
 
     def pointed(self, key: str, z: Num, x: Num) -> Related:
@@ -131,13 +115,8 @@ class GearPair(ToothedPart):
             x: profile shift [1]
         """
         alpha_t, _ = self.working_angle()
-        return self.relation(
-            f"the teeth of gear {key} are not pointed",
-            "tooth thickness at the tip",
-            tip_thickness(z, x, self.alpha_n, alpha_t, *self.circles(z, x)) / self.m_n,
-            0.0,
-            remedy=f"Give a smaller x_{key}.",
-        )
+        thickness = tip_thickness(z, x, self.alpha_n, alpha_t, *self.circles(z, x))
+        return require(self, "the teeth of gear {key} are not pointed", thickness / self.m_n, 0.0, key=key)
 
     def loss_factor(self) -> Num:
         """Tooth loss factor from the geometry [1]."""
@@ -152,11 +131,7 @@ class GearPair(ToothedPart):
         )
 
     def film_contact(self, values: Mapping[str, float]) -> FilmContact:
-        """The contact at the pitch point.
-
-        Args:
-            values: parameters and outputs at an operating point, by key, in SI
-        """
+        """The contact at the pitch point, by values at an operating point in SI."""
         c = self.contact(self.eps_alpha, *self.teeth())
         R, length, normal = (self.number_at(x, values) for x in (c.R, c.l, c.normal))
         E_eff, sigma = values["E"] / (1 - values["poisson"] ** 2), 2**0.5 * values["Ra"]
@@ -221,19 +196,7 @@ class InternalGearPair(HelicalGearPair):
             return
         alpha_t, alpha_wt = self.working_angle()
         reach = transverse_base_pitch(self.m_n, self.beta, alpha_t) * self.addendum_ratios()[1]
-        yield self.relation(
-            "the tips of the ring meet the pinion's involute",
-            "path of contact at the ring's tips over its end at the pinion's base circle",
-            reach / (self.radius(self.z_1) * ca.cos(alpha_t) * ca.tan(alpha_wt)),
-            0.0,
-            BEYOND,
-            remedy="Give more teeth or a smaller x_2.",
-        )
-        yield self.relation(
-            "the ring is larger than the pinion",
-            "z_2 - z_1",
-            self.z_2 - self.z_1,
-            LEAST_DIFFERENCE,
-            remedy="Give the ring more teeth: closer, the tips of ring and pinion run into each other.",
-        )
+        end = self.radius(self.z_1) * ca.cos(alpha_t) * ca.tan(alpha_wt)
+        yield require(self, "the tips of the ring meet the pinion's involute", reach / end, 0.0, BEYOND)
+        yield require(self, "the ring is larger than the pinion", self.z_2 - self.z_1, LEAST_DIFFERENCE)
         yield self.pointed(key, z, x)

@@ -12,6 +12,7 @@ from ..core.declare import Choice, Output, Parameter, State
 from ..laws.smooth import Num, smooth_abs
 from .friction import Friction
 from .ports import COLDEST, HOTTEST, HeatPort, Lubricant, Opening, ShaftReading
+from .relations import require
 from .thermal import Conductor
 
 #: Width of the torque [N.m] over which the corner of its magnitude is rounded.
@@ -96,10 +97,7 @@ class Thermostat(Component):
 
     def relations(self) -> Iterator[Related]:
         """It opens above where it closes."""
-        remedy = "Give the higher temperature as T_open."
-        yield self.relation(
-            "T_open is above T_close", "T_open - T_close", self.T_open - self.T_close, 0.01, remedy=remedy, unit="K"
-        )
+        yield require(self, "T_open is above T_close", self.T_open - self.T_close, 0.01)
 
     def equations(self) -> Iterator[Equation]:
         """A rounded relay with hysteresis, or a smooth rise."""

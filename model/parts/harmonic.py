@@ -19,6 +19,7 @@ from ..laws.regimes import elasticity_parameter, inside_elastohydrodynamic, visc
 from ..laws.smooth import Num, friction_sign, smooth_abs, smooth_cap, smooth_sign
 from .contacts import FilmContact, fits_map
 from .ports import BearingLoad, Flange, HeatPort, Lubricant
+from .relations import require
 
 #: Film over the sum of the roughnesses Rz from which the source admits a contact.
 ADMISSIBLE = 1.1
@@ -100,13 +101,7 @@ class FlankFilm(Component):
 
     def relations(self) -> Iterator[Related]:
         """A convex flank fits into a concave one."""
-        yield self.relation(
-            "r_concave is larger than r_convex",
-            "r_concave / r_convex",
-            self.r_concave / self.r_convex,
-            1 + 1e-9,
-            remedy="Give the smaller radius as r_convex; 1/R = 1/r_convex - 1/r_concave has to be positive.",
-        )
+        yield require(self, "r_concave is larger than r_convex", self.r_concave / self.r_convex, 1 + 1e-9)
         if isinstance(self.film, FilmMap):
             yield fits_map(self, self.film, self.E_eff)
 
@@ -228,18 +223,11 @@ class HarmonicMesh(FlankFilm):
     def relations(self) -> Iterator[Related]:
         """Two waves, and teeth that carry."""
         yield from super().relations()
-        remedy = "A flexspline with two waves has two teeth less than the circular spline, or a multiple of two."
-        pairs = (self.z_2 - self.z_1) / 2
-        yield self.relation("z_2 is two more than z_1", "(z_2 - z_1) / 2", pairs, 1.0, 10.0, remedy=remedy)
-        share, remedy = self.pairs / self.z_1, "Give at most as many pairs as the flexspline has teeth."
-        yield self.relation("the pairs are teeth", "pairs / z_1", share, 0.0, 1.0, remedy=remedy)
+        yield require(self, "z_2 is two more than z_1", (self.z_2 - self.z_1) / 2, 1.0, 10.0)
+        yield require(self, "the pairs are teeth", self.pairs / self.z_1, 0.0, 1.0)
 
     def film_contact(self, values: Mapping[str, float]) -> FilmContact:
-        """The contact of a pair of teeth, one flank at rest.
-
-        Args:
-            values: parameters and outputs at an operating point, by key, in SI
-        """
+        """The contact of a pair of teeth, one flank at rest, by values at an operating point in SI."""
         sigma = RQ_OVER_RZ * float(np.hypot(values["Rz_1"], values["Rz_2"]))
         R = self.number_at(self.R, values)
         speed = abs(values["speed_factor"] * values["v_slide"])

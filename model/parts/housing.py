@@ -14,7 +14,6 @@ from ..core.component import SOUND, Component, Equation, Faults, Related, equati
 from ..core.declare import Output, Parameter
 from ..laws.conduction import cylinder_wall, plane_wall
 from ..laws.convection import (
-    V_WIDTH,
     flat_wall_coefficient,
     forced_cylinder,
     forced_plate,
@@ -24,8 +23,9 @@ from ..laws.convection import (
     nusselt_hilpert,
 )
 from ..laws.radiation import radiated, radiation_coefficient
-from ..laws.smooth import Num, smooth_abs
+from ..laws.smooth import V_WIDTH, Num, smooth_abs
 from .ports import AirPort, HeatPort, WallSize
+from .relations import require
 
 
 class RoundHousing(Component):
@@ -65,8 +65,7 @@ class RoundHousing(Component):
 
     def relations(self) -> Iterator[Related]:
         """A thick wall leaves a hollow cylinder."""
-        remedy = "Give a thinner wall or a larger R_o."
-        yield self.relation("d leaves room inside", "d / R_o", self.d / self.R_o, high=0.95, remedy=remedy)
+        yield require(self, "d leaves room inside", self.d / self.R_o, high=0.95)
 
     def conductances(self) -> tuple[Num, Num]:
         """Of the flat walls and of the cylinder [W/K]."""

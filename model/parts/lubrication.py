@@ -17,6 +17,7 @@ from ..laws.oil import (
 )
 from ..laws.smooth import Num
 from .ports import COLDEST, HOTTEST, HeatPort, Lubricant, Sump
+from .relations import require
 
 
 class LubricantProperties(Component):
@@ -36,8 +37,7 @@ class LubricantProperties(Component):
 
     def relations(self) -> Iterator[Related]:
         """A lubricant thins as it warms."""
-        ratio, remedy = self.nu_40 / self.nu_100, "Give the viscosity at 40 degC as nu_40, that at 100 degC as nu_100."
-        yield self.relation("nu_40 is above nu_100", "nu_40 / nu_100", ratio, 1.01, remedy=remedy)
+        yield require(self, "nu_40 is above nu_100", self.nu_40 / self.nu_100, 1.01)
 
     def viscosity(self, T: Num) -> Num:
         """Kinematic viscosity [m2/s] at a temperature [K]."""

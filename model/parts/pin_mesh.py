@@ -10,6 +10,7 @@ from math import inf, pi, radians
 import casadi as ca
 import numpy as np
 
+from ..files import tables
 from ..laws.cycloid_pin import (
     contact_speed,
     curvature,
@@ -32,20 +33,8 @@ from .contacts import ContactCase, ContactTable
 ANGLES = 12
 #: Cosine next to which angles are cut off, so that their slopes stay finite.
 INSIDE = 1 - 1e-9
-#: What the columns of the table hold. Speeds are magnitudes.
-COLUMNS = {
-    "theta_deg": "angle of the pin from the crank's line [deg]; the loaded half",
-    "R_m": "reduced radius of disc and pin [m]",
-    "w_N_m": "load per width of a disc [N/m]",
-    "U_m_s": "mean entrainment speed of disc and pin [m/s]",
-    "v_slide_m_s": "sliding speed between disc and pin [m/s]; 0 where the pin rolls and slides in its groove instead",
-    "p_H_Pa": "greatest Hertzian pressure of disc and pin [Pa]",
-    "h_min_m": "minimum film between disc and pin, Dowson and Higginson or the film map [m]",
-    "h_c_m": "central film between disc and pin, Moes or the film map [m]",
-    "Lambda": "central film over composite roughness [1]",
-    "asperity_share": "share of the load that asperities carry [1]",
-    "mu": "friction coefficient between disc and pin [1]",
-}
+#: What the columns of the table hold.
+COLUMNS: dict[str, str] = tables("model.parts", "pin_table.toml")
 #: Positions of the ring of pins against the crank at which the torque is recovered.
 POSITIONS = 40
 

@@ -12,6 +12,7 @@ from ..laws.gears import tip_diameter
 from ..laws.mesh import mesh_loss
 from ..laws.smooth import Num, friction_sign, smooth_abs
 from .ports import BearingLoad, Flange, ShaftReading
+from .relations import require
 from .teeth import ToothedPart
 
 #: How far a load may exceed that of all planets, relative: such numbers are inferred from measured losses.
@@ -63,43 +64,15 @@ class PlanetarySet(ToothedPart):
     def relations(self) -> Iterator[Related]:
         """Sun, planets and ring fit into each other, and the planets beside each other."""
         yield from super().relations()
-        yield self.relation(
-            "a_w lies near the reference distance",
-            "sum of profile shifts of sun and planet that a_w asks for",
-            self.shift_sum(),
-            -1.5,
-            2.5,
-            remedy="Give the a_w that belongs to z_1, z_2, m_n and beta.",
-        )
-        yield self.relation(
-            "z_3 fits z_1 + 2 z_2",
-            "z_3 - z_1 - 2 z_2",
-            self.z_3 - self.z_1 - 2 * self.z_2,
-            -4.0,
-            4.0,
-            remedy="Give the number of teeth of the ring that encloses sun and planets.",
-        )
+        yield require(self, "a_w lies near the reference distance", self.shift_sum(), -1.5, 2.5)
+        yield require(self, "z_3 fits z_1 + 2 z_2", self.z_3 - self.z_1 - 2 * self.z_2, -4.0, 4.0)
         places = (self.z_1 + self.z_3) / self.N
-        yield self.relation(
-            "the planets stand at equal angles",
-            "(z_1 + z_3) / N less the next whole number",
-            places - ca.floor(places + 0.5),
-            -1e-6,
-            1e-6,
-            remedy="Choose z_1 + z_3 as a multiple of the number of planets.",
-        )
+        yield require(self, "the planets stand at equal angles", places - ca.floor(places + 0.5), -1e-6, 1e-6)
         tip = tip_diameter(2 * self.radius(self.z_2), self.m_n, 0.0)
-        yield self.relation(
-            "neighbouring planets do not touch",
-            "clearance of the tips of two planets",
-            2 * self.a_w * ca.sin(ca.pi / ca.fmax(self.N, 2)) - tip,
-            0.0,
-            unit="m",
-            remedy="Give fewer planets, or planets with fewer teeth.",
-        )
+        apart = 2 * self.a_w * ca.sin(ca.pi / ca.fmax(self.N, 2))
+        yield require(self, "neighbouring planets do not touch", apart - tip, 0.0)
         for key in ("n_axial_carrier", "n_axial_sun"):
-            remedy, most = "Give at most the number of planets.", 1 + LOAD_LEFT
-            yield self.relation(f"{key} fits N", f"{key} / N", getattr(self, key) / self.N, 0.0, most, remedy=remedy)
+            yield require(self, "{key} fits N", getattr(self, key) / self.N, 0.0, 1 + LOAD_LEFT, key=key)
 
     def equations(self) -> Iterator[Equation]:
         """Kinematics, torques, and the two kinds of meshes."""

@@ -16,6 +16,7 @@ from ..laws.smooth import Num, friction_sign, smooth_abs
 from .contacts import ContactCase, ContactTable, fits_map
 from .pin_mesh import Film, PinContact, PinMesh, pin_case, pin_table
 from .ports import BearingLoad, Flange, HeatPort, Lubricant, ShaftReading
+from .relations import require
 
 #: Discs of a stage; they stand opposite each other, so that the radial forces of both cancel.
 DISCS = 2
@@ -91,29 +92,15 @@ class CycloidPinStage(Component):
     def relations(self) -> Iterator[Related]:
         """The disc has one lobe less than there are pins, no cusps and no undercut, and the pins have room."""
         K = width_coefficient(self.e, self.Zp, self.Rp)
-        remedy = "Give one lobe less than pins."
-        yield self.relation("Zc is Zp - 1", "Zp - 1 - Zc", self.Zp - 1 - self.Zc, 0.0, 0.0, remedy=remedy)
-        yield self.relation(
-            "the eccentricity leaves no cusps", "e Zp / Rp", K, high=0.99, remedy="Give a smaller e, or a larger Rp."
-        )
-        yield self.relation(
-            "the pins do not undercut the disc",
-            "reduced radius where the disc is sharpest, over r_rp",
-            1 - self.r_rp * greatest_curvature(ca.fmin(K, 0.99), self.Zp, self.Rp),
-            UNDERCUT,
-            remedy="Give a smaller e or r_rp, or a larger Rp.",
-        )
-        yield self.relation(
-            "neighbouring pins do not touch",
-            "distance of two pins over their diameter",
-            self.Rp * ca.sin(ca.pi / ca.fmax(self.Zp, 2)) / self.r_rp,
-            1.0,
-            remedy="Give thinner or fewer pins, or a larger Rp.",
-        )
-        remedy = "Put the cranks inside the pin circle."
+        yield require(self, "Zc is Zp - 1", self.Zp - 1 - self.Zc, 0.0, 0.0)
+        yield require(self, "the eccentricity leaves no cusps", K, high=0.99)
+        sharpest = 1 - self.r_rp * greatest_curvature(ca.fmin(K, 0.99), self.Zp, self.Rp)
+        yield require(self, "the pins do not undercut the disc", sharpest, UNDERCUT)
+        apart = self.Rp * ca.sin(ca.pi / ca.fmax(self.Zp, 2))
+        yield require(self, "neighbouring pins do not touch", apart / self.r_rp, 1.0)
         if isinstance(self.film, FilmMap):
             yield fits_map(self, self.film, self.E_eff)
-        yield self.relation("the cranks are inside the pins", "a_0 / Rp", self.a_0 / self.Rp, high=1.0, remedy=remedy)
+        yield require(self, "the cranks are inside the pins", self.a_0 / self.Rp, high=1.0)
 
     def _mesh(self, value: Mapping[str, Num]) -> PinMesh:
         keys = ("Zp", "Rp", "e", "r_rp", "b", "E_eff", "sigma", "mu_fluid", "mu_boundary")
@@ -186,11 +173,7 @@ class CycloidPinStage(Component):
         return self._mesh(values), Film(*(values[key] for key in ("T_disc", "w_crank", "eta_oil", "alpha_p")))
 
     def contact_table(self, values: Mapping[str, float]) -> ContactTable:
-        """The contact of a pin at every degree of the loaded half; see `pin_mesh.COLUMNS`.
-
-        Args:
-            values: parameters and outputs of the stage at an operating point, by key, in SI
-        """
+        """The contact of a pin at every degree of the loaded half, see `pin_mesh.COLUMNS`, by values in SI."""
         return replace(pin_table(*self._in_numbers(values)), cycle=self.mesh_cycle(values))
 
     def contact_case(self, values: Mapping[str, float], theta: float) -> ContactCase:
@@ -203,17 +186,9 @@ class CycloidPinStage(Component):
         return pin_case(*self._in_numbers(values), theta)
 
     def film_contact(self, values: Mapping[str, float]) -> ContactCase:
-        """The contact of the pin across the crank's line.
-
-        Args:
-            values: parameters and outputs of the stage at an operating point, by key, in SI
-        """
+        """The contact of the pin across the crank's line, by values in SI."""
         return self.contact_case(values, float(ca.pi) / 2)
 
     def mesh_cycle(self, values: Mapping[str, float]) -> list[ContactCase]:
-        """The way of a pin through the loaded half, in the middles of equal steps: it carries at every moment.
-
-        Args:
-            values: parameters and outputs of the stage at an operating point, by key, in SI
-        """
+        """The way of a pin through the loaded half, at middles of equal steps where it carries, by values in SI."""
         return [self.contact_case(values, float(ca.pi) * (k + 0.5) / MOMENTS) for k in range(MOMENTS)]

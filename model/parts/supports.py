@@ -11,6 +11,7 @@ from ..core.component import SOUND, Component, Equation, Faults, Related, equati
 from ..core.declare import Parameter
 from ..laws.smooth import Num, smooth_abs
 from .ports import BearingLoad, ToothForce
+from .relations import require
 
 #: Force below which the direction of a bearing load is blurred [N].
 FORCE_WIDTH = 1.0
@@ -40,14 +41,7 @@ class ShaftSupport(Component):
     def relations(self) -> Iterator[Related]:
         """A gear sits between the bearings, or overhangs by no more than their distance."""
         for key, position in self.positions().items():
-            yield self.relation(
-                f"{key} fits span",
-                f"{key} / span",
-                position / self.span,
-                -1.0,
-                2.0,
-                remedy="Give the position of the gear from bearing a, and the distance of the bearings.",
-            )
+            yield require(self, "{key} fits span", position / self.span, -1.0, 2.0, key=key)
 
     def forces(self) -> tuple[list[tuple[Num, Num, Num, Num]], Num]:
         """Per gear: tangential and radial force [N], position [m], tilting moment [N.m]; and the axial force [N]."""

@@ -26,6 +26,7 @@ from ..laws.gears import (
 from ..laws.mesh import friction_schlenk, load_per_contact_length, load_per_face_width
 from ..laws.smooth import Num, smooth_abs
 from .ports import HeatPort, Lubricant
+from .relations import require
 
 #: Share of a_w that the base circles may take; at 1 the flanks would have no line of action.
 ANGLE_LEFT = 0.9999
@@ -96,13 +97,7 @@ class ToothedPart(Component):
         """The base circles of the first two gears leave room for a line of action."""
         alpha_t, _ = self.working_angle()
         least = ca.fabs(self.radius(sum(self.teeth()))) * ca.cos(alpha_t)
-        yield self.relation(
-            "a_w is more than the base circles need",
-            "sum of the base radii over a_w",
-            least / self.a_w,
-            high=ANGLE_LEFT,
-            remedy="Give a larger a_w, fewer teeth, or a smaller m_n or beta.",
-        )
+        yield require(self, "a_w is more than the base circles need", least / self.a_w, high=ANGLE_LEFT)
 
     def contact(self, eps_alpha: Num, z_a: Num, z_b: Num) -> ToothContact:
         """The contact of two gears.

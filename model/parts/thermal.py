@@ -14,14 +14,14 @@ from ..laws.convection import (
     forced_cylinder,
     forced_plate,
     mixed,
+    natural_horizontal,
     natural_horizontal_cylinder,
-    natural_horizontal_down,
-    natural_horizontal_up,
     natural_vertical_plate,
 )
 from ..laws.radiation import absorbed_sun, radiated
 from ..laws.smooth import Num
 from .ports import COLDEST, HOTTEST, AirPort, HeatPort
+from .relations import require
 
 
 class HeatCapacity(Component):
@@ -123,8 +123,7 @@ class CylinderWall(Conductor):
 
     def relations(self) -> Iterator[Related]:
         """The wall has a thickness."""
-        remedy = "Give the outer radius as r_o, the inner as r_i."
-        yield self.relation("r_o is larger than r_i", "r_o / r_i", self.r_o / self.r_i, 1 + 1e-6, remedy=remedy)
+        yield require(self, "r_o is larger than r_i", self.r_o / self.r_i, 1 + 1e-6)
 
     def conductance(self) -> Num:
         """Of a cylindrical wall."""
@@ -299,15 +298,14 @@ class BoxCooling(SurfaceCooling):
 
     def relations(self) -> Iterator[Related]:
         """Faces have no more than the whole area; the rest is vertical."""
-        both, remedy = self.share_top + self.share_bottom, "Give smaller shares; the vertical faces have what is left."
-        yield self.relation("the shares fit into one area", "share_top + share_bottom", both, 0.0, 1.0, remedy=remedy)
+        yield require(self, "the shares fit into one area", self.share_top + self.share_bottom, 0.0, 1.0)
 
     def natural(self) -> Num:
         """Mean of vertical, upward and downward faces by area."""
         T, T_air = self.surface.T, self.air.T
         L = self.length * self.width / (2 * (self.length + self.width))  # area over perimeter
-        upward = self.share_top * natural_horizontal_up(T, T_air, L, p=self.air.p)
-        downward = self.share_bottom * natural_horizontal_down(T, T_air, L, p=self.air.p)
+        upward = self.share_top * natural_horizontal(T, T_air, L, up=True, p=self.air.p)
+        downward = self.share_bottom * natural_horizontal(T, T_air, L, up=False, p=self.air.p)
         vertical = natural_vertical_plate(T, T_air, self.height, p=self.air.p)
         return (1 - self.share_top - self.share_bottom) * vertical + upward + downward
 

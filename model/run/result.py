@@ -127,11 +127,7 @@ def words(flat: FlatModel, part: str, y: np.ndarray, digits: int = 6) -> dict[st
 
 
 def list_unsolved(implicit: Mapping[str, float]) -> Iterator[str]:
-    """The implicit equations that do not hold, in words.
-
-    Args:
-        implicit: largest scaled residual of each equation
-    """
+    """The implicit equations that do not hold, in words, by the largest scaled residual of each."""
     for name, residual in implicit.items():
         if not residual <= LEFT:
             yield f'the equation "{name}" leaves {residual:.2g} of its typical size. Check the values of that part.'

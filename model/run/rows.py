@@ -78,7 +78,8 @@ def result(
     """
     groups = ((flat.states, x), (flat.inputs, u), (flat.outputs, evaluated["y"]))
     columns = {q.name: row for quantities, values in groups for q, row in zip(quantities, values, strict=True)}
-    implicit = find_residuals(flat, evaluated["residual"])
+    rows = zip(flat.residual_names, evaluated["residual"], strict=True)  # in units of their nominals
+    implicit = {name: float(np.max(np.abs(row))) for name, row in rows}
     problems = [*out_of_range(flat, columns), *list_unsolved(implicit), *imbalance(flat, evaluated, audit, tolerance)]
     if problems:
         raise SolveError([f"{kind}: {problem}" for problem in problems])
@@ -117,16 +118,6 @@ def outside(flat: FlatModel, evaluated: Mapping[str, np.ndarray]) -> tuple[Outsi
             regime = regime.format(**words(flat, check.component, evaluated["y"][:, worst], digits=3))
         found[key] = Outside(*key, check.low, check.high, lowest, highest, regime)
     return tuple(found.values())
-
-
-def find_residuals(flat: FlatModel, residual: np.ndarray) -> dict[str, float]:
-    """Largest residual of each implicit equation over the rows.
-
-    Args:
-        flat: the model
-        residual: of its implicit equations (equations, n), in units of their nominals
-    """
-    return {name: float(np.max(np.abs(row))) for name, row in zip(flat.residual_names, residual, strict=True)}
 
 
 def cite_laws(laws: Iterable[LawInfo]) -> tuple[str, ...]:

@@ -251,9 +251,10 @@ class Search:
 
     def spread(self, count: int) -> Iterator[np.ndarray]:
         """Starts spread evenly over the ranges (Halton 1960), the same every time."""
-        bases = _primes(len(self.free))
-        for k in range(1, count + 1):
-            yield np.array([r.at(_reverse_digits(k, b)) for r, b in zip(self.ranges, bases, strict=True)])
+        from scipy.stats.qmc import Halton
+
+        for shares in Halton(len(self.free), scramble=False).random(count + 1)[1:]:
+            yield np.array([r.at(float(share)) for r, share in zip(self.ranges, shares, strict=True)])
 
 
 @once
@@ -269,26 +270,6 @@ def compiled(flat: FlatModel, free: tuple[str, ...], targets: tuple[str, ...]) -
     aims, freed = ([vectors[kind][i] for kind, i in map(flat.locate, names)] for names in (targets, free))
     equations = ca.vertcat(flat.ode, flat.residual, *aims)
     return Fast("design", flat.point, [equations, ca.jacobian(equations, ca.vertcat(flat.x, flat.z, *freed))])
-
-
-def _primes(count: int) -> list[int]:
-    found: list[int] = []
-    candidate = 2
-    while len(found) < count:
-        if all(candidate % p for p in found):
-            found.append(candidate)
-        candidate += 1
-    return found
-
-
-def _reverse_digits(k: int, base: int) -> float:
-    """The digits of k mirrored at the point."""
-    value, place = 0.0, 1.0
-    while k:
-        k, digit = divmod(k, base)
-        place /= base
-        value += digit * place
-    return value
 
 
 def sensitivities(

@@ -104,7 +104,7 @@ class _Reader:
         nominal = Nominal(drive_by(self.scenario, self.sensors))
         known = {oil: oil_values(self.scenario, oil, self.card) for oil in oils}
         warned = replace(found, warnings=(*found.warnings, *oil_warnings(self.scenario, found.oil, self.card)))
-        return with_unread(check(warned, nominal, known, points=self.points))
+        return _with_unread(check(warned, nominal, known, points=self.points))
 
     def _columns(self) -> list[Column]:
         found = [
@@ -216,14 +216,11 @@ def _one_way(sensor: Sensor, direction: np.ndarray) -> Sensor:
     return replace(sensor, signs=(sign, sign))
 
 
-def with_unread(campaign: Campaign) -> Campaign:
+def _with_unread(campaign: Campaign) -> Campaign:
     """The campaign with the rows that its usual course has and a test lacks, before any that was read.
 
     Such a row has the given values of the next one, no reading, and 0 for its line and point. Without it a test would
-    start cold where it was warm.
-
-    Args:
-        campaign: of timed tests; one of steady states is given back as it is
+    start cold where it was warm. A campaign of steady states stays as it is.
     """
     steps = [(float(d), float(t)) for d, t in zip(campaign.direction, campaign.dwell, strict=True)]
     rows = [np.flatnonzero(campaign.test == test).tolist() for test in range(campaign.n_tests)]

@@ -58,11 +58,7 @@ class Scatter:
 
 
 def repeats(campaign: Campaign) -> tuple[Repeat, ...]:
-    """Groups of tests at the same given conditions, those of both directions where there are two.
-
-    Args:
-        campaign: the readings; rows that were run and not read count where they were run
-    """
+    """Groups of tests at the same given conditions; rows that were run and not read count where they were run."""
     keys = _conditions(campaign)
     groups: list[list[int]] = []
     for test in range(campaign.n_tests):

@@ -14,6 +14,7 @@ import numpy as np
 from ...model.core.declare import State, list_declared
 from ...model.core.flat import Quantity
 from ...model.errors import DataError, Problems, suggestion
+from ...model.files import tables
 from ...model.parts.lubrication import OilBath
 from ...model.parts.shaft import ShaftEnd
 from ...model.parts.thermal import Room
@@ -25,42 +26,15 @@ from .card import Card
 from .nominal import Nominal
 from .table import Sensor
 
+_TABLES = tables("scenarios.measured", "sensors.toml")
 #: Columns that a table may have beside its sensors: name -> what it says, as a cell is read, and its SI unit.
-CONTEXT: Mapping[str, tuple[str, Literal["number", "count", "text"], str]] = {
-    "point": ("number of the reading", "count", ""),
-    "test": ("test that the reading belongs to", "text", ""),
-    "order": ("running order of the test in the campaign", "number", ""),
-    "direction": ("direction of the power (1, or 2 and -1 for the reverse)", "count", ""),
-    "dwell_min": ("time the point was held", "number", "s"),
-    "stop_min": ("stop before this reading's dwell", "number", "s"),
-    "oil": ("name of the oil", "text", ""),
-    "mounting": ("name of the mounting or filling", "text", ""),
-    "grid": ("name of the test grid", "text", ""),
-    "date": ("day of the test", "text", ""),
-    "humidity_pct": ("relative humidity of the room", "number", "1"),
-    "T_start_C": ("temperature of the gearbox at the start of the test", "number", "K"),
-    "T_amb_start_C": ("room temperature at the start of the test", "number", "K"),
-}
+CONTEXT: Mapping[str, tuple[str, Literal["number", "count", "text"], str]] = _TABLES["context"]
 #: Directions as tables write them.
 DIRECTIONS = (1, 2, -1, 0)
 #: Scatter from reading to reading and fixed tolerance: in K, or relative to the value at the operating point.
-ACCURACY: Mapping[str, tuple[float, float]] = {
-    "oil_temp": (0.35, 0.3),
-    "wall_temp": (0.35, 0.3),
-    "ambient": (0.3, 0.3),
-    "torque": (4e-4, 8e-4),
-    "speed": (8e-4, 8e-4),
-    "power": (5e-3, 5e-3),
-}
+ACCURACY: Mapping[str, tuple[float, float]] = _TABLES["accuracy"]
 #: SI unit of what a kind of sensor reads.
-SI: Mapping[str, str] = {
-    "oil_temp": "K",
-    "wall_temp": "K",
-    "ambient": "K",
-    "torque": "N.m",
-    "speed": "rad/s",
-    "power": "W",
-}
+SI: Mapping[str, str] = _TABLES["units"]
 #: Kind of a sensor that reads no temperature, by the SI unit of what it reads.
 KINDS: Mapping[str, str] = {"N.m": "torque", "rad/s": "speed", "W": "power"}
 #: Beginning of a sensor's name, and the unit of its column, by the last word of the path it reads.

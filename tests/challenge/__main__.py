@@ -14,7 +14,6 @@ from typing import Annotated, Literal
 
 import typer
 from gearheat.model.errors import ScenarioError, suggestion
-from gearheat.tools.cli.options import Jobs, Json
 from gearheat.tools.show import console
 
 from .bench import run, tasks
@@ -40,7 +39,7 @@ def challenge(
     ],
     n: Annotated[int, typer.Option("--n", help="Number of cases of each sheet.")] = 150,
     seed: Annotated[int, typer.Option(help="The same seed hides the same.")] = 0,
-    jobs: Jobs = 0,
+    jobs: Annotated[int, typer.Option("-j", "--jobs", min=0, help="How many to run at once; 0 for one per core.")] = 0,
     out: Annotated[
         Path | None,
         typer.Option("-o", "--out", help="Folder for cases and answers; an interrupted run goes on from there."),
@@ -49,7 +48,7 @@ def challenge(
     practice: Annotated[
         Path | None, typer.Option(help="Folder of campaigns: data.csv, card.json and key.json in a folder each.")
     ] = None,
-    json: Json = None,
+    json: Annotated[str | None, typer.Option(metavar="FILE", help="Write the result as JSON; - for stdout.")] = None,
 ) -> None:
     """Hide effects in simulated campaigns, have them diagnosed, and score the answers."""
     problems = []

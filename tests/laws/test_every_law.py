@@ -1,7 +1,7 @@
 """What holds for every law: same number for floats and symbols, finite values and slopes at rest, right derivatives.
 
 `NOMINAL` has a value for every argument name; `OWN` overrides it where a name means another thing in one law. An
-argument in `ZERO` may vanish and change sign; its rounding is the keyword argument named there.
+argument in `ZERO` may vanish and change sign, and is rounded over one of the widths there.
 """
 
 import ast
@@ -17,7 +17,7 @@ import casadi as ca
 import numpy as np
 import pytest
 from for_each import for_each
-from gearheat.model.laws import convection
+from gearheat.model.laws import convection, smooth
 from gearheat.model.sources import sources
 
 NOMINAL = {
@@ -142,10 +142,16 @@ OWN = {
     "convection.nusselt_plate_unstable": {"Ra": 4e6},
     "convection.nusselt_plate_stable": {"Ra": 1e7},
 }
+#: Widths of the roundings that laws have at an argument's zero.
 ZERO = {
-    **{"w": "w_width", "v_sum": "v_width", "u_sum": "u_width", "slide_roll": "slide_width", "v": "v_width"},
-    **{"line_load": "F_width", "F_n_l": "F_width", "F_r": "F_width", "F_a": "F_width", "P_1": "F_width"},
-    **{"Lambda": "Lambda_width"},
+    "w": (smooth.SPEED_WIDTH,),
+    "v": (smooth.V_WIDTH, 1e-2, 0.05),
+    "v_sum": (smooth.V_WIDTH,),
+    "u_sum": (smooth.U_WIDTH,),
+    "slide_roll": (1e-4,),
+    **dict.fromkeys(("line_load", "F_n_l"), (smooth.LINE_WIDTH,)),
+    **dict.fromkeys(("F_r", "F_a", "P_1"), (smooth.F_WIDTH,)),
+    "Lambda": (1e-6,),
 }
 #: Arguments that may be zero but not negative.
 NOT_NEGATIVE = {"P_a", "h_natural", "h_forced", "H", "V_M", "level", "K_rs", "phi_bl", "c", "T_pour"}
@@ -289,12 +295,9 @@ def test_reversal_changes_nothing(name: str) -> None:
 def blend_points(name: str) -> list[tuple[dict[str, float], str, float]]:
     """Point, argument and step: nominal in every argument, and across every rounding."""
     base = nominal(name)
-    keywords = inspect.signature(FUNCTIONS[name]).parameters
     points = [(base, a, 1e-5 * abs(base[a])) for a in base if a not in structural(name)]
-    for argument, keyword in ZERO.items():
-        if argument in base and keyword in keywords:
-            width = keywords[keyword].default
-            points += [(base | {argument: f * width}, argument, 1e-4 * width) for f in (-5, -1, -0.3, 0, 0.3, 1, 5)]
+    for argument, width in ((a, width) for a in ZERO if a in base for width in ZERO[a]):
+        points += [(base | {argument: f * width}, argument, 1e-4 * width) for f in (-5, -1, -0.3, 0, 0.3, 1, 5)]
     if "T_s" in base:
         points += [(base | {"T_s": base["T_f"] + dT}, "T_s", 1e-5) for dT in (-1, -0.05, -0.01, 0, 0.003, 0.05, 1)]
     if name == "rolling.needle_torque_viscous":  # where the two branches meet

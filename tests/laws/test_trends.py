@@ -1,6 +1,7 @@
 """Where physics says more or less, the laws say it too, over their whole range."""
 
 import math
+from functools import partial
 
 import pytest
 from gearheat.model.laws import churning, conduction, convection, film, mesh, oil, radiation, rolling
@@ -197,8 +198,8 @@ def test_churning_at_its_reference_point() -> None:
     [
         convection.natural_vertical_plate,
         convection.natural_horizontal_cylinder,
-        convection.natural_horizontal_up,
-        convection.natural_horizontal_down,
+        convection.natural_horizontal,
+        partial(convection.natural_horizontal, up=False),
     ],
 )
 def test_free_convection_grows_with_the_difference(h: object) -> None:
@@ -211,11 +212,11 @@ def test_free_convection_grows_with_the_difference(h: object) -> None:
 
 def test_hot_plate_up_is_cold_plate_down() -> None:
     """Buoyancy: the two are mirror images, up to the film temperature."""
-    up = convection.natural_horizontal_up(320.0, 300.0, 0.3)
-    down = convection.natural_horizontal_down(320.0, 300.0, 0.3)
+    up = convection.natural_horizontal(320.0, 300.0, 0.3)
+    down = convection.natural_horizontal(320.0, 300.0, 0.3, up=False)
     assert up > 1.5 * down
-    assert convection.natural_horizontal_down(300.0, 320.0, 0.3) == pytest.approx(up, rel=1e-5)
-    assert convection.natural_horizontal_up(300.0, 320.0, 0.3) == pytest.approx(down, rel=1e-5)
+    assert convection.natural_horizontal(300.0, 320.0, 0.3, up=False) == pytest.approx(up, rel=1e-5)
+    assert convection.natural_horizontal(300.0, 320.0, 0.3) == pytest.approx(down, rel=1e-5)
 
 
 def test_worked_examples_with_air_of_our_own() -> None:

@@ -18,7 +18,7 @@ from gearheat.model.run.result import Result
 from gearheat.model.run.steady import steady
 from gearheat.scenarios.load import load
 from gearheat.scenarios.scenario import Scenario
-from gearheat.tools.solve.losses import contacts_at, values_of
+from gearheat.tools.solve.losses import contacts_part, values_of
 
 K, ZP, RP, R_RP, B, E_EFF = 0.8125, 40, 0.064, 0.003, 8.86e-3, 230.6e9
 W_CRANK = 39 * 15 * math.pi / 30
@@ -113,7 +113,8 @@ def table(scenario: Scenario, request: pytest.FixtureRequest) -> tuple[str, Resu
     spec = scenario.spec.with_values({"mesh.pin": request.param})
     flat = model(spec)
     result = steady(flat, scenario.operating_point)
-    return request.param, result, contacts_at(replace(scenario, spec=spec), flat, result)
+    part, values = contacts_part(replace(scenario, spec=spec))
+    return request.param, result, part.contact_table(values)
 
 
 class TestContacts:

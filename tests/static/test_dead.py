@@ -5,6 +5,7 @@ import re
 from collections import Counter
 from itertools import chain
 
+import gearheat as gh
 from gearheat.model.parts import PARTS
 from gearheat.tools.docs.blocks import blocks
 from source_trees import ROOT, modules, name_of, nodes_of
@@ -32,7 +33,7 @@ METHODS = {"_repr_html_", "to_pandas", "to_xarray"}
 
 def used() -> Counter[str]:
     """How often each name is read or imported; its definition does not count."""
-    names = Counter([*VERIFIED, *PARTS])
+    names = Counter([*VERIFIED, *PARTS, *(name for _, name in gh.PUBLIC.values())])
     for node in chain(*map(nodes_of, modules()), *(ast.walk(ast.parse(example)) for example in EXAMPLES)):
         if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load):
             names[node.id] += 1

@@ -42,7 +42,8 @@ def installed(path: Path) -> str:
     return ".".join(path.relative_to(ROOT).with_suffix("").parts).replace("tools.api", "api", 1)
 
 
-MODULES = {installed(path): path for path in modules()}
+#: Dotted name -> file; of the API that which names what it imports.
+MODULES = {installed(path): path for path in modules()} | {"api.__init__": ROOT / "tools" / "api" / "__init__.pyi"}
 
 
 def floor_of(module: str) -> str:

@@ -9,6 +9,7 @@ from gearheat.model.core.flatten import flatten
 from gearheat.model.run.rows import evaluate_at
 from gearheat.tools.bench import fmu as bench_fmu
 from gearheat.tools.bench.costs import chain, growth, massless, massless_chain
+from gearheat.tools.bench.harness import rows
 
 
 def test_figures_of_the_fmu_and_its_peers() -> None:
@@ -22,7 +23,7 @@ def test_figures_of_the_fmu_and_its_peers() -> None:
         assert peers[name]["error_K"] <= found["warmup_60_error_K"], name
         assert peers[name]["over_fmu_from_c"] > 2, name
     assert len(found["goals"]) == 8
-    table = dict(bench_fmu.rows(found))
+    table = dict(rows("fmu", found))
     assert all(text for text in table.values())
     assert len([name for name in table if name.startswith("goal")]) == 8
 

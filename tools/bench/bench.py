@@ -28,7 +28,7 @@ from ..show.console import answer, note, say, table
 from ..solve.settings import flat_of
 from . import contact, fmu as bench_fmu, throughput, uncertainty as bench_uncertainty
 from .costs import rhs_s
-from .harness import timed
+from .harness import rows, timed
 
 #: Tolerances at which LSODA runs; the cheapest one that is as accurate as the FMU is what the FMU is compared with.
 TOLERANCES = (1e-6, 1e-8, 1e-9)
@@ -234,40 +234,21 @@ def _differ(values: np.ndarray, exact: np.ndarray) -> float:
 
 
 def _print(found: dict[str, Any]) -> None:
-    rows = [
-        ["gearheat --help [s]", found["help_s"]],
-        ["main job, warm cache [s]", found["run_s"]],
-        ["main job, peak memory of all processes [MB]", found["run_peak_memory_MB"]],
-        [f"{found['tests']} tests through the FMU, processor time [s]", found["fmu_s"]],
-        ["largest error of a state at a reading, FMU", found["fmu_error_K"]],
-    ]
-    for run in found["lsoda"]:
-        rows.append([f"same through LSODA, tolerance {run['tolerance']:g}, processor time [s]", run["s"]])
-        rows.append(["largest error of a state at a reading", run["error_K"]])
-    rows.append(["LSODA over FMU, at no larger error", found["ratio"]])
-    table("Benchmark", ("what", "value"), rows)
+    table("Benchmark", ("what", "value"), rows("job", found))
 
 
 def _print_fmu(found: dict[str, Any]) -> None:
-    body = [*bench_fmu.rows(found), *_batch_rows(found)]
-    table("The FMU and its peers, one run", ("what", "value"), [list(row) for row in body], wrapped=True)
+    body = [*rows("fmu", found), *rows("batch", found)]
+    table("The FMU and its peers, one run", ("what", "value"), body, wrapped=True)
 
 
 def _print_batch(found: dict[str, Any]) -> None:
-    table(f"{found['batch']['rig']}: many rows in one call", ("what", "value"), _batch_rows(found), wrapped=True)
-
-
-def _batch_rows(found: dict[str, Any]) -> list[tuple[str, str]]:
-    rates = {kind: found["batch"][kind]["rows_per_core_s"] for kind in ("steady", "warmup_330_min")}
-    return [
-        (f"batch, {kind} rows per second and core; right-hand sides each", f"{rate:.0f}; {each:.1f}")
-        for kind, rate in rates.items()
-        for each in (1 / (rate * found["rhs_s"]),)
-    ]
+    table(f"{found['batch']['rig']}: many rows in one call", ("what", "value"), rows("batch", found), wrapped=True)
 
 
 def _print_contact(found: dict[str, Any]) -> None:
-    table("The contact solver and slippy, processor times of one core", ("what", "value"), contact.rows(found))
+    title = "The contact solver and slippy, processor times of one core"
+    table(title, ("what", "value"), rows("contact", found))
 
 
 def _print_uncertainty(found: dict[str, Any]) -> None:

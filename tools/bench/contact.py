@@ -96,19 +96,3 @@ def _peer(python: Path, folder: Path, n: int, exact: Sequence[float]) -> dict[st
     seconds, h_c, h_min, converged = json.loads(run(command, folder, "slippy does not run", {**os.environ, **ONE}))
     error = _error((h_c, h_min), exact)
     return {"n": n, "s": seconds, "error": error, "h_c_m": h_c, "h_min_m": h_min, "converged": converged}
-
-
-def rows(found: dict[str, Any]) -> list[list[Any]]:
-    """The table: what, value."""
-    lines = [
-        [
-            f"{name}, {line['n']} x {line['n']} nodes [s; error of the film]",
-            f"{line['s']:.2f}; {100 * line['error']:.2f} %",
-        ]
-        for name, key in (("this project", "own"), ("slippy 0.5.2", "slippy"))
-        for line in found[key]
-    ]
-    for r in found["ratios"]:
-        what = f"slippy on {r['n_slippy']}^2 over this project on {r['n']}^2, error no larger"
-        lines.append([what, f"{r['ratio']:.0f} times"])
-    return lines

@@ -8,7 +8,6 @@ from __future__ import annotations
 import os
 import subprocess
 import tempfile
-from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 from unittest.mock import patch
@@ -139,22 +138,3 @@ def _costs(path: Path) -> Path:
     made = path.parent / "costs.so"
     made.write_bytes(Compiler.zig().made([HERE / "costs.c"], options))
     return made
-
-
-def growth_rows(found: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """Rows of the bench's table on the growth of cost."""
-    rows = [
-        (
-            f"{made['nodes']} thermal nodes: flatten; generate; compile [s]; right-hand side; step [us]",
-            f"{made['flatten_s']:.2f}; {made['generate_s']:.2f}; {made['compile_s']:.1f}; "
-            f"{1e6 * made['rhs_s']:.2g}; {1e6 * made['step_s']:.2g}",
-        )
-        for made in found["growth"]
-    ]
-    return rows + [
-        (
-            f"{made['conductors']} conductors without masses between them: flatten [s]; instructions",
-            f"{made['flatten_s']:.2f}; {made['instructions']}",
-        )
-        for made in found["massless"]
-    ]

@@ -10,7 +10,7 @@ from __future__ import annotations
 import io
 import json
 import tempfile
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -28,7 +28,7 @@ from ...model.run.schedule import Schedule, join_phases
 from ...model.run.simulate import simulate
 from ...scenarios.load import load
 from ..solve.settings import flat_of
-from .costs import STAGE, STAGES, from_c, growth, growth_rows, massless
+from .costs import STAGE, STAGES, from_c, growth, massless
 from .harness import TABLES, environment, run, script, timed
 
 #: Thermal nodes of the chains by which growth is measured.
@@ -207,26 +207,3 @@ def _pythonfmu(
     command = [python, str(play), "Peer.fmu", json.dumps(STAGES), str(speed), str(n)]
     seconds, rows = json.loads(run(command, folder, "PythonFMU does not run"))
     return float(seconds), float(np.abs(np.array(rows) - truth).max())
-
-
-def rows(found: Mapping[str, Any]) -> list[tuple[str, str]]:
-    """The table: what, value."""
-    table = [
-        ("right-hand side [us]", f"{1e6 * found['rhs_s']:.2f}"),
-        ("step; outputs [right-hand sides]", f"{found['step_rhs']:.1f}; {found['outputs_rhs']:.1f}"),
-        ("set 4, step of 1 s, get 15 [right-hand sides]", f"{found['call_rhs']:.1f}"),
-        ("step of 60 s behind a jump [right-hand sides]", f"{found['jump_rhs']:.1f}"),
-    ]
-    for step in ("1", "10", "60"):
-        cost, error = found[f"warmup_{step}_rhs"], found[f"warmup_{step}_error_K"]
-        table.append((f"330 min at {step} s from C [right-hand sides; K]", f"{cost:.0f}; {error:.1e}"))
-    for name, peer in found["peers"].items():
-        text = f"{peer['over_fmu_from_c']:.1f}; {peer['error_K']:.1e}"
-        table.append((f"{name}, over the FMU from C at 60 s [ratio; error]", text))
-    table += growth_rows(found)
-    table += [("FMU [kB]", f"{found['fmu_kB']:.0f}"), ("FMU state [bytes]", f"{found['state_bytes']:.0f}")]
-    if "instance_bytes" in found:
-        table.append(("memory of one more instance [bytes]", f"{found['instance_bytes']:.0f}"))
-    for g in found["goals"]:
-        table.append((f"goal {g['bound']}: {g['goal']}", f"{g['measured']:.3g}, {'met' if g['met'] else 'missed'}"))
-    return table

@@ -5,20 +5,25 @@ from __future__ import annotations
 import subprocess
 import sys
 import time
-import tomllib
-from collections.abc import Callable, Sequence
-from importlib.resources import files
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 from typing import Any, TypeVar
 
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from ...model.errors import DataError
+from ...model.files import tables
+from ..show.console import cell
 
 T = TypeVar("T")
 
 #: Goals and peers.
-TABLES: dict[str, Any] = tomllib.loads(files("gearheat.tools.bench").joinpath("bench.toml").read_text(encoding="utf-8"))
+TABLES: dict[str, Any] = tables("tools.bench", "bench.toml")
+
+_TEMPLATES = Environment(
+    loader=PackageLoader("gearheat.tools.bench"), undefined=StrictUndefined, trim_blocks=True, lstrip_blocks=True
+)
+_TEMPLATES.filters["cell"] = cell
 
 
 def timed(work: Callable[[], T], clock: Callable[[], float] = time.process_time) -> tuple[float, T]:
@@ -79,7 +84,17 @@ def script(folder: Path, name: str, **values: object) -> Path:
         name: of the program, without ending
         values: what its template asks for
     """
-    templates = Environment(loader=PackageLoader("gearheat.tools.bench"), undefined=StrictUndefined)
     path = folder / f"{name}.py"
-    path.write_text(templates.get_template(f"{name}.py.jinja").render(values), encoding="utf-8")
+    path.write_text(_TEMPLATES.get_template(f"{name}.py.jinja").render(values), encoding="utf-8")
     return path
+
+
+def rows(name: str, found: Mapping[str, Any]) -> list[list[str]]:
+    """The rows of a table, what and value, as one of `templates` tells figures.
+
+    Args:
+        name: of the template, without ending
+        found: the figures
+    """
+    text = _TEMPLATES.get_template(f"{name}.txt.jinja").render(found)
+    return [line.split(" | ") for line in text.splitlines()]

@@ -8,13 +8,12 @@ stands, what dips into it and what it wets.
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from typing import Any
 
 from ...model.errors import ScenarioError
+from ...model.files import tables
 from ...model.units import si_of
 from ...scenarios.entries import catalogue
 from .stages import KINDS, LEAST, MAKE, MOST, BevelStage, PlanetaryStage, Stage, WormStage
@@ -36,9 +35,7 @@ OVERHANG = 2.5
 #: Distance of the bearings of a worm over its wheel's diameter [1].
 APART = 0.9
 #: Basic dynamic load ratings of the bearings to choose from [N].
-RATINGS: dict[str, float] = tomllib.loads(
-    files("gearheat.tools.build").joinpath("ratings.toml").read_text(encoding="utf-8")
-)
+RATINGS: dict[str, float] = tables("tools.build", "ratings.toml")
 #: How deep the smallest wheel dips, in modules.
 DIP = 3.0
 #: Share of what is below the level that is oil [1].
@@ -208,20 +205,12 @@ def wheels_dip(made: Unit) -> bool:
 
 
 def height_of_axes(made: Unit) -> float:
-    """Height of the axes of wheels that stand in one plane, above the bottom of the housing [m].
-
-    Args:
-        made: the unit
-    """
+    """Height of the axes of wheels that stand in one plane, above the bottom of a unit's housing [m]."""
     return BELOW + max(max(s.r_1, s.r_2) + s.m_n for s in made.stages)
 
 
 def bath(made: Unit) -> dict[str, Any]:
-    """Volume [l] and, where wheels dip, level [m] of the oil; and their rule.
-
-    Args:
-        made: the unit
-    """
+    """Volume [l] and, where wheels dip, level [m] of the oil of a unit; and their rule."""
     if not wheels_dip(made):
         volume = SHARE * made.length * made.width * made.height
         return {"volume": 1000 * volume, "level": None, "rule": f"{100 * SHARE:.0f} % of the housing's volume"}
@@ -245,20 +234,12 @@ def stands_in_oil(made: Unit, bearing: str) -> bool:
 
 
 def compute_wetted_area(stage: Stage) -> float:
-    """Half of the sides of a stage's wheels and their rims [m2].
-
-    Args:
-        stage: of the unit
-    """
+    """Half of the sides of a stage's wheels and their rims [m2]."""
     return stage.count * (math.pi * stage.r_2**2 + 2 * math.pi * stage.r_2 * stage.b)
 
 
 def splash(made: Unit) -> dict[str, float]:
-    """What the walls have from the gear that throws most: the first that dips, and the shaft it is on.
-
-    Args:
-        made: the unit
-    """
+    """What a unit's walls have from the gear that throws most: the first that dips, and the shaft it is on."""
     first, worm = made.stages[0], isinstance(made.stages[0], WormStage)
     return {
         "A": REACHED * made.area,

@@ -24,6 +24,7 @@ ROOT = Path(__file__).resolve().parents[2]
 #: Name below `gearheat` -> file or folder.
 PACKAGES = {
     "__init__.py": "tools/api/__init__.py",
+    "__init__.pyi": "tools/api/__init__.pyi",
     "__main__.py": "tools/api/__main__.py",
     "model": "model",
     "fmu": "fmu",

@@ -9,6 +9,7 @@ import typer
 
 from ..show.console import guard
 from . import developers, diagnosis, fmu, measured, rigs, solve
+from .options import describe
 
 app = typer.Typer(
     name="gearheat",
@@ -55,7 +56,8 @@ PANELS = {
 }
 for _panel, _commands in PANELS.items():
     for _command in _commands:
-        app.command(_command.__name__.strip("_").replace("_", "-"), rich_help_panel=_panel)(guard(_command))
+        _name = _command.__name__.strip("_").replace("_", "-")
+        app.command(_name, rich_help_panel=_panel)(guard(describe(_name, _command)))
 
 
 def program() -> None:

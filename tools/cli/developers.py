@@ -4,30 +4,27 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
-from typing import Annotated, Literal, cast
+from typing import Literal, cast
 
 import gearheat as gh
 import typer
 from typer.core import TyperGroup
 
 from ..show import console
-from .options import Json, Rig, Set, Tests
 
 #: Exit code where a number is not reproduced.
 FAILED = 1
 
 
 def bench(
-    rig: Rig,
-    tests: Tests = None,
-    fmu: Annotated[bool, typer.Option("--fmu", help="The FMU against its peers, and the batch, instead.")] = False,
-    batch: Annotated[bool, typer.Option("--batch", help="Many rows in one call, instead.")] = False,
-    uncertainty: Annotated[
-        bool, typer.Option("--uncertainty", help="Standard deviations of the FMU beside Monte Carlo, instead.")
-    ] = False,
-    contact: Annotated[bool, typer.Option("--contact", help="The contact solver against slippy, instead.")] = False,
-    draws: Annotated[int, typer.Option(help="Rows that --uncertainty draws.")] = 10_000,
-    json: Json = None,
+    rig: str,
+    tests: str | None = None,
+    fmu: bool = False,
+    batch: bool = False,
+    uncertainty: bool = False,
+    contact: bool = False,
+    draws: int = 10_000,
+    json: str | None = None,
 ) -> None:
     """Time and memory of the main job, beside SciPy's LSODA on the same equations."""
     asked = {"contact": contact, "fmu": fmu, "batch": batch, "uncertainty": uncertainty}
@@ -40,11 +37,8 @@ def bench(
 
 def docs(
     context: typer.Context,
-    out: Annotated[Path, typer.Option("-o", "--out", help="Folder of the web site.")],
-    run: Annotated[
-        Literal["quick", "all", "none"],
-        typer.Option(help="Code blocks to run before: those that take seconds, all, or none."),
-    ] = "quick",
+    out: Path,
+    run: Literal["quick", "all", "none"] = "quick",
 ) -> None:
     """Build the documentation as a web site; its code blocks are run and their output compared with the pages."""
     import gearheat as gh
@@ -56,18 +50,15 @@ def docs(
 
 
 def film(
-    rig: Annotated[str, typer.Argument(help="Name of a shipped rig, path of a rig file, or TOML file of one contact.")],
-    out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write; a run that was interrupted goes on.")],
-    part: Annotated[str | None, typer.Option(help="Part of the rig whose contact it is.")] = None,
-    vary: Annotated[
-        list[str] | None,
-        typer.Option(help='Range of F, u_m or T, for example "F=100..2000 N" or "T=40..100 degC". Repeatable.'),
-    ] = None,
-    grid: Annotated[str | None, typer.Option(help="Points along each axis that is varied, such as 6x6x4.")] = None,
-    nodes: Annotated[int | None, typer.Option(help="Nodes of the contact solver, along a side.")] = None,
-    plot: Annotated[Path | None, typer.Option(metavar="FILE", help="Picture to write, .png or .svg.")] = None,
-    set_: Set = None,
-    json: Json = None,
+    rig: str,
+    out: Path,
+    part: str | None = None,
+    vary: list[str] | None = None,
+    grid: str | None = None,
+    nodes: int | None = None,
+    plot: Path | None = None,
+    set_: list[str] | None = None,
+    json: str | None = None,
 ) -> None:
     """Solve a lubricated contact over load, speed and temperature; fit the film law that parts can use."""
     console.use_one_thread()
@@ -77,11 +68,9 @@ def film(
 
 
 def verify(
-    rig: Annotated[
-        str | None, typer.Argument(help="Name of a shipped rig, or path of a rig file; all shipped rigs if left out.")
-    ] = None,
-    json: Json = None,
-    html: Annotated[Path | None, typer.Option(metavar="FILE", help="HTML page to write.")] = None,
+    rig: str | None = None,
+    json: str | None = None,
+    html: Path | None = None,
 ) -> None:
     """Published numbers of each machine beside what the model gives."""
     console.writable(console.file_of(json), html)
@@ -94,15 +83,10 @@ def verify(
 
 
 def verify_contact(
-    out: Annotated[
-        Path,
-        typer.Option("-o", "--out", help="Folder for table and figures; an interrupted run goes on from there."),
-    ],
-    quick: Annotated[bool, typer.Option("--quick", help="A subset on coarse grids.")] = False,
-    cycle: Annotated[
-        str | None, typer.Option(metavar="RIG", help="Solve the mesh cycle of this rig too, such as rv_stage.")
-    ] = None,
-    json: Json = None,
+    out: Path,
+    quick: bool = False,
+    cycle: str | None = None,
+    json: str | None = None,
 ) -> None:
     """Check the contact solver against published films, Hertz and measurements."""
     console.use_one_thread()

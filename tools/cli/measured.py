@@ -4,33 +4,29 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Literal
 
 import gearheat as gh
-import typer
 
 from ...model.errors import ScenarioError
 from ..show import console
 from ..show.notes import print_outside, print_unchecked
-from .options import Extended, Jobs, Json, Rig, Set, Tests
 
 #: Rows of the table of contacts for people; programs get all.
 CONTACTS = 19
 
 
 def run(
-    rig: Rig,
-    out: Annotated[
-        Path, typer.Option("-o", "--out", help="Folder for results; a run that was interrupted goes on from there.")
-    ] = Path("out"),
-    tests: Tests = None,
-    step: Annotated[str, typer.Option(help="Communication step of the FMU.")] = "60 s",
-    set_: Set = None,
-    jobs: Jobs = 0,
-    extended: Extended = None,
-    data: Annotated[Path | None, typer.Option(help="Measured table; the rig's own if left out.")] = None,
-    card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
-    json: Json = None,
+    rig: str,
+    out: Path = Path("out"),
+    tests: str | None = None,
+    step: str = "60 s",
+    set_: list[str] | None = None,
+    jobs: int = 0,
+    extended: Path | None = None,
+    data: Path | None = None,
+    card: Path | None = None,
+    json: str | None = None,
 ) -> None:
     """The main job: export the FMU, play all measured tests, compare, report."""
     console.writable(console.file_of(json))
@@ -39,35 +35,18 @@ def run(
 
 
 def losses(
-    rig: Rig,
-    data: Annotated[Path | None, typer.Option(help="Measured table; the rig's own if left out.")] = None,
-    card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
-    temperature: Annotated[
-        Literal["measured", "model"],
-        typer.Option(help="At the measured oil temperature, or the one the model reaches."),
-    ] = "measured",
-    power_flow: Annotated[
-        Literal["ideal", "successive"] | None,
-        typer.Option(help="ideal: mesh forces from the input torque; successive: each stage sees upstream losses."),
-    ] = None,
-    contacts: Annotated[
-        bool, typer.Option("--contacts", help="Also every contact over a mesh cycle: loads, speeds, films, friction.")
-    ] = False,
-    method: Annotated[
-        Literal["iso14179-1", "iso14179-2"] | None,
-        typer.Option(help="Losses at the operating point beside those of a reference method, and its thermal rating."),
-    ] = None,
-    limit: Annotated[
-        str | None, typer.Option(help="With --method: sump temperature that the rating keeps; 95 degC if left out.")
-    ] = None,
-    k: Annotated[
-        str | None, typer.Option("--k", help='With --method: heat transfer of the bare housing, "20 W/(m2.K)".')
-    ] = None,
-    dip: Annotated[
-        list[str] | None, typer.Option(help='With --method: depth to which a gear dips, "stage_1.wheel=20 mm".')
-    ] = None,
-    set_: Set = None,
-    json: Json = None,
+    rig: str,
+    data: Path | None = None,
+    card: Path | None = None,
+    temperature: Literal["measured", "model"] = "measured",
+    power_flow: Literal["ideal", "successive"] | None = None,
+    contacts: bool = False,
+    method: Literal["iso14179-1", "iso14179-2"] | None = None,
+    limit: str | None = None,
+    k: str | None = None,
+    dip: list[str] | None = None,
+    set_: list[str] | None = None,
+    json: str | None = None,
 ) -> None:
     """Loss of every part at each measured reading, or beside those of a reference method."""
     if method is not None:
@@ -89,11 +68,11 @@ def losses(
 
 
 def compare(
-    result: Annotated[Path, typer.Argument(help="Simulated readings: CSV with test and direction, or point.")],
-    data: Annotated[Path, typer.Argument(help="Measured readings: CSV.")],
-    rig: Annotated[str, typer.Option(help="Rig that was measured.")],
-    card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
-    json: Json = None,
+    result: Path,
+    data: Path,
+    rig: str,
+    card: Path | None = None,
+    json: str | None = None,
 ) -> None:
     """Errors of simulated readings by group, with the noise floor and statistical rivals."""
     errors = gh.compare(result, data, rig, card=card)
@@ -101,18 +80,14 @@ def compare(
 
 
 def calibrate(
-    rig: Rig,
-    free: Annotated[list[str], typer.Option(help="Parameter to fit. Repeatable.")],
-    grid: Annotated[
-        str | None, typer.Option(help="Value of the table's `mounting` or `grid` column to fit; all if left out.")
-    ] = None,
-    data: Annotated[Path | None, typer.Option(help="Measured table; the rig's own if left out.")] = None,
-    card: Annotated[Path | None, typer.Option(help="How that table was taken, see `gearheat card`.")] = None,
-    bounds: Annotated[
-        list[str] | None, typer.Option(help='Range of a free parameter, "cooling.A=0.4 m2..1.2 m2". Repeatable.')
-    ] = None,
-    set_: Set = None,
-    json: Json = None,
+    rig: str,
+    free: list[str],
+    grid: str | None = None,
+    data: Path | None = None,
+    card: Path | None = None,
+    bounds: list[str] | None = None,
+    set_: list[str] | None = None,
+    json: str | None = None,
 ) -> None:
     """Fit parameters to the measured oil temperatures of a table, or of one of its grids."""
     fit = gh.calibrate(rig, free, grid=grid, bounds=bounds or [], set=set_ or [], data=data, card=card)
@@ -120,13 +95,13 @@ def calibrate(
 
 
 def replay(
-    rig: Annotated[str, typer.Argument(help="Name of a shipped rig, or path of a rig file.")],
-    fit: Annotated[Path, typer.Option(help="Log on which the rivals are fitted.")],
-    until: Annotated[int | None, typer.Option(help="First year of that log that they do not see.")] = None,
-    logs: Annotated[list[Path] | None, typer.Option(help="Further logs to predict. Repeatable.")] = None,
-    card: Annotated[Path | None, typer.Option(help="How the logs are written: TOML or JSON.")] = None,
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="Picture to write, .svg, .png or .html.")] = None,
-    json: Json = None,
+    rig: str,
+    fit: Path,
+    until: int | None = None,
+    logs: list[Path] | None = None,
+    card: Path | None = None,
+    out: Path | None = None,
+    json: str | None = None,
 ) -> None:
     """How well a rig predicts logs without correction, beside a one-node model, a regression and the last reading."""
     console.plottable(out, "--out")

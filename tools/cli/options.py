@@ -1,19 +1,42 @@
-"""Options that several commands of the command line have."""
+"""Options of the command line: what `options.toml` says of the parameters of the commands."""
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Annotated
+import tomllib
+from collections.abc import Callable, Mapping
+from importlib.resources import files
+from typing import Annotated, Any, TypeVar, get_type_hints
 
 import typer
 
-from ..show.console import PICTURES
+C = TypeVar("C", bound=Callable[..., None])
 
-Set = Annotated[
-    list[str] | None,
-    typer.Option("--set", help='NAME=VALUE with a unit, for example "carrier.w=250 rpm". Repeatable.'),
-]
-Json = Annotated[str | None, typer.Option("--json", metavar="FILE", help="Write the result as JSON; - for stdout.")]
+TEXTS: dict[str, dict[str, Any]] = tomllib.loads(
+    files("gearheat.tools.cli").joinpath("options.toml").read_text("utf-8")
+)
+
+
+def describe(name: str, command: C) -> C:
+    """A command whose parameters have their texts.
+
+    Args:
+        name: of the command
+        command: its function
+    """
+    texts = {**TEXTS["every"], **TEXTS.get(name, {})}
+    kinds = get_type_hints(command)
+    options = {key: Annotated[kind, _option(texts[key])] for key, kind in kinds.items() if key in texts}
+    command.__annotations__ = kinds | options
+    return command
+
+
+def _option(about: str | Mapping[str, Any]) -> Any:
+    """A parameter as Typer takes it."""
+    told: dict[str, Any] = {"help": about} if isinstance(about, str) else dict(about)
+    kind = typer.Argument if told.pop("argument", False) else typer.Option
+    if told.pop("completed", False):
+        told["autocompletion"] = _rigs
+    return kind(*told.pop("flags", ()), **told)
 
 
 def _rigs(incomplete: str) -> list[str]:
@@ -21,25 +44,3 @@ def _rigs(incomplete: str) -> list[str]:
     from ...scenarios.shipped import RIGS
 
     return sorted(p.parent.name for p in RIGS.glob("*/rig.toml") if p.parent.name.startswith(incomplete))
-
-
-Rig = Annotated[
-    str,
-    typer.Argument(help="Name of a shipped rig (see `gearheat list`), or path of a rig file.", autocompletion=_rigs),
-]
-Plot = Annotated[
-    Path | None, typer.Option(metavar="FILE", help=f"Picture to write; its name ends in {', '.join(PICTURES)}.")
-]
-Jobs = Annotated[int, typer.Option("-j", "--jobs", min=0, help="How many to run at once; 0 for one per core.")]
-Tests = Annotated[str | None, typer.Option(help="Only these tests, for example 1,13,22-26.")]
-Everything = Annotated[bool, typer.Option("--all", help="Print everything, not the first screen alone.")]
-Ssp = Annotated[
-    list[str] | None,
-    typer.Option(
-        metavar="NAME=PART,...",
-        help="Write a system of coupled FMUs (.ssp): these parts are one, again for more, the rest is gearbox.",
-    ),
-]
-Extended = Annotated[
-    Path | None, typer.Option(metavar="FILE", help="Rig file that `diagnose` wrote; it takes the rig's place.")
-]

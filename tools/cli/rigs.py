@@ -5,27 +5,23 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Annotated, Any
+from typing import Any
 
 import gearheat as gh
-import typer
 
 from ..show import console
 from ..show.notes import print_outside, print_stacked, print_unchecked
-from .options import Everything, Json, Rig
 
 
 def new(
-    name: Annotated[str, typer.Argument(help="Name of the rig, and of its file.")],
-    stages: Annotated[
-        str, typer.Option(help="Stages from the input: helical, spur; bevel first; worm or planetary alone.")
-    ],
-    ratio: Annotated[float, typer.Option(help="Speed of the input over that of the output.")],
-    power: Annotated[str, typer.Option(help='Power at the input, such as "7.5 kW".')],
-    speed: Annotated[str, typer.Option(help='Speed of the input, such as "1450 rpm".')],
-    oil: Annotated[str, typer.Option(help="Oil of the catalogue, see `gearheat list`.")] = "ISO VG 220 mineral",
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; NAME.toml if left out.")] = None,
-    json: Json = None,
+    name: str,
+    stages: str,
+    ratio: float,
+    power: str,
+    speed: str,
+    oil: str = "ISO VG 220 mineral",
+    out: Path | None = None,
+    json: str | None = None,
 ) -> None:
     """A rig of your own from a name plate: it runs at once, and tells the rule of every number."""
     path = out or Path(f"{name}.toml")
@@ -35,17 +31,17 @@ def new(
         console.note(note)
 
 
-def list_(json: Json = None) -> None:
+def list_(json: str | None = None) -> None:
     """The shipped rigs and catalogues."""
     held = gh.shipped()
     console.answer(held.as_dict(), json, lambda: _print_shipped(held))
 
 
 def show(
-    rig: Rig,
-    errata: Annotated[bool, typer.Option("--errata", help="Show where the rig's sources are wrong.")] = False,
-    everything: Everything = False,
-    json: Json = None,
+    rig: str,
+    errata: bool = False,
+    everything: bool = False,
+    json: str | None = None,
 ) -> None:
     """What a rig is made of, how it is driven, and which parameters matter most; --all for everything."""
     about = gh.show(rig)
@@ -54,8 +50,8 @@ def show(
 
 
 def parts(
-    kind: Annotated[str | None, typer.Argument(metavar="TYPE", help="Part type; all types if left out.")] = None,
-    json: Json = None,
+    kind: str | None = None,
+    json: str | None = None,
 ) -> None:
     """What a rig can be built of: part types, and all about one with an example."""
     types = gh.parts(kind)
@@ -63,7 +59,7 @@ def parts(
 
 
 def schema(
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="File to write; printed if left out.")] = None,
+    out: Path | None = None,
 ) -> None:
     """JSON schema of rig files: editors complete and check them with it."""
     text = console.as_json(gh.schema())

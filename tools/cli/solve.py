@@ -4,25 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
 import gearheat as gh
-import typer
 
 from ...model.errors import ScenarioError
 from ..show import console
 from ..show.display import Display
 from ..show.notes import print_outside, print_unchecked
-from .options import Everything, Extended, Jobs, Json, Plot, Rig, Set
 
 
 def steady(
-    rig: Rig,
-    set_: Set = None,
-    extended: Extended = None,
-    plot: Plot = None,
-    everything: Everything = False,
-    json: Json = None,
+    rig: str,
+    set_: list[str] | None = None,
+    extended: Path | None = None,
+    plot: Path | None = None,
+    everything: bool = False,
+    json: str | None = None,
 ) -> None:
     """Steady temperatures and losses at one operating point."""
     console.plottable(plot)
@@ -33,12 +31,12 @@ def steady(
 
 
 def simulate(
-    rig: Rig,
-    duty: Annotated[Path, typer.Option(help="CSV with time and inputs, units in the header.")],
-    out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write, units in the header.")],
-    set_: Set = None,
-    plot: Plot = None,
-    json: Json = None,
+    rig: str,
+    duty: Path,
+    out: Path,
+    set_: list[str] | None = None,
+    plot: Path | None = None,
+    json: str | None = None,
 ) -> None:
     """Temperatures and losses over a duty cycle."""
     console.writable(out, console.file_of(json))
@@ -48,24 +46,14 @@ def simulate(
 
 
 def design(
-    rig: Rig,
-    target: Annotated[
-        list[str],
-        typer.Option(help="Value to reach, NAME=VALUE, or limit to keep, NAME<VALUE or NAME>VALUE. Repeatable."),
-    ],
-    free: Annotated[
-        list[str] | None, typer.Option(help="Parameter or input that may change, one per value to reach. Repeatable.")
-    ] = None,
-    among: Annotated[
-        list[str] | None,
-        typer.Option(
-            help="Alternatives from a catalogue, for example oil=PAOR,MINR, or oil=all; the best comes first."
-        ),
-    ] = None,
-    set_: Set = None,
-    extended: Extended = None,
-    everything: Everything = False,
-    json: Json = None,
+    rig: str,
+    target: list[str],
+    free: list[str] | None = None,
+    among: list[str] | None = None,
+    set_: list[str] | None = None,
+    extended: Path | None = None,
+    everything: bool = False,
+    json: str | None = None,
 ) -> None:
     """Find parameters or inputs for which outputs reach their targets."""
     if len(among or []) > 1:
@@ -75,37 +63,23 @@ def design(
 
 
 def sweep(
-    rig: Rig,
-    vary: Annotated[
-        list[str],
-        typer.Option(
-            help='NAME=LOW..HIGH, for example "carrier.tau=500..2700 N.m", NAME~normal(MEAN, DEVIATION),'
-            " or the word uncertainty: every uncertain parameter of the rig. Repeatable."
-        ),
-    ],
-    out: Annotated[Path, typer.Option("-o", "--out", help="CSV or Parquet file to write.")],
-    sample: Annotated[int | None, typer.Option(help="Number of random rows.")] = None,
-    grid: Annotated[str | None, typer.Option(help="Rows of a grid, one number for each --vary, such as 20x10.")] = None,
-    method: Annotated[
-        Literal["lhs", "monte-carlo"], typer.Option(help="How random rows are drawn; lhs: Latin hypercube.")
-    ] = "lhs",
-    seed: Annotated[int, typer.Option(help="The same seed gives the same sample.")] = 0,
-    set_: Set = None,
-    output: Annotated[
-        list[str] | None, typer.Option(help="Outputs to keep, for example oil.T,efficiency.eta; all if left out.")
-    ] = None,
-    kind: Annotated[Literal["steady", "warmup"], typer.Option(help="Steady states, or warm-ups over time.")] = "steady",
-    duty: Annotated[Path | None, typer.Option(help="Warm-up: CSV with time and inputs, the same for all rows.")] = None,
-    duration: Annotated[
-        str | None, typer.Option(help='Warm-up at constant inputs: how long, such as "330 min".')
-    ] = None,
-    every: Annotated[str | None, typer.Option(help="Warm-up: time between rows; only the end if left out.")] = None,
-    jobs: Jobs = 0,
-    scheduler: Annotated[
-        str | None, typer.Option(metavar="ADDRESS", help="Dask scheduler that spreads the rows over its workers.")
-    ] = None,
-    plot: Plot = None,
-    json: Json = None,
+    rig: str,
+    vary: list[str],
+    out: Path,
+    sample: int | None = None,
+    grid: str | None = None,
+    method: Literal["lhs", "monte-carlo"] = "lhs",
+    seed: int = 0,
+    set_: list[str] | None = None,
+    output: list[str] | None = None,
+    kind: Literal["steady", "warmup"] = "steady",
+    duty: Path | None = None,
+    duration: str | None = None,
+    every: str | None = None,
+    jobs: int = 0,
+    scheduler: str | None = None,
+    plot: Path | None = None,
+    json: str | None = None,
 ) -> None:
     """Many steady states or warm-ups, on a grid or at random. An interrupted sweep goes on."""
     console.writable(out, console.file_of(json))
@@ -134,15 +108,15 @@ def sweep(
 
 
 def map_(
-    rig: Rig,
-    out: Annotated[Path, typer.Option("-o", "--out", help="CSV to write, a row per point.")],
-    speed: Annotated[str | None, typer.Option(help='Range such as "300..1800 rpm".')] = None,
-    torque: Annotated[str | None, typer.Option(help='Range such as "-600..-60 N.m".')] = None,
-    grid: Annotated[str, typer.Option(help="Points: speeds x torques.")] = "21x21",
-    plot: Plot = None,
-    output: Annotated[list[str] | None, typer.Option(help="Output to map. Repeatable.")] = None,
-    set_: Set = None,
-    json: Json = None,
+    rig: str,
+    out: Path,
+    speed: str | None = None,
+    torque: str | None = None,
+    grid: str = "21x21",
+    plot: Path | None = None,
+    output: list[str] | None = None,
+    set_: list[str] | None = None,
+    json: str | None = None,
 ) -> None:
     """Oil temperature, loss and efficiency over speed and torque: table and picture."""
     console.writable(out, console.file_of(json))
@@ -154,14 +128,14 @@ def map_(
 
 
 def rating(
-    rig: Rig,
-    limit: Annotated[str, typer.Option(help='What must be kept, such as "oil.T=95 degC".')],
-    room: Annotated[str | None, typer.Option(help='Range of the room, such as "0..40 degC".')] = None,
-    speed: Annotated[str | None, typer.Option(help='Range such as "300..1800 rpm".')] = None,
-    grid: Annotated[str, typer.Option(help="Points: rooms x speeds.")] = "5x5",
-    out: Annotated[Path | None, typer.Option("-o", "--out", help="CSV to write.")] = None,
-    set_: Set = None,
-    json: Json = None,
+    rig: str,
+    limit: str,
+    room: str | None = None,
+    speed: str | None = None,
+    grid: str = "5x5",
+    out: Path | None = None,
+    set_: list[str] | None = None,
+    json: str | None = None,
 ) -> None:
     """Thermal power over room temperature and speed: continuous power at which a limit is kept."""
     console.writable(out, console.file_of(json))

@@ -55,17 +55,6 @@ class Calibration(Answer):
 
     fit: Fit
 
-    @property
-    def title(self) -> str:
-        """The rig and what it was fitted to."""
-        of = self.found["grid"] or "all tests"
-        return f"{self.found['rig']}: fitted to {self.found['readings']} oil temperatures of {of}"
-
-    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """Values with standard errors, and those before."""
-        rows = [(n, f["value"], f["standard_error"], f["unit"], f["start"]) for n, f in self.found["free"].items()]
-        return ("name", "value", "standard error", "unit", "before"), rows
-
 
 def calibrate(
     rig: RigLike,
@@ -104,7 +93,7 @@ def calibrate(
     quantities = _parse_bounds(_check_free(flat, free), bounds)
     chosen = _of_grid(study, campaign.runs_of(scenario, flat, study), grid)
     fit = fit_parameters(study, flat, quantities, chosen)
-    found = {
+    found: dict[str, Any] = {
         "schema": "gearheat.calibrate/1",
         "rig": scenario.name,
         "grid": grid,
@@ -126,7 +115,9 @@ def calibrate(
         "rmse_before_K": fit.rmse_before,
         "rmse_after_K": fit.rmse_after,
     }
-    return Calibration(found, fit)
+    heading = f"{scenario.name}: fitted to {fit.readings} oil temperatures of {grid or 'all tests'}"
+    rows = [(n, f["value"], f["standard_error"], f["unit"], f["start"]) for n, f in found["free"].items()]
+    return Calibration(found, fit, heading=heading, shown=(("name", "value", "standard error", "unit", "before"), rows))
 
 
 def _check_free(flat: FlatModel, free: Sequence[str]) -> list[Quantity]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import re
 import signal
 import threading
@@ -14,6 +13,7 @@ from typing import Any
 
 import numpy as np
 
+from ...fmu.batch_library import cores
 from ...fmu.equations import effective
 from ...model.core.flat import FlatModel
 from ...model.errors import ScenarioError
@@ -164,8 +164,7 @@ def crew(workers: int) -> Iterator[ProcessPoolExecutor | None]:
     Args:
         workers: how many; 0 for one per core
     """
-    cores = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    count = workers or cores or 1
+    count = workers or cores()
     if count == 1:
         yield None
         return

@@ -133,7 +133,7 @@ def replay(
     found = []
     for log in (*pieces, *others):
         note(f"{log.name}: {log.n} samples")
-        found.append(replay_log(own, log, rivals))
+        found.append(_replay_log(own, log, rivals))
     return Replays(tuple(found))
 
 
@@ -206,14 +206,8 @@ def _lagged(u: np.ndarray) -> np.ndarray:
     return np.column_stack([*past, u**2, np.ones(n)])
 
 
-def replay_log(own: Filter, log: Log, rivals: Rivals) -> Replayed:
-    """Errors on one log.
-
-    Args:
-        own: the rig
-        log: samples
-        rivals: fitted elsewhere
-    """
+def _replay_log(own: Filter, log: Log, rivals: Rivals) -> Replayed:
+    """Errors of the rig and of rivals, fitted elsewhere, on one log."""
     whole = windows([log], own.given, own.read, 0)
     lengths = _lengths(whole)
     passed = own.run(whole, np.zeros((len(lengths), len(own.knobs))), free=True, slopes=False)

@@ -12,7 +12,7 @@ from ...scenarios.given import RigLike
 from ...scenarios.measured.readings import column_of, drives, join_readings, read_result
 from ...scenarios.measured.study import load_rig, read_study
 from ..show.console import note
-from ..show.display import Answer
+from ..show.display import Answer, Table
 from .errors import GROUPINGS, Comparison, Score, compare as compare_rows, rivals
 
 
@@ -28,18 +28,13 @@ class Errors(Answer):
     comparison: Comparison | None
     scores: Sequence[Score]
 
-    @property
-    def title(self) -> str:
-        """What is compared."""
-        return f"{self.found['result']} beside {self.found['data']}"
-
-    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+    def table(self) -> Table:
         """Errors with those of the rivals, or the one point there is."""
         if self.comparison is not None:
             return error_lines(self.comparison, self.scores)
         return ("name", "value"), list(self.found["rows"][0].items())
 
-    def groups(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
+    def groups(self) -> Table:
         """Errors by group, simulated minus measured."""
         return group_lines(self.comparison) if self.comparison is not None else ((), ())
 
@@ -69,7 +64,8 @@ def compare(result: str | Path, data: str | Path, rig: RigLike, *, card: str | P
         raise DataError(f"{Path(result).name} and {study.campaign.name} have no reading in common.")
     comparison, scores = compare_rows(rows), rivals(rows, [column_of(s) for s in drives(study)])
     found = {"schema": "gearheat.compare/1", "result": Path(result).name, "data": study.campaign.name, "rows": rows}
-    return Errors({**found, **summarise(comparison, scores)}, comparison, scores)
+    heading = f"{found['result']} beside {found['data']}"
+    return Errors({**found, **summarise(comparison, scores)}, comparison, scores, heading=heading)
 
 
 def summarise(comparison: Comparison, scores: Sequence[Score]) -> dict[str, Any]:

@@ -39,11 +39,6 @@ class CampaignRun(Errors):
         """One per reading."""
         return cast(Rows, self.found["rows"])
 
-    @property
-    def title(self) -> str:
-        """The rig and what is shown."""
-        return f"{self.found['rig']}: {'errors' if self.comparison else 'operating point'}"
-
 
 def run(
     rig: RigLike,
@@ -117,7 +112,8 @@ def run(
     write(out / "result.json", as_json(result))
     write(out / "report.html", render(scenario, flat, result, comparison, scores, curves=curves, outside=outside))
     note(f"{out / 'report.html'} after {time.perf_counter() - began:.1f} s")
-    return CampaignRun(result, comparison, scores)
+    heading = f"{scenario.name}: {'errors' if comparison else 'operating point'}"
+    return CampaignRun(result, comparison, scores, heading=heading)
 
 
 def _curves(scenario: Scenario, study: Measured | None) -> dict[str, str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -49,22 +49,11 @@ class Description(Answer):
     flat: FlatModel
     rest: Result | None
 
-    @property
-    def title(self) -> str:
-        """Name and description."""
-        return f"{self.scenario.name}: {self.scenario.doc}"
-
-    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """Parameters in the units of the file."""
-        head = ("name", "value", "unit", "doc", "source")
-        lines = [{**p, **(p["written"] or {})} for p in self.found["parameters"]]
-        return head, [[line[key] for key in head] for line in lines]
-
     def effects(self) -> tuple[str, Sequence[str], list[list[Any]]] | None:
         """Title, head and rows of the parameters that matter most; None without a steady state or an effect."""
         if self.rest is None:
             return None
-        return effects_table(self.scenario, self.flat, self.found["parameters"], self.rest)
+        return _effects_table(self.scenario, self.flat, self.found["parameters"], self.rest)
 
     @property
     def main_outputs(self) -> list[str]:
@@ -92,7 +81,7 @@ def show(rig: RigLike) -> Description:
     scenario = scenario_of(rig)
     flat, types = flat_of(scenario), scenario.spec.types
     rest, no_steady_state = _at_the_operating_point(scenario, flat)
-    found = {
+    found: dict[str, Any] = {
         "schema": "gearheat.show/1",
         "rig": scenario.name,
         "doc": scenario.doc,
@@ -113,9 +102,12 @@ def show(rig: RigLike) -> Description:
         "outside": outside_of(rest) if rest is not None else [],
         "no_steady_state": no_steady_state,
         "unchecked": find_unchecked(scenario, flat),
-        "errata": [asdict(e) for e in scenario.errata],
+        "errata": [e.model_dump() for e in scenario.errata],
     }
-    return Description(found, scenario, flat, rest)
+    head = ("name", "value", "unit", "doc", "source")
+    lines = [{**p, **(p["written"] or {})} for p in found["parameters"]]
+    shown = head, [[line[key] for key in head] for line in lines]
+    return Description(found, scenario, flat, rest, heading=f"{scenario.name}: {scenario.doc}", shown=shown)
 
 
 def _at_the_operating_point(scenario: Scenario, flat: FlatModel) -> tuple[Result | None, list[str]]:
@@ -195,22 +187,12 @@ def _parameter(scenario: Scenario, flat: FlatModel, q: Quantity) -> dict[str, An
     return {**_line(q), "kind": kind, "uncertainty": known, "source": source, "written": as_written}
 
 
-def effects_table(
+def _effects_table(
     scenario: Scenario, flat: FlatModel, parameters: Sequence[Mapping[str, Any]], rest: Result
 ) -> tuple[str, Sequence[str], list[list[Any]]] | None:
-    """Title, head and rows of the parameters that change the temperature of the oil and the loss the most.
-
-    Args:
-        scenario: the rig
-        flat: its model
-        parameters: as `--json` lists them
-        rest: the steady state
-
-    Returns:
-        None where no parameter has an effect
-    """
+    """Title, head and rows of the parameters that change oil temperature and loss the most, None where none does."""
     of = [name for name in leading_outputs(scenario) if name in flat.index and not name.endswith(".eta")][:2]
-    ranked = effects(scenario, flat, of, parameters, rest)
+    ranked = _effects(scenario, flat, of, parameters, rest)
     if not ranked:
         return None
     units = [flat.quantity(name).unit for name in of]
@@ -225,20 +207,13 @@ def effects_table(
     return title, ("name", "value", "unit", *heads, "doc", "source"), body
 
 
-def effects(
+def _effects(
     scenario: Scenario, flat: FlatModel, of: Sequence[str], parameters: Sequence[Mapping[str, Any]], rest: Result
 ) -> list[tuple[Mapping[str, Any], list[float]]]:
-    """The parameters with the largest effect, and what each changes in SI.
+    """The parameters with the largest effect on some states or outputs, and what each changes in SI.
 
     Those that the rig gives and that are no temperatures. Left out is what the drawing fixes: numbers of things, and
     lengths and angles of all parts but those that only carry heat.
-
-    Args:
-        scenario: the rig
-        flat: its model
-        of: outputs or states that are changed
-        parameters: as `--json` lists them
-        rest: the steady state
     """
     thermal = {p.name for p in scenario.spec.parts if _thermal(scenario.spec.types[p.type])}
     own = {line["name"]: line for line in parameters if line["kind"] == "given"}

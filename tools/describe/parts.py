@@ -4,16 +4,15 @@ from __future__ import annotations
 
 import inspect
 import math
-import tomllib
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from functools import cache
-from importlib.resources import files
 from typing import Any
 
 from ...model.core.component import Component
 from ...model.core.declare import Choice, Declaration, Input, Output, Parameter, Port, State, list_declared
 from ...model.core.flat import Quantity
 from ...model.errors import ScenarioError, suggestion
+from ...model.files import tables
 from ...model.parts import PARTS
 from ...model.sources import LawInfo, recording, sources
 from ...model.units import example, from_si, show_unit, text, to_si
@@ -30,19 +29,7 @@ ENTRIES: Mapping[str, str] = {kind: f"name of an entry, see `gearheat list`: val
 
 
 class PartTypes(Answer):
-    """All part types, or everything about one of them."""
-
-    @property
-    def title(self) -> str:
-        """What is shown."""
-        return "Part types" if "types" in self.found else f"{self.found['type']}: {self.found['doc']}"
-
-    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """The types, or the parameters of one."""
-        if "types" in self.found:
-            return ("type", "role", "what it is"), [(t["type"], t["role"], t["doc"]) for t in self.found["types"]]
-        head = ("name", "unit", "range", "default", "doc")
-        return head, [[line[key] for key in head] for line in self.found["parameters"]]
+    """All part types with their roles, or everything about one of them; the table is then of its parameters."""
 
 
 def parts(kind: str | None = None) -> PartTypes:
@@ -61,18 +48,19 @@ def parts(kind: str | None = None) -> PartTypes:
     """
     if kind is None:
         types = [{"type": name, "role": cls.role, "doc": first_line(cls)} for name, cls in PARTS.items()]
-        return PartTypes({"schema": "gearheat.parts/1", "types": types})
+        rows = [tuple(t.values()) for t in types]
+        every = {"schema": "gearheat.parts/1", "types": types}
+        return PartTypes(every, heading="Part types", shown=(("type", "role", "what it is"), rows))
     if kind not in PARTS:
         raise ScenarioError(f'there is no part type "{kind}".{suggestion(kind, PARTS)} See `gearheat parts`.')
-    return PartTypes({"schema": "gearheat.part/1", **describe_part(kind)})
+    found: dict[str, Any] = {"schema": "gearheat.part/1", **describe_part(kind)}
+    head = ("name", "unit", "range", "default", "doc")
+    shown = head, [[line[key] for key in head] for line in found["parameters"]]
+    return PartTypes(found, heading=f"{kind}: {found['doc']}", shown=shown)
 
 
 def describe_part(kind: str) -> dict[str, Any]:
-    """Ports, parameters, choices, inputs, states, outputs, equations, sources and an example of a part type.
-
-    Args:
-        kind: name in `PARTS`
-    """
+    """Ports, parameters, choices, inputs, states, outputs, equations, laws and an example of a type in `PARTS`."""
     cls = PARTS[kind]
     where, values, entries = _example(kind)
     equations, laws = _inside(cls, values)
@@ -156,8 +144,7 @@ def _example(kind: str) -> tuple[str, dict[str, Any], Mapping[str, str]]:
 @cache
 def _typical() -> dict[str, dict[str, Any]]:
     """Sizes of part types that no shipped rig has, by type, in SI."""
-    written = files("gearheat.tools.describe").joinpath("templates", "parts.toml").read_text(encoding="utf-8")
-    found: dict[str, dict[str, Any]] = tomllib.loads(written)
+    found: dict[str, dict[str, Any]] = tables("tools.describe", "templates", "parts.toml")
     for kind, sizes in found.items():
         known = settable(PARTS[kind])
         sizes |= {key: to_si(sizes[key], known[key].unit, name=key) for key in sizes.keys() & known.keys()}

@@ -83,7 +83,7 @@ def gather(program: TyperGroup, public: Mapping[str, Any], source: Path) -> Path
     """
     shutil.copytree(PAGES, source)
     place = source / "generated"
-    for name, text in (*reference.pages(), *list_program_pages(program, public)):
+    for name, text in (*reference.pages(), *_list_program_pages(program, public)):
         (place / name).parent.mkdir(parents=True, exist_ok=True)
         (place / name).write_text(text, encoding="utf-8")
     reference.copy_pictures(place)
@@ -105,13 +105,8 @@ def add_captions(text: str) -> str:
     return FENCE.sub(block, text)
 
 
-def list_program_pages(program: TyperGroup, public: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
-    """Path below the folder of generated pages, and text, of every page.
-
-    Args:
-        program: the command line
-        public: functions and classes of `gearheat` by name
-    """
+def _list_program_pages(program: TyperGroup, public: Mapping[str, Any]) -> Iterator[tuple[str, str]]:
+    """Path below the folder of generated pages, and text, of every page on commands and public names."""
     commands = sorted(program.commands.items())
     yield "commands.md", page("commands", commands=commands, named=_named, default=_default)
     schema = json.loads(files("gearheat.tools.diagnose.report").joinpath("diagnosis.schema.json").read_text("utf-8"))

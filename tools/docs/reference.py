@@ -7,7 +7,6 @@ import inspect
 import pkgutil
 import re
 import shutil
-import tomllib
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from functools import cache
@@ -19,6 +18,7 @@ from typing import Any
 from jinja2 import Environment, PackageLoader, StrictUndefined
 
 from ...model import laws
+from ...model.files import tables
 from ...model.machines.roles import Roles
 from ...model.parts import PARTS
 from ...model.sources import LawInfo, sources
@@ -40,7 +40,7 @@ from ..diagnose.library.registry import library
 from ..diagnose.setting import ranges_of
 
 #: What the pages tell of, and settings of the web site.
-TABLES: dict[str, Any] = tomllib.loads(files("gearheat.tools.docs").joinpath("docs.toml").read_text(encoding="utf-8"))
+TABLES: dict[str, Any] = tables("tools.docs", "docs.toml")
 MATH = re.compile(r"^\.\. math::[ \n]*((?:.+\n?)+?)(?:\n|\Z)", re.MULTILINE)
 #: Where the pages of the contact solver and of the reference methods stand.
 CONTACT = Path(str(files("gearheat.model.contact")))
@@ -217,11 +217,7 @@ def law_modules() -> list[str]:
 
 
 def laws_of(module: str) -> Iterator[Law]:
-    """The laws of a module in the order of its file.
-
-    Args:
-        module: its name in `model.laws`
-    """
+    """The laws of a module of `model.laws` in the order of its file."""
     found = importlib.import_module(f"{laws.__name__}.{module}")
     yield from (f for f in vars(found).values() if hasattr(f, "law") and f.__module__ == found.__name__)
 

@@ -178,7 +178,10 @@ def write_extras(
     Returns:
         NAME.ssv, oils/OIL.ssv for every oil that gives all the rig's oil has, NAME_in.csv, NAME_ref.csv, NAME_ref.opt
     """
-    files = {folder / f"{fmu.stem}.ssv": _set_of_rig(scenario, flat, sources)}
+    chosen = [replace(q, start=tidy(q.start)) for q in flat.parameters]
+    sd = None if sources is None else scenario.standard_uncertainties
+    own = parameter_set(scenario.name, chosen, doc=scenario.doc, sources=sources, uncertainties=sd)
+    files = {folder / f"{fmu.stem}.ssv": own}
     for oil, content in sets_of_oils(scenario, flat, told=sources is not None).items():
         files[folder / "oils" / f"{oil.replace(' ', '_')}.ssv"] = content
     for path, content in files.items():
@@ -187,16 +190,6 @@ def write_extras(
         played = fmu if _plays_here(fmu) else export(flat, Path(place) / fmu.name, start=start)
         reference = write_reference(played, _inputs(duty), duty.stop, step_of(duty), folder=folder)
     return [*files, *reference]
-
-
-def _set_of_rig(scenario: Scenario, flat: FlatModel, sources: Mapping[str, str] | None) -> bytes:
-    return parameter_set(
-        scenario.name,
-        [replace(q, start=tidy(q.start)) for q in flat.parameters],
-        doc=scenario.doc,
-        sources=sources,
-        uncertainties=None if sources is None else scenario.standard_uncertainties,
-    )
 
 
 def sets_of_oils(scenario: Scenario, flat: FlatModel, *, told: bool) -> dict[str, bytes]:

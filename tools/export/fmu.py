@@ -94,25 +94,9 @@ class Exported(Answer):
         """The FMU, or the system of FMUs."""
         return Path(self.found.get("fmu") or self.found["ssp"])
 
-    @property
-    def title(self) -> str:
-        """The file and its rig."""
-        return f"{self.path}: {self.found['rig']}"
-
-    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """Inputs and outputs, or FMUs with theirs."""
-        if "ssp" in self.found:
-            fmus = self.found["fmus"].items()
-            return ("FMU", "inputs", "outputs"), [(n, len(f["inputs"]), len(f["outputs"])) for n, f in fmus]
-        return ("name", "causality"), [(n, kind[:-1]) for kind in ("inputs", "outputs") for n in self.found[kind]]
-
 
 def export_rig(asked: Asked) -> Exported:
-    """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set.
-
-    Args:
-        asked: the options
-    """
+    """Write a rig as an FMU. Inputs at the shaft ends follow from the options, else from the names that are set."""
     if asked.uncertainty and not asked.with_origins:
         raise ScenarioError(
             "--uncertainty tells how uncertain values are, which --no-parameters-source keeps back. Take one away."
@@ -140,7 +124,7 @@ def export_rig(asked: Asked) -> Exported:
     origins = sources_of(setting, kept) if asked.with_origins else None
     written = [] if beside is None else write_extras(asked.out, beside, setting, kept, duty, start, origins)
     choices = drop_idle(choices_of(setting), kept)
-    found = {
+    found: dict[str, Any] = {
         "schema": "gearheat.export/1",
         "rig": scenario.name,
         "fmu": str(asked.out),
@@ -156,7 +140,8 @@ def export_rig(asked: Asked) -> Exported:
         "extras": [str(path) for path in written],
         "unchecked": find_unchecked(setting, flat),
     }
-    return Exported(found)
+    rows = [(name, kind[:-1]) for kind in ("inputs", "outputs") for name in found[kind]]
+    return Exported(found, heading=f"{asked.out}: {scenario.name}", shown=(("name", "causality"), rows))
 
 
 def write_fmu(

@@ -49,7 +49,8 @@ def export_system(groups: Sequence[str], asked: Asked) -> Exported:
     options = asked.options
     with progress_bar() as options["progress"]:
         found = write_system(setting, taken, asked.out, **options)
-    return Exported(found)
+    rows = [(name, len(fmu["inputs"]), len(fmu["outputs"])) for name, fmu in found["fmus"].items()]
+    return Exported(found, heading=f"{asked.out}: {setting.name}", shown=(("FMU", "inputs", "outputs"), rows))
 
 
 def _refuse(setting: Scenario, name: str, parts: Sequence[str]) -> str:

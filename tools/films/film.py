@@ -50,19 +50,7 @@ WRONG = {LOST: (FAILED, "no film found"), COARSE: ("coarse", "the grid is too co
 
 
 class FilmTable(Answer):
-    """Films of a contact over load, speed and temperature, and the law fitted to them."""
-
-    @property
-    def title(self) -> str:
-        """The contact and the number of points."""
-        found = self.found
-        of = f"{found['case']}: {found['part']}" if found["part"] else found["case"]
-        return f"{of}: {found['contacts']} {found['shape']} contacts"
-
-    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """What is varied."""
-        rows = [(k, v["low"], v["high"], v["unit"]) for k, v in self.found["varied"].items()]
-        return ("varied", "low", "high", "unit"), rows
+    """Films of a contact over load, speed and temperature, and the law fitted to them; the table is what is varied."""
 
 
 def film(
@@ -105,14 +93,14 @@ def film(
         if path is not None and path.suffix not in kinds
     ).check()
     case = case_of(rig, part, vary, set)
-    points = grid_of(case, grid)
+    points = _grid_of(case, grid)
     count = nodes or (NODES_LINE if _is_line(case.contact) else NODES_SIDE)
     if not _is_line(case.contact) and (count < FINER or (count - 1) & (count - 2)):
         raise ScenarioError(
             f"--nodes {count}: give 2^k + 1, at least {FINER}: a film is compared with that on half of them."
         )
-    kept = solve_points(case, points, count, out)
-    write(out, table_of(case, points, kept))
+    kept = _solve_points(case, points, count, out)
+    write(out, _table_of(case, points, kept))
     wrong = [(p, k[-1]) for p, k in zip(points, kept, strict=True) if k[-1] != FOUND]
     failed = [f"{_name_point(case, point)}: {WRONG[status][1]}" for point, status in wrong]
     fitted = read_film_map(out)
@@ -121,7 +109,7 @@ def film(
 
         write_picture(drawn, _picture(case, points, kept))
     law, units = fitted.law, {name: quantity.unit for name, quantity in AXES.items()}
-    found = {
+    found: dict[str, Any] = {
         "schema": "gearheat.film/1",
         "case": case.name,
         "part": case.part,
@@ -143,7 +131,10 @@ def film(
         },
         "plot": None if drawn is None else str(drawn),
     }
-    return FilmTable(found)
+    of = f"{case.name}: {case.part}" if case.part else case.name
+    heading = f"{of}: {found['contacts']} {law.shape} contacts"
+    varied = [(name, *ends.values()) for name, ends in found["varied"].items()]
+    return FilmTable(found, heading=heading, shown=(("varied", "low", "high", "unit"), varied))
 
 
 def case_of(
@@ -168,16 +159,8 @@ def case_of(
     return from_rig(adjust(load(rig), assignments), part, vary)
 
 
-def grid_of(case: MapCase, written: str | None) -> np.ndarray:
-    """Load, speed and temperature of each point (n, 3): equal ratios of load and speed, equal steps of temperature.
-
-    Args:
-        case: the contact and its ranges
-        written: points along each axis that is varied, such as "6x6x4"
-
-    Raises:
-        ScenarioError: the grid does not fit the axes
-    """
+def _grid_of(case: MapCase, written: str | None) -> np.ndarray:
+    """Load, speed and temperature of each point (n, 3): equal ratios of load and speed, equal steps of temperature."""
     names = [axis.name for axis in case.axes]
     counts = [POINTS[name] for name in names]
     if written is not None:
@@ -210,18 +193,8 @@ def contact_at(case: MapCase, point: np.ndarray) -> Contact:
     return replace(case.contact, F=F, u_1=u_m * (1 + slide), u_2=u_m * (1 - slide), lubricant=oil)
 
 
-def solve_points(case: MapCase, points: np.ndarray, nodes: int, out: Path) -> np.ndarray:
-    """What is kept of each point (n, KEPT): a run that was interrupted goes on from the points it has finished.
-
-    Args:
-        case: the contact
-        points: of the map (n, 3)
-        nodes: of the contact solver
-        out: file of the map, beside which finished points are kept
-
-    Raises:
-        GearheatError: the contact or the nodes make no problem, or the work file cannot be written
-    """
+def _solve_points(case: MapCase, points: np.ndarray, nodes: int, out: Path) -> np.ndarray:
+    """What is kept of each point (n, KEPT): a run that was interrupted goes on from the points it has finished."""
     contacts = [contact_at(case, point) for point in points]
     key = hashlib.sha256(repr((contacts, nodes)).encode()).hexdigest()
     with Store(work_file(out), key, len(KEPT)) as store:
@@ -261,14 +234,8 @@ def _error(contact: Contact, nodes: int, h_c: float) -> float:
         return 1.0
 
 
-def table_of(case: MapCase, points: np.ndarray, kept: np.ndarray) -> str:
-    """The map as CSV.
-
-    Args:
-        case: the contact
-        points: load, speed and temperature (n, 3)
-        kept: what was found at each (n, KEPT)
-    """
+def _table_of(case: MapCase, points: np.ndarray, kept: np.ndarray) -> str:
+    """The map as CSV: points (n, 3) and what was kept of each (n, KEPT)."""
     rows, c = list[list[float | str | None]](), case.contact
     across = c.R_y if isfinite(c.R_y) else None
     constant = (c.R_x, across, c.length, c.E_eff, case.slide_roll, case.sigma, case.mu_boundary)

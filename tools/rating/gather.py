@@ -128,7 +128,7 @@ def machine_of(scenario: Scenario, bearing_types: Sequence[str], dips: Mapping[s
     surfaces = tuple(part for part in parts.values() if _is_surface(part))
     _check(scenario, pairs, {"oil bath": baths, "room": rooms, "surface with area and emissivity": surfaces}, dips)
     read = [n for n, p in parts.items() if n in pairs or p.role in ("bearing", "seal")]
-    probed = replace(scenario, spec=with_readings(scenario.spec, read))
+    probed = replace(scenario, spec=_with_readings(scenario.spec, read))
     flat = flat_of(probed)
     at = {path: float(column[0]) for path, column in steady(flat, conditions(probed, flat)).columns.items()}
     dips = {**_read_dips(scenario, parts, pairs, at), **dips}
@@ -274,14 +274,10 @@ READINGS: Mapping[type[Port], type[Component]] = {
 }
 
 
-def with_readings(spec: Spec, parts: Iterable[str]) -> Spec:
+def _with_readings(spec: Spec, parts: Iterable[str]) -> Spec:
     """The spec with a reading at every shaft and load of some of its parts.
 
     The outputs of the readings are `reading(part, port)` and ".w", ".F_r" or ".F_a".
-
-    Args:
-        spec: the machine
-        parts: names of the parts
     """
     probes, nets = [], []
     for part in parts:

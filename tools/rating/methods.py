@@ -49,13 +49,8 @@ FACTORS: Mapping[str, Factors] = {
 }
 
 
-def bearing_loss(bearing: Turning, nu: float) -> float:
-    """Friction power of all pieces [W].
-
-    Args:
-        bearing: the bearing at work
-        nu: kinematic viscosity of the oil [m2/s]
-    """
+def _bearing_loss(bearing: Turning, nu: float) -> float:
+    """Friction power of all pieces [W] in an oil of a kinematic viscosity [m2/s]."""
     factors, v = FACTORS[type(bearing.part).__name__], bearing.part.values
     F_r, F_a = bearing.F_r + v["F_r_0"], bearing.F_a + v["F_a_0"]
     viscous = needle_torque_viscous(bearing.w, nu, v["d_m"], v.get("f_0", factors.f_0))
@@ -85,18 +80,13 @@ class Method:
     assumptions: tuple[str, ...]
 
 
-def losses_1(machine: Machine, T: float) -> Losses:
-    """Losses after ISO/TR 14179-1.
-
-    Args:
-        machine: the machine
-        T: temperature of the sump [K]
-    """
+def _losses_1(machine: Machine, T: float) -> Losses:
+    """Losses after ISO/TR 14179-1 at a temperature of the sump [K]."""
     nu = machine.nu(T)
     return {
         "mesh": {m.name: _mesh_1(m, nu) for m in machine.meshes},
         "churning": {m.name: _churning_1(m, nu) for m in machine.meshes},
-        "bearings": {b.part.name: bearing_loss(b, nu) for b in machine.bearings},
+        "bearings": {b.part.name: _bearing_loss(b, nu) for b in machine.bearings},
         "seals": _seals(machine, part_1.seal_torque),
     }
 
@@ -120,18 +110,13 @@ def _churning_1(m: Mesh, nu: float) -> float:
     return total
 
 
-def losses_2(machine: Machine, T: float) -> Losses:
-    """Losses after ISO/TR 14179-2.
-
-    Args:
-        machine: the machine
-        T: temperature of the sump [K]
-    """
+def _losses_2(machine: Machine, T: float) -> Losses:
+    """Losses after ISO/TR 14179-2 at a temperature of the sump [K]."""
     nu, eta = machine.nu(T), machine.eta(T)
     return {
         "mesh": {m.name: _mesh_2(m, eta, machine.oil["X_L"]) for m in machine.meshes},
         "churning": {m.name: _churning_2(m, machine.surfaces) for m in machine.meshes},
-        "bearings": {b.part.name: bearing_loss(b, nu) for b in machine.bearings},
+        "bearings": {b.part.name: _bearing_loss(b, nu) for b in machine.bearings},
         "seals": _seals(machine, lip_seal_torque),
     }
 
@@ -164,27 +149,8 @@ def _churning_2(m: Mesh, surfaces: tuple[Component, ...]) -> float:
     return float(part_2.hydraulic_torque(m.v, sum(m.dips), m.pair.b, C_Sp)) * abs(m.w[deeper])
 
 
-def conductance_1(machine: Machine, T: float) -> float:
-    """From the sump to still air after ISO/TR 14179-1: one coefficient over the area without fins [W/K].
-
-    Args:
-        machine: the machine
-        T: temperature of the sump [K], without effect
-    """
-    return part_1.STILL_AIR * sum(s.values["A"] for s in machine.surfaces)
-
-
-def conductance_2(machine: Machine, T: float) -> float:
-    """From the sump to still air after ISO/TR 14179-2: oil to wall, free convection and radiation, fins as area [W/K].
-
-    Args:
-        machine: the machine
-        T: temperature of the sump [K]
-    """
-    return sum(_surface_2(s, T, machine.T_room) for s in machine.surfaces)
-
-
 def _surface_2(surface: Component, T: float, T_room: float) -> float:
+    """From the sump to still air: oil to wall, free convection and radiation, fins as area [W/K]."""
     v = surface.values
     wet, dry = float(v["A"]), float(v["A"] + v.get("A_fins", 0.0))
 
@@ -204,8 +170,8 @@ BEARINGS = "bearings: Palmgren's formula with factors for an oil bath from the m
 METHODS: Mapping[str, Method] = {
     "iso14179-1": Method(
         "ISO/TR 14179-1",
-        losses_1,
-        conductance_1,
+        _losses_1,
+        lambda machine, _: part_1.STILL_AIR * sum(s.values["A"] for s in machine.surfaces),
         (
             NOT_COMPARED,
             BEARINGS,
@@ -216,8 +182,8 @@ METHODS: Mapping[str, Method] = {
     ),
     "iso14179-2": Method(
         "ISO/TR 14179-2",
-        losses_2,
-        conductance_2,
+        _losses_2,
+        lambda machine, T: sum(_surface_2(s, T, machine.T_room) for s in machine.surfaces),
         (
             NOT_COMPARED,
             BEARINGS,

@@ -15,7 +15,7 @@ from ...model.sources import LawInfo, LawUse, recording
 from ...model.units import from_si
 from ...scenarios.given import RigLike, Settings, scenario_of
 from ...scenarios.values import in_range
-from ..show.display import Answer
+from ..show.display import Answer, Table
 from ..solve.settings import adjust
 from .gather import Machine, machine_of
 from .methods import FACTORS, METHODS, Method
@@ -37,23 +37,6 @@ class MethodRating(Answer):
     """
 
     method: str
-
-    @property
-    def title(self) -> str:
-        """The rig and what is shown."""
-        return f"{self.found['rig']}: losses at the operating point"
-
-    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """Losses by kind, efficiency and oil temperature: model, method, method at its own sump temperature."""
-        found = self.found
-        names = {"model": "model", "method": self.method, "method_at_sump": f"{self.method}, own sump"}
-        columns = [name for name in names if name in found["losses_W"]]
-        kinds = list(dict.fromkeys(kind for name in columns for kind in found["losses_W"][name]))
-        kinds = [kind for kind in kinds if kind != "total" and any(found["losses_W"][n].get(kind) for n in columns)]
-        rows = [[f"{k} [W]", *(found["losses_W"][n].get(k) for n in columns)] for k in (*kinds, "total")]
-        rows.append(["efficiency", *(found["eta"][n] for n in columns)])
-        rows.append(["oil [degC]", *(found["T_oil_C"][n] for n in columns)])
-        return ("", *(names[n] for n in columns)), rows
 
 
 def rate_by_method(
@@ -89,7 +72,21 @@ def rate_by_method(
     scenario = adjust(scenario_of(rig), set)
     machine = machine_of(scenario, tuple(FACTORS), _depths(dip))
     found = {"schema": "gearheat.reference/1", "rig": scenario.name, "method": method}
-    return MethodRating(found | compare(machine, known, T_limit, k_given), known.title)
+    found |= compare(machine, known, T_limit, k_given)
+    heading = f"{scenario.name}: losses at the operating point"
+    return MethodRating(found, known.title, heading=heading, shown=_table(found, known.title))
+
+
+def _table(found: Mapping[str, Any], method: str) -> Table:
+    """Losses by kind, efficiency and oil temperature: model, method, method at its own sump temperature."""
+    names = {"model": "model", "method": method, "method_at_sump": f"{method}, own sump"}
+    columns = [name for name in names if name in found["losses_W"]]
+    kinds = list(dict.fromkeys(kind for name in columns for kind in found["losses_W"][name]))
+    kinds = [kind for kind in kinds if kind != "total" and any(found["losses_W"][n].get(kind) for n in columns)]
+    rows = [[f"{k} [W]", *(found["losses_W"][n].get(k) for n in columns)] for k in (*kinds, "total")]
+    rows.append(["efficiency", *(found["eta"][n] for n in columns)])
+    rows.append(["oil [degC]", *(found["T_oil_C"][n] for n in columns)])
+    return ("", *(names[n] for n in columns)), rows
 
 
 def compare(machine: Machine, method: Method, T_limit: float, k: float | None) -> dict[str, Any]:

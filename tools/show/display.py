@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from html import escape
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 #: Lines of a result in a console; a notebook shows all.
 LINES = 10
+#: Head and rows of a table.
+Table = tuple[Sequence[str], Sequence[Sequence[Any]]]
 #: Columns of a table of values.
 HEAD = ("name", "value", "unit", "meaning")
 
@@ -122,9 +124,22 @@ class Answer(Display):
 
     Attributes:
         found: the JSON object
+        heading: the title
+        shown: head and rows of the table
     """
 
     found: Mapping[str, Any]
+    heading: str = field(default="", kw_only=True)
+    shown: Table = field(default=((), ()), kw_only=True)
+
+    @property
+    def title(self) -> str:
+        """What the result is of, in a few words."""
+        return self.heading
+
+    def table(self) -> Table:
+        """Head and rows, in the units shown to a person."""
+        return self.shown
 
     def as_dict(self) -> dict[str, Any]:
         """The JSON object that the command prints."""
@@ -171,11 +186,7 @@ class Quantities(Display):
         return in_unit(float(self[name]), unit)
 
     def rows(self, names: Sequence[str]) -> list[tuple[str, float, str, str]]:
-        """Rows of a table under `HEAD`.
-
-        Args:
-            names: of the values in it
-        """
+        """Rows of a table under `HEAD`, of the named values."""
         known = [self.flat.quantity(name) for name in names]
         return [(q.name, from_si(float(self[q.name]), q.unit), show_unit(q.unit), q.doc) for q in known]
 

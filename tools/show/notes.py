@@ -19,11 +19,7 @@ MARGIN = 2
 
 
 def print_outside(outside: Sequence[Mapping[str, Any]]) -> None:
-    """Print a line for each law that was used outside its range.
-
-    Args:
-        outside: `part`, `law`, `argument`, `range`, `met` and `regime` of each
-    """
+    """Print a line for each law that was used outside its range, as the JSON objects list them."""
     for o in outside:
         (least, most), (low, high) = o["met"], o["range"]
         met = f"{least:.4g}" if least == most else f"{least:.4g} to {most:.4g}"

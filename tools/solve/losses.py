@@ -39,16 +39,6 @@ class LossTable(Answer):
 
     contacts: ContactTable | None = None
 
-    @property
-    def title(self) -> str:
-        """The rig and what is shown."""
-        return f"{self.found['rig']}: losses"
-
-    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """A row per reading."""
-        rows = self.found["rows"]
-        return list(rows[0]), [list(row.values()) for row in rows]
-
 
 def losses(
     rig: RigLike,
@@ -106,11 +96,14 @@ def losses(
         **at_point,
         "unchecked": find_unchecked(scenario, flat, oils_of(study)),
     }
-    cycle = contacts_at_operating_point(scenario) if contacts else None
-    if cycle is not None:
+    cycle = None
+    if contacts:
+        part, values = contacts_part(scenario)
+        cycle = part.contact_table(values)
         found |= {"contacts": cycle.rows, "columns": cycle.columns, **cycle.totals}
         found["cycle"] = [asdict(moment) for moment in cycle.cycle]
-    return LossTable(found, cycle)
+    shown = list(rows[0]), [list(row.values()) for row in rows]
+    return LossTable(found, cycle, heading=f"{scenario.name}: losses", shown=shown)
 
 
 def oils_of(study: Measured | None) -> list[tuple[str, str]]:
@@ -172,19 +165,12 @@ def hold(
     return {q.name: line for quantities, lines in groups for q, line in zip(quantities, lines, strict=True)}
 
 
-def contacts_at_operating_point(scenario: Scenario) -> ContactTable:
-    """The contacts of a rig at its operating point and the steady temperatures there."""
-    part_with_contacts(scenario)
-    flat = flat_of(scenario)
-    return contacts_at(scenario, flat, steady(flat, conditions(scenario, flat)))
-
-
 def _flow_paths(scenario: Scenario) -> list[str]:
     return [path for path in choice_paths(scenario.spec) if path.endswith(".power_flow")]
 
 
-def part_with_contacts(scenario: Scenario) -> TellsContacts:
-    """The part of a rig that tells its contacts.
+def contacts_part(scenario: Scenario) -> tuple[TellsContacts, dict[str, float]]:
+    """The part of a rig that tells its contacts, and its values at the operating point as `values_of` has them.
 
     Args:
         scenario: the rig, with its values
@@ -201,7 +187,8 @@ def part_with_contacts(scenario: Scenario) -> TellsContacts:
     if len(parts) > 1:
         names = ", ".join(part.name for part in parts)
         raise ScenarioError(f"{scenario.name}: several parts have contacts: {names}. Take a rig with one of them.")
-    return parts[0]
+    flat = flat_of(scenario)
+    return parts[0], values_of(parts[0], flat, steady(flat, conditions(scenario, flat)))
 
 
 def values_of(part: TellsContacts | TellsFilmContact, flat: FlatModel, result: Result) -> dict[str, float]:
@@ -215,18 +202,3 @@ def values_of(part: TellsContacts | TellsFilmContact, flat: FlatModel, result: R
     start = f"{part.name}."
     found = {q.name: q.start for q in flat.parameters} | {name: float(c[0]) for name, c in result.columns.items()}
     return {name.removeprefix(start): value for name, value in found.items() if name.startswith(start)}
-
-
-def contacts_at(scenario: Scenario, flat: FlatModel, result: Result) -> ContactTable:
-    """The contacts of a rig at a steady state.
-
-    Args:
-        scenario: the rig, with its values
-        flat: its model
-        result: one steady point of it
-
-    Raises:
-        ScenarioError: no part tells its contacts, or several do
-    """
-    part = part_with_contacts(scenario)
-    return part.contact_table(values_of(part, flat, result))

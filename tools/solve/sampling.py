@@ -230,11 +230,7 @@ def reasons(scenario: Scenario, flat: FlatModel, given: Collection[str] = ()) ->
 
 
 def shares(found: Sequence[Uncertainty]) -> tuple[Axis, ...]:
-    """One standard normal number for each reason.
-
-    Args:
-        found: the reasons
-    """
+    """One standard normal number for each reason."""
     return tuple(Axis(reason.name, "normal", 0.0, 1.0) for reason in found)
 
 

@@ -160,11 +160,7 @@ class TimeSeries(Columns):
 
 @contextmanager
 def duty_file(duty: Duty) -> Iterator[Path]:
-    """The file of a duty; of a DataFrame one that lasts as long as it is needed.
-
-    Args:
-        duty: file or DataFrame
-    """
+    """The file of a duty; of a DataFrame one that lasts as long as it is needed."""
     if not hasattr(duty, "to_csv"):
         yield Path(duty)
         return

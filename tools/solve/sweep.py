@@ -255,11 +255,7 @@ class Summary:
             yield name, show_unit(q.unit), q.doc, [from_si(float(v), q.unit) if self.count else np.nan for v in numbers]
 
     def as_dict(self, out: Path | None) -> dict[str, Any]:
-        """The summary as an object.
-
-        Args:
-            out: the table
-        """
+        """The summary as an object, with the place of the table."""
         plan = self.plan
         return {
             "schema": "gearheat.sweep/1",

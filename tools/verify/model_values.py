@@ -27,7 +27,7 @@ from ...scenarios.measured.readings import measured_rows, table_columns
 from ...scenarios.measured.study import read_study
 from ...scenarios.published import Row
 from ...scenarios.scenario import Scenario, parse_assignments
-from ..solve.losses import at_readings, contacts_at_operating_point, hold
+from ..solve.losses import at_readings, contacts_part, hold
 from ..solve.settings import adjust, choice_paths, flat_of, parameter_of
 from .verdicts import Value, number_of
 
@@ -130,11 +130,12 @@ class RigValues:
     def _cycle(self, assignments: tuple[str, ...]) -> ContactTable:
         """The contacts at the operating point with values set."""
         if assignments not in self._cycles:
-            self._cycles[assignments] = contacts_at_operating_point(adjust(self.scenario, assignments))
+            part, values = contacts_part(adjust(self.scenario, assignments))
+            self._cycles[assignments] = part.contact_table(values)
         return self._cycles[assignments]
 
     def _at_readings(self, row: Row) -> Value:
-        readings = select_rows(self._readings(_assignments(row)), row.select)
+        readings = _select_rows(self._readings(_assignments(row)), row.select)
         if not readings:
             raise ScenarioError(f"no reading of {self.scenario.name} has {row.select}.")
 
@@ -177,13 +178,8 @@ class RigValues:
         )
 
 
-def select_rows(rows: Iterable[Mapping[str, Any]], select: Mapping[str, Any]) -> list[Mapping[str, Any]]:
-    """The rows whose columns have the values asked for, in the order of the first column that lists several.
-
-    Args:
-        rows: of a table
-        select: column -> value, or list of values
-    """
+def _select_rows(rows: Iterable[Mapping[str, Any]], select: Mapping[str, Any]) -> list[Mapping[str, Any]]:
+    """The rows whose columns have the values asked for, in the order of the first column that lists several."""
     wanted = {column: value if isinstance(value, list) else [value] for column, value in select.items()}
     found = [row for row in rows if all(row.get(column) in values for column, values in wanted.items())]
     for column, values in wanted.items():

@@ -107,9 +107,9 @@ class Verdict:
             "where": row.where,
             "kind": self.kind,
             "run": row.run,
-            "published": format_printed(row.published, row.unit),
-            "corrected": format_printed(row.corrected, row.unit),
-            "recomputed": format_printed(row.recomputed, row.unit),
+            "published": _format_printed(row.published, row.unit),
+            "corrected": _format_printed(row.corrected, row.unit),
+            "recomputed": _format_printed(row.recomputed, row.unit),
             "model": self.model,
             "unit": self.unit,
             "expected": self.expected,
@@ -146,13 +146,8 @@ class Machine:
         }
 
 
-def format_printed(number: Number | None, unit: str) -> str | None:
-    """A number as a reader sees it, with its unit.
-
-    Args:
-        number: text with a unit, a bare number, or None
-        unit: of a bare number
-    """
+def _format_printed(number: Number | None, unit: str) -> str | None:
+    """A number as a reader sees it: a text with its unit, or a bare number with the unit given."""
     return number if number is None or isinstance(number, str) else _with_unit(f"{number:.10g}", unit)
 
 
@@ -288,9 +283,9 @@ def lines(verdicts: Sequence[Verdict]) -> list[list[Any]]:
 def _line(v: Verdict, why: str) -> list[Any]:
     row = v.row
     told = f"{v.verdict}: {why}" if why else v.verdict
-    other = format_printed(row.corrected if row.recomputed is None else row.recomputed, row.unit) or ""
+    other = _format_printed(row.corrected if row.recomputed is None else row.recomputed, row.unit) or ""
     name = f"{row.law}: {row.name}" if row.law else row.name
-    numbers = [format_printed(row.published, row.unit) or "", other, v.shown, v.allowed]
+    numbers = [_format_printed(row.published, row.unit) or "", other, v.shown, v.allowed]
     return [name, row.where, *numbers, told]
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
@@ -124,11 +124,11 @@ def verify(rig: RigLike | None = None) -> Verification:
         0
     """
     rigs = [RigValues(scenario_of(name)) for name in ([rig] if rig is not None else list_rigs())]
-    rows = _each(published_of, [values.scenario for values in rigs])
+    rows = _each(_published_of, [values.scenario for values in rigs])
     laws = [row for row in golden_rows() if rig is None or law_of(row) in rigs[0].laws]
     with counting("values", sum(map(len, rows)) + len(laws)) as advance:
         machines = _each(lambda pair: _machine(pair[0], pair[1], advance), list(zip(rigs, rows, strict=True)))
-        return Verification(machines, judge_rows(laws, None, advance))
+        return Verification(machines, _judge_rows(laws, None, advance))
 
 
 def _each(work: Callable[[A], B], items: Sequence[A]) -> list[B]:
@@ -142,15 +142,8 @@ def _each(work: Callable[[A], B], items: Sequence[A]) -> list[B]:
     return found
 
 
-def published_of(scenario: Scenario) -> tuple[Row, ...]:
-    """The published numbers beside a rig file; none where there is no such file.
-
-    Args:
-        scenario: the rig
-
-    Raises:
-        ScenarioError: everything wrong with the file at once
-    """
+def _published_of(scenario: Scenario) -> tuple[Row, ...]:
+    """The published numbers beside a rig file; none where there is no such file."""
     path = scenario.path.parent / "published.toml"
     try:
         return read_published(path) if path.is_file() else ()
@@ -166,23 +159,12 @@ def _list_citations(places: Iterable[str]) -> dict[str, str]:
 
 def _machine(values: RigValues, rows: Sequence[Row], advance: Callable[[int], None]) -> Machine:
     scenario = values.scenario
-    verdicts = judge_rows(rows, values, advance)
-    return Machine(scenario.name, scenario.doc, scenario.reproduces, verdicts, tuple(map(asdict, scenario.errata)))
+    errata = tuple(e.model_dump() for e in scenario.errata)
+    return Machine(scenario.name, scenario.doc, scenario.reproduces, _judge_rows(rows, values, advance), errata)
 
 
-def judge_rows(
-    rows: Sequence[Row], rig: RigValues | None, advance: Callable[[int], None] = lambda _: None
-) -> tuple[Verdict, ...]:
-    """The verdict on each row.
-
-    Args:
-        rows: published numbers
-        rig: what the model of their rig gives; None for rows of laws alone
-        advance: called with 1 after each row
-
-    Raises:
-        ScenarioError: all rows that name what does not exist, or do not fit together, at once
-    """
+def _judge_rows(rows: Sequence[Row], rig: RigValues | None, advance: Callable[[int], None]) -> tuple[Verdict, ...]:
+    """The verdict on each row; without a rig, on rows of laws alone. All that is wrong with them is told at once."""
     problems: list[str] = []
     known: dict[str, Verdict] = {}
     found = []
@@ -238,11 +220,7 @@ def _law_value(row: Row) -> Value:
 
 
 def law_of(row: Row) -> LawInfo | None:
-    """What the law of a row declares.
-
-    Args:
-        row: with run = "law"
-    """
+    """What the law of a row declares."""
     return getattr(_function(row.law), "law", None)
 
 

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from importlib.resources import files
 from typing import Any
 
 from ....model.contact import Contact, Lubricant
+from ....model.files import tables
 
 #: The oil and the steel of contacts that are given by numbers without a unit; the radius cancels out.
 OIL = Lubricant(eta_0=0.04, alpha_p=2.2e-8)
@@ -38,8 +37,7 @@ class Reference:
 
 def reference(name: str) -> Reference:
     """The reference data of a name."""
-    text = files("gearheat.model.contact").joinpath(f"reference/{name}.toml").read_text(encoding="utf-8")
-    held = tomllib.loads(text)
+    held = tables("model.contact", "reference", f"{name}.toml")
     rows = [dict(zip(held["columns"], row, strict=True)) for row in held["rows"]]
     return Reference(held["source"], held["where"], held.get("rel", 0.0), rows, held)
 

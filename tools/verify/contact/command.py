@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from ...show.console import folder, write
-from ...show.display import Display
+from ...show.display import Answer
 from . import cycle as cycles, figures, lines, pages, steady, studies
 from .rows import Found, Job, run
 
@@ -23,28 +22,8 @@ FILES = {
 }
 
 
-@dataclass(frozen=True, eq=False, repr=False)
-class ContactVerification(Display):
-    """The contact solver beside published films, Hertz and measurements.
-
-    Attributes:
-        rows: of the table
-    """
-
-    rows: Sequence[Mapping[str, Any]]
-
-    @property
-    def title(self) -> str:
-        """What is shown."""
-        return "The contact solver, verified"
-
-    def table(self) -> tuple[Sequence[str], Sequence[Sequence[Any]]]:
-        """A row for each item that is compared."""
-        return pages.SUMMARY, pages.summary(self.rows)
-
-    def as_dict(self) -> dict[str, Any]:
-        """The JSON object."""
-        return {"schema": "gearheat.ehl/1", "rows": self.rows}
+class ContactVerification(Answer):
+    """The contact solver beside published films, Hertz and measurements; the table has a row for each item."""
 
 
 def verify_contact(out: str | Path, *, quick: bool = False, cycle: str | None = None) -> ContactVerification:
@@ -71,15 +50,14 @@ def verify_contact(out: str | Path, *, quick: bool = False, cycle: str | None = 
     write(place / "verification.md", pages.markdown(rows, {title: FILES[title] for title in drawn}))
     write(place / "verification.html", pages.html(rows, drawn))
     write(place / "verification.csv", pages.as_csv(rows))
-    return ContactVerification(rows)
+    shown = pages.SUMMARY, pages.summary(rows)
+    return ContactVerification(
+        {"schema": "gearheat.ehl/1", "rows": rows}, heading="The contact solver, verified", shown=shown
+    )
 
 
 def jobs(quick: bool) -> list[Job]:
-    """All pieces of work, or the quick ones.
-
-    Args:
-        quick: a subset on coarse grids
-    """
+    """All pieces of work, or of the quick subset on coarse grids."""
     parts = (*steady.jobs(quick), *lines.jobs(quick), *studies.jobs(quick), *studies.dent_jobs(quick))
     items = list(dict.fromkeys(job.item for job in parts))
     wanted = [job for job in parts if job.quick or not quick]

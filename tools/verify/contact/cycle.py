@@ -13,11 +13,8 @@ from ....model.contact.line import solve_line
 from ....model.contact.line_cycle import solve_line_cycle
 from ....model.errors import ScenarioError
 from ....model.laws.film import asperity_share
-from ....model.run.steady import steady
 from ....scenarios.load import load
-from ...solve.losses import contacts_at, part_with_contacts, values_of
-from ...solve.settings import flat_of
-from ...solve.steady import conditions
+from ...solve.losses import contacts_part
 from .rows import Found, Job, row
 
 #: First and last angle of the cycle, as in the article [deg].
@@ -64,35 +61,20 @@ class Cycle:
 
 
 def jobs(rig: str) -> list[Job]:
-    """The piece of work.
-
-    Args:
-        rig: name or path of a rig with a mesh of pins
-    """
+    """The piece of work of a rig with a mesh of pins, by its name or path."""
     return [Job("Mesh cycle", rig, lambda: _work(rig))]
 
 
-def cycle_of(rig: str) -> Cycle:
-    """The mesh cycle of a rig at its operating point.
-
-    Args:
-        rig: name or path
-
-    Raises:
-        ScenarioError: its part with contacts does not tell its oil and material
-    """
+def _cycle_of(rig: str) -> Cycle:
+    """The mesh cycle of a rig at its operating point."""
     scenario = load(rig)
-    part, flat = part_with_contacts(scenario), flat_of(scenario)
-    result = steady(flat, conditions(scenario, flat))
-    told, values = contacts_at(scenario, flat, result), values_of(part, flat, result)
+    part, values = contacts_part(scenario)
     missing = [key for key in KEYS if key not in values]
     if missing:
         raise ScenarioError(f"{scenario.name}: {part.name} does not tell {', '.join(missing)}. Take another rig.")
     oil = Lubricant(values["eta_oil"], values["alpha_p"])
-    angles = np.linspace(*ANGLES, POINTS)
-    column = {
-        key: np.interp(angles, *_columns(told.rows, key)) for key in ("R_m", "w_N_m", "U_m_s", "v_slide_m_s", "h_c_m")
-    }
+    angles, rows = np.linspace(*ANGLES, POINTS), part.contact_table(values).rows
+    column = {key: np.interp(angles, *_columns(rows, key)) for key in ("R_m", "w_N_m", "U_m_s", "v_slide_m_s", "h_c_m")}
     contacts = [
         Contact(
             F=w * values["b"],
@@ -115,7 +97,7 @@ def _columns(rows: Sequence[Mapping[str, float]], key: str) -> tuple[list[float]
 
 def _work(rig: str) -> Found:
     """The transient, the steady contacts at the same angles, and the article's trends solved."""
-    cycle = cycle_of(rig)
+    cycle = _cycle_of(rig)
     moving = solve_line_cycle(cycle.contacts, cycle.times, n=NODES, steps=STEPS, domain=DOMAIN)
     still = [solve_line(c, n=NODES) for c in cycle.contacts]
     h = [1e9 * f.h_c for f in moving]

@@ -30,11 +30,7 @@ WIDE = (-60.0, 10.0)
 
 
 def jobs(quick: bool) -> list[Job]:
-    """The pieces of work.
-
-    Args:
-        quick: on fewer and coarser grids
-    """
+    """The pieces of work, the quick ones on fewer and coarser grids."""
     data = cases.reference("line")
     grids = QUICK_GRIDS if quick else GRIDS
     return [

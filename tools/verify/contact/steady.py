@@ -28,11 +28,7 @@ MOMENT_DOMAIN = (-4.5, 1.5, 3.0)
 
 
 def jobs(quick: bool) -> list[Job]:
-    """The pieces of work, in the order of the table.
-
-    Args:
-        quick: on a coarse grid
-    """
+    """The pieces of work in the order of the table, the quick ones on a coarse grid."""
     n = QUICK if quick else NODES
     return [*_hamrock_dowson(n), *_nijenbanning(n), *_dry(n), *_rolling(n), *_ball_on_disc(n)]
 
@@ -45,13 +41,8 @@ class Extrapolated(NamedTuple):
     load_error: float
 
 
-def extrapolate(contact: Contact, n: int) -> Extrapolated:
-    """Films of second order on n and (n + 1)/2 nodes a side, extrapolated.
-
-    Args:
-        contact: the contact
-        n: nodes along a side of the finer grid
-    """
+def _extrapolate(contact: Contact, n: int) -> Extrapolated:
+    """Films of second order on n and (n + 1)/2 nodes a side, extrapolated."""
     coarse, fine = solve(contact, n=(n + 1) // 2), solve(contact, n=n)
     return Extrapolated(
         (4 * fine.h_c - coarse.h_c) / 3,
@@ -72,7 +63,7 @@ def _hamrock_dowson(n: int) -> list[Job]:
 
     def work(U: float, W: float, G: float, k: float, varied: str) -> Found:
         contact = cases.elliptical(U, W, G, k)
-        film = extrapolate(contact, FINEST if n > QUICK else n)
+        film = _extrapolate(contact, FINEST if n > QUICK else n)
         numbers = (U, G, W, k)
         name = f"U {U:g} W {W:g} G {G:g} k {k:g}"
         low, middle = film_point.hamrock_dowson_minimum(*numbers), film_point.hamrock_dowson_central(*numbers)
@@ -98,7 +89,7 @@ def _nijenbanning(n: int) -> list[Job]:
     def work(M: float, L: float, H: float) -> Found:
         contact, U = cases.circular(M, L)
         contact = replace(contact, lubricant=cases.SIMPLE_OIL)
-        film = extrapolate(contact, FINEST if M >= HEAVY and n > QUICK else n)
+        film = _extrapolate(contact, FINEST if M >= HEAVY and n > QUICK else n)
         ours = film.h_c / contact.R_x / U**0.5
         name, other = f"M {M:g} L {L:g}", _other_reading(M, L)
         return {
@@ -175,7 +166,7 @@ def _ball_on_disc(n: int) -> list[Job]:
 
     def work(u: float, h: float) -> Found:
         contact = Contact(F=F, R_x=R, R_y=R, u_1=u, u_2=u, E_eff=2 / compliance, lubricant=oil)
-        film = extrapolate(contact, n)
+        film = _extrapolate(contact, n)
         return {"rows": [row(f"{u:g} m/s", "h_c [nm]", h, 1e9 * film.h_c, 0.0, film.load_error)]}
 
     return [

@@ -49,11 +49,7 @@ SPEEDS = {1.0: 0.03, 0.5: 0.05}
 
 
 def jobs(quick: bool) -> list[Job]:
-    """The pieces of work.
-
-    Args:
-        quick: on fewer and coarser grids
-    """
+    """The pieces of work, the quick ones on fewer and coarser grids."""
     grids = QUICK_GRIDS if quick else GRIDS
     return [
         Job("Convergence", "circular contact", lambda: _order(grids), quick=True),
@@ -117,11 +113,7 @@ def _shape() -> Found:
 
 
 def dent_jobs(quick: bool) -> list[Job]:
-    """The pieces of work.
-
-    Args:
-        quick: with few steps
-    """
+    """The pieces of work, the quick ones with few steps."""
     n, steps = (65, 48) if quick else (65, 96)
     return [
         Job("Moving dent", f"dented surface at {share:g} u_m", partial(_dent, share, n, steps), share == 1.0)
