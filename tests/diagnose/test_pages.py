@@ -85,15 +85,7 @@ SCHEMES = {
 #: The page's section about the measured campaign of the planetary rig.
 SECTION = (PAGES / "trust" / "diagnosis.md").read_text("utf-8").partition("## The measured campaign\n")[2]
 #: What its leading sets have in common, as the page names them.
-IN_ALL = (
-    "sensor.wall_temp.offset",
-    "losses.seal_drag",
-    "sensor.torque.drift",
-    "sensor.torque.step",
-    "losses.oil_level",
-    "losses.film_starvation",
-    "sensor.oil_temp.mounting",
-)
+IN_ALL = ("losses.oil_level", "losses.oil_viscosity", "sensor.oil_temp.mounting", "sensor.torque.random_walk")
 diagnosed_again = pytest.mark.skipif(os.environ.get("GEARHEAT_HIDDEN") != "all", reason="GEARHEAT_HIDDEN=all only")
 
 
@@ -162,6 +154,6 @@ def test_the_channels_of_the_measured_campaign_say_what_the_page_prints(campaign
             assert alone[cause] == pytest.approx(probability, abs=0.02)
     best = campaign["answers"][0]
     assert best["causes"] == [[cause] for cause in IN_ALL]
-    assert best["probability"] == pytest.approx(1.0, abs=0.05)
-    assert campaign["test"]["p_adequacy"] == pytest.approx(0.35, abs=0.02)
+    assert best["probability"] == pytest.approx(0.8, abs=0.02)
+    assert campaign["test"]["p_adequacy"] == pytest.approx(0.82, abs=0.02)
     assert all([cause] in answer["causes"] for answer in campaign["answers"] for cause in IN_ALL)
