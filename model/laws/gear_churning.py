@@ -253,8 +253,8 @@ def gear_churning_torque(
 
     Near the surface, below a twentieth of the radius, it fades to that of a gear in air. In thick oil the friction of a
     smooth disc takes over, see `churning_in_thick_oil`; between walls that of `enclosed_disc`. Clearances at the
-    circumference count less (Changenet2008) and are not seen. Past the change of flow the drag at low speed stays at what it
-    was there, see `churning_past_change`, so that the torque rises with speed everywhere.
+    circumference count less (Changenet2008) and are not seen. Past the change of flow the drag at low speed stays at
+    what it was there, see `churning_past_change`, so that the torque rises with speed everywhere.
 
     Args:
         w: speed of the gear, either direction [rad/s]

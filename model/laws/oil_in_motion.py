@@ -6,7 +6,7 @@ import casadi as ca
 
 from ..sources import law
 from .gear_churning import GRAVITY, TOOTH_HEIGHT
-from .smooth import SPEED_WIDTH, Num, smooth_magnitude, smooth_power
+from .smooth import Num, smooth_magnitude, smooth_power
 
 #: Volume flow rate [m3/s] below which the film that runs down a wall is not resolved.
 Q_WIDTH = 1e-7
@@ -40,8 +40,8 @@ def thrown_flow(w: Num, h: Num, r: Num, b: Num, m_n: Num) -> Num:
         b: face width [m]
         m_n: normal module [m]
     """
-    a = w * w * r
-    return TOOTH_HEIGHT / 2 * m_n * b * smooth_magnitude(w, SPEED_WIDTH) * r * a / (a + GRAVITY) * h**2 / (h**2 + m_n**2)
+    a, lifted = w * w * r, TOOTH_HEIGHT / 2 * m_n * b * smooth_magnitude(w) * r
+    return lifted * a / (a + GRAVITY) * h**2 / (h**2 + m_n**2)
 
 
 @law(

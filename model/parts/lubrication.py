@@ -65,8 +65,8 @@ class OilBath(LubricantProperties):
     """The oil of a gearbox: a body of one temperature that lubricates.
 
     With a `level` it has a port `sump` that says how high the oil stands. Heights of a housing count from one datum,
-    its bottom or an axis, for the oil and for all that dips. Oil `in_motion` stands lower by what the gears throw, until
-    it has run down the walls again, and higher by the air in it.
+    its bottom or an axis, for the oil and for all that dips. Oil `in_motion` stands lower by what the gears throw,
+    until it has run down the walls again, and higher by the air in it.
     """
 
     role: ClassVar[str] = "bath"
