@@ -30,9 +30,10 @@ from .ports import Flange, HeatPort, Lubricant, ToothForce
 class WormPair(Component):
     """A cylindrical worm of steel and a bronze wheel on crossed shafts at a right angle.
 
-    `friction` is either that of AGMA for mineral oils times the lubricant factor of the oil, which is this project's own
-    reading for other oils, or that of DIN 3996 by oil, size, geometry, wheel and roughness. The torque at the wheel decides the force: a wheel that drives has to overcome the friction,
-    and where `locking` is above 1 it cannot; the worm then takes torque in either direction of the load.
+    `friction` is that of AGMA for mineral oils times the lubricant factor of the oil, which is this project's own
+    reading for other oils, or that of DIN 3996 by oil, size, geometry, wheel and roughness. The torque at the wheel
+    decides the force: a wheel that drives has to overcome the friction, and where `locking` is above 1 it cannot; the
+    worm then takes torque in either direction of the load.
     """
 
     role: ClassVar[str] = "teeth"
