@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 
@@ -11,10 +11,7 @@ from ..scenario import Scenario
 from .checks import check
 from .nominal import Nominal
 from .read import drive_by
-from .table import Campaign
-
-if TYPE_CHECKING:
-    from .logs import Log
+from .table import Campaign, Sensor
 
 #: Means of a log that are judged.
 BLOCKS = 12
@@ -26,22 +23,33 @@ ALIKE = 24
 MULTIPLIER = np.uint64(11400714819323198485)
 
 
-def check_log(log: Log, scenario: Scenario) -> None:
+def check_log(
+    name: str,
+    sensors: Sequence[Sensor],
+    values: Mapping[str, np.ndarray],
+    lines: np.ndarray,
+    step: float,
+    scenario: Scenario,
+) -> None:
     """Refuse a log that cannot be one of a rig.
 
     Args:
-        log: as read
+        name: of the file
+        sensors: what was logged
+        values: sensor -> column in SI (n,)
+        lines: line of each row in the file (n,)
+        step: from sample to sample [s]
         scenario: the rig
 
     Raises:
         DataError: all that cannot be
     """
-    if (begin := _repeated(np.array([log.values[s.name] for s in log.sensors]).T)) is not None:
-        later, earlier = (log.lines[k] for k in begin)
+    if (begin := _repeated(np.array([values[s.name] for s in sensors]).T)) is not None:
+        later, earlier = (lines[k] for k in begin)
         raise DataError(
-            f"{log.name} line {later}: {ALIKE} rows and more are those from line {earlier} on. Keep one of the blocks."
+            f"{name} line {later}: {ALIKE} rows and more are those from line {earlier} on. Keep one of the blocks."
         )
-    check(_as_campaign(log), Nominal(drive_by(scenario, log.sensors)), {})
+    check(_as_campaign(name, sensors, values, lines, step), Nominal(drive_by(scenario, sensors)), {})
 
 
 def _repeated(numbers: np.ndarray) -> tuple[int, int] | None:
@@ -61,16 +69,18 @@ def _repeated(numbers: np.ndarray) -> tuple[int, int] | None:
     return (int(found[0]), int(earlier[found[0]])) if len(found) else None
 
 
-def _as_campaign(log: Log) -> Campaign:
+def _as_campaign(
+    name: str, sensors: Sequence[Sensor], values: Mapping[str, np.ndarray], lines: np.ndarray, step: float
+) -> Campaign:
     """Means of blocks of a log, a test each."""
-    blocks = np.array_split(np.arange(log.n), min(BLOCKS, log.n))
+    blocks = np.array_split(np.arange(len(lines)), min(BLOCKS, len(lines)))
     n, first = len(blocks), np.array([block[0] for block in blocks])
-    span = log.n // n * log.step
-    means = {name: np.array([_mean(column[block]) for block in blocks]) for name, column in log.values.items()}
+    span = len(lines) // n * step
+    means = {sensor: np.array([_mean(column[block]) for block in blocks]) for sensor, column in values.items()}
     unknown = np.full(n, np.nan)
     return Campaign(
-        name=log.name,
-        sensors=log.sensors,
+        name=name,
+        sensors=tuple(sensors),
         values=means,
         test=np.arange(n),
         order=np.arange(n),
@@ -83,7 +93,7 @@ def _as_campaign(log: Log) -> Campaign:
         room_start=unknown,
         humidity=unknown,
         date=("",) * n,
-        lines=log.lines[first],
+        lines=lines[first],
         points=np.arange(1, n + 1),
     )
 

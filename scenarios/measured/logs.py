@@ -130,9 +130,8 @@ def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
     segments = cells.get(card.columns.get("segment", "segment"))
     stretch, step = _stretches(time, segments, path.name, lines)
     values, gross = _remove_outliers(path.name, values, sensors, stretch, lines)
-    log = Log(path.name, sensors, values, time, stretch, step, lines, dated, gross)
-    check_log(log, scenario)
-    return log
+    check_log(path.name, sensors, values, lines, step, scenario)
+    return Log(path.name, sensors, values, time, stretch, step, lines, dated, gross)
 
 
 def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]:
