@@ -39,12 +39,22 @@ WARM_ROOM = 311.15
 
 
 def format_value(sensor: Sensor, value: float) -> str:
-    """A value of a sensor as messages show it."""
+    """A value as messages show it.
+
+    Args:
+        sensor: what shows it
+        value: in SI
+    """
     return text(float(value), SI[sensor.kind], 4)
 
 
 def place(campaign: Campaign, row: int | np.intp) -> str:
-    """File and line of a row, for a message."""
+    """File and line of a row, for a message.
+
+    Args:
+        campaign: the table
+        row: its row
+    """
     return f"{campaign.name} line {campaign.lines[row]}"
 
 

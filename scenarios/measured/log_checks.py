@@ -10,7 +10,7 @@ from ...model.errors import DataError
 from ..scenario import Scenario
 from .checks import check
 from .nominal import Nominal
-from .read import drive_by
+from .sensors import drive_by
 from .table import Campaign, Sensor
 
 #: Means of a log that are judged.
