@@ -37,8 +37,10 @@ YEAR = 3.156e7
 LATEST = 250 * YEAR
 #: A gap of more than so many samples starts a new stretch.
 GAP = 1.5
-#: Least and largest step [s].
-SHORTEST, LONGEST = 1e-3, 86400.0
+#: Least step of a log [s].
+SHORTEST = 1e-3
+#: Largest step of a log [s].
+LONGEST = 86400.0
 #: A single sample further than all of these from both its neighbours is a gross reading: standard deviations of steps.
 SPIKE_SD = 12.0
 #: [K].
