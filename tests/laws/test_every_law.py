@@ -83,6 +83,9 @@ NOMINAL = {
     **{"alpha_s": 12e-6, "alpha_h": 23e-6, "alpha": 0.25, "span": -0.2},
     **{"F_set": 500.0, "dx": 1e-5, "F_0": 800.0, "F_own": 600.0, "F_other": 100.0},
     **{"expansion": 6.5e-4},
+    **{"g": 0.002, "path": 0.0095, "rho_C": 0.012, "eps_gamma": 2.9, "v_1": 3.0, "v_2": 2.0, "B_M": 13e3},
+    **{"stage": 12.0, "X_W": 1.0, "tau_test": 530.0, "eps_max": 0.9, "X_S": 1.0, "eta_B": 0.02},
+    **{"alpha_B": 12e-9},
     **{"g_V": 20.0, "g_E": 5.0, "rigid_isoviscous": 0.5, "rigid_piezoviscous": 0.4, "elastic_isoviscous": 0.3},
 }
 CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
@@ -159,7 +162,7 @@ NOT_NEGATIVE |= {"fill", "backlash"}
 #: Torques and losses: magnitudes, never negative.
 MAGNITUDES = ("rolling.", "cylindrical.", "sealing.", "churning.", "mesh.", "film.", "film_line.", "film_point.")
 MAGNITUDES += ("gear_churning.", "load_variables.", "journal.", "gap_seal.", "squeezing.", "preload.preload")
-MAGNITUDES += ("oil_convection.", "cycloid.", "iso14179_1.", "iso14179_2.")
+MAGNITUDES += ("tooth_flanks.", "oil_convection.", "cycloid.", "iso14179_1.", "iso14179_2.")
 
 
 def every_function() -> dict[str, Callable[..., Any]]:
