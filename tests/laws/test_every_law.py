@@ -83,7 +83,7 @@ NOMINAL = {
     **{"T_shaft": 350.0, "T_housing": 330.0, "T_set": 293.0},
     **{"alpha_s": 12e-6, "alpha_h": 23e-6, "alpha": 0.25, "span": -0.2},
     **{"F_set": 500.0, "dx": 1e-5, "F_0": 800.0, "F_own": 600.0, "F_other": 100.0},
-    **{"expansion": 6.5e-4, "share_air": 0.1},
+    **{"expansion": 6.5e-4, "share_air": 0.1, "v_gain": 35.0, "share_oil": 1e-3, "rho_air": 1.2},
     **{"g_V": 20.0, "g_E": 5.0, "rigid_isoviscous": 0.5, "rigid_piezoviscous": 0.4, "elastic_isoviscous": 0.3},
 }
 CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
@@ -126,6 +126,8 @@ OWN = {
     "gear_churning.fast_share": {"w": 250.0, "r": 0.08, "b": 0.024},
     "gear_churning.gear_churning_torque": {"h": 0.04, "r": 0.08, "b": 0.024},
     "gear_churning.windage_torque": {"r": 0.08, "b": 0.024},
+    "dry_sump.fling_off": {"Pr": 260.0, "r": 0.08, "height": 7e-3},
+    "sealing.lip_conductance": {"h": 500.0, "k": 45.0},
     "oil_in_motion.thrown_flow": {"h": 0.04, "r": 0.08, "b": 0.024},
     "oil_in_motion.held_volume": {"Q": 1e-3, "width": 0.3},
     "oil_circuit.stream_conductance": {"G": 300.0},
