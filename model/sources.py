@@ -103,8 +103,8 @@ def law(
         source: key of sources.toml
         where: equation, table or section of the source
         valid: range of validity in words
-        ranges: argument, or two of them as "a - b", "a * b" or "a / b" -> (low, high) in SI, checked by every run that uses
-            the law; a range of an argument that a call leaves out does not count
+        ranges: argument, or two of them as "a - b", "a * b" or "a / b" -> (low, high) in SI, checked by every run that
+            uses the law; a range of an argument that a call leaves out does not count
         verified: False for a law without a golden row from print; reports list it as unverified
         regimes: argument with a range -> what reigns where it is left, in words; see `LawInfo`
     """

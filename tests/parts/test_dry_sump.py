@@ -3,7 +3,11 @@
 import math
 
 import pytest
+from gearheat.model.core.flatten import flatten
+from gearheat.model.machines.spec import assemble
 from gearheat.model.run.rows import evaluate_at
+from gearheat.model.run.steady import steady
+from gearheat.scenarios.load import load
 from one_part import between_sources, oil_at
 
 T_OIL = 353.15
@@ -41,3 +45,11 @@ def test_a_jet_takes_power_or_gives_it_and_no_more_heat_than_its_oil_can() -> No
     assert fast["part.P"] == pytest.approx(m_flow * 80.0 * (80.0 - v_jet), rel=1e-3)
     assert slow["part.P"] < 0 < fast["part.P"] < back["part.P"]
     assert -m_flow * 2000.0 * 40 < fast["part.Q_flow"] < slow["part.Q_flow"] < 0
+
+
+def test_a_bearing_faster_than_makers_allow_says_so() -> None:
+    scenario = load("helical_two_stage")
+    flat = flatten(assemble(scenario.spec))
+    fast, slow = (steady(flat, {"input.w": n, "output.tau": -1.0}).outside for n in (2200.0, 150.0))
+    assert {o.component for o in fast if o.argument == "w * d_m"} == {"input_bearing_a", "input_bearing_b"}
+    assert not [o for o in slow if o.argument == "w * d_m"]
