@@ -167,11 +167,12 @@ class SkfBearing(RollingBearing):
 class InclinedBearing(SkfBearing):
     """Base of the bearings with inclined contacts: a radial load pushes the shaft along, against another bearing."""
 
+    radial_thrust = Choice(("carried", "left out"), "whether a radial load makes thrust", default="carried")
     Y = Parameter("1", "axial load factor of the catalogue", above=0.0, below=10.0)
 
     def own_thrust(self) -> Num:
         """Thrust of the radial load [N]."""
-        return own_thrust(super().loads()[0], self.Y)
+        return own_thrust(super().loads()[0], self.Y) if self.radial_thrust == "carried" else 0.0
 
     def loads(self) -> tuple[Num, Num]:
         """Radial and axial load [N], the latter not below the bearing's own thrust."""
