@@ -137,6 +137,10 @@ class PlainBearing(Friction):
     C_trans = Parameter("1", "transition constant: 1 for a good surface, more for a better one", above=0.0)
     solid = Output("1", "share of the load that solids carry", nominal=0.1)
 
+    def holds(self) -> int:
+        """It carries no axial load."""
+        return 0
+
     def torque(self) -> Num:
         """Friction of film and solids of one bearing [N.m]."""
         w, F_r = self.shaft.w, self.F_r_0 + self.load.F_r
