@@ -48,7 +48,7 @@ class MicropittingTest:
     """Test C-GF/8,3/90 of FVA 54/7: what a gear of type FZG C feels at the stage at which its flanks fail.
 
     A report of KISSsoft prints torque, oil temperature and line load of stage 10, and 0.051 um of film; with its oil it
-    is 0.053 um here, so that safeties are 4 % less. Torques of the other stages are as GEARpie has them.
+    is 0.054 um here, so that safeties are 5 % less. Torques of the other stages are as GEARpie has them.
     """
 
     tau: tuple[float, ...] = (70.0, 98.9, 132.5, 171.6, 215.6, 265.1)  # on the pinion, from stage 5 [N.m]
