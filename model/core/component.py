@@ -217,6 +217,14 @@ class Component:
         """What must hold between the parameters, each made by `relation`."""
         return ()
 
+    def clashes(self, met: Mapping[str, Sequence[Component]]) -> Iterable[str]:
+        """What cannot be between the part and those that it meets, each with what to do.
+
+        Args:
+            met: the part's ports by key -> the other parts on their nets
+        """
+        return ()
+
     def has(self, name: str) -> bool:
         """Whether a declared port, state or parameter exists under the component's choices and what it is `told`."""
         return True
