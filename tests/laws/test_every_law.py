@@ -82,7 +82,7 @@ NOMINAL = {
     **{"T_shaft": 350.0, "T_housing": 330.0, "T_set": 293.0},
     **{"alpha_s": 12e-6, "alpha_h": 23e-6, "alpha": 0.25, "span": -0.2},
     **{"F_set": 500.0, "dx": 1e-5, "F_0": 800.0, "F_own": 600.0, "F_other": 100.0},
-    **{"expansion": 6.5e-4},
+    **{"expansion": 6.5e-4, "p": 1e7, "Z": 8.0, "D_w": 0.015},
     **{"g_V": 20.0, "g_E": 5.0, "rigid_isoviscous": 0.5, "rigid_piezoviscous": 0.4, "elastic_isoviscous": 0.3},
 }
 CYCLOID = {"e": 4e-3, "Rp": 0.086, "K": 0.651, "Zc": 13.0, "T_disc": 166.0}
@@ -135,6 +135,8 @@ OWN = {
     "conduction.fin_efficiency": {"h": 10.0, "k": 100.0},
     "conduction.plane_wall": {"k": 50.0, "d": 0.01},
     "conduction.cylinder_wall": {"k": 50.0},
+    "conduction.contact_coefficient": {"k": 50.0, "m": 0.1, "H": 2e9},
+    "conduction.ball_bearing_conductance": {"d_m": 0.065},
     "convection.nusselt_vertical_plate": {"Ra": 1e8},
     **{f"oil_convection.{key}": {"Pr": 800.0} for key in ("nusselt_laminar_plate", "nusselt_rotating_disc")},
     **{f"oil_convection.{key}_in_oil": {"Pr": 800.0} for key in ("forced_wall", "forced_disc", "natural_wall")},
