@@ -36,8 +36,6 @@ SPELLINGS = {
 PER_MINUTE = dict.fromkeys(("1/min", "min-1", "min^-1", "min⁻¹", "/min"), "rpm")
 #: A frequency of rotation counts revolutions.
 ROTATIONS = dict.fromkeys(("Hz", "rev/s", "r/s", "U/s", "rps"), "revolution/s")
-#: Either revolutions or radians per second.
-UNCLEAR = ("1/s", "s-1", "s^-1", "s⁻¹", "/s")
 
 
 @functools.cache
@@ -61,7 +59,38 @@ def spell_unit(unit: str, *, turns: bool = True) -> str:
 def _pint_unit(text: str) -> str:
     """The model's spelling of a unit in pint's: a dot between letters multiplies, a digit behind one is a power."""
     text = re.sub(r"(?<!\d)\.|\.(?!\d)", "*", spell_unit(text, turns=False).replace("·", "*").replace("^", "**"))
-    return "" if text == "1" else re.sub(r"([a-zA-Z])(\d)", r"\1**\2", text)
+    return "" if text == "1" else re.sub(r"([a-zA-Z])(-?\d)", r"\1**\2", text)
+
+
+@functools.cache
+def _fitting(written: str, target: str, difference: bool = False) -> Any:
+    """Pint's unit for what a user writes, judged by what it is: a unit of a speed carries a revolution or a radian.
+
+    Args:
+        written: as a user writes it
+        target: SI unit of the model that it must fit
+        difference: whether it is that of a difference, as of temperatures
+
+    Raises:
+        ScenarioError: there is no such unit, or it is of another kind
+    """
+    ureg = _registry()
+    text = ROTATIONS.get(written, spell_unit(written)) if target == "rad/s" else written
+    try:
+        unit = ureg.Unit(_pint_unit(text))
+        if difference and str(unit) in ("degree_Celsius", "degree_Fahrenheit"):
+            unit = ureg.Unit("delta_" + str(unit))
+        ureg.Quantity(0.0, unit).to(_pint_unit(target))
+        turns = target != "rad/s" or ureg.get_root_units(unit)[1] == ureg.get_root_units(target)[1]
+    except Exception:  # the parser of units fails on odd text in many ways, and all mean the same to the user
+        raise ScenarioError(
+            f'unit "{written}" does not fit {show_unit(target)}. Write for example "{example(target)}".'
+        ) from None
+    if not turns:
+        raise ScenarioError(
+            f'"{written}" may mean revolutions or radians. Write rpm, Hz (revolutions per second) or rad/s.'
+        )
+    return unit
 
 
 def split_quantity(text: str) -> tuple[float, str]:
@@ -112,25 +141,11 @@ def to_si(value: object, unit: str, *, name: str = "value") -> float:
         )
     if written == target:
         return _finite(number, name, value)
-    if target == "rad/s":
-        if written in UNCLEAR:
-            raise ScenarioError(
-                f'{name} = "{value}": "{written}" may mean revolutions or radians. Write rpm, Hz (revolutions per'
-                " second) or rad/s."
-            )
-        written = ROTATIONS.get(written, spell_unit(written))
-
-    ureg = _registry()
     try:
-        source = ureg.Unit(_pint_unit(written))
-        if difference and str(source) in ("degree_Celsius", "degree_Fahrenheit"):
-            source = ureg.Unit("delta_" + str(source))
-        result = ureg.Quantity(number, source).to(_pint_unit(target)).magnitude
-    except Exception:  # the parser of units fails on odd text in many ways, and all mean the same to the user
-        raise ScenarioError(
-            f'{name} = "{value}": unit "{written}" does not fit {show_unit(unit)}. Write for example "{example(unit)}".'
-        ) from None
-    return _finite(float(result), name, value)
+        source = _fitting(written, target, difference)
+    except ScenarioError as error:
+        raise ScenarioError(f'{name} = "{value}": {error}') from None
+    return _finite(float(_registry().Quantity(number, source).to(_pint_unit(target)).magnitude), name, value)
 
 
 def _magnitude(unit: str) -> Any:
@@ -159,21 +174,25 @@ def kind_of(unit: str) -> str:
         raise ScenarioError(f'there is no unit "{unit}". Write for example "N.m", "degC" or "mPa.s".') from None
 
 
-def in_unit(number: N, unit: str) -> N:
+def in_unit(number: N, unit: str, si: str = "") -> N:
     """An SI number in a unit of its kind, or an array of them.
 
     Args:
         number: in SI
         unit: as users write it, such as "degC", "kW" or "W at 250 rpm"
+        si: SI unit of the number, where it is known: the other one must fit it
 
     Raises:
-        ScenarioError: there is no such unit
+        ScenarioError: there is no such unit, or it does not fit
     """
+    if si:
+        found: N = _registry().Quantity(number, _pint_unit(si)).to(_fitting(unit, si)).magnitude
+        return found
     kind_of(unit)
     base = _magnitude(unit).to_base_units()
     if " at " in unit:
         return number / float(base.magnitude)
-    found: N = _registry().Quantity(number, base.units).to(_pint_unit(unit)).magnitude
+    found = _registry().Quantity(number, base.units).to(_pint_unit(unit)).magnitude
     return found
 
 

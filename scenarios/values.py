@@ -115,7 +115,7 @@ def in_range(where: str, raw: object, quantity: Quantity) -> float:
     if (broken := quantity.bound(value)) is not None:
         words, number = broken
         theirs = unit_of(raw) if "(" not in quantity.unit else ""
-        known = f"{in_unit(number, theirs):.6g} {theirs}" if theirs else f"{number:g} {unit}"
+        known = f"{in_unit(number, theirs, unit):.6g} {theirs}" if theirs else f"{number:g} {unit}"
         raise ScenarioError(f"{name} = {written} is out of range. It must be {words} {known.removesuffix(' 1')}.")
     least, most = SENSIBLE.get(quantity.unit, OTHERS)
     if value and np.isfinite(quantity.low) and not least <= abs(value) <= most:

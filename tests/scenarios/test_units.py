@@ -4,7 +4,7 @@ from math import pi
 
 import pytest
 from gearheat.model.errors import ScenarioError
-from gearheat.model.units import to_si
+from gearheat.model.units import in_unit, to_si
 from gearheat.scenarios.csv_table import scale, split_unit
 
 
@@ -24,10 +24,48 @@ def test_speeds_per_second(written: str, radians: float) -> None:
     assert to_si(written, "rad/s") == pytest.approx(radians)
 
 
-@pytest.mark.parametrize("written", ["1/s", "s-1", "s^-1"])
+#: Units that count something in a time, and do not say whether revolutions or radians, however they are written.
+UNCLEAR = [
+    "1/s",
+    "s-1",
+    "s^-1",
+    "s⁻¹",
+    "s**-1",
+    "1/second",
+    "1/minute",
+    "1/hour",
+    "min**-1",
+    "hertz",
+    "kHz",
+    "kilohertz",
+    "Bq",
+    "becquerel",
+    "Ci",
+    "cps",
+    "count/s",
+    "percent/s",
+]
+
+
+@pytest.mark.parametrize("written", [*UNCLEAR, "1/ s", "1 / min", "1 / s", "count / minute"])
 def test_what_may_be_revolutions_or_radians_is_refused_by_name(written: str) -> None:
-    with pytest.raises(ScenarioError, match=r"revolutions or radians\. Write rpm, Hz"):
-        to_si(f"4 {written}", "rad/s")
+    for use in (
+        lambda: to_si(f"4 {written}", "rad/s"),
+        lambda: scale(split_unit(f"speed [{written}]")[1], "rad/s", name="speed"),
+        lambda: in_unit(4.0, written, "rad/s"),
+    ):
+        with pytest.raises(ScenarioError, match=r"revolutions or radians\. Write rpm, Hz"):
+            use()
+
+
+@pytest.mark.parametrize("written", ["rpm", "Hz", "deg/s", "turn/h", "krpm", "rad/min", "cycle/s"])
+def test_a_speed_comes_back_in_the_unit_in_which_it_was_given(written: str) -> None:
+    assert in_unit(to_si(f"4 {written}", "rad/s"), written, "rad/s") == pytest.approx(4.0)
+
+
+def test_a_result_is_given_in_no_unit_of_another_kind() -> None:
+    with pytest.raises(ScenarioError, match='unit "m" does not fit rpm'):
+        in_unit(4.0, "m", "rad/s")
 
 
 @pytest.mark.parametrize(

@@ -22,7 +22,7 @@ from ...model.files import tables
 from ...model.machines.roles import Roles
 from ...model.parts import PARTS
 from ...model.sources import LawInfo, sources
-from ...model.units import PER_MINUTE, ROTATIONS, SPELLINGS, UNCLEAR
+from ...model.units import PER_MINUTE, ROTATIONS, SPELLINGS
 from ...scenarios import load as loading
 from ...scenarios.entries import catalogue
 from ...scenarios.load import load
@@ -143,7 +143,7 @@ def pages() -> Iterator[tuple[str, str]]:
     scenario = load("helical_two_stage")
     yield "card_file.md", page("card_file", card=as_toml(default_card(scenario, usual_priors(scenario))))
     turns = _group({**PER_MINUTE, **ROTATIONS})
-    yield "units.md", page("units", spellings=_group(SPELLINGS), turns=turns, unclear=UNCLEAR)
+    yield "units.md", page("units", spellings=_group(SPELLINGS), turns=turns)
     yield "catalogues.md", page("catalogues", catalogues={kind: catalogue(kind) for kind in FILES})
     yield "causes.md", page("causes", causes=_causes())
     rigs, reproduces = list_rigs(), list_rigs("reproduces")

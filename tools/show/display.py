@@ -183,7 +183,7 @@ class Quantities(Display):
         Raises:
             ScenarioError: there is no such value, or the unit does not fit
         """
-        return in_unit(float(self[name]), unit)
+        return in_unit(float(self[name]), unit, self.flat.quantity(name).unit)
 
     def rows(self, names: Sequence[str]) -> list[tuple[str, float, str, str]]:
         """Rows of a table under `HEAD`, of the named values."""

@@ -67,7 +67,7 @@ class TimeSeries(Columns):
         Raises:
             ScenarioError: the unit does not fit
         """
-        return in_unit(self[name], unit)
+        return in_unit(self[name], unit, self.units[name])
 
     @property
     def title(self) -> str:
