@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import ClassVar
 
 from ..core.component import SOUND, Equation, Faults, Related, equation
-from ..core.declare import Choice, Output, Parameter
+from ..core.declare import Output, Parameter
 from ..laws.conduction import (
     ball_bearing_conductance,
     contact_coefficient,
@@ -96,35 +96,42 @@ class JointConductor(Conductor):
 
 
 class FootConductor(JointConductor):
-    """Foot of a machine: its joint, and what it stands on, a concrete floor or a plate or frame of steel in the air.
+    """Foot of a machine on a concrete floor: its joint, and heat that spreads below its outline as below a disc.
 
-    The heat spreads into the floor as from a disc that has the area of the foot's outline; a frame gives it to the air
-    as a fin. Both end at the temperature of the room.
+    Far away the ground has the temperature of the room.
     """
 
-    geometry: ClassVar[tuple[str, ...]] = (
-        *JointConductor.geometry, *("A_base", "k_base", "A_frame", "t_frame", "L_frame", "h_frame")
-    )  # fmt: skip
+    geometry: ClassVar[tuple[str, ...]] = (*JointConductor.geometry, "k_base", "A_base")
 
-    base = Choice(("concrete", "steel"), "what it stands on")
-    k_base = Parameter("W/(m.K)", "thermal conductivity of what it stands on", nominal=1.0, above=0.0)
-    A_base = Parameter("m2", "area of the outline of the foot, on concrete", nominal=0.1, above=0.0)
-    A_frame = Parameter("m2", "area of the steel frame that gives heat to the air, both sides", nominal=0.1, above=0.0)
-    t_frame = Parameter("m", "thickness of the steel frame", nominal=0.01, above=0.0)
-    L_frame = Parameter("m", "how far the steel frame reaches beyond the foot", nominal=0.1, above=0.0)
-    h_frame = Parameter("W/(m2.K)", "heat transfer coefficient of the frame, with radiation", nominal=10.0, above=0.0)
-
-    def has(self, name: str) -> bool:
-        """What belongs to the other base does not count."""
-        return super().has(name) and not (
-            name == "A_base" if self.choices["base"] == "steel" else name.endswith("_frame")
-        )
+    k_base = Parameter("W/(m.K)", "thermal conductivity of the floor", nominal=1.0, above=0.0)
+    A_base = Parameter("m2", "area of the outline of the foot", nominal=0.1, above=0.0)
 
     def built(self) -> Num:
-        """The joint and the base behind each other."""
-        if self.base == "concrete":
-            return in_series(super().built(), half_space(self.k_base, self.A_base))
-        share = fin_efficiency(self.h_frame, self.k_base, self.t_frame, self.L_frame)
+        """The joint and the floor behind each other."""
+        return in_series(super().built(), half_space(self.k_base, self.A_base))
+
+
+class FrameConductor(JointConductor):
+    """Foot of a machine on a plate or frame of steel, which gives the heat to the air of the room as a fin."""
+
+    geometry: ClassVar[tuple[str, ...]] = (
+        *JointConductor.geometry,
+        "k_frame",
+        "A_frame",
+        "t_frame",
+        "L_frame",
+        "h_frame",
+    )
+
+    k_frame = Parameter("W/(m.K)", "thermal conductivity of the frame", nominal=50.0, above=0.0)
+    A_frame = Parameter("m2", "area that gives heat to the air, both sides", nominal=0.1, above=0.0)
+    t_frame = Parameter("m", "thickness of the frame", nominal=0.01, above=0.0)
+    L_frame = Parameter("m", "how far the frame reaches beyond the foot", nominal=0.1, above=0.0)
+    h_frame = Parameter("W/(m2.K)", "heat transfer coefficient of the frame, with radiation", nominal=10.0, above=0.0)
+
+    def built(self) -> Num:
+        """The joint and the frame behind each other."""
+        share = fin_efficiency(self.h_frame, self.k_frame, self.t_frame, self.L_frame)
         return in_series(super().built(), self.h_frame * self.A_frame * share)
 
 

@@ -10,8 +10,6 @@ from gearheat.model.run.rows import evaluate_at
 from one_part import EXAMPLES, PARTS, between_sources
 
 FOOT = EXAMPLES["FootConductor"]
-FRAME = {"base": "steel", "k_base": 45.0, "A_frame": 0.2, "t_frame": 0.016, "L_frame": 0.1, "h_frame": 10.0}
-ON_STEEL = {k: v for k, v in FOOT.items() if k != "A_base"} | FRAME
 
 
 def G_of(kind: str, **values: float) -> float:
@@ -28,7 +26,7 @@ def test_a_floor_of_concrete_is_the_resistance_of_a_foot() -> None:
 def test_a_frame_is_a_fin() -> None:
     m = math.sqrt(2 * 10.0 / (45.0 * 0.016))
     fin = 10.0 * 0.2 * math.tanh(0.1 * m) / (0.1 * m)
-    assert 0.97 * fin < G_of("FootConductor", **ON_STEEL) < fin
+    assert 0.97 * fin < G_of("FrameConductor", **EXAMPLES["FrameConductor"]) < fin
 
 
 def test_paint_and_bolts_are_side_by_side() -> None:
@@ -41,10 +39,9 @@ def test_paint_and_bolts_are_side_by_side() -> None:
     )
 
 
-@pytest.mark.parametrize("kind", ["JointConductor", "FootConductor"])
+@pytest.mark.parametrize("kind", ["JointConductor", "FootConductor", "FrameConductor"])
 def test_a_known_conductance_stands_for_the_geometry(kind: str) -> None:
-    choice = {"base": "concrete"} if kind == "FootConductor" else {}
-    assert G_of(kind, G=2.5, **choice) == 2.5
+    assert G_of(kind, G=2.5) == 2.5
     assert G_of(kind, **EXAMPLES[kind] | {"G": 2.5, "k_G": 2.0}) == 5.0
 
 
