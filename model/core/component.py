@@ -217,6 +217,11 @@ class Component:
         """What must hold between the parameters, each made by `relation`."""
         return ()
 
+    @classmethod
+    def spread(cls) -> Iterable[Mapping[str, str]]:
+        """What the laws for such a part give at the same sizes: a line of texts each, the recommended one first."""
+        return ()
+
     def has(self, name: str) -> bool:
         """Whether a declared port, state or parameter exists under the component's choices and what it is `told`."""
         return True

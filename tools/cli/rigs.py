@@ -177,6 +177,8 @@ def _print_type(found: Mapping[str, Any]) -> None:
     for title, keys in titles.items():
         if lines := found[title]:
             console.table(title.capitalize(), keys, [[_cell(line[key]) for key in keys] for line in lines])
+    if spread := found["spread"]:
+        console.table("What laws give at the same sizes", tuple(spread[0]), [list(line.values()) for line in spread])
     console.say(f"Equations: {'; '.join(found['equations'])}\n")
     if found["entries"]:
         console.say(f"Catalogues that may give values: {', '.join(found['entries'])} (gearheat list)\n")
