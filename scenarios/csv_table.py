@@ -100,11 +100,7 @@ def read_cells(path: Path, comments: bool = False) -> tuple[list[str], list[tupl
     (_, header), *rows = lines
     if len(header) == 1 and "\t" in header[0]:
         raise DataError(f"{name} line 1: the columns are separated by tabs. Write commas or semicolons.")
-    problems = [
-        f'{name} line 1: column "{h}" is there twice. Keep one.'
-        for h in sorted({h for h in header if header.count(h) > 1})
-    ]
-    problems += [f"{name} line 1: column {i} has no name. Give it one." for i, h in enumerate(header, 1) if not h]
+    problems = header_problems(name, header)
     problems += [
         f"{name} line {line}: {len(cells)} cells under {len(header)} column names."
         " Write one cell per column, decimals with a point."
@@ -115,6 +111,20 @@ def read_cells(path: Path, comments: bool = False) -> tuple[list[str], list[tupl
         problems.append(f"{name}: there is no row under the column names. Add at least one.")
     raise_all(problems, name)
     return header, rows
+
+
+def header_problems(name: str, header: Sequence[str]) -> list[str]:
+    """Columns that are there twice or have no name.
+
+    Args:
+        name: of the file
+        header: names of its columns
+    """
+    twice = sorted({h for h in header if h and header.count(h) > 1})
+    nameless = [i for i, h in enumerate(header, 1) if not h]
+    return [f'{name} line 1: column "{h}" is there twice. Keep one.' for h in twice] + [
+        f"{name} line 1: column {i} has no name. Give it one." for i in nameless
+    ]
 
 
 def _lines(path: Path) -> list[tuple[int, list[str]]]:

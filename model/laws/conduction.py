@@ -105,7 +105,7 @@ def ball_bearing_conductance(w: Num, Z: Num, D_w: Num, d_m: Num, *, rest: float 
 
     Args:
         w: speed of one ring over the other, either direction [rad/s]
-        Z: number of balls
+        Z: number of balls [1]
         D_w: diameter of a ball [m]
         d_m: pitch diameter of the balls [m]
         rest: speed below which it stays what it is [rad/s]

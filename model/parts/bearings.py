@@ -149,6 +149,8 @@ class SkfBearing(RollingBearing):
         yield equation("rolling moment", self.tau_rr, rolling)
         yield equation("sliding friction", self.mu_sl, mu_sl)
         yield equation("sliding moment", self.tau_sl, sliding_torque(G_sl, self.mu_sl))
+        if self.has("sump"):
+            yield equation("it throws no oil", self.sump.Q_oil, 0.0)
         yield from super().equations()
 
 

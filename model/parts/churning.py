@@ -9,6 +9,7 @@ from ..core.component import Equation, Related, equation
 from ..core.declare import Output, Parameter
 from ..laws.churning import churning_torque
 from ..laws.gear_churning import gear_churning_torque, immersion, windage_torque
+from ..laws.oil_in_motion import aerated_density, thrown_flow
 from ..laws.smooth import Num
 from ..laws.squeezing import squeezing_torque
 from .friction import Friction
@@ -45,23 +46,28 @@ class GearInFluid(Friction):
 class GearChurning(GearInFluid):
     """Churning of a gear that dips into the oil of its housing, from its geometry. Its `inner` body is the oil.
 
-    How deep it dips follows from the oil's level. Pitch surface and teeth churn; walls close to the gear are not seen.
+    How deep it dips follows from the oil's level, which falls by what all gears throw where the bath says so. Pitch
+    surface and teeth churn. A wall at its faces, or the face of a gear beside it, counts where its clearance is given.
     """
 
     lubricant = Lubricant()
     sump = Sump()
 
     height = Parameter("m", "height of the gear's axis above the datum of the housing", nominal=0.1)
+    gap = Parameter("m", "clearance between a face and the wall or gear beside it", 5e-3, optional=True, above=0.0)
     h = Output("m", "depth by which the pitch circle dips", nominal=0.02, at_least=0.0)
 
     def torque(self) -> Num:
         """Churning torque of one gear [N.m]."""
-        oil, sump = self.lubricant, self.sump
-        return gear_churning_torque(self.shaft.w, oil.rho, oil.nu, self.h, sump.V, self.r, self.b, self.m_n)
+        oil, sump, wall = self.lubricant, self.sump, {"gap": self.gap} if "gap" in self.told else {}
+        rho = aerated_density(oil.rho, sump.share_air)
+        return gear_churning_torque(self.shaft.w, rho, oil.nu, self.h, sump.V, self.r, self.b, self.m_n, **wall)
 
     def equations(self) -> Iterator[Equation]:
-        """The depth, then what every friction does."""
+        """The depth and what is thrown, then what every friction does."""
+        thrown = thrown_flow(self.shaft.w, self.h, self.r, self.b, self.m_n)
         yield equation("depth", self.h, immersion(self.sump.level, self.height, self.r))
+        yield equation("oil thrown", self.sump.Q_oil, self.count * thrown)
         yield from super().equations()
 
 

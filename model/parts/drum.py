@@ -15,7 +15,7 @@ from ..laws.drum import cooling_area, forced_rotating_cylinder, gear_churning_lo
 from ..laws.pad import fill_arc, fill_volume_share
 from ..laws.smooth import SPEED_WIDTH, V_WIDTH, Num, smooth_abs
 from .friction import Friction
-from .lubrication import OilBath
+from .lubrication import MOTION, OilBath
 from .ports import AirPort, BearingLoad, Flange, HeatPort, Lubricant, OilLevel, ShaftReading
 from .thermal import Conductor, CylinderCooling
 
@@ -30,6 +30,7 @@ class DrumOil(OilBath):
 
     level = OilLevel()
 
+    in_motion = Choice((False,), "its level does not move", default=False)
     beta = Parameter("1", "wetted over dry area of the drum's inside; 1 is half full", above=0.0, at_most=1.0)
     r = Parameter("m", "inner radius of the drum", nominal=0.1, above=0.0)
     L = Parameter("m", "length of the drum that holds oil, less what motor and gear displace", above=0.0)
@@ -43,7 +44,7 @@ class DrumOil(OilBath):
 
     def has(self, name: str) -> bool:
         """What a drum wets takes the place of a height."""
-        return name != "sump"
+        return name not in ("sump", *MOTION)
 
     def equations(self) -> Iterator[Equation]:
         """An oil bath that tells its level."""

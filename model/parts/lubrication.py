@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator
 from typing import ClassVar
 
 from ..core.component import Component, Equation, Related, equation
-from ..core.declare import Input, Output, Parameter, State
+from ..core.declare import Choice, Input, Output, Parameter, State
 from ..laws.oil import (
     conductivity,
     density,
@@ -15,9 +15,13 @@ from ..laws.oil import (
     thermoviscosity,
     walther_constants,
 )
+from ..laws.oil_in_motion import held_volume
 from ..laws.smooth import Num
 from .ports import COLDEST, HOTTEST, HeatPort, Lubricant, Sump
 from .relations import require
+
+#: Parameters that say how a level moves.
+MOTION = ("A_oil", "width", "height", "share_air")
 
 
 class LubricantProperties(Component):
@@ -61,7 +65,8 @@ class OilBath(LubricantProperties):
     """The oil of a gearbox: a body of one temperature that lubricates.
 
     With a `level` it has a port `sump` that says how high the oil stands. Heights of a housing count from one datum,
-    its bottom or an axis, for the oil and for all that dips.
+    its bottom or an axis, for the oil and for all that dips. Oil `in_motion` stands lower by what the gears throw,
+    until it has run down the walls again, and higher by the air in it.
     """
 
     role: ClassVar[str] = "bath"
@@ -74,10 +79,17 @@ class OilBath(LubricantProperties):
     c_p = Parameter("J/(kg.K)", "specific heat", nominal=2000.0, above=0.0)
     T_pour = Parameter("K", "pour point, below it the oil does not flow; 0 K: not known", default=0.0, at_least=0.0)
     level = Parameter("m", "height of the oil's surface at rest above the datum of the housing", 0.1, optional=True)
+    in_motion = Choice((False, True), "whether the level falls by what gears throw", default=False)
+    A_oil = Parameter("m2", "surface of the oil", nominal=0.1, above=0.0)
+    width = Parameter("m", "width of the walls along which thrown oil runs down", nominal=0.5, above=0.0)
+    height = Parameter("m", "height of these walls above the oil", nominal=0.2, above=0.0)
+    share_air = Parameter("1", "share of air in the oil that the gears stir", default=0.0, at_least=0.0, at_most=0.5)
     Q_flow_external = Input("W", "heat flow rate from outside the model, e.g. a cooler (negative)", nominal=100.0)
 
     def has(self, name: str) -> bool:
-        """The level is told where it is given."""
+        """The level is told where it is given, and what moves it where it moves."""
+        if name in MOTION:
+            return bool(self.choices["in_motion"]) and "level" in self.told
         return name != "sump" or "level" in self.told
 
     def viscosity(self, T: Num) -> Num:
@@ -94,9 +106,19 @@ class OilBath(LubricantProperties):
         C = self.V * self.rho_15 * self.c_p
         yield equation("storage", C * self.der("T"), self.heating())
         if self.has("sump"):
-            yield equation("level read", self.sump.level, self.level)
-            yield equation("volume read", self.sump.V, self.V)
+            yield from self.standing()
         yield from self.properties()
+
+    def standing(self) -> Iterator[Equation]:
+        """How high it stands."""
+        level, air, sump = self.level, 0.0, self.sump
+        if self.in_motion:
+            held = held_volume(-sump.Q_oil, self.nu, self.width, self.height)
+            level += (self.V * self.share_air / (1 - self.share_air) - held) / self.A_oil
+            air = self.share_air
+        yield equation("level read", sump.level, level)
+        yield equation("volume read", sump.V, self.V)
+        yield equation("air read", sump.share_air, air)
 
     def stored_energy(self) -> Num:
         """Energy above 0 degC [J]."""

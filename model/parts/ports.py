@@ -140,14 +140,19 @@ class OilLevel(Port):
 
 
 class Sump(Port):
-    """How high the oil of a housing stands, and how much of it there is: information, not power."""
+    """How high the oil of a housing stands, how much of it there is, and what gears throw: no power.
+
+    Positive Q_oil enters the component that owns the port.
+    """
 
     missing = "nothing says how high the oil stands"
     source = "the sump of an OilBath with a level"
     absent = "Give the OilBath a level: the height of its surface above the datum of the housing."
 
-    level = Potential("m", "height of the oil's surface at rest above the datum of the housing", nominal=0.1)
+    level = Potential("m", "height of the oil's surface above the datum of the housing", nominal=0.1)
     V = Potential("m3", "volume of oil", nominal=1e-3)
+    share_air = Potential("1", "share of air in it", nominal=0.1)
+    Q_oil = Flow("m3/s", "oil that is thrown", nominal=1e-3)
 
 
 class Opening(Port):

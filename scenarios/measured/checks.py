@@ -3,40 +3,26 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from ...model.units import text
 from ..csv_table import raise_all
+from .against_model import LEAST_TESTS, Oils, against_model, format_value, place
 from .nominal import Nominal, efficiency, shaft_powers
 from .sensors import ACCURACY, SI
 from .table import Campaign, Sensor
 
-#: Name of an oil -> values by path.
-Oils = Mapping[str, Mapping[str, float]]
-
 #: Fewer rows than these say nothing about any cause.
 LEAST_ROWS = 6
-#: Fewer tests than these say nothing about any cause.
-LEAST_TESTS = 3
 #: Readings of temperature below this are taken for another unit [K].
 COLDEST = 213.15
 #: Readings of temperature above this are taken for another unit [K].
 HOTTEST = 473.15
 #: A given speed or torque this many times the largest, or less than this part of the rig's, has another unit.
 FAR = 50.0
-#: Readings that differ from the nominal model's by more than this factor.
-TORQUE_FACTOR = 2.0
-#: In most rows.
-LOSS_FACTOR = 10.0
-#: Have another unit or sign.
-RISE_FACTOR = 5.0
-#: A rise over the room below this [K] says nothing about a unit.
-SMALL_RISE = 2.0
-#: Nor does one that is nearer to the model's than this [K]: probes err so much.
-PROBE_ERROR = 5.0
 #: Efficiencies below this in most rows cannot be [1].
 POOREST = 0.2
 #: Efficiencies above this in most rows cannot be [1]: an instrument that errs raises them in one direction alone.
@@ -45,10 +31,6 @@ BEST = 1.0
 BEST_OF_ONE = 1.1
 #: Accuracies further than this factor from the usual ones are a slip.
 ODD = 300.0
-#: Rows that are held against the nominal model.
-SAMPLED = 6
-#: Given conditions nearer than this part of their size are the same point.
-SAME = 0.01
 #: Conditions to predict further out than this, relative to what was measured, are extrapolations.
 OUTLYING = 0.25
 #: Range of a given quantity, relative to its largest, below which there is but one of it.
@@ -76,7 +58,7 @@ def check(campaign: Campaign, nominal: Nominal, oils: Oils, *, points: bool = Fa
         *_scales(campaign, nominal),
     ]
     if not points and not problems:
-        problems += [*_find_repeated_columns(campaign), *_against_model(campaign, nominal, oils)]
+        problems += [*_find_repeated_columns(campaign), *against_model(campaign, nominal, oils)]
     if not points and not problems:
         problems += _balance(campaign, nominal)
     raise_all(problems, campaign.name)
@@ -120,20 +102,12 @@ def outlying(campaign: Campaign, points: Campaign) -> list[str]:
         known, asked = np.abs(campaign.values[sensor.name]), np.abs(points.values[sensor.name])
         far = int(((asked > (1 + OUTLYING) * known.max()) | (asked < (1 - OUTLYING) * known.min())).sum())
         if far:
-            low, high = (_format_value(sensor, value) for value in (known.min(), known.max()))
+            low, high = (format_value(sensor, value) for value in (known.min(), known.max()))
             found.append(
                 f"{points.name}: {sensor.column} of {far} points is far outside of {low} to {high}."
                 " Their prediction is an extrapolation."
             )
     return found
-
-
-def _format_value(sensor: Sensor, value: float) -> str:
-    return text(float(value), SI[sensor.kind], 4)
-
-
-def _place(campaign: Campaign, row: int | np.intp) -> str:
-    return f"{campaign.name} line {campaign.lines[row]}"
 
 
 def _accuracies(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
@@ -166,7 +140,7 @@ def _temperatures(campaign: Campaign) -> Iterator[str]:
         for row in np.flatnonzero((values > HOTTEST) | (values < COLDEST)):
             limit = f"above {HOTTEST - 273.15:g} degC" if values[row] > HOTTEST else f"below {COLDEST - 273.15:g} degC"
             yield (
-                f"{_place(campaign, row)}: {sensor.column} is {values[row] - 273.15:.4g} degC, {limit}."
+                f"{place(campaign, row)}: {sensor.column} is {values[row] - 273.15:.4g} degC, {limit}."
                 f" Check its unit, which is taken for {sensor.unit or 'K'}."
             )
 
@@ -177,7 +151,7 @@ def _contradictions(campaign: Campaign) -> Iterator[str]:
     for row, point in enumerate(campaign.points):
         if (before := first.setdefault(int(point), row)) != row:
             yield (
-                f"{_place(campaign, row)}: point {point} is the number of line {campaign.lines[before]} too."
+                f"{place(campaign, row)}: point {point} is the number of line {campaign.lines[before]} too."
                 " Give each reading its own."
             )
     yield from _twice(campaign, same_test=True)
@@ -190,7 +164,7 @@ def _twice(campaign: Campaign, *, same_test: bool) -> Iterator[str]:
     for row, line in enumerate(numbers if campaign.read else ()):
         before = seen.setdefault(np.nan_to_num(line).tobytes(), row)
         if before != row and (campaign.test[before] == campaign.test[row]) == same_test:
-            yield f"{_place(campaign, row)}: all readings are those of line {campaign.lines[before]}. Keep one of them."
+            yield f"{place(campaign, row)}: all readings are those of line {campaign.lines[before]}. Keep one of them."
 
 
 def _scales(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
@@ -202,8 +176,8 @@ def _scales(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
             continue
         row = int(np.nanargmax(np.abs(campaign.values[sensor.name])))
         yield (
-            f"{_place(campaign, row)}: {sensor.column} is at most {_format_value(sensor, largest)}, the rig runs at"
-            f" {_format_value(sensor, usual)}. Check its unit, which is taken for {sensor.unit}."
+            f"{place(campaign, row)}: {sensor.column} is at most {format_value(sensor, largest)}, the rig runs at"
+            f" {format_value(sensor, usual)}. Check its unit, which is taken for {sensor.unit}."
         )
 
 
@@ -216,84 +190,6 @@ def _find_repeated_columns(campaign: Campaign) -> Iterator[str]:
                     f"{campaign.name}: {sensor.column} holds the numbers of {other.column}."
                     " Give what each sensor read, or leave out one of the columns."
                 )
-
-
-def _against_model(campaign: Campaign, nominal: Nominal, oils: Oils) -> Iterator[str]:
-    """Torques and temperatures that are far from what the nominal model gives at the same conditions."""
-    rows = np.unique(np.linspace(0, campaign.n - 1, SAMPLED).round().astype(int))
-    given = {s.reads: campaign.values[s.name] * s.sign(campaign.direction) for s in campaign.given}
-    inputs = {row: {path: float(values[row]) for path, values in given.items()} for row in rows}
-    states = {row: nominal.at({**oils.get(campaign.oil[campaign.test[row]], {}), **inputs[row]}) for row in rows}
-    found = {int(row): state for row, state in states.items() if state is not None}
-    for sensor in campaign.read if found else ():
-        measured = campaign.values[sensor.name] * sensor.sign(campaign.direction)
-        pairs = {
-            row: (float(measured[row]), state[sensor.reads])
-            for row, state in found.items()
-            if np.isfinite(measured[row])
-        }
-        if pairs:
-            yield from _constant(campaign, sensor, [model for _, model in pairs.values()])
-        if pairs and sensor.kind == "torque":
-            yield from _torque(campaign, nominal, sensor, pairs)
-        elif pairs and sensor.kind.endswith("_temp"):
-            yield from _rise(campaign, sensor, pairs)
-
-
-def _constant(campaign: Campaign, sensor: Sensor, model: Sequence[float]) -> Iterator[str]:
-    """A sensor that shows the same in all rows where the model does not."""
-    values = campaign.values[sensor.name]
-    known = values[np.isfinite(values)]
-    varies = np.ptp(np.abs(model)) > max(SMALL_RISE if SI[sensor.kind] == "K" else SAME * np.max(np.abs(model)), 1e-9)
-    if len(known) > LEAST_TESTS and np.ptp(known) == 0.0 and varies:
-        yield (
-            f"{campaign.name}: {sensor.column} is {_format_value(sensor, known[0])} in all {len(known)} rows."
-            " Give what was read, or leave out the column."
-        )
-
-
-def _torque(
-    campaign: Campaign, nominal: Nominal, sensor: Sensor, pairs: dict[int, tuple[float, float]]
-) -> Iterator[str]:
-    """A torque that is read far from the model's: another unit, another sign, or none at all."""
-    ratios = np.array([read / model for read, model in pairs.values() if abs(model) > 0])
-    factor = TORQUE_FACTOR if len(nominal.ends) > 1 else LOSS_FACTOR
-    middle = float(np.median(ratios)) if len(ratios) else 1.0
-    if 1 / factor <= middle <= factor:
-        return
-    row, (read, model) = next(iter(pairs.items()))
-    where = f"{_place(campaign, row)}: {sensor.column} gives {_format_value(sensor, read)}"
-    if 1 / factor <= -middle <= factor:
-        yield (
-            f"{where}, the model {_format_value(sensor, model)}: its sign is the other one. Turn it, or say"
-            " magnitude = true of this sensor in the card."
-        )
-    else:
-        yield f"{where}, the model {_format_value(sensor, model)}. Check its unit, which is taken for {sensor.unit}."
-
-
-def _rise(campaign: Campaign, sensor: Sensor, pairs: dict[int, tuple[float, float]]) -> Iterator[str]:
-    """A temperature over the room that is far from the model's: speed, torque or the temperature has another unit."""
-    rooms = [s for s in campaign.given if s.kind == "ambient"]
-    if not rooms:
-        return
-    room = campaign.values[rooms[0].name]
-    rises = [(row, read - room[row], model - room[row]) for row, (read, model) in pairs.items()]
-    ratios = [
-        (read + np.clip(model - read, -PROBE_ERROR, PROBE_ERROR)) / model
-        for _, read, model in rises
-        if model > SMALL_RISE or read > RISE_FACTOR * SMALL_RISE
-    ]
-    middle = float(np.median(ratios)) if ratios else 1.0
-    short = not campaign.steady  # a reading may be far below the steady state
-    if middle <= RISE_FACTOR and (short or middle >= 1 / RISE_FACTOR):
-        return
-    row, read, model = max(rises, key=lambda r: abs(r[1] - r[2]))
-    given = ", ".join(f"{s.column} ({s.unit})" for s in campaign.given)
-    yield (
-        f"{_place(campaign, row)}: {sensor.column} is {read:.3g} K over the room, the model gives {model:.3g} K."
-        f" Check the units of what drives it: {given}."
-    )
 
 
 def _balance(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
@@ -309,7 +205,7 @@ def _balance(campaign: Campaign, nominal: Nominal) -> Iterator[str]:
     row = int(np.flatnonzero(odd)[0])
     torques = ", ".join(s.column for s in campaign.sensors if s.kind == "torque")
     yield (
-        f"{_place(campaign, row)}: the torques give an efficiency of {eta[row]:.3g}, and of more than {best:g} or less"
+        f"{place(campaign, row)}: the torques give an efficiency of {eta[row]:.3g}, and of more than {best:g} or less"
         f" than {POOREST:g} in {odd.sum()} of {campaign.n} rows. Check units and signs of {torques}."
     )
 

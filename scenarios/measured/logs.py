@@ -5,6 +5,8 @@ from __future__ import annotations
 import csv
 import gzip
 import math
+import zlib
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
@@ -16,22 +18,35 @@ import numpy as np
 
 from ...model.errors import DataError, Problems
 from ...model.files import reading
-from ..csv_table import in_si, raise_all, split_unit
+from ..csv_table import header_problems, in_si, raise_all, split_unit
 from ..scenario import Scenario
 from .card import Card
 from .checks import COLDEST, HOTTEST
+from .log_checks import check_log
 from .read import place_sensor
 from .sensors import SI, sensors_of
 from .table import Sensed, Sensor
 
 #: Names that the column of time may have, without its unit; time stamps or a number of seconds, minutes or hours.
 TIMES = ("time", "time_utc", "timestamp", "datetime", "date_time", "t")
+#: What a column holds that is no calendar's.
+NUMBERS = "numbers"
+#: [s].
+YEAR = 3.156e7
+#: Latest time, since 1970 or since the begin of a log [s].
+LATEST = 250 * YEAR
 #: A gap of more than so many samples starts a new stretch.
 GAP = 1.5
+#: Least step of a log [s].
+SHORTEST = 1e-3
+#: Largest step of a log [s].
+LONGEST = 86400.0
 #: A single sample further than all of these from both its neighbours is a gross reading: standard deviations of steps.
 SPIKE_SD = 12.0
 #: [K].
 SPIKE_K = 8.0
+#: Share of temperatures that cannot be above which they have another unit.
+IMPOSSIBLE = 0.02
 #: Times what one sample in a thousand exceeds.
 SPIKE_TAIL = 2.5
 
@@ -116,7 +131,8 @@ def read_log(path: Path, scenario: Scenario, card: Card) -> Log:
     raise_all(problems, path.name)
     segments = cells.get(card.columns.get("segment", "segment"))
     stretch, step = _stretches(time, segments, path.name, lines)
-    values, gross = _remove_outliers(values, sensors, stretch, lines)
+    values, gross = _remove_outliers(path.name, values, sensors, stretch, lines)
+    check_log(path.name, sensors, values, lines, step, scenario)
     return Log(path.name, sensors, values, time, stretch, step, lines, dated, gross)
 
 
@@ -128,10 +144,11 @@ def _cells(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarray]
         with _open(path) as file:
             reader = csv.reader(file)
             header = [h.strip() for h in next(reader, [])]
+            raise_all(header_problems(path.name, header), path.name)
             rows = [(reader.line_num, row) for row in reader if any(row)]
     except FileNotFoundError:
         raise DataError([f"{path}: there is no such file. Check the path."]) from None
-    except (OSError, EOFError, UnicodeDecodeError):
+    except (OSError, EOFError, UnicodeDecodeError, zlib.error, csv.Error):
         raise DataError([f"{path}: cannot be read. Give a CSV, CSV.gz or Parquet file."]) from None
     ragged = [line for line, row in rows if len(row) != len(header)]
     if ragged:
@@ -160,7 +177,9 @@ def _parquet(path: Path) -> tuple[list[str], dict[str, Sequence[Any]], np.ndarra
 def _number(cell: Any) -> float:
     if cell is None or (isinstance(cell, str) and cell.strip().lower() in ("", "nan", "na", "null")):
         return math.nan
-    return float(cell)
+    if math.isinf(number := float(cell)):
+        raise ValueError
+    return number
 
 
 def _values(cells: Sequence[Any], sensor: Sensor, name: str, lines: np.ndarray, problems: Problems) -> np.ndarray:
@@ -171,30 +190,50 @@ def _values(cells: Sequence[Any], sensor: Sensor, name: str, lines: np.ndarray, 
             found[k] = _number(cell)
         except (TypeError, ValueError):
             problems.append(f'{name} line {lines[k]}: {sensor.column} is "{cell}", expected a number or nothing.')
+    if not np.isfinite(found).any():
+        problems.append(f"{name}: column {sensor.column} holds no number. Give what was read, or take it out.")
     with problems:
         found = in_si(found, sensor.unit, SI[sensor.kind], name=f"{name} {sensor.column}")
     return found
 
 
 def _time(
-    cells: Sequence[Any], column: str, name: str, lines: np.ndarray, problems: list[str]
+    cells: Sequence[Any], column: str, name: str, lines: np.ndarray, problems: Problems
 ) -> tuple[np.ndarray, bool]:
     """Time [s] (n,), and whether it is a calendar's."""
     unit = split_unit(column)[1] or "s"
-    found, dated = np.full(len(cells), np.nan), False
+    found, kinds = np.full(len(cells), np.nan), Counter[str]()
     for k, cell in enumerate(cells):
         try:
-            if isinstance(cell, datetime):
-                stamp: datetime | None = cell
-            else:
-                stamp = None if _is_number(cell) else datetime.fromisoformat(str(cell).strip())
-            dated = dated or stamp is not None
-            found[k] = (stamp if stamp.tzinfo else stamp.replace(tzinfo=UTC)).timestamp() if stamp else float(cell)
-        except (TypeError, ValueError):
+            found[k], kind = _instant(cell)
+            kinds[kind] += 1
+        except (TypeError, ValueError, OverflowError):
             problems.append(
                 f'{name} line {lines[k]}: {column} is "{cell}". Write a time as 2016-03-14T06:00Z, or a number.'
             )
-    return (found if dated else np.asarray(in_si(found, unit, "s", name=f"{name} {column}"))), dated
+    if len(kinds) > 1:
+        said = " and ".join(f"{count} {kind}" for kind, count in kinds.items())
+        problems.append(f"{name}: {column} holds {said}. Write all of them alike.")
+    dated = NUMBERS not in kinds
+    with problems:
+        found = found if dated else np.asarray(in_si(found, unit, "s", name=f"{name} {column}"))
+    if np.nanmax(np.abs(found), initial=0.0) > LATEST:
+        problems.append(
+            f"{name}: {column} goes to {np.nanmax(np.abs(found)) / YEAR:.3g} years. Check its unit, {unit}."
+        )
+    return found, dated
+
+
+def _instant(cell: Any) -> tuple[float, str]:
+    """A time as a number, and what it is. Raises ValueError where it is none."""
+    if not isinstance(cell, datetime) and _is_number(cell):
+        if not math.isfinite(number := float(cell)):
+            raise ValueError
+        return number, NUMBERS
+    stamp = cell if isinstance(cell, datetime) else datetime.fromisoformat(str(cell).strip())
+    if stamp.tzinfo:
+        return stamp.timestamp(), "times with a zone"
+    return stamp.replace(tzinfo=UTC).timestamp(), "times without a zone"
 
 
 def _is_number(cell: Any) -> bool:
@@ -216,18 +255,25 @@ def _stretches(
     if len(back := np.flatnonzero((steps <= 0) & ~other)):
         raise DataError([f"{name} line {lines[back[0] + 1]}: time does not go on. Sort the samples by time."])
     step = float(np.median(steps[(steps > 0) & ~other]))
+    if not SHORTEST <= step <= LONGEST:
+        raise DataError([f"{name}: there are {step:g} s from sample to sample. Check the unit of its time."])
     breaks = other | (np.abs(steps - step) > (GAP - 1) * step)
     return np.concatenate([[0], np.cumsum(breaks)]), step
 
 
 def _remove_outliers(
-    values: dict[str, np.ndarray], sensors: Sequence[Sensor], stretch: np.ndarray, lines: np.ndarray
+    name: str, values: dict[str, np.ndarray], sensors: Sequence[Sensor], stretch: np.ndarray, lines: np.ndarray
 ) -> tuple[dict[str, np.ndarray], tuple[Gross, ...]]:
     """Single spikes and impossible temperatures are found and become missing."""
     cleaned, gross = dict(values), []
     for sensor in (s for s in sensors if SI[s.kind] == "K"):
         column = values[sensor.name]
         wrong = ~((column > COLDEST) & (column < HOTTEST)) & np.isfinite(column)
+        if wrong.sum() > IMPOSSIBLE * np.isfinite(column).sum():
+            raise DataError(
+                f"{name} line {lines[wrong.argmax()]}: {sensor.column} is {column[wrong][0] - 273.15:.4g} degC, and"
+                f" such in {wrong.sum()} rows. Check its unit, which is taken for {sensor.unit or 'K'}."
+            )
         before, after = (np.roll(np.where(wrong, np.nan, column), shift) for shift in (1, -1))
         inside = np.zeros(len(column), dtype=bool)
         inside[1:-1] = (stretch[2:] == stretch[1:-1]) & (stretch[:-2] == stretch[1:-1])

@@ -59,10 +59,12 @@ def place_sensor(
     """
     found, problems = [], Problems()
     for sensor in declared:
-        same = [h for h in header if h == sensor.column]
         names = (sensor.column, split_unit(sensor.column)[0])
-        column = next(iter(same or [h for h in header if split_unit(h)[0] in names]), None)
-        if column is not None:
+        same = [h for h in header if h == sensor.column or split_unit(h)[0] in names]
+        column = next(iter(same), None)
+        if len(same) > 1:
+            problems.append(f"{name} line 1: {' and '.join(same)} are columns of one sensor, {sensor.name}. Keep one.")
+        elif column is not None:
             unit = card.units.get(column, split_unit(column)[1] or sensor.unit)
             found.append(replace(sensor, column=column, unit=spell_unit(unit)))
         elif sensor.role == "given":

@@ -35,6 +35,8 @@ CASES += [("LipSeal", {"law": "linear", "c_d": 2.429})]
 CASES += [("PreloadedPair", {"arrangement": "back-to-back", "contact": "balls"})]
 CASES += [("OilSump", {"runs_over": True}), ("OilExchanger", {"thermostat": True})]
 CASES += [("OilBath", {"level": 0.05}), ("Room", {"dT_radiant": -15.0, "altitude": 800.0})]
+STANDING = {"level": 0.05, "A_oil": 0.1, "width": 0.5, "height": 0.2, "share_air": 0.05}
+CASES += [("OilBath", {"in_motion": True, **STANDING}), ("GearChurning", {"gap": 4e-3})]
 CASES += [(kind, {"oil_bath": False}) for kind in ("TaperedRollerBearing", "CylindricalRollerBearing")]
 CASES += [
     ("DeepGrooveBallBearing", {"idle": "minimum load", "k_r": 0.025}),

@@ -76,3 +76,16 @@ def test_friction_falls_with_speed_and_follows_the_oil():
     slow, fast, smooth = at_work(STEEP, 10.0, 200.0), at_work(STEEP, 300.0, 200.0), at_work(STEEP, 300.0, 200.0, 0.8)
     assert fast["pair.mu"] < 0.5 * slow["pair.mu"]
     assert smooth["pair.mu"] == pytest.approx(0.8 * fast["pair.mu"])
+
+
+def test_friction_of_din_3996_is_an_angle_beside_the_lead_angle_and_less_in_large_worms():
+    """The efficiency is tan(gamma)/tan(gamma + rho) with the product of the printed factors, here 0.0424 at 2 m/s."""
+    flat, gamma = FLAT | dict(friction="DIN3996", b=0.05, Y_W=0.95), math.atan(4 / 60)
+    w = 2.0 * math.cos(gamma) / 0.03
+    found = at_work(flat, w, 200.0)
+    h_star = 0.018 + 15 / (7.86 * 56) + 1 / 41 - 41 / 36300 + 50 / (370.4 * 4) - math.sqrt(29) / 213.9
+    rho = math.atan(0.04243 * math.sqrt(100 / 112) * math.sqrt(0.07 / h_star) * 0.95)
+    assert -found["b.P"] / found["a.P"] == pytest.approx(math.tan(gamma) / math.tan(gamma + rho), rel=1e-3)
+    large = at_work(flat | dict(m_x=8e-3, d_1=0.12, b=0.1), w / 2, 1600.0)
+    assert large["pair.mu"] == pytest.approx(found["pair.mu"] * math.sqrt(1 / 2), rel=1e-3)
+    assert at_work(flat, w, 200.0, X_L=0.7)["pair.mu"] == pytest.approx(found["pair.mu"] * 0.02931 / 0.04243, rel=1e-3)

@@ -43,7 +43,7 @@ def test_it_runs_and_says_of_every_number_how_it_came_about(made, name):
     found = answer.json
     assert found["ratio"] == pytest.approx(PLATES[name][1], rel=0.04)
     assert (0.75 if name == "worm" else 0.9) < found["efficiency"] < 0.995
-    assert 21 < found["oil_degC"] < (95 if name == "worm" else 80)
+    assert 21 < found["oil_degC"] < (105 if name == "worm" else 80)  # a worm of 1.5 kW in mineral oil wants a fan
     scenario = load(path)
     assert all(source for source in scenario.value_sources.values())
     assert found["assumed"] > 50

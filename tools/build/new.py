@@ -24,7 +24,7 @@ from ..solve.settings import flat_of
 from ..solve.steady import conditions
 from . import sizing
 from .sizing import APART, GAP, LIGHT, OVERHANG, SIDE, Unit, unit
-from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, BevelStage, PlanetaryStage, WormStage
+from .stages import FACE, K_BEVEL, K_STAR, KINDS, SLIM, T_WORM, WIDTH, Y_W, BevelStage, PlanetaryStage, WormStage
 
 #: Density of steel [kg/m3].
 STEEL = 7850.0
@@ -38,12 +38,16 @@ RIBBED = 0.25
 RIBS = 2.5
 #: What a unit stands on.
 BASES = ("concrete", "steel", "free")
-#: Bolts of a foot, and their diameter over the wall's thickness [1].
-BOLTS, BOLT = 4, 1.5
+#: Bolts of a foot.
+BOLTS = 4
+#: Diameter of a bolt over the wall's thickness [1].
+BOLT = 1.5
 #: Width of the two strips that a foot stands on over that of the housing [1].
 STRIPS = 2 * 0.15
-#: Thickness of a steel frame over that of the wall, and how far it reaches beyond the foot over its length [1].
-FRAME, BEYOND = 2.0, 0.5
+#: Thickness of a steel frame over that of the wall [1].
+FRAME = 2.0
+#: How far it reaches beyond the foot, at either end, over its length [1].
+BEYOND = 0.5
 #: What the answer holds of a stage.
 STAGE_KEYS = ("kind", "z_1", "z_2", "m_n", "beta", "b")
 #: Kind of stage -> the size by which one is known.
@@ -227,7 +231,7 @@ def _stage(made: Unit, k: int) -> dict[str, Any]:
         shape |= {"s_planet": s.b / 2, "d_planet": s.d_planet, "driver": "sun", "driven": "carrier"} | s.ratios
     elif isinstance(s, WormStage):
         rule = f"wheel's torque over a3 of {T_WORM / 1e6:g} N/mm2 as makers rate them, standard a = {_mm(s.a)} mm"
-        shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "width": SLIM, "driver": "worm"}
+        shape = {"type": "WormPair", "m_x": s.m_n, "d_1": s.d_1, "Y_W": Y_W, "width": SLIM, "driver": "worm"}
     else:
         twist = f"beta for a = {_mm(s.a)} mm" if KINDS[s.kind] else "a follows from the teeth"
         rule = f"F_t/(b d_1) (u + 1)/u of {K_STAR / 1e6:g} N/mm2, standard module and centre distance, {twist}"

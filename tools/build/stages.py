@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from ...model.errors import ScenarioError
-from ...model.laws.worm import worm_friction
+from ...model.laws.worm import worm_base_friction, worm_mean_friction, worm_size_factor
 from ...model.parts.gears import HelicalGearPair, InternalGearPair
 
 #: Kinds of stages -> helix or spiral angle that is aimed at [rad], least and largest ratio of one stage.
@@ -33,6 +33,8 @@ T_WORM = 5.5e5
 STARTS = {10.0: 4, 28.0: 2, 60.0: 1}
 #: Mean diameter of a worm over the centre distance [1].
 SLIM = 0.4
+#: Material factor of the friction of a wheel of centrifugally cast bronze CuSn12Ni2 [1].
+Y_W = 0.95
 #: Number of planets.
 PLANETS = 3
 #: Numbers of teeth of suns to choose from.
@@ -184,8 +186,9 @@ class WormStage(Stage):
 
     @property
     def mu(self) -> float:
-        """Friction at the speed of the name plate."""
-        return float(worm_friction(2 * math.pi * self.n * self.r_1 / math.cos(self.gamma)))
+        """Friction at the speed of the name plate, in mineral oil."""
+        mu_0T = worm_base_friction(2 * math.pi * self.n * self.r_1 / math.cos(self.gamma), 1.0)
+        return float(worm_mean_friction(mu_0T, worm_size_factor(self.a) * Y_W, ALPHA))
 
     @property
     def mesh(self) -> float:

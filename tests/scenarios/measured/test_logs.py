@@ -92,6 +92,72 @@ def test_bad_files_say_where_and_what(tmp_path: Path, change, told: str) -> None
         read(tmp_path / "a.csv", rows, head)
 
 
+def cells_of(name: str, change):
+    """A log with the cells of a column changed."""
+
+    def made(head: str, rows: list[str]) -> tuple[str, list[str]]:
+        k = head.split(",").index(name)
+        cells = [row.split(",") for row in rows]
+        return head, [",".join([*c[:k], str(change(c[k], i)), *c[k + 1 :]]) for i, c in enumerate(cells)]
+
+    return made
+
+
+def seconds(change):
+    """A log with numbers for times."""
+    timed = cells_of("time_utc", lambda _, k: change(600.0 * k))
+    return lambda head, rows: (head.replace("time_utc", "time_s"), timed(head, rows)[1])
+
+
+def fahrenheit(head: str, rows: list[str]) -> tuple[str, list[str]]:
+    for name in (h for h in head.split(",") if h.endswith("_C")):
+        rows = cells_of(name, lambda cell, _: 1.8 * float(cell) + 32)(head, rows)[1]
+    return head, rows
+
+
+#: What may be wrong with a log -> the change that makes it so, and words of the answer.
+WRONG = {
+    "torque in kN.m": (cells_of("T_hss_Nm", lambda c, _: float(c) / 1000), "T_hss_Nm is at most 3 N.m, the rig runs"),
+    "speed in Hz": (cells_of("n_hss_rpm", lambda c, _: float(c) / 60), "n_hss_rpm is at most 25 rpm, the rig runs"),
+    "speed in rad/s": (cells_of("n_hss_rpm", lambda c, _: float(c) / 9.55), "Check the units of what drives it"),
+    "oil in degF": (cells_of("T_sump_C", lambda c, _: 1.8 * float(c) + 32), "T_sump_C .* In degF it would fit"),
+    "all in degF": (fahrenheit, "Check its unit|Check the units of what drives it|In degF it would fit"),
+    "oil in K": (cells_of("T_sump_C", lambda c, _: float(c) + 273.15), "T_sump_C is .* such in 60 rows"),
+    "no torque": (cells_of("T_hss_Nm", lambda c, _: ""), "T_hss_Nm holds no number"),
+    "no oil": (cells_of("T_sump_C", lambda c, _: "nan"), "T_sump_C holds no number"),
+    "a torque that is infinite": (cells_of("T_hss_Nm", lambda c, k: "inf" if k == 7 else c), 'T_hss_Nm is "inf"'),
+    "milliseconds since 1970": (seconds(lambda t: 1e3 * (1.4e9 + t)), "time_s goes to .* years. Check its unit"),
+    "milliseconds": (seconds(lambda t: 1e3 * t), "600000 s from sample to sample"),
+    "times that are none": (seconds(lambda t: "nan"), 'line 2: time_s is "nan"'),
+    "a time that is infinite": (seconds(lambda t: "inf" if t == 6000 else t), 'line 12: time_s is "inf"'),
+    "times backward": (seconds(lambda t: -t), "time does not go on"),
+    "a zone now and then": (cells_of("time_utc", lambda c, k: c[: 16 + k % 2]), "30 times without a zone and 30 times"),
+    "numbers among dates": (cells_of("time_utc", lambda c, k: k if k > 50 else c), "with a zone and 9 numbers"),
+    "a block twice": (
+        lambda h, r: (h, [a[:17] + b[17:] for a, b in zip(r, [*r[:30], *r[:30]], strict=True)]),
+        "line 32: 24 rows and more are those from line 2 on",
+    ),
+    "a column twice": (lambda h, r: (f"{h},T_sump_C", [f"{x},90" for x in r]), 'column "T_sump_C" is there twice'),
+    "two of one sensor": (lambda h, r: (f"{h},T_sump [K]", [f"{x},330" for x in r]), "are columns of one sensor"),
+    "no name": (lambda h, r: (f"{h},", [f"{x},1" for x in r]), "has no name"),
+}
+
+
+@pytest.mark.parametrize("kind", WRONG)
+def test_logs_are_checked_as_tables_are(tmp_path: Path, kind: str) -> None:
+    change, told = WRONG[kind]
+    head, rows = change(HEAD, lines())
+    with pytest.raises(DataError, match=told):
+        read(tmp_path / "a.csv", rows, head)
+
+
+def test_a_compressed_file_that_is_broken(tmp_path: Path) -> None:
+    whole = gzip.compress("\n".join([HEAD, *lines()]).encode())
+    (tmp_path / "a.csv.gz").write_bytes(whole[:40] + b"\0\xff" * 20 + whole[80:])
+    with pytest.raises(DataError, match="cannot be read"):
+        read_log(tmp_path / "a.csv.gz", load("wind_turbine"), read_card(None))
+
+
 def test_a_file_that_is_not_there(tmp_path: Path) -> None:
     with pytest.raises(DataError, match="no such file"):
         read_log(tmp_path / "none.csv", load("wind_turbine"), read_card(None))

@@ -1,0 +1,145 @@
+"""Measured tables beside what the nominal model gives at the same conditions: other units and signs, no readings."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+import numpy as np
+
+from ...model.units import in_unit, text
+from .nominal import Nominal
+from .sensors import SI
+from .table import Campaign, Sensor
+
+#: Name of an oil -> values by path.
+Oils = Mapping[str, Mapping[str, float]]
+
+#: Fewer tests than these say nothing about any cause.
+LEAST_TESTS = 3
+#: Given conditions nearer than this part of their size are the same point.
+SAME = 0.01
+#: Readings that differ from the nominal model's by more than this factor.
+TORQUE_FACTOR = 2.0
+#: In most rows.
+LOSS_FACTOR = 10.0
+#: Have another unit or sign.
+RISE_FACTOR = 5.0
+#: A rise over the room below this [K] says nothing about a unit.
+SMALL_RISE = 2.0
+#: Nor does one that is nearer to the model's than this [K]: probes err so much.
+PROBE_ERROR = 5.0
+#: Rows that are held against the nominal model.
+SAMPLED = 6
+#: A temperature this much further over the room than the model's, at most by `RISE_FACTOR`, may be in degF,
+SLIP_FACTOR = 1.6
+#: where it is nearer than this factor in degF.
+SLIP_FITS = 1.4
+#: A room below this is taken to be in degC [K].
+WARM_ROOM = 311.15
+
+
+def format_value(sensor: Sensor, value: float) -> str:
+    """A value as messages show it.
+
+    Args:
+        sensor: what shows it
+        value: in SI
+    """
+    return text(float(value), SI[sensor.kind], 4)
+
+
+def place(campaign: Campaign, row: int | np.intp) -> str:
+    """File and line of a row, for a message.
+
+    Args:
+        campaign: the table
+        row: its row
+    """
+    return f"{campaign.name} line {campaign.lines[row]}"
+
+
+def against_model(campaign: Campaign, nominal: Nominal, oils: Oils) -> Iterator[str]:
+    """Torques and temperatures that are far from what the nominal model gives at the same conditions.
+
+    Args:
+        campaign: what was measured
+        nominal: its rig
+        oils: name of each of its oils -> values by path
+    """
+    rows = np.unique(np.linspace(0, campaign.n - 1, SAMPLED).round().astype(int))
+    given = {s.reads: campaign.values[s.name] * s.sign(campaign.direction) for s in campaign.given}
+    inputs = {row: {path: float(values[row]) for path, values in given.items()} for row in rows}
+    states = {row: nominal.at({**oils.get(campaign.oil[campaign.test[row]], {}), **inputs[row]}) for row in rows}
+    found = {int(row): state for row, state in states.items() if state is not None}
+    for sensor in campaign.read if found else ():
+        measured = campaign.values[sensor.name] * sensor.sign(campaign.direction)
+        pairs = {
+            row: (float(measured[row]), state[sensor.reads])
+            for row, state in found.items()
+            if np.isfinite(measured[row])
+        }
+        if pairs:
+            yield from _constant(campaign, sensor, [model for _, model in pairs.values()])
+        if pairs and sensor.kind == "torque":
+            yield from _torque(campaign, nominal, sensor, pairs)
+        elif pairs and sensor.kind.endswith("_temp"):
+            yield from _rise(campaign, sensor, pairs)
+
+
+def _constant(campaign: Campaign, sensor: Sensor, model: Sequence[float]) -> Iterator[str]:
+    """A sensor that shows the same in all rows where the model does not."""
+    values = campaign.values[sensor.name]
+    known = values[np.isfinite(values)]
+    varies = np.ptp(np.abs(model)) > max(SMALL_RISE if SI[sensor.kind] == "K" else SAME * np.max(np.abs(model)), 1e-9)
+    if len(known) > LEAST_TESTS and np.ptp(known) == 0.0 and varies:
+        yield (
+            f"{campaign.name}: {sensor.column} is {format_value(sensor, known[0])} in all {len(known)} rows."
+            " Give what was read, or leave out the column."
+        )
+
+
+def _torque(
+    campaign: Campaign, nominal: Nominal, sensor: Sensor, pairs: dict[int, tuple[float, float]]
+) -> Iterator[str]:
+    """A torque that is read far from the model's: another unit, another sign, or none at all."""
+    ratios = np.array([read / model for read, model in pairs.values() if abs(model) > 0])
+    factor = TORQUE_FACTOR if len(nominal.ends) > 1 else LOSS_FACTOR
+    middle = float(np.median(ratios)) if len(ratios) else 1.0
+    if 1 / factor <= middle <= factor:
+        return
+    row, (read, model) = next(iter(pairs.items()))
+    where = f"{place(campaign, row)}: {sensor.column} gives {format_value(sensor, read)}"
+    if 1 / factor <= -middle <= factor:
+        yield (
+            f"{where}, the model {format_value(sensor, model)}: its sign is the other one. Turn it, or say"
+            " magnitude = true of this sensor in the card."
+        )
+    else:
+        yield f"{where}, the model {format_value(sensor, model)}. Check its unit, which is taken for {sensor.unit}."
+
+
+def _rise(campaign: Campaign, sensor: Sensor, pairs: dict[int, tuple[float, float]]) -> Iterator[str]:
+    """A temperature over the room that is far from the model's: speed, torque or the temperature has another unit."""
+    rooms = [s for s in campaign.given if s.kind == "ambient"]
+    if not rooms:
+        return
+    room = campaign.values[rooms[0].name]
+    rises = [(row, read - room[row], model - room[row]) for row, (read, model) in pairs.items()]
+    ratios = [
+        (read + np.clip(model - read, -PROBE_ERROR, PROBE_ERROR)) / model
+        for _, read, model in rises
+        if model > SMALL_RISE or read > RISE_FACTOR * SMALL_RISE
+    ]
+    middle = float(np.median(ratios)) if ratios else 1.0
+    row, read, model = max(rises, key=lambda r: abs(r[1] - r[2]))
+    where = f"{place(campaign, row)}: {sensor.column} is {read:.3g} K over the room, the model gives {model:.3g} K."
+    short = not campaign.steady  # a reading may be far below the steady state
+    if middle > RISE_FACTOR or not (short or middle >= 1 / RISE_FACTOR):
+        given = ", ".join(f"{s.column} ({s.unit})" for s in campaign.given)
+        yield f"{where} Check the units of what drives it: {given}."
+    elif middle > SLIP_FACTOR and sensor.unit == "degC":
+        alone = np.median([(in_unit(r + room[k], "degC") - 32) / 1.8 + 273.15 - room[k] for k, r, _ in rises])
+        both = np.median([r for _, r, _ in rises]) / 1.8 if np.nanmedian(room) > WARM_ROOM else np.nan
+        usual = np.median([m for _, _, m in rises])
+        if any(usual / SLIP_FITS < rise < usual * SLIP_FITS for rise in (alone, both)):
+            yield f"{where} In degF it would fit. Check its unit, which is taken for {sensor.unit}."

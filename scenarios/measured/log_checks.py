@@ -1,0 +1,103 @@
+"""Logs that cannot be: blocks of samples that are there twice, and means that are judged as a measured table is."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+import numpy as np
+
+from ...model.errors import DataError
+from ..scenario import Scenario
+from .checks import check
+from .nominal import Nominal
+from .sensors import drive_by
+from .table import Campaign, Sensor
+
+#: Means of a log that are judged.
+BLOCKS = 12
+#: A block of this length lasts for steady states, near enough [s].
+DAY = 86400.0
+#: Samples in a row that no second block repeats.
+ALIKE = 24
+#: Odd number by which the rows of a block are told apart modulo 2^64: 2^64 over the golden ratio.
+MULTIPLIER = np.uint64(11400714819323198485)
+
+
+def check_log(
+    name: str,
+    sensors: Sequence[Sensor],
+    values: Mapping[str, np.ndarray],
+    lines: np.ndarray,
+    step: float,
+    scenario: Scenario,
+) -> None:
+    """Refuse a log that cannot be one of a rig.
+
+    Args:
+        name: of the file
+        sensors: what was logged
+        values: sensor -> column in SI (n,)
+        lines: line of each row in the file (n,)
+        step: from sample to sample [s]
+        scenario: the rig
+
+    Raises:
+        DataError: all that cannot be
+    """
+    if (begin := _repeated(np.array([values[s.name] for s in sensors]).T)) is not None:
+        later, earlier = (lines[k] for k in begin)
+        raise DataError(
+            f"{name} line {later}: {ALIKE} rows and more are those from line {earlier} on. Keep one of the blocks."
+        )
+    check(_as_campaign(name, sensors, values, lines, step), Nominal(drive_by(scenario, sensors)), {})
+
+
+def _repeated(numbers: np.ndarray) -> tuple[int, int] | None:
+    """Begin of the first block of rows (n, k) that is there a second time, and of the first one; None without."""
+    if len(numbers) < 2 * ALIKE:
+        return None
+    row = np.unique(np.nan_to_num(numbers), axis=0, return_inverse=True)[1].ravel().astype(np.uint64)
+    blocks = len(row) - ALIKE + 1
+    block = np.zeros(blocks, dtype=np.uint64)
+    for k in range(ALIKE):
+        block = block * MULTIPLIER + row[k : k + blocks]
+    changes = np.append(0, np.cumsum(row[1:] != row[:-1]))
+    _, first, number = np.unique(block, return_index=True, return_inverse=True)
+    earlier = first[number.ravel()]
+    moving = changes[ALIKE - 1 :] - changes[:blocks] >= ALIKE // 2  # a machine at rest repeats itself
+    found = np.flatnonzero(moving & (np.arange(blocks) - earlier >= ALIKE))
+    return (int(found[0]), int(earlier[found[0]])) if len(found) else None
+
+
+def _as_campaign(
+    name: str, sensors: Sequence[Sensor], values: Mapping[str, np.ndarray], lines: np.ndarray, step: float
+) -> Campaign:
+    """Means of blocks of a log, a test each."""
+    blocks = np.array_split(np.arange(len(lines)), min(BLOCKS, len(lines)))
+    n, first = len(blocks), np.array([block[0] for block in blocks])
+    span = len(lines) // n * step
+    means = {sensor: np.array([_mean(column[block]) for block in blocks]) for sensor, column in values.items()}
+    unknown = np.full(n, np.nan)
+    return Campaign(
+        name=name,
+        sensors=tuple(sensors),
+        values=means,
+        test=np.arange(n),
+        order=np.arange(n),
+        direction=np.zeros(n),
+        dwell=np.full(n, np.inf if span >= DAY else span),
+        stop=np.zeros(n),
+        oil=("",) * n,
+        mounting=("",) * n,
+        T_start=unknown,
+        room_start=unknown,
+        humidity=unknown,
+        date=("",) * n,
+        lines=lines[first],
+        points=np.arange(1, n + 1),
+    )
+
+
+def _mean(values: np.ndarray) -> float:
+    known = values[np.isfinite(values)]
+    return float(known.mean()) if len(known) else np.nan
