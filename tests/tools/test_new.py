@@ -166,10 +166,10 @@ def test_what_it_stands_on_is_a_choice(gearheat, tmp_path):
 
 @pytest.mark.parametrize("name", PLATES)
 def test_a_housing_gives_off_what_the_standards_expect(made, gearheat, name):
-    """10 to 14 W/(m2.K) in a small room without draught, 17 to 20 in a hall with 1.4 m/s; at 0.3 m/s between them."""
+    """10 to 14 W/(m2.K) in a small room without draught, 17 to 20 in a hall with 1.4 m/s, more if 80 K hotter."""
     path, answer = made(name)
     area = {p.name: p.values for p in load(path).spec.parts}["cooling"]["A"]
-    assert 10 < answer.json["loss_W"] / area / (answer.json["oil_degC"] - 20) < 20
+    assert 10 < answer.json["loss_W"] / area / (answer.json["oil_degC"] - 20) < 22
 
 
 def test_churning_is_between_the_methods_of_the_standard(made, gearheat):
