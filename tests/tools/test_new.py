@@ -172,6 +172,17 @@ def test_a_housing_gives_off_what_the_standards_expect(made, gearheat, name):
     assert 10 < answer.json["loss_W"] / area / (answer.json["oil_degC"] - 20) < 22
 
 
+def test_a_fan_without_a_shaft_is_named(made, gearheat):
+    path, _ = made("spur")
+    fan = '[part.fan]\ntype = "ShaftFan"\nk_v = "0.02 m"\nk = "1e-5 N.m.s2"\nsource = "assumed: small"\n\n'
+    text = path.read_text("utf-8").replace("[part.room]", f"{fan}[part.room]")
+    nets = 'air = ["room.air", "fan.room"]\nblown = ["fan.air", "cooling.air"]'
+    path.write_text(text.replace('air = ["room.air", "cooling.air"]', nets), "utf-8")
+    answer = gearheat("steady", path)
+    assert answer.code == 2
+    assert "fan.shaft is connected to nothing: no shaft is there." in answer.err
+
+
 def test_churning_is_between_the_methods_of_the_standard(made, gearheat):
     """A two-stage unit at its name plate, the same depths: the methods differ by more from each other."""
     path, _ = made("bevel")
