@@ -149,6 +149,38 @@ def held_shaft() -> Assembly:
     return gearbox({"mount": ("FixedFlange", {})}, {"wheel": (*NETS["wheel"], "mount.flange")})
 
 
+ROLLERS = BEARING | dict(B=0.04, K_L=0.7)
+NO_FLANGES = {k: v for k, v in ROLLERS.items() if k not in ("C_0", "R_2", "S_1", "F_a_0")} | dict(flanges="one ring")
+TAPERED = {k: v for k, v in ROLLERS.items() if k != "C_0"} | dict(Y=1.6)
+
+
+@broken
+def no_bearing_locates() -> Assembly:
+    """a cylindrical roller bearing without flanges takes the axial force"""
+    return gearbox({"bearing_a": ("CylindricalRollerBearing", NO_FLANGES)})
+
+
+@broken
+def one_tapered_bearing() -> Assembly:
+    """a tapered roller bearing with nothing set against it"""
+    return gearbox({"bearing_a": ("TaperedRollerBearing", TAPERED)})
+
+
+def set_against(arrangement: str, ends: str = "ab") -> Assembly:
+    """Tapered roller bearings face to face or back to back, their thrusts connected in an order."""
+    support = SOUND["support"][1] | dict(arrangement=arrangement)
+    parts = {f"bearing_{k}": ("TaperedRollerBearing", TAPERED) for k in "ab"}
+    parts["support"] = ("ShaftSupport", {k: v for k, v in support.items() if k != "axial_share_a"})
+    thrusts = [(f"support.thrust_{k}", f"bearing_{end}.thrust") for k, end in zip("ab", ends, strict=True)]
+    return gearbox(parts, dict(zip(("thrust_a", "thrust_b"), thrusts, strict=True)))
+
+
+@broken
+def thrusts_that_point_the_same_way() -> Assembly:
+    """the thrust of one bearing is told as that of both"""
+    return set_against("face-to-face", "bb")
+
+
 def twice_geared(z_1: float, z_2: float) -> Assembly:
     """Two gear pairs between the same shafts."""
     parts = {"motor": ("ShaftEnd", dict(given=("tau",))), "rotor": ("Inertia", dict(J=0.1))}

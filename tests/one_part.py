@@ -10,6 +10,7 @@ from gearheat.model.core.declare import Input, Port
 from gearheat.model.core.flatten import flatten
 from gearheat.model.laws.oil import density, kinematic_viscosity, pressure_viscosity, thermoviscosity, walther_constants
 from gearheat.model.parts import PARTS as PHYSICS
+from gearheat.model.parts.bearings import SkfBearing
 from gearheat.model.parts.free_form import EXTRA_PARTS
 from gearheat.model.parts.ports import Flange
 
@@ -81,7 +82,8 @@ EXAMPLES: dict[str, dict] = {
     "TaperedRollerBearing": SKF | dict(R_1=2.38e-6, R_2=10.9, S_1=0.014, S_2=2.0, Y=1.4, B=0.038, K_L=0.7),
     "DeepGrooveBallBearing": SKF | dict(R_1=3.9e-7, R_2=1.7, S_1=3.23e-3, S_2=36.5, C_0=64e3),
     "CylindricalRollerBearing": SKF | dict(R_1=1e-6, S_1=0.16, S_2=1.5e-3, B=0.038, K_L=0.65),
-    "AngularContactBallBearing": SKF | dict(R_1=4.33e-7, R_2=2.02, R_3=2.44e-12, S_1=0.0182, S_2=0.71, S_3=2.44e-12),
+    "AngularContactBallBearing": SKF
+    | dict(R_1=4.33e-7, R_2=2.02, R_3=2.44e-12, S_1=0.0182, S_2=0.71, S_3=2.44e-12, Y=0.57),
     "SphericalRollerBearing": SKF
     | dict(R_1=1.6e-6, R_2=5.84, R_3=2.81e-6, R_4=5.8, S_1=3.62e-3, S_2=508.0, S_3=8.8e-3, S_4=117.0, B=0.028, K_L=0.8),
     "ThrustBallBearing": THRUST | dict(R_1=1.03e-6, S_1=0.016, K_Z=3.8),
@@ -103,6 +105,7 @@ EXAMPLES: dict[str, dict] = {
     "OilPump": dict(V_disp=1e-5, eta_v=0.9, eta_m=0.8),
     "OilFilter": dict(dp_ref=1e5, m_flow_ref=0.1, nu_ref=1e-4, p_bypass=3e5),
     "OilNozzle": dict(d=2e-3, C_d=0.7),
+    "GearJet": dict(d=2e-3, C_d=0.7, r=0.08, height=6.75e-3, A=0.02, along=0.9, c_p=2000.0),
     "OilExchanger": dict(G=300.0, c_p=2000.0),
     "HeatCapacity": dict(C=3600.0),
     "ThermalConductor": dict(G=60.0),
@@ -171,6 +174,7 @@ GIVES |= {f"PlanetarySet.{k}" for k in ("carrier_load", "sun_load", "planet_load
 GIVES |= {f"HarmonicMesh.{k}" for k in ("wave_load", "shaft_load")}
 GIVES |= {f"CycloidPinStage.{k}" for k in ("eccentric_load", "crank_load", "main_load")}
 GIVES |= {f"{s}.{k}" for s in ("ShaftSupport", "TwoGearSupport", "PreloadedPair") for k in ("load_a", "load_b")}
+GIVES |= {f"{kind}.thrust" for kind, part in PARTS.items() if issubclass(part, SkfBearing)}
 GIVES |= {f"RoundHousing.{k}" for k in ("flat_inside", "flat_outside", "cylinder_inside", "cylinder_outside")}
 #: Oil ports at which a part gives the pressure, or leaves it open: oil is pushed into them.
 PUSHED = {"OilSump.inlet", "OilSump.outlet", "OilFilter.a", "OilExchanger.a"}

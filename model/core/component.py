@@ -222,6 +222,14 @@ class Component:
         """What the laws for such a part give at the same sizes: a line of texts each, the recommended one first."""
         return ()
 
+    def clashes(self, met: Mapping[str, Sequence[Component]]) -> Iterable[str]:
+        """What cannot be between the part and those that it meets, each with what to do.
+
+        Args:
+            met: the part's ports by key -> the other parts on their nets
+        """
+        return ()
+
     def has(self, name: str) -> bool:
         """Whether a declared port, state or parameter exists under the component's choices and what it is `told`."""
         return True

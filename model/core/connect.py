@@ -48,9 +48,26 @@ def nets(assembly: Assembly) -> list[list[Port]]:
     if problems:
         raise StructureError(problems)
     found = _merge_nets(assembly, ports)
-    if problems := _open_ports(assembly.name, assembly.parts, found):
+    if problems := _open_ports(assembly.name, assembly.parts, found) or _clashes(assembly, found):
         raise StructureError(problems)
     return found
+
+
+def _clashes(assembly: Assembly, nets: Sequence[Sequence[Port]]) -> list[str]:
+    """What parts say of those that they meet."""
+    owners = {port.name: part for part in assembly.parts for port in part.ports.values()}
+    around = {port.name: net for net in nets for port in net}
+    return [
+        f"{assembly.name}: {problem}"
+        for part in assembly.parts
+        if type(part).clashes is not Component.clashes
+        for problem in part.clashes(
+            {
+                key: [owners[other.name] for other in around[port.name] if owners[other.name] is not part]
+                for key, port in part.ports.items()
+            }
+        )
+    ]
 
 
 def _merge_nets(assembly: Assembly, ports: dict[str, Port]) -> list[list[Port]]:

@@ -21,6 +21,7 @@ from ..laws.load_variables import (
     thrust_roller_rolling_variable,
     thrust_roller_sliding_variable,
 )
+from ..laws.preload import axial_load_set_against, own_thrust
 from ..laws.rolling import (
     boundary_share,
     dgb_rolling_variable,
@@ -41,7 +42,7 @@ from ..laws.rolling import (
 )
 from ..laws.smooth import Num, smooth_abs
 from .friction import Friction
-from .ports import BearingLoad, Lubricant, Sump
+from .ports import BearingLoad, Lubricant, OwnThrust, Sump
 from .relations import require
 
 
@@ -61,11 +62,16 @@ class RollingBearing(Friction):
         """Radial and axial load [N]."""
         return self.F_r_0 + self.load.F_r, self.F_a_0 + self.load.F_a
 
+    def holds(self) -> int:
+        """In how many directions along its axis the bearing holds a shaft: 0, 1 or 2."""
+        return 2
+
 
 class SkfBearing(RollingBearing):
     """Rolling and sliding moment with shear heating, starvation and mixed friction, and a drag moment."""
 
     sump = Sump()
+    thrust = OwnThrust("how the bearing pushes the shaft along")
 
     d = Parameter("m", "bore diameter", nominal=0.1, above=0.0)
     D = Parameter("m", "outside diameter", nominal=0.1, above=0.0)
@@ -96,6 +102,10 @@ class SkfBearing(RollingBearing):
     tau_rr = Output("N.m", "rolling moment of one bearing")
     tau_sl = Output("N.m", "sliding moment of one bearing")
     mu_sl = Output("1", "sliding friction coefficient", nominal=0.1)
+
+    def own_thrust(self) -> Num:
+        """What the bearing pushes the shaft along with under its radial load [N]."""
+        return 0.0
 
     def geometric_variables(self) -> tuple[Num, Num]:
         """Rolling and sliding variable of the catalogue, from the loads."""
@@ -146,12 +156,34 @@ class SkfBearing(RollingBearing):
         rolling = rolling_torque(G_rr, w, nu, phi_ish * phi_rs)
         if self.idle == "M_0":
             rolling = at_least(rolling, needle_torque_viscous(w, nu, self.d_m, self.f_0))
+        if "thrust" in self.ports:
+            yield equation("own thrust", self.thrust.F, self.own_thrust())
         yield equation("rolling moment", self.tau_rr, rolling)
         yield equation("sliding friction", self.mu_sl, mu_sl)
         yield equation("sliding moment", self.tau_sl, sliding_torque(G_sl, self.mu_sl))
         if self.has("sump"):
             yield equation("it throws no oil", self.sump.Q_oil, 0.0)
         yield from super().equations()
+
+
+class InclinedBearing(SkfBearing):
+    """Base of the bearings with inclined contacts: a radial load pushes the shaft along, against another bearing."""
+
+    radial_thrust = Choice(("carried", "left out"), "whether a radial load makes thrust", default="carried")
+    Y = Parameter("1", "axial load factor of the catalogue", above=0.0, below=10.0)
+
+    def own_thrust(self) -> Num:
+        """Thrust of the radial load [N]."""
+        return own_thrust(super().loads()[0], self.Y) if self.radial_thrust == "carried" else 0.0
+
+    def loads(self) -> tuple[Num, Num]:
+        """Radial and axial load [N], the latter not below the bearing's own thrust."""
+        F_r, F_a = super().loads()
+        return F_r, axial_load_set_against(self.own_thrust(), F_a)
+
+    def holds(self) -> int:
+        """One by itself holds a shaft one way."""
+        return 1 if self.values["count"] < 2 else 2
 
 
 class RollerBearing(SkfBearing):
@@ -179,10 +211,8 @@ class RollerBearing(SkfBearing):
         return drag_torque_roller(w, nu, self.d, self.D, self.B, H, V_M, self.K_Z, self.K_L)
 
 
-class TaperedRollerBearing(RollerBearing):
+class TaperedRollerBearing(InclinedBearing, RollerBearing):
     """Tapered roller bearing, single row."""
-
-    Y = Parameter("1", "axial load factor of the catalogue", above=0.0, below=10.0)
 
     def geometric_variables(self) -> tuple[Num, Num]:
         """Tapered roller bearing."""
@@ -194,15 +224,22 @@ class TaperedRollerBearing(RollerBearing):
 class CylindricalRollerBearing(RollerBearing):
     """Cylindrical roller bearing with a cage, single row."""
 
+    flanges = Choice(("both rings", "one ring"), "where: on both (NJ, NUP) they hold the shaft", default="both rings")
+
     def has(self, name: str) -> bool:
-        """It has one rolling constant."""
-        return super().has(name) and name != "R_2"
+        """It has one rolling constant, and carries axial loads by its flanges."""
+        return super().has(name) and name != "R_2" and (self.holds() > 0 or name not in ("F_a_0", "S_1"))
+
+    def holds(self) -> int:
+        """None without flanges on both rings."""
+        return 2 if self.flanges == "both rings" else 0
 
     def geometric_variables(self) -> tuple[Num, Num]:
         """Cylindrical roller bearing."""
-        F_r, F_a = self.loads()
+        F_r = self.F_r_0 + self.load.F_r
+        F_a, S_1 = (self.F_a_0 + self.load.F_a, self.S_1) if self.holds() else (0.0, 0.0)
         rolling = crb_rolling_variable(F_r, self.d_m, self.R_1)
-        return rolling, crb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2)
+        return rolling, crb_sliding_variable(F_r, F_a, self.d_m, S_1, self.S_2)
 
 
 class BallBearing(SkfBearing):
@@ -262,20 +299,24 @@ class DeepGrooveBallBearing(RadialBallBearing):
         return rolling, dgb_sliding_variable(F_r, F_a, self.d_m, self.S_1, self.S_2, self.C_0)
 
 
-class AngularContactBallBearing(RadialBallBearing):
+class AngularContactBallBearing(InclinedBearing, RadialBallBearing):
     """Angular contact ball bearing, single or double row: fast balls press on its outer ring."""
 
     R_3 = Parameter("1", "third rolling constant of the catalogue", nominal=1e-12, at_least=0.0)
     S_3 = Parameter("1", "third sliding constant of the catalogue", nominal=1e-12, at_least=0.0)
     i_rw = Parameter("1", "number of rows of balls", default=1.0, at_least=1.0, at_most=2.0, whole=True)
 
-    def has(self, name: str) -> bool:
-        """The rows count in an oil bath only: the constants of the moments know them."""
-        return super().has(name) and (self.oil_bath or name != "i_rw")
-
     def rows(self) -> Num:
         """One or two."""
         return self.i_rw
+
+    def own_thrust(self) -> Num:
+        """Two rows are set against each other within the bearing."""
+        return super().own_thrust() * (2 - self.i_rw)
+
+    def holds(self) -> int:
+        """Two rows hold a shaft both ways."""
+        return max(super().holds(), int(self.values["i_rw"]))
 
     def geometric_variables(self) -> tuple[Num, Num]:
         """Angular contact ball bearing."""
@@ -304,7 +345,7 @@ class ThrustBallBearing(BallBearing):
 
     def has(self, name: str) -> bool:
         """It has one rolling and one sliding constant, and no radial load of its own."""
-        return super().has(name) and name not in ("R_2", "S_2", "F_r_0")
+        return super().has(name) and name not in ("R_2", "S_2", "F_r_0", "thrust")
 
     def geometric_variables(self) -> tuple[Num, Num]:
         """Thrust ball bearing."""
@@ -318,7 +359,7 @@ class CylindricalRollerThrustBearing(RollerBearing):
 
     def has(self, name: str) -> bool:
         """It has one rolling and one sliding constant, and no radial load of its own."""
-        return super().has(name) and name not in ("R_2", "S_2", "F_r_0")
+        return super().has(name) and name not in ("R_2", "S_2", "F_r_0", "thrust")
 
     def geometric_variables(self) -> tuple[Num, Num]:
         """Cylindrical roller thrust bearing."""
@@ -332,6 +373,10 @@ class NeedleBearing(RollingBearing):
 
     f_0 = Parameter("1", "factor of the viscous moment", above=0.0)
     f_1 = Parameter("1", "factor of the load moment", nominal=1e-4, above=0.0)
+
+    def holds(self) -> int:
+        """It carries no axial load."""
+        return 0
 
     def torque(self) -> Num:
         """Viscous and load moment of one bearing [N.m]."""

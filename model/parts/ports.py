@@ -91,6 +91,16 @@ class BearingLoad(Port):
     F_a = Potential("N", "axial load", nominal=1000.0)
 
 
+class OwnThrust(Port):
+    """How a bearing with inclined contacts pushes the shaft along under a radial load: information, not power."""
+
+    missing = "nothing says how the bearing pushes the shaft along"
+    source = "the thrust of the bearing that is set against the other one"
+    absent = "Choose how the bearings are set against each other, face-to-face or back-to-back."
+
+    F = Potential("N", "thrust, towards the bearing set against it", nominal=1000.0)
+
+
 class ToothForce(Port):
     """The force on a gear at the pitch point: information, not power.
 

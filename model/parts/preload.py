@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from typing import ClassVar
 
 from ..core.component import Component, Equation, Faults, equation
 from ..core.declare import Choice, Output, Parameter
-from ..laws.preload import preload_force, preloaded_axial_load, thermal_interference
-from .ports import BearingLoad, HeatPort
+from ..laws.preload import axial_load_set_against, preload_force, preloaded_axial_load, thermal_interference
+from .ports import BearingLoad, HeatPort, OwnThrust
+from .supports import LOCATED
 
 
 class PreloadedPair(Component):
     """Two equal bearings set against each other: their axial loads with a preload that follows the temperatures.
 
-    It stands between a ShaftSupport (`support_a`, `support_b`) and the bearings (`load_a`, `load_b`). A preload rises
-    when the shaft warms against the housing face to face, and falls back to back where the bearings are far apart. A
+    It stands between a ShaftSupport, one bearing of which locates (`support_a`, `support_b`), and the bearings
+    (`load_a`, `load_b`), whose own thrusts under a radial load it reads (`thrust_a`, `thrust_b`). A preload rises when
+    the shaft warms against the housing face to face, and falls back to back where the bearings are far apart. A
     light-alloy housing changes it also where all is equally warm.
     """
 
@@ -27,6 +29,8 @@ class PreloadedPair(Component):
     support_b = BearingLoad("what the shaft asks of bearing b")
     load_a = BearingLoad("what bearing a carries")
     load_b = BearingLoad("what bearing b carries")
+    thrust_a = OwnThrust("how bearing a pushes the shaft along")
+    thrust_b = OwnThrust("how bearing b pushes the shaft along")
 
     arrangement = Choice(("face-to-face", "back-to-back"), "how the bearings are set: X or O")
     contact = Choice(("rollers", "balls"), "what the bearings roll on")
@@ -41,6 +45,15 @@ class PreloadedPair(Component):
     dx = Output("m", "interference by expansion, negative: clearance", nominal=1e-5)
     F_0 = Output("N", "preload without other axial load", nominal=500.0, at_least=0.0)
 
+    def clashes(self, met: Mapping[str, Sequence[Component]]) -> Iterator[str]:
+        """The shaft's statics have to leave to the pair how its bearings are set."""
+        for part in met["support_a"]:
+            if (told := part.choices.get("arrangement", LOCATED)) != LOCATED:
+                yield (
+                    f"{part.name} is {told} and {self.name} {self.arrangement}: both say how the bearings are set. "
+                    f'Give {part.name} arrangement = "{LOCATED}", or leave {self.name} out.'
+                )
+
     def equations(self) -> Iterator[Equation]:
         """Expansion makes the preload; preload and axial force make the loads."""
         span = self.span if self.arrangement == "face-to-face" else -self.span
@@ -53,5 +66,7 @@ class PreloadedPair(Component):
         yield equation("preload", self.F_0, preload_force(self.F_set, self.k, self.dx))
         yield equation("bearing a radially", self.load_a.F_r, a.F_r)
         yield equation("bearing b radially", self.load_b.F_r, b.F_r)
-        yield equation("bearing a axially", self.load_a.F_a, preloaded_axial_load(self.F_0, a.F_a, b.F_a, n))
-        yield equation("bearing b axially", self.load_b.F_a, preloaded_axial_load(self.F_0, b.F_a, a.F_a, n))
+        on_a, on_b = preloaded_axial_load(self.F_0, a.F_a, b.F_a, n), preloaded_axial_load(self.F_0, b.F_a, a.F_a, n)
+        pushed_a, pushed_b = self.thrust_b.F + a.F_a - b.F_a, self.thrust_a.F + b.F_a - a.F_a
+        yield equation("bearing a axially", self.load_a.F_a, axial_load_set_against(on_a, pushed_a))
+        yield equation("bearing b axially", self.load_b.F_a, axial_load_set_against(on_b, pushed_b))

@@ -53,6 +53,19 @@ SAYS: dict[str, tuple[str, ...]] = {
         "put a ThermalConductor between",
     ),
     "held_shaft": ("motor.w is given", "mount: held", "motor.flange, mount.flange", "Do not give motor.w"),
+    "no_bearing_locates": (
+        "support has bearing a carry axial force",
+        "bearing_a (CylindricalRollerBearing) holds no shaft along its axis",
+        "Let bearing b locate (axial_share_a = 0)",
+    ),
+    "one_tapered_bearing": (
+        "bearing_a (TaperedRollerBearing) pushes the shaft along",
+        'Give support arrangement = "face-to-face" or "back-to-back"',
+    ),
+    "thrusts_that_point_the_same_way": (
+        "support.load_a loads bearing_a (TaperedRollerBearing), and support.thrust_a is that of bearing_b",
+        "Connect both ports to one bearing",
+    ),
     "loop_of_gears": ("rotor.w is a state", "second: gears roll", "gear.wheel, second.wheel", "its ratios have to fit"),
     "parallel_gears": (
         "two equations say the same",

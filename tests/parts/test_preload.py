@@ -28,7 +28,7 @@ def with_pair(arrangement: str) -> FlatModel:
     nets = [(*net, net[0].replace("output_support.load", "pair.support")) if len(net) == 1 else net for net in nets]
     spec = replace(spec, connections=tuple(nets))
     pair = PartSpec("pair", "PreloadedPair", PAIR | {"arrangement": arrangement})
-    joined = [(f"pair.load_{k}", f"output_bearing_{k}.load") for k in "ab"]
+    joined = [(f"pair.{port}_{k}", f"output_bearing_{k}.{port}") for port in ("load", "thrust") for k in "ab"]
     joined += [("pair.inner", "shafts.heat"), ("pair.outer", "wall.heat")]
     return flatten(assemble(spec.with_parts((pair,), tuple(joined))))
 

@@ -2,6 +2,7 @@
 
 from .model.core.component import Component as Component
 from .model.errors import GearheatError as GearheatError
+from .scenarios.own_types import use_parts as use_parts
 from .tools.build.new import NewRig as NewRig, new as new
 from .tools.compare.calibrate import Calibration as Calibration, calibrate as calibrate
 from .tools.compare.replay import Replays as Replays, replay as replay
@@ -23,6 +24,7 @@ from .tools.diagnose.api import (
 from .tools.export.export import export as export, play as play
 from .tools.export.fmu import Exported as Exported
 from .tools.films.film import FilmTable as FilmTable, film as film
+from .tools.films.teeth import TeethFelt as TeethFelt, teeth as teeth
 from .tools.rating.rate import MethodRating as MethodRating, rate_by_method as rate_by_method
 from .tools.solve.design import DesignAnswer as DesignAnswer, design as design
 from .tools.solve.losses import LossTable as LossTable, losses as losses

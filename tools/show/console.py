@@ -21,7 +21,7 @@ from pathlib import Path
 from typing import Any, ParamSpec
 
 from ...fmu.compiling import Progress
-from ...model.errors import DataError, GearheatError, ScenarioError
+from ...model.errors import DataError, GearheatError, ScenarioError, visible
 from ...model.files import flows, keep_inputs, place, replacing
 
 P = ParamSpec("P")
@@ -34,6 +34,8 @@ FULL = (errno.ENOSPC, errno.EDQUOT)
 NO_WAY = (errno.ENAMETOOLONG, errno.EACCES, errno.EPERM, errno.ELOOP, errno.ENOTDIR)
 #: Kinds of pictures, by the ending of the file.
 PICTURES = (".html", ".svg", ".png")
+#: Options of commands that name files to be written.
+OUTPUTS = ("out", "json", "plot", "report", "html", "predictions", "extended")
 #: Width that a column of words gets at least.
 LEAST = 14
 #: s, between two lines of progress where stderr is no terminal: a log stays short, and a long run is seen to live.
@@ -47,6 +49,7 @@ def guard(command: Callable[P, None]) -> Callable[P, None]:
     def run(*args: P.args, **kwargs: P.kwargs) -> None:
         try:
             with keep_inputs():
+                _apart(kwargs)
                 command(*args, **kwargs)
             sys.stdout.flush()
         except GearheatError as error:
@@ -73,6 +76,17 @@ def guard(command: Callable[P, None]) -> Callable[P, None]:
     return run
 
 
+def _apart(options: Mapping[str, Any]) -> None:
+    """Refuse two outputs of a command in one file, of which one would be lost."""
+    named = {name: options.get(name) for name in OUTPUTS}
+    first: dict[str, str] = {}
+    for name, path in named.items():
+        if isinstance(path, str | Path) and str(path) != "-" and not flows(Path(path)):
+            other = first.setdefault(os.path.realpath(path), name)
+            if other != name:
+                raise ScenarioError(f"--{other} and --{name} both name {path}. Give each output a file of its own.")
+
+
 def _silence() -> None:
     """Nothing more goes to stdout."""
     os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -80,7 +94,7 @@ def _silence() -> None:
 
 def note(text: str) -> None:
     """A message or progress on stderr; stdout carries results only."""
-    print(text, file=sys.stderr, flush=True)
+    print(visible(text), file=sys.stderr, flush=True)
 
 
 @contextmanager
@@ -249,7 +263,7 @@ def screen_width() -> int | None:
 
 def say(text: str) -> None:
     """Print sentences, broken between words where the screen ends; whole into files and pipes."""
-    width = screen_width()
+    text, width = visible(text), screen_width()
     if width is None:
         print(text)
         return
@@ -288,7 +302,7 @@ def table(
     widest = [max(len(text) for text in (name, *(row[i] for row in body))) for i, name in enumerate(columns)]
     least = [n if stiff else min(n, LEAST) for n, stiff in zip(widest, whole, strict=True)]
     kept, *others = fitting(least, whole, screen.width, repeated=words[0])
-    screen.print(title, style="italic")
+    screen.print(visible(title), style="italic")
     for group in (kept, *others):
         drawn = Table(box=box.SIMPLE_HEAD)
         for i in group:
@@ -346,6 +360,6 @@ def cell(value: Any) -> str:
     if value is None or (isinstance(value, float) and math.isnan(value)):
         return ""
     if not isinstance(value, float):
-        return str(value)
+        return visible(str(value))
     value += 0.0  # no zero is negative
     return f"{value:.0f}" if 1e4 <= abs(value) < 1e7 else f"{value:.4g}"
