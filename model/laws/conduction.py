@@ -79,7 +79,7 @@ def half_space(k: Num, A: Num) -> Num:
 
 
 @law(source="Yovanovich1982", where="contact conductance of conforming rough surfaces", verified=False)
-def contact_coefficient(p: Num, k: Num, sigma: Num, m: Num, H: Num) -> Num:
+def contact_coefficient(p: Num, k: Num, sigma: Num, m: Num, hardness: Num) -> Num:
     r"""Heat transfer coefficient of two rough metal faces by their spots of contact [W/(m2.K)].
 
     A law of machine tool joints, 8000 k (p / (3 R_m) 15 um / (2 Rz))^0.86, has a fifth of it at 10 N/mm2 between ground
@@ -92,9 +92,9 @@ def contact_coefficient(p: Num, k: Num, sigma: Num, m: Num, H: Num) -> Num:
         k: harmonic mean of the thermal conductivities [W/(m.K)]
         sigma: root mean square roughness of both, square root of the sum of squares [m]
         m: mean slope of both roughnesses [1]
-        H: hardness of the softer face [Pa]
+        hardness: of the softer face, H [Pa]
     """
-    return 1.25 * k * m / sigma * (p / H) ** 0.95
+    return 1.25 * k * m / sigma * (p / hardness) ** 0.95
 
 
 @law(source="Schaefer1993", where="radial heat conductance of ball bearings", valid="ball bearings", verified=False)
