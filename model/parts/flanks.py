@@ -24,8 +24,6 @@ from .teeth import ToothedPart
 STEEL = 13784.0
 #: Share of a flank's way from the pitch point to its base circle that touches at most: undercut teeth end there [1].
 INVOLUTE = 0.95
-#: Torque below which a planetary set at rest or without friction tells no speed [N.m].
-NOTHING = 1e-12
 
 
 @dataclass(frozen=True)
@@ -109,13 +107,13 @@ def flanks_of(part: Component, values: Mapping[str, float]) -> Iterator[Flanks]:
 
     Args:
         part: of any type
-        values: its parameters and outputs at an operating point, by key, in SI
+        values: its parameters and outputs at an operating point, by key, and speeds of its shafts, "sun.w", in SI
     """
     if isinstance(part, GearPair):
         mesh = _flanks(part, values, ("", ""), part.teeth(), part.addendum_ratios())
         yield replace(mesh, w=values["u_m"] / mesh.rho_C)
     elif isinstance(part, PlanetarySet):
-        w = values["P_loss_sp"] / max(values["tau_loss_sp"], NOTHING)  # of the sun against the carrier
+        w = abs(values["sun.w"] - values["carrier.w"])
         for kind, z_a, z_b in (("sp", part.z_1, part.z_2), ("pr", part.z_2, -part.z_3)):
             tips = [_standard_addendum(part, z) for z in (z_a, z_b)]
             scale = getattr(part, f"eps_alpha_{kind}") / sum(tips)
